@@ -32,7 +32,7 @@ std::string names_json(const std::vector<std::string>& names) {
   return "[" + out + "]";
 }
 
-/// A file that lists millions of them helps nobody: the first ones, along the path.
+/// Most small groups that a file lists, the first ones along the path; nobody reads millions.
 constexpr std::size_t kMostSmallGroups = 1000;
 
 std::string small_json(const std::vector<SmallGroup>& groups) {

@@ -6,8 +6,8 @@
 
 namespace clearway {
 
-/// The members of a JSON object about the whole, each on a line with two blanks before it, without
-/// the braces: the query, hashes, how conflicts were made, counts and warnings.
+/// The members of a JSON object about the whole result, without the braces, each on a line that
+/// begins with two blanks: the query, hashes, how conflicts were made, counts and warnings.
 std::string summary_json(const ConflictFile& file);
 
 }  // namespace clearway

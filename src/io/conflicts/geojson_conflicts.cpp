@@ -8,15 +8,16 @@
 namespace clearway {
 namespace {
 
-/// Where there is none, a local one: readers take files that name none for WGS 84.
+/// The name of the coordinate reference system, or of a local one where there is none, because
+/// readers take files that name none for WGS 84.
 std::string crs_name(const std::string& wkt) {
   if (wkt.empty()) return R"(LOCAL_CS["unknown",UNIT["metre",1]])";
   const ScanCrs crs = scan_crs_of(wkt);
   return crs.epsg != 0 ? "urn:ogc:def:crs:EPSG::" + std::to_string(crs.epsg) : crs.wkt;
 }
 
-/// As the GeoJSON of 2008 had it. RFC 7946 knows only WGS 84, which a scan in a local frame cannot
-/// be turned into.
+/// The member "crs" as defined by GeoJSON of 2008. RFC 7946 knows only WGS 84, into which a scan in
+/// a local frame cannot be converted.
 std::string crs_json(const std::string& wkt) {
   const std::string name = crs_name(wkt);
   return R"({"type": "name", "properties": {"name": )" + json_string(name) + "}}";
@@ -34,7 +35,7 @@ std::string point_json(const Vec3& v) {
   return R"({"type": "Point", "coordinates": )" + json_vector(v) + "}";
 }
 
-/// Counter-clockwise, at the lowest height.
+/// The footprint of a box: a polygon, counter-clockwise, at the lowest height.
 std::string footprint_json(const Box& box) {
   const Vec3 corners[] = {{box.lo.x, box.lo.y, box.lo.z},
                           {box.hi.x, box.lo.y, box.lo.z},
@@ -46,8 +47,8 @@ std::string footprint_json(const Box& box) {
   return R"({"type": "Polygon", "coordinates": [[)" + ring + "]]}";
 }
 
-/// number: of the feature in the file. Without one, readers take the property "id", which the two
-/// features of a conflict share.
+/// A feature. number: its number in the file; without one, readers would take the property "id",
+/// which the two features of a conflict share.
 std::string feature_json(std::uint64_t number, const Conflict& conflict, const ResultHeader& header,
                          const char* shape, const std::string& geometry) {
   std::string properties = R"("shape": )" + json_string(shape);

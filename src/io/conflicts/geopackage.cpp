@@ -14,7 +14,7 @@ namespace clearway {
 namespace {
 
 constexpr std::int32_t kUnknownCartesian = -1;
-constexpr std::int32_t kOwnCode = 100'000;  // of a system without a number of EPSG
+constexpr std::int32_t kOwnCode = 100'000;  // number of a reference system without EPSG code
 constexpr const char* kWgs84 =
     R"(GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563,AUTHORITY["EPSG","7030"]],AUTHORITY["EPSG","6326"]],PRIMEM["Greenwich",0,AUTHORITY["EPSG","8901"]],UNIT["degree",0.0174532925199433,AUTHORITY["EPSG","9122"]],AUTHORITY["EPSG","4326"]])";
 
@@ -56,7 +56,8 @@ std::vector<Vec3> ring_of(const Box& box) {
           {box.lo.x, box.lo.y, z}};
 }
 
-/// A line needs two places: a single pose has its neighbour too, or itself twice.
+/// The path along a conflict. A line needs two places, so a single pose is joined by its neighbour,
+/// or by itself where there is none.
 std::vector<Vec3> path_of(const Conflict& conflict, const std::vector<Pose>& poses) {
   std::size_t first = conflict.first_pose, last = conflict.last_pose;
   if (first == last && last + 1 < poses.size()) ++last;
@@ -108,7 +109,7 @@ void add_system(sqlite::Database& database, std::int32_t id, const std::string& 
       .run();
 }
 
-/// Returns the number of the scans' own.
+/// Adds the reference systems and returns the number of that of the scans.
 std::int32_t add_systems(sqlite::Database& database, const std::string& wkt) {
   add_system(database, -1, "Undefined Cartesian SRS", "NONE", -1, "undefined");
   add_system(database, 0, "Undefined geographic SRS", "NONE", 0, "undefined");
@@ -140,7 +141,7 @@ void add_contents(sqlite::Database& database, const Layer& layer, const std::vec
       .run();
 }
 
-/// The number of a feature is that of its conflict.
+/// Adds a layer, in which the number of a feature is that of its conflict.
 void add_layer(sqlite::Database& database, const Layer& layer, const ConflictFile& file,
                std::int32_t srs) {
   std::string columns, places = "?, ?";

@@ -11,7 +11,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-constexpr std::uint32_t kWithHeights = 1000;  // added to the number of a shape
+constexpr std::uint32_t kWithHeights = 1000;  // added to the number of a shape that has heights
 
 class Bytes {
  public:
@@ -46,7 +46,7 @@ std::vector<std::byte> geometry_bytes(GeoShape shape, std::span<const Vec3> poin
   add_header(out, shape, points, srs);
   out.add(std::uint8_t{1});  // little-endian
   out.add(static_cast<std::uint32_t>(shape) + kWithHeights);
-  if (shape == GeoShape::kPolygon) out.add(std::uint32_t{1});  // ring
+  if (shape == GeoShape::kPolygon) out.add(std::uint32_t{1});  // one ring
   if (shape != GeoShape::kPoint) out.add(static_cast<std::uint32_t>(points.size()));
   for (const Vec3& p : points) {
     for (int k = 0; k < 3; ++k) out.add(p[k]);

@@ -11,7 +11,8 @@
 namespace clearway {
 namespace {
 
-/// Corners and centroid are arrays in the place of their x; their y and z are left out.
+/// A conflict as a JSON object. Corners and centroid are arrays, which replace the fields of their
+/// three coordinates.
 std::string conflict_json(const Conflict& conflict, const ResultHeader& header) {
   std::string out;
   for (const ConflictField& field : fields_of(conflict, header)) {

@@ -8,7 +8,8 @@
 namespace clearway {
 namespace {
 
-/// Bytes of the UTF-8 character that begins the text; 0 where none does. Source: RFC 3629.
+/// Number of bytes of the UTF-8 character at the start of the text; 0 where there is none. Source:
+/// RFC 3629.
 std::size_t character_bytes(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const auto follows = [&](std::size_t i, unsigned lo = 0x80, unsigned hi = 0xbf) {

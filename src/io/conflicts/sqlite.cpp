@@ -11,14 +11,15 @@ namespace clearway::sqlite {
 
 Database::Database(const std::filesystem::path& path) : name_(path.string()) {
   File::create(path);
-  // Without locks of its own: outputs are locked by their PendingFile, by this process too.
+  // SQLite's own locks are off, because outputs are locked by their PendingFile, also in this
+  // process.
   const int code = sqlite3_open_v2(name_.c_str(), &handle_, SQLITE_OPEN_READWRITE, "unix-none");
   if (code != SQLITE_OK) {
     const std::string reason = handle_ == nullptr ? "out of memory" : sqlite3_errmsg(handle_);
     sqlite3_close(std::exchange(handle_, nullptr));
     throw ResourceError(name_ + ": cannot write: " + reason);
   }
-  // The caller syncs the file and gives it its name: a journal would keep nothing.
+  // The caller syncs the file and gives it its name, so a journal would protect nothing.
   run("PRAGMA journal_mode = OFF");
   run("PRAGMA synchronous = OFF");
 }

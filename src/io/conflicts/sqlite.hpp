@@ -14,17 +14,17 @@ struct sqlite3_stmt;
 
 namespace clearway::sqlite {
 
-/// A new database of one writer. Everything throws ResourceError with the file's name.
+/// A new database with one writer. All functions throw ResourceError with the file's name.
 class Database {
  public:
-  /// Empties a file that is there.
+  /// Creates the database, or empties an existing file.
   explicit Database(const std::filesystem::path& path);
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
   ~Database();
 
   void run(const std::string& sql);
-  /// Writes what is left; nothing may be called after it.
+  /// Writes the remaining data and closes the database; no call may follow.
   void close();
 
  private:
@@ -36,8 +36,8 @@ class Database {
   sqlite3* handle_ = nullptr;
 };
 
-/// A statement with values in the place of its question marks, run once or more often. The database
-/// outlives it.
+/// A statement whose question marks are replaced by values. It may be run several times. The
+/// database must outlive it.
 class Insert {
  public:
   Insert(Database& database, const std::string& sql);
@@ -45,12 +45,12 @@ class Insert {
   Insert& operator=(const Insert&) = delete;
   ~Insert();
 
-  /// The next value.
+  /// Sets the next value.
   Insert& add(const FieldValue& value);
   Insert& add_text(std::string_view text);
   Insert& add_integer(std::int64_t value);
   Insert& add_blob(std::span<const std::byte> bytes);
-  /// With as many values as there are question marks.
+  /// Runs the statement, for which as many values as question marks must be set.
   void run();
 
  private:

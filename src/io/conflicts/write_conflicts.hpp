@@ -7,7 +7,8 @@
 
 namespace clearway {
 
-/// Writes them. pictures: for BCF. Throws ResourceError; UsageError for more than BCF holds.
+/// Writes conflicts in any format. pictures: used only for BCF. Throws ResourceError, and
+/// UsageError for more than BCF holds.
 void write_conflicts(const ConflictFile& conflicts, const ConflictPictures& pictures,
                      ConflictFormat format, const std::filesystem::path& path);
 

@@ -35,11 +35,12 @@ namespace clearway {
 namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
-constexpr std::uint64_t kBaseBytes = 64 * kMiB;     // batches, index, libraries
-constexpr std::uint64_t kThreadBytes = 32 * kMiB;   // a counting grid and its refinement
-constexpr std::uint64_t kCellBytes = 160;           // its index, and its nodes in the tree
+constexpr std::uint64_t kBaseBytes = 64 * kMiB;  // memory of batches, index and libraries
+// Memory per thread: a counting grid and its refinement.
+constexpr std::uint64_t kThreadBytes = 32 * kMiB;
+constexpr std::uint64_t kCellBytes = 160;           // index and tree nodes of a cell
 constexpr std::uint64_t kOutputBytesPerPoint = 11;  // an estimate for the disk check
-constexpr std::uint64_t kPaddingBytesPerPoint = 4;  // an estimate for the same
+constexpr std::uint64_t kPaddingBytesPerPoint = 4;  // an estimate for the disk check
 constexpr std::uint32_t kLeastCellPoints = 64;
 
 void check_columns(const std::vector<std::string>& columns) {
@@ -70,7 +71,7 @@ void check_options(const ConversionOptions& options) {
   check_columns(options.columns);
 }
 
-/// Threads that the memory allows, as each has a counting grid of its own.
+/// The number of threads that the memory allows, as each has a counting grid of its own.
 int affordable_threads(const ConversionOptions& options) {
   const int wanted =
       options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
@@ -92,11 +93,12 @@ Lattice lattice_for(const ConversionOptions& options, const Quantisation& quanti
   return Lattice(cube);
 }
 
-/// What a conversion writes, in points.
+/// The amount of data that a conversion writes, in points.
 struct DiskNeed {
   std::uint64_t points = 0;
-  std::uint64_t padded = 0;   ///< with the padding of cells that are not full, which packs to less
-  std::uint64_t spooled = 0;  ///< into temporary files
+  /// Points including the padding of cells that are not full, which packs to less.
+  std::uint64_t padded = 0;
+  std::uint64_t spooled = 0;  ///< points that are written into temporary files
 };
 
 void check_disk(const std::filesystem::path& folder, const DiskNeed& need) {
@@ -114,8 +116,8 @@ void check_disk(const std::filesystem::path& folder, const DiskNeed& need) {
                       mostly_padding ? Remedy::kFewerCellPoints : Remedy::kNone);
 }
 
-/// What a group of processes may take, as a container's do; the greatest number where that is not
-/// bounded.
+/// The memory limit of the process's control group, such as a container's; the greatest number
+/// where there is no limit.
 std::uint64_t group_memory_bytes() {
   std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
   for (const char* file :
@@ -126,7 +128,8 @@ std::uint64_t group_memory_bytes() {
   return least;
 }
 
-/// Half of the memory; the rest is for inputs and the store on their way.
+/// The most bytes of points that may wait in memory: half of the machine's or the container's,
+/// because inputs and store need the rest.
 std::uint64_t most_waiting_bytes() {
   const std::uint64_t of_machine = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
                                    static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
@@ -172,7 +175,7 @@ class Conversion {
     distribute(environment, counted.hashes(), lattice, tree, places, distribution, threads_,
                clocks_, progress_);
     progress_.end();
-    environment.refuse_changed();  // the sources' hashes too are of what was converted
+    environment.refuse_changed();  // so that the sources' hashes are those of what was converted
     report_.largest_change = environment.largest_change();
     report_.temporary_bytes = distribution.temporary_bytes();
     warn_of_places(environment, places, counted.points, log_);
@@ -209,7 +212,8 @@ class Conversion {
                         .classes = counted.classes};
     if (environment.files().size() > 1) {
       report_.metadata.source_points = environment.points_of_files();
-      report_.metadata.source_points.resize(report_.metadata.sources.size());  // files of poses
+      // Files of poses have 0 points.
+      report_.metadata.source_points.resize(report_.metadata.sources.size());
     }
     report_.absent_points = environment.absent_points();
     report_.non_finite_points = environment.non_finite_points();
@@ -220,9 +224,10 @@ class Conversion {
 
   std::uint64_t of_unit() const { return unit_bytes(report_.metadata.classes.has_value()); }
 
-  /// Of the memory, beside the cells' index: at least a unit.
+  /// Bytes of memory for units, besides the index of cells; at least one unit.
   std::uint64_t bytes_for_units() const {
-    const std::uint64_t of_cell = kCellBytes + (report_.metadata.classes ? 20 : 0);  // their index
+    // The index of classes.
+    const std::uint64_t of_cell = kCellBytes + (report_.metadata.classes ? 20 : 0);
     const std::uint64_t others = kBaseBytes + report_.cells * of_cell;
     const std::uint64_t least = others + of_unit();
     if (options_.memory_bytes < least) {
@@ -234,8 +239,8 @@ class Conversion {
     return options_.memory_bytes - others;
   }
 
-  /// Whether memory and disk do for the cells, and whether memory does for all points: they wait
-  /// in it if that leaves enough for a unit a thread.
+  /// Checks that memory and disk suffice for the cells, and decides whether all points wait in
+  /// memory. They do if that leaves enough for one unit per thread.
   void check_cells(const std::vector<TopNode>& top, std::size_t units) {
     const std::uint64_t points = report_.points;
     report_.cells = top.empty() ? 0 : top[0].cell_count;
@@ -299,14 +304,14 @@ class Conversion {
 std::vector<Message> kept_warnings(const std::vector<Message>& warnings) {
   constexpr std::size_t kMost = 64, kMostTextBytes = 1000;
   std::vector<Message> kept;
-  // The store's unit says that it is in feet.
+  // The warning "feet" is left out, because the store's unit says the same.
   std::ranges::remove_copy(warnings, std::back_inserter(kept), "feet", &Message::code);
   const std::size_t all = kept.size();
   kept.resize(std::min(all, kMost));
   for (Message& warning : kept) {
     if (warning.text.size() <= kMostTextBytes) continue;
     std::size_t end = kMostTextBytes;
-    while (end > 0 && (warning.text[end] & 0xc0) == 0x80) --end;  // no cut within a letter
+    while (end > 0 && (warning.text[end] & 0xc0) == 0x80) --end;  // do not cut within a character
     warning.text = warning.text.substr(0, end) + " ...";
   }
   if (all > kMost) {

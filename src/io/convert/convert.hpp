@@ -10,7 +10,8 @@
 
 namespace clearway {
 
-/// The least memory that a conversion accepts: one unit, the counting grid and the buffers.
+/// The least memory that a conversion accepts, which holds one unit, the counting grid and the
+/// buffers.
 inline constexpr std::uint64_t kLeastConversionMemory = std::uint64_t{224} << 20;
 
 struct ConversionOptions : ConvertOptions {
@@ -18,22 +19,23 @@ struct ConversionOptions : ConvertOptions {
   std::filesystem::path output;
 };
 
-/// What a store keeps of the warnings of its conversion: at most 64, with texts of at most 1,000
-/// bytes, where the last one says how many more there were. Without "feet", which its unit says.
+/// The warnings of its conversion that a store keeps: at most 64, with texts of at most 1,000
+/// bytes; if there were more, the last one says how many. "feet" is left out, because the store's
+/// unit says the same.
 std::vector<Message> kept_warnings(const std::vector<Message>& warnings);
 
 struct ConversionReport : ConvertReport {
   StoreMetadata metadata;
 };
 
-/// Turns scans into a store (docs/design/conversion.md). Throws UsageError, InputError,
-/// ResourceError; Interrupted when the progress asks to stop; whatever happens, nothing stands
-/// under the output's name that is not complete.
+/// Converts scans into a store (docs/design/conversion.md). Throws UsageError, InputError,
+/// ResourceError, and Interrupted when the progress asks to stop. Whatever happens, no incomplete
+/// file ever has the output's name.
 ConversionReport convert_scans(const ConversionOptions& options, Progress& progress);
 
-/// Whether the output is there already and is the store of these inputs, by names and contents,
-/// with these options; all of it is verified. Never of a stream. Throws UsageError where that store
-/// is damaged; ResourceError where an input is missing; Interrupted.
+/// Whether the output exists and is the store of these inputs, by names and contents, with these
+/// options; all of it is verified. Always false for a stream. Throws UsageError where that store is
+/// damaged, ResourceError where an input is missing, and Interrupted.
 bool is_converted(const ConversionOptions& options, Progress& progress);
 
 }  // namespace clearway

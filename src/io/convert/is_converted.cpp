@@ -13,7 +13,7 @@
 namespace clearway {
 namespace {
 
-/// None where there is no store with a sound index.
+/// The store at a path; nullopt where there is no store with a sound index.
 std::optional<StoreReader> store_at(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path)) return std::nullopt;
   try {
@@ -23,12 +23,14 @@ std::optional<StoreReader> store_at(const std::filesystem::path& path) {
   }
 }
 
-/// A unit is taken where the inputs name none; that of a "ft" may have been named by another input.
+/// Whether a store in unit `found` agrees with the option `wanted`, which applies where inputs name
+/// no unit. An option "ft" agrees with either foot, since another input may have named which.
 bool has_wanted_unit(const FileUnit& wanted, LengthUnit found) {
   return !wanted.is_known() || wanted.metres_in(metres_of(found)) == metres_of(found);
 }
 
-/// Whether these options would make such a store, as far as it tells with which it was made.
+/// Whether a conversion with these options could have made this store, as far as its metadata
+/// tells.
 bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
   const auto wanted = [&options](double scale) {
     return !options.scale || scale == *options.scale;
@@ -45,7 +47,7 @@ bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
 }  // namespace
 
 bool is_converted(const ConversionOptions& options, Progress& progress) {
-  // A store does not tell by which columns it was made.
+  // A store does not record the columns with which it was made.
   if (options.inputs == std::vector<std::filesystem::path>{"-"} || !options.columns.empty()) {
     return false;
   }

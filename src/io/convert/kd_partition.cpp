@@ -13,7 +13,8 @@ namespace clearway {
 namespace {
 
 constexpr std::size_t kParallelFrom = 1 << 16;
-/// Points parted before the boxes of the two sides are brought up to date: they are in cache then.
+/// Number of points that are divided before the boxes of the two sides are updated, while they are
+/// still in cache.
 constexpr std::size_t kPartedAtOnce = 1024;
 
 int longest_side(const QuantumBounds& b, const double* scale) {
@@ -27,8 +28,9 @@ int longest_side(const QuantumBounds& b, const double* scale) {
   return longest;
 }
 
-/// Copies the points left of a split to the front of `to` and the others behind them, each side in
-/// the order they come: points are in source order, so ties go by source index.
+/// Copies the points left of a split to the front of `to` and the others behind them. Each side
+/// keeps the order of the points, which come in source order, so that ties are broken by source
+/// index.
 class Parting {
  public:
   Parting(BucketPoint* to, std::size_t left, int axis, KdSplit split)
@@ -50,8 +52,8 @@ class Parting {
   const QuantumBounds& right_bounds() const { return bounds_[1]; }
 
  private:
-  /// Without a branch that depends on a point. One store: a store to both sides would write beyond
-  /// a side that is full.
+  /// Adds points without a branch that depends on a point. Each point is stored once, because
+  /// storing it to both sides would write beyond a side that is full.
   template <bool kTies>
   void add(const BucketPoint* points, std::size_t n) {
     std::size_t left = left_;
@@ -87,7 +89,7 @@ class BucketOrder {
   BucketOrder(std::uint32_t cell_points, const double* scale, StageClocks& clocks)
       : cell_points_(cell_points), scale_(scale), clocks_(clocks) {}
 
-  /// Orders n points of `from` within `bounds`; the outcome goes to `result`, which is `from` or
+  /// Orders n points of `from` within `bounds`. The outcome goes to `result`, which is `from` or
   /// `other`.
   void order(BucketPoint* from, BucketPoint* other, BucketPoint* result, std::size_t n,
              const QuantumBounds& bounds) const {
@@ -116,7 +118,7 @@ class BucketOrder {
     QuantumBounds bounds[2];
   };
 
-  /// On one thread.
+  /// Orders n points of `from` within `bounds` on one thread. The outcome goes to `result`.
   void order_alone(BucketPoint* from, BucketPoint* other, BucketPoint* result, std::size_t n,
                    const QuantumBounds& bounds) const {
     if (n <= kBlockPoints) {
@@ -134,7 +136,7 @@ class BucketOrder {
     return split(from, to, n, bounds);
   }
 
-  /// Parts n > kBlockPoints points.
+  /// Divides n > kBlockPoints points of `from` at the median split into the two sides of `to`.
   Parts split(const BucketPoint* from, BucketPoint* to, std::size_t n,
               const QuantumBounds& bounds) const {
     const std::size_t left = left_count(n, n > cell_points_ ? cell_points_ : kBlockPoints);

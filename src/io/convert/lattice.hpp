@@ -6,21 +6,24 @@
 
 namespace clearway {
 
-/// Where a point lies for the counting grid and the top tree: x, y, z as non-negative lattice
+/// Position of a point in the counting grid and the top tree: x, y, z as non-negative lattice
 /// coordinates, then the source index, so that coinciding points can be told apart.
 using LatticePoint = std::array<std::uint64_t, 4>;
 
-/// Maps the store's integers to lattice coordinates, monotone on every axis. For a regular layout
-/// each cube starts at a multiple of a power of two, so that power-of-two bins never straddle a
-/// cube's face.
+/// Maps the store's integers to lattice coordinates, monotonically on every axis. In a regular
+/// layout each cube starts at a multiple of a power of two, so that power-of-two bins never
+/// straddle a cube's face.
 class Lattice {
  public:
-  static constexpr std::uint64_t kLeastCubeQuanta = 16;  ///< the finest bin of the counting grid
-  static constexpr std::uint64_t kZero = std::uint64_t{1} << 31;  ///< of q = 0, adaptive
+  /// Side of the finest bin of the counting grid.
+  static constexpr std::uint64_t kLeastCubeQuanta = 16;
+  /// Lattice coordinate of q = 0 in the adaptive layout.
+  static constexpr std::uint64_t kZero = std::uint64_t{1} << 31;
 
-  /// No cubes.
+  /// The lattice of the adaptive layout, without cubes.
   Lattice() = default;
-  /// Cubes of `cube_quanta` >= kLeastCubeQuanta integers along each axis.
+  /// The lattice of a regular layout, with cubes of `cube_quanta` >= kLeastCubeQuanta integers
+  /// along each axis.
   explicit Lattice(const std::array<std::uint64_t, 3>& cube_quanta) : cube_(cube_quanta) {
     for (const std::uint64_t quanta : cube_) {
       const auto bits = static_cast<unsigned>(std::bit_width(quanta - 1));
@@ -41,7 +44,7 @@ class Lattice {
         out[k] = lifted;
         continue;
       }
-      // Faces lie at multiples of the cube's side counted from q = 0.
+      // The cubes' faces are at multiples of the side counted from q = 0.
       const std::uint64_t from_face = lifted + (cube_[k] - kZero % cube_[k]) % cube_[k];
       out[k] = (from_face / cube_[k] << cube_bits_) + from_face % cube_[k];
     }

@@ -14,7 +14,7 @@
 namespace clearway {
 namespace {
 
-/// The points of a unit: as loaded (in source order), and in order.
+/// The points of a unit, both as loaded (in source order) and in k-d order.
 class Unit {
  public:
   Unit(Distribution& distribution, std::size_t unit, UnitBuffers& buffers, StageClocks& clocks)
@@ -65,7 +65,8 @@ void append_boxes(std::span<const BucketPoint> points, PackedCell& cell) {
   for (const QuantumBox& box : boxes) cell.blocks.push_back(encode_block_box(all, box));
 }
 
-/// As the store keeps them; behind the points, the last one's repeat.
+/// Packs the classes of a cell as the store keeps them. The padding repeats the class of the last
+/// point.
 void pack_classes(const Unit& unit, std::span<const BucketPoint> points, std::uint32_t cell_points,
                   PackedCell& cell) {
   std::vector<std::uint8_t> classes(cell_points, unit.point_class(points.back()));
@@ -92,7 +93,7 @@ PackedCell pack_cell(const Unit& unit, std::span<const BucketPoint> points,
   return cell;
 }
 
-/// The buckets below a unit's node: their sizes, after the points were parted by the tree's planes.
+/// The sizes of the buckets below a unit's node, whose points it divides by the planes of the tree.
 class UnitBuckets {
  public:
   UnitBuckets(Unit& unit, const SplitTree& tree, const Lattice& lattice)

@@ -13,14 +13,14 @@
 
 namespace clearway {
 
-/// Memory that loading, ordering and packing one full unit takes: 20 bytes a point as distributed,
-/// 32 for ordering, 20 packed at the most, and with classes one more.
+/// Bytes of memory to load, order and pack one full unit: for each point 20 bytes as distributed,
+/// 32 for ordering and at most 20 packed, and one more with classes.
 constexpr std::uint64_t unit_bytes(bool has_classes) {
   return kBucketPoints * (has_classes ? 73 : 72);
 }
 
-/// Loads a unit and orders its buckets; packs its cells in the store's order, piece by piece, as
-/// padded cells can be far larger than their points.
+/// Loads a unit, orders its buckets and packs its cells in the store's order. Cells are packed
+/// piece by piece, because padded cells can be far larger than their points.
 class OrderedUnit {
  public:
   OrderedUnit(Distribution& distribution, std::size_t unit, const SplitTree& tree,
@@ -28,10 +28,10 @@ class OrderedUnit {
               StageClocks& clocks);
   ~OrderedUnit();
 
-  /// The next cells, with padding at most kBucketPoints points but at least a cell; empty at the
-  /// end.
+  /// The next cells, which including padding hold at most kBucketPoints points but are at least
+  /// one; empty at the end.
   std::vector<PackedCell> pack_next();
-  /// Cells that pack_next() has not given yet.
+  /// Number of cells that pack_next() has not returned yet.
   std::size_t cells_left() const;
 
  private:

@@ -11,9 +11,9 @@
 
 namespace clearway {
 
-/// What the stored points are, in source order: XXH64 over scale, offset, the integers of all
-/// points, the source indices of those that directly follow a dropped (non-finite) point, and the
-/// number of input points. Independent of file format, batches, layout and cell size.
+/// Hash that identifies the stored points: XXH64 over scale, offset, the integers of all points in
+/// source order, the source indices of those that directly follow a dropped (non-finite) point, and
+/// the number of input points. Independent of file format, batches, layout and cell size.
 class PointsHash {
  public:
   explicit PointsHash(const Quantisation& quantisation) {
@@ -43,15 +43,15 @@ class PointsHash {
  private:
   Xxh64Stream quanta_;
   Xxh64Stream sources_;
-  std::uint64_t expected_ = 0;  ///< source index of the next point when none is dropped
+  std::uint64_t expected_ = 0;  ///< source index of the next point if none is dropped
 };
 
-/// What classes the stored points have, in source order: XXH64 of a byte a point.
+/// Hash of the classes of the stored points: XXH64 of one byte per point, in source order.
 class ClassesHash {
  public:
   void add(const QuantaBatch& batch) {
     if (batch.classes.empty()) {
-      zeros_ += batch.quanta.size();  // hashed only where a class follows
+      zeros_ += batch.quanta.size();  // hashed only once points with classes follow
       return;
     }
     add_zeros();
@@ -72,7 +72,7 @@ class ClassesHash {
   }
 
   Xxh64Stream hash_;
-  std::uint64_t zeros_ = 0;  ///< points of class 0 that came last
+  std::uint64_t zeros_ = 0;  ///< number of points of class 0 that are not hashed yet
 };
 
 }  // namespace clearway

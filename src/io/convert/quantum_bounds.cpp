@@ -7,7 +7,7 @@
 namespace clearway {
 namespace {
 
-constexpr std::size_t kPointsAtOnce = 4;  // they fill the widest vectors
+constexpr std::size_t kPointsAtOnce = 4;  // as many as fill the widest vectors
 
 CLEARWAY_SIMD_CLONES
 void extend_by(QuantumBounds& b, const BucketPoint* points, std::size_t n) {

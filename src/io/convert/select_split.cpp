@@ -9,7 +9,8 @@
 namespace clearway {
 namespace {
 
-/// Up to as many points all coordinates are bisected, above it only those near the sample's.
+/// Up to this many points, all coordinates are bisected; for more points, only those near the value
+/// that a sample suggests.
 constexpr std::size_t kBisectAll = 4096;
 
 std::int32_t ahead(std::int32_t lo, std::uint32_t steps) {
@@ -20,8 +21,8 @@ std::uint32_t extent(CoordinateRange range) {
   return static_cast<std::uint32_t>(range.hi) - static_cast<std::uint32_t>(range.lo);
 }
 
-/// The split of n coordinates that lie in `range`. Counts those below a value again and again:
-/// that has no branch that depends on a point, and takes full vectors.
+/// The split of n coordinates within `range`. It counts the coordinates below a value repeatedly,
+/// which needs no branch that depends on a point and uses full vectors.
 CLEARWAY_SIMD_CLONES
 KdSplit bisect(const std::int32_t* q, std::size_t n, std::size_t left, CoordinateRange range) {
   std::size_t below_lo = 0;
@@ -50,7 +51,8 @@ struct Collected {
   std::size_t below, within;
 };
 
-/// Copies the coordinates within `range` to `q`; how many lie below it, and how many within.
+/// Copies the coordinates within `range` to `q`. Returns how many are below it, and how many
+/// within.
 Collected collect(std::span<const BucketPoint> points, int axis, CoordinateRange range,
                   std::int32_t* q) {
   const std::uint32_t length = extent(range);
@@ -65,7 +67,8 @@ Collected collect(std::span<const BucketPoint> points, int axis, CoordinateRange
   return found;
 }
 
-/// Where the value of rank `left` probably lies: three standard deviations of a sample's rank.
+/// The range in which the value of rank `left` probably lies: three standard deviations of the rank
+/// in a sample.
 CoordinateRange probable_range(std::span<const BucketPoint> points, std::size_t left, int axis,
                                CoordinateRange range, std::int32_t* q) {
   const std::size_t sample = std::size_t{128} << (std::bit_width(points.size()) / 2 - 5);

@@ -13,14 +13,15 @@ struct CoordinateRange {
   std::int32_t lo, hi;
 };
 
-/// A plane that parts points: left are those below `value`, and the first `equal` of those at it.
+/// A plane that divides points: on its left are those below `value`, and the first `equal` of those
+/// at it.
 struct KdSplit {
   std::int32_t value;
   std::size_t equal;
 };
 
-/// The plane that leaves `left` of the points on its left, less than all. range: of their
-/// coordinates on `axis`. scratch: as many as points, overwritten.
+/// The plane that has `left` of the points, fewer than all, on its left. range: of their
+/// coordinates on `axis`. scratch: as many points as `points`, overwritten.
 KdSplit select_split(std::span<const BucketPoint> points, std::size_t left, int axis,
                      CoordinateRange range, BucketPoint* scratch);
 

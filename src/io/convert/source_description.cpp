@@ -45,7 +45,7 @@ std::vector<SourceFile> SourceDescription::get(std::vector<std::optional<SourceF
   std::vector<SourceFile> sources;
   for (std::size_t i = 0; i < files_.size(); ++i) {
     const auto& found = described[i] ? described[i] : known[i];
-    // A file without any piece was known to nobody.
+    // A file without any piece has not been described elsewhere.
     sources.push_back(found ? *found : describe(files_[i], stop_.get_token(), progress_));
   }
   return sources;

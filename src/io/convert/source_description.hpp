@@ -12,20 +12,20 @@
 
 namespace clearway {
 
-/// Name, size and hash of an input; of standard input ("-") the name alone. Stops early, with what
-/// was read so far, when asked to.
+/// Name, size and hash of an input; for standard input ("-") the name alone. Stops early when asked
+/// to, with what was read so far.
 SourceFile describe(const std::filesystem::path& path, const std::stop_token& stop,
                     const Progress& progress);
 
-/// Describes inputs on a thread of its own, while they are counted; gives up when it goes.
+/// Describes inputs on a separate thread while they are counted. The destructor stops it.
 class SourceDescription {
  public:
-  /// known: which of them somebody else describes; may be shorter.
+  /// known: which of the files are described elsewhere; may be shorter than `files`.
   SourceDescription(std::vector<std::filesystem::path> files, std::vector<bool> known,
                     const Progress& progress);
   ~SourceDescription() { stop_.request_stop(); }
 
-  /// known: those that somebody else described.
+  /// Waits for the descriptions. known: those of the files that were described elsewhere.
   std::vector<SourceFile> get(std::vector<std::optional<SourceFile>> known = {});
 
  private:
@@ -35,7 +35,7 @@ class SourceDescription {
   std::future<std::vector<std::optional<SourceFile>>> sources_;
 };
 
-/// "adaptive" or "regular:SIZE".
+/// The name of a layout: "adaptive" or "regular:SIZE".
 std::string layout_name(const std::optional<double>& regular_size);
 
 }  // namespace clearway

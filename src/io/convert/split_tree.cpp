@@ -22,8 +22,9 @@ Bin united(const Bin* first, const Bin* last) {
   return box;
 }
 
-/// The plane across `axis` that cuts no bin and halves the points best, between two multiples of
-/// 2^face_bits. Sorts the bins along the axis.
+/// The plane across `axis` that cuts no bin and halves the points best. A multiple of 2^face_bits
+/// must separate the bins on its two sides, so that cubes stay whole. Sorts the bins along the
+/// axis.
 std::optional<std::uint64_t> best_cut(Bin* first, Bin* last, std::size_t axis, std::uint64_t points,
                                       unsigned face_bits) {
   std::sort(first, last, [axis](const Bin& a, const Bin& b) {
@@ -71,7 +72,7 @@ SplitTree::Plane SplitTree::best_plane(Bin* first, Bin* last) const {
   };
   std::stable_sort(axes.begin(), axes.end(),
                    [&](std::size_t a, std::size_t b) { return side(a) > side(b); });
-  // Whole cubes are told apart before anything within one is.
+  // Cubes are separated from each other before anything within one is.
   const unsigned face_bits = within_one_cube(first, last) ? 0 : lattice_.cube_bits();
   for (const std::size_t axis : {axes[0], axes[1], axes[2], std::size_t{3}}) {
     if (const auto at = best_cut(first, last, axis, box.count, face_bits)) {
@@ -112,7 +113,7 @@ void SplitTree::add(Bin* first, Bin* last, bool in_unit) {
 
 std::vector<TopNode> SplitTree::top_nodes(std::uint32_t cell_points) const {
   std::vector<TopNode> top(nodes_.size());
-  // Children follow their parents, so cells are counted from the back.
+  // Children follow their parents in the order, so cells are summed from the back.
   for (std::size_t i = nodes_.size(); i-- > 0;) {
     const std::uint32_t right = nodes_[i].right;
     const std::uint64_t cells = right == 0

@@ -9,32 +9,32 @@
 
 namespace clearway {
 
-/// Points of a bucket at the most. A constant, so that the store does not depend on --memory.
+/// Most points of a bucket. A constant, so that the store does not depend on --memory.
 inline constexpr std::uint64_t kBucketPoints = std::uint64_t{1} << 21;
 
 /// A node of the top tree over the counting grid's bins, in preorder: the left child follows it.
 struct SplitNode {
-  std::uint64_t count = 0;  ///< points
-  int axis = 0;             ///< 0, 1, 2, or 3 for the source index
+  std::uint64_t count = 0;  ///< number of points in the node's bins
+  int axis = 0;             ///< axis of the plane: 0, 1, 2, or 3 for the source index
   std::uint64_t plane = 0;  ///< points with lattice coordinate < plane go left
-  std::uint32_t right = 0;  ///< 0: a leaf
-  std::int32_t unit = -1;   ///< at the root of a subtree that is loaded at once: its number
+  std::uint32_t right = 0;  ///< index of the right child; 0 for a leaf
+  std::int32_t unit = -1;   ///< number of the unit whose subtree has its root here; otherwise -1
 };
 
-/// The top of the store's k-d tree. Leaves are buckets. *Units* are the largest subtrees with at
-/// most kBucketPoints points: what the conversion distributes to and loads at once (a bucket in the
-/// adaptive layout, several small cubes in the regular one).
+/// The top of the store's k-d tree. Its leaves are buckets. *Units* are the largest subtrees with
+/// at most kBucketPoints points, which the conversion distributes to and loads at once (a bucket in
+/// the adaptive layout, several small cubes in the regular one).
 class SplitTree {
  public:
-  /// scale: metres a lattice step on each axis. Sorts `bins`.
+  /// scale: metres per lattice step on each axis. Sorts `bins`.
   SplitTree(std::vector<Bin>& bins, const Lattice& lattice, const double (&scale)[3]);
 
   const std::vector<SplitNode>& nodes() const { return nodes_; }
   /// Node index of each unit, in order.
   const std::vector<std::uint32_t>& units() const { return units_; }
-  /// Bins with more than kBucketPoints points, which have to be refined before the tree is used.
+  /// Bins with more than kBucketPoints points, which must be refined before the tree is used.
   const std::vector<Bin>& overfull() const { return overfull_; }
-  /// For a leaf node of an overfull bin: its position in overfull(); -1 elsewhere.
+  /// The index in overfull() of the bin of a leaf; -1 for other nodes.
   std::int32_t overfull_at(std::uint32_t node) const { return overfull_at_[node]; }
 
   /// The leaf or unit node that holds a point.

@@ -12,18 +12,18 @@
 
 namespace clearway {
 
-/// What a conversion's threads are busy with.
+/// The stages of a conversion, for measuring what its threads do.
 enum class Stage : std::uint8_t {
-  kRead,        ///< inputs, to the store's integers
-  kHash,        ///< points and files in their order: one thread at a time
-  kCount,       ///< into the counting grid
-  kGroup,       ///< points by unit
-  kDistribute,  ///< groups to their units' regions
-  kLoad,        ///< regions back
-  kOrder,       ///< the k-d partition
+  kRead,        ///< reading inputs and converting them to the store's integers
+  kHash,        ///< hashing points and files in order, one thread at a time
+  kCount,       ///< counting points in the counting grid
+  kGroup,       ///< grouping points by unit
+  kDistribute,  ///< writing groups to the regions of their units
+  kLoad,        ///< loading the regions of units
+  kOrder,       ///< partitioning units into k-d order
   kPack,
-  kWrite,    ///< packed cells and the index: one thread at a time
-  kConfirm,  ///< the re-reading
+  kWrite,    ///< writing packed cells and the index, one thread at a time
+  kConfirm,  ///< re-reading the chunks that were written
   kSync,     ///< waiting for the disk
 };
 
@@ -47,7 +47,8 @@ class StageClocks {
     Clock::time_point start_ = Clock::now();
   };
 
-  /// Until what is returned goes. To be used around pieces of work, not around points.
+  /// Measures until the returned object is destroyed. Meant for pieces of work, not for single
+  /// points.
   [[nodiscard]] Running measure(Stage stage) {
     return Running(nanoseconds_[static_cast<std::size_t>(stage)]);
   }

@@ -10,16 +10,16 @@
 
 namespace clearway {
 
-/// Room for the points of units, used again for the next unit: new memory costs a page fault every
-/// 256 points. Thread-safe.
+/// Buffers for the points of units, reused for later units because new memory costs a page fault
+/// every 256 points. Thread-safe.
 class UnitBuffers {
  public:
   using Buffer = std::unique_ptr<BucketPoint[]>;
 
-  /// points: of the largest unit.
+  /// points: number of points in the largest unit.
   explicit UnitBuffers(std::size_t points) : points_(points) {}
 
-  /// Holds what was there before.
+  /// A buffer with arbitrary contents.
   Buffer take() {
     {
       const std::lock_guard lock(mutex_);
@@ -33,7 +33,7 @@ class UnitBuffers {
     return std::make_unique_for_overwrite<BucketPoint[]>(points_);
   }
 
-  void give_back(Buffer buffer) noexcept {  // there is room for all that were made
+  void give_back(Buffer buffer) noexcept {  // cannot throw, as free_ has room for all buffers
     const std::lock_guard lock(mutex_);
     free_.push_back(std::move(buffer));
   }

@@ -13,7 +13,7 @@
 namespace clearway {
 namespace {
 
-/// A unit on its way to the file: its first cells packed already, the rest to be packed when they
+/// A unit before it is written: its first cells are packed already, the others are packed when they
 /// are written.
 struct UnitInFlight {
   std::vector<PackedCell> packed;

@@ -12,7 +12,8 @@
 
 namespace clearway {
 
-/// Partitions and packs the units, several at a time as memory allows, and writes them in order.
+/// Partitions and packs the units, several at a time as memory allows, and writes their cells in
+/// order.
 void write_cells(Distribution& distribution, const SplitTree& tree, const Lattice& lattice,
                  const StoreMetadata& metadata, std::size_t units_in_flight, StoreWriter& writer,
                  StageClocks& clocks, Progress& progress);

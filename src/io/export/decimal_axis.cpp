@@ -11,7 +11,7 @@
 namespace clearway {
 namespace {
 
-/// The shortest decimal of a number, without exponent.
+/// The shortest decimal that gives a number back, without exponent.
 std::string fixed(double value) {
   std::array<char, 400> text{};
   const auto end =
@@ -24,7 +24,7 @@ int digits_after_point(const std::string& decimal) {
   return point == std::string::npos ? 0 : static_cast<int>(decimal.size() - point - 1);
 }
 
-/// The decimal in units of 10^-digits; none where its size is not below `most`.
+/// The decimal in units of 10^-digits; nullopt where its magnitude is not below `most`.
 std::optional<std::int64_t> whole_of(std::string decimal, int digits, std::int64_t most) {
   const int missing = digits - digits_after_point(decimal);
   std::erase(decimal, '.');
@@ -40,7 +40,7 @@ std::optional<std::int64_t> whole_of(std::string decimal, int digits, std::int64
 
 DecimalAxis::DecimalAxis(const Quantisation& quantisation, int axis)
     : quantisation_(quantisation), axis_(axis) {
-  // 2^31 scales and the offset are together below 2^63.
+  // So that 2^31 scales and the offset together are below 2^63.
   constexpr std::int64_t kMostScale = 1'000'000'000, kMostOffset = 4'000'000'000'000'000'000;
   constexpr int kMostDigits = 18;
   const std::string scale = fixed(quantisation.scale[axis]);

@@ -9,15 +9,15 @@
 
 namespace clearway {
 
-/// The coordinates of one axis as decimals: 14.78 where the double is 14.780000000000001, because
-/// scale and offset are decimals themselves. A text reads back as a number of which
-/// nearbyint((x - offset) / scale) is the stored integer. Where that cannot be, it has the shortest
-/// digits that give the double back.
+/// Writes the coordinates of one axis as decimals: 14.78 where the double is 14.780000000000001,
+/// because scale and offset are decimals themselves. A text reads back as a number x for which
+/// nearbyint((x - offset) / scale) is the stored integer. Where that is impossible, it has the
+/// shortest digits that give the double back.
 class DecimalAxis {
  public:
   DecimalAxis(const Quantisation& quantisation, int axis);
 
-  /// Valid until the next call.
+  /// The text of a coordinate, valid until the next call.
   std::string_view text(double coordinate);
 
  private:
@@ -25,7 +25,7 @@ class DecimalAxis {
 
   const Quantisation quantisation_;
   int axis_;
-  /// Scale and offset in units of 10^-digits_; none where that is no whole number.
+  /// Scale and offset in units of 10^-digits_; nullopt where these are not whole numbers.
   std::optional<std::array<std::int64_t, 2>> whole_;
   int digits_ = 0;
   std::array<char, 64> buffer_{};

@@ -62,7 +62,8 @@ class ProfileTable {
   double chainage_start_;
   bool has_bodies_;
   const std::vector<std::array<std::uint32_t, 2>>& unsearched_;
-  std::size_t next_ = 0;  ///< of unsearched_: the first that does not end before the pose
+  /// Index of the first run of unsearched_ that does not end before the pose.
+  std::size_t next_ = 0;
   std::uint64_t pose_ = 0;
 };
 

@@ -40,7 +40,7 @@ void check_points(const std::vector<ScanFile>& files, const ResultReader& result
                    ". Give the files and folders that were converted, in the same order");
 }
 
-/// Colliding points of each file.
+/// Numbers of colliding points in each file.
 std::vector<std::uint64_t> collisions_of(const std::vector<ScanFile>& files,
                                          const ResultReader& result, const Progress& progress) {
   std::vector<std::uint64_t> counts(files.size());
@@ -68,7 +68,7 @@ void check_can_copy(const ScanFile& file, std::uint64_t points) {
                                  ". Only records of LAS are copied: export without the scans");
 }
 
-/// Of all records, or of an empty file where nothing is to be copied.
+/// The common format of all records, or that of an empty file where nothing is copied.
 class CommonFormat {
  public:
   void add(const LasRecordReader& scan) {
@@ -106,7 +106,7 @@ class CommonFormat {
   LasRecordFormat format_;
 };
 
-/// The record of a point with what is known of it behind its own bytes.
+/// A point's record followed by extra bytes with its result.
 class ExtendedRecord {
  public:
   ExtendedRecord(const ResultReader& result, LasRecordFormat& format)
@@ -150,7 +150,7 @@ class ExtendedRecord {
     return bytes_;
   }
 
-  /// To the end, where the rest of the file is checked.
+  /// Reads the clearances to their end, where the file's hash is checked.
   void finish() {
     while (distances_ && !distances_->at_end()) distances_->advance();
   }
@@ -183,7 +183,8 @@ class ExtendedRecord {
 
 std::string place_text(const Vec3& p) { return shown(p.x) + " " + shown(p.y) + " " + shown(p.z); }
 
-/// The result's integers of a point. Throws unless they are what the conversion made of the record.
+/// The result's integers of a point. Throws InputError unless they are what the conversion made of
+/// the record.
 std::array<std::int32_t, 3> checked_place(const ResultReader& result, const LasRecordReader& scan,
                                           std::uint64_t point, std::span<const std::byte> record,
                                           const RowCursor& row) {
@@ -197,7 +198,7 @@ std::array<std::int32_t, 3> checked_place(const ResultReader& result, const LasR
     const auto q = load<std::int32_t>(record.data() + 4 * k);
     found[k] = coordinate(own, k, q);
     const double expected = row.xyz()[k];
-    // Rounded to the result's scale, where that is another one.
+    // The coordinate was rounded to the result's scale, where this differs.
     const double most = std::abs(quantisation.scale[k]) * (0.5 + 1e-6) +
                         8 * std::numeric_limits<double>::epsilon() * std::abs(expected);
     equal &= same_scale ? found[k] == expected : std::abs(found[k] - expected) <= most;

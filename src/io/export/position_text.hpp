@@ -7,7 +7,7 @@
 
 namespace clearway {
 
-/// Positions as texts, three numbers and what stands between them.
+/// Writes positions as three numbers with a separator between them.
 class PositionText {
  public:
   explicit PositionText(const Quantisation& quantisation)

@@ -19,7 +19,7 @@ namespace {
 
 using Quanta = std::vector<std::array<std::int32_t, 3>>;
 
-/// False where a coordinate is not on the scale.
+/// Finds the stored integers of a position; returns false where a coordinate is not on the scale.
 bool set_quanta(const Quantisation& quantisation, const Vec3& p, std::array<std::int32_t, 3>& out) {
   for (int k = 0; k < 3; ++k) {
     const auto q = quantum_at(quantisation, k, p[k]);
@@ -109,7 +109,7 @@ class XyzSink final : public RowSink {
   const PositionText position_;
 };
 
-/// Of a result of version 2, clearances have no coordinates.
+/// Writes CSV. The clearances of a result of version 2 have no coordinates.
 class CsvSink final : public RowSink {
  public:
   CsvSink(const ExportTable& table, const File& file)

@@ -12,7 +12,7 @@
 
 namespace clearway {
 
-/// Rows of a table of a result, for any format. Columns that the table lacks are empty.
+/// Rows of a result's table, for any format. Columns that the table lacks are empty.
 struct ExportRows {
   std::span<const std::uint64_t> source;
   std::span<const Vec3> xyz;
@@ -22,15 +22,15 @@ struct ExportRows {
   std::span<const std::uint32_t> body{};
 };
 
-/// What a file has to say before its first row.
+/// Properties of a table that a file needs before its first row.
 struct ExportTable {
   const ResultReader& result;
-  std::string group;  ///< of the result, for messages
+  std::string group;  ///< group of the result, for messages
   std::uint64_t rows = 0;
   bool first_pose = false;
-  bool distance = false;  ///< and pose
+  bool distance = false;  ///< whether there are the columns distance and pose
   bool body = false;
-  QuantumBox bounds{};  ///< of the points; only .las asks for them
+  QuantumBox bounds{};  ///< box of the points; used only by .las
 };
 
 /// Receives the rows front to back.
@@ -43,14 +43,14 @@ class RowSink {
 
 enum class ExportFormat { kLas, kPly, kXyz, kCsv };
 
-/// By the ending of a name. Throws UsageError for any other.
+/// The format by the ending of a name. Throws UsageError for any other ending.
 ExportFormat export_format_of(const std::filesystem::path& output);
 
 std::unique_ptr<RowSink> make_row_sink(ExportFormat format, const ExportTable& table,
                                        const File& file);
 
-/// The box of the rows' integers, united with `box` where that has any. Throws InputError for a
-/// coordinate that is not on the result's scale.
+/// Unites `box` with the box of the rows' integers; any: whether `box` holds points yet. Throws
+/// InputError for a coordinate that is not on the result's scale.
 void unite_rows(const ExportTable& table, const ExportRows& rows, bool& any, QuantumBox& box);
 
 }  // namespace clearway

@@ -14,17 +14,18 @@ namespace {
 constexpr std::size_t kWindowBytes = std::size_t{1} << 18;
 constexpr std::uint16_t kBaseBytes[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 
-/// Bytes that a described field of extra bytes has. Source: LAS 1.4 R15, table 24.
+/// Size in bytes of a described field of extra bytes. Source: LAS 1.4 R15, table 24.
 std::size_t field_bytes(const std::byte* description) {
   constexpr std::size_t kScalar[] = {0, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
   const auto type = std::to_integer<unsigned>(description[2]);
   if (type == 0) return std::to_integer<std::size_t>(description[3]);
-  const std::size_t values = type <= 10 ? 1 : type <= 20 ? 2 : 3;  // of several: deprecated
+  // Types of several values are deprecated.
+  const std::size_t values = type <= 10 ? 1 : type <= 20 ? 2 : 3;
   return type > 30 ? 0 : values * kScalar[(type - 1) % 10 + 1];
 }
 
-/// Descriptions of exactly `bytes` extra bytes: those that are there as far as they fit, and
-/// "undocumented" ones of what they leave.
+/// Descriptions of exactly `bytes` extra bytes: those of `found` as far as they fit, and
+/// "undocumented" ones for the rest.
 std::vector<std::byte> described(std::span<const std::byte> found, std::size_t bytes) {
   std::vector<std::byte> out;
   std::size_t covered = 0;
@@ -103,7 +104,7 @@ std::vector<ScanFile> number_scans(const std::vector<std::filesystem::path>& inp
     } else {
       file.points = count_points(path, progress);
     }
-    // A LAZ header's count is not checked before its points are read.
+    // The count in a LAZ header is checked only when its points are read.
     if (file.points > std::numeric_limits<std::uint64_t>::max() - next) {
       refuse(path.string(), "declares " + std::to_string(file.points) +
                                 " points; expected fewer than 2^64 in all scans");

@@ -16,17 +16,17 @@
 
 namespace clearway {
 
-/// The records of a LAS file, any of them in any order; quick where the order is ascending.
+/// Reads records of a LAS file in any order; fast where the order is ascending.
 class LasRecordReader {
  public:
-  /// Throws InputError for a file that is malformed.
+  /// Opens the file. Throws InputError where it is malformed.
   explicit LasRecordReader(const std::filesystem::path& path);
 
   const std::string& name() const { return input_.name(); }
   const LasPublicHeader& header() const { return header_; }
-  /// With descriptions for all extra bytes.
+  /// The format of the records, with descriptions of all extra bytes.
   LasRecordFormat format() const;
-  /// Valid until the next call. point < header().points
+  /// The bytes of a record, valid until the next call. point: below header().points.
   std::span<const std::byte> record(std::uint64_t point);
 
  private:
@@ -40,14 +40,15 @@ class LasRecordReader {
 /// One of several scans, whose points are numbered in their order.
 struct ScanFile {
   std::filesystem::path path;
-  std::uint64_t first = 0, points = 0;  ///< source indices
-  bool is_las = false;                  ///< uncompressed
+  std::uint64_t first = 0, points = 0;  ///< first source index and number of points
+  bool is_las = false;                  ///< whether the file is uncompressed LAS
   bool is_laz = false;
   std::uint64_t end() const { return first + points; }
 };
 
-/// The files of the inputs, in the order in which a conversion reads them. Reads headers of LAS and
-/// LAZ, and files of other formats to their end. Throws as their readers do, and Interrupted.
+/// The files of the inputs in the order in which a conversion reads them, with their numbers of
+/// points. Reads the headers of LAS and LAZ, and files of other formats to their end. Throws as
+/// their readers do, and Interrupted.
 std::vector<ScanFile> number_scans(const std::vector<std::filesystem::path>& inputs,
                                    Progress& progress);
 

@@ -13,7 +13,7 @@
 
 namespace clearway {
 
-/// Rows that threads work on, each at its own.
+/// Number of rows that a thread works on at a time.
 inline constexpr std::size_t kBlockRows = 1 << 12;
 
 /// Calls work(block, first row, end) for each block of rows, with many threads.
@@ -27,7 +27,7 @@ void for_each_block(std::size_t rows, Work work) {
   tbb::parallel_for(std::size_t{0}, (rows + kBlockRows - 1) / kBlockRows, run_block);
 }
 
-/// Appends rows to a file as texts that many threads make. write_rows(text, first row, end).
+/// Appends rows to a file. Many threads make the texts by write_rows(text, first row, end).
 template <typename WriteRows>
 void write_blocks(const File& file, std::size_t rows, WriteRows write_rows) {
   std::vector<TextBuffer> blocks((rows + kBlockRows - 1) / kBlockRows);

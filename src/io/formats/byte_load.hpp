@@ -9,7 +9,7 @@ namespace clearway {
 
 static_assert(std::endian::native == std::endian::little, "file formats are read by memcpy");
 
-/// A little-endian number at any address.
+/// Loads a little-endian number from any address, aligned or not.
 template <typename Number>
 Number load(const std::byte* bytes) {
   Number value;
@@ -17,7 +17,7 @@ Number load(const std::byte* bytes) {
   return value;
 }
 
-/// A big-endian number at any address.
+/// Loads a big-endian number from any address, aligned or not.
 template <typename Number>
 Number load_swapped(const std::byte* bytes) {
   std::array<std::byte, sizeof(Number)> turned;

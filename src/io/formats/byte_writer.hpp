@@ -13,8 +13,8 @@
 
 namespace clearway {
 
-/// Little-endian values appended through a buffer to a file, front to back. The file stays the
-/// caller's; what was not flushed is lost. Throws ResourceError as File does.
+/// Appends little-endian values through a buffer to a file, front to back. The caller owns the
+/// file; what is not flushed is lost. Throws ResourceError as File does.
 class ByteWriter {
  public:
   static_assert(std::endian::native == std::endian::little);
@@ -25,7 +25,7 @@ class ByteWriter {
   requires std::is_trivially_copyable_v<Value>
   void put(const Value& value) { std::memcpy(room(sizeof value), &value, sizeof value); }
 
-  /// The text's first `bytes` bytes, zeros where it is shorter.
+  /// Writes the first `bytes` bytes of the text, filled with zeros where it is shorter.
   void put_text(std::string_view text, std::size_t bytes) {
     for (std::size_t i = 0; i < bytes; ++i) put(i < text.size() ? text[i] : '\0');
   }
@@ -46,7 +46,7 @@ class ByteWriter {
  private:
   static constexpr std::size_t kBufferBytes = 1 << 20;
 
-  /// bytes <= kBufferBytes
+  /// Room in the buffer for `bytes` more bytes, at most kBufferBytes.
   std::byte* room(std::size_t bytes) {
     if (buffer_.size() + bytes > kBufferBytes) flush();
     buffer_.resize(buffer_.size() + bytes);

@@ -7,12 +7,12 @@
 
 namespace clearway {
 
-/// Whether the found points go farther out of the box that a file declares than its own size.
-/// Writers round their bounds, and a wrong unit or records of zeros are far more. A box without any
-/// extent was never filled in.
+/// Whether the points found lie outside the box that a file declares by more than the box's own
+/// size. Writers round their bounds, so small excesses are normal; a wrong unit or records of zeros
+/// exceed them by far. A box without any extent was never filled in and does not count.
 bool goes_far_beyond(const Box& declared, const std::optional<Box>& found);
 
-/// "(1, 2, 3) to (4, 5, 6)"
+/// The box as "(1, 2, 3) to (4, 5, 6)".
 std::string declared_box_text(const Box& box);
 
 }  // namespace clearway

@@ -55,7 +55,7 @@ struct EnvironmentUnit {
   double metres;
 };
 
-/// In the order of LengthUnit.
+/// The units of environments, in the order of LengthUnit.
 constexpr std::array<EnvironmentUnit, 5> kUnits{
     {{"unknown", "m", "metres", 0},
      {"metre", "m", "metres", 1},
@@ -65,9 +65,10 @@ constexpr std::array<EnvironmentUnit, 5> kUnits{
 
 const EnvironmentUnit& of(LengthUnit unit) { return kUnits[static_cast<std::size_t>(unit)]; }
 
-/// Whether both are the same unit, of which files may have few digits.
+/// Whether both lengths in metres are the same unit, which files may give with few digits.
 bool are_same(double metres, double other) {
-  // The two feet differ by 2e-6 of their length, and 0.3048006 is the survey foot.
+  // The tolerance separates the two feet, which differ by 2e-6 of their length, and accepts
+  // 0.3048006 as the survey foot.
   return std::abs(metres - other) < 5e-7 * other;
 }
 
@@ -128,7 +129,8 @@ const char* plural_of(LengthUnit unit) { return of(unit).plural; }
 double metres_of(LengthUnit unit) { return of(unit).metres; }
 
 bool is_foot(double metres) {
-  constexpr double kOfCountries = 2e-5;  // from Clarke's foot to the survey foot
+  // Relative tolerance that covers all feet from Clarke's to the US survey foot.
+  constexpr double kOfCountries = 2e-5;
   return std::abs(metres - kMetresPerFoot) < kOfCountries * kMetresPerFoot;
 }
 

@@ -14,54 +14,58 @@ namespace clearway {
 /// The unit of an environment's coordinates.
 enum class LengthUnit { kUnknown, kMetre, kFoot, kUsSurveyFoot, kDegrees };
 
-/// A unit of length as people and files name it. This table is the only one: every option, header
-/// and file that names a unit of length is read by it.
+/// A unit of length as people and files name it. All options, headers and files that name a unit of
+/// length are read by this one table.
 struct NamedUnit {
-  std::string_view symbol;                  ///< as options take it, for example "us-ft"
+  std::string_view symbol;                  ///< name in options, for example "us-ft"
   std::span<const std::string_view> names;  ///< other names, lower case
-  std::uint32_t numerator, denominator;     ///< metres, as a fraction
-  LengthUnit environment;  ///< what an environment in it is in; kUnknown: no scan is read in it
-  bool of_files;           ///< whether models and trajectories are read in it
-  bool any_foot = false;   ///< see FileUnit
+  std::uint32_t numerator, denominator;     ///< the unit in metres, as a fraction
+  /// Unit of an environment given in it; kUnknown where no scan is read in this unit.
+  LengthUnit environment;
+  bool of_files;          ///< whether models and trajectories are read in this unit
+  bool any_foot = false;  ///< see FileUnit
 
   double metres() const { return static_cast<double>(numerator) / denominator; }
   FileUnit file_unit() const { return any_foot ? metres() : FileUnit::exactly(metres()); }
 };
 
-/// By its symbol or another of its names, which are lower case; null for any other text.
+/// Finds a unit by its symbol or another of its names, all in lower case; null for any other text.
 const NamedUnit* find_unit(std::string_view name);
 
-/// Symbols of the units that models and trajectories are read in.
+/// Symbols of the units in which models and trajectories are read.
 std::vector<std::string> file_unit_names();
-/// The same in a sentence: "mm, cm, m, in, ft, ift or us-ft".
+/// Symbols of the units in which models and trajectories are read, as in "mm, cm, m, in, ft, ift or
+/// us-ft".
 std::string file_unit_list();
-/// A unit that models and trajectories are read in; none for another name.
+/// The unit of this name in which models and trajectories are read; nullopt for another name.
 std::optional<FileUnit> file_unit_of(std::string_view name);
 
-/// "unknown", "metre", "foot", "us-survey-foot", "degree".
+/// The name of a unit: "unknown", "metre", "foot", "us-survey-foot" or "degree".
 std::string to_string(LengthUnit unit);
-/// kUnknown for any other text.
+/// The unit with a name that to_string() gives; kUnknown for any other text.
 LengthUnit length_unit_of(const std::string& name);
-/// "m", "ft", "US ft", "deg"; metres where it is not known.
+/// The symbol of a unit: "m", "ft", "US ft" or "deg"; "m" where the unit is not known.
 const char* symbol_of(LengthUnit unit);
-/// For people: "feet" for both feet, "metres", "degrees".
+/// The plural of a unit for messages: "metres", "feet", "US survey feet" or "degrees".
 const char* plural_of(LengthUnit unit);
-/// 0 for those that are no lengths of a known size.
+/// The length of a unit in metres; 0 for unknown and for degrees.
 double metres_of(LengthUnit unit);
-/// A foot of any country.
+/// Whether a unit of so many metres is a foot of any country.
 bool is_foot(double metres);
-/// The warning "unit-assumed" on a file in units of `metres`. whose: for example "path.csv: its
-/// positions".
+/// Text of the warning "unit-assumed" about a file in units of `metres`. whose: for example
+/// "path.csv: its positions".
 std::string unit_assumed_text(const std::string& whose, double metres);
-/// How far coordinates move when they are taken from one foot into the other, metres. largest: the
-/// greatest coordinate, metres.
+/// Metres that coordinates move when they are converted with one foot instead of the other.
+/// largest: the greatest coordinate in metres. metres, other: the two feet.
 double feet_apart(double largest, double metres, double other);
-/// Beyond this distance, in metres, it matters which foot was meant.
+/// Distance in metres beyond which it matters which foot was meant.
 inline constexpr double kFeetApart = 0.0005;
-/// The warning about it. whose: for example "path.csv: its positions".
+/// Text of the warning that positions in one foot were converted for an environment in another.
+/// whose: for example "path.csv: its positions". moved: metres that this moves them, see
+/// feet_apart().
 std::string two_feet_text(const std::string& whose, double metres, double environment_unit,
                           double moved);
-/// "US survey feet", "feet" or "units of 0.001 m".
+/// The unit in words: "metres", "international feet", "US survey feet" or "units of 0.001 m".
 std::string units_text(double metres);
 
 }  // namespace clearway

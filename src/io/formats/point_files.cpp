@@ -14,9 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostNames = 5;  // in a message
+constexpr std::size_t kMostNames = 5;  // at most so many file names in a message
 
-/// What lies directly in a folder, in byte order of the names; hidden files apart.
+/// The files directly in a folder, in byte order of their names, without hidden ones.
 struct Folder {
   std::vector<fs::path> scans, others;
   std::size_t folders = 0;
@@ -46,7 +46,7 @@ Folder look_into(const fs::path& path) {
   return found;
 }
 
-/// "a.txt, b.csv and 7 more".
+/// The names in a message, as in "a.txt, b.csv and 7 more".
 std::string names_of(const std::vector<fs::path>& files) {
   std::string text;
   for (std::size_t i = 0; i < std::min(files.size(), kMostNames); ++i) {
@@ -60,10 +60,12 @@ std::string counted(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-/// Sorts out the poses that lie beside scans: those of 3DTK's scans are read with them, those of
-/// other scans would place them elsewhere. Returns the latter; both leave `others`.
+/// Separates the files of poses that lie beside scans. Those of 3DTK's scans are read together with
+/// the scans; those of other scans would place them elsewhere. Returns the latter. Both kinds are
+/// removed from `others`.
 std::vector<fs::path> take_poses(Folder& folder) {
-  std::map<std::string, bool> placed;  // by name without ending: whether its pose is read
+  // By name without ending: whether the scan is read with its pose.
+  std::map<std::string, bool> placed;
   for (const fs::path& scan : folder.scans) {
     placed[scan.stem().native()] |= format_of_name(scan) == PointFormat::k3dtk;
   }

@@ -9,20 +9,21 @@ namespace clearway {
 
 enum class PointFormat { kLas, kPly, kXyz, kE57, kPcd, kPtx, k3dtk, kMesh };
 
-/// The format that a file's first bytes tell; none where they do not.
+/// The format as recognised by a file's first bytes; nullopt where they do not tell.
 std::optional<PointFormat> format_of_content(std::span<const std::byte> first_bytes);
 
-/// The format that the ending of a name tells; none where it does not.
+/// The format as recognised by the ending of a name; nullopt where it does not tell.
 std::optional<PointFormat> format_of_name(const std::filesystem::path& path);
 
-/// Whether a file of a folder counts as a point file: its ending is that of a format of points, and
-/// of nothing else (.txt and .csv may hold anything, so such files have to be named themselves).
+/// Whether a file of a folder counts as a point file: its ending belongs to a format of points and
+/// to nothing else. (.txt and .csv may hold anything, so such files must be named themselves.)
 bool is_surely_point_file(const std::filesystem::path& path);
 
-/// The endings of such files, for a message: "las, ply, ... or pcd".
+/// The endings that belong to formats of points alone, for a message: "las, ply, ... or pcd".
 std::string sure_endings();
 
-/// Throws InputError that names the format and says what to do, where it is not read.
+/// Throws InputError where files of this format are not read. The message names the format and says
+/// what to do instead.
 void refuse_unless_read(PointFormat format, const std::string& name);
 
 }  // namespace clearway

@@ -13,11 +13,11 @@ struct DestroyProj {
 using ProjContext = std::unique_ptr<PJ_CONTEXT, DestroyProj>;
 using ProjObject = std::unique_ptr<PJ, DestroyProj>;
 
-/// Without network, and silent: `log` gets `kept` and what it has to say. Null where PROJ cannot be
-/// started.
+/// Starts PROJ without network and silently: messages go to `log`, together with `kept`. Null where
+/// PROJ cannot be started.
 ProjContext start_proj(PJ_LOG_FUNCTION log, void* kept);
 
-/// Metres of a unit of the axis; 0 where there is no such axis.
+/// Metres per unit of an axis; 0 where there is no such axis.
 double unit_of_axis(PJ_CONTEXT* context, const PJ* crs, int axis);
 
 }  // namespace clearway

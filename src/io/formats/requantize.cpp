@@ -8,7 +8,7 @@ namespace clearway {
 std::optional<std::int32_t> quantum_at(const Quantisation& quantisation, int axis, double x) {
   using Limits = std::numeric_limits<std::int32_t>;
   const double nearest = std::nearbyint((x - quantisation.offset[axis]) / quantisation.scale[axis]);
-  for (const double step : {0.0, -1.0, 1.0}) {  // x - offset and the quotient are rounded
+  for (const double step : {0.0, -1.0, 1.0}) {  // because x - offset and the quotient are rounded
     const double q = nearest + step;
     if (!(q >= Limits::min() && q <= Limits::max())) continue;
     const auto whole = static_cast<std::int32_t>(q);

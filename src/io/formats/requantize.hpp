@@ -7,8 +7,9 @@
 
 namespace clearway {
 
-/// The stored integer whose coordinate is exactly `x`; none when no integer's is. Where the scale
-/// is below the spacing of doubles at `x`, several are: any one of them.
+/// The stored integer whose coordinate is exactly `x`; nullopt where there is none. Where the scale
+/// is smaller than the spacing of doubles at `x`, several integers match and any one of them is
+/// returned.
 std::optional<std::int32_t> quantum_at(const Quantisation& quantisation, int axis, double x);
 
 }  // namespace clearway

@@ -8,7 +8,7 @@
 namespace clearway {
 namespace {
 
-constexpr std::int32_t kGreatestCode = 99'999;  // EPSG's numbers are below
+constexpr std::int32_t kGreatestCode = 99'999;  // EPSG codes are not greater
 
 std::int32_t epsg_of(const PJ* crs) {
   const char* authority = proj_get_id_auth_name(crs, 0);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kRoot = static_cast<std::size_t>(-1);
 
-/// KEYWORD[value, ..., child, ...]; nodes stand in the order of the text.
+/// A node KEYWORD[value, ..., child, ...] of well-known text. Nodes are in the order of the text.
 struct Node {
   std::string keyword;  ///< upper case
   std::size_t parent;
@@ -36,7 +36,8 @@ std::string upper(std::string_view text) {
   return result;
 }
 
-/// Without recursion, so that no text can exhaust the stack. Unbalanced brackets end the parsing.
+/// Parses well-known text, without recursion so that no text can exhaust the stack. Unbalanced
+/// brackets end the parsing.
 std::vector<Node> parse(std::string_view text) {
   std::vector<Node> nodes;
   std::size_t open = kRoot;
@@ -90,7 +91,7 @@ StatedUnit unit_of(const Node& node) {
   return unit_of_length(metres);
 }
 
-/// The unit that stands in the system itself, or else in its first axis that has one.
+/// The unit given in the system itself, or else in its first axis that gives one.
 StatedUnit unit_within(const std::vector<Node>& nodes, std::size_t system) {
   for (const Node& node : nodes) {
     if (node.parent == system && is_one_of(node, {"UNIT", "LENGTHUNIT"})) return unit_of(node);
@@ -125,7 +126,8 @@ StatedUnit horizontal(const std::vector<Node>& nodes) {
 }  // namespace
 
 StatedUnit unit_of_length(double metres) {
-  // Some files have few digits. The two feet differ by 2e-6 of their length.
+  // The tolerance allows for files that give few digits; the two feet differ by 2e-6 of their
+  // length.
   constexpr std::array kKnown{LengthUnit::kMetre, LengthUnit::kFoot, LengthUnit::kUsSurveyFoot};
   const auto difference = [metres](LengthUnit unit) { return std::abs(metres - metres_of(unit)); };
   const LengthUnit nearest =

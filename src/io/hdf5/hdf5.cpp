@@ -25,16 +25,17 @@ Id latest_format() {
   Id access = property_list(H5P_FILE_ACCESS);
   check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110),
         "HDF5 library version bounds");
-  // Nothing else allocates from a shared block between two raw chunks, so that the end of the file
-  // is where the next chunk goes.
+  // Keeps other allocations out of shared blocks between two raw chunks, so that the next chunk
+  // goes to the end of the file.
   check(H5Pset_small_data_block_size(access.get(), 0), "HDF5 small data block size");
-  // PendingFile locks the file that is being written: HDF5's own lock would be in its way.
+  // PendingFile locks the file that is being written, with which HDF5's own lock would interfere.
   check(H5Pset_file_locking(access.get(), false, true), "HDF5 file locking");
   return access;
 }
 
-/// Looks at the superblock before HDF5 does: that the file is one of create_file() which was
-/// closed, and has its whole length. HDF5 reads older formats too, whose metadata has no checksums.
+/// Checks the superblock before HDF5 reads it: the file must be one of create_file() that was
+/// closed, and have its whole length. HDF5 also reads older formats, whose metadata has no
+/// checksums.
 void check_superblock(const File& file) {
   constexpr std::string_view kSignature("\x89HDF\r\n\x1a\n");
   constexpr std::size_t kVersionAt = 8, kSizesAt = 9, kFlagsAt = 11, kBaseAt = 12, kEndAt = 28;
@@ -75,7 +76,7 @@ std::string description() {
   return text;
 }
 
-/// The system's words where a system call failed: not HDF5's addresses and clock.
+/// The system's reason where a system call failed, without HDF5's addresses and time.
 std::optional<std::string> system_reason() {
   const std::string text = description();
   const std::string quote = "error message = '";
@@ -111,8 +112,8 @@ void silence_for_good() {
 
 namespace {
 
-/// Which plug-ins HDF5 loads is one state of the whole process: kept by the first of all threads
-/// that are quiet at a time, given back by the last.
+/// The plug-ins that HDF5 loads are one state of the whole process. The first of all threads that
+/// are quiet at a time saves it, and the last restores it.
 struct Plugins {
   std::mutex mutex;
   int quiet = 0;
@@ -184,8 +185,8 @@ void check(herr_t status, const std::string& what) {
 
 Id create_file(const std::filesystem::path& path) {
   const Id creation = untimed(H5P_FILE_CREATE);
-  // Attributes stay in the root's checksummed header: the heap that holds many or long ones
-  // otherwise has no checksum for those of a few kilobytes and more.
+  // Keeps attributes in the root's checksummed header. HDF5 otherwise moves many or long ones to a
+  // heap, which has no checksum for attributes of a few kilobytes or more.
   check(H5Pset_attr_phase_change(creation.get(), kRootAttributes, 0), "HDF5 attribute storage");
   const Id access = latest_format();
   return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose,
@@ -194,7 +195,7 @@ Id create_file(const std::filesystem::path& path) {
 
 Id open_file(const std::filesystem::path& path) {
   check_superblock(File::open_regular(path));
-  // By default a process may hold a file open twice: h5py opens it alike.
+  // With default properties a process may open a file twice, as h5py opens it in the same way.
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (id < 0) {
     if (const auto words = system_reason()) throw ResourceError(path.string() + ": " + *words);

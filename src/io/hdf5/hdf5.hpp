@@ -11,19 +11,20 @@
 
 #include "clearway/error.hpp"
 
-/// Owners and the few calls of HDF5 that Clearway makes. All HDF5 calls of a file are made by one
+/// Owners and the few calls of HDF5 that Clearway uses. All HDF5 calls of a file are made by one
 /// thread. Files are written with H5F_LIBVER_V110 on both bounds, no object times, fletcher32 on
 /// every unpacked dataset and fixed-length strings, so that equal contents give equal bytes and
 /// damaged metadata is noticed (docs/design/store-format.md).
 namespace clearway::hdf5 {
 
-/// HDF5 could not do it though no system call failed: of a file that is read, damaged contents.
+/// Failure of HDF5 without a failed system call. For a file that is read, this means damaged
+/// contents.
 struct Failure : ResourceError {
   using ResourceError::ResourceError;
 };
 
-/// While it lives, HDF5 prints nothing on this thread and loads no filter plug-ins: which code runs
-/// is not a file's to choose. Then everything is as the caller had it.
+/// During its lifetime, HDF5 prints nothing on this thread and loads no filter plug-ins, because a
+/// file must not choose which code runs. The destructor restores the caller's settings.
 class QuietScope {
  public:
   QuietScope();
@@ -36,8 +37,9 @@ class QuietScope {
   void* print_data_ = nullptr;
 };
 
-/// For programs, before any other call: the same for the life of the process, and no clean-up of
-/// HDF5 at exit, which crashes on a file whose closing failed (a full disk); an Id closes its own.
+/// Makes HDF5 quiet, as QuietScope does, for the life of the process. Also prevents its clean-up at
+/// exit, which crashes on a file whose closing failed (a full disk); every Id closes its own
+/// object. For programs, before any other call.
 void silence_for_good();
 
 /// Move-only owner of an HDF5 identifier; closes it with the function for its kind.
@@ -46,14 +48,14 @@ class Id {
   using Close = herr_t (*)(hid_t);
 
   Id() = default;
-  /// Throws ResourceError "`what`" with HDF5's own reason when id < 0.
+  /// Takes over an identifier. Throws ResourceError "`what`" with HDF5's own reason when id < 0.
   Id(hid_t id, Close close_with, const std::string& what);
   Id(Id&& other) noexcept;
   Id& operator=(Id&& other) noexcept;
   ~Id();
 
   hid_t get() const { return id_; }
-  /// Closes now; throws ResourceError on failure (a full disk shows here).
+  /// Closes the object now. Throws ResourceError on failure, such as a full disk.
   void close(const std::string& what);
 
  private:
@@ -61,7 +63,7 @@ class Id {
   Close close_ = nullptr;
 };
 
-/// Runs `call` quietly, putting the file's name before the message of a failure that lacks it.
+/// Runs `call` quietly. A failure whose message lacks the file's name gets it in front.
 template <typename Call>
 auto naming(const std::string& file, Call call) {
   const QuietScope quiet;
@@ -77,16 +79,17 @@ auto naming(const std::string& file, Call call) {
 void check(herr_t status, const std::string& what);
 
 Id create_file(const std::filesystem::path& path);
-/// Throws InputError when the file does not start as create_file() makes one, has not the length
-/// that it says, or cannot be opened as HDF5.
+/// Opens a file for reading. Throws InputError when it does not start as create_file() makes it,
+/// does not have the length that it states, or cannot be opened as HDF5.
 Id open_file(const std::filesystem::path& path);
 /// Whether an HDF5 file has an object of this name at its root. Throws like open_file.
 bool holds(const std::filesystem::path& path, const std::string& name);
 Id create_group(const Id& parent, const std::string& name);
-/// An object of the file itself: throws InputError where it is missing or damaged, or where the
-/// name is a link, which may lead out of the file. `file` names it in messages.
+/// Opens a group of the file itself. Throws InputError where it is missing or damaged, or where the
+/// name is a link, which may lead out of the file. file: its name for messages.
 Id open_group(const Id& parent, const std::string& name, const std::string& file);
-/// The same; nothing is known of its type, shape and storage.
+/// Opens a dataset of the file itself, with the exceptions of open_group(). Its type, shape and
+/// storage are not checked.
 Id open_dataset(const Id& parent, const std::string& name, const std::string& file);
 
 /// The HDF5 type of a C++ number, little-endian in the file.
@@ -110,36 +113,37 @@ template <> inline hid_t file_type<double>() { return H5T_IEEE_F64LE; }
 template <> inline hid_t memory_type<double>() { return H5T_NATIVE_DOUBLE; }
 // clang-format on
 
-/// Writes a one- or two-dimensional dataset, chunked by rows, with fletcher32.
-/// values: rows x columns, row-major; columns 0 makes it one-dimensional.
+/// Writes a one- or two-dimensional dataset, chunked by rows, with fletcher32. values: rows x
+/// columns, row-major; columns 0 makes it one-dimensional.
 template <typename Number>
 void write_dataset(const Id& parent, const std::string& name, std::span<const Number> values,
                    std::uint64_t columns = 0);
 
 /// Reads a whole dataset of `rows` x `columns` (columns 0: one-dimensional). Throws InputError when
-/// it is missing, of another type, shape or storage than write_dataset gives it, larger than the
-/// file, or fails its checksum; `file` names it in messages.
+/// it is missing, has another type, shape or storage than write_dataset() gives it, is larger than
+/// the file, or fails its checksum. file: its name for messages.
 template <typename Number>
 std::vector<Number> read_dataset(const Id& parent, const std::string& name, std::uint64_t rows,
                                  std::uint64_t columns, const std::string& file);
 
-/// Rows of a one- or two-dimensional dataset, from its extent; not to be trusted before the dataset
-/// was read.
+/// Number of rows of a one- or two-dimensional dataset according to its extent, which must not be
+/// trusted before the dataset has been read.
 std::uint64_t dataset_rows(const Id& parent, const std::string& name, const std::string& file);
 
-/// columns: as write_dataset's.
+/// Writes an attribute of numbers. columns: see write_dataset().
 template <typename Number>
 void write_attribute(const Id& object, const std::string& name, std::span<const Number> values,
                      std::uint64_t columns = 0);
 void write_attribute(const Id& object, const std::string& name, const std::string& text);
 
-/// An attribute of one number.
+/// Writes an attribute of one number.
 template <typename Number>
 void write_number(const Id& object, const std::string& name, Number value) {
   write_attribute<Number>(object, name, std::span(&value, 1));
 }
 
-/// Throws like read_attribute where that cannot be told.
+/// Whether the object has an attribute. Throws like read_attribute() where this cannot be
+/// determined.
 bool has_attribute(const Id& object, const std::string& name, const std::string& file);
 template <typename Number>
 std::vector<Number> read_attribute(const Id& object, const std::string& name, std::size_t count,
@@ -154,27 +158,30 @@ std::string read_text_attribute(const Id& object, const std::string& name, const
 template <typename Number>
 class Rows {
  public:
-  /// Creates rows x columns (columns 0: one-dimensional), as write_dataset.
+  /// Creates a dataset of rows x columns (columns 0: one-dimensional) in the way of
+  /// write_dataset().
   Rows(const Id& parent, const std::string& name, std::uint64_t rows, std::uint64_t columns);
-  /// Opens an existing one; throws InputError as read_dataset does.
+  /// Opens an existing dataset. Throws InputError as read_dataset() does.
   static Rows open(const Id& parent, const std::string& name, std::uint64_t columns,
                    const std::string& file);
 
   std::uint64_t rows() const { return rows_; }
   void write(std::uint64_t first_row, std::span<const Number> values);
-  /// Makes the index of a dataset with rows, as the first write() does. For write_chunk().
+  /// Creates the index of a dataset that has rows, as the first write() does. Needed before
+  /// write_chunk().
   void make_index();
-  /// A whole chunk as stored_chunk.hpp has it, to where the file ends now. After make_index(), for
-  /// all chunks, and without write().
+  /// Writes a whole chunk in the form of stored_chunk.hpp to the end of the file. Requires
+  /// make_index(), and that all chunks of the dataset are written in this way, without write().
   void write_chunk(std::uint64_t first_row, std::span<const std::byte> chunk);
-  /// After the last write, which may fail as late as here.
+  /// Closes the dataset after the last write, whose failure may appear only here.
   void close();
   void read(std::uint64_t first_row, std::span<Number> values) const;
-  /// The chunks from `first_row`, which begins one, as stored_chunk.hpp has them, not checked.
-  /// False where they are stored in another way or cannot be read: read() tells what is wrong then.
+  /// Reads the chunks of rows from `first_row`, which begins a chunk, in the form of
+  /// stored_chunk.hpp and unchecked. Returns false where they are stored in another way or cannot
+  /// be read; read() then tells what is wrong.
   bool read_chunks(std::uint64_t first_row, std::uint64_t row_count,
                    std::vector<std::vector<std::byte>>& chunks) const;
-  /// Rows of a chunk of those.
+  /// Number of rows in a chunk that read_chunks() returns.
   std::uint64_t chunk_rows() const;
 
  private:
@@ -185,7 +192,7 @@ class Rows {
   std::uint64_t rows_ = 0;
   std::uint64_t columns_ = 0;
   std::string name_;
-  std::string file_;  ///< where it was opened
+  std::string file_;  ///< name of the file in which it was opened
 };
 
 }  // namespace clearway::hdf5

@@ -6,11 +6,11 @@
 namespace clearway::hdf5 {
 namespace {
 
-constexpr std::size_t kLongestText = 1 << 20;  // no CRS is as long
+constexpr std::size_t kLongestText = 1 << 20;  // longer than any CRS
 
 struct Attribute {
   Id id, type;
-  hssize_t numbers;  ///< or strings
+  hssize_t numbers;  ///< number of numbers or strings
 };
 
 Attribute open_attribute(const Id& object, const std::string& name, const std::string& file) {

@@ -10,11 +10,12 @@
 namespace clearway::hdf5 {
 namespace {
 
-constexpr hsize_t kChunkBytes = 1 << 18;  // the most
+constexpr hsize_t kChunkBytes = 1 << 18;  // most bytes of a chunk
 
-constexpr std::uint32_t kAllFilters = 0;  // a mask of those that were left out
+// Filter mask of a chunk, whose bits are the filters that were left out.
+constexpr std::uint32_t kAllFilters = 0;
 
-/// Chunked with fletcher32; an empty dataset has no chunks.
+/// Properties of a dataset that is chunked with fletcher32; an empty dataset has no chunks.
 Id checked_layout(std::uint64_t rows, std::uint64_t columns, std::size_t number_bytes) {
   Id list = untimed(H5P_DATASET_CREATE);
   if (rows == 0) return list;
@@ -36,8 +37,8 @@ Id create_dataset(const Id& parent, const std::string& name, std::uint64_t rows,
           H5Dclose, "create dataset " + name};
 }
 
-/// Whether the dataset is stored as checked_layout() has it: in this file, in small chunks with a
-/// checksum and no other filter, so that its numbers take as many bytes of the file as here.
+/// Whether the dataset is stored in the way of checked_layout(): in this file, in small chunks with
+/// a checksum and no other filter, so that its numbers take as many bytes in the file as in memory.
 bool has_checked_layout(const Id& dataset, std::uint64_t rows, int dimensions,
                         std::size_t number_bytes) {
   const Id list(H5Dget_create_plist(dataset.get()), H5Pclose, "HDF5 property list");
@@ -64,7 +65,8 @@ std::uint64_t bytes_of_file(const Id& object) {
   return bytes;
 }
 
-/// Also checks type, columns and storage, and that as many rows fit the file; gives its rows.
+/// Opens a dataset and checks its type, columns and storage, and that the file has room for its
+/// rows. Returns it with its number of rows.
 template <typename Number>
 std::pair<Id, std::uint64_t> open_dataset(const Id& parent, const std::string& name,
                                           std::uint64_t columns, const std::string& file) {
@@ -103,7 +105,7 @@ void write_dataset(const Id& parent, const std::string& name, std::span<const Nu
   check(
       H5Dwrite(dataset.get(), memory_type<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
       "write dataset " + name);
-  dataset.close("write dataset " + name);  // this is when its chunks are written
+  dataset.close("write dataset " + name);  // closing writes its chunks
 }
 
 template <typename Number>

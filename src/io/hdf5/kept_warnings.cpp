@@ -9,15 +9,15 @@ namespace clearway {
 namespace {
 
 namespace names {
-constexpr const char* kWarningsGroup = "warnings";  // a group each, from 0
+constexpr const char* kWarningsGroup = "warnings";  // one group per warning, named from 0
 constexpr const char* kWarningCount = "count";
 constexpr const char* kCode = "code";
 constexpr const char* kMessage = "message";
-constexpr const char* kNumberNames = "names";  // a line each; only where there are numbers
+constexpr const char* kNumberNames = "names";  // one per line; only where there are numbers
 constexpr const char* kNumbers = "numbers";
 }  // namespace names
 
-/// An attribute holds 64 KiB.
+/// Most bytes of a warning's text; an attribute holds at most 64 KiB.
 constexpr std::size_t kMostTextBytes = 1 << 15;
 constexpr std::uint32_t kMostWarnings = 1 << 16;
 constexpr std::uint32_t kMostNumbers = 1 << 10;

@@ -8,11 +8,11 @@
 
 namespace clearway {
 
-/// Writes what the run of a part or the conversion of a store warned of into the group "warnings"
-/// of their file, as docs/design/result-format.md says.
+/// Writes the warnings of the run of a part or of the conversion of a store into the group
+/// "warnings" of its file (docs/design/result-format.md).
 void write_warnings(const hdf5::Id& file, const std::vector<Message>& warnings);
 
-/// name: of the file. Throws InputError where they are damaged.
+/// Reads the warnings. name: the file's, for messages. Throws InputError where they are damaged.
 std::vector<Message> read_warnings(const hdf5::Id& file, const std::string& name);
 
 }  // namespace clearway

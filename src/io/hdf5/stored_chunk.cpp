@@ -16,7 +16,8 @@ constexpr std::uint64_t kModulus = 65535;
 
 constexpr std::size_t kLanes = 16;
 
-/// Of kLanes words each: the most for which the lanes' 32 bits suffice is 361.
+/// Number of rows of kLanes words that are summed together; 361 is the most for which the lanes' 32
+/// bits suffice.
 constexpr std::size_t kRowsOfBlock = 256;
 
 /// The two sums of a Fletcher checksum, modulo 65535.
@@ -24,8 +25,8 @@ struct Sums {
   std::uint64_t first = 0, second = 0;
 };
 
-/// Adds rows of kLanes words. In lane l, `sums` are of its words, and `weighted` of each word as
-/// often as rows follow it.
+/// Adds rows of kLanes words to the sums. In each lane, `plain` sums its words, and `weighted`
+/// counts each word as often as rows follow it.
 void add_rows(Sums& sums, const std::byte* bytes, std::size_t rows) {
   std::array<std::uint32_t, kLanes> plain{}, weighted{};
   for (std::size_t row = 0; row < rows; ++row) {
@@ -45,9 +46,10 @@ void add_rows(Sums& sums, const std::byte* bytes, std::size_t rows) {
   sums.second %= kModulus;
 }
 
-/// As the filter has it, which never folds a sum above 0 to 0.
+/// A sum in the form of the filter, which never folds a sum above 0 to 0.
 std::uint32_t folded(std::uint64_t sum, bool all_zero) {
-  // Swapping the bytes of a word multiplies it by 256 modulo 65535; the filter's are big-endian.
+  // Swapping the bytes of a word multiplies it by 256 modulo 65535; the filter's words are
+  // big-endian.
   const auto rest = static_cast<std::uint32_t>(256 * sum % kModulus);
   return rest == 0 && !all_zero ? static_cast<std::uint32_t>(kModulus) : rest;
 }

@@ -20,25 +20,25 @@
 namespace clearway {
 namespace {
 
-constexpr std::size_t kLookedAt = 1 << 16;  ///< bytes
+constexpr std::size_t kLookedAt = 1 << 16;  ///< bytes that are examined
 
 FileDescription describe_hdf5(const std::filesystem::path& path) {
   try {
     if (hdf5::holds(path, "collisions")) return {FileKind::kResult, "a result"};
     if (hdf5::holds(path, "cells")) return {FileKind::kStore, "a store"};
   } catch (const Error&) {
-    // Damaged, or of another program: neither can be told from here.
+    // The file is damaged or from another program, which cannot be distinguished here.
   }
   return {FileKind::kOtherHdf5, "an HDF5 file, but no sound store or result"};
 }
 
-/// Whether four numbers are a unit quaternion as texts have them.
+/// Whether four numbers are a unit quaternion within the precision of texts.
 bool is_quaternion(std::span<const double> q) {
   const double norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   return std::abs(norm - 1) < 1e-3;
 }
 
-/// What a line of numbers is, by their count and size; empty where it is no pose.
+/// The kind of pose in a line of numbers, by their number and size; empty where it is no pose.
 std::string pose_words(std::span<const double> numbers) {
   const std::string count = std::to_string(numbers.size());
   if (numbers.size() == 12 || numbers.size() == 16) {
@@ -58,7 +58,7 @@ bool names_poses(std::string_view line) {
   });
 }
 
-/// By the first line of numbers, and a header before it.
+/// Describes a text by its first line of numbers and a header before it.
 FileDescription describe_text(std::string_view text) {
   std::array<double, 16> numbers{};
   while (!text.empty()) {
@@ -72,7 +72,7 @@ FileDescription describe_text(std::string_view text) {
       if (names_poses(line)) return {FileKind::kTrajectory, "a trajectory (with named columns)"};
       continue;
     }
-    if (*count == 1) continue;  // a count
+    if (*count == 1) continue;  // a number of points
     const std::string words = pose_words(std::span(numbers).first(*count));
     if (!words.empty()) return {FileKind::kTrajectory, words};
     return {FileKind::kTextPoints,

@@ -5,18 +5,18 @@
 
 namespace clearway {
 
-/// What a file is, whatever it was given as.
+/// What a file is, whatever it was passed as.
 enum class FileKind {
-  kUnknown,  ///< also what is no regular file, or cannot be read
+  kUnknown,  ///< also anything that is not a regular file or cannot be read
   kEmpty,
   kStore,
   kResult,
   kOtherHdf5,
   kJournal,
-  kPoints,      ///< a scan or a model, in a format that its first bytes tell
-  kMesh,        ///< by the ending of its name
+  kPoints,      ///< a scan or a model, in a format recognised by its first bytes
+  kMesh,        ///< a mesh, by the ending of its name
   kTrajectory,  ///< a text of poses
-  kTextPoints,  ///< a text of numbers that are no poses
+  kTextPoints,  ///< a text of numbers that are not poses
 };
 
 struct FileDescription {
@@ -24,13 +24,13 @@ struct FileDescription {
   std::string words;  ///< for messages, after "is": "a scan (LAS)", "a result"
 };
 
-/// Looks at the first bytes, of a text at its first lines, and at the ending of its name. It says
-/// what the file was meant to be, not whether it is sound. Throws ResourceError where there is no
-/// file of that name.
+/// Describes a file by its first bytes, or for a text its first lines, and by the ending of its
+/// name. This tells what the file was meant to be, not whether it is intact. Throws ResourceError
+/// where there is no file of that name.
 FileDescription describe_file(const std::filesystem::path& path);
 
-/// "LAS", "LAZ", "PLY", "E57": a file of points by its content, otherwise by its name; "text" for
-/// all texts.
+/// The name of a point file's format, such as "LAS", "LAZ", "PLY" or "E57", by content or otherwise
+/// by the file's name; "text" for all texts.
 std::string point_format_name(const std::filesystem::path& path);
 
 }  // namespace clearway

@@ -9,7 +9,7 @@
 namespace clearway {
 namespace {
 
-/// More points are no model, or take long.
+/// Most points of a file that may be a model and whose spacing is measured; more would take long.
 constexpr std::size_t kModelPoints = 1'000'000;
 
 class Inspection {

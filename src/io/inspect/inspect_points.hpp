@@ -9,14 +9,14 @@
 
 namespace clearway {
 
-/// What a file of points holds, by reading all of it.
+/// Contents of a file of points, found by reading all of it.
 struct PointsDescription {
-  CloudInfo info;                 ///< with all remarks
-  std::uint64_t points = 0;       ///< finite ones
-  std::uint64_t absent = 0;       ///< records without a point
-  std::uint64_t non_finite = 0;   ///< points that are not finite
-  Box box{};                      ///< of the finite ones
-  std::optional<double> spacing;  ///< typical, metres; of files that may be models
+  CloudInfo info;                 ///< declarations and all remarks
+  std::uint64_t points = 0;       ///< number of finite points
+  std::uint64_t absent = 0;       ///< number of records without a point
+  std::uint64_t non_finite = 0;   ///< number of points that are not finite
+  Box box{};                      ///< box of the finite points
+  std::optional<double> spacing;  ///< typical spacing in metres, for files that may be models
 };
 
 /// Reads the file once; memory is bounded. Throws as the readers do.

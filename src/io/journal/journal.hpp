@@ -21,19 +21,20 @@ namespace clearway {
 
 inline constexpr std::uint32_t kJournalVersion = 1;
 
-/// What a journal belongs to, as named values in a fixed order.
+/// The identity of a journal, which says what it belongs to, as named values in a fixed order.
 using JournalIdentity = std::vector<std::pair<std::string, std::string>>;
 
-/// The journal of an output: its name with ".journal" appended.
+/// The path of an output's journal: the output's name with ".journal" appended.
 std::filesystem::path journal_of(const std::filesystem::path& output);
 
-/// Whether there is a file that begins as a journal does.
+/// Whether the path is a file that begins as a journal does.
 bool is_journal(const std::filesystem::path& path);
 
-/// What differs, in words, "radius is 0.2, expected 0.1"; empty where nothing does.
+/// The difference between two identities in words, as in "radius is 0.2, expected 0.1"; empty where
+/// there is none.
 std::string difference(const JournalIdentity& found, const JournalIdentity& expected);
 
-/// A record as it is made: its header's bytes first, then the payload.
+/// A record under construction: room for its header, then the payload.
 class JournalRecord {
  public:
   JournalRecord() { clear(); }
@@ -44,7 +45,7 @@ class JournalRecord {
     const auto bytes = std::as_bytes(std::span(&value, 1));
     bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
   }
-  /// Seven bits a byte, the lowest first.
+  /// Appends a number with seven bits per byte, the lowest first.
   void put_count(std::uint64_t value);
   void put_text(const std::string& text);
   void clear();
@@ -54,7 +55,7 @@ class JournalRecord {
   std::vector<std::byte> bytes_;
 };
 
-/// A payload as it is read, front to back. What it does not hold throws InputError.
+/// A payload, read front to back. Reading beyond its end throws InputError.
 class JournalPayload {
  public:
   JournalPayload(std::span<const std::byte> bytes, std::string where)
@@ -69,7 +70,7 @@ class JournalPayload {
   std::uint64_t take_count();
   std::string take_text();
   bool at_end() const { return left_.empty(); }
-  /// Throws InputError naming file and record.
+  /// Throws InputError, which names file and record.
   [[noreturn]] void refuse(const std::string& what) const;
 
  private:
@@ -79,24 +80,25 @@ class JournalPayload {
   std::string where_;
 };
 
-/// A journal read and checked to its end. A torn tail, records that were being written when the
-/// process or the system died, is left out; InputError names the record where anything else is
-/// wrong.
+/// Reads and checks a journal to its end. A torn tail, records that were being written when the
+/// process or the system died, is left out. Throws InputError, which names the record, where
+/// anything else is wrong.
 class JournalReader {
  public:
   explicit JournalReader(const std::filesystem::path& path);
 
   const std::string& name() const { return file_.name(); }
-  /// None where not even that was written: nothing is in it.
+  /// The identity; nullopt where not even that was written, so that the journal is empty.
   const std::optional<JournalIdentity>& identity() const { return identity_; }
   const File& file() const { return file_; }
-  /// Records but the identity.
+  /// Number of records without the identity.
   std::uint64_t records() const { return records_; }
   std::uint64_t whole_bytes() const { return whole_bytes_; }
-  /// "record 7 at byte 1234 is torn", empty where none is.
+  /// The torn record in words, as in "record 7 at byte 1234 is torn"; empty where there is none.
   const std::string& torn() const { return torn_; }
 
-  /// In the order in which they were appended.
+  /// Calls visit(payload) for all records but the identity, in the order in which they were
+  /// appended.
   void for_each(const std::function<void(JournalPayload)>& visit) const;
 
  private:
@@ -107,21 +109,21 @@ class JournalReader {
   std::string torn_;
 };
 
-/// Appends records. Thread safe. What was appended survives the death of the process at once, that
-/// of the system after the next sync, which the first append makes that is `interval_seconds` after
-/// the last. Throws ResourceError naming the file.
+/// Appends records. Thread safe. An appended record survives the death of the process at once, and
+/// that of the system after the next sync. The first append that comes `interval_seconds` after the
+/// last sync makes one. Throws ResourceError, which names the file.
 class JournalWriter {
  public:
-  /// A new file; there is none of that name.
+  /// Creates a journal at a path where no file exists.
   static JournalWriter create(const std::filesystem::path& path, const JournalIdentity& identity,
                               double interval_seconds);
-  /// Goes on after the records that were read; cuts off what is torn.
+  /// Continues a journal behind the records that were read, and cuts off a torn tail.
   static JournalWriter resume(const std::filesystem::path& path, const JournalReader& read,
                               double interval_seconds);
   JournalWriter(JournalWriter&&) noexcept;
   ~JournalWriter();
 
-  /// The record is empty afterwards.
+  /// Appends the record, which is empty afterwards.
   void append(JournalRecord& record);
   void sync();
 

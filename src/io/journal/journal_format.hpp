@@ -9,7 +9,7 @@
 #include "io/journal/journal.hpp"
 #include "io/system/xxh64.hpp"
 
-/// What the journal's writer and reader share (docs/design/journal.md).
+/// Format that the journal's writer and reader share (docs/design/journal.md).
 namespace clearway {
 
 inline constexpr char kJournalMagic[8] = {'C', 'L', 'W', 'Y', 'J', 'R', 'N', 'L'};
@@ -17,13 +17,14 @@ inline constexpr std::uint64_t kJournalHeadBytes = 16;  // magic, version, 4 zer
 inline constexpr std::uint32_t kRecordMark = 0x43525743;
 inline constexpr std::uint64_t kMostPayloadBytes = 0xffffffff;
 
-/// Before every payload.
+/// The header before every payload.
 struct RecordHeader {
   std::uint32_t mark;
   std::uint32_t payload_bytes;
-  std::uint64_t synced_bytes;  ///< of the file, known to be on the disk when this was written
+  /// Bytes of the file that were known to be on the disk when this was written.
+  std::uint64_t synced_bytes;
   std::uint64_t payload_xxh64;
-  std::uint64_t header_xxh64;  ///< of the record's position and the 24 bytes before
+  std::uint64_t header_xxh64;  ///< hash of the record's position and the 24 bytes before
 
   std::uint64_t hash_at(std::uint64_t position) const {
     const std::uint64_t parts[4] = {position, mark | std::uint64_t{payload_bytes} << 32,

@@ -28,7 +28,7 @@ void check_head(const File& file) {
   if (found != journal_head()) refuse(file.name(), "damaged: bytes 12 to 15 are not zero");
 }
 
-/// The payload of a whole record at `position`; none where it is not whole.
+/// Reads the payload of a whole record at `position`; returns false where the record is not whole.
 bool read_record(const File& file, std::uint64_t position, std::uint64_t size,
                  std::vector<std::byte>& payload) {
   if (size - position < sizeof(RecordHeader)) return false;
@@ -41,7 +41,8 @@ bool read_record(const File& file, std::uint64_t position, std::uint64_t size,
   return xxh64(payload) == header.payload_xxh64;
 }
 
-/// How much of the file the records whose headers lie from `begin` on say was on the disk.
+/// How many bytes of the file were on the disk, according to the records whose headers lie from
+/// `begin` on.
 std::uint64_t synced_by_later(const File& file, std::uint64_t begin, std::uint64_t size) {
   constexpr std::uint64_t kPieceBytes = 1 << 20;
   std::uint64_t synced = 0;

@@ -58,8 +58,9 @@ struct JournalWriter::State {
   std::mutex sync_mutex;  ///< taken before `mutex`
   std::uint64_t end;
   std::uint64_t synced = 0;
-  bool named = false;   ///< the folder's entry is on the disk; of sync_mutex
-  bool failed = false;  ///< what follows a record that was not written whole is never read
+  bool named = false;  ///< whether the folder's entry is on the disk; guarded by sync_mutex
+  /// Whether a write failed; records behind one that is not whole are never read.
+  bool failed = false;
   SteadyClock::time_point last_sync = SteadyClock::now();
   double interval_seconds;
 };
@@ -124,7 +125,7 @@ void JournalWriter::append(JournalRecord& record) {
     s.end += record.bytes_.size();
     due = std::chrono::duration<double>(SteadyClock::now() - s.last_sync).count() >=
           s.interval_seconds;
-    if (due) s.last_sync = SteadyClock::now();  // nobody else needs to
+    if (due) s.last_sync = SteadyClock::now();  // so that no other thread syncs too
   }
   record.clear();
   if (due) sync();

@@ -9,30 +9,31 @@
 
 namespace clearway {
 
-/// A value of a JSON file that people write, and its key, as "vehicles.truck.model". Every
-/// complaint throws InputError "FILE: KEY: what".
+/// A value of a JSON file that people write, with its key, as in "vehicles.truck.model". Every
+/// error throws InputError "FILE: KEY: what".
 class KeyReader {
  public:
-  /// Reads the whole file. Refuses what parse_json() refuses.
+  /// Parses the whole file. Throws for what parse_json() refuses.
   static KeyReader parse(const std::filesystem::path& file, const std::string& text);
 
   const std::string& key() const { return key_; }
   const nlohmann::ordered_json& value() const { return *value_; }
 
-  /// Of an object. Refuses keys that are not among them.
+  /// Throws unless the value is an object whose keys are all among `known`.
   void allow(const std::vector<std::string>& known) const;
   bool has(const std::string& name) const { return value().is_object() && value().contains(name); }
-  /// Refuses an object that does not have it.
+  /// The member of an object. Throws where the object lacks it.
   KeyReader at(const std::string& name) const;
-  /// The values of an object in the order of the file. Refuses what is no object, or an empty one.
+  /// The values of an object in the order of the file. Throws for other values and for an empty
+  /// object.
   std::vector<KeyReader> members() const;
-  /// The values of a list in the order of the file. Refuses what is no list, an empty list, and
-  /// one of more than `most` entries.
+  /// The values of a list in the order of the file. Throws for other values, for an empty list, and
+  /// for one of more than `most` entries.
   std::vector<KeyReader> elements(std::size_t most = std::numeric_limits<std::size_t>::max()) const;
-  /// Last part of the key.
+  /// The last part of the key.
   const std::string& name() const { return name_; }
 
-  std::string text() const;  ///< of a string that is not empty
+  std::string text() const;  ///< a string that is not empty
   bool flag() const;
 
   [[noreturn]] void refuse(const std::string& what) const;
@@ -51,7 +52,7 @@ class KeyReader {
 
   std::string file_, key_, name_;
   Document document_;                    ///< the whole file, which all its readers share
-  const nlohmann::ordered_json* value_;  ///< in it
+  const nlohmann::ordered_json* value_;  ///< the value within document_
 };
 
 }  // namespace clearway

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Refuses a text that is nested too deep, before anything is built from it.
+/// Throws for a text that is nested too deeply, before anything is built from it.
 void check_nesting(std::string_view text) {
   std::size_t depth = 0, line = 1, line_begin = 0;
   bool in_string = false;
@@ -38,8 +38,8 @@ void check_nesting(std::string_view text) {
   }
 }
 
-/// Builds the value. The library's own builder compares each new key with all earlier ones, and
-/// with a callback also visits all earlier elements of a list at each new one.
+/// Builds the value in linear time. The library's own builder compares each new key with all
+/// earlier ones, and with a callback also visits all earlier elements of a list at each new one.
 class ValueBuilder : public nlohmann::json_sax<ordered_json> {
  public:
   ordered_json take() { return std::move(root_); }
@@ -65,7 +65,8 @@ class ValueBuilder : public nlohmann::json_sax<ordered_json> {
 
   bool parse_error(std::size_t, const std::string&,
                    const nlohmann::detail::exception& error) override {
-    constexpr std::size_t kMostBytes = 300;  // it repeats the token, which may be a long string
+    // The message repeats the token, which may be a long string.
+    constexpr std::size_t kMostBytes = 300;
     std::string what = error.what();  // "[json.exception...] parse error at line 3, column 5: ..."
     const std::size_t begin = what.find("] ");
     if (begin != std::string::npos) what.erase(0, begin + 2);
@@ -74,8 +75,8 @@ class ValueBuilder : public nlohmann::json_sax<ordered_json> {
   }
 
  private:
-  /// An object or list whose end has not been read. Nothing is added to what holds it until then,
-  /// so that the pointer stays valid.
+  /// An object or list whose end has not been read. Until then nothing is added to the value that
+  /// contains it, so the pointer stays valid.
   struct Open {
     ordered_json* value;
     std::set<std::string> seen{};
@@ -105,7 +106,7 @@ class ValueBuilder : public nlohmann::json_sax<ordered_json> {
     return true;
   }
 
-  /// "bodies[1].name"
+  /// The key of the current value, as in "bodies[1].name".
   std::string place() const {
     std::string text;
     for (const Open& within : open_) {

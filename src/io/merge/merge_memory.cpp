@@ -9,16 +9,16 @@
 namespace clearway {
 namespace {
 
-/// The program, and what the writer holds back.
+/// Bytes of the program and of what the writer holds back.
 constexpr std::uint64_t kFixedBytes = std::uint64_t{32} << 20;
-/// Of an open file: its metadata as HDF5 holds them.
+/// Bytes of an open file: its metadata in HDF5.
 constexpr std::uint64_t kFileBytes = std::uint64_t{512} << 10;
-/// What HDF5 keeps of a dataset's chunks, at the most.
+/// Most bytes of a dataset's chunks that HDF5 caches.
 constexpr std::uint64_t kCacheBytes = std::uint64_t{1} << 20;
 
 constexpr std::size_t kLeastRows = 1 << 10;
 
-/// Bytes of a row of the widest table of points, and of a pose's row.
+/// Bytes of a row in the widest table of points, and of a row of the profile.
 constexpr std::uint64_t kPointBytes = 48, kPoseBytes = 56;
 
 std::uint64_t cached_bytes(std::uint64_t rows, std::initializer_list<std::uint64_t> value_bytes) {

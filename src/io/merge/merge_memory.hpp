@@ -7,8 +7,8 @@
 
 namespace clearway {
 
-/// How many rows of each part merging holds at once, so that it takes at most `memory_bytes`:
-/// a power of two. Throws ResourceError where even few are too many.
+/// Number of rows of each part that merging holds at once, a power of two, chosen so that it takes
+/// at most `memory_bytes`. Throws ResourceError where even the fewest rows are too many.
 std::size_t batch_rows_of(const PartSet& set, std::uint64_t memory_bytes);
 
 }  // namespace clearway

@@ -18,7 +18,7 @@
 namespace clearway {
 namespace {
 
-/// Rows that are given to the writer at once.
+/// Number of rows that are given to the writer at once.
 constexpr std::size_t kRows = 1 << 12;
 
 /// Calls visit(cursor) for every row of all cursors, ascending by source.
@@ -134,7 +134,8 @@ class PartMerge {
     rows.body.clear();
   }
 
-  /// Of each pose the part with the least d2, of several the one with the smallest source.
+  /// Merges the profiles: for each pose the part with the least squared distance, and of several
+  /// the one with the smallest source.
   void merge_profile() {
     std::deque<ProfileRowStream> streams;
     for (const ResultReader& part : set_.parts()) streams.emplace_back(part, batch_rows_);
@@ -153,7 +154,7 @@ class PartMerge {
       first += static_cast<std::uint32_t>(best.size());
       throw_if_stopped(progress_);
     }
-    // The ends of the others, where their hashes are checked.
+    // Reads the other streams to their ends, where their hashes are checked.
     for (std::size_t part = 1; part < streams.size(); ++part) {
       ProfileRows none;
       streams[part].read(none);

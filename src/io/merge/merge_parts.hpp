@@ -9,10 +9,10 @@
 
 namespace clearway {
 
-/// Writes the result of all parts to `path`, a few rows of each part in memory, and
-/// adds to `answer`, which starts as set.answer(), what the rows say. Every row is read
-/// once, and checked against its part's hash. Throws InputError for damaged parts, and for a point
-/// in two of them; ResourceError for a full disk or too little memory; Interrupted.
+/// Writes the result of all parts to `path`, with a few rows of each part in memory, and adds what
+/// the rows tell to `answer`, which starts as set.answer(). Every row is read once and checked
+/// against its part's hash. Throws InputError for damaged parts and for a point that is in two of
+/// them, ResourceError for a full disk or too little memory, and Interrupted.
 void merge_parts(const PartSet& set, const std::filesystem::path& path, std::uint64_t memory_bytes,
                  Progress& progress, Answer& answer);
 

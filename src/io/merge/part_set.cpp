@@ -31,7 +31,8 @@ std::string environment_text(const ResultHeader& header) {
          hash_text(header.environment_hash);
 }
 
-/// How an answer was computed, where that may change it: with a tolerance, or in floats alone.
+/// The difference in how two parts were computed where this may change the answer: with a
+/// tolerance, or in single precision alone.
 std::string difference_of_means(const ResultReader& part, const ResultReader& other) {
   const ResultPart &a = *part.header().part, &b = *other.header().part;
   const bool floats = part.header().float_precision;
@@ -49,7 +50,7 @@ std::string difference_of_means(const ResultReader& part, const ResultReader& ot
          " the answer depends on it; run all parts in the same way";
 }
 
-/// Why they are not parts of one result; empty where they are.
+/// Why two files are not parts of one result; empty where they are.
 std::string difference_of(const ResultReader& part, const ResultReader& other) {
   const ResultHeader &a = part.header(), &b = other.header();
   if (a.part->shard.count != b.part->shard.count) {
@@ -76,7 +77,7 @@ std::string difference_of(const ResultReader& part, const ResultReader& other) {
   return a.is_exact() ? "" : difference_of_means(part, other);
 }
 
-/// "2", "2, 5-7"; after many numbers "...".
+/// Numbers in words: "2" or "2, 5-7", with "..." after many.
 std::string numbers_text(const std::vector<std::uint32_t>& numbers) {
   constexpr std::size_t kMostRanges = 10;
   const std::vector<std::string> ranges = number_ranges(numbers);
@@ -141,7 +142,7 @@ std::vector<PartWarning> PartSet::warnings() const {
   };
   std::vector<PartWarning> all;
   for (const ResultReader& part : parts_) {
-    std::vector<Message> told;  // of this part, each once
+    std::vector<Message> told;  // warnings of this part, each once
     for (const Message& warning : part.header().part->warnings) {
       const auto same = [&](const Message& other) { return is_same(warning, other); };
       if (std::ranges::any_of(told, same)) continue;

@@ -11,21 +11,21 @@ namespace clearway {
 /// All parts of one result, in the order of their numbers.
 class PartSet {
  public:
-  /// Throws InputError, with the names of files, unless they are the parts of one result, each
-  /// once; ResourceError where the process may not open as many files.
+  /// Opens the files. Throws InputError, with their names, unless they are the parts of one result,
+  /// each once; ResourceError where the process may not open so many files.
   explicit PartSet(const std::vector<std::filesystem::path>& files);
 
   const std::vector<ResultReader>& parts() const { return parts_; }
-  /// Of the result that they make.
+  /// The header of the result that the parts make.
   const ResultHeader& header() const { return header_; }
-  /// Of the runs of the parts, each once, in the order of the parts.
+  /// The warnings of the runs of the parts, each once, in the order of the parts.
   std::vector<PartWarning> warnings() const;
   std::uint64_t collisions() const;
   std::uint64_t clearances() const;
-  /// What the parts found beside their tables, together.
+  /// The findings of all parts together.
   ResultFindings findings() const;
-  /// The answer of all parts, but for what only reading their rows tells: places, points inside and
-  /// poses of the profile.
+  /// The answer of all parts, without what only reading their rows tells: places, points inside the
+  /// model and poses of the profile.
   Answer answer() const;
 
  private:

@@ -12,14 +12,14 @@ struct FlatPlace {
   double x, y;
 };
 
-/// The points at which a x + b y + c >= 0.
+/// The half-plane of points with a x + b y + c >= 0.
 struct HalfPlane {
   double a, b, c;
 
   double height(const FlatPlace& p) const { return a * p.x + b * p.y + c; }
 };
 
-/// A convex polygon of a plane; two corners are a segment, none is empty.
+/// A convex polygon in a plane. With two corners it is a segment, with none it is empty.
 class FlatPolygon {
  public:
   static constexpr std::size_t kMostCorners = 24;
@@ -34,16 +34,16 @@ class FlatPolygon {
   const FlatPlace* begin() const { return corners_.data(); }
   const FlatPlace* end() const { return corners_.data() + size_; }
 
-  /// What of it lies in the half-plane. What is left out is the hull of places that the computed
-  /// heights put outside. All of it is kept where the corners would be too many. Source: Sutherland
-  /// and Hodgman, Reentrant polygon clipping, 1974.
+  /// The part of the polygon within the half-plane. What is left out is the hull of places that the
+  /// computed heights put outside. The whole polygon is returned where the part would have too many
+  /// corners. Source: Sutherland and Hodgman, Reentrant polygon clipping, 1974.
   FlatPolygon clipped(const HalfPlane& half) const {
     FlatPolygon kept;
     for (std::size_t i = 0; i < size_; ++i) {
       const FlatPlace& a = corners_[i];
       const FlatPlace& b = corners_[(i + 1) % size_];
       const double height_a = half.height(a), height_b = half.height(b);
-      if (kept.size_ + 2 > kMostCorners) return *this;  // only where rounding bends a side
+      if (kept.size_ + 2 > kMostCorners) return *this;  // happens only where rounding bends a side
       if (height_a >= 0) kept.add(a);
       if ((height_a >= 0) != (height_b >= 0)) {
         const double t = height_a / (height_a - height_b);
@@ -59,7 +59,7 @@ class FlatPolygon {
     return moved;
   }
 
-  /// Two parts that make up all of it, cut across the longer side of its box.
+  /// Two parts that together make up the polygon, cut across the longer side of its box.
   std::pair<FlatPolygon, FlatPolygon> halves() const {
     FlatPlace lo = corners_[0], hi = corners_[0];
     for (const FlatPlace& corner : *this) {

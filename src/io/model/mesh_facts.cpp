@@ -16,15 +16,15 @@ namespace {
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
 struct Edge {
-  std::uint32_t low, high;  ///< vertices
-  bool upwards;             ///< runs from low to high
+  std::uint32_t low, high;  ///< indices of the two vertices
+  bool upwards;             ///< whether the edge runs from low to high
 
   friend bool operator<(const Edge& a, const Edge& b) {
     return std::tie(a.low, a.high, a.upwards) < std::tie(b.low, b.high, b.upwards);
   }
 };
 
-/// The triangles over vertices of which no two are at the same place.
+/// The triangles of the mesh with equal vertices joined, so that no two are at the same place.
 Triangles welded(const TriangleMesh& mesh) {
   std::vector<Vec3> places;
   VertexWelder welder(places);

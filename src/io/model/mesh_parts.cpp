@@ -17,16 +17,17 @@ using Corners = std::array<std::uint32_t, 3>;
 
 /// One triangle's use of an edge between two vertices.
 struct EdgeUse {
-  std::uint32_t low, high;  ///< vertices
+  std::uint32_t low, high;  ///< indices of the two vertices
   std::uint32_t triangle;
-  bool upwards;  ///< runs from low to high
+  bool upwards;  ///< whether the triangle runs from low to high
 
   auto ends() const { return std::tie(low, high); }
 };
 
 bool is_flat(const Corners& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
-/// The same for all triangles with these corners in this turn.
+/// The corners rotated so that the least comes first, which gives the same for all triangles with
+/// these corners in this orientation.
 Corners turned_to_least(Corners t) {
   std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   return t;
@@ -45,7 +46,7 @@ TriangleMesh merged(const TriangleMesh& mesh) {
   return out;
 }
 
-/// Keeps the first of each. Returns how many are left out.
+/// Keeps the first of equal triangles and returns how many others are left out.
 std::uint64_t leave_out_duplicates(std::vector<Corners>& triangles) {
   std::vector<std::pair<Corners, std::uint32_t>> sorted;
   sorted.reserve(triangles.size());
@@ -82,7 +83,7 @@ std::vector<EdgeUse> edge_uses(const std::vector<Corners>& triangles) {
   return uses;
 }
 
-/// Disjoint sets of triangles; each is named by its first one.
+/// Disjoint sets of triangles, each named by its first triangle.
 class PartFinder {
  public:
   explicit PartFinder(std::size_t triangles) : root_(triangles) {
@@ -103,7 +104,7 @@ class PartFinder {
   std::vector<std::uint32_t> root_;
 };
 
-/// visit(uses of one edge)
+/// Calls visit(uses of one edge) for every edge. The uses must be sorted by edge.
 template <typename Visit>
 void for_each_edge(std::span<const EdgeUse> uses, Visit visit) {
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
@@ -112,7 +113,7 @@ void for_each_edge(std::span<const EdgeUse> uses, Visit visit) {
   }
 }
 
-/// Whether an edge breaks its part, and then by what.
+/// Whether an edge keeps its part from being a solid; if so, `fault` is how.
 bool is_faulty(std::span<const EdgeUse> edge, EdgeFault& fault) {
   fault = edge.size() == 1  ? EdgeFault::kOpen
           : edge.size() > 2 ? EdgeFault::kCrowded
@@ -125,10 +126,10 @@ void note(FaultyEdges& edges, const Vec3& from, const Vec3& to) {
   if (edges.first.size() < FaultyEdges::kMostShown) edges.first.push_back({from, to});
 }
 
-/// With fewer triangles, a closed part encloses nothing.
+/// Least number of triangles of a solid; with fewer, a closed part encloses nothing.
 constexpr std::uint32_t kLeastOfSolid = 4;
 
-/// Numbers the solids; faulty: by a part's first triangle.
+/// Numbers the solids. faulty: whether a part has a faulty edge, by the part's first triangle.
 void number_solids(PartFinder& finder, const std::vector<bool>& faulty, MeshParts& parts) {
   const auto count = static_cast<std::uint32_t>(parts.mesh.triangles.size());
   std::vector<std::uint32_t> size_of(count), number_of(count, kNoSolid);

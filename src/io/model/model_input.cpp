@@ -17,7 +17,7 @@
 namespace clearway {
 namespace {
 
-constexpr double kBendToTell = 0.1;  // of the spacing
+constexpr double kBendToTell = 0.1;  // share of the spacing above which a bend is reported
 
 void tell(std::vector<Message>& messages, const ModelInput& input, const std::string& text,
           std::vector<std::pair<std::string, double>> numbers = {}, std::string code = {}) {
@@ -26,7 +26,8 @@ void tell(std::vector<Message>& messages, const ModelInput& input, const std::st
       {severity, std::move(code), input.path.string() + ": " + text, std::move(numbers)});
 }
 
-/// first: the number of the batch's first record, which counts those without a point too.
+/// Appends the points of a batch. first: number of the batch's first record, where records without
+/// a point count too.
 void append(const PointBatch& batch, const CloudInfo& info, std::uint64_t first,
             const std::string& name, std::vector<Vec3>& points) {
   for (const auto& q : batch.quanta) {
@@ -65,7 +66,7 @@ void read_points(ModelInput& input) {
   }
 }
 
-/// A file that draws single points alone is a model of these points, as a scan's file is.
+/// Makes a file that draws only single points a model of these points, like a scan's file.
 void take_single_points(ModelInput& input) {
   const std::uint64_t drawn = input.remarks.single_points;
   if (drawn == 0 || drawn != input.mesh.triangles.size()) return;
@@ -80,7 +81,8 @@ void take_single_points(ModelInput& input) {
   input.mesh = {std::move(points), {}};
 }
 
-/// Whether the file was read as a mesh; one without faces may be.
+/// Reads the file as a mesh; returns false where it is none. with_faces: whether the faces are
+/// wanted; otherwise the vertices alone are kept as points.
 bool read_as_mesh(ModelInput& input, bool with_faces) {
   File file = File::open_for_reading(input.path);
   const auto format = mesh_format_of(file, input.path);
@@ -97,7 +99,8 @@ bool read_as_mesh(ModelInput& input, bool with_faces) {
   return true;
 }
 
-/// A model in the scan's coordinates lies elsewhere when the other foot was meant.
+/// Warns where the model's and the environment's feet differ so much that a model in the scan's
+/// coordinates would be elsewhere with the other foot.
 void warn_of_two_feet(ModelInput& input, double unit, double environment_unit, double largest) {
   if (!is_foot(unit) || !is_foot(environment_unit)) return;
   const double moved = feet_apart(largest * environment_unit, unit, environment_unit);
@@ -106,7 +109,7 @@ void warn_of_two_feet(ModelInput& input, double unit, double environment_unit, d
        {{"metres", moved}}, "two-feet");
 }
 
-/// Into the environment's unit, where the file's is known.
+/// Converts the model into the environment's unit, where the file's unit is known.
 void scale(ModelInput& input, const ModelOptions& options) {
   const FileUnit named = options.unit.is_known() ? options.unit : input.declared_unit;
   const double unit = named.metres_in(options.environment_unit);
@@ -146,7 +149,7 @@ void scale(ModelInput& input, const ModelOptions& options) {
        {{"metres", unit}});
 }
 
-/// Of a mesh and of vertices that stand alone in a mesh's file.
+/// Adds remarks on a mesh, or on single vertices in a mesh's file, to the messages.
 void tell_remarks(ModelInput& input) {
   const MeshRemarks& remarks = input.remarks;
   if (remarks.last_line_open) {
@@ -205,7 +208,7 @@ void leave_out_below(const ModelInput& input, double above, std::vector<Vec3>& p
        {{"left_out", static_cast<double>(left_out)}, {"above", above}});
 }
 
-/// All vertices of a mesh, or all points of another file.
+/// A model of all vertices of a mesh, or of all points of another file.
 Model vertices_of(const ModelInput& input, const ModelOptions& options,
                   std::vector<Message>& messages) {
   Model shape = input.mesh.vertices;

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t kManyPoints = 64;
 
-/// The least squared distance of one of the points to another place; infinite where there is none.
+/// The least squared distance from `place` to one of the points at another place; infinite where
+/// there is none.
 double least_to_others(const Vec3& place, std::span<const Vec3> points) {
   double least = std::numeric_limits<double>::infinity();
   for (const Vec3& point : points) {
@@ -23,7 +24,7 @@ double least_to_others(const Vec3& place, std::span<const Vec3> points) {
   return least;
 }
 
-/// The distance of one of the tree's points to its neighbour; about `guess`.
+/// The distance of one of the tree's points to its nearest neighbour. guess: about this distance.
 double gap_of(const ModelTree& tree, const Vec3& place, double guess, std::vector<Vec3>& near) {
   bool grown = false;
   for (double reach = guess;;) {

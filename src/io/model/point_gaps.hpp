@@ -7,13 +7,13 @@
 
 namespace clearway {
 
-/// The distances of points to their nearest neighbours, metres.
+/// Distances of points to their nearest neighbours, metres.
 struct PointGaps {
   double median = 0, largest = 0;
-  std::uint64_t repeated = 0;  ///< points at the place of another; they are left out
+  std::uint64_t repeated = 0;  ///< number of points at the place of another one, which are left out
 };
 
-/// Zeros for fewer than two places.
+/// The gaps of points; zeros for fewer than two places.
 PointGaps gaps_of(std::span<const Vec3> points);
 
 }  // namespace clearway

@@ -13,9 +13,10 @@
 namespace clearway {
 namespace {
 
-constexpr double kMostSpacings = 0x1p28;  // of the largest coordinate; the proof needs it
+// Greatest coordinate in spacings, which the proof requires.
+constexpr double kMostSpacings = 0x1p28;
 
-/// The positions of the triangles' vertices, each once, in the order of the vertices.
+/// The positions of the vertices that triangles use, each once, in the order of the vertices.
 std::vector<Vec3> used_vertices(const TriangleMesh& mesh) {
   std::vector<bool> used(mesh.vertices.size());
   for (const auto& triangle : mesh.triangles) {
@@ -38,7 +39,7 @@ double estimate(const TriangleMesh& mesh, double spacing) {
   return samples;
 }
 
-/// The next of 1, 2, 5, 10 ... above.
+/// The next greater round number of the series 1, 2, 5, 10 ...
 double rounder(double spacing) {
   const double power = std::pow(10, std::floor(std::log10(spacing)));
   for (const double digit : {1, 2, 5}) {
@@ -128,12 +129,13 @@ double spacing_for(const TriangleMesh& mesh, double samples) {
       reach = std::max({reach, std::abs(a[axis]), std::abs(b[axis]), std::abs(c[axis])});
     }
   }
-  // A lattice of equilateral triangles has 2 / (3 sqrt(3) h^2) points an area (Kershner 1939).
+  // A lattice of equilateral triangles whose places are within h of a node has 2 / (3 sqrt(3) h^2)
+  // nodes per area (Kershner 1939).
   const double of_area = std::sqrt(2 * area / (3 * std::sqrt(3.0) * samples));
   double spacing =
       std::clamp(std::max(of_area, reach * 0x1p-27), 2 * kLeastSpacing, kLargestSpacing / 2);
-  // Lines have no area. Triangles about as large as the spacing take up to fifteen times as many
-  // samples as their area does, and are none the worse for it.
+  // Lines have no area. Triangles about as large as the spacing need up to fifteen times as many
+  // samples as their area suggests, which does no harm.
   constexpr double kMuchMore = 32;
   while (spacing < kLargestSpacing / 2 && estimate(mesh, spacing) > kMuchMore * samples) {
     spacing = std::min(2 * spacing, kLargestSpacing / 2);

@@ -7,10 +7,10 @@
 
 namespace clearway {
 
-/// Points, with a hash grid that finds those within a reach.
+/// Points in a hash grid that finds those within a reach.
 class SampleSet {
  public:
-  /// reach: above 0; coordinates are at most 2^31 of it.
+  /// reach: above 0; coordinates are at most 2^31 times as large.
   explicit SampleSet(double reach) : reach_(reach), heads_(1024, kNone) {}
 
   const std::vector<Vec3>& points() const { return points_; }
@@ -19,9 +19,9 @@ class SampleSet {
 
   void add(const Vec3& point);
 
-  /// Calls use(point) for points until it returns true: for those within the reach of `place`, but
-  /// for a few whose distance is the reach but for rounding, and for some farther ones; the last
-  /// added first, and at most kMostLooks of them. Whether it returned true.
+  /// Calls use(point) until it returns true, at most kMostLooks times and the last added point
+  /// first. It is called for the points within the reach of `place`, except for some at the reach
+  /// up to rounding, and for some farther ones. Returns whether `use` returned true.
   template <typename Use>
   bool any_near(const Vec3& place, Use use) const {
     const Cell middle = cell_of(place);
@@ -41,8 +41,8 @@ class SampleSet {
 
  private:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  /// Without it, the vertices of a fine part that a coarse triangle passes would all be looked at
-  /// for each of its places.
+  /// Most calls of `use` in any_near(). Without a limit, all vertices of a fine part that a coarse
+  /// triangle passes would be examined for each of the triangle's places.
   static constexpr std::uint32_t kMostLooks = 1024;
 
   struct Cell {
@@ -50,7 +50,7 @@ class SampleSet {
   };
 
   Cell cell_of(const Vec3& point) const;
-  /// Cells that share a slot share their points.
+  /// The slot of a cell; cells that share a slot share their points.
   std::size_t slot_of(const Cell& cell) const {
     std::uint64_t hash = static_cast<std::uint64_t>(cell.x) * 0x9E3779B97F4A7C15;
     hash = (hash ^ (hash >> 32) ^ static_cast<std::uint64_t>(cell.y)) * 0xD6E8FEB86659FD93;
@@ -61,8 +61,9 @@ class SampleSet {
 
   double reach_;
   std::vector<Vec3> points_;
-  std::vector<std::uint32_t> next_;   // of the same slot
-  std::vector<std::uint32_t> heads_;  // power of two
+  std::vector<std::uint32_t> next_;  // next point of the same slot
+  // First point of each slot; the number of slots is a power of two.
+  std::vector<std::uint32_t> heads_;
 };
 
 }  // namespace clearway

@@ -7,13 +7,14 @@
 namespace clearway {
 namespace {
 
-// Shares of the spacing; the proof adds them up.
-constexpr double kMargin = 0x1p-16;      // kept free for all rounding
-constexpr double kFlat = 0x1p-17;        // a triangle of less height is its longest side
-constexpr double kClipMargin = 0x1p-18;  // by which the sides are moved out before clipping
-constexpr int kSplits = 5;               // of a region, to find that several samples cover it
+// Shares of the spacing, which the proof adds up.
+constexpr double kMargin = 0x1p-16;  // reserve for all rounding
+constexpr double kFlat = 0x1p-17;    // a triangle of less height is treated as its longest side
+// Distance by which the sides are moved outwards before clipping.
+constexpr double kClipMargin = 0x1p-18;
+constexpr int kSplits = 5;  // splits of a region to find whether several samples cover it
 
-/// The sides of a triangle, moved out.
+/// The sides of a triangle, moved outwards by `margin`.
 std::array<HalfPlane, 3> sides_of(const TriangleFrame& t, double margin) {
   const auto side = [margin](const FlatPlace& a, const FlatPlace& b) {
     const double x = b.x - a.x, y = b.y - a.y, length = std::hypot(x, y);
@@ -26,14 +27,14 @@ std::array<HalfPlane, 3> sides_of(const TriangleFrame& t, double margin) {
 
 }  // namespace
 
-/// Rows of nodes parallel to the longest side, every other row shifted by half a step. Each place
-/// of the triangle is within `reach` of its nearest node.
+/// A lattice of rows of nodes parallel to the longest side, where every other row is shifted by
+/// half a step. Each place of the triangle is within `reach` of its nearest node.
 struct SurfaceCover::Lattice {
-  double rows, row_step;  ///< number of rows, and the way from one to the next
-  double steps, step;     ///< within a row
-  double first_row;       ///< above the longest side
-  double radius;          ///< of the circle about a node's region, at most the reach
-  FlatPolygon region;     ///< of a node at (0, 0): the places nearest to it
+  double rows, row_step;  ///< number of rows, and the distance from one to the next
+  double steps, step;     ///< number of steps in a row, and the length of one
+  double first_row;       ///< height of the first row above the longest side
+  double radius;          ///< radius of the circle about a node's region, at most the reach
+  FlatPolygon region;     ///< region of a node at (0, 0): the places nearest to it
 
   Lattice(const TriangleFrame& t, double reach) {
     rows = std::max(1.0, std::ceil((t.height + 2 * reach) / (1.5 * reach)) - 1);
@@ -101,7 +102,7 @@ bool SurfaceCover::cover_node(const TriangleFrame& triangle, const FlatPolygon& 
   return true;
 }
 
-/// Whether samples cover a region: one alone, or each of its parts is covered.
+/// Whether samples cover a region: a single one covers all of it, or each of its parts is covered.
 bool SurfaceCover::covered(const TriangleFrame& triangle, const FlatPolygon& region,
                            int splits) const {
   std::array<Vec3, FlatPolygon::kMostCorners> corners;

@@ -6,16 +6,18 @@
 namespace clearway {
 
 /// Samples that cover triangles: no place of a triangle given to cover() is farther than `spacing`
-/// from a sample. docs/design/model.md, section "The cover", has the bounds named here.
+/// from a sample. The bounds are derived in docs/design/model.md, section "The cover".
 class SurfaceCover {
  public:
-  /// most: samples that may be added before it gives up.
+  /// most: number of samples that may be added before cover() gives up.
   SurfaceCover(double spacing, std::uint64_t most);
 
   void add(const Vec3& sample) { samples_.add(sample); }
-  /// The corners are samples already. False where `most` samples do not do.
+  /// Adds the samples that cover a triangle, whose corners are samples already. Returns false where
+  /// `most` samples do not suffice.
   bool cover(const Vec3& a, const Vec3& b, const Vec3& c);
-  /// About as many samples as the lattice of the triangle has nodes; 0 where its corners do.
+  /// Estimated number of samples for a triangle: about the number of nodes of its lattice; 0 where
+  /// its corners suffice.
   double estimate(const Vec3& a, const Vec3& b, const Vec3& c) const;
 
   SampleSet& samples() { return samples_; }

@@ -14,8 +14,8 @@ namespace {
 
 using Corners = std::array<std::uint32_t, 3>;
 
-/// What is left of triangles above a height. Triangles that share an edge share the place where it
-/// is cut.
+/// Cuts triangles at a height and keeps what is above. Triangles that share an edge share the point
+/// where it is cut.
 class HeightCut {
  public:
   HeightCut(const TriangleMesh& mesh, double above) : above_(above), out_{mesh.vertices, {}} {
@@ -37,7 +37,7 @@ class HeightCut {
       return;
     }
     ++cut_;
-    // Turned so that the corner that is alone on its side comes first.
+    // Rotated so that the corner that is alone on its side comes first.
     std::size_t first = 0;
     while (is_below(t[first]) != (below == 1)) ++first;
     const std::uint32_t a = t[first], b = t[(first + 1) % 3], c = t[(first + 2) % 3];
@@ -87,7 +87,7 @@ void leave_out_below(const ModelInput& input, double above, TriangleMesh& mesh,
                       {{"left_out", static_cast<double>(cut.left_out())}, {"above", above}}});
 }
 
-/// Returns how many vertices no triangle uses. They are removed.
+/// Removes the vertices that no triangle uses and returns their number.
 std::uint64_t remove_unused(TriangleMesh& mesh) {
   constexpr std::uint32_t kUnused = 0xffffffff;
   std::vector<std::uint32_t> number(mesh.vertices.size(), kUnused);

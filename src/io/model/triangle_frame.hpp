@@ -9,8 +9,8 @@
 
 namespace clearway {
 
-/// A triangle laid flat: its longest side from (0, 0) to (length, 0), the third corner at
-/// (foot, height), 0 <= foot <= length. Distances are those in space, but for rounding.
+/// A triangle laid flat: its longest side from (0, 0) to (length, 0), the third corner at (foot,
+/// height), 0 <= foot <= length. Distances are those in space, up to rounding.
 class TriangleFrame {
  public:
   TriangleFrame(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -31,17 +31,17 @@ class TriangleFrame {
     foot = std::clamp(rounded_dot(along_, up_) / length, 0.0, length);
   }
 
-  /// Takes it for its longest side.
+  /// Makes the triangle its longest side alone.
   void flatten() { height = 0; }
 
-  /// A place of the triangle, or near it, in space.
+  /// The position in space of a place in or near the triangle.
   Vec3 in_space(const FlatPlace& place) const {
     const double t = height > 0 ? place.y / height : 0;
     return combined((place.x - foot * t) / length, t);
   }
 
-  /// The place of the triangle nearest to one at a height from 0 to `height`, in space. It is a
-  /// combination of the corners with weights from 0 to 1.
+  /// The position in space of the triangle's place nearest to a place at a height from 0 to
+  /// `height`. It is a combination of the corners with weights from 0 to 1.
   Vec3 nearest_in_space(const FlatPlace& place) const {
     const double t = height > 0 ? std::clamp(place.y / height, 0.0, 1.0) : 0;
     const double s = (place.x - foot * t) / length;
@@ -53,7 +53,7 @@ class TriangleFrame {
     return combined(1 - right, right);
   }
 
-  /// The greatest distance of a place of the triangle to its nearest corner; height > 0.
+  /// The greatest distance of a place of the triangle from its nearest corner; requires height > 0.
   double corner_distance() const {
     const double left = std::hypot(foot, height), right = std::hypot(length - foot, height);
     if (left * left + right * right > length * length) return left * right / (2 * height);
@@ -68,14 +68,14 @@ class TriangleFrame {
             origin_.z + s * along_.z + t * up_.z};
   }
 
-  /// How far along the side from `end` to the third corner the nearest place lies, 0 to 1.
+  /// Position of the nearest place on the side from `end` to the third corner, from 0 to 1.
   double part_of_side(const FlatPlace& place, const FlatPlace& end) const {
     const double x = foot - end.x;
     const double dot = (place.x - end.x) * x + (place.y - end.y) * height;
     return std::clamp(dot / (x * x + height * height), 0.0, 1.0);
   }
 
-  Vec3 origin_{}, along_{}, up_{};  ///< corner, and the ways to the other two
+  Vec3 origin_{}, along_{}, up_{};  ///< a corner, and the vectors from it to the other two
 };
 
 }  // namespace clearway

@@ -9,7 +9,8 @@
 namespace clearway {
 namespace {
 
-/// Of rows that ascend by source, the one with the smallest first pose.
+/// Finds the first place: the row with the smallest first pose, and of several the one with the
+/// smallest source, because rows ascend by source.
 void fold_collisions(const ResultReader& result, Answer& answer) {
   if (!result.header().first_pose) return;
   std::optional<FoundPlace>& first = answer.first_place;
@@ -52,7 +53,7 @@ void fold_profile(const ResultReader& result, Answer& answer) {
   }
 }
 
-/// What a file does not say, but its counts do: earlier releases kept no doubts.
+/// The doubts that follow from the header's counts, for files of earlier releases, which kept none.
 std::vector<Message> doubts_by_counts(const ResultHeader& header) {
   std::vector<Message> doubts;
   const auto add = [&](const char* code) {

@@ -5,21 +5,22 @@
 
 namespace clearway {
 
-/// What a result's header alone tells of its answer, without counts of rows, places and doubts.
+/// The answer as far as a result's header gives it: without numbers of rows, places and doubts.
 Answer answer_of(const ResultHeader& header);
 
-/// Adds the doubts among these warnings to those that are known already.
+/// Adds the codes of those of the warnings that are doubts to answer.doubts, which stays sorted and
+/// without duplicates.
 void add_doubts(const std::vector<Message>& warnings, Answer& answer);
 
-/// Adds what a search found beside its tables.
+/// Sets in `answer` what a search found besides its tables.
 void add_findings(const ResultFindings& findings, Answer& answer);
 
-/// The answer without what only the rows tell: its places, the points inside and the poses of the
-/// profile. Reads no table.
+/// The answer from the header, the findings and the numbers of rows. It lacks what only the rows
+/// tell: places, points inside the model and poses of the profile. Reads no table.
 Answer counted_answer(const ResultReader& result);
 
-/// The answer that a result, or a part of one, holds. Reads all of its tables. Doubts are those
-/// that the file keeps, and those that follow from its counts where an earlier release wrote it.
+/// The answer that a result, or a part of one, holds. Reads all of its tables. The doubts are those
+/// that the file keeps, or for a file of an earlier release those that follow from its counts.
 /// Throws as ResultReader does.
 Answer answer_of(const ResultReader& result);
 

@@ -8,7 +8,7 @@ namespace clearway {
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
 
-/// The points' coordinates as rows of three, as the file has them.
+/// The coordinates x, y, z of all points as one sequence, as the file stores them.
 inline std::span<double> as_numbers(std::span<Vec3> points) {
   return {points.empty() ? nullptr : &points.front().x, 3 * points.size()};
 }

@@ -8,8 +8,9 @@
 
 namespace clearway {
 
-/// One hash of several datasets, in the order in which they are added: XXH64 of their XXH64s. A
-/// dataset's fletcher32 does not notice a chunk that was overwritten with zeros, checksum and all.
+/// One hash of several datasets: XXH64 over the XXH64 of each, in the order in which they are
+/// added. It finds damage that a dataset's fletcher32 misses, such as a chunk overwritten with
+/// zeros together with its checksum.
 class ColumnHashes {
  public:
   template <typename Values>

@@ -17,21 +17,23 @@
 
 namespace clearway {
 
-/// Rows of a table, encoded together: a multiple of every dataset's chunk rows. The order of the
-/// writes, and with it every address in the file, follows from it and the number of rows.
+/// Number of rows of a table that are encoded together, a multiple of every dataset's chunk rows.
+/// This number and the number of rows determine the order of the writes and with it every address
+/// in the file.
 inline constexpr std::size_t kEncodedRows = 1 << 16;
 
-/// A chunk of a column as the file has it.
+/// A chunk of a column as the file stores it.
 struct EncodedChunk {
   std::unique_ptr<std::byte[]> bytes;
-  std::size_t size = 0;        ///< with the checksum
-  std::size_t used_bytes = 0;  ///< of its rows; the last chunk of a dataset ends with zeros
+  std::size_t size = 0;  ///< bytes of the chunk, including the checksum
+  /// Bytes taken by rows; behind them the last chunk of a dataset is filled with zeros.
+  std::size_t used_bytes = 0;
 
   std::span<const std::byte> stored() const { return {bytes.get(), size}; }
   std::span<const std::byte> values() const { return {bytes.get(), used_bytes}; }
 };
 
-/// Bytes that a column's chunks take in the file.
+/// Bytes that the chunks of a column with this many rows take in the file.
 template <typename Value>
 std::uint64_t stored_bytes(std::uint64_t rows) {
   if (rows == 0) return 0;
@@ -86,7 +88,7 @@ class EncodedRows {
   using Columns = std::tuple<std::optional<EncodedColumn<Values>>...>;
   using Present = std::array<bool, sizeof...(Values)>;
 
-  /// table_rows: of the whole table.
+  /// table_rows: number of rows of the whole table.
   EncodedRows(std::uint64_t table_rows, const Present& present) {
     std::size_t i = 0;
     each_column(columns_, [&](auto& column) {
@@ -96,9 +98,9 @@ class EncodedRows {
 
   std::size_t size() const { return rows_; }
 
-  /// The next rows, at most kEncodedRows in all; a column that is not written has none. Throws
-  /// std::logic_error for spans of unequal lengths, and where the first column are sources that do
-  /// not ascend.
+  /// Appends rows, at most kEncodedRows in all; the span of a column that is not written is empty.
+  /// Throws std::logic_error for spans of unequal lengths, and for sources that do not ascend where
+  /// the first column holds sources.
   void add(std::span<const Values>... values) {
     const auto spans = std::tuple(values...);
     const std::size_t rows = std::get<0>(spans).size();
@@ -117,7 +119,8 @@ class EncodedRows {
     rows_ += rows;
   }
 
-  /// After the last rows.
+  /// Fills the last chunk of each column with zeros and appends the checksums. Called after the
+  /// last add().
   void seal() {
     each_column(columns_, [](auto& column) {
       if (column) column->seal();
@@ -128,7 +131,8 @@ class EncodedRows {
   const Columns& columns() const { return columns_; }
 
   static constexpr bool has_sources() { return kHasSources; }
-  /// Of the rows so far; only of tables whose first column are sources.
+  /// First and last source of the rows added so far; only for tables whose first column holds
+  /// sources.
   std::uint64_t first_source() const { return first_source_; }
   std::uint64_t last_source() const { return last_source_; }
 

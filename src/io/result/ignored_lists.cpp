@@ -39,7 +39,7 @@ std::uint64_t hash_of(const ResultHeader& header) {
   return hashes.digest();
 }
 
-/// A box that a query may have.
+/// Whether a query may have this box: its corners are finite and in order.
 bool is_box(const Box& box) {
   for (int k = 0; k < 3; ++k) {
     if (!(box.lo[k] <= box.hi[k]) || !std::isfinite(box.lo[k]) || !std::isfinite(box.hi[k])) {

@@ -7,10 +7,11 @@
 
 namespace clearway {
 
-/// What a result of version 4 ignores: group /ignored and its attributes.
+/// Writes what a result of version 4 ignores: the group /ignored and its attributes.
 void write_ignored(const hdf5::Id& file, const ResultHeader& header);
 
-/// Throws InputError where it is damaged, or is none that a run writes. name: of the file.
+/// Reads the group /ignored and its attributes into `header`. name: the file's, for messages.
+/// Throws InputError where the group is damaged or has contents that no run writes.
 void read_ignored(const hdf5::Id& file, const std::string& name, ResultHeader& header);
 
 }  // namespace clearway

@@ -16,13 +16,15 @@
 
 namespace clearway {
 
-/// Rows of some columns that are read together: their chunks by the thread that calls HDF5, then
-/// checked, decoded and hashed by many. It tells whether all is well, never what is not: who finds
-/// something amiss reads the rows again one after the other, so that messages are always the same.
+/// Reads rows of several columns together. The thread that calls HDF5 reads their chunks, and many
+/// threads then check, decode and hash these. run() tells only whether all is well; to find out
+/// what is wrong, the caller reads the rows again one after the other, so that messages are always
+/// the same.
 class ParallelRead {
  public:
-  /// first: a row that begins a chunk. check(first row, values) throws InputError for rows that are
-  /// wrong; thread safe. False where the chunks cannot be had.
+  /// Reads the chunks of rows from `first`, which begins a chunk, as many as `out` has. check(first
+  /// row, values) throws InputError for rows that are wrong and is thread safe. Returns false where
+  /// the chunks cannot be read.
   template <typename Number, typename Value, typename Check>
   bool add(const hdf5::Rows<Number>& dataset, std::uint64_t first, std::span<Value> out,
            Xxh64Stream& hash, Check check) {
@@ -49,7 +51,8 @@ class ParallelRead {
     return true;
   }
 
-  /// Whether all rows are intact and pass their checks; they and the hashes are complete then.
+  /// Whether all rows are intact and pass their checks. If so, the rows and the hashes are
+  /// complete.
   bool run() const;
 
  private:
@@ -65,9 +68,10 @@ class ParallelRead {
     return true;
   }
 
-  std::deque<Chunks> chunks_;  // whose places stay
+  std::deque<Chunks> chunks_;  // a deque, because the tasks keep references to its elements
   std::vector<std::function<bool()>> pieces_;
-  std::vector<std::function<void()>> columns_;  // their hashes, of what is intact
+  // Tasks that hash one column each, run once all pieces are intact.
+  std::vector<std::function<void()>> columns_;
 };
 
 }  // namespace clearway

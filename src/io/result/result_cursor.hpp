@@ -8,8 +8,8 @@
 
 namespace clearway {
 
-/// One row of a result after the other, ascending by source. The reader outlives the cursor.
-/// Throws as the row streams do; all but at_end() only before the end.
+/// Steps through the rows of a result, ascending by source. The reader must outlive the cursor.
+/// Functions throw as the row streams do; all but at_end() may be called only before the end.
 template <typename Stream, typename Rows>
 class ResultCursor {
  public:
@@ -43,7 +43,7 @@ class RowCursor : public ResultCursor<ResultRowStream, ResultRows> {
   std::optional<std::uint32_t> last_pose() const {
     return rows_.last_pose.empty() ? std::nullopt : std::optional(rows_.last_pose[at_]);
   }
-  /// Of the first pose.
+  /// The body that touches the point at its first pose.
   std::optional<std::uint32_t> body() const {
     return rows_.body.empty() ? std::nullopt : std::optional(rows_.body[at_]);
   }
@@ -52,7 +52,8 @@ class RowCursor : public ResultCursor<ResultRowStream, ResultRows> {
 class ClearanceCursor : public ResultCursor<ClearanceRowStream, ClearanceRows> {
  public:
   using ResultCursor::ResultCursor;
-  Vec3 xyz() const { return rows_.xyz[at_]; }  ///< only where the result has them
+  /// Only where the result has coordinates of clearances.
+  Vec3 xyz() const { return rows_.xyz[at_]; }
   double distance() const { return rows_.distance[at_]; }
   std::uint32_t pose() const { return rows_.pose[at_]; }
   std::optional<std::uint32_t> body() const {
@@ -60,7 +61,8 @@ class ClearanceCursor : public ResultCursor<ClearanceRowStream, ClearanceRows> {
   }
 };
 
-/// Advances two cursors together to their ends, calling for each source index what applies.
+/// Advances two cursors together to their ends. For each source index it calls only_in_a, only_in_b
+/// or in_both, before the cursors move on.
 template <typename Cursor, typename OnlyA, typename OnlyB, typename Both>
 void merge_rows(Cursor& a, Cursor& b, OnlyA only_in_a, OnlyB only_in_b, Both in_both) {
   while (!a.at_end() || !b.at_end()) {

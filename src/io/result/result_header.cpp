@@ -18,7 +18,8 @@ namespace {
 
 namespace names = result_names;
 
-/// Whether it is of a part; otherwise of a result.
+/// Checks the format and version attributes. Returns whether the file is a part rather than a whole
+/// result.
 bool read_format(const hdf5::Id& file, const std::string& name) {
   if (hdf5::has_attribute(file, "format", name)) {
     const std::string format = hdf5::read_text_attribute(file, "format", name);
@@ -62,7 +63,8 @@ void check_spacing(double spacing, const std::string& name) {
                    ", expected a finite length above 0");
 }
 
-/// Whether the file has the attribute, which has only this one value.
+/// Whether the file has the attribute. The only valid value is `value`; for another it throws
+/// InputError.
 bool has_value(const hdf5::Id& file, const char* attribute, const char* value,
                const std::string& name) {
   if (!hdf5::has_attribute(file, attribute, name)) return false;
@@ -117,8 +119,8 @@ std::string lines_of(const std::vector<std::string>& texts) {
   return lines;
 }
 
-/// An attribute of texts, a line each: at least one, at most `most`, and none of them empty. what:
-/// for messages, "names".
+/// Reads an attribute of texts, one per line: at least one, at most `most`, and none of them empty.
+/// what: the texts' name in messages, as in "names".
 std::vector<std::string> read_lines(const hdf5::Id& file, const std::string& name,
                                     const char* attribute, const char* what, std::size_t most) {
   const std::string lines = hdf5::read_text_attribute(file, attribute, name);
@@ -135,7 +137,8 @@ std::vector<std::string> read_lines(const hdf5::Id& file, const std::string& nam
   return texts;
 }
 
-/// Of what is not exact, how it was computed.
+/// Reads how a part was computed that is not exact: the device and the steps of model field and
+/// grid.
 void read_means(const hdf5::Id& file, const std::string& name, const ResultHeader& header,
                 ResultPart& part) {
   if (header.is_exact()) return;
@@ -160,7 +163,8 @@ ResultPart read_part(const hdf5::Id& file, const std::string& name, const Result
   return part;
 }
 
-constexpr std::size_t kMostRuns = 4000;  // HDF5 keeps attributes of up to 64 KiB
+// Most runs of poses in an attribute, for which HDF5 allows 64 KiB.
+constexpr std::size_t kMostRuns = 4000;
 
 std::vector<std::array<std::uint32_t, 2>> read_runs(const hdf5::Id& file, const std::string& name,
                                                     const ResultHeader& header) {
@@ -183,7 +187,7 @@ std::vector<std::array<std::uint32_t, 2>> read_runs(const hdf5::Id& file, const 
   return runs;
 }
 
-/// Three attributes that a file has all of, or none.
+/// Reads three attributes of which a file has all or none.
 std::optional<SearchedLength> read_searched(const hdf5::Id& file, const std::string& name) {
   if (!hdf5::has_attribute(file, names::kSearchedLength, name)) return {};
   const SearchedLength read{hdf5::read_number<double>(file, names::kPathLength, name),
@@ -213,7 +217,7 @@ void write_part(const hdf5::Id& file, const ResultHeader& header) {
   if (part.model_is_cut) hdf5::write_number(file, names::kModelIsCut, std::uint8_t{1});
 }
 
-/// Of version 4, which has bodies, ignores points, or both.
+/// Reads what only version 4 has: bodies, ignored points, or both.
 void read_more(const hdf5::Id& file, const std::string& name, ResultHeader& header) {
   const bool bodies = hdf5::has_attribute(file, names::kBodies, name);
   if (header.version < 4) {

@@ -7,16 +7,19 @@
 
 namespace clearway {
 
-/// The attributes of a new result but its hashes and `complete`, and what it ignores.
+/// Writes the attributes of a new result except its hashes and `complete`, and the lists of what it
+/// ignores.
 void write_result_header(const hdf5::Id& file, const ResultHeader& header);
 
-/// Throws InputError where the file is not a complete result, or is damaged. name: of the file.
+/// Reads the header of a result or of a part. name: the file's, for messages. Throws InputError
+/// where the file is not a complete result, or is damaged.
 ResultHeader read_result_header(const hdf5::Id& file, const std::string& name);
 
-/// The attributes of what was found beside the tables: none where there is nothing to say.
+/// Writes the findings as attributes; findings that are empty have none.
 void write_result_findings(const hdf5::Id& file, const ResultFindings& findings);
 
-/// Throws InputError where they are damaged. header: of the same file.
+/// Reads the findings. header: the header of the same file. Throws InputError where an attribute is
+/// damaged.
 ResultFindings read_result_findings(const hdf5::Id& file, const std::string& name,
                                     const ResultHeader& header);
 

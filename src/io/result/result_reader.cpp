@@ -15,8 +15,8 @@ namespace {
 
 namespace names = result_names;
 
-/// What HDF5 cannot do with a file that could be opened is taken for damaged content, unless a
-/// system call failed.
+/// Calls `call` and turns a failure of HDF5 into an InputError: since the file could be opened, its
+/// content must be damaged. Errors of system calls pass through.
 template <typename Call>
 auto as_input(const std::string& name, Call call) {
   const hdf5::QuietScope quiet;
@@ -40,7 +40,8 @@ void check_lengths(std::size_t rows, const Spans&... spans) {
   }
 }
 
-/// Whether many threads may read these rows: they begin and end as chunks do.
+/// Whether many threads may read these rows, which they may where the rows begin and end with
+/// chunks.
 bool are_whole_chunks(std::uint64_t first, std::size_t count, std::uint64_t rows) {
   return first % kEncodedRows == 0 && (count % kEncodedRows == 0 || first + count == rows);
 }

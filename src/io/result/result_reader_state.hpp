@@ -15,7 +15,7 @@
 
 namespace clearway {
 
-/// The datasets of a result that is read, opened.
+/// The open file and datasets of a result that is read.
 struct ResultReader::State {
   explicit State(const std::filesystem::path& path)
       : name(path.string()),

@@ -93,7 +93,7 @@ bool ClearanceRowStream::read(ClearanceRows& rows) {
     }
     return false;
   }
-  // Version 2 has three columns, and the hash is of three.
+  // A file of version 2 has no xyz, so its hash is of three columns.
   reader_.read_clearances(next_, rows.source, rows.xyz, rows.distance, rows.pose, columns);
   if (body && reader_.header().clearance > 0) {
     reader_.read_clearance_body(next_, rows.body);

@@ -10,8 +10,8 @@
 
 namespace clearway {
 
-/// Consecutive rows of a result. first_pose, body and last_pose are empty where the result has
-/// none.
+/// Consecutive collisions of a result. first_pose, body and last_pose are empty where the result
+/// has none.
 struct ResultRows {
   std::vector<std::uint64_t> source;
   std::vector<Vec3> xyz;
@@ -33,19 +33,19 @@ struct ClearanceRows {
   std::size_t size() const { return source.size(); }
 };
 
-/// Consecutive rows of a result's profile, a row a pose.
+/// Consecutive rows of a result's profile, one per pose.
 struct ProfileRows {
   std::vector<double> distance;
   std::vector<std::uint64_t> source;
   std::vector<Vec3> xyz;
   std::vector<double> chainage;
-  std::vector<double> squared = {};  ///< of a part only
+  std::vector<double> squared = {};  ///< squared distances; empty unless the file is a part
 
   std::size_t size() const { return distance.size(); }
 };
 
-/// A result's rows front to back in constant memory, so many at a time: with fewer than kBatchRows
-/// in one thread. The reader outlives the stream.
+/// Reads a result's collisions front to back in constant memory, batch_rows at a time; batches of
+/// kBatchRows are read by many threads, smaller ones by one. The reader must outlive the stream.
 class ResultRowStream {
  public:
   static constexpr std::size_t kBatchRows = 1 << 16;  ///< whole chunks of every dataset
@@ -53,9 +53,9 @@ class ResultRowStream {
   explicit ResultRowStream(const ResultReader& reader, std::size_t batch_rows = kBatchRows)
       : reader_(reader), batch_rows_(batch_rows) {}
 
-  /// Fills `rows` with the next ones; false, and no rows, at the end. Throws InputError as
-  /// the reader does, also where sources do not ascend from one batch to the next, and at the end
-  /// where the rows are not those that their hash is of.
+  /// Fills `rows` with the next rows. At the end it leaves none and returns false. Throws
+  /// InputError as the reader does, also where sources do not ascend from one batch to the next,
+  /// and at the end where the rows do not match the recorded hash.
   bool read(ResultRows& rows);
 
  private:
@@ -63,18 +63,21 @@ class ResultRowStream {
   const std::size_t batch_rows_;
   std::uint64_t next_ = 0;
   std::uint64_t last_source_ = 0;
-  std::array<Xxh64Stream, 4> columns_;  ///< of the rows read
+  /// Hashes of source, xyz, first_pose and body of the rows read so far.
+  std::array<Xxh64Stream, 4> columns_;
   Xxh64Stream last_poses_;
 };
 
-/// The same for its clearances; no rows where it has none.
+/// Reads a result's clearances front to back in the way of ResultRowStream; no rows where it has
+/// none.
 class ClearanceRowStream {
  public:
   explicit ClearanceRowStream(const ResultReader& reader,
                               std::size_t batch_rows = ResultRowStream::kBatchRows)
       : reader_(reader), batch_rows_(batch_rows) {}
 
-  /// As ResultRowStream's.
+  /// Fills `rows` with the next clearances, with the results and exceptions of
+  /// ResultRowStream::read().
   bool read(ClearanceRows& rows);
 
  private:
@@ -82,17 +85,19 @@ class ClearanceRowStream {
   const std::size_t batch_rows_;
   std::uint64_t next_ = 0;
   std::uint64_t last_source_ = 0;
-  std::array<Xxh64Stream, 5> columns_;  ///< of the rows read
+  std::array<Xxh64Stream, 5> columns_;  ///< hashes of the columns of the rows read so far
 };
 
-/// The same for its profile, of which the chainage ascends; no rows where it has none.
+/// Reads a result's profile front to back in the way of ResultRowStream; no rows where it has none.
 class ProfileRowStream {
  public:
   explicit ProfileRowStream(const ResultReader& reader,
                             std::size_t batch_rows = ResultRowStream::kBatchRows)
       : reader_(reader), batch_rows_(batch_rows) {}
 
-  /// As ResultRowStream's.
+  /// Fills `rows` with the next rows of the profile, with the results and exceptions of
+  /// ResultRowStream::read(), except that chainages, not sources, are checked from one batch to the
+  /// next.
   bool read(ProfileRows& rows);
 
  private:
@@ -100,7 +105,7 @@ class ProfileRowStream {
   const std::size_t batch_rows_;
   std::uint64_t next_ = 0;
   double last_chainage_ = 0;
-  std::array<Xxh64Stream, 5> columns_;  ///< of the rows read
+  std::array<Xxh64Stream, 5> columns_;  ///< hashes of the columns of the rows read so far
 };
 
 }  // namespace clearway

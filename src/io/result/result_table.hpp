@@ -47,8 +47,9 @@ class ResultColumn {
   static constexpr bool kIsPoints = std::is_same_v<Value, Vec3>;
   using Number = std::conditional_t<kIsPoints, double, Value>;
 
-  /// A chunk's place in the file is given when it is written: where HDF5's own cache of a mebibyte
-  /// a dataset would write it.
+  /// Bytes of a column that are held back before they are written. A chunk gets its place in the
+  /// file when it is written, so it is written when HDF5's own cache, of one MiB per dataset, would
+  /// have written it.
   static constexpr std::size_t kHeldBytes = 1 << 20;
 
   void write_oldest() {
@@ -65,14 +66,14 @@ class ResultColumn {
   Xxh64Stream hash_;
 };
 
-/// A group of datasets with equally many rows, which are written in pieces.
+/// A group of datasets with the same number of rows, which are written in pieces.
 template <typename... Values>
 class ResultTable {
  public:
   using Names = std::array<const char*, sizeof...(Values)>;
   using Rows = EncodedRows<Values...>;
 
-  /// A column without a name is not written.
+  /// rows: the promised number of rows. A column whose name is null is not written.
   ResultTable(const hdf5::Id& file, const char* group, const Names& names, std::uint64_t rows)
       : group_(hdf5::create_group(file, group)), promised_(rows) {
     std::size_t i = 0;
@@ -83,7 +84,7 @@ class ResultTable {
     });
   }
 
-  /// Of the chunks of all rows.
+  /// Bytes that the chunks of all promised rows take in the file.
   std::uint64_t bytes() const {
     std::uint64_t total = 0;
     std::size_t i = 0;
@@ -93,7 +94,8 @@ class ResultTable {
 
   Rows new_rows() const { return {promised_, present_}; }
 
-  /// All rows but a table's last come kEncodedRows at a time, sealed, in order.
+  /// Adds sealed rows to the hashes. The rows come in order and kEncodedRows at a time, except for
+  /// a table's last.
   void hash(const Rows& rows) {
     each_with(rows.columns(), [](auto& column, const auto& values) { column.hash(values); });
   }
@@ -105,7 +107,7 @@ class ResultTable {
     last_source_ = rows.last_source();
   }
 
-  /// The next rows, however many. Throws std::logic_error as EncodedRows does, and for more rows
+  /// Appends any number of rows. Throws std::logic_error as EncodedRows does, and for more rows
   /// than promised.
   void append(std::span<const Values>... values) {
     const std::size_t rows = std::get<0>(std::tuple(values...)).size();
@@ -136,14 +138,14 @@ class ResultTable {
                            std::to_string(promised_) + " promised");
   }
 
-  /// The chunks that are held back; nothing is written after them.
+  /// Writes the chunks that are held back. Nothing is written after them.
   void write_held() {
     each([](auto& column) {
       if (column) column->write_held();
     });
   }
 
-  /// Of the first `columns`, or of all.
+  /// ColumnHashes of the first `columns` columns, or of all of them.
   std::uint64_t hash(std::size_t columns = sizeof...(Values)) {
     ColumnHashes hashes;
     std::size_t i = 0;
@@ -153,7 +155,7 @@ class ResultTable {
     return hashes.digest();
   }
 
-  /// Of the last column, which must be written.
+  /// XXH64 of the last column, which must be one that is written.
   std::uint64_t hash_of_last() {
     return std::get<sizeof...(Values) - 1>(columns_).value().digest();
   }
@@ -182,7 +184,7 @@ class ResultTable {
     }
   }
 
-  /// Rows from .. from + count - 1 of a column that is written, none of another.
+  /// The values `from` to `from + count - 1` of a column, or none for a column that is not written.
   template <typename Value>
   static std::span<const Value> part_of(std::span<const Value> values, std::size_t from,
                                         std::size_t count) {

@@ -17,7 +17,8 @@ namespace names = result_names;
 using CollisionTable =
     ResultTable<std::uint64_t, Vec3, std::uint32_t, std::uint32_t, std::uint32_t>;
 
-/// Of the collisions' hash: the last poses, which older releases did not write, have their own.
+/// Number of columns in the collisions' hash. The last poses, which older releases did not write,
+/// have a hash of their own.
 constexpr std::size_t kHashedColumns = 4;
 using ClearanceTable = ResultTable<std::uint64_t, Vec3, double, std::uint32_t, std::uint32_t>;
 using ProfileTable = ResultTable<double, std::uint64_t, Vec3, double, double>;
@@ -64,7 +65,7 @@ struct ResultWriter::State {
                          (profile ? profile->bytes() : 0));
   }
 
-  /// What was written goes to the disk while the rest is computed.
+  /// Starts the transfer of what has been written to the disk, while the rest is computed.
   void written() {
     constexpr std::uint64_t kAtOnce = std::uint64_t{32} << 20;
     const std::uint64_t end = output.size_bytes();
@@ -73,7 +74,8 @@ struct ResultWriter::State {
     synced = end;
   }
 
-  /// Closes a table whose rows the next one's follow.
+  /// Checks that a table has all of its promised rows and flushes it, before those of the next
+  /// table are written.
   template <typename Table>
   void complete(std::optional<Table>& table) {
     if (!table) return;
@@ -82,11 +84,11 @@ struct ResultWriter::State {
   }
 
   std::string name;
-  bool is_empty;  ///< nothing collides
+  bool is_empty;  ///< whether nothing collides
   hdf5::Id file;
-  File output;  ///< the same file
+  File output;  ///< a second handle of the same file
   bool has_last_pose;
-  std::uint64_t synced = 0;  ///< bytes of it that are on their way to the disk
+  std::uint64_t synced = 0;  ///< bytes of the file that are on their way to the disk
   std::optional<CollisionTable> collisions;
   std::optional<ClearanceTable> clearances;
   std::optional<ProfileTable> profile;
@@ -172,7 +174,7 @@ void ResultWriter::finish(const ResultFindings& findings) {
     if (s.clearances) s.clearances->write_held();
     if (s.profile) s.profile->write_held();
     hdf5::check(H5Fflush(s.file.get(), H5F_SCOPE_LOCAL), "write the result");
-    // After the flush nothing is left that closing could fail to write.
+    // After the flush, closing has nothing left to write and cannot fail for a full disk.
     s.profile.reset();
     s.clearances.reset();
     s.collisions.reset();

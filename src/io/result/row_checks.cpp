@@ -78,7 +78,7 @@ void RowChecks::profile(std::span<const double> distance, std::span<const std::u
     if (source[i] >= header.environment_points) {
       refuse_row(names::kSource, i, "an index below environment_points, or 2^64 - 1 for none");
     }
-    // The root of a number below fl(D D) may round to D.
+    // The root of a number below fl(D D) may round to D, so D itself is valid.
     if (!(is_distance(distance[i]) && distance[i] <= header.profile)) {
       refuse_row(names::kDistance, i, "a distance from 0 to the profile's");
     }

@@ -10,7 +10,7 @@
 namespace clearway {
 namespace {
 
-constexpr const char* kClassPoints = "points";  // of each class, 256
+constexpr const char* kClassPoints = "points";  // number of points of each of the 256 classes
 
 template <typename Points>
 std::uint64_t hash_of(const Points& points, const ClassIndex& index) {

@@ -5,8 +5,8 @@
 
 namespace clearway {
 
-/// What ASPRS calls a class of points (LAS 1.4, point formats 6 to 10); "" for reserved and own
-/// ones.
+/// The ASPRS name of a class of points (LAS 1.4, point formats 6 to 10); "" for reserved and
+/// user-defined classes.
 constexpr const char* class_name(std::uint8_t value) {
   constexpr std::array kNames{"never classified",
                               "unclassified",

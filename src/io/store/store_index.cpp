@@ -18,8 +18,6 @@
 namespace clearway {
 namespace {
 
-/// As many as `convert` gives a cell at the most.
-
 std::vector<SourceFile> read_sources(const hdf5::Id& file, const std::string& file_name,
                                      ColumnHashes& hashes_of_all) {
   const hdf5::Id group = hdf5::open_group(file, "sources", file_name);
@@ -44,7 +42,8 @@ std::vector<SourceFile> read_sources(const hdf5::Id& file, const std::string& fi
   return sources;
 }
 
-/// Not among the index's hash, which older releases check; so the sum tells damage.
+/// Reads /sources/points. It is not part of the index's hash, which older releases check without
+/// it, so damage is found by comparing the sum with the number of input points.
 std::vector<std::uint64_t> read_source_points(const hdf5::Id& file, const std::string& name,
                                               const StoreMetadata& metadata) {
   const hdf5::Id group = hdf5::open_group(file, "sources", name);
@@ -124,8 +123,8 @@ CellIndex read_cells(const hdf5::Id& file, const std::string& name) {
   return index;
 }
 
-/// Another tool that copies a store moves its chunks: HDF5 then knows the first and the last of a
-/// dataset at other addresses than the index.
+/// Throws InputError where another tool rewrote the store. Copying moves the chunks, so HDF5 then
+/// knows the first and the last chunk of a dataset at other addresses than the index.
 void check_not_rewritten(const hdf5::Id& file, const CellIndex& index, const std::string& name) {
   if (index.count.empty()) return;
   const hdf5::Id group = hdf5::open_group(file, "points", name);
@@ -177,7 +176,7 @@ std::vector<BlockBox> read_blocks(const hdf5::Id& file, std::uint64_t rows, cons
   return blocks;
 }
 
-/// Against the length of the file and what the metadata says.
+/// Checks the index of cells against the length of the file and the metadata. Throws InputError.
 void check_cells(const StoreIndex& index, std::uint64_t file_bytes, const std::string& name) {
   const CellIndex& cells = index.cells;
   const std::uint32_t cell_points = index.metadata.cell_points;

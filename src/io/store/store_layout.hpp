@@ -13,9 +13,10 @@ inline const std::string kStoreFormat = "clearway store";
 inline constexpr std::uint32_t kMostCellPoints = 1U << 20;
 inline constexpr const char* kPointDatasets[4] = {"x", "y", "z", "source"};
 
-inline constexpr const char* kSourcePoints = "points";  ///< of /sources, where there are several
+/// Dataset of /sources; only where there are several files.
+inline constexpr const char* kSourcePoints = "points";
 
-/// The datasets of /cells, row-major. Four chunks a cell: x, y, z, source.
+/// The datasets of /cells, row-major. Each cell has four chunks: x, y, z, source.
 struct CellIndex {
   std::vector<std::uint32_t> count;    // [cells]
   std::vector<std::int32_t> box;       // [cells, 6]

@@ -15,7 +15,7 @@ namespace clearway {
 
 inline constexpr std::uint32_t kStoreVersion = 2;
 
-/// One input file of a conversion, as the store remembers it.
+/// An input file of a conversion, as recorded in the store.
 struct SourceFile {
   std::string name;  ///< base name; "-" for standard input
   std::uint64_t bytes = 0;
@@ -25,15 +25,16 @@ struct SourceFile {
 
 /// The classes of all points of a store.
 struct StoreClasses {
-  std::uint64_t hash = 0;                   ///< XXH64 of a byte a point, in source order
-  std::array<std::uint64_t, 256> points{};  ///< of each class
+  std::uint64_t hash = 0;  ///< XXH64 of the classes of all points, one byte each, in source order
+  std::array<std::uint64_t, 256> points{};  ///< number of points of each class
   friend bool operator==(const StoreClasses&, const StoreClasses&) = default;
 };
 
-/// What a store says of itself besides its cells (docs/design/store-format.md).
+/// The description of a store (docs/design/store-format.md), without its cells.
 struct StoreMetadata {
   std::uint64_t point_count = 0;
-  std::uint64_t input_points = 0;  ///< with the non-finite ones, which are not stored
+  /// Points of the inputs, including non-finite ones, which are not stored.
+  std::uint64_t input_points = 0;
   std::uint32_t cell_points = 0;
   Quantisation quantisation{};
   std::string layout;  ///< "adaptive" or "regular:SIZE"
@@ -41,23 +42,23 @@ struct StoreMetadata {
   std::string crs_wkt;
   std::uint64_t points_hash = 0;
   std::vector<SourceFile> sources;
-  /// Source points of each of them, 0 for files of poses. Empty where the scan is one, and in
+  /// Number of points of each source file; 0 for files of poses. Empty for a single scan, and in
   /// stores of 0.1.0.
   std::vector<std::uint64_t> source_points = {};
-  std::optional<StoreClasses> classes = {};  ///< where any point has a class above 0
-  std::vector<Message> warnings = {};        ///< of the conversion, for people who use the store
+  std::optional<StoreClasses> classes = {};  ///< only where some point has a class above 0
+  std::vector<Message> warnings = {};        ///< warnings of the conversion, for users of the store
 
-  /// Of one of the sources, where that is known.
+  /// Number of points of a source file, by its index in `sources`; nullopt where it is not known.
   std::optional<std::uint64_t> points_of_source(std::size_t source) const {
     if (!source_points.empty()) return source_points[source];
     return sources.size() == 1 ? std::optional(input_points) : std::nullopt;
   }
 };
 
-/// Begins the codes of warnings that a store keeps, where another command repeats them.
+/// Prefix of the codes of a store's warnings where another command repeats them.
 inline constexpr std::string_view kStorePrefix = "store-";
 
-/// The warnings of the conversion as other commands repeat them.
+/// The warnings of the conversion in the form in which other commands repeat them.
 inline std::vector<Message> store_warnings(const StoreMetadata& metadata) {
   std::vector<Message> warnings = metadata.warnings;
   for (Message& warning : warnings) warning.code.insert(0, kStorePrefix);

@@ -54,7 +54,8 @@ void StoreReader::refuse_damaged(std::uint32_t cell, const char* dataset,
                      " are damaged (their hash is not the one recorded)");
 }
 
-/// bytes: whose hash is right, or was once (a file that is written to while in use).
+/// Decodes the header of a packed chunk. The hash of `bytes` was right when checked, but the file
+/// may have been written to since. Throws InputError for a damaged chunk.
 template <typename Number>
 PackedChunk<Number> StoreReader::chunk(std::uint32_t cell, const char* dataset,
                                        std::span<const std::byte> bytes) const {

@@ -25,8 +25,8 @@ class StoreReader final : public PackedCloud {
   const CellIndex& index() const { return index_.cells; }
   std::span<const TopNode> top_tree() const { return index_.top; }
 
-  /// Hash of the cells' hashes and of everything else that the store says: tells whether two files
-  /// are the same store without reading their points.
+  /// Hash of the cells' hashes and of everything else in the store but its points, so that two
+  /// files are recognised as the same store without reading their points.
   std::uint64_t fingerprint() const;
 
   /// The packed source indices of a cell, checked against their hash.
@@ -47,13 +47,15 @@ class StoreReader final : public PackedCloud {
   std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const override;
   std::array<PackedChunk<std::int32_t>, 3> peek(std::uint32_t cell) const override;
   std::uint64_t packed_bytes(std::uint32_t cell) const override;
-  /// The packed source indices are checked against their hash at the first call for a cell.
+  /// The source index of a point of a cell. The packed source indices are checked against their
+  /// hash at the first call for the cell.
   std::uint64_t source_of(std::uint32_t cell, std::uint32_t index) const override;
-  /// Reads the file, not the map: one call where x, y and z are adjacent in it.
+  /// Reads the packed coordinates of a cell into `to` from the file, not from the map; in one call
+  /// where x, y and z are adjacent in the file.
   std::array<PackedChunk<std::int32_t>, 3> read_packed(std::uint32_t cell,
                                                        std::span<std::byte> to) const override;
 
-  /// Cells whose coordinates were asked for or read since the store was opened, and their packed
+  /// Cells whose coordinates were requested or read since the store was opened, and their packed
   /// bytes.
   struct Touched {
     std::uint64_t cells = 0;
@@ -61,7 +63,7 @@ class StoreReader final : public PackedCloud {
   };
   Touched touched() const;
 
-  /// Bytes of memory that the index takes.
+  /// Bytes of memory that the index occupies.
   std::uint64_t allocated_bytes() const;
 
  private:
@@ -77,11 +79,14 @@ class StoreReader final : public PackedCloud {
   StoreIndex index_;
   std::vector<Cell> cells_;
   std::vector<TreeNode> tree_;
-  /// Per cell: 1 when the hashes of x, y and z were found right in the map.
+  /// Per cell: 1 once the hashes of its x, y and z in the map were found right.
   mutable std::vector<std::uint8_t> checked_;
-  mutable std::vector<std::uint8_t> read_;  ///< per cell: 1 when they were read past the map
-  mutable std::vector<std::uint8_t> sources_checked_;  ///< per cell: 1 when they were, of the map
-  mutable std::vector<std::uint8_t> classes_checked_;  ///< likewise; empty without classes
+  /// Per cell: 1 once read_packed() read its coordinates from the file.
+  mutable std::vector<std::uint8_t> read_;
+  /// Per cell: 1 once the hash of its source indices in the map was found right.
+  mutable std::vector<std::uint8_t> sources_checked_;
+  /// Per cell: 1 once the hash of its classes in the map was found right; empty without classes.
+  mutable std::vector<std::uint8_t> classes_checked_;
 };
 
 }  // namespace clearway

@@ -21,7 +21,8 @@
 namespace clearway {
 namespace {
 
-/// A point dataset: [cells, cell_points], chunk [1, cell_points], packed by scale-offset.
+/// Creates a dataset of points: [cells, cell_points], in chunks of [1, cell_points], packed by
+/// scale-offset.
 template <typename Number>
 hdf5::Id create_packed(const hdf5::Id& group, const char* name, std::uint64_t cells,
                        std::uint32_t cell_points) {
@@ -42,7 +43,7 @@ hdf5::Id create_packed(const hdf5::Id& group, const char* name, std::uint64_t ce
           H5Dclose, std::string("create dataset ") + name};
 }
 
-/// The datasets of /sources are the first of `hashes`.
+/// Writes the attributes and /sources, whose datasets are the first of `hashes`.
 void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata, ColumnHashes& hashes) {
   hdf5::write_attribute(file, "format", kStoreFormat);
   hdf5::write_number(file, "version", kStoreVersion);
@@ -78,7 +79,7 @@ void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata, ColumnH
   hashes.add(contents);
 }
 
-/// So that it never takes more than it needs.
+/// Reserves room for exactly this many cells.
 void reserve(CellIndex& index, std::uint64_t cells) {
   index.count.reserve(cells);
   index.box.reserve(6 * cells);
@@ -95,13 +96,13 @@ struct StoreWriter::State {
   std::uint64_t promised_cells;
   hdf5::Id file;
   std::array<hdf5::Id, 4> points;
-  hdf5::Id classes;  ///< none where the store has none
+  hdf5::Id classes;  ///< not open where the store has no classes
   CellIndex index;
   ClassIndex class_index;
-  File blocks;  ///< rows of /blocks/box, spooled: too many to keep in memory
+  File blocks;  ///< spools the rows of /blocks/box, which are too many to keep in memory
   std::uint64_t block_rows = 0;
   std::optional<GrowingFile> growth;
-  ColumnHashes hashes;  ///< of all datasets but /points
+  ColumnHashes hashes;  ///< hashes of all datasets except those of /points
 
   std::uint64_t blocks_per_cell() const { return divide_up(metadata.cell_points, kBlockPoints); }
 
@@ -129,7 +130,7 @@ struct StoreWriter::State {
     hashes.add_digest(hash.digest());
   }
 
-  /// Writes a packed chunk at the end of the file; gives its address.
+  /// Writes a packed chunk at the end of the file and returns its address.
   std::uint64_t write_chunk(const hdf5::Id& dataset, std::uint64_t cell,
                             std::span<const std::byte> bytes) {
     const hid_t id = dataset.get();
@@ -138,7 +139,7 @@ struct StoreWriter::State {
     const std::array<hsize_t, 2> at{cell, 0};
     hdf5::check(H5Dwrite_chunk(id, H5P_DEFAULT, 0, at.data(), bytes.size(), bytes.data()),
                 path.string() + ": cannot write");
-    if (cell == 0) {  // with it comes the index of chunks, which may lie before it
+    if (cell == 0) {  // HDF5 also allocates the index of chunks, perhaps before the chunk
       unsigned mask = 0;
       hsize_t size = 0;
       hdf5::check(H5Dget_chunk_info_by_coord(id, at.data(), &mask, &address, &size),
@@ -161,7 +162,8 @@ struct StoreWriter::State {
     std::uint64_t hash;
   };
 
-  /// Those of x, y, z and source, then those of classes.
+  /// The written chunks by number: x, y, z and source of each cell, and after all of these the
+  /// classes of each cell.
   WrittenChunk written(std::size_t chunk) const {
     const std::size_t points_end = index.bytes.size();
     if (chunk < points_end) {

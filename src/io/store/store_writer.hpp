@@ -12,24 +12,26 @@
 
 namespace clearway {
 
-/// One cell, packed: what the writer puts into the file without looking into it.
+/// One packed cell, which the writer puts into the file as it is.
 struct PackedCell {
   Cell cell;
-  std::vector<BlockBox> blocks;                  ///< one for each block with points
-  std::array<std::vector<std::byte>, 4> chunks;  ///< x, y, z, source; each of cell_points values
-  std::array<std::uint64_t, 4> xxh64{};          ///< of the chunks, see hash_chunks()
-  std::vector<std::byte> classes;                ///< a chunk too; empty where the store has none
+  std::vector<BlockBox> blocks;  ///< one for each block that has points
+  /// Packed x, y, z and source, each of cell_points values.
+  std::array<std::vector<std::byte>, 4> chunks;
+  std::array<std::uint64_t, 4> xxh64{};  ///< hashes of the chunks, see hash_chunks()
+  std::vector<std::byte> classes;        ///< packed classes; empty where the store has none
   std::uint64_t classes_xxh64 = 0;
 };
 
-/// Fills in the hashes; on the threads that pack, as the writer has only one.
+/// Fills in the hashes of the chunks. Called by the threads that pack, because the writer has only
+/// one.
 void hash_chunks(PackedCell& packed);
 
-/// Writes a store front to back. All calls from one thread. The caller owns the file's name and
-/// publishes it after finish().
+/// Writes a store front to back. All calls come from one thread. The caller owns the file's name
+/// and publishes it after finish().
 class StoreWriter {
  public:
-  /// cells: how many will be written. Throws ResourceError.
+  /// cells: number of cells that will be written. Throws ResourceError.
   StoreWriter(const std::filesystem::path& path, const StoreMetadata& metadata,
               std::uint64_t cells);
   ~StoreWriter();
@@ -38,8 +40,8 @@ class StoreWriter {
 
   /// Writes the index and closes the file.
   void finish(const std::vector<TopNode>& tree);
-  /// After finish(): re-reads every chunk at its recorded address, on the threads of the calling
-  /// TBB arena. Throws ResourceError when a chunk is not where it should be.
+  /// Re-reads every chunk at its recorded address, on the threads of the calling TBB arena. Called
+  /// after finish(). Throws ResourceError when a chunk is not where it should be.
   void confirm() const;
 
  private:

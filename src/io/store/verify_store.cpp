@@ -9,15 +9,15 @@
 namespace clearway {
 namespace {
 
-/// Source indices seen so far: a bit for each of the input's points, or the indices themselves
-/// where so few are stored that the bits would take more.
+/// Source indices seen so far: one bit for each point of the input, or a set of indices where so
+/// few points are stored that the bits would take more memory.
 class SeenSources {
  public:
   explicit SeenSources(const StoreMetadata& metadata) : end_(metadata.input_points) {
     if (end_ / kIndexBits <= metadata.point_count) bits_.resize(end_, false);
   }
 
-  /// False where the index is out of range or was there before.
+  /// Returns false where the index is out of range or was inserted before.
   bool insert(std::uint64_t source) {
     if (source >= end_) return false;
     if (bits_.empty()) return indices_.insert(source).second;
@@ -27,7 +27,7 @@ class SeenSources {
   }
 
  private:
-  static constexpr std::uint64_t kIndexBits = 512;  // of a set of indices, about
+  static constexpr std::uint64_t kIndexBits = 512;  // bits that an index takes in a set, roughly
 
   std::uint64_t end_;
   std::vector<bool> bits_;
@@ -38,7 +38,7 @@ class Verification {
  public:
   explicit Verification(const StoreReader& store) : store_(store), seen_(store.metadata()) {}
 
-  /// Throws InputError with the first fault of the cell.
+  /// Checks a cell. Throws InputError with its first fault.
   void check(std::uint32_t cell) {
     const auto coordinates = store_.coordinates(cell);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -52,7 +52,8 @@ class Verification {
     if (store_.has_classes()) check_classes(cell);
   }
 
-  /// Behind all cells: throws InputError where the classes are not as many as the store says.
+  /// Called after all cells. Throws InputError where the numbers of points per class are not those
+  /// that the store states.
   void check_class_counts() const {
     if (store_.has_classes() && class_points_ != store_.metadata().classes->points) {
       throw InputError(store_.name() + ": its classes have other numbers of points than it says");

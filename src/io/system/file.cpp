@@ -62,7 +62,8 @@ File File::create(const std::filesystem::path& path) {
 File File::create_temporary(const std::filesystem::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (descriptor >= 0) return {descriptor, folder.string() + " (temporary file)"};
-  std::string pattern = (folder / ".clearway-XXXXXX").string();  // file systems without O_TMPFILE
+  // For file systems without O_TMPFILE.
+  std::string pattern = (folder / ".clearway-XXXXXX").string();
   const int named = ::mkostemp(pattern.data(), O_CLOEXEC);
   if (named < 0) fail(folder.string(), "create a temporary file in it");
   ::unlink(pattern.c_str());
@@ -167,7 +168,7 @@ void File::reserve_ahead(std::uint64_t bytes) const {
 }
 
 void File::begin_sync(std::uint64_t offset, std::uint64_t bytes) const {
-  // What fails here fails again where it is waited for.
+  // A failure here is ignored, because it occurs again where the sync is waited for.
   ::sync_file_range(descriptor_, static_cast<off_t>(offset), static_cast<off_t>(bytes),
                     SYNC_FILE_RANGE_WRITE);
 }

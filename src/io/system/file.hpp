@@ -13,13 +13,15 @@ namespace clearway {
 class File {
  public:
   static File open_for_reading(const std::filesystem::path& path);
-  /// Refuses what is no regular file, such as a pipe, at once instead of waiting for its bytes.
+  /// Opens a file for reading. One that is not a regular file, such as a pipe, is refused at once,
+  /// without waiting for its bytes.
   static File open_regular(const std::filesystem::path& path);
-  /// An existing file, whose bytes stay.
+  /// Opens an existing file and keeps its bytes.
   static File open_for_writing(const std::filesystem::path& path);
   /// Creates the file or empties an existing one.
   static File create(const std::filesystem::path& path);
-  /// A file without a name in `folder`, gone when closed or when the process dies.
+  /// Creates a file without a name in `folder`, which disappears when closed or when the process
+  /// dies.
   static File create_temporary(const std::filesystem::path& folder);
   /// Takes over an open descriptor, for example standard input; `name` is for messages.
   static File adopt(int descriptor, std::string name);
@@ -32,13 +34,13 @@ class File {
   const std::string& name() const { return name_; }
   std::uint64_t size_bytes() const;
   bool is_regular() const;
-  /// Whether this file, and no other, has that name.
+  /// Whether the path names this very file.
   bool is_at(const std::filesystem::path& path) const;
-  /// How many names it has.
+  /// Number of names (hard links) of the file.
   std::uint64_t names() const;
 
-  /// Reads exactly out.size() bytes at `offset`, which lie before the end of the file; one that
-  /// shrank throws ResourceError.
+  /// Reads exactly out.size() bytes at `offset`, which must lie before the end of the file. Throws
+  /// ResourceError for a file that has shrunk.
   void read_at(std::uint64_t offset, std::span<std::byte> out) const;
   /// Reads up to out.size() bytes at the current position; 0 at the end.
   std::size_t read_some(std::span<std::byte> out) const;
@@ -46,11 +48,12 @@ class File {
   /// Writes at the current position.
   void write(std::span<const std::byte> bytes) const;
   void rewind() const;
-  /// Reserves disk space; throws when there is not enough.
+  /// Reserves disk space. Throws where there is not enough.
   void reserve(std::uint64_t bytes) const;
-  /// The same beyond the end of the file, whose length stays; nothing where the file system cannot.
+  /// Reserves disk space beyond the end of the file, whose length stays. Does nothing where the
+  /// file system cannot.
   void reserve_ahead(std::uint64_t bytes) const;
-  /// Asks the system to write a range to the disk, as sync() will. Does not wait for it.
+  /// Asks the system to start writing a range to the disk, without waiting for it.
   void begin_sync(std::uint64_t offset, std::uint64_t bytes) const;
   void sync() const;
 
@@ -61,10 +64,10 @@ class File {
   std::string name_;
 };
 
-/// The folder a path lies in; "." for a bare name.
+/// The folder that contains a path; "." for a bare name.
 std::filesystem::path folder_of(const std::filesystem::path& path);
 
-/// Bytes free for this user in the file system of `folder`.
+/// Number of bytes free for this user in the file system of `folder`.
 std::uint64_t free_disk_bytes(const std::filesystem::path& folder);
 
 }  // namespace clearway

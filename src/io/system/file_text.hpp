@@ -6,11 +6,12 @@
 
 namespace clearway {
 
-/// All of a small file. Throws ResourceError.
+/// The whole contents of a small file. Throws ResourceError.
 std::string text_of_file(const std::filesystem::path& path);
 
-/// Writes the file under another name and renames it, so that readers see the old or the new one.
-/// Not synced: after a crash of the system it may be empty. Throws ResourceError.
+/// Writes the file under another name and renames it, so that readers see either the old or the new
+/// contents. It is not synced: after a crash of the system the file may be empty. Throws
+/// ResourceError.
 void replace_file(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace clearway

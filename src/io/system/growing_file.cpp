@@ -10,8 +10,9 @@
 namespace clearway {
 namespace {
 
-constexpr std::uint64_t kPiece = std::uint64_t{64} << 20;  // reserved, and written back, at once
-constexpr std::uint64_t kLeastFree = 16;                   // pieces: else nothing is reserved
+// Bytes that are reserved or written back at once.
+constexpr std::uint64_t kPiece = std::uint64_t{64} << 20;
+constexpr std::uint64_t kLeastFree = 16;  // pieces that must be free on the disk for reserving
 
 }  // namespace
 
@@ -31,7 +32,7 @@ void GrowingFile::written(std::uint64_t end) {
     try {
       writing_back_ = std::jthread([this](const std::stop_token& stop) { write_back(stop); });
     } catch (const std::system_error&) {
-      may_write_back_ = false;  // no thread is to be had; the sync at the end does it all
+      may_write_back_ = false;  // no thread is available, so the sync at the end does all of it
     }
   }
   grown_.notify_one();
@@ -62,7 +63,8 @@ void GrowingFile::write_back(const std::stop_token& stop) {
 
 void GrowingFile::trim() {
   if (reserved_ == 0) return;
-  // To its own size: that frees the blocks behind it. Where it fails they stay reserved.
+  // Truncating the file to its own size frees the blocks behind it. Where this fails they stay
+  // reserved.
   if (::ftruncate(file_.descriptor(), static_cast<off_t>(file_.size_bytes())) != 0) return;
 }
 

@@ -11,10 +11,10 @@
 
 namespace clearway {
 
-/// Eases the growth of a large file that someone else writes front to back: space is reserved ahead
-/// of the writer, which makes each write cheaper, and what is written goes to the disk meanwhile,
-/// so that the last sync is short. Nothing depends on it: what fails here is left to the writer and
-/// to the sync.
+/// Speeds up the writing of a large file that someone else writes front to back. Space is reserved
+/// ahead of the writer, which makes each write cheaper, and written bytes are sent to the disk
+/// meanwhile, so that the last sync is short. Failures here are ignored; the writer and the sync
+/// meet them.
 class GrowingFile {
  public:
   explicit GrowingFile(const std::filesystem::path& path);
@@ -22,9 +22,9 @@ class GrowingFile {
   GrowingFile(const GrowingFile&) = delete;
   GrowingFile& operator=(const GrowingFile&) = delete;
 
-  /// All bytes before `end` are written.
+  /// Reports that all bytes before `end` are written.
   void written(std::uint64_t end);
-  /// Gives back what was reserved behind the end of the file, which is written now.
+  /// Frees what was reserved behind the end of the file, which is complete now.
   void trim();
 
  private:
@@ -38,7 +38,7 @@ class GrowingFile {
   std::mutex mutex_;
   std::condition_variable_any grown_;
   std::uint64_t written_ = 0;  // guarded by mutex_
-  std::jthread writing_back_;  // begins with the first large piece; the last member
+  std::jthread writing_back_;  // starts with the first large piece; must be the last member
 };
 
 }  // namespace clearway

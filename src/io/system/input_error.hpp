@@ -26,7 +26,7 @@ std::string excerpt(std::string_view text);
 /// A double for a message, with all the digits that tell it from its neighbours.
 std::string shown(double value);
 
-/// The same, rounded to nine digits.
+/// A double for a message, rounded to nine digits.
 std::string brief(double value);
 
 }  // namespace clearway

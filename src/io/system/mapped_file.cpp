@@ -16,7 +16,7 @@
 namespace clearway {
 namespace {
 
-/// What the signal handler may read: fixed memory, written before the map is handed out.
+/// A map as the signal handler reads it: in fixed memory, written before the map is handed out.
 struct MapRecord {
   std::atomic<std::uintptr_t> first{0};
   std::atomic<std::uintptr_t> last{0};

@@ -9,8 +9,8 @@
 
 namespace clearway {
 
-/// A read-only map of a whole file. Should the file shrink or fail under the map, the system sends
-/// SIGBUS; install_map_fault_handler turns that into a message and exit code 4.
+/// A read-only map of a whole file. If the file shrinks or fails under the map, the system sends
+/// SIGBUS, which install_map_fault_handler() turns into a message and an exit code.
 class MappedFile {
  public:
   explicit MappedFile(const std::filesystem::path& path);
@@ -28,8 +28,8 @@ class MappedFile {
   std::span<const std::byte> bytes_;
 };
 
-/// For programs: a fault under any MappedFile prints its name to standard error and ends the
-/// process with `exit_code`.
+/// Makes a fault under any MappedFile print the file's name to standard error and end the process
+/// with `exit_code`. Only for programs, not for libraries.
 void install_map_fault_handler(int exit_code);
 
 }  // namespace clearway

@@ -11,7 +11,7 @@
 namespace clearway {
 namespace {
 
-/// For outputs, libraries and what is opened for a moment.
+/// Files for outputs, libraries and brief use.
 constexpr std::uint64_t kSpare = 16;
 
 std::uint64_t open_files() {
@@ -40,7 +40,8 @@ void raise_open_files_limit(std::uint64_t more) {
   const rlim_t wanted = std::min<rlim_t>(needed_open_files(more) + kSpare, limit.rlim_max);
   if (wanted <= limit.rlim_cur) return;
   limit.rlim_cur = wanted;
-  ::setrlimit(RLIMIT_NOFILE, &limit);  // what it did not allow is refused later
+  // A failure is ignored, as require_open_files() reports it later.
+  ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
 }  // namespace clearway

@@ -5,16 +5,15 @@
 
 namespace clearway {
 
-/// How many files a process that holds `more` beside those that it has may need to have open.
+/// Number of files that a process may need to have open if it opens `more` than it has.
 std::uint64_t needed_open_files(std::uint64_t more);
 
-/// Throws ResourceError, naming the number and `ulimit -n`, where the soft limit is below
-/// needed_open_files(more). purpose: "to merge 7 parts".
+/// Throws ResourceError, which names the number and `ulimit -n`, where the soft limit is below
+/// needed_open_files(more). purpose: as in "to merge 7 parts".
 void require_open_files(std::uint64_t more, const std::string& purpose);
 
-/// Raises the process's soft limit to needed_open_files(more) and some, as far as its hard limit
-/// lets it.
-/// For programs: a library leaves limits as they are.
+/// Raises the process's soft limit somewhat above needed_open_files(more), as far as its hard limit
+/// allows. Only for programs: a library leaves limits as they are.
 void raise_open_files_limit(std::uint64_t more);
 
 }  // namespace clearway

@@ -43,7 +43,8 @@ void check_output_name(const fs::path& path, bool overwrite) {
                    what + "; move it away, or choose another output");
 }
 
-/// A link, a pipe or a device would lead what is written elsewhere.
+/// Throws where the partial file is a link, a pipe or a device, through which the output would go
+/// elsewhere.
 void check_partial(const fs::path& path) {
   std::error_code unknown;
   const fs::file_status found = fs::symlink_status(path, unknown);
@@ -61,7 +62,7 @@ File create_locked(const fs::path& path) {
       throw ResourceError(path.string() +
                           ": another process is writing it; wait for it, or choose another output");
     }
-    // Between opening and locking its last owner may have renamed or removed it.
+    // Its last owner may have renamed or removed it between opening and locking.
     if (!file.is_at(path)) continue;
     if (file.names() > 1) refuse_partial(path, "has another name too");
     return file;

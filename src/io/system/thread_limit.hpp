@@ -8,8 +8,8 @@
 
 namespace clearway {
 
-/// So many threads of oneTBB, as long as it lives: more than the machine has cores, where that many
-/// are asked for. A limit that the caller has set stays, and is not exceeded.
+/// Provides the requested number of oneTBB threads during its lifetime, even more than the machine
+/// has cores. A lower limit that the caller has set is not exceeded.
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads) {
@@ -19,7 +19,7 @@ class ThreadLimit {
     allowed_ = static_cast<int>(std::min(wanted, tbb::global_control::active_value(kLimit)));
   }
 
-  /// Calls body() on them.
+  /// Calls body() on these threads.
   template <typename Body>
   auto run(const Body& body) const {
     return tbb::task_arena(allowed_).execute(body);

@@ -11,10 +11,10 @@ namespace clearway {
 /// XXH64 with seed 0.
 std::uint64_t xxh64(std::span<const std::byte> bytes);
 
-/// A hash for people: its 16 hexadecimal digits.
+/// The 16 hexadecimal digits of a hash, for messages.
 std::string hash_text(std::uint64_t hash);
 
-/// The same over bytes that arrive in pieces.
+/// XXH64 with seed 0 over bytes that arrive in pieces.
 class Xxh64Stream {
  public:
   Xxh64Stream();

@@ -7,8 +7,8 @@ namespace clearway {
 
 void set_rotation(const AttitudeRow& row, AngleFrame frame, double north, Pose& pose) {
   const bool ned = frame == AngleFrame::kNed;
-  // A body with y right and z down in a world of north, east and down is one with y left and z up
-  // in a world of east, north and up at the yaw pi / 2 - heading and the opposite pitch.
+  // A body with y right and z down in a world of north, east and down equals one with y left and z
+  // up in a world of east, north and up, with yaw pi / 2 - heading and the opposite pitch.
   const double turned = ned ? row.yaw + north : row.yaw - north;
   const double cy = ned ? std::sin(turned) : std::cos(turned);
   const double sy = ned ? std::cos(turned) : std::sin(turned);

@@ -29,7 +29,8 @@ Objection objection_to(const Stretch& stretch, bool allow_non_rigid) {
 constexpr const char* kRowByRow =
     "expected it row by row: r11 r12 r13 x r21 r22 r23 y r31 r32 r33 z";
 
-/// Whether 16 numbers are a 4x4 matrix column by column: its last row is 0 0 0 1 then.
+/// Whether 16 numbers are a 4x4 matrix in column-major order: its last row 0 0 0 1 then is every
+/// fourth number.
 bool is_by_column(std::span<const double> numbers) {
   return numbers[3] == 0 && numbers[7] == 0 && numbers[11] == 0 && numbers[15] == 1;
 }

@@ -20,7 +20,7 @@ InputBuffer open(const std::filesystem::path& path) {
   return {std::move(file), access};
 }
 
-/// NNN of "scanNNN" with the ending.
+/// The number NNN of a file "scanNNN" with this ending; nullopt for other names.
 std::optional<std::uint64_t> number_of(const std::filesystem::path& path, std::string_view ending) {
   constexpr std::string_view kScan = "scan";
   const std::string text = path.stem().string();

@@ -6,13 +6,13 @@
 
 namespace clearway {
 
-/// Reads one .pose or .frames file, as options.format says.
+/// Reads one .pose or .frames file; options.format says which.
 void read_threedtk_file(const std::filesystem::path& path, const TrajectoryOptions& options,
                         TrajectoryFile& out);
 
-/// Reads a folder with scanNNN.frames or scanNNN.pose: a pose a scan, by their numbers. Where both
-/// are there, the .frames count, which hold where the scans came to lie; each scan must have one
-/// then. Throws InputError for a folder without any.
+/// Reads a folder with scanNNN.frames or scanNNN.pose, one pose per scan, in the order of their
+/// numbers. Where both kinds exist, the .frames are used, which hold the final poses of the scans;
+/// each scan must then have one. Throws InputError for a folder without any.
 void read_threedtk_folder(const std::filesystem::path& folder, const TrajectoryOptions& options,
                           TrajectoryFile& out);
 

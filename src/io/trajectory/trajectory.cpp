@@ -27,7 +27,8 @@ bool is_text(std::span<const std::byte> bytes) {
   });
 }
 
-/// Whether an input that no ending names holds an SBET; refused where that is likely only.
+/// Whether an input is an SBET, by its ending and content. Throws where the content suggests one
+/// and the ending does not.
 bool holds_sbet(InputBuffer& input, const std::string& ending) {
   if (ending == ".sbet") return true;
   if (!input.can_seek()) return false;
@@ -45,7 +46,7 @@ bool holds_sbet(InputBuffer& input, const std::string& ending) {
   return false;
 }
 
-/// The format where the name decides it.
+/// The format of a file whose name decides it; otherwise kAuto.
 TrajectoryFormat format_by_name(const std::string& ending) {
   if (ending == ".pose") return TrajectoryFormat::kThreedtkPose;
   if (ending == ".frames") return TrajectoryFormat::kThreedtkFrames;
@@ -74,7 +75,7 @@ void read_file(const std::filesystem::path& path, TrajectoryOptions options, Tra
   }
 }
 
-/// Options that the file gives no use for were meant for something.
+/// Throws for options that have no effect on this file, because the user meant something by them.
 void refuse_useless(const std::filesystem::path& path, const TrajectoryOptions& options,
                     const TrajectoryFile& found) {
   const std::string name = path.string();
@@ -98,7 +99,8 @@ void refuse_useless(const std::filesystem::path& path, const TrajectoryOptions& 
   }
 }
 
-/// Where both feet meet, the position of the path depends on which foot was meant.
+/// Warns where the path and the environment are in different feet, because the position of the path
+/// depends on which foot was meant.
 void warn_of_two_feet(const std::filesystem::path& path, const TrajectoryOptions& options,
                       TrajectoryFile& found) {
   if (!is_foot(found.unit.metres()) || !is_foot(options.environment_unit)) return;
@@ -124,7 +126,8 @@ void convert_positions(const std::filesystem::path& path, const TrajectoryOption
   found.metres_per_unit = options.environment_unit;
 }
 
-/// The model's origin, where the file has the positions of another point of the model.
+/// Moves poses to the model's origin, where the file has the positions of another point of the
+/// model. lever: that point in the model's frame.
 void apply_lever_arm(const std::filesystem::path& path, const Vec3& lever,
                      std::vector<Pose>& poses) {
   if (lever == Vec3{0, 0, 0}) return;

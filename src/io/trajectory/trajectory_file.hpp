@@ -11,16 +11,19 @@
 
 namespace clearway {
 
-/// What a file holds and how it was understood.
+/// The contents of a trajectory's file and how they were interpreted.
 struct TrajectoryFile {
   std::vector<Pose> poses;
-  std::vector<double> times;       ///< seconds, one a pose; empty where the file has none
-  std::vector<std::string> names;  ///< likewise
+  std::vector<double> times;       ///< seconds, one per pose; empty where the file has none
+  std::vector<std::string> names;  ///< one per pose; empty where the file has none
   TrajectoryFormat format = TrajectoryFormat::kAuto;
-  std::string crs;             ///< that latitudes and longitudes were turned into, or empty
-  double metres_per_unit = 1;  ///< of the positions, 1 but for a CRS in another unit
-  bool in_metres = false;      ///< surely, as a unit was declared or the format has one
-  FileUnit unit = {};  ///< of the positions in the file, where a header or an option names it
+  std::string crs;  ///< CRS into which latitudes and longitudes were converted, or empty
+  /// Metres per unit of the positions; 1 except for a CRS in another unit.
+  double metres_per_unit = 1;
+  /// Whether the positions certainly are in metres, because a unit was declared or the format has
+  /// one.
+  bool in_metres = false;
+  FileUnit unit = {};  ///< unit of the positions in the file, where a header or an option names it
   RotationSource rotations = RotationSource::kMatrices;
   std::vector<Message> remarks;  ///< notes and warnings
 
@@ -34,11 +37,11 @@ struct TrajectoryFile {
   }
 };
 
-/// As read_trajectory.
+/// Reads a trajectory as read_trajectory() does, with details of the file.
 TrajectoryFile read_trajectory_file(const std::filesystem::path& path,
                                     const TrajectoryOptions& options);
 
-/// "matrix", "tum", ...: the names that the command line has for them.
+/// The command line's name of a format: "matrix", "tum", ...
 const char* name_of(TrajectoryFormat format);
 
 }  // namespace clearway

@@ -14,7 +14,7 @@
 namespace clearway {
 namespace {
 
-/// Reads the files of bodies; what goes wrong with them names the key.
+/// Reads the files of bodies. Errors name the key of the body.
 class VehicleReader {
   template <typename Call>
   decltype(auto) named(const KeyReader& key, const Call& call) {
@@ -71,7 +71,7 @@ class VehicleReader {
     number_poses(body);
   }
 
-  /// It has all of them.
+  /// Numbers the poses of a body that has all poses of the path.
   static void number_poses(Body& body) {
     body.path_pose.resize(body.poses.size());
     std::iota(body.path_pose.begin(), body.path_pose.end(), 0);
@@ -96,7 +96,8 @@ class VehicleReader {
     body.path_pose.assign(followed.of.begin(), followed.of.end());
   }
 
-  /// Once for all bodies, and not for those with trajectories of their own.
+  /// The stations of the path, computed once when the first body without a trajectory of its own
+  /// needs them.
   const PathStations& stations() {
     if (!stations_) stations_.emplace(path_, threads_);
     return *stations_;
@@ -110,7 +111,7 @@ class VehicleReader {
   std::optional<PathStations> stations_;
 };
 
-/// Metres ahead of the path's pose: where a body begins and ends.
+/// The stretch that a body occupies, in metres ahead of the path's pose.
 struct Stretch {
   double from, to;
 
@@ -123,7 +124,7 @@ struct Stretch {
   }
 };
 
-/// A body that follows the path, as it stands on a straight one.
+/// A body that follows the path, placed on a straight path.
 struct MountedBody {
   const BodyEntry& entry;
   Stretch body, pivots;
@@ -133,7 +134,7 @@ double horizontal_length(const Box& box) {
   return std::max(box.hi.x - box.lo.x, box.hi.y - box.lo.y);
 }
 
-/// A body is far away from the vehicle where this many times the longest body fits between.
+/// A body is far from the vehicle where this many times the longest body fits in between.
 constexpr double kFarLengths = 3;
 
 void warn_far(const std::filesystem::path& file, const MountedBody& one, const std::string& what,
@@ -149,8 +150,8 @@ void warn_far(const std::filesystem::path& file, const MountedBody& one, const s
        {{"gap", gap}, {"length", longest}}});
 }
 
-/// Of stations and pivots that were mistyped: the body is moved along another way than it drives,
-/// and hardly anything near its path is searched.
+/// Warns of bodies that are far from the others, as by mistyped stations and pivots. Such a body is
+/// moved along another way than it drives, and hardly anything near its path is searched.
 void warn_of_far_bodies(const std::filesystem::path& file, const std::vector<BodyEntry>& entries,
                         const std::vector<Body>& bodies, std::vector<Message>& warnings) {
   std::vector<MountedBody> apart;
@@ -175,7 +176,7 @@ void warn_of_far_bodies(const std::filesystem::path& file, const std::vector<Bod
                warnings);
     }
   }
-  // The vehicle grows from the path's pose, as a train does from wagon to wagon.
+  // The vehicle grows from the path's pose, as a train does wagon by wagon.
   Stretch vehicle{0, 0};
   const auto near = [&](const MountedBody& one) { return vehicle.gap_to(one.body) <= far; };
   for (auto next = std::ranges::find_if(apart, near); next != apart.end();

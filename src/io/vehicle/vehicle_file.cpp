@@ -11,7 +11,7 @@
 namespace clearway {
 namespace {
 
-/// A number, or a text with a unit: "10m".
+/// The length at a key: a number, or a text with a unit such as "10m".
 double length_at(const KeyReader& key, double environment_unit) {
   const auto& value = key.value();
   if (value.is_number()) return value.get<double>();

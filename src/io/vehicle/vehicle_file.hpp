@@ -11,19 +11,21 @@
 
 namespace clearway {
 
-/// A body as a vehicle's file names it, before its model is read. Files are relative to that file.
+/// A body as described in a vehicle's file, before its model is read. Paths are relative to that
+/// file.
 struct BodyEntry {
-  KeyReader at;  ///< for complaints
+  KeyReader at;  ///< key of the body, for errors
   std::string name;
   std::filesystem::path model;
-  FileUnit model_unit = {};          ///< none: as the command says
-  BodyMount mount = BodyStation{0};  ///< unless it has a trajectory
-  std::filesystem::path trajectory;  ///< empty: it follows the path
+  FileUnit model_unit = {};  ///< unit of the model's file; where not known, that of the command
+  BodyMount mount = BodyStation{0};  ///< used unless there is a trajectory
+  /// Trajectory of its own; empty where the body follows the path.
+  std::filesystem::path trajectory;
 };
 
-/// Reads a vehicle's JSON file (docs/guide/vehicles.md). environment_unit: metres of the unit
-/// that stations become. Throws InputError naming the key, as "bodies[1].pivots", ResourceError
-/// where the file cannot be read.
+/// Reads a vehicle's JSON file (docs/guide/vehicles.md). environment_unit: metres of the unit in
+/// which stations are returned. Throws InputError that names the key, as in "bodies[1].pivots", and
+/// ResourceError where the file cannot be read.
 std::vector<BodyEntry> read_vehicle_file(const std::filesystem::path& path,
                                          double environment_unit);
 

@@ -18,10 +18,13 @@ namespace {
 constexpr int kWidth = 800, kHeight = 600;
 constexpr Colour kColliding{200, 30, 30}, kModel{90, 110, 140}, kPath{40, 90, 200},
     kBoxEdge{120, 120, 120};
-constexpr std::size_t kMostSmallTopics = 10;  // of groups that are shown instead of conflicts
-constexpr double kLeastDistance = 6;          // metres from camera to conflict
-constexpr double kSizesAway = 1.6;            // and at least so many times the conflict's diagonal
-constexpr std::size_t kPathPoses = 2000;      // beside the nearest one, drawn as a line
+// Number of small groups that are shown instead of conflicts.
+constexpr std::size_t kMostSmallTopics = 10;
+constexpr double kLeastDistance = 6;  // least distance from camera to conflict, metres
+// Least distance from camera to conflict, in diagonals of the conflict.
+constexpr double kSizesAway = 1.6;
+// Number of poses beside the nearest one that are drawn as a line.
+constexpr std::size_t kPathPoses = 2000;
 
 Vec3 unit(const Vec3& v, const Vec3& otherwise) {
   const double size = length(v);
@@ -29,7 +32,7 @@ Vec3 unit(const Vec3& v, const Vec3& otherwise) {
   return {v.x / size, v.y / size, v.z / size};
 }
 
-/// A direction of the model's frame, in the environment's.
+/// A direction of the model's frame, turned into the environment's.
 Vec3 turned(const Pose& pose, Axis axis) {
   const int column = static_cast<int>(axis) / 2;
   const double sign = static_cast<int>(axis) % 2 == 0 ? 1 : -1;
@@ -41,7 +44,7 @@ std::uint32_t place_on_path(const Conflict& conflict) {
   return conflict.nearest_pose.value_or(conflict.first_pose);
 }
 
-/// That a conflict is seen from: the one of its body, where bodies are known.
+/// The pose from which a conflict is seen: that of its body where bodies are known.
 const Pose& pose_of(const ConflictFile& file, const Conflict& conflict) {
   const std::uint32_t at = place_on_path(conflict);
   const std::span<const Body> bodies = file.options.bodies;
@@ -50,7 +53,7 @@ const Pose& pose_of(const ConflictFile& file, const Conflict& conflict) {
   return own != nullptr ? *own : file.poses[at];
 }
 
-/// From behind and above, as one who follows the model sees it.
+/// The camera of a conflict: behind and above, as seen by someone who follows the model.
 Camera camera_of(const ConflictFile& file, const Conflict& conflict) {
   const Pose& pose = pose_of(file, conflict);
   const Vec3 ahead = unit(turned(pose, file.options.forward), {1, 0, 0});
@@ -92,7 +95,7 @@ void draw_box(Picture& picture, const Box& box) {
   }
 }
 
-/// The model, or every body that is there while the vehicle is at this pose of the path.
+/// Draws the model, or every body that has a pose while the vehicle is at this pose of the path.
 void draw_models(Picture& picture, const ConflictFile& file, const Conflict& conflict,
                  const std::vector<std::vector<Vec3>>& models) {
   const auto draw = [&picture](const std::vector<Vec3>& points, const Pose& pose) {
@@ -153,7 +156,8 @@ void write_bcf(const ConflictFile& file, const ConflictPictures& pictures, const
   }
   std::vector<Conflict> small = small_groups_instead(file.conflicts);
   if (small.size() > kMostSmallTopics) small.resize(kMostSmallTopics);
-  // Their points are not held one by one: the picture marks where they begin, are and end.
+  // The points of small groups are not kept individually, so the picture marks their boxes' corners
+  // and centroids.
   for (const Conflict& group : small) add(group, {group.box.lo, group.centroid, group.box.hi});
   zip.finish();
 }

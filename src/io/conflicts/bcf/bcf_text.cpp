@@ -27,13 +27,13 @@ std::string vector_element(std::string_view name, const Vec3& v) {
                            element("Z", json_number(v.z)));
 }
 
-/// Of the environment, in metres, as BCF has them.
+/// A place of the environment in metres, the unit of BCF.
 Vec3 in_metres(const ConflictFile& file, const Vec3& v) {
   const double metres = file.metres_per_unit();
   return {v.x * metres, v.y * metres, v.z * metres};
 }
 
-/// The twelve edges of a box.
+/// The lines of a viewpoint for the twelve edges of a box.
 std::string edges_of(const Box& box) {
   std::string out;
   for (unsigned from = 0; from < 8; ++from) {
@@ -63,13 +63,14 @@ std::string title_of(const ConflictFile& file, const Conflict& c) {
   return out;
 }
 
-/// "the path's position", or that of the body which the conflict is seen from.
+/// The origin of offsets in words: "the path's position", or that of the body from which the
+/// conflict is seen.
 std::string origin_text(const ConflictFile& file, const Conflict& c) {
   if (!c.body || file.options.bodies.empty()) return "the path's position";
   return "the position of body " + markup_text(file.header.bodies.at(*c.body));
 }
 
-/// "1.25 m left of the path's position and 0.5 m above it".
+/// The offset of a conflict in words: "1.25 m left of the path's position and 0.5 m above it".
 std::string offset_text(const ConflictFile& file, const Conflict& c) {
   return length_text(file, format_brief(std::abs(*c.lateral))) +
          (*c.lateral < 0 ? " right of " : " left of ") + origin_text(file, c) + " and " +
@@ -77,7 +78,8 @@ std::string offset_text(const ConflictFile& file, const Conflict& c) {
          (*c.height < 0 ? " below it" : " above it");
 }
 
-/// The lateral shifts that free the conflict's own points, where they are known.
+/// The lateral shifts, in words, that free the conflict's own points; empty where they are not
+/// known.
 std::string shift_text(const ConflictFile& file, const Conflict& c) {
   if (!c.shift_left && !c.shift_right) return "";
   std::string out = " Its points are free where the vehicle runs at least";
@@ -89,7 +91,7 @@ std::string shift_text(const ConflictFile& file, const Conflict& c) {
   return out + ".";
 }
 
-/// What the archive has no topic of.
+/// A sentence on small groups, which have no topic in the archive.
 std::string small_text(const ConflictFile& file) {
   const Conflicts& found = file.conflicts;
   if (found.small_groups == 0) return "";

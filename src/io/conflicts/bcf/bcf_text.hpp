@@ -8,11 +8,10 @@
 
 namespace clearway {
 
-/// 8-4-4-4-12 hexadecimal digits that depend on the text alone: a UUID of version 8 (RFC 9562),
-/// made of two hashes.
+/// A UUID of version 8 (RFC 9562) made of two hashes of the text, on which alone it depends.
 std::string uuid_of(std::string_view text);
 
-/// The ids of a conflict's topic, viewpoint and so on: `what` tells them apart.
+/// The id of a conflict's topic, viewpoint or other part, which `what` distinguishes.
 std::string conflict_uuid(const ConflictFile& file, const Conflict& conflict,
                           std::string_view what);
 

@@ -7,7 +7,7 @@ namespace clearway {
 
 enum class DeflateForm { kRaw, kZlib };  ///< without or with zlib's header and checksum
 
-/// Compressed by zlib. Throws std::bad_alloc. Source: RFC 1951, RFC 1950.
+/// The bytes compressed by zlib. Throws std::bad_alloc. Source: RFC 1951, RFC 1950.
 std::string deflated(std::string_view bytes, DeflateForm form);
 
 }  // namespace clearway

@@ -13,7 +13,7 @@ namespace clearway {
 namespace {
 
 constexpr Colour kBackground{255, 255, 255};
-constexpr double kNearest = 0.01;  // metres in front of the camera
+constexpr double kNearest = 0.01;  // least distance in front of the camera, in metres
 
 double along(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 

@@ -9,22 +9,23 @@
 
 namespace clearway {
 
-/// Where a picture is taken from. direction and up: of length 1, at right angles.
+/// The camera of a picture. direction and up: of length 1, at right angles.
 struct Camera {
   Vec3 place, direction, up;
-  double field_of_view = 60;  ///< degrees, of the picture's height
+  double field_of_view = 60;  ///< vertical field of view in degrees
 };
 
 using Colour = std::array<std::uint8_t, 3>;
 
-/// Points and lines as a camera sees them: of several at a pixel the nearest.
+/// A picture of points and lines as a camera sees them; at each pixel the nearest is shown.
 class Picture {
  public:
   Picture(int width, int height, const Camera& camera);
 
-  /// A square of `size` pixels.
+  /// Draws a point as a square with sides of `size` pixels.
   void draw_point(const Vec3& at, const Colour& colour, int size);
-  /// The same in front of everything but other marks.
+  /// Draws a point as a square with sides of `size` pixels, in front of everything except other
+  /// marks.
   void draw_mark(const Vec3& at, const Colour& colour, int size);
   void draw_line(const Vec3& from, const Vec3& to, const Colour& colour);
 
@@ -33,7 +34,7 @@ class Picture {
 
  private:
   struct Seen {
-    double x, y, depth;  ///< pixels from the upper left corner; metres
+    double x, y, depth;  ///< x, y: pixels from the upper left corner; depth: metres
   };
   bool see(const Vec3& at, Seen& seen) const;
   void draw_square(const Seen& seen, double depth, const Colour& colour, int size);
@@ -42,7 +43,7 @@ class Picture {
   int width_, height_;
   Camera camera_;
   Vec3 right_;
-  double scale_;  ///< pixels of a length as long as its depth
+  double scale_;  ///< size in pixels of a length that equals its depth
   std::vector<Colour> colours_;
   std::vector<float> depths_;
 };

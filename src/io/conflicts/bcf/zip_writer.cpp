@@ -22,7 +22,7 @@ void put32(std::string& out, std::uint64_t value) {
   put16(out, value >> 16 & 0xffff);
 }
 
-/// What a member's own header and its entry of the directory share.
+/// The fields that a member's own header and its entry in the directory share.
 std::string description_of(std::string_view bytes, std::size_t packed, std::uint16_t method,
                            std::size_t name) {
   std::string out;

@@ -8,18 +8,17 @@
 
 namespace clearway {
 
-/// Writes a ZIP archive front to back. Members have no times of their own but 1980-01-01, the
-/// format's first day; equal contents give equal bytes with the same zlib. Up to 65,534 members and
-/// 4 GiB in all. Throws ResourceError, and UsageError beyond these.
-/// Source: PKWARE, APPNOTE.TXT 6.3.10.
+/// Writes a ZIP archive front to back. All members are dated 1980-01-01, the format's first day, so
+/// equal contents give equal bytes with the same zlib. Up to 65,534 members and 4 GiB in all.
+/// Throws ResourceError, and UsageError beyond these limits. Source: PKWARE, APPNOTE.TXT 6.3.10.
 class ZipWriter {
  public:
-  /// The file stays the caller's.
+  /// The caller owns the file.
   explicit ZipWriter(const File& file) : file_(file) {}
 
-  /// Compressed where that makes it smaller. name: ASCII.
+  /// Adds a member, compressed where that makes it smaller. name: ASCII.
   void add(const std::string& name, std::string_view bytes);
-  /// After every member.
+  /// Writes the directory. Called after the last member.
   void finish();
 
  private:

@@ -13,11 +13,12 @@ namespace {
 
 constexpr double kGreatestQuantum = std::numeric_limits<std::int32_t>::max();
 constexpr double kScales[] = {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1e0, 1e1, 1e2, 1e3};
-constexpr std::size_t kShown = 5;  // points that lie far from the others
+constexpr std::size_t kShown = 5;  // number of far points that a message names
 
 bool fits(double length, double scale) { return length / scale <= kGreatestQuantum; }
 
-/// The finest power of ten >= 1e-6 at which `length` fits int32; the coarsest where none does.
+/// The finest power of ten >= 1e-6 at which `length` fits int32; the coarsest of the table where
+/// none does.
 double fitting_scale(double length) {
   const auto* found = std::find_if(std::begin(kScales), std::end(kScales),
                                    [length](double scale) { return fits(length, scale); });
@@ -59,7 +60,7 @@ class Choice {
            brief(range_.hi(axis));
   }
 
-  /// One that fits all axes.
+  /// The finest scale that fits all axes.
   double coarsest_needed() const {
     double coarsest = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -68,7 +69,8 @@ class Choice {
     return coarsest;
   }
 
-  /// "line 7 (1, 2, 3)", or "point 7" counted from 0; with the file where there are several.
+  /// A point in words: "line 7 (1, 2, 3)", or "point 7" counted from 0, with the file where there
+  /// are several.
   std::string place_of(const InputPoint& p) const {
     const auto reader = open_point_file(files_[p.file], how_to_read_);
     const auto lines = reader->lines_of({&p.point, 1});

@@ -9,25 +9,25 @@
 
 namespace clearway {
 
-/// A point of the inputs, by file and number in it.
+/// A point of the inputs, with its file and its number in it.
 struct InputPoint {
   Vec3 at;
   std::size_t file = 0;
   std::uint64_t point = 0;
 };
 
-/// The range of the points' coordinates, and which of them lie far from the others: in one pass, in
-/// constant memory, a function of the points in their order.
+/// The range of the points' coordinates, and which points lie far from the others. Found in one
+/// pass and in constant memory; depends only on the points in their order.
 class CoordinateRange {
  public:
-  /// The points that lie farther than `reach` from the median on some axis.
+  /// The points that are farther than `reach` from the median on some axis.
   struct Far {
-    std::vector<InputPoint> points;  ///< in the order of the inputs; not all where `more`
-    bool more = false;               ///< there may be others; the rest is not known then
-    Vec3 lo{}, hi{};                 ///< of the rest
+    std::vector<InputPoint> points;  ///< in the order of the inputs; incomplete where `more`
+    bool more = false;  ///< there may be more far points, and `lo` and `hi` are not known
+    Vec3 lo{}, hi{};    ///< box of the other points
   };
 
-  /// p: finite.
+  /// Adds a point, which must be finite.
   void add(const Vec3& p, std::size_t file, std::uint64_t point);
 
   bool empty() const { return count_ == 0; }
@@ -39,11 +39,11 @@ class CoordinateRange {
   }
 
   Far far_points(double reach) const;
-  /// Every n-th point.
+  /// A sample of the points: every n-th one.
   const std::vector<Vec3>& samples() const { return samples_; }
 
  private:
-  static constexpr std::size_t kKept = 16;  // on each side of each axis
+  static constexpr std::size_t kKept = 16;  // points kept on each side of each axis
   static constexpr std::size_t kMostSamples = std::size_t{1} << 14;
 
   static std::size_t side(int axis, bool greatest) {
@@ -52,8 +52,9 @@ class CoordinateRange {
   void keep(std::size_t side, int axis, bool greatest, const InputPoint& p);
   double median(int axis) const;
 
-  std::array<std::vector<InputPoint>, 6> extremes_;  // the most extreme first
-  std::vector<Vec3> samples_;                        // of every (mask + 1)-th point
+  // For each side() the most extreme points, in descending order.
+  std::array<std::vector<InputPoint>, 6> extremes_;
+  std::vector<Vec3> samples_;  // every (mask + 1)-th point
   std::uint64_t sample_mask_ = 0;
   std::uint64_t count_ = 0;
 };

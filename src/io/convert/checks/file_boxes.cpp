@@ -11,12 +11,13 @@
 namespace clearway {
 namespace {
 
-constexpr double kFarSizes = 100;      // of the larger of two boxes
-constexpr double kFarLength = 1000;    // metres, at least
-constexpr double kSizeRatio = 300;     // between sizes next to each other in order
-constexpr double kLargeLength = 3000;  // metres: what is smaller is not taken for another unit
-constexpr double kLeastLength = 0.1;   // metres: what is smaller has no size to compare
-constexpr std::size_t kMostCompared = 5000;  // files that are compared by pairs
+constexpr double kFarSizes = 100;    // gap that counts as far, in sizes of the larger of two boxes
+constexpr double kFarLength = 1000;  // least gap that counts as far, in metres
+constexpr double kSizeRatio = 300;   // ratio between consecutive sizes in ascending order
+// Metres; a smaller input is not suspected to be in another unit.
+constexpr double kLargeLength = 3000;
+constexpr double kLeastLength = 0.1;         // metres; a smaller input has no size to compare
+constexpr std::size_t kMostCompared = 5000;  // number of files that are compared in pairs
 constexpr std::size_t kNamed = 3;
 
 Box box_of(const FileBox& box, const Quantisation& quantisation) {
@@ -32,7 +33,7 @@ std::string text_of(const Box& box) {
   return corner(box.lo) + " to " + corner(box.hi);
 }
 
-/// Inputs with points.
+/// The inputs that have points.
 class Inputs {
  public:
   Inputs(std::span<const FileBox> boxes, const Quantisation& quantisation,
@@ -46,9 +47,9 @@ class Inputs {
     }
   }
 
-  /// Groups of inputs that lie near each other. Two of them are apart where their gap is many times
-  /// the size of the larger one. An input of the smallest group is named, and the nearest of
-  /// others.
+  /// The warning where inputs form groups that are far from each other. Two are apart where their
+  /// gap is many times the size of the larger one. It names an input of the smallest group, and the
+  /// nearest of the others.
   std::optional<Message> far_apart() const {
     const std::vector<std::size_t> group = groups();
     const std::size_t n = group.size();
@@ -75,7 +76,7 @@ class Inputs {
                    {{"gap", gap}, {"files", static_cast<double>(members[group[lone]])}}};
   }
 
-  /// A gap of a large factor between the sizes in order.
+  /// The warning where consecutive sizes differ by a large factor.
   std::optional<Message> other_size() const {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < sizes_.size(); ++i) {
@@ -100,7 +101,8 @@ class Inputs {
  private:
   std::string name(std::size_t i) const { return files_[numbers_[i]].string(); }
 
-  /// The group of each of the first inputs: the number of one of its members.
+  /// The group of each of the first kMostCompared inputs, named by the number of one of its
+  /// members.
   std::vector<std::size_t> groups() const {
     std::vector<std::size_t> group(std::min(boxes_.size(), kMostCompared));
     std::iota(group.begin(), group.end(), 0);

@@ -15,17 +15,17 @@
 
 namespace clearway {
 
-/// The points of an input as they are stored.
+/// Number and box of the points of an input, in the store's integers.
 struct FileBox {
   std::uint64_t points = 0;
-  std::int32_t lo[3]{}, hi[3]{};  ///< where there is a point
+  std::int32_t lo[3]{}, hi[3]{};  ///< defined where there is a point
 };
 
 /// The box of each input. add() may be called from several threads.
 class FileBoxes {
  public:
   void add(const QuantaBatch& batch);
-  /// Of `files` inputs.
+  /// The boxes of `files` inputs.
   std::vector<FileBox> boxes(std::size_t files) const;
 
  private:
@@ -33,10 +33,10 @@ class FileBoxes {
   std::mutex mutex_;
 };
 
-/// Of all inputs, metres; none where there is no point.
+/// The box of all inputs in metres; nullopt where there is no point.
 std::optional<Box> common_box(std::span<const FileBox> boxes, const Quantisation& quantisation);
 
-/// A warning on inputs whose points go far beyond the box that their file declares; none where
+/// The warning on inputs whose points go far beyond the box that their file declares; nullopt where
 /// there is no such input. infos: of each input.
 std::optional<Message> beyond_declared_boxes(std::span<const FileBox> boxes,
                                              const Quantisation& quantisation,

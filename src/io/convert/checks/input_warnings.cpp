@@ -7,12 +7,12 @@
 namespace clearway {
 namespace {
 
-constexpr double kMostAbsent = 0.99;  // of all records: more is told
+constexpr double kMostAbsent = 0.99;  // greatest share of absent records that is not reported
 
-/// "12.3 %".
+/// A share as a percentage: "12.3 %".
 std::string percentage(double share) { return format_brief(100 * share) + " %"; }
 
-/// "point 7 (counted from 0) of a.las".
+/// A point in words: "point 7 (counted from 0) of a.las".
 std::string name_of(const EnvironmentSource& environment, std::uint64_t source) {
   const EnvironmentSource::Place place = environment.place_of(source);
   return "point " + format_count(place.point) + " (counted from 0) of " +

@@ -12,12 +12,13 @@
 
 namespace clearway {
 
-/// Tells what the counting pass noticed: the files' own remarks, points left out, files without
-/// points, apart, of other sizes, and named twice. Returns the box of all points.
+/// Logs what the counting pass noticed: the files' own remarks, points left out, and files that
+/// have no points, are far apart, have other sizes or were named twice. Returns the box of all
+/// points.
 std::optional<Box> warn_of_inputs(const EnvironmentSource& environment, const FileBoxes& boxes,
                                   const StoreMetadata& metadata, MessageLog& log);
 
-/// Tells where many of the `points` points are at one and the same place.
+/// Warns where many of the `points` points are at one and the same place.
 void warn_of_places(const EnvironmentSource& environment, const PlaceCounter& places,
                     std::uint64_t points, MessageLog& log);
 

@@ -10,10 +10,11 @@
 namespace clearway {
 namespace {
 
-/// Metres, the coarsest first. Text in whole centimetres is common, and no surprise.
+/// Steps in metres, from the coarsest. Whole centimetres are common in text and not suspicious.
 constexpr std::array<double, 14> kSteps{100,  10,    8,   4,      2,       1,        0.5,
                                         0.25, 0.125, 0.1, 0.0625, 0.03125, 0.015625, 0};
-constexpr std::size_t kFewValues = 8;  // a flat scan has lost nothing
+// An axis with at most so many values, as in a flat scan, has lost nothing.
+constexpr std::size_t kFewValues = 8;
 constexpr std::size_t kFewSamples = 1000;
 
 bool all_are_multiples(std::span<const Vec3> samples, int axis, double step) {
@@ -32,7 +33,7 @@ bool has_few_values(std::span<const Vec3> samples, int axis) {
   return true;
 }
 
-/// 0 where there is none.
+/// The coarsest step of which all samples are multiples, in metres; 0 where there is none.
 double step_of(std::span<const Vec3> samples, int axis) {
   if (has_few_values(samples, axis)) return 0;
   return *std::find_if(kSteps.begin(), kSteps.end(), [&](double step) {

@@ -5,9 +5,9 @@
 namespace clearway {
 namespace {
 
-constexpr std::size_t kTableSize = 1024;  // a power of two, far more than places
+constexpr std::size_t kTableSize = 1024;  // a power of two, far greater than the number of places
 
-/// Source: Vigna, splitmix64.
+/// A hash of an integer. Source: Vigna, splitmix64.
 std::uint64_t mixed(std::uint64_t value) {
   value += 0x9E3779B97F4A7C15;
   value = (value ^ (value >> 30)) * 0xBF58476D1CE4E5B9;
@@ -15,7 +15,7 @@ std::uint64_t mixed(std::uint64_t value) {
   return value ^ (value >> 31);
 }
 
-/// Which half of a group of 2^level points its sample is in.
+/// The half of a group of 2^level points that its sample is in, 0 or 1.
 std::uint64_t half_of(unsigned level, std::uint64_t group) { return mixed(group * 64 + level) & 1; }
 
 std::size_t slot_of(const PlaceQuanta& q) {
@@ -37,7 +37,7 @@ void PlaceSample::add(const QuantaBatch& batch) {
   seen_ += batch.quanta.size();
 }
 
-/// Of each two groups one sample stays: that of the half which the hash of both says.
+/// Joins each two groups into one and keeps one sample, from the half that the hash selects.
 void PlaceSample::thin() {
   ++level_;
   for (std::size_t i = 0; 2 * i < samples_.size(); ++i) {
@@ -56,7 +56,7 @@ std::vector<PlaceQuanta> PlaceSample::suspects() const {
   std::vector<PlaceQuanta> sorted = samples_;
   std::sort(sorted.begin(), sorted.end());
   std::vector<PlaceQuanta> found;
-  // Half of what the share asks for, as a sample varies.
+  // Half of the expected number, because a sample varies.
   const double least =
       std::max(kSamePlaceShare / 2 * static_cast<double>(sorted.size()),
                0.5 * static_cast<double>(kSamePlacePoints) / static_cast<double>(1ULL << level_));

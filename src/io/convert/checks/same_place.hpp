@@ -10,20 +10,22 @@
 
 namespace clearway {
 
-/// A warning is due where more than this share of the points are at one place ...
+/// Share of the points above which a warning is due where they are at one place, provided that they
+/// are at least kSamePlacePoints.
 inline constexpr double kSamePlaceShare = 0.01;
-/// ... and at least as many as this.
+/// Least number of points at one place for a warning.
 inline constexpr std::uint64_t kSamePlacePoints = 10;
 
-/// Points in the store's integers.
+/// A place in the store's integers.
 using PlaceQuanta = std::array<std::int32_t, 3>;
 
-/// A sample of the points, one of each 2^k consecutive ones, chosen by a hash; all of them up to
-/// 65,536. It tells which places may hold a share of all points (docs/design/conversion.md).
-/// Constant memory; a function of the points in their order.
+/// A sample of the points: one of every 2^k consecutive ones, chosen by a hash, or all of up to
+/// 65,536 points. It tells which places may hold a large share of all points
+/// (docs/design/conversion.md). Takes constant memory and depends only on the points in their
+/// order.
 class PlaceSample {
  public:
-  /// The next points, in order.
+  /// Adds the next points, in order.
   void add(const QuantaBatch& batch);
   /// The places that may hold more than kSamePlaceShare of the points; at most 200.
   std::vector<PlaceQuanta> suspects() const;
@@ -35,9 +37,9 @@ class PlaceSample {
   void choose_next();
 
   std::vector<PlaceQuanta> samples_;
-  unsigned level_ = 0;       ///< k
-  std::uint64_t group_ = 0;  ///< of 2^k points, whose sample is the next
-  std::uint64_t next_ = 0;   ///< the number of that point
+  unsigned level_ = 0;       ///< k, where one of every 2^k points is sampled
+  std::uint64_t group_ = 0;  ///< index of the group of 2^k points whose sample is taken next
+  std::uint64_t next_ = 0;   ///< index of the point that is sampled next
   std::uint64_t seen_ = 0;
 };
 
@@ -47,19 +49,19 @@ class PlaceCounter {
   struct Place {
     PlaceQuanta at{};
     std::uint64_t count = 0;
-    std::uint64_t first = 0, last = 0;  ///< source indices
+    std::uint64_t first = 0, last = 0;  ///< source indices of the first and the last point
   };
 
   /// places: at most 200.
   explicit PlaceCounter(const std::vector<PlaceQuanta>& places);
 
   void add(const QuantaBatch& batch);
-  /// Those with a due warning among `points` points, the fullest first.
+  /// The places for which a warning is due among `points` points, the fullest first.
   std::vector<Place> crowded(std::uint64_t points) const;
 
  private:
   std::vector<Place> places_;
-  std::vector<std::uint16_t> table_;  // of hashes: 1 + the place's index, 0 for none
+  std::vector<std::uint16_t> table_;  // by hash: 1 + the place's index, or 0
   std::mutex mutex_;
 };
 

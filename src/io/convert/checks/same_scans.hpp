@@ -10,8 +10,8 @@
 
 namespace clearway {
 
-/// A warning on inputs whose bytes are those of an earlier one: the same file named twice, or a
-/// copy of it. Inputs without points do not count. sources: described as the files were read.
+/// The warning on inputs whose bytes equal those of an earlier one: the same file named twice, or a
+/// copy of it. Inputs without points do not count. sources: descriptions of the files as read.
 std::optional<Message> warning_on_same_scans(std::span<const std::filesystem::path> files,
                                              std::span<const SourceFile> sources,
                                              std::span<const FileBox> boxes);

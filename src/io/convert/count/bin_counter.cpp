@@ -13,7 +13,7 @@ std::uint64_t hash_of(const std::array<std::uint64_t, 3>& key) {
   return h ^ (h >> 29);
 }
 
-/// What std::array compares by a call of memcmp.
+/// Compares two keys, without the call of memcmp that std::array makes.
 bool same(const std::array<std::uint64_t, 3>& a, const std::array<std::uint64_t, 3>& b) {
   return ((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2])) == 0;
 }

@@ -12,16 +12,18 @@
 namespace clearway {
 namespace {
 
-constexpr unsigned kFinestShift = 4;  // 16 quanta
-constexpr unsigned kSubShift = 2;     // the finest a bin can be before source indices
+constexpr unsigned kFinestShift = 4;  // log2 of the finest bin's side: 16 quanta
+// Log2 of the finest bin's side; points that still coincide in one are counted by source index.
+constexpr unsigned kSubShift = 2;
 constexpr std::size_t kMostBins = 1 << 17;
-constexpr std::size_t kMostSubBins = 1 << 10;  // of one overfull bin
-constexpr unsigned kSourceShift = 20;          // coinciding points: ranges of 2^20 source indices
+constexpr std::size_t kMostSubBins = 1 << 10;  // for each overfull bin
+// Coinciding points are counted by ranges of 2^20 source indices.
+constexpr unsigned kSourceShift = 20;
 
-/// What is made of a batch where nothing is.
+/// Result of a batch from which nothing is made.
 struct Nothing {};
 
-/// How many points each class has.
+/// Counts the points of each class.
 class ClassCounts {
  public:
   void add(const QuantaBatch& batch) {
@@ -37,7 +39,7 @@ class ClassCounts {
   std::array<std::uint64_t, 256> points_{};
 };
 
-/// What the counting pass makes beside the bins.
+/// Sums over all points that the counting pass makes besides the bins.
 struct PassSums {
   PointsHash points_hash;
   ClassesHash classes_hash = {};
@@ -78,7 +80,7 @@ std::vector<Bin> count_bins(const EnvironmentPass& pass, const Lattice& lattice,
   return all.bins();
 }
 
-/// Counts the points of each overfull bin on its own: on a finer grid, or by source indices where
+/// Counts the points of each overfull bin separately: on a finer grid, or by source indices where
 /// the bin cannot be made finer.
 class Refinement {
  public:
@@ -129,7 +131,7 @@ class Refinement {
   std::vector<Part> parts_;
 };
 
-/// Replaces the overfull bins of `bins` by finer ones; one more pass over the input.
+/// Replaces the overfull bins of `bins` by finer ones, in one more pass over the input.
 void refine(const EnvironmentPass& pass, const Lattice& lattice, const SplitTree& tree,
             std::vector<Bin>& bins, Progress& progress) {
   tbb::enumerable_thread_specific<Refinement> counters(

@@ -15,32 +15,32 @@
 
 namespace clearway {
 
-/// What the counting pass notices besides, for warnings.
+/// Observations of the counting pass that serve warnings.
 struct InputSurvey {
   PlaceSample places;
   FileBoxes boxes;
 };
 
-/// What tells whether a later pass reads the same points.
+/// Hashes that tell whether a later pass reads the same points.
 struct CountedHashes {
   std::uint64_t points;
-  std::optional<std::uint64_t> classes;  ///< none where all have class 0
+  std::optional<std::uint64_t> classes;  ///< nullopt where all points have class 0
 };
 
 struct CountedEnvironment {
-  std::uint64_t points = 0;        ///< finite ones
-  std::uint64_t input_points = 0;  ///< all
+  std::uint64_t points = 0;        ///< number of finite points
+  std::uint64_t input_points = 0;  ///< number of all points
   std::uint64_t points_hash = 0;
-  std::optional<StoreClasses> classes = {};  ///< where any is above 0
-  std::vector<Bin> bins;                     ///< none with more than kBucketPoints points
+  std::optional<StoreClasses> classes = {};  ///< only where some class is above 0
+  std::vector<Bin> bins;                     ///< bins, each with at most kBucketPoints points
 
   CountedHashes hashes() const {
     return {points_hash, classes ? std::optional(classes->hash) : std::nullopt};
   }
 };
 
-/// The counting pass, which also hashes the files, and further ones while a bin is too full
-/// (docs/design/conversion.md).
+/// Performs the counting pass, which also hashes the files, and further passes while a bin is too
+/// full (docs/design/conversion.md).
 CountedEnvironment count_environment(EnvironmentSource& environment, const Lattice& lattice,
                                      InputSurvey& survey, FileHashes& files, int threads,
                                      StageClocks& clocks, Progress& progress);

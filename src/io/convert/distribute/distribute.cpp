@@ -14,7 +14,7 @@ struct GroupedBatch {
   struct Group {
     std::uint32_t unit;
     std::uint32_t begin, end;
-    std::uint64_t first = 0;  ///< place of its points among the unit's
+    std::uint64_t first = 0;  ///< index of its first point among the unit's points
   };
   std::vector<DistributedPoint> points;
   std::vector<Group> groups;
@@ -57,7 +57,7 @@ class Grouper {
   throw InputError("the input changed between two passes over it, expected the same points");
 }
 
-/// Gives every group its place: batch by batch, in their order.
+/// Assigns every group its place, batch by batch in order.
 class Places {
  public:
   Places(const EnvironmentSource& environment, const Distribution& distribution)
@@ -80,7 +80,7 @@ class Places {
  private:
   const EnvironmentSource& environment_;
   const Distribution& distribution_;
-  std::vector<std::uint64_t> next_;  // place in each unit
+  std::vector<std::uint64_t> next_;  // next place in each unit
 };
 
 }  // namespace

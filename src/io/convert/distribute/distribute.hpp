@@ -10,9 +10,9 @@
 
 namespace clearway {
 
-/// The distribution pass: puts every point to its unit's, in source order. Throws InputError when
-/// the input is not what was counted, ResourceError when the disk is full. places: counts the
-/// points it was made for.
+/// Performs the distribution pass, which puts every point to those of its unit, in source order.
+/// Throws InputError when the input is not what was counted, ResourceError when the disk is full.
+/// places: counts the points at its places.
 void distribute(EnvironmentSource& environment, const CountedHashes& counted,
                 const Lattice& lattice, const SplitTree& tree, PlaceCounter& places,
                 Distribution& distribution, int threads, StageClocks& clocks, Progress& progress);

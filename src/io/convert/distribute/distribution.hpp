@@ -14,11 +14,11 @@
 
 namespace clearway {
 
-/// A point on its way to its unit, 20 bytes. No input has as many as 2^56 points: the highest byte
-/// of the source index is the point's class.
+/// A point to be distributed to its unit, 20 bytes. As no input has as many as 2^56 points, the
+/// highest byte of the source index holds the point's class.
 struct DistributedPoint {
   std::int32_t q[3];
-  std::uint32_t source[2];  ///< low and high half of the source index, with the class
+  std::uint32_t source[2];  ///< low half of the source index, and its high half with the class
 
   static DistributedPoint of(const std::array<std::int32_t, 3>& q, std::uint64_t source,
                              std::uint8_t point_class) {
@@ -41,22 +41,25 @@ struct UnitPoints {
   std::span<const DistributedPoint> span() const { return {points.get(), count}; }
 };
 
-/// The points by unit of the tree: in memory, or in files without names.
+/// The points of each unit of the tree, in memory or in nameless files.
 class Distribution {
  public:
-  /// folder: of the files; none: in memory. files: how many, as one takes the bytes of one thread
-  /// at a time. Throws ResourceError where the disk is too small.
+  /// folder: where to create the files; nullopt keeps the points in memory. files: their number,
+  /// because each takes the bytes of one thread at a time. Throws ResourceError where the disk is
+  /// too small.
   Distribution(const SplitTree& tree, const std::optional<std::filesystem::path>& folder,
                std::size_t files);
 
   std::size_t units() const { return counts_.size(); }
   std::uint64_t points(std::size_t unit) const { return counts_[unit]; }
-  /// Of the files.
+  /// Size of the temporary files in bytes.
   std::uint64_t temporary_bytes() const { return temporary_bytes_; }
 
-  /// Puts points at `first` of a unit's. Several threads at once, at different places.
+  /// Stores points of a unit from index `first` on. Several threads may store at different places
+  /// at once.
   void put(std::size_t unit, std::uint64_t first, std::span<const DistributedPoint> points);
-  /// Once for each unit, when all its points are there; several threads at once.
+  /// Takes the points of a unit, once all of them are stored. To be called once per unit; several
+  /// threads may call it at once.
   UnitPoints take(std::size_t unit);
 
  private:
@@ -66,9 +69,9 @@ class Distribution {
   };
 
   std::vector<std::uint64_t> counts_;
-  std::vector<UnitPoints> memory_;  // by unit, or:
+  std::vector<UnitPoints> memory_;  // points by unit, where they are in memory
   std::vector<File> files_;
-  std::vector<Place> places_;  // of the units in the files
+  std::vector<Place> places_;  // places of the units in the files
   std::uint64_t temporary_bytes_ = 0;
 };
 

@@ -8,7 +8,7 @@
 #include "io/convert/inputs/read_points.hpp"
 #include "io/system/input_error.hpp"
 
-// How records become the store's integers.
+// Conversion of records to the store's integers.
 
 namespace clearway {
 
@@ -31,7 +31,7 @@ void EnvironmentSource::convert(RecordBatch& records, QuantaBatch& batch, bool w
   records.points = {};
 }
 
-/// Of the points that are left.
+/// Keeps the classes of the points that were not dropped.
 void EnvironmentSource::keep_classes(RecordBatch& records, QuantaBatch& out) {
   std::vector<std::uint8_t>& classes = records.points.classes;
   const auto is_set = [](std::uint8_t value) { return value != 0; };
@@ -95,7 +95,8 @@ void EnvironmentSource::append_rounded(const RecordBatch& records, QuantaBatch& 
           std::max(out.largest_change, std::abs(coordinate(quantisation_, axis, q[k]) - p[axis]));
     }
     out.quanta.push_back(q);
-    // Identity until the first dropped point, also where that is the batch's very first one.
+    // Points behind the first dropped one need an index of their own; without any dropped point,
+    // offsets stays empty.
     if (out.quanta.size() <= i) out.offsets.push_back(static_cast<std::uint32_t>(i));
   }
 }

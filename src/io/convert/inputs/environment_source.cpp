@@ -24,7 +24,7 @@ const EnvironmentOptions& checked(const EnvironmentOptions& options) {
   return options;
 }
 
-/// Calls `read`; where one of several files is refused, the error says that it can be skipped.
+/// Calls `read`. Where one of several files is refused, the error says that it can be skipped.
 template <typename Read>
 auto reading_one_of(std::size_t files, Read read) {
   try {
@@ -174,7 +174,7 @@ bool EnvironmentSource::next(RecordBatch& records) {
   }
   if (stream_ &&
       (infos_[0].crs_wkt != stream_->info().crs_wkt || infos_[0].unit != stream_->info().unit)) {
-    infos_[0].crs_wkt = stream_->info().crs_wkt;  // it may follow the points
+    infos_[0].crs_wkt = stream_->info().crs_wkt;  // the CRS may follow the points
     infos_[0].unit = stream_->info().unit;
     infos_[0].unit_trouble = stream_->info().unit_trouble;
     find_crs();

@@ -12,17 +12,18 @@
 
 namespace clearway {
 
-/// Names, sizes and hashes of the files that a pass reads in pieces, from the bytes of the pieces.
-/// Only what lies before, between and behind them is read for it.
+/// Describes the files that a pass reads in pieces by name, size and hash, from the bytes of the
+/// pieces. Only the bytes before, between and behind the pieces are read for it.
 class FileHashes {
  public:
-  /// wanted: which of the files; pieces of others are passed over.
+  /// wanted: which of the files to describe; pieces of others are ignored.
   FileHashes(const std::vector<std::filesystem::path>& files, std::vector<bool> wanted)
       : files_(files), wanted_(std::move(wanted)), found_(files.size()) {}
 
-  /// The next piece, in the order of the points.
+  /// Adds the next piece, in the order of the points.
   void add(std::size_t file, const PieceBytes& piece);
-  /// After the last piece: by file; none of files without a piece.
+  /// Called after the last piece. Returns a description for each file; nullopt for files without a
+  /// piece.
   std::vector<std::optional<SourceFile>> finish();
 
  private:
@@ -32,9 +33,9 @@ class FileHashes {
   const std::vector<std::filesystem::path>& files_;
   std::vector<bool> wanted_;
   std::vector<std::optional<SourceFile>> found_;
-  std::optional<File> file_;  // the one that is hashed now
+  std::optional<File> file_;  // the file that is being hashed
   std::size_t number_ = 0;
-  std::uint64_t position_ = 0;  // hashed up to here
+  std::uint64_t position_ = 0;  // the file is hashed up to this byte
   std::optional<Xxh64Stream> hash_;
 };
 

@@ -8,12 +8,13 @@
 
 namespace clearway {
 
-/// What differs once a file was written to, or another one has its name: the size in bytes, and
-/// the times of the last change of its contents and of its status, in seconds and nanoseconds. Not
-/// the inode's number, which some network file systems give anew to a file that nobody has open.
+/// State of a file that differs once it was written to or another file has its name: the size in
+/// bytes, and the times of the last change of its contents and of its status, in seconds and
+/// nanoseconds. The inode's number is left out, because some network file systems assign a new one
+/// to a file that nobody has open.
 using FileState = std::array<std::int64_t, 5>;
 
-/// All zero where the file cannot be looked at.
+/// The state of a file; all zero where it cannot be read.
 inline FileState state_of(const std::filesystem::path& path) {
   struct stat found {};
   if (::stat(path.c_str(), &found) != 0) return {};

@@ -13,18 +13,18 @@
 
 namespace clearway {
 
-/// A batch on its way. The first error in the order of the points is thrown where its turn comes,
-/// whichever thread was first to meet one.
+/// A batch in the pipeline. The first error in the order of the points is thrown when its batch's
+/// turn comes, whichever thread met one first.
 struct PassingBatch {
   RecordBatch records;
   QuantaBatch quanta;
   std::exception_ptr error;
 };
 
-/// One reading of the environment, from where it stands to its end.
+/// One reading of the environment, from its current position to its end.
 class EnvironmentPass {
  public:
-  /// files: hashes the files that are read in pieces; null: nobody does.
+  /// files: hashes the files that are read in pieces, or is null.
   EnvironmentPass(EnvironmentSource& environment, int threads, FileHashes* files,
                   StageClocks& clocks, const Progress& progress)
       : environment_(environment),
@@ -36,9 +36,9 @@ class EnvironmentPass {
   StageClocks& clocks() const { return clocks_; }
   std::size_t batches_in_flight() const { return 2 * static_cast<std::size_t>(threads_); }
 
-  /// In order: false at the end.
+  /// Takes the next batch, in order; returns false at the end.
   bool next(PassingBatch& batch);
-  /// Several threads at once: calls `work` with the batch once it is there.
+  /// Reads a batch and calls `work` with it. Several threads may call it at once.
   template <typename Work>
   void convert(PassingBatch& batch, Work work) const {
     try {
@@ -49,9 +49,9 @@ class EnvironmentPass {
       batch.error = std::current_exception();
     }
   }
-  /// In order.
+  /// Hashes the bytes of the batch's piece. Called for the batches in order.
   void hash_file(PassingBatch& batch) const;
-  /// In order, later: throws the batch's error.
+  /// Counts the batch, or throws its error. Called for the batches in order, after hash_file().
   void note(const PassingBatch& batch) const;
 
  private:
@@ -66,8 +66,8 @@ class EnvironmentPass {
 };
 
 /// Reads batches and calls `work` with each, several threads at a time; then `in_order` with each
-/// and what was made of it, one by one in the order of the points; then `last` with what was made,
-/// several threads at a time. Throws Interrupted when the progress asks to stop.
+/// batch and the result of `work`, one by one in the order of the points; then `last` with the
+/// result, several threads at a time. Throws Interrupted when the progress asks to stop.
 template <typename Made, typename Work, typename InOrder, typename Last>
 void for_each_batch(EnvironmentPass pass, Work work, InOrder in_order, Last last) {
   struct Passing : PassingBatch {

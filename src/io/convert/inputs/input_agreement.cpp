@@ -14,18 +14,19 @@ namespace {
 
 using Axes = std::array<double, 3>;
 
-constexpr double kCoarseStep = 0.001;  // metres: coarser ones are worth a warning
+constexpr double kCoarseStep = 0.001;  // metres; coarser steps cause a warning
 
 Axes scale_of(const Quantisation& q) { return {q.scale[0], q.scale[1], q.scale[2]}; }
 
-/// How many quanta `offset` lies above that of `to` on each axis; none where not whole numbers.
+/// The difference of `offset` from that of `to` in quanta on each axis; nullopt where it is not a
+/// whole number.
 std::optional<std::array<std::int64_t, 3>> whole_shift(const double* offset,
                                                        const Quantisation& to) {
   std::array<std::int64_t, 3> shift;
   for (std::size_t k = 0; k < 3; ++k) {
     const double quanta = (offset[k] - to.offset[k]) / to.scale[k];
     const double rounded = std::nearbyint(quanta);
-    // A millionth of a quantum is the noise of offsets written in decimal.
+    // A deviation of a millionth of a quantum is noise of offsets written in decimal.
     if (!(std::abs(quanta - rounded) <= 1e-6 && std::abs(rounded) < 0x1p53)) return std::nullopt;
     shift[k] = static_cast<std::int64_t>(rounded);
   }
@@ -69,7 +70,7 @@ LengthUnit environment_unit_of(const FileUnit& unit) {
                    " m are not read; expected m, ft, ift or us-ft");
 }
 
-/// Inputs that name no unit are in the given one.
+/// The inputs' declarations, where inputs that name no unit are given `unit`.
 std::vector<CloudInfo> with_unit(std::span<const std::filesystem::path> files,
                                  std::span<const CloudInfo> as_read, const FileUnit& unit,
                                  bool ignore) {
@@ -91,7 +92,8 @@ std::vector<CloudInfo> with_unit(std::span<const std::filesystem::path> files,
   return infos;
 }
 
-/// Reads each coordinate reference system once, because many files have the same.
+/// Caches coordinate reference systems, so that each is parsed only once although many files have
+/// the same.
 class CrsNames {
  public:
   const ScanCrs& of(const CloudInfo& info) {
@@ -109,8 +111,8 @@ class CrsNames {
 
 bool names_crs(const CloudInfo& info) { return !info.crs_wkt.empty() || info.crs_epsg != 0; }
 
-/// Whether both inputs certainly have the same one. GeoTIFF keys give the code of the horizontal
-/// part, so only that is compared where an input has no text.
+/// Whether both inputs certainly have the same coordinate reference system. GeoTIFF keys give the
+/// code of the horizontal part, so only that is compared where an input has no well-known text.
 bool has_same_crs(const CloudInfo& a, const CloudInfo& b, CrsNames& names) {
   if (a.crs_wkt == b.crs_wkt && a.crs_epsg == b.crs_epsg) return true;
   const ScanCrs &of_a = names.of(a), &of_b = names.of(b);
@@ -119,15 +121,15 @@ bool has_same_crs(const CloudInfo& a, const CloudInfo& b, CrsNames& names) {
   return code != 0 && code == (texts ? of_b.epsg : of_b.horizontal_epsg);
 }
 
-/// "ETRS89 / UTM zone 32N, EPSG:25832"
+/// A reference system in words: "ETRS89 / UTM zone 32N, EPSG:25832".
 std::string crs_label(const ScanCrs& crs) {
   if (crs.epsg == 0) return crs.name + ", without an EPSG code";
   const std::string code = "EPSG:" + std::to_string(crs.epsg);
   return crs.name == code ? code : crs.name + ", " + code;
 }
 
-/// The first text that any input has. Inputs of other systems than the first one's are warned of,
-/// and none at all is noted.
+/// Chooses the first well-known text that any input has. Warns of inputs in other systems than the
+/// first one's, and notes inputs without any.
 void choose_crs(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
                 CommonCrs& common) {
   const auto first = std::ranges::find_if(infos, names_crs);
@@ -170,7 +172,7 @@ CommonCrs common_crs(std::span<const std::filesystem::path> files,
     if (infos[i].unit_doubt.empty()) continue;
     warn(common, "units-contradict", files[i].string() + ": " + infos[i].unit_doubt);
   }
-  // A "ft" of a text is the foot of another input that says which one it is in.
+  // A "ft" in a text means the foot of another input that says which one it uses.
   const auto says_which = [](const CloudInfo& info) { return has_unit(info) && !info.any_foot; };
   auto known = std::find_if(infos.begin(), infos.end(), has_unit);
   if (known != infos.end() && known->any_foot) {
@@ -181,7 +183,7 @@ CommonCrs common_crs(std::span<const std::filesystem::path> files,
     common.unit = known->unit;
     const auto& first = files[static_cast<std::size_t>(known - infos.begin())];
     for (std::size_t i = 0; i < infos.size() && !ignore; ++i) {
-      // What says nothing is taken for metres.
+      // An input that names no unit is taken to be in metres.
       const bool same_foot = infos[i].any_foot && is_foot(metres_of(common.unit));
       const bool agrees = infos[i].unit == common.unit || same_foot ||
                           (!has_unit(infos[i]) && common.unit == LengthUnit::kMetre);

@@ -12,7 +12,7 @@
 namespace clearway {
 namespace {
 
-/// A pipe can be read only once.
+/// Throws for a pipe, which can be read only once.
 void refuse_pipe(const std::filesystem::path& file) {
   if (std::filesystem::is_regular_file(file)) return;
   throw InputError(file.string() +

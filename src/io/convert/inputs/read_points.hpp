@@ -17,7 +17,7 @@ inline bool is_finite(const Vec3& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-/// Point i of a batch that a reader with this info gave.
+/// The position of point i of a batch from a reader with this info.
 inline Vec3 point_of(const PointBatch& batch, const CloudInfo& info, std::size_t i) {
   if (!info.quantisation) return batch.positions[i];
   const auto& q = batch.quanta[i];

@@ -30,7 +30,7 @@ class SpooledReader final : public PointReader {
 
   bool read_stream(PointBatch& batch) {
     if (!stream_->read(batch)) {
-      info_ = stream_->info();  // a CRS that follows the points is known now
+      info_ = stream_->info();  // a CRS behind the points is known now
       stream_.reset();
       next_ = spooled_;
       return false;
@@ -52,9 +52,9 @@ class SpooledReader final : public PointReader {
   }
 
   CloudInfo info_;
-  std::unique_ptr<PointReader> stream_;  // gone once read to its end
+  std::unique_ptr<PointReader> stream_;  // null once read to its end
   File file_;
-  File classes_;  ///< a byte a point: streams are LAS, which has them
+  File classes_;  ///< one byte per point; streams are LAS, which has classes
   std::uint64_t spooled_ = 0;
   std::uint64_t next_ = 0;
 };

@@ -20,8 +20,8 @@ void decode_floats(const std::byte* at, std::span<double> out) {
   }
 }
 
-/// Unsigned integers of `width` bits, least significant bit first. words_beyond: whether one may
-/// reach into a ninth byte.
+/// Unpacks unsigned integers of `width` bits, least significant bit first. words_beyond: whether an
+/// integer may reach into a ninth byte.
 template <bool words_beyond, typename Use>
 void unpack(const std::byte* bytes, std::uint64_t bit, unsigned width, std::span<double> out,
             Use use) {
@@ -60,7 +60,7 @@ bool E57Cursor::refill(const std::string& file) {
                 "before it");
   }
   const std::size_t consumed = bit_ / 8;
-  const std::size_t kept = bytes_ - consumed;  // less than a record: at most 8 bytes
+  const std::size_t kept = bytes_ - consumed;  // less than a record, thus at most 8 bytes
   bit_ %= 8;
   const auto stream = packets_.stream(stream_);
   std::memmove(buffer_.data(), buffer_.data() + consumed, kept);
@@ -81,7 +81,7 @@ void E57Cursor::decode(std::span<double> out) {
       decode_floats<double>(at, out);
       break;
     case E57Field::Kind::kInteger:
-    case E57Field::Kind::kText:  // never a place
+    case E57Field::Kind::kText:  // fields of text never hold coordinates
       decode_integers(out);
       break;
   }

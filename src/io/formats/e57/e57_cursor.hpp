@@ -8,21 +8,23 @@
 
 namespace clearway {
 
-/// Decodes one field of a scan, record by record. It goes through the packets on its own, so that a
-/// record's fields may lie in different packets, however far apart. Memory: what one packet holds
-/// of the field.
+/// Decodes one field of a scan, record by record. It advances through the packets independently, so
+/// that the fields of a record may lie in different packets, however far apart. Takes as much
+/// memory as one packet holds of the field.
 class E57Cursor {
  public:
-  /// The arguments outlive it. stream: index of the scan's bytestream.
+  /// The arguments must outlive this object. stream: index of the scan's bytestream.
   E57Cursor(E57Packets& packets, const E57Field& field, std::size_t stream);
 
-  /// Records that can be decoded now.
+  /// Number of records that can be decoded now.
   std::uint64_t available() const;
-  /// Where none is available: takes the field's bytes from the next packet. False at the end.
+  /// To be called when no record is available: takes the field's bytes from the next packet.
+  /// Returns false at the end. file: name for messages.
   bool refill(const std::string& file);
-  /// Needs out.size() available records.
+  /// Decodes the next out.size() records, which must be available.
   void decode(std::span<double> out);
-  /// Whether the bits that are left are no padding: hold a whole record that is not 0.
+  /// Whether the bits that are left are more than padding, that is hold a whole record that is not
+  /// 0.
   bool holds_more() const;
 
  private:
@@ -35,7 +37,7 @@ class E57Cursor {
   std::uint64_t next_packet_;
   std::vector<std::byte> buffer_;  ///< zeros behind bytes_, so that whole words can be loaded
   std::size_t bytes_ = 0;
-  std::uint64_t bit_ = 0;  ///< of the next record in buffer_
+  std::uint64_t bit_ = 0;  ///< first bit of the next record in buffer_
 };
 
 }  // namespace clearway

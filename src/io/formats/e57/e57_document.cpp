@@ -10,7 +10,7 @@
 namespace clearway {
 namespace {
 
-/// The numbers of a structure's children; all have to be there.
+/// The numbers of a structure's children, all of which must exist.
 template <std::size_t count>
 std::array<double, count> numbers_of(const E57Xml& xml, pugi::xml_node structure,
                                      const std::array<const char*, count>& names) {
@@ -38,7 +38,8 @@ std::optional<Pose> read_pose(const E57Xml& xml, pugi::xml_node scan) {
   return result;
 }
 
-/// Only for a warning, so what is incomplete or not of type Float counts as absent.
+/// Reads the declared bounds, which serve only for a warning, so that incomplete ones or those not
+/// of type Float count as absent.
 std::optional<Box> read_bounds(const E57Xml& xml, pugi::xml_node scan) {
   const pugi::xml_node bounds = xml.find(scan, "cartesianBounds", "Structure");
   constexpr const char* kNames[3][2] = {

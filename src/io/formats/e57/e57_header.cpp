@@ -76,7 +76,7 @@ E57Container open_e57(File file) {
   const std::size_t page = page_bytes_of(file.name(), header);
   check_size(file, header, page);
   E57Pages pages(std::move(file), page);
-  pages.read(0, header, "the header");  // again, by its page's checksum
+  pages.read(0, header, "the header");  // read again, verified by the page's checksum
   const auto xml_offset = load<std::uint64_t>(header.data() + 24);
   const auto xml_start = pages.logical(xml_offset);
   if (!xml_start || *xml_start < kE57HeaderBytes) {

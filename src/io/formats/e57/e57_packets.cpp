@@ -81,7 +81,7 @@ std::size_t E57Packets::stream_bytes(std::size_t index) const {
 }
 
 void E57Packets::check_lengths() const {
-  if (streams_ == 0) return;  // some writers close a scan without records with such a packet
+  if (streams_ == 0) return;  // some writers end a scan without records with such a packet
   std::size_t used = kDataHeaderBytes + 2 * streams_;
   const bool known = streams_ == scan_.fields.size() && used <= bytes_.size();
   if (!known) {

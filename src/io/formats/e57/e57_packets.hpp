@@ -8,29 +8,29 @@
 
 namespace clearway {
 
-/// The data packets of a scan. They are read in the order of the file; the index is not used, so no
-/// offset in a packet is ever followed. Memory: one packet.
+/// The data packets of a scan, read in the order of the file. The index is not used, so no offset
+/// in a packet is ever followed. Takes the memory of one packet.
 class E57Packets {
  public:
-  static constexpr std::size_t kMostBytes = 65536;  ///< of a packet
+  static constexpr std::size_t kMostBytes = 65536;  ///< greatest size of a packet
 
-  /// The arguments outlive it.
+  /// The arguments must outlive this object.
   E57Packets(E57Pages& pages, const E57Scan& scan, const E57Extent& extent);
 
   std::uint64_t first() const { return extent_.packets; }
-  /// Makes the first data packet at or behind the position of a packet the current one. False at
-  /// the section's end.
+  /// Makes the first data packet at or behind `position`, where some packet must begin, the current
+  /// one. Returns false at the end of the section.
   bool go_to(std::uint64_t position);
-  /// Of the current packet.
+  /// The bytes of a bytestream in the current packet.
   std::span<const std::byte> stream(std::size_t index) const;
-  /// In the file.
+  /// Position of the current packet in the file.
   std::uint64_t physical_position() const { return pages_.physical(start_); }
   std::uint64_t next() const { return next_; }
-  /// Whether its bytestreams do not go on where those of the packet before ended.
+  /// Whether the bytestreams of the current packet do not continue those of the packet before.
   bool restarts() const { return restarts_; }
 
-  /// Reads what is left of the section, and compares the bytes of every bytestream with the scan's
-  /// count of records. Throws InputError where there are fewer, or more.
+  /// Reads the rest of the section and compares the bytes of every bytestream with the scan's
+  /// number of records. Throws InputError where there are fewer or more.
   void check_totals();
 
  private:
@@ -44,11 +44,11 @@ class E57Packets {
   E57Pages& pages_;
   const E57Scan& scan_;
   const E57Extent& extent_;
-  std::vector<std::byte> bytes_;       ///< of the current packet
+  std::vector<std::byte> bytes_;       ///< bytes of the current packet
   std::vector<std::uint64_t> totals_;  ///< bytes of each bytestream up to counted_
   std::uint64_t counted_;
   std::uint64_t start_ = 0;
-  std::uint64_t next_ = 0;  ///< 0: no packet is current
+  std::uint64_t next_ = 0;  ///< position of the next packet; 0 where no packet is current
   std::size_t streams_ = 0;
   bool restarts_ = false;
 };

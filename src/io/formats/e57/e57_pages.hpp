@@ -18,35 +18,36 @@ class E57Pages {
  public:
   static constexpr std::size_t kChecksumBytes = 4;
 
-  /// page_bytes: at most kWindowBytes; the file holds whole pages.
+  /// page_bytes: at most kWindowBytes. The file must consist of whole pages.
   E57Pages(File file, std::size_t page_bytes);
 
   const std::string& name() const { return file_.name(); }
-  /// Logical bytes.
+  /// Size of the content in bytes.
   std::uint64_t size() const { return pages_ * content_; }
   std::uint64_t physical(std::uint64_t logical) const {
     return logical / content_ * page_ + logical % content_;
   }
-  /// None behind the file's end and within a checksum.
+  /// The logical position; nullopt behind the end of the file and within a checksum.
   std::optional<std::uint64_t> logical(std::uint64_t physical) const;
 
-  /// Copies the content from the logical position `at`. what: for the message where the file ends
-  /// before, as "the XML section".
+  /// Copies the content from the logical position `at`. what: names the content in the message
+  /// where the file ends too early, as in "the XML section".
   void read(std::uint64_t at, std::span<std::byte> out, const char* what);
 
-  static constexpr std::size_t kWindowBytes = std::size_t{1} << 17;  ///< read from the file at once
+  /// Bytes read from the file at once.
+  static constexpr std::size_t kWindowBytes = std::size_t{1} << 17;
 
  private:
-  /// The content of a page.
+  /// The content of a page, whose checksum has been verified.
   std::span<const std::byte> verified_page(std::uint64_t page);
 
   File file_;
   std::size_t page_;     ///< bytes of a page
-  std::size_t content_;  ///< those without the checksum
+  std::size_t content_;  ///< bytes of a page without its checksum
   std::uint64_t pages_;
   std::unique_ptr<std::byte[]> window_;
-  std::uint64_t first_ = 0;     ///< page in the window
-  std::vector<bool> verified_;  ///< of the pages in the window
+  std::uint64_t first_ = 0;     ///< first page in the window
+  std::vector<bool> verified_;  ///< whether each page in the window is verified
 };
 
 }  // namespace clearway

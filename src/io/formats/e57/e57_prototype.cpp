@@ -9,13 +9,13 @@
 namespace clearway {
 namespace {
 
-/// In the order of E57Place.
+/// Names of the fields, in the order of E57Place.
 constexpr std::string_view kPlaceNames[] = {
     "cartesianX",     "cartesianY",       "cartesianZ",         "cartesianInvalidState",
     "sphericalRange", "sphericalAzimuth", "sphericalElevation", "sphericalInvalidState"};
 static_assert(std::size(kPlaceNames) == kE57Places);
 
-/// A data packet has no room for the lengths of more bytestreams.
+/// Greatest number of bytestreams; a data packet has no room for the lengths of more.
 constexpr std::size_t kMostStreams = (65536 - 6) / 2;
 
 E57Field integer_field(const E57Xml& xml, pugi::xml_node node, bool scaled) {
@@ -81,13 +81,13 @@ void note_place(const E57Xml& xml, pugi::xml_node node, E57Scan& scan) {
 
 bool is_branch(std::string_view type) { return type == "Structure" || type == "Vector"; }
 
-/// The next element in document order within `top`, behind `node` and what it holds.
+/// The next element in document order within `top` that is neither `node` nor inside it.
 pugi::xml_node next_behind(pugi::xml_node node, pugi::xml_node top) {
   while (node != top && !node.next_sibling()) node = node.parent();
   return node == top ? pugi::xml_node() : node.next_sibling();
 }
 
-/// All of three, or none.
+/// Throws InputError where a scan has some but not all of three fields.
 void check_complete(const E57Xml& xml, pugi::xml_node prototype, const E57Scan& scan,
                     E57Place first, E57Place second, E57Place third) {
   const int found = int{scan.has(first)} + int{scan.has(second)} + int{scan.has(third)};
@@ -100,7 +100,8 @@ void check_complete(const E57Xml& xml, pugi::xml_node prototype, const E57Scan& 
   }
 }
 
-/// Bit packing is all that E57 1.0 defines, and needs no entry.
+/// Throws InputError for codecs other than bit packing, the only one that E57 1.0 defines and which
+/// needs no entry.
 void check_codecs(const E57Xml& xml, pugi::xml_node points) {
   for (const pugi::xml_node codec : xml.find(points, "codecs", "Vector").children()) {
     for (const pugi::xml_node part : codec.children()) {

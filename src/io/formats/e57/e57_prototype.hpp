@@ -5,8 +5,8 @@
 
 namespace clearway {
 
-/// Reads which bytestreams a scan has, and which of them tell the points' places, from the element
-/// `points`. Fields of extensions count as bytestreams and are not read.
+/// Reads from the element `points` which bytestreams a scan has and which of them hold coordinates.
+/// Fields of extensions count as bytestreams and are not read.
 void read_e57_prototype(const E57Xml& xml, pugi::xml_node points, E57Scan& scan);
 
 }  // namespace clearway

@@ -13,7 +13,8 @@
 namespace clearway {
 namespace {
 
-/// Two scans that share packets could make a small file endless.
+/// Throws InputError where scans share packets, with which a small file could hold any number of
+/// points.
 void refuse_shared_sections(const std::string& name, const std::vector<E57Scan>& scans,
                             const std::vector<E57Extent>& extents) {
   std::vector<std::size_t> order;
@@ -32,7 +33,8 @@ void refuse_shared_sections(const std::string& name, const std::vector<E57Scan>&
   }
 }
 
-/// A few bytes of XML could stand for any number of such points. As many as a batch are accepted.
+/// Throws InputError where scans whose points take no bytes have more of them than a batch, because
+/// a few bytes of XML could declare any number.
 void refuse_points_from_nothing(const std::string& name, const std::vector<E57Scan>& scans) {
   std::uint64_t records = 0;
   for (const E57Scan& scan : scans) {
@@ -119,7 +121,7 @@ class E57Reader final : public PointReader {
   CloudInfo info_;
   E57Remarks remarks_;
   std::size_t scan_ = 0;
-  std::unique_ptr<E57ScanReader> reader_;  ///< of scans_[scan_], once it has begun
+  std::unique_ptr<E57ScanReader> reader_;  ///< reader of scans_[scan_]; null before its first point
 };
 
 }  // namespace

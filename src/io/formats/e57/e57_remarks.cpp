@@ -26,7 +26,8 @@ void E57Remarks::add(const E57Scan& scan, const E57Findings& findings) {
   absent_ += findings.absent;
   if (scan.records == 0) ++empty_;
   if (scan.pose && scan.records > 0) ++posed_;
-  // By the standard the bounds are those before the pose; some writers give those after it.
+  // By the standard, bounds are those of the points before the pose is applied; some writers give
+  // those after it.
   if (!scan.bounds || !goes_far_beyond(*scan.bounds, findings.own) ||
       (findings.posed && !goes_far_beyond(*scan.bounds, findings.posed))) {
     return;

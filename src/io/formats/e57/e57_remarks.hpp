@@ -9,15 +9,15 @@
 
 namespace clearway {
 
-/// Gathers what is to be said of a file's scans. Memory does not grow with their number.
+/// Collects remarks on the scans of a file. Memory does not grow with their number.
 class E57Remarks {
  public:
-  /// A scan that was read whole.
+  /// Adds a scan that was read completely.
   void add(const E57Scan& scan, const E57Findings& findings);
-  /// A scan that has no coordinates, and was not read.
+  /// Adds a scan that has no coordinates and was not read.
   void add_without_coordinates() { ++scans_, ++without_coordinates_; }
 
-  /// file: begins each text.
+  /// The remarks. file: the name with which each text begins.
   std::vector<Message> messages(const std::string& file) const;
 
  private:

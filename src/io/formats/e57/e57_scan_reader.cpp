@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNoPosition = std::numeric_limits<double>::quiet_NaN();
 
-/// The smallest box around the finite ones of the points.
+/// Widens the box to hold the finite ones of the points.
 void widen(std::optional<Box>& box, std::span<const Vec3> points) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Box all =
@@ -27,7 +27,8 @@ void widen(std::optional<Box>& box, std::span<const Vec3> points) {
 
 E57ScanReader::E57ScanReader(E57Pages& pages, const E57Scan& scan, const E57Extent& extent)
     : pages_(pages), scan_(scan), packets_(pages, scan, extent) {
-  // Without a state every Cartesian coordinate is valid, so the spherical ones are not needed.
+  // Without a state field, every Cartesian coordinate is valid, so the spherical ones are not
+  // needed.
   const bool only_cartesian = scan.is_cartesian() && !scan.has(kE57CartesianState);
   for (std::size_t place = 0; place < kE57Places; ++place) {
     const std::uint32_t stream = scan.places[place];
@@ -53,7 +54,7 @@ bool E57ScanReader::read(PointBatch& batch) {
   return false;
 }
 
-/// How many records can be decoded from what every field has: one at least.
+/// Number of records for which every field has data, at least one and at most `room`.
 std::size_t E57ScanReader::available(std::size_t room) {
   std::uint64_t count = std::min<std::uint64_t>(room, scan_.records - next_);
   for (auto& cursor : cursors_) {
@@ -97,7 +98,8 @@ Vec3 E57ScanReader::cartesian(std::size_t i) const {
   return {columns_[kE57X][i], columns_[kE57Y][i], columns_[kE57Z][i]};
 }
 
-/// Azimuth from x towards y, elevation from the x-y plane towards z, radians.
+/// The position of a record with spherical coordinates: azimuth from x towards y, elevation from
+/// the x-y plane towards z, in radians.
 Vec3 E57ScanReader::spherical(std::size_t i) const {
   const double range = columns_[kE57Range][i];
   const double azimuth = columns_[kE57Azimuth][i];
@@ -106,7 +108,8 @@ Vec3 E57ScanReader::spherical(std::size_t i) const {
   return {in_plane * std::cos(azimuth), in_plane * std::sin(azimuth), range * std::sin(elevation)};
 }
 
-/// out: points of the batch from index `first` on.
+/// Computes the points of decoded records and lists the absent ones. out: points of the batch from
+/// index `first` on.
 void E57ScanReader::place_points(std::span<Vec3> out, std::size_t first,
                                  std::vector<std::uint32_t>& absent) {
   const bool has_cartesian = cursors_[kE57X].has_value();

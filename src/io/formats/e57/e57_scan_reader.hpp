@@ -12,23 +12,24 @@
 
 namespace clearway {
 
-/// What was found in a scan's records, complete once the scan has been read.
+/// Findings in a scan's records, complete once the scan has been read.
 struct E57Findings {
   std::uint64_t absent = 0;  ///< records without a valid point
   std::optional<Box> own;    ///< box of the finite points, without the pose
-  std::optional<Box> posed;  ///< the same with it
+  std::optional<Box> posed;  ///< box of the finite points, with the pose
 };
 
-/// Reads the points of one scan, its pose applied.
+/// Reads the points of one scan and applies its pose.
 class E57ScanReader {
  public:
-  /// The arguments outlive it. The scan has coordinates.
+  /// The arguments must outlive this object. The scan must have coordinates.
   E57ScanReader(E57Pages& pages, const E57Scan& scan, const E57Extent& extent);
   E57ScanReader(const E57ScanReader&) = delete;
   E57ScanReader& operator=(const E57ScanReader&) = delete;
 
-  /// Appends points until the batch has PointReader::kBatchPoints; false, and nothing appended,
-  /// once all are read and the section has been compared with the scan's count.
+  /// Appends points until the batch has PointReader::kBatchPoints. Returns false, with nothing
+  /// appended, once all are read and the section has been compared with the scan's number of
+  /// records.
   bool read(PointBatch& batch);
   const E57Findings& findings() const { return findings_; }
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kSectionHeaderBytes = 32;
 
-/// The packets must hold every record's bits.
+/// Throws InputError where the packets are too small to hold the bits of every record.
 void check_room(const E57Pages& pages, const E57Scan& scan, const E57Extent& extent) {
   const std::uint64_t room = extent.packet_bytes();
   std::uint64_t needed = 0;
@@ -58,7 +58,7 @@ E57Extent find_e57_section(E57Pages& pages, const E57Scan& scan) {
   const auto offset = load<std::uint64_t>(header.data() + 16);
   const auto packets = pages.logical(offset);
   if (length == kSectionHeaderBytes) {
-    extent.packets = extent.end;  // nothing to point to
+    extent.packets = extent.end;  // there are no packets to point to
   } else if (!packets || *packets < extent.start + kSectionHeaderBytes || *packets >= extent.end) {
     refuse_byte(pages.name(), scan.file_offset,
                 scan.name() + " has its first packet at byte " + std::to_string(offset) +

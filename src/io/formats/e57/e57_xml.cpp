@@ -17,7 +17,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
 }
 
-/// The whole text as a number; a leading + is allowed.
+/// Parses the whole text as a number; a leading + is allowed.
 template <typename Number>
 bool parse_whole(std::string_view text, Number& value) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
@@ -25,7 +25,7 @@ bool parse_whole(std::string_view text, Number& value) {
   const auto [stop, error] = std::from_chars(text.data(), end, value);
   if (stop != end) return false;
   if constexpr (std::is_floating_point_v<Number>) {
-    // Too small for a double is 0; too large is no number.
+    // A number too small for a double becomes 0; one too large is refused.
     if (error == std::errc::result_out_of_range) {
       value = std::strtod(std::string(text).c_str(), nullptr);
       return std::isfinite(value);

@@ -11,13 +11,13 @@
 
 namespace clearway {
 
-/// The XML section of an E57 file. All that it throws is InputError with the byte in the file.
+/// The XML section of an E57 file. Its functions throw only InputError, with the byte in the file.
 /// pugixml skips a document type definition and expands no entity that one declares, so a small
 /// section cannot grow. It does not recurse, so deep nesting is harmless.
 class E57Xml {
  public:
   static constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 26;
-  /// Tags and attributes together, of which pugixml keeps up to 64 bytes each.
+  /// Greatest number of tags and attributes together; pugixml keeps up to 64 bytes for each.
   static constexpr std::uint64_t kMostMarkup = std::uint64_t{1} << 21;
 
   explicit E57Xml(E57Container& file);
@@ -27,17 +27,20 @@ class E57Xml {
 
   [[noreturn]] void refuse_at(pugi::xml_node node, const std::string& what) const;
 
-  /// The child of that name, or an empty node. Refuses a second one and another E57 type.
+  /// The child of that name, or an empty node. Throws for a second child of the name and for
+  /// another E57 type.
   pugi::xml_node find(pugi::xml_node parent, const char* name, std::string_view type) const;
-  /// The same; refuses a missing one.
+  /// The child of that name. Throws for a missing or second child of the name and for another E57
+  /// type.
   pugi::xml_node get(pugi::xml_node parent, const char* name, std::string_view type) const;
   std::string_view type_of(pugi::xml_node node) const;
 
-  /// The number in an element of type Float or Integer; 0 where it is empty, as E57 says.
+  /// The number in an element of type Float or Integer; 0 where the element is empty, as E57
+  /// defines.
   double number(pugi::xml_node node) const;
   std::string text(pugi::xml_node node) const;
 
-  /// Attributes; none where missing.
+  /// An attribute as text or number; nullopt where it is missing.
   std::optional<std::string_view> attribute(pugi::xml_node node, const char* name) const;
   template <typename Number>
   std::optional<Number> number_attribute(pugi::xml_node node, const char* name) const;
@@ -50,7 +53,7 @@ class E57Xml {
                                    std::string_view type) const;
 
   const E57Pages& pages_;
-  std::uint64_t start_;  ///< logical
+  std::uint64_t start_;  ///< logical position of the section
   std::vector<char> bytes_;
   pugi::xml_document document_;
   pugi::xml_node root_;

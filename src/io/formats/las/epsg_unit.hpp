@@ -5,8 +5,8 @@
 
 namespace clearway {
 
-/// Metres of the unit of a projected coordinate reference system by its EPSG code; none where
-/// PROJ's database is not installed or does not know it.
+/// The unit, in metres, of a projected coordinate reference system with this EPSG code; nullopt
+/// where PROJ's database is not installed or lacks the code.
 std::optional<double> unit_of_epsg(std::uint16_t code);
 
 }  // namespace clearway

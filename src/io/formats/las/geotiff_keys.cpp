@@ -10,14 +10,15 @@
 namespace clearway {
 namespace {
 
-constexpr std::uint16_t kModelType = 1024;  // 1 projected, 2 geographic, 3 geocentric
+// Key of the model's type: 1 projected, 2 geographic, 3 geocentric.
+constexpr std::uint16_t kModelType = 1024;
 constexpr std::uint16_t kGeodeticSystem = 2048;
 constexpr std::uint16_t kGeodeticLinearUnit = 2052;
 constexpr std::uint16_t kProjectedSystem = 3072;
 constexpr std::uint16_t kProjectedLinearUnit = 3076;
 constexpr std::uint16_t kVerticalUnit = 4099;
 constexpr std::uint16_t kUserDefined = 32767;
-constexpr std::uint16_t kFirstUnit = 9000, kLastUnit = 9099;  // of EPSG's lengths
+constexpr std::uint16_t kFirstUnit = 9000, kLastUnit = 9099;  // EPSG codes of units of length
 
 /// The value of a key that holds one short; 0 where it is missing.
 std::uint16_t value_of(std::span<const std::byte> directory, std::uint16_t wanted) {
@@ -32,7 +33,7 @@ std::uint16_t value_of(std::span<const std::byte> directory, std::uint16_t wante
   return 0;
 }
 
-/// 0: no unit is named.
+/// The unit of a GeoTIFF key; code 0 names none.
 StatedUnit unit_of(std::uint16_t code) {
   switch (code) {
     case 0:
@@ -46,12 +47,12 @@ StatedUnit unit_of(std::uint16_t code) {
     default:
       break;
   }
-  // Some files have the number of a projection here.
+  // Some files have the code of a projection here.
   const bool is_unit = code >= kFirstUnit && code <= kLastUnit;
   return {LengthUnit::kUnknown, is_unit ? "the GeoTIFF unit " + std::to_string(code) : ""};
 }
 
-/// What the code of the projection says against the unit that a key names.
+/// How the code of the projection contradicts the unit that a key names; empty where it does not.
 std::string doubt_of(std::span<const std::byte> keys) {
   const std::uint16_t code = value_of(keys, kProjectedSystem);
   const StatedUnit named = unit_of(value_of(keys, kProjectedLinearUnit));

@@ -5,7 +5,7 @@
 
 namespace clearway {
 
-/// Where a record of a point format has the point's class.
+/// The position of the class in the records of a point format.
 struct LasClassField {
   std::size_t byte;
   std::uint8_t mask;
@@ -15,7 +15,7 @@ struct LasClassField {
   }
 };
 
-/// Formats 0 to 5 have three flags in the same byte.
+/// The position of the class in a point format. In formats 0 to 5 its byte also holds three flags.
 constexpr LasClassField las_class_field(unsigned point_format) {
   return point_format < 6 ? LasClassField{15, 0x1F} : LasClassField{16, 0xFF};
 }

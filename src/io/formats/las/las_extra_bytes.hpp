@@ -14,10 +14,10 @@ namespace clearway {
 /// Type codes of the specification.
 enum class LasExtraType : std::uint8_t { kUndocumented = 0, kUint32 = 5, kDouble = 10 };
 
-constexpr std::uint16_t kLasExtraBytes = 192;  ///< of a field's description
+constexpr std::uint16_t kLasExtraBytes = 192;  ///< size of a field's description
 using LasExtraDescription = std::array<std::byte, kLasExtraBytes>;
 
-/// Describes a field. bytes: of an undocumented one.
+/// Describes a field of extra bytes. bytes: size of an undocumented one.
 inline LasExtraDescription las_extra_bytes(std::string_view name, LasExtraType type,
                                            std::string_view description, std::uint8_t bytes = 0) {
   constexpr std::size_t kType = 2, kOptions = 3, kName = 4, kText = 160, kTextBytes = 32;
@@ -29,7 +29,7 @@ inline LasExtraDescription las_extra_bytes(std::string_view name, LasExtraType t
   return out;
 }
 
-/// The same of a double, of which a value stands for none.
+/// Describes a field of type double in which the value `none` means that a point has no value.
 inline LasExtraDescription las_extra_bytes(std::string_view name, std::string_view description,
                                            double none) {
   constexpr std::size_t kOptions = 3, kNone = 40;

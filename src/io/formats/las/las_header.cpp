@@ -12,12 +12,13 @@
 namespace clearway {
 namespace {
 
-constexpr std::size_t kHeaderBytes10 = 227;  // LAS 1.0 to 1.2
+constexpr std::size_t kHeaderBytes10 = 227;  // size of the header of LAS 1.0 to 1.2
 constexpr std::size_t kHeaderBytes13 = 235;
 constexpr std::size_t kHeaderBytes14 = 375;
 constexpr std::uint16_t kSmallestRecord[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
-constexpr std::uint16_t kInternalWaveforms = 2;  // of the global encoding
-constexpr unsigned kFormatBits = 0x3F;           // of byte 104; one of the others is set in LAZ
+constexpr std::uint16_t kInternalWaveforms = 2;  // bit of the global encoding
+// Bits of byte 104 that hold the point format; LAZ sets one of the others.
+constexpr unsigned kFormatBits = 0x3F;
 
 std::span<const std::byte> take_header(InputBuffer& input, std::size_t bytes) {
   const auto taken = input.take(bytes);
@@ -26,7 +27,7 @@ std::span<const std::byte> take_header(InputBuffer& input, std::size_t bytes) {
   return taken;
 }
 
-/// Checks the first 227 bytes as far as they decide how the rest is read.
+/// Checks those fields of the first 227 bytes that decide how the rest is read.
 void check_kind(const InputBuffer& input, const std::byte* header) {
   if (std::memcmp(header, "LASF", 4) != 0) {
     refuse_byte(input.name(), 0, "expected the signature LASF of a LAS file");
@@ -76,7 +77,7 @@ Quantisation read_quantisation(const InputBuffer& input, const std::byte* header
   return result;
 }
 
-/// Bounds are stored as the greatest and the least of x, of y and of z.
+/// Reads the bounds, which are stored as the greatest and the least of x, of y and of z.
 std::optional<Box> read_box(const std::byte* bytes) {
   Box box;
   for (int k = 0; k < 3; ++k) {
@@ -87,7 +88,7 @@ std::optional<Box> read_box(const std::byte* bytes) {
   return box;
 }
 
-/// rest: the header from byte 227 on.
+/// Reads the fields of version 1.4. rest: the header from byte 227 on.
 void read_version_14(const InputBuffer& input, std::span<const std::byte> rest,
                      LasPublicHeader& header) {
   const std::byte* bytes = rest.data() - kHeaderBytes10;
@@ -167,7 +168,7 @@ LasPublicHeader read_las_header(InputBuffer& input) {
     read_version_14(input, take_header(input, kHeaderBytes14 - kHeaderBytes10), header);
   } else if (minor == 3 && header.header_bytes >= kHeaderBytes13 && internal_waveforms &&
              !header.compressed) {
-    // LAS 1.3 has one extended record at most: the waveforms. LAZ may name where LAS had them.
+    // LAS 1.3 has at most one extended record, the waveforms. LAZ may state where LAS had them.
     header.tail_offset = load<std::uint64_t>(take_header(input, 8).data());
     header.tail_count = header.tail_offset == 0 ? 0 : 1;
   }

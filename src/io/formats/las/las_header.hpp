@@ -17,20 +17,20 @@ struct LasPublicHeader {
   std::uint16_t header_bytes;
   std::uint32_t points_offset;  ///< byte of the first point record
   std::uint32_t vlr_count;
-  std::uint16_t record_bytes;  ///< of a point record; coordinates are its first 12 bytes
+  std::uint16_t record_bytes;  ///< bytes of a point record, whose first 12 are the coordinates
   std::uint64_t points;
   unsigned point_format;   ///< 0 to 10
-  bool compressed;         ///< LAZ
+  bool compressed;         ///< whether the file is LAZ
   std::uint16_t encoding;  ///< the bits of "global encoding"
   Quantisation quantisation;
-  std::optional<Box> box;     ///< of all points, where it holds finite numbers
+  std::optional<Box> box;     ///< declared box of all points, where it holds finite numbers
   std::uint64_t tail_offset;  ///< byte of the first extended variable length record
-  std::uint32_t tail_count;   ///< number of those records; 0: none
+  std::uint32_t tail_count;   ///< number of extended variable length records
 
   std::uint64_t points_end() const;  ///< byte behind the last point record, if not compressed
 };
 
-/// Refuses a file that ends before what it declares; the input has met its end.
+/// Throws InputError for a file that ends before what it declares; the input has met its end.
 [[noreturn]] void refuse_cut_las(const InputBuffer& input, const std::string& expected);
 
 /// Reads the public header block and leaves the input behind it. Throws InputError for anything

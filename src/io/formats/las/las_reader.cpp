@@ -17,7 +17,7 @@ namespace {
 constexpr const char* kWhyMore =
     "Its writer crashed, or wrote into a pipe and could not go back to the header";
 
-/// Uncompressed points.
+/// Reads uncompressed points.
 class LasReader final : public PointReader {
  public:
   LasReader(InputBuffer input, const LasPublicHeader& header, LasCrs crs)
@@ -89,7 +89,7 @@ class LasReader final : public PointReader {
     return std::min<std::uint64_t>(kBatchPoints, kPieceBytes / header_.record_bytes);
   }
 
-  /// Whole records between the last declared one and `end`.
+  /// Number of whole records between the last declared one and `end`.
   std::uint64_t surplus(std::uint64_t end) const {
     return (end - std::min(end, header_.points_end())) / header_.record_bytes;
   }
@@ -117,7 +117,7 @@ class LasReader final : public PointReader {
                               std::to_string(header_.points_end()) + " bytes");
   }
 
-  /// Of a stream, records behind the last that its header declares.
+  /// Takes records of a stream behind the last one that its header declares.
   std::span<const std::byte> take_more_records() {
     if (input_.can_seek() || header_.tail_count > 0) return {};
     const std::size_t record = header_.record_bytes;
@@ -163,7 +163,8 @@ class LasReader final : public PointReader {
   LasCrs crs_;
   CloudInfo info_;
   InputBuffer::Mark first_point_;
-  std::uint64_t points_;    ///< of a stream, it may become more than the header says
+  /// Number of points; in a stream it may grow beyond what the header declares.
+  std::uint64_t points_;
   std::uint64_t next_ = 0;  ///< point to read next
   bool tail_read_ = false;
 };

@@ -32,7 +32,7 @@ void put_table(ByteWriter& out, std::string_view user, std::uint16_t id,
   out.put_bytes(payload);
 }
 
-/// With the zero byte that ends it.
+/// The bytes of a text, including the zero byte that ends it.
 std::span<const std::byte> text_bytes(const std::string& text) {
   return std::as_bytes(std::span(text.c_str(), text.size() + 1));
 }
@@ -99,14 +99,14 @@ void LasRecordWriter::put_header(ByteWriter& out) const {
   std::uint16_t kept = kGpsTimeBit | kSyntheticReturnsBit;
   if (!format_.geotiff.empty()) kept |= kWktBit;
   out.put_text("LASF", 4);
-  out.put(std::uint16_t{0});  // file source
+  out.put(std::uint16_t{0});  // file source ID
   out.put(static_cast<std::uint16_t>((format_.encoding & kept) | (wkt ? kWktBit : 0)));
-  out.put_text("", 16);  // project
+  out.put_text("", 16);  // project ID
   out.put(std::uint8_t{1});
   out.put(std::uint8_t{4});
   out.put_text("EXTRACTION", kId);
   out.put_text("Clearway", kId);
-  out.put(std::uint32_t{0});  // day and year of creation: equal contents give equal bytes
+  out.put(std::uint32_t{0});  // day and year of creation, so that equal contents give equal bytes
   out.put(kHeaderBytes);
   out.put(kHeaderBytes + tables_bytes());
   const std::size_t tables = (format_.crs_wkt.empty() || wkt_behind_ ? 0 : 1) +
@@ -131,7 +131,7 @@ void LasRecordWriter::put_counts(ByteWriter& out) const {
   }
   const std::uint64_t points_end =
       kHeaderBytes + tables_bytes() + points_ * std::uint64_t{format_.record_bytes};
-  out.put(std::uint64_t{0});  // waveforms
+  out.put(std::uint64_t{0});  // start of waveform data
   out.put(wkt_behind_ ? points_end : 0);
   out.put(static_cast<std::uint32_t>(wkt_behind_ ? 1 : 0));
   out.put(points_);

@@ -14,25 +14,26 @@
 
 namespace clearway {
 
-/// Of the records that a LasRecordWriter takes.
+/// Format of the records that a LasRecordWriter takes.
 struct LasRecordFormat {
   unsigned point_format = 6;  ///< 0 to 10
   std::uint16_t record_bytes = 30;
-  std::uint16_t encoding = 0;  ///< "global encoding" of the file they come from
+  std::uint16_t encoding = 0;  ///< "global encoding" of the file that the records come from
   Quantisation quantisation{};
-  std::vector<std::byte> extra_bytes{};  ///< descriptions of what is behind the format's own fields
-  std::string crs_wkt{};                 ///< where it is empty, geotiff counts
+  /// Descriptions of the extra bytes behind the format's own fields.
+  std::vector<std::byte> extra_bytes{};
+  std::string crs_wkt{};  ///< CRS as well-known text; where empty, geotiff is used
   std::vector<LasRecord> geotiff{};
 };
 
-/// Writes a LAS 1.4 file of point records as they are given, front to back; the header, with bounds
-/// and counts of returns, at last. Equal records give equal bytes. The file can seek, stands at its
-/// start and stays the caller's.
+/// Writes a LAS 1.4 file of given point records, front to back. The header with bounds and numbers
+/// of returns is written last, so the file must be able to seek; it stands at its start and is
+/// owned by the caller. Equal records give equal bytes.
 class LasRecordWriter {
  public:
   LasRecordWriter(const File& file, LasRecordFormat format);
 
-  /// A record of format.record_bytes bytes.
+  /// Writes a record of format.record_bytes bytes.
   void write(std::span<const std::byte> record);
   void finish();
 
@@ -45,7 +46,7 @@ class LasRecordWriter {
 
   const File& file_;
   LasRecordFormat format_;
-  bool wkt_behind_;  ///< too long for a record before the points
+  bool wkt_behind_;  ///< whether the CRS's text is too long for a record before the points
   ByteWriter out_;
   std::uint64_t points_ = 0;
   std::array<std::uint64_t, 15> by_return_{};

@@ -11,13 +11,13 @@
 namespace clearway {
 namespace {
 
-/// A user id or a text of fixed length, padded with zeros.
+/// Reads a user id or another text of fixed length, padded with zeros.
 std::string_view padded_text(std::span<const std::byte> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   return text.substr(0, text.find('\0'));
 }
 
-/// Keeps what a record says of the CRS. payload: all of the record behind its header.
+/// Takes the CRS from a record. payload: the whole record behind its header.
 void note_record(std::string_view user, unsigned id, std::span<const std::byte> payload,
                  LasCrs& crs) {
   constexpr unsigned kWkt = 2112;
@@ -33,7 +33,7 @@ void note_record(std::string_view user, unsigned id, std::span<const std::byte> 
   if (wkt && wkt->empty()) *wkt = padded_text(payload);
 }
 
-/// The first record of each kind that copies of points need.
+/// Keeps the first record of each kind that copies of points need.
 void keep_record(const std::string& user, unsigned id, std::span<const std::byte> payload,
                  LasRecords& records) {
   constexpr unsigned kExtraBytes = 4, kGeoKeys = 34735, kGeoTexts = 34737;

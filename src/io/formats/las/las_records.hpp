@@ -12,18 +12,18 @@
 
 namespace clearway {
 
-/// What the variable length records say of the coordinate reference system.
+/// The coordinate reference system in the variable length records.
 struct LasCrs {
-  std::string wkt;          ///< of user LASF_Projection
-  std::string foreign_wkt;  ///< the same record as liblas repeats it
+  std::string wkt;          ///< from the record of user LASF_Projection
+  std::string foreign_wkt;  ///< from the copy of that record that liblas writes
   CrsUnits geotiff;
-  std::uint16_t geotiff_epsg = 0;  ///< code that the GeoTIFF keys name; 0: none
+  std::uint16_t geotiff_epsg = 0;  ///< EPSG code in the GeoTIFF keys; 0 for none
 
-  /// Sets info's CRS and unit; well-known text counts more than GeoTIFF keys.
+  /// Sets the CRS and unit of `info`; well-known text takes precedence over GeoTIFF keys.
   void describe(CloudInfo& info) const;
 };
 
-/// A variable length record.
+/// A variable length record: user id, record id and contents.
 struct LasRecord {
   std::string user;
   std::uint16_t id = 0;
@@ -31,19 +31,19 @@ struct LasRecord {
   friend bool operator==(const LasRecord&, const LasRecord&) = default;
 };
 
-/// What is kept of the records before the points.
+/// Contents of the records before the points.
 struct LasRecords {
   LasCrs crs;
-  std::vector<std::byte> laz;  ///< how the points are compressed; empty where nothing says so
+  std::vector<std::byte> laz;  ///< record of the points' compression; empty where there is none
   std::vector<std::byte> extra_bytes;  ///< descriptions of the points' extra bytes
-  std::vector<LasRecord> geotiff;      ///< the CRS in GeoTIFF's three records, where they are there
+  std::vector<LasRecord> geotiff;      ///< up to three GeoTIFF records of the CRS
 };
 
 /// Reads the variable length records and leaves the input at the first point record.
 void read_las_vlrs(InputBuffer& input, const LasPublicHeader& header, LasRecords& records);
 
-/// Reads the extended variable length records from the input's position, which must not be behind
-/// the first of them. Throws InputError where they do not end within the file.
+/// Reads the extended variable length records. The input must not be behind the first of them.
+/// Throws InputError where they do not end within the file.
 void read_las_tail(InputBuffer& input, const LasPublicHeader& header, LasCrs& crs);
 
 }  // namespace clearway

@@ -17,7 +17,7 @@ bool is_compressed(InputBuffer& stream) {
          load<std::uint8_t>(head.data() + kFormatByte) >= 0x40;
 }
 
-/// All bytes of the stream, in a file without a name of its own.
+/// Copies all bytes of the stream into a file without a name.
 InputBuffer spool_bytes(InputBuffer stream, const std::filesystem::path& folder) {
   const File spooled = File::create_temporary(folder);
   for (auto bytes = stream.take_some(); !bytes.empty(); bytes = stream.take_some()) {

@@ -19,11 +19,12 @@ constexpr const char* kWktUser = "LASF_Projection";
 constexpr std::uint16_t kWktRecord = 2112;
 constexpr const char* kWktDescription = "OGC coordinate system WKT";
 
-/// Where everything is, from the header alone.
+/// The layout of the file, which follows from the header.
 struct Layout {
   bool version_14;
-  bool wkt_vlr;   ///< the CRS as a record before the points
-  bool wkt_evlr;  ///< or, where it is too long for that, after them
+  bool wkt_vlr;  ///< whether the CRS is a record before the points
+  /// Whether the CRS is a record behind the points, because it is too long for one before.
+  bool wkt_evlr;
   std::uint64_t wkt_bytes;
   std::uint16_t record_bytes;
   std::uint16_t extra_fields;
@@ -35,7 +36,8 @@ Layout layout_of(const LasHeader& header) {
   Layout out{};
   out.version_14 = header.points > std::numeric_limits<std::uint32_t>::max() ||
                    !header.crs_wkt.empty() || header.first_pose || header.distance || header.body;
-  out.wkt_bytes = header.crs_wkt.empty() ? 0 : header.crs_wkt.size() + 1;  // with its zero byte
+  // Including its zero byte.
+  out.wkt_bytes = header.crs_wkt.empty() ? 0 : header.crs_wkt.size() + 1;
   out.wkt_evlr = out.wkt_bytes > std::numeric_limits<std::uint16_t>::max();
   out.wkt_vlr = out.wkt_bytes > 0 && !out.wkt_evlr;
   out.extra_fields = static_cast<std::uint16_t>((header.first_pose ? 1 : 0) +
@@ -54,14 +56,14 @@ Layout layout_of(const LasHeader& header) {
 
 void put_start(ByteWriter& out, const Layout& layout) {
   out.put_text("LASF", 4);
-  out.put(std::uint16_t{0});  // file source
+  out.put(std::uint16_t{0});  // file source ID
   out.put(static_cast<std::uint16_t>(layout.version_14 ? kWktFlag : 0));
-  out.put_text("", 16);  // project
+  out.put_text("", 16);  // project ID
   out.put(std::uint8_t{1});
   out.put(static_cast<std::uint8_t>(layout.version_14 ? 4 : 2));
   out.put_text("OTHER", kIdBytes);
   out.put_text("Clearway", kIdBytes);
-  out.put(std::uint16_t{0});  // day and year of creation: equal contents give equal bytes
+  out.put(std::uint16_t{0});  // day and year of creation, so that equal contents give equal bytes
   out.put(std::uint16_t{0});
   out.put(layout.version_14 ? kHeaderSize14 : kHeaderSize12);
   out.put(layout.points_offset);
@@ -70,11 +72,11 @@ void put_start(ByteWriter& out, const Layout& layout) {
   out.put(layout.record_bytes);
 }
 
-/// The 32-bit counts, which point format 6 leaves zero.
+/// Writes the 32-bit counts, which are zero for point format 6.
 void put_short_counts(ByteWriter& out, const Layout& layout, std::uint64_t points) {
   const auto count = static_cast<std::uint32_t>(layout.version_14 ? 0 : points);
   out.put(count);
-  out.put(count);  // of first returns, then of the others
+  out.put(count);  // number of first returns, then of the others
   for (int i = 1; i < 5; ++i) out.put(std::uint32_t{0});
 }
 
@@ -89,11 +91,11 @@ void put_geometry(ByteWriter& out, const LasHeader& header) {
 }
 
 void put_long_counts(ByteWriter& out, const Layout& layout, std::uint64_t points) {
-  out.put(std::uint64_t{0});  // waveforms
+  out.put(std::uint64_t{0});  // start of waveform data
   out.put(layout.wkt_evlr ? layout.points_offset + points * layout.record_bytes : 0);
   out.put(static_cast<std::uint32_t>(layout.wkt_evlr ? 1 : 0));
   out.put(points);
-  out.put(points);  // of first returns, then of the others
+  out.put(points);  // number of first returns, then of the others
   for (int i = 1; i < 15; ++i) out.put(std::uint64_t{0});
 }
 
@@ -133,7 +135,7 @@ struct LasWriter::State {
     if (layout.version_14) {
       struct {
         std::uint16_t intensity = 0;
-        std::uint8_t returns = 0x11;  // the first of one
+        std::uint8_t returns = 0x11;  // first return of one
         std::uint8_t rest[15] = {};
       } const tail;
       static_assert(sizeof tail == kRecordBytes6 - 12);

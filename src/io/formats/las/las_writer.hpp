@@ -12,18 +12,19 @@
 
 namespace clearway {
 
-/// What a LAS file's header has to say before the first point is written.
+/// Contents of a LAS file's header, which must be known before the first point is written.
 struct LasHeader {
   Quantisation quantisation;
   std::uint64_t points = 0;
-  QuantumBox bounds{};      ///< holds every point; ignored for 0 points
-  std::string crs_wkt{};    ///< empty: none
+  QuantumBox bounds{};      ///< box of all points; ignored for 0 points
+  std::string crs_wkt{};    ///< CRS; empty for none
   bool first_pose = false;  ///< adds the extra-bytes field "first_pose", uint32
   bool distance = false;    ///< adds the extra-bytes fields "distance", double, and "pose", uint32
   bool body = false;        ///< adds the extra-bytes field "body", uint32
 };
 
-/// Of some points, each as many as there are points where the header has it, none otherwise.
+/// Additional values of consecutive points. A span has one value per point where the header has the
+/// field, and is empty otherwise.
 struct LasExtras {
   std::span<const std::uint32_t> first_pose{};
   std::span<const double> distance{};
@@ -32,9 +33,9 @@ struct LasExtras {
 };
 
 /// Writes LAS front to back, so that the output may be a pipe: version 1.2 with point format 0, or
-/// 1.4 with point format 6 where the count exceeds 32 bits, there is a CRS or there are extra bytes
-/// (defined since 1.4). Equal contents give equal bytes: no date is written.
-/// Buffered; the file stays the caller's.
+/// 1.4 with point format 6 where the count exceeds 32 bits or where there is a CRS or extra bytes
+/// (defined since 1.4). Equal contents give equal bytes, as no date is written. Output is buffered;
+/// the caller owns the file.
 class LasWriter {
  public:
   LasWriter(const File& file, const LasHeader& header);

@@ -13,7 +13,7 @@ namespace clearway::laz {
 
 using Quanta = std::array<std::int32_t, 3>;
 
-/// Room for points and, in the same order, their classes; each has `count`.
+/// Room for `count` points and, in the same order, their classes.
 struct PointRoom {
   Quanta* quanta = nullptr;
   std::uint8_t* classes = nullptr;
@@ -25,33 +25,35 @@ struct PointRoom {
   }
 };
 
-/// Some points, compressed on their own.
+/// A chunk: points that are compressed independently of others.
 struct Chunk {
   std::uint64_t begin = 0;  ///< position in the file
-  std::uint64_t end = 0;    ///< where it ends, or must not go beyond where ends_there is false
+  /// Position behind the chunk, or where ends_there is false an upper bound of it.
+  std::uint64_t end = 0;
   std::uint64_t points = 0;
   bool ends_there = true;
 };
 
-/// Decodes chunks, one after the other, each in pieces of any size. Memory does not depend on what
-/// a chunk says of itself. All throw DamagedChunk.
+/// Decodes chunks one after the other, each in pieces of any size. Memory does not depend on what a
+/// chunk declares. All functions throw DamagedChunk.
 class ChunkDecoder {
  public:
   virtual ~ChunkDecoder() = default;
-  /// Before the first point of a chunk of one point or more. The input must outlive its use.
+  /// Begins a chunk of one point or more. The input must outlive its use.
   virtual void begin(const InputBuffer& input, const Chunk& chunk) = 0;
-  /// The next points of the chunk; no more than it has left.
+  /// Decodes the next points of the chunk, of which there must be as many.
   virtual void decode(PointRoom points) = 0;
-  /// Behind its last point: whether the chunk ends where it should. Returns where it ends.
+  /// Called behind the chunk's last point. Returns the position where the chunk ends; throws where
+  /// that is wrong.
   virtual std::uint64_t finish() = 0;
 };
 
-/// A decoder for the items and the kind of chunks of a file.
+/// Makes a decoder for the items and the kind of chunks of a file.
 std::unique_ptr<ChunkDecoder> make_chunk_decoder(const Scheme& scheme);
 std::unique_ptr<ChunkDecoder> make_pointwise_decoder(const Scheme& scheme);
 std::unique_ptr<ChunkDecoder> make_layered_decoder(const Scheme& scheme);
 
-/// What to say where a run of bytes is not used up.
+/// The error for a run of bytes that is not used up.
 DamagedChunk unused_bytes(std::uint64_t bytes);
 
 }  // namespace clearway::laz

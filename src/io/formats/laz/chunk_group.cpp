@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t kMostPointsOfChunk = 1 << 18;  // 3 MiB
 constexpr std::uint64_t kPointsPerThread = 1 << 17;    // two chunks of the usual size
-constexpr std::uint16_t kMostRecordBytes = 1 << 10;    // a decoder has 1.6 KB a extra byte
+constexpr std::uint16_t kMostRecordBytes = 1 << 10;    // a decoder takes 1.6 KB for each extra byte
 
 std::uint64_t threads() {
   return static_cast<std::uint64_t>(std::max(1, tbb::this_task_arena::max_concurrency()));
@@ -58,7 +58,8 @@ std::size_t ChunkGroups::decode(const InputBuffer& input, std::span<const Chunk>
       damages[i] = damage;
     }
   };
-  // Reads happen in a stage of a pipeline: a thread that waits here must not begin another stage.
+  // Reading happens in a stage of a pipeline, so a thread that waits here must not begin another
+  // stage.
   tbb::this_task_arena::isolate([&] {
     const ParallelScope scope;
     const auto piece = piece_of(scope, decode_one);

@@ -12,22 +12,25 @@
 
 namespace clearway::laz {
 
-/// Decodes consecutive chunks at once, on the threads of the caller's oneTBB arena.
+/// Decodes consecutive chunks at the same time, on the threads of the caller's oneTBB arena.
 class ChunkGroups {
  public:
   explicit ChunkGroups(const Scheme& scheme);
 
-  /// Whether chunks of so many points are decoded in groups, that is kept in memory as a whole.
+  /// Whether a chunk has few enough points to be decoded in groups, and so to be kept in memory as
+  /// a whole.
   bool takes(const Chunk& chunk) const;
-  /// Decodes chunks from the first on: as many as memory and threads suggest, at least one, all of
-  /// which takes() accepts. Returns their number; points() are theirs then. `first`: the first
-  /// one's index, for messages. Throws InputError for the first chunk that is damaged.
+  /// Decodes the first ones of `chunks`, all of which takes() accepts: as many as memory and
+  /// threads suggest, at least one. Returns their number; points() and classes() are then theirs.
+  /// first: index of the first chunk in the file, and count: number of all chunks, for messages.
+  /// Throws InputError for the first chunk that is damaged.
   std::size_t decode(const InputBuffer& input, std::span<const Chunk> chunks, std::size_t first,
                      std::size_t count);
-  /// Decodes one chunk that takes() accepts, several threads at once. Throws DamagedChunk.
+  /// Decodes one chunk that takes() accepts. Several threads may call it at once. Throws
+  /// DamagedChunk.
   void decode_alone(const InputBuffer& input, const Chunk& chunk, PointRoom points);
   std::span<const Quanta> points() const { return points_; }
-  std::span<const std::uint8_t> classes() const { return classes_; }  ///< of the points
+  std::span<const std::uint8_t> classes() const { return classes_; }  ///< classes of points()
 
  private:
   bool one_at_a_time_;
@@ -36,7 +39,8 @@ class ChunkGroups {
   tbb::enumerable_thread_specific<std::unique_ptr<ChunkDecoder>> decoders_;
 };
 
-/// Throws InputError "name: chunk 12 of 80: what; expected...". index: from 0; count 0: unknown.
+/// Throws InputError "name: chunk 12 of 80: what; expected...". index: the chunk's, from 0. count:
+/// number of chunks; 0 where it is not known.
 [[noreturn]] void refuse_chunk(const std::string& name, std::uint64_t index, std::uint64_t count,
                                const DamagedChunk& damage);
 

@@ -21,7 +21,7 @@ Number number_at(const InputBuffer& input, std::uint64_t position) {
   return load<Number>(bytes.data());
 }
 
-/// Where the table begins; none where there is none.
+/// Position of the table; nullopt where there is none.
 std::optional<std::uint64_t> find_table(const InputBuffer& input, const PointBytes& bytes) {
   const std::uint64_t first_chunk = bytes.begin + kPointerBytes;
   if (bytes.end < first_chunk) {
@@ -30,10 +30,10 @@ std::optional<std::uint64_t> find_table(const InputBuffer& input, const PointByt
                              std::to_string(bytes.begin));
   }
   auto table = number_at<std::uint64_t>(input, bytes.begin);
-  // Not written yet: a writer that was interrupted.
+  // The table was not written, because the writer was interrupted.
   if (table == bytes.begin || table == 0) return std::nullopt;
   if (table == ~std::uint64_t{0}) {
-    // A writer that cannot go back puts the place behind the table, at the end of the file.
+    // A writer that cannot go back puts the position behind the table, at the end of the file.
     const std::uint64_t size = *input.size();
     if (size < first_chunk + kHeadBytes + kPointerBytes) return std::nullopt;
     table = number_at<std::uint64_t>(input, size - kPointerBytes);
@@ -49,7 +49,7 @@ std::optional<std::uint64_t> find_table(const InputBuffer& input, const PointByt
   return table;
 }
 
-/// The entries of a table, one after the other.
+/// Decodes the entries of a table one after the other.
 class Entries {
  public:
   Entries(const InputBuffer& input, std::uint64_t begin, std::uint64_t end, const Scheme& scheme)
@@ -57,7 +57,7 @@ class Entries {
         model_(std::make_unique<IntegerModel<32, 2>>(fresh<IntegerModel<32, 2>>())),
         decoder_(window_.open(input, begin, end, kMostBytes)) {}
 
-  /// The next chunk's points and bytes.
+  /// The numbers of points and bytes of the next chunk.
   std::pair<std::uint32_t, std::uint32_t> next() {
     decoder_.move_to(window_.ahead(decoder_.cursor()));
     points_ = fixed_points_ ? *fixed_points_ : model_->decode(decoder_, points_, 0);
@@ -100,7 +100,7 @@ std::vector<Chunk> read_entries(const InputBuffer& input, const Scheme& scheme,
   std::uint64_t points = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     auto [chunk_points, chunk_bytes] = entries.next();
-    // The last chunk of those with a fixed number has the rest.
+    // Where chunks have a fixed number of points, the last one has the rest.
     if (scheme.chunk_points && points < bytes.points) {
       chunk_points =
           static_cast<std::uint32_t>(std::min<std::uint64_t>(chunk_points, bytes.points - points));
@@ -136,7 +136,8 @@ std::optional<std::vector<Chunk>> read_chunk_table(const InputBuffer& input, con
   const auto version = number_at<std::uint32_t>(input, *table);
   const auto count = number_at<std::uint32_t>(input, *table + 4);
   const std::uint64_t room = *table - bytes.begin - kPointerBytes;
-  if (room == 0 && bytes.points == 0) return std::vector<Chunk>{};  // some name an empty chunk
+  // Some files list an empty chunk.
+  if (room == 0 && bytes.points == 0) return std::vector<Chunk>{};
   if (version != 0 || count > room / scheme.record_bytes) {
     refuse_byte(input.name(), *table,
                 "a chunk table of version " + std::to_string(version) + " with " +

@@ -1,5 +1,5 @@
-// Point formats 6 to 10: the attributes of a chunk's points lie in layers of their own, so only
-// those of the coordinates and of the class are read.
+// Decoder for point formats 6 to 10. The attributes of a chunk's points are in separate layers, so
+// only those of the coordinates and of the class are read.
 #include <array>
 
 #include "io/formats/byte_load.hpp"
@@ -10,7 +10,7 @@
 namespace clearway::laz {
 namespace {
 
-/// A layer: a stream of its own.
+/// A layer, which is a stream of its own.
 struct Layer {
   std::uint64_t end = 0;
   ByteWindow window;
@@ -36,7 +36,7 @@ class LayeredDecoder final : public ChunkDecoder {
         plane_.window.open(input, chunk.begin, chunk.end, scheme_.record_bytes + kReserve);
     const auto record = plane_.window.take(cursor, scheme_.record_bytes);
     first_ = load<Quanta>(record.data());
-    // The window's bytes move with the next take().
+    // Copied, because the next take() moves the window's bytes.
     std::array<std::byte, kPointBytes> point;
     std::copy_n(record.begin(), kPointBytes, point.begin());
     class_ = las_class_field(6).of(point.data());
@@ -119,7 +119,7 @@ class LayeredDecoder final : public ChunkDecoder {
     return load<std::uint32_t>(plane_.window.take(cursor, 4).data());
   }
 
-  /// The sizes of the first three layers. Leaves that of all in layers_bytes_.
+  /// Takes the sizes of the first three layers, and sets layers_bytes_ to the size of all.
   std::array<std::uint64_t, 3> take_sizes(const std::byte*& cursor) {
     std::array<std::uint64_t, 3> sizes{};
     layers_bytes_ = 0;
@@ -135,7 +135,8 @@ class LayeredDecoder final : public ChunkDecoder {
   Layer plane_, heights_, classes_;
   Point14 point_;
   Quanta first_{};
-  std::uint8_t class_ = 0;  ///< of the first point, and of all without the layer
+  /// Class of the first point, and of all points where there is no layer of classes.
+  std::uint8_t class_ = 0;
   std::uint64_t layers_bytes_ = 0;
   std::uint64_t end_ = 0;
   bool is_first_ = false, has_more_ = false, has_heights_ = false, has_classes_ = false;

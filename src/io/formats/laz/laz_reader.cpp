@@ -15,14 +15,14 @@ using laz::Chunk;
 using laz::Quanta;
 using laz::Scheme;
 
-/// The batch's points from `first` on, of which there are to be `count`.
+/// Makes room in the batch for `count` points from index `first` on.
 laz::PointRoom room_in(PointBatch& batch, std::size_t first, std::size_t count) {
   batch.quanta.resize(first + count);
   batch.classes.resize(first + count);
   return {batch.quanta.data() + first, batch.classes.data() + first, count};
 }
 
-/// Of a file with a chunk table.
+/// Reads a file with a chunk table.
 class TabledReader final : public PointReader {
  public:
   TabledReader(InputBuffer input, const Scheme& scheme, std::vector<Chunk> chunks, CloudInfo info)
@@ -93,7 +93,7 @@ class TabledReader final : public PointReader {
   }
 
  private:
-  /// Pieces of some chunks each; none where a chunk is too large to be decoded as a whole.
+  /// Forms pieces of several chunks each; none where a chunk is too large to be decoded as a whole.
   void find_pieces() {
     std::uint64_t points = 0, bytes = 0;
     for (std::size_t i = 0; i < chunks_.size(); ++i) {
@@ -117,7 +117,7 @@ class TabledReader final : public PointReader {
   }
 
   static constexpr std::uint64_t kMostChunkBytes = std::uint64_t{4} << 20;
-  /// Appends points of a chunk too large for a group, as many as there is room for.
+  /// Appends points of a chunk that is too large for a group, as many as there is room for.
   void read_large(PointBatch& batch) {
     try {
       const Chunk& chunk = chunks_[next_];
@@ -140,17 +140,20 @@ class TabledReader final : public PointReader {
 
   InputBuffer input_;
   std::vector<Chunk> chunks_;
-  std::vector<std::size_t> piece_ends_;  ///< chunk behind each piece; empty: only read() can
+  /// Index of the chunk behind each piece; empty where only read() works.
+  std::vector<std::size_t> piece_ends_;
   CloudInfo info_;
   Scheme scheme_;
   laz::ChunkGroups groups_;
-  std::span<const Quanta> ready_;              ///< of the group decoded last
-  std::size_t next_ = 0;                       ///< chunk to decode next
-  std::unique_ptr<laz::ChunkDecoder> stream_;  ///< none before it is first needed
-  std::uint64_t left_ = 0;                     ///< points of the chunk that it is in
+  std::span<const Quanta> ready_;  ///< points of the last decoded group that are not delivered yet
+  std::size_t next_ = 0;           ///< chunk to decode next
+  /// Decoder of large chunks; null before it is first needed.
+  std::unique_ptr<laz::ChunkDecoder> stream_;
+  std::uint64_t left_ = 0;  ///< points left in the large chunk that stream_ is decoding
 };
 
-/// Of a file without a chunk table: where a chunk begins is known once the one before was decoded.
+/// Reads a file without a chunk table, where the position of a chunk is known only once the one
+/// before was decoded.
 class UntabledReader final : public PointReader {
  public:
   UntabledReader(InputBuffer input, const Scheme& scheme, const laz::PointBytes& bytes,
@@ -207,7 +210,8 @@ class UntabledReader final : public PointReader {
     return points;
   }
 
-  /// Refuses what may be more points: a whole record, and not a chunk table that nobody points at.
+  /// Throws InputError where more points may follow: a whole record, unless it may be a chunk table
+  /// to which nothing points.
   void check_end() const {
     const std::uint64_t left = bytes_.end - std::min(bytes_.end, position_);
     if (left < scheme_.record_bytes) return;
@@ -229,10 +233,10 @@ class UntabledReader final : public PointReader {
   laz::PointBytes bytes_;
   CloudInfo info_;
   std::unique_ptr<laz::ChunkDecoder> decoder_;
-  std::uint64_t position_ = 0;  ///< of the chunk to read next
+  std::uint64_t position_ = 0;  ///< position of the chunk to read next
   std::uint64_t chunk_ = 0;
-  std::uint64_t read_ = 0;  ///< points
-  std::uint64_t left_ = 0;  ///< points of the current chunk
+  std::uint64_t read_ = 0;  ///< number of points read
+  std::uint64_t left_ = 0;  ///< points left in the current chunk
 };
 
 }  // namespace

@@ -10,9 +10,9 @@
 
 namespace clearway {
 
-/// Reads the points of a LAZ file, whose header has been read: `info` is what it says. The input
-/// can seek. Several chunks at once, on the threads of the caller's oneTBB arena; memory is bounded
-/// by their number, not by what the file says. Throws InputError with the chunk.
+/// Reads the points of a LAZ file whose header has been read into `info`. The input must be able to
+/// seek. Several chunks are decoded at once, on the threads of the caller's oneTBB arena; memory is
+/// bounded by their number, not by what the file declares. Throws InputError with the chunk.
 std::unique_ptr<PointReader> read_laz_points(InputBuffer input, const laz::Scheme& scheme,
                                              const laz::PointBytes& bytes, CloudInfo info);
 

@@ -10,8 +10,8 @@ struct DeclaredItem {
   unsigned type, bytes, version;
 };
 
-/// What is known of an item type: its size (0: any), the versions that are read, the layers of a
-/// chunk (0: not layered; kEveryByte: one for each byte), and its place in the order of a record.
+/// An item type: its size (0: any), the versions that are read, the layers of a chunk (0: not
+/// layered; kEveryByte: one for each byte), and its place in the order of a record.
 struct ItemKind {
   const char* name;
   unsigned type, bytes;

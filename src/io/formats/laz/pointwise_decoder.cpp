@@ -1,5 +1,5 @@
-// Point formats 0 to 5: the items of a point follow each other in one stream, so all of them have
-// to be decoded.
+// Decoder for point formats 0 to 5. The items of a point follow each other in one stream, so all of
+// them must be decoded.
 #include <optional>
 
 #include "io/formats/las/las_class.hpp"
@@ -11,7 +11,7 @@
 namespace clearway::laz {
 namespace {
 
-/// An item of either version, or none.
+/// An item of version 1 or 2, or none.
 template <typename Version1, typename Version2>
 class Item {
  public:
@@ -34,7 +34,7 @@ class Item {
   std::optional<Version2> second_;
 };
 
-/// Everything behind POINT10.
+/// All items behind POINT10.
 class OtherItems {
  public:
   explicit OtherItems(const Scheme& scheme)

@@ -79,7 +79,8 @@ std::optional<MeshFormat> mesh_format_of(const File& file, const std::filesystem
   if (text.starts_with("glTF")) refuse_format(file, "glTF");
   if (text.starts_with("ISO-10303-21")) refuse_format(file, "STEP (also of IFC)");
   const std::string ending = file_ending(path);
-  if (ending == ".stl") return MeshFormat::kStl;  // a binary one may begin with any text
+  // Decided by the name, because a binary file may begin with any text.
+  if (ending == ".stl") return MeshFormat::kStl;
   if (const auto format = format_of_text(text)) return format;
   if (ending == ".obj") return MeshFormat::kObj;
   if (ending == ".off") return MeshFormat::kOff;

@@ -14,7 +14,7 @@
 namespace clearway {
 namespace {
 
-constexpr std::size_t kLongestStatement = std::size_t{1} << 20;  // bytes, continued lines included
+constexpr std::size_t kLongestStatement = std::size_t{1} << 20;  // bytes, including continued lines
 
 /// Statements that change neither vertices nor faces.
 constexpr std::string_view kIgnored[] = {
@@ -22,7 +22,7 @@ constexpr std::string_view kIgnored[] = {
     "mtllib", "usemtl",     "maplib",    "usemap", "bevel", "c_interp", "d_interp",
     "lod",    "shadow_obj", "trace_obj", "ctech",  "stech"};
 
-/// Free-form curves and surfaces, and commands.
+/// Statements of free-form curves and surfaces, and commands.
 constexpr std::string_view kFreeForms[] = {"curv", "curv2", "surf", "cstype", "deg", "bmat", "step",
                                            "parm", "trim",  "hole", "scrv",   "sp",  "end",  "con",
                                            "bzp",  "bsp",   "cdc",  "cdp",    "res", "call", "csh"};
@@ -32,7 +32,8 @@ bool is_among(std::string_view word, const std::string_view (&words)[kCount]) {
   return std::find(std::begin(words), std::end(words), word) != std::end(words);
 }
 
-/// Source: Wavefront Technologies, Advanced Visualizer manual, appendix B1, Object files (.obj).
+/// Parses OBJ files. Source: Wavefront Technologies, Advanced Visualizer manual, appendix B1,
+/// Object files (.obj).
 class ObjParser {
  public:
   explicit ObjParser(InputBuffer& input) : input_(input), mesh_(input.name()) {}
@@ -51,7 +52,8 @@ class ObjParser {
  private:
   FilePlace here() const { return {"line", line_}; }
 
-  /// The next line, with those that continue it, without its comment. False at the end.
+  /// Reads the next line, joined with those that continue it, without its comment. Returns false at
+  /// the end.
   bool next_statement() {
     std::string_view line;
     if (!input_.next_line(line)) return false;
@@ -102,7 +104,7 @@ class ObjParser {
                     excerpt(statement_) + "; expected an OBJ statement, as `v X Y Z` or `f A B C`");
   }
 
-  /// x y z, then nothing, a weight, a colour, or both.
+  /// Reads a vertex: x y z, perhaps followed by a weight, a colour, or both.
   void read_vertex() {
     Vec3 vertex{};
     bool valid = words_.size() >= 4 && words_.size() <= 8;
@@ -126,8 +128,8 @@ class ObjParser {
     for (const std::int64_t vertex : corners_) mesh_.add_point(vertex, here());
   }
 
-  /// The vertex of "V", "V/VT", "V//VN" or "V/VT/VN", from 0. Indices in the file count from 1, or
-  /// from -1 backwards.
+  /// The index from 0 of the vertex in "V", "V/VT", "V//VN" or "V/VT/VN". Indices in the file count
+  /// from 1, or backwards from -1.
   std::int64_t corner_of(std::string_view word, const char* what) const {
     std::int64_t index = 0;
     const char* const end = word.data() + word.size();
@@ -147,7 +149,7 @@ class ObjParser {
 
   InputBuffer& input_;
   MeshBuilder mesh_;
-  std::uint64_t line_ = 0;  ///< of the statement's start
+  std::uint64_t line_ = 0;  ///< line at which the statement starts
   std::string_view statement_;
   std::string joined_;
   std::vector<std::string_view> words_;

@@ -12,7 +12,7 @@
 namespace clearway {
 namespace {
 
-/// Source: Geomview manual, section OFF files.
+/// Parses OFF files. Source: Geomview manual, section OFF files.
 class OffParser {
  public:
   explicit OffParser(InputBuffer& input) : input_(input), mesh_(input.name()) {}
@@ -34,7 +34,7 @@ class OffParser {
   [[noreturn]] void fail(const std::string& what) const { mesh_.refuse_at(here(), what); }
   FilePlace here() const { return {"line", input_.line()}; }
 
-  /// The words of the next line that has any, comments aside; false at the end.
+  /// Reads the words of the next line that has any, apart from comments; returns false at the end.
   bool next_line() {
     do {
       if (!input_.next_line(line_)) return false;
@@ -68,7 +68,8 @@ class OffParser {
     faces_ = whole(words_[1]);
   }
 
-  /// Texture coordinates, colours and normals stand behind the coordinates, and are not read.
+  /// Checks the keyword. Texture coordinates, colours and normals follow the coordinates and are
+  /// not read.
   void check_keyword(std::string_view keyword) const {
     if (keyword.find_first_not_of("STCNOF") != std::string_view::npos) {
       fail(excerpt(keyword) + "; expected OFF, COFF or NOFF, in three dimensions");
@@ -123,7 +124,7 @@ class OffParser {
   std::string_view line_;
   std::vector<std::string_view> words_;
   std::vector<std::int64_t> corners_;
-  std::uint64_t vertices_ = 0, faces_ = 0;  ///< as declared
+  std::uint64_t vertices_ = 0, faces_ = 0;  ///< declared numbers
 };
 
 }  // namespace

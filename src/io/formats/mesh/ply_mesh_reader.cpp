@@ -18,15 +18,15 @@
 namespace clearway {
 namespace {
 
-/// The numbers of a PLY file's body, one after the other.
+/// Reads the numbers of a PLY file's body one after the other.
 class PlyNumbers {
  public:
   virtual ~PlyNumbers() = default;
   virtual void begin_row(const PlyElement& element, std::uint64_t row) = 0;
   virtual double next(PlyType type, const std::string& property) = 0;
   virtual void end_row() {}
-  virtual FilePlace here() const = 0;  ///< of the row
-  /// Whether anything stands behind the last row.
+  virtual FilePlace here() const = 0;  ///< position of the current row
+  /// Whether anything follows the last row.
   virtual bool more() = 0;
 };
 
@@ -133,7 +133,7 @@ class BinaryPlyNumbers final : public PlyNumbers {
   std::uint64_t row_ = 0, start_ = 0;
 };
 
-/// Lists of vertices that were read before the vertices, so that they cannot be checked yet.
+/// Lists of vertex indices that were read before the vertices and so cannot be checked yet.
 template <typename Kind>
 class PendingLists {
  public:
@@ -142,7 +142,7 @@ class PendingLists {
     vertices_.insert(vertices_.end(), vertices.begin(), vertices.end());
   }
 
-  /// use(kind, vertices, at)
+  /// Calls use(kind, vertices, at) for each list.
   template <typename Use>
   void use_all(Use use) {
     const std::int64_t* next = vertices_.data();
@@ -183,16 +183,17 @@ class PlyMeshParser {
   }
 
  private:
-  /// What an element other than the vertices stands for.
+  /// What an element other than the vertices represents.
   enum class Kind { kNothing, kFace, kStrip, kEdge };
 
   struct Drawn {
     Kind kind = Kind::kNothing;
-    std::optional<std::size_t> list;                ///< property that lists the vertices
-    std::optional<std::size_t> ends[2] = {{}, {}};  ///< of an edge without a list
+    std::optional<std::size_t> list;  ///< index of the property that lists the vertices
+    /// Properties with the ends of an edge that has no list.
+    std::optional<std::size_t> ends[2] = {{}, {}};
   };
 
-  /// Whether anything is drawn between the vertices.
+  /// Whether any element draws faces, strips or edges.
   bool find_drawn() {
     bool any = false;
     const PlyElement* faces = nullptr;
@@ -227,7 +228,7 @@ class PlyMeshParser {
     return drawn;
   }
 
-  /// The property that lists the vertices of an element; none where the element has none.
+  /// Index of the property that lists the vertices of an element; nullopt where there is none.
   static std::optional<std::size_t> list_of(const PlyElement& element) {
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       const PlyProperty& property = element.properties[i];
@@ -332,7 +333,8 @@ class PlyMeshParser {
     }
   }
 
-  /// In strips, -1 ends one and starts the next.
+  /// The vertex index that a value holds. In strips, -1 is allowed and ends one strip and starts
+  /// the next.
   std::int64_t vertex_of(double value, Kind kind, const PlyNumbers& numbers) const {
     const bool ends_strip = kind == Kind::kStrip && value == -1;
     if (!ends_strip && !(value >= 0 && value < 0x1p32 && value == std::floor(value))) {
@@ -343,7 +345,8 @@ class PlyMeshParser {
     return static_cast<std::int64_t>(value);
   }
 
-  /// Of the row that was read. element: its index.
+  /// Draws the row that was read, or keeps it until the vertices have been read. element: its
+  /// index.
   void keep(Kind kind, std::size_t element, const FilePlace& at) {
     if (element > header_.vertex) return draw(kind, corners_, at);
     pending_.add(kind, corners_, at);
@@ -355,10 +358,10 @@ class PlyMeshParser {
     draw_strips(vertices, at);
   }
 
-  /// Every other triangle of a strip is turned. Those with two equal vertices only lead from one
-  /// part of a strip to the next, and are not drawn.
+  /// Draws strips of triangles, every other of which has the opposite orientation. Triangles with
+  /// two equal vertices only connect parts of a strip and are not drawn.
   void draw_strips(std::span<const std::int64_t> vertices, const FilePlace& at) {
-    std::size_t first = 0;  // of the strip
+    std::size_t first = 0;  // index of the strip's first vertex
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       if (vertices[i] == -1) first = i + 1;
       if (vertices[i] == -1 || i < first + 2) continue;
@@ -371,9 +374,9 @@ class PlyMeshParser {
   InputBuffer& input_;
   PlyHeader header_;
   MeshBuilder mesh_;
-  std::vector<Drawn> drawn_;  ///< by element
+  std::vector<Drawn> drawn_;  ///< one per element
   PendingLists<Kind> pending_;
-  std::vector<std::int64_t> corners_;  ///< of the row
+  std::vector<std::int64_t> corners_;  ///< vertices of the current row
 };
 
 }  // namespace

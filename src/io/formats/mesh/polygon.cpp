@@ -12,7 +12,7 @@ struct Place {
   double x, y;
 };
 
-/// Twice the area of the triangle (0, i, i + 1), as a vector.
+/// Normal of the triangle (0, i, i + 1), as long as twice its area.
 Vec3 fan_normal(std::span<const Vec3> corners, std::size_t i) {
   const Vec3 u = difference(corners[i], corners[0]), v = difference(corners[i + 1], corners[0]);
   return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
@@ -20,8 +20,8 @@ Vec3 fan_normal(std::span<const Vec3> corners, std::size_t i) {
 
 double length_of(const Vec3& v) { return std::hypot(v.x, v.y, v.z); }
 
-/// The sum of the fan's normals, which no order of the corners changes. Where a crossing outline
-/// makes them cancel, the largest of them.
+/// The sum of the fan's normals, which does not depend on the order of the corners. Where they
+/// cancel because the outline crosses itself, the largest of them.
 Vec3 polygon_normal(std::span<const Vec3> corners) {
   constexpr double kCancelled = 1e-9;
   Vec3 sum{0, 0, 0}, largest{0, 0, 0};
@@ -35,7 +35,8 @@ Vec3 polygon_normal(std::span<const Vec3> corners) {
   return length_of(sum) > kCancelled * lengths ? sum : largest;
 }
 
-/// The corners as seen along the normal's largest axis, counter-clockwise, about the first corner.
+/// The corners projected along the normal's largest axis, counter-clockwise, relative to the first
+/// corner.
 std::vector<Place> projected(std::span<const Vec3> corners, const Vec3& normal) {
   int axis = 0;
   for (int k = 1; k < 3; ++k) {
@@ -52,7 +53,7 @@ std::vector<Place> projected(std::span<const Vec3> corners, const Vec3& normal) 
   return places;
 }
 
-/// Above 0 where a, b, c turn left.
+/// Twice the signed area of a, b, c: above 0 where they turn left.
 double turn(const Place& a, const Place& b, const Place& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
@@ -64,7 +65,7 @@ bool is_fan(const std::vector<Place>& places) {
   return true;
 }
 
-/// Whether two sides cross within both. Takes the square of the number of corners.
+/// Whether two sides cross in the interior of both. Takes time quadratic in the number of corners.
 bool crosses_itself(const std::vector<Place>& places) {
   const std::size_t count = places.size();
   for (std::size_t i = 0; i + 2 < count; ++i) {
@@ -99,8 +100,8 @@ void cut_fan(std::size_t corners, CutPolygon& cut) {
   for (std::uint32_t i = 1; i + 1 < corners; ++i) cut.triangles.push_back({0, i, i + 1});
 }
 
-/// The rest of a polygon from which ears are cut. Whether a corner is an ear is looked at again
-/// only for the neighbours of one that was cut, so all takes the square of the number of corners.
+/// The rest of a polygon from which ears are cut. Only the neighbours of a corner that was cut are
+/// tested again, so the time is quadratic in the number of corners.
 class EarCutter {
  public:
   explicit EarCutter(const std::vector<Place>& places) : places_(places) {
@@ -112,7 +113,8 @@ class EarCutter {
     for (std::uint32_t i = 0; i < count; ++i) ear_.push_back(is_ear(i));
   }
 
-  /// False where no ear is left: the outline crosses itself.
+  /// Cuts ears until nothing is left; returns false where no ear is left because the outline
+  /// crosses itself.
   bool cut(CutPolygon& cut) {
     std::uint32_t at = 0, looked_at = 0;
     for (std::size_t left = places_.size(); left > 3;) {
@@ -131,7 +133,7 @@ class EarCutter {
   }
 
  private:
-  /// Returns the corner behind.
+  /// Removes a corner and returns the next one.
   std::uint32_t take_out(std::uint32_t corner) {
     const std::uint32_t before = before_[corner], next = next_[corner];
     next_[before] = next;

@@ -11,22 +11,22 @@ namespace clearway {
 
 /// A polygon cut into triangles.
 struct CutPolygon {
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of positions within the polygon
-  double bend = 0;        ///< the farthest corner from the plane through the corners' mean
-  bool crossing = false;  ///< the outline crosses itself: how it is cut is arbitrary
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices of corners within the polygon
+  double bend = 0;  ///< distance of the farthest corner from the plane through the corners' mean
+  bool crossing = false;  ///< whether the outline crosses itself, so that the cut is arbitrary
 };
 
-/// Corners of a polygon that is not convex; more would take too long.
+/// Most corners of a polygon that is not a fan; more would take too long.
 inline constexpr std::size_t kMostCornersToCut = 1024;
-/// Of any face.
+/// Most corners of any face.
 inline constexpr std::size_t kMostCorners = 1'000'000;
 
-/// Whether all of a fan's triangles about the first corner turn the same way.
+/// Whether all triangles of the fan about the first corner turn the same way.
 bool is_fan(std::span<const Vec3> corners);
 
-/// Cuts a polygon with three corners or more: a fan where is_fan(), otherwise ears, in the
-/// projection along the axis in which its normal is largest. Ears need at most kMostCornersToCut.
-/// Source: G. Meisters, Polygons have ears, 1975.
+/// Cuts a polygon with three corners or more into triangles: a fan where is_fan(), otherwise ears,
+/// in the projection along the axis in which its normal is largest. Polygons cut into ears may have
+/// at most kMostCornersToCut corners. Source: G. Meisters, Polygons have ears, 1975.
 CutPolygon cut_polygon(std::span<const Vec3> corners);
 
 }  // namespace clearway

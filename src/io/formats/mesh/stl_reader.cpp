@@ -19,10 +19,11 @@
 namespace clearway {
 namespace {
 
-constexpr std::uint64_t kHeaderBytes = 84;    // 80 of text, then the number of triangles
+constexpr std::uint64_t kHeaderBytes = 84;    // 80 bytes of text, then the number of triangles
 constexpr std::uint64_t kTriangleBytes = 50;  // normal, three vertices, two bytes of any use
 
-/// Triangles from corners that repeat their positions. A triangle's vertices are its corners'.
+/// Builds a mesh of triangles whose corners repeat their positions; equal positions become one
+/// vertex.
 class StlMesh {
  public:
   explicit StlMesh(std::string name) : name_(std::move(name)) {}
@@ -89,7 +90,7 @@ class AsciiStlParser {
     refuse_line(input_.name(), input_.line(), what);
   }
 
-  /// The words of the next line that has any; false at the end.
+  /// Reads the words of the next line that has any; returns false at the end.
   bool next_line() {
     do {
       if (!input_.next_line(line_)) return false;
@@ -159,10 +160,11 @@ class AsciiStlParser {
   StlMesh mesh_;
 };
 
-/// The number of triangles that a binary file declares; none where there is no room for it.
+/// The start of a file as that of a binary one: its declared number of triangles, 0 where the file
+/// is too short for it.
 struct StlStart {
   std::uint32_t triangles = 0;
-  bool is_text = false;  ///< begins as the text form does, and has no zero byte
+  bool is_text = false;  ///< whether it begins as the text form does and has no zero byte
 };
 
 StlStart start_of(InputBuffer& input) {
@@ -181,8 +183,9 @@ StlStart start_of(InputBuffer& input) {
 
 }  // namespace
 
-// Binary where the size is what the count asks for: the text before it may begin with "solid".
-// Source: 3D Systems, Stereolithography interface specification, 1989.
+// Reads STL. A file is binary where its size fits the declared number of triangles, because the
+// text before that may begin with "solid". Source: 3D Systems, Stereolithography interface
+// specification, 1989.
 MeshFile read_stl(InputBuffer input) {
   const std::uint64_t size = *input.size();
   const StlStart start = start_of(input);

@@ -8,15 +8,16 @@
 
 namespace clearway {
 
-/// Gives equal positions one number, in the order of their first use. -0 equals 0.
+/// Gives equal positions the same index, in the order of their first use. -0 equals 0.
 class VertexWelder {
  public:
   static constexpr std::uint32_t kMostVertices = 4'000'000'000;
 
-  /// vertices: outlives it; holds the positions that were given numbers, and grows by it alone.
+  /// vertices: the distinct positions by their index. It must outlive this object and be changed by
+  /// it alone.
   explicit VertexWelder(std::vector<Vec3>& vertices) : vertices_(vertices), table_(1024, kFree) {}
 
-  /// The number of a finite position.
+  /// The index of a finite position.
   std::uint32_t number_of(const Vec3& position) {
     const Vec3 vertex{position.x + 0.0, position.y + 0.0, position.z + 0.0};
     if (2 * (vertices_.size() + 1) > table_.size()) grow();
@@ -40,7 +41,7 @@ class VertexWelder {
     return hash;
   }
 
-  /// Of this vertex, or the free one that it is to get.
+  /// The slot of this vertex, or the free one that it will get.
   std::uint32_t& slot_of(const Vec3& vertex) {
     std::size_t at = hash_of(vertex) & (table_.size() - 1);
     while (table_[at] != kFree && vertices_[table_[at]] != vertex) {
@@ -55,7 +56,8 @@ class VertexWelder {
   }
 
   std::vector<Vec3>& vertices_;
-  std::vector<std::uint32_t> table_;  // power of two, at most half full
+  // Hash table of indices; its size is a power of two, at most half full.
+  std::vector<std::uint32_t> table_;
 };
 
 }  // namespace clearway

@@ -9,8 +9,9 @@ namespace clearway {
 namespace {
 
 constexpr std::size_t kInputBytes = std::size_t{1} << 16;
-constexpr std::size_t kReach = std::size_t{1} << 13;        // of a match
-constexpr std::size_t kDecodeAhead = std::size_t{1} << 16;  // at most, and one token
+constexpr std::size_t kReach = std::size_t{1} << 13;  // greatest distance of a match
+// Bytes decoded ahead, exceeded by one token at most.
+constexpr std::size_t kDecodeAhead = std::size_t{1} << 16;
 constexpr std::size_t kLongestToken = 7 + 255 + 2;
 
 }  // namespace
@@ -65,7 +66,7 @@ unsigned LzfStream::input_byte() {
   return std::to_integer<unsigned>(input_[input_next_++]);
 }
 
-/// One byte more at least.
+/// Decodes at least one more byte.
 void LzfStream::decode() {
   const std::size_t kept = std::min(end_, kReach);
   std::copy_n(window_.begin() + static_cast<std::ptrdiff_t>(end_ - kept), kept, window_.begin());
@@ -94,7 +95,7 @@ void LzfStream::decode_token() {
   }
 }
 
-/// Byte by byte: a match may reach into what it gives.
+/// Copies byte by byte, because a match may overlap with its own copy.
 void LzfStream::copy_match(std::size_t distance, std::size_t length) {
   if (distance > end_) {
     refuse_byte(file_->name(), input_position_ - input_.size() + input_next_,

@@ -10,20 +10,22 @@
 namespace clearway {
 
 /// Decodes LZF (Marc Lehmann's liblzf, the format of PCD's binary_compressed) front to back in
-/// constant memory: a match reaches back 8 KiB at most. A copy goes on from where its original
-/// stands. Throws InputError for whatever is not LZF, or does not give the bytes promised.
+/// constant memory, since a match reaches back at most 8 KiB. A copy continues from the original's
+/// position. Throws InputError for data that is not LZF or does not give the promised bytes.
 class LzfStream {
  public:
-  /// The bytes [begin, end) of a file that outlives this; `decoded_bytes` of them are promised.
+  /// Decodes the bytes [begin, end) of a file, which must outlive this object. decoded_bytes: the
+  /// promised size of the decoded data.
   LzfStream(const File& file, std::uint64_t begin, std::uint64_t end, std::uint64_t decoded_bytes);
 
-  /// Of the next decoded byte.
+  /// Position of the next byte in the decoded data.
   std::uint64_t position() const { return decoded_ - (end_ - next_); }
-  /// The next bytes, out.size() of them, which must be promised still.
+  /// Decodes the next out.size() bytes, which must lie within the promised ones.
   void read(std::span<std::byte> out);
-  /// The same, unread.
+  /// Decodes and drops the next `count` bytes.
   void skip(std::uint64_t count);
-  /// From the end of the promised bytes on: whether the file's bytes end there too.
+  /// To be called at the end of the promised bytes. Throws InputError where the file's bytes do not
+  /// end there too.
   void check_end();
 
  private:
@@ -34,14 +36,14 @@ class LzfStream {
   void copy_match(std::size_t distance, std::size_t length);
 
   const File* file_;
-  std::uint64_t input_end_;       // likewise
-  std::uint64_t input_position_;  // in the file, behind input_
+  std::uint64_t input_end_;       // end of the compressed bytes in the file
+  std::uint64_t input_position_;  // position in the file behind input_
   std::uint64_t promised_;
   std::uint64_t decoded_ = 0;
   std::vector<std::byte> input_;
   std::size_t input_next_ = 0;
-  std::vector<std::byte> window_;  // decoded bytes, the last ones for matches among them
-  std::size_t next_ = 0;           // the next to give out
+  std::vector<std::byte> window_;  // decoded bytes, including the last ones, which matches may copy
+  std::size_t next_ = 0;           // index of the next byte to deliver
   std::size_t end_ = 0;
 };
 

@@ -10,7 +10,8 @@
 namespace clearway {
 namespace {
 
-/// A point a line. Numbers are read as they are written, also where TYPE promises fewer digits.
+/// Reads ASCII data with one point per line. Numbers are read as written, even where TYPE promises
+/// fewer digits.
 class AsciiPcdReader final : public PcdBodyReader {
  public:
   AsciiPcdReader(InputBuffer input, PcdHeader header)
@@ -37,8 +38,8 @@ class AsciiPcdReader final : public PcdBodyReader {
     refuse_line(input_.name(), input_.line(), what);
   }
 
-  /// A number takes two bytes with what follows it; the last of the file may be followed by
-  /// nothing.
+  /// Throws InputError where the file is too small. Each number takes at least two bytes including
+  /// its separator, which the last one of the file may lack.
   void check_room() const {
     const std::uint64_t room = *input_.size() - input_.position() + 1;
     if (header_.points <= room / (2 * words_of_point_)) return;
@@ -70,7 +71,7 @@ class AsciiPcdReader final : public PcdBodyReader {
     open_end_.append_to(info_.remarks, input_.name());
   }
 
-  /// That is not blank.
+  /// Reads the next line that is not blank; returns false at the end.
   bool next_line(std::string_view& line) {
     do {
       if (!input_.next_line(line)) return false;
@@ -98,7 +99,7 @@ class AsciiPcdReader final : public PcdBodyReader {
   }
 
   std::uint64_t words_of_point_ = 0;
-  std::array<std::uint64_t, 3> words_{};  // of x, y and z, from 0
+  std::array<std::uint64_t, 3> words_{};  // indices of the words x, y and z in a line
   OpenEnd open_end_;
 };
 

@@ -7,7 +7,7 @@
 namespace clearway {
 namespace {
 
-/// All fields of a point, then those of the next.
+/// Reads binary data, in which the fields of a point are adjacent.
 class BinaryPcdReader final : public PcdBodyReader {
  public:
   BinaryPcdReader(InputBuffer input, PcdHeader header)

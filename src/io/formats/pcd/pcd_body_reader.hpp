@@ -10,7 +10,7 @@
 
 namespace clearway {
 
-/// What the readers of the three kinds of PCD file share.
+/// Base of the readers of the three kinds of PCD file.
 class PcdBodyReader : public PointReader {
  public:
   const CloudInfo& info() const override { return info_; }
@@ -18,23 +18,25 @@ class PcdBodyReader : public PointReader {
   void rewind() override;
 
  protected:
-  /// input: behind the line DATA.
+  /// input: stands behind the line DATA.
   PcdBodyReader(InputBuffer input, PcdHeader header);
 
-  /// The next points, in order; `header_.points` in all.
+  /// Reads the next points, in order; header_.points in all.
   virtual void read_points(std::span<Vec3> out) = 0;
   virtual void start_again() = 0;
-  /// Requires the end of the file behind the last point; the input stands there.
+  /// Called with the input behind the last point. Throws InputError where the file does not end
+  /// there.
   virtual void check_end() = 0;
 
-  /// What PCL leaves behind binary data, up to a page of zeros, or a line break.
+  /// Throws InputError for anything behind binary data except what PCL leaves there: up to a page
+  /// of zeros, or a line break.
   void check_only_padding();
 
   InputBuffer input_;
   PcdHeader header_;
   CloudInfo info_;
   InputBuffer::Mark first_point_;
-  std::uint64_t next_ = 0;  ///< point to read next
+  std::uint64_t next_ = 0;  ///< index of the point to read next
 
  private:
   void mark_absent(PointBatch& batch);

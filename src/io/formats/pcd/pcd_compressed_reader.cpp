@@ -12,10 +12,11 @@
 namespace clearway {
 namespace {
 
-constexpr std::size_t kColumnBytes = std::size_t{1} << 16;  // decoded at a time
+// Bytes of a column that are decoded at a time.
+constexpr std::size_t kColumnBytes = std::size_t{1} << 16;
 
-/// One field of all points, then the next field: three decoders stand in the columns of x, y and z
-/// at the same time, so that memory is constant.
+/// Reads compressed data, in which each field is stored for all points before the next field. Three
+/// decoders stand in the columns of x, y and z at the same time, so that memory is constant.
 class CompressedPcdReader final : public PcdBodyReader {
  public:
   CompressedPcdReader(InputBuffer input, PcdHeader header)
@@ -57,7 +58,7 @@ class CompressedPcdReader final : public PcdBodyReader {
     check_only_padding();
   }
 
-  /// Decodes everything once: finds where x, y and z start, and that the data is sound.
+  /// Decodes everything once, to find where x, y and z start and to check that the data is sound.
   void find_columns() {
     std::array<std::uint64_t, 3> begins{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -93,11 +94,11 @@ class CompressedPcdReader final : public PcdBodyReader {
     }
   }
 
-  std::uint64_t begin_ = 0;  // of the compressed bytes in the file
+  std::uint64_t begin_ = 0;  // position of the compressed bytes in the file
   std::uint64_t end_ = 0;
   std::uint64_t decoded_bytes_ = 0;
-  std::array<std::optional<LzfStream>, 3> starts_;   // at the first point
-  std::array<std::optional<LzfStream>, 3> columns_;  // at the next one
+  std::array<std::optional<LzfStream>, 3> starts_;   // decoders at the first point
+  std::array<std::optional<LzfStream>, 3> columns_;  // decoders at the next point
   std::vector<std::byte> bytes_;
 };
 

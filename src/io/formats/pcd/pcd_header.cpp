@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kLongestHeader = std::uint64_t{1} << 20;  // bytes
 constexpr std::uint64_t kLargestPoint = std::uint64_t{1} << 16;   // bytes
-constexpr std::uint64_t kMostOfASide = 0xFFFFFFFF;                // of WIDTH and HEIGHT
+constexpr std::uint64_t kMostOfASide = 0xFFFFFFFF;                // greatest WIDTH and HEIGHT
 
 std::string lower_case(std::string_view text) {
   std::string lower(text);
@@ -45,7 +45,7 @@ class HeaderParser {
     refuse_line(input_.name(), input_.line(), what);
   }
 
-  /// The words of the next line that is neither blank nor a comment.
+  /// Reads the words of the next line that is neither blank nor a comment.
   void next() {
     do {
       std::string_view line;
@@ -58,7 +58,7 @@ class HeaderParser {
     } while (words_.empty() || words_[0].starts_with('#'));
   }
 
-  /// False for the last one.
+  /// Reads an entry of the header; returns false for the last one.
   bool read_entry() {
     const std::string_view key = words_[0];
     const std::size_t values = words_.size() - 1;
@@ -155,7 +155,8 @@ class HeaderParser {
     }
   }
 
-  /// POINTS, or WIDTH times HEIGHT; where both stand they have to agree.
+  /// Takes the number of points from POINTS or from WIDTH times HEIGHT, which must agree where both
+  /// are given.
   void check_counts() {
     if (!points_ && !width_) fail("neither POINTS nor WIDTH before DATA");
     if (height_ && !width_) fail("HEIGHT without WIDTH");
@@ -171,7 +172,7 @@ class HeaderParser {
     }
   }
 
-  /// By the names x, y and z; in capitals where no field has the small letter.
+  /// Finds the fields x, y and z, or those in capitals where no field has the small letter.
   void find_coordinates() {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::string name(1, static_cast<char>('x' + axis));

@@ -14,9 +14,10 @@
 namespace clearway {
 namespace {
 
-constexpr std::uint64_t kMostPadding = std::uint64_t{1} << 16;  // a page of any machine
+// At least a page of memory on any machine.
+constexpr std::uint64_t kMostPadding = std::uint64_t{1} << 16;
 
-/// None for the default, 0 0 0 and no rotation.
+/// The remark on a viewpoint; nullopt for the default, which is 0 0 0 and no rotation.
 std::optional<Message> remark_on_viewpoint(const std::array<double, 7>& viewpoint,
                                            const std::string& name) {
   const double norm =

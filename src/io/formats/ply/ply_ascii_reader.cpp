@@ -58,7 +58,8 @@ class AsciiPlyReader final : public PlyBodyReader {
     refuse_line(input_.name(), input_.line(), what);
   }
 
-  /// Reads vertices ahead, but for those with lists, and where that did not go lately.
+  /// Reads blocks of vertices ahead, except for vertices with lists and for a while after that has
+  /// failed.
   bool read_blocks() {
     if (in_turn_ > 0) {
       --in_turn_;
@@ -74,7 +75,7 @@ class AsciiPlyReader final : public PlyBodyReader {
     return false;
   }
 
-  /// False for a line that is no vertex, or one with a list.
+  /// Parses a vertex without lists; returns false for any other line.
   bool parse_vertex(std::string_view line, Vec3& point) const {
     const std::vector<PlyProperty>& properties = header_.vertices().properties;
     const char* at = line.data();
@@ -95,7 +96,7 @@ class AsciiPlyReader final : public PlyBodyReader {
     for (std::uint64_t row = 0; row < element.count; ++row) read_row(element, row, nullptr);
   }
 
-  /// The next line that is not blank.
+  /// The next line that is not blank. Throws InputError where the file ends first.
   std::string_view next_row(const PlyElement& element, std::uint64_t row) {
     std::string_view line;
     do {
@@ -113,8 +114,8 @@ class AsciiPlyReader final : public PlyBodyReader {
     return skip_blanks(line.data(), end) == end;
   }
 
-  /// The last vertex stands in the file's last line, which has no line break. It counts where that
-  /// is how the file ends, and all its values are there.
+  /// Checks a last vertex whose line ends the file without a line break. It is accepted where the
+  /// file should end there and all its values are present.
   void check_open_end(std::string_view line) {
     const std::string what = "the file ends without a line break";
     if (!vertices_end_file()) fail(what + " in the last vertex, so it is cut; expected more lines");
@@ -122,7 +123,7 @@ class AsciiPlyReader final : public PlyBodyReader {
     note("no-line-break", what);
   }
 
-  /// More lines than declared are refused like fewer.
+  /// Throws InputError where the file has more lines than declared.
   void check_end() {
     std::string_view line;
     while (vertices_end_file() && input_.next_line(line)) {
@@ -132,7 +133,7 @@ class AsciiPlyReader final : public PlyBodyReader {
     }
   }
 
-  /// point: receives the coordinates, or null.
+  /// Reads one row of an element. point: receives the coordinates, or is null.
   void read_row(const PlyElement& element, std::uint64_t row, Vec3* point) {
     const std::string_view line = next_row(element, row);
     const char* const end = line.data() + line.size();
@@ -173,7 +174,7 @@ class AsciiPlyReader final : public PlyBodyReader {
   }
 
   PointBlocks blocks_;
-  std::size_t in_turn_ = 0;  ///< so many lines are read one by one
+  std::size_t in_turn_ = 0;  ///< number of lines to read one by one before reading ahead
 };
 
 }  // namespace

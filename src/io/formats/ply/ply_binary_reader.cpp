@@ -10,7 +10,7 @@
 namespace clearway {
 namespace {
 
-/// Calls use(number) with a zero of the C++ type that `type` names.
+/// Calls use(number) with a zero of the C++ type for `type`.
 template <typename Use>
 auto with_type(PlyType type, Use use) {
   switch (type) {
@@ -39,7 +39,7 @@ double load_double(const std::byte* bytes, bool swapped) {
   return static_cast<double>(swapped ? load_swapped<Number>(bytes) : load<Number>(bytes));
 }
 
-/// One coordinate of many elements that lie `stride` bytes apart.
+/// Decodes one coordinate of many elements that lie `stride` bytes apart.
 void decode_axis(const std::byte* bytes, std::size_t stride, PlyType type, bool swapped, int axis,
                  std::span<Vec3> out) {
   with_type(type, [&]<typename Number>(Number) {
@@ -89,7 +89,8 @@ class BinaryPlyReader final : public PlyBodyReader {
   }
 
  private:
-  /// The file must hold at least what the elements up to the vertices take with empty lists.
+  /// Throws InputError where the file is smaller than the elements up to the vertices would be with
+  /// empty lists.
   void check_size() const {
     std::uint64_t room = *input_.size() - input_.position();
     for (const PlyElement& element : std::span(header_.elements).first(header_.vertex + 1)) {
@@ -104,7 +105,8 @@ class BinaryPlyReader final : public PlyBodyReader {
     }
   }
 
-  /// More data than declared is refused like less; a line break behind it is none.
+  /// Throws InputError where data follows the last vertex and should not. A line break there is
+  /// accepted.
   void check_end() {
     if (!vertices_end_file()) return;
     const std::uint64_t end = input_.position();
@@ -149,7 +151,7 @@ class BinaryPlyReader final : public PlyBodyReader {
     }
   }
 
-  /// Consumes one element that may hold lists. point: receives its coordinates, or null.
+  /// Consumes one element that may hold lists. point: receives its coordinates, or is null.
   void walk_row(const PlyElement& element, std::uint64_t row, Vec3* point) {
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       const PlyProperty& property = element.properties[i];
@@ -178,7 +180,7 @@ class BinaryPlyReader final : public PlyBodyReader {
   }
 
   bool swapped_;
-  std::size_t offsets_[3] = {0, 0, 0};  ///< of x, y, z in a vertex without lists
+  std::size_t offsets_[3] = {0, 0, 0};  ///< byte offsets of x, y, z in a vertex without lists
 };
 
 }  // namespace

@@ -12,8 +12,8 @@
 
 namespace clearway {
 
-/// What the readers of both kinds of PLY file share: the way past the elements before the vertices,
-/// and the end behind them. Elements behind the vertices are not read and not checked.
+/// Base of the readers of both kinds of PLY file: skips the elements before the vertices and checks
+/// the end behind them. Elements behind the vertices are not read and not checked.
 class PlyBodyReader : public PointReader {
  public:
   const CloudInfo& info() const override { return info_; }
@@ -37,13 +37,13 @@ class PlyBodyReader : public PointReader {
   /// Consumes every row of an element.
   virtual void skip_element(const PlyElement& element) = 0;
 
-  /// From behind the header to the first vertex.
+  /// Moves the input from behind the header to the first vertex.
   void begin() {
     for (std::size_t i = 0; i < header_.vertex; ++i) skip_element(header_.elements[i]);
     first_vertex_ = input_.mark();
   }
 
-  /// Whether the file ends where the vertices do, as no element behind them has a row.
+  /// Whether the file should end with the vertices, because no element behind them has a row.
   bool vertices_end_file() const {
     const auto behind = header_.elements.begin() + static_cast<std::ptrdiff_t>(header_.vertex) + 1;
     return std::all_of(behind, header_.elements.end(),

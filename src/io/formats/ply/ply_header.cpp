@@ -72,7 +72,8 @@ class HeaderParser {
     return words;
   }
 
-  /// Whether a line says nothing of the elements. One comment is read all the same.
+  /// Whether a line is a comment or remark, which describes no element. Takes the spacing from a
+  /// comment that gives it.
   bool is_remark(const std::vector<std::string_view>& words) {
     if (words.empty() || words[0] == "obj_info") return true;
     if (words[0] != "comment") return false;

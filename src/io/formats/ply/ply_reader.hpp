@@ -8,13 +8,13 @@
 
 namespace clearway {
 
-/// Reads the vertices of a PLY file from its start. Elements before them are skipped. Those behind
-/// them are not looked at: nobody reads them. Where there are none, the file must end with its last
-/// vertex. Coordinates may have any scalar type; in an ASCII file they count as written, whatever
-/// their type. The input must be able to seek.
+/// Reads the vertices of a PLY file from its start. Elements before them are skipped; elements
+/// behind them are not read, and where there are none, the file must end with its last vertex.
+/// Coordinates may have any scalar type; in an ASCII file they count as written, whatever their
+/// type. The input must be able to seek.
 std::unique_ptr<PointReader> read_ply(InputBuffer input);
 
-/// The same behind the header.
+/// Reads the vertices of a binary PLY file whose header has been read.
 std::unique_ptr<PointReader> read_binary_ply(InputBuffer input, PlyHeader header);
 std::unique_ptr<PointReader> read_ascii_ply(InputBuffer input, PlyHeader header);
 

@@ -12,17 +12,18 @@ namespace clearway {
 
 enum class PlyCoordinates { kFloat32, kFloat64 };
 
-/// What a PLY file's header has to say before the first point is written.
+/// Contents of a PLY file's header, which must be known before the first point is written.
 struct PlyOutput {
   std::uint64_t points = 0;
   PlyCoordinates coordinates = PlyCoordinates::kFloat64;
   bool first_pose = false;  ///< adds the property "first_pose", uint
   bool distance = false;    ///< adds the properties "distance", double, and "pose", uint
   bool body = false;        ///< adds the property "body", uint
-  std::string comment{};    ///< one line; empty: none
+  std::string comment{};    ///< comment of one line; empty for none
 };
 
-/// Of some points, each as many as there are points where the header has it, none otherwise.
+/// Additional properties of consecutive points. A span has one value per point where the header has
+/// the property, and is empty otherwise.
 struct PlyExtras {
   std::span<const std::uint32_t> first_pose{};
   std::span<const double> distance{};
@@ -31,8 +32,8 @@ struct PlyExtras {
 };
 
 /// Writes a point cloud as binary little-endian PLY, front to back: the element "vertex" with the
-/// properties x, y, z (double, or float rounded to nearest) and what else the header asks for.
-/// Buffered; the file stays the caller's.
+/// properties x, y, z (double, or float rounded to nearest) and the properties that the header asks
+/// for. Output is buffered; the caller owns the file.
 class PlyWriter {
  public:
   PlyWriter(const File& file, const PlyOutput& header);

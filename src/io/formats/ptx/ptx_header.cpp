@@ -12,8 +12,8 @@
 namespace clearway {
 namespace {
 
-constexpr std::uint64_t kMostOfASide = 0xFFFFFFFF;  // columns or rows
-constexpr double kNoise = 1e-9;                     // of 0 and 1 in the last column
+constexpr std::uint64_t kMostOfASide = 0xFFFFFFFF;  // greatest number of columns or rows
+constexpr double kNoise = 1e-9;                     // tolerance for 0 and 1 in the last column
 
 [[noreturn]] void fail(const InputBuffer& input, const std::string& what) {
   refuse_line(input.name(), input.line(), what);
@@ -47,7 +47,7 @@ std::array<double, Count> numbers(InputBuffer& input, const char* expected) {
   return out;
 }
 
-/// row: of the matrix, from 0.
+/// Reads a row of the matrix. row: its index, from 0.
 void read_row(InputBuffer& input, std::size_t row, std::array<double, 16>& matrix) {
   const auto line = numbers<4>(input, "a row of the 4x4 matrix, four numbers");
   const double last = row == 3 ? 1 : 0;

@@ -13,13 +13,13 @@
 namespace clearway {
 namespace {
 
-constexpr double kAxesTolerance = 1e-3;      // of a coordinate of an axis
-constexpr double kPositionTolerance = 1e-3;  // metres
+constexpr double kAxesTolerance = 1e-3;      // greatest difference in a coordinate of an axis
+constexpr double kPositionTolerance = 1e-3;  // greatest distance between positions, metres
 
-/// What is worth a remark in the headers of all scans.
+/// Counts of what deserves a remark, over all scans.
 struct PtxFindings {
   std::uint64_t scans = 0, records = 0, absent = 0;
-  std::uint64_t not_rigid = 0, contradicting = 0;  // scans
+  std::uint64_t not_rigid = 0, contradicting = 0;  // numbers of scans
   PtxHeader first_not_rigid, most_contradicting;
 
   void add(const PtxHeader& header) {
@@ -160,7 +160,7 @@ class PtxReader final : public PointReader {
            " points of the scan at line " + std::to_string(scan_.line);
   }
 
-  /// False for a record without a point.
+  /// Reads a record; returns false for one without a point.
   bool read_point(Vec3& point) {
     std::string_view line;
     if (!next_data_line(input_, line)) {
@@ -190,11 +190,11 @@ class PtxReader final : public PointReader {
   }
 
   InputBuffer input_;
-  std::vector<Message> remarks_;  ///< known before reading
+  std::vector<Message> remarks_;  ///< remarks known before reading
   CloudInfo info_;
   InputBuffer::Mark start_;
   PtxHeader scan_;
-  std::uint64_t left_ = 0;  ///< points of the scan not read yet
+  std::uint64_t left_ = 0;  ///< points of the current scan that are not read yet
   PtxFindings findings_;
   OpenEnd open_end_;
 };

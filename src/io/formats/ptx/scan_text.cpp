@@ -7,8 +7,8 @@
 namespace clearway {
 namespace {
 
-/// How many lines of one whole number each the input starts with, up to two. Goes back to the
-/// start.
+/// Counts the lines of a single whole number with which the input starts, up to two. Goes back to
+/// the start.
 int count_lines(InputBuffer& input) {
   const InputBuffer::Mark start = input.mark();
   input.skip_byte_order_mark();

@@ -16,7 +16,7 @@ std::string_view without_mark(std::string_view line) {
   return line;
 }
 
-/// Lower case, without quotes and blanks.
+/// The field in lower case, without quotes and blanks.
 std::string cleaned(std::string_view field) {
   std::string name;
   for (const char c : field) {
@@ -26,12 +26,12 @@ std::string cleaned(std::string_view field) {
   return name;
 }
 
-/// "  \"p_x [m]\"" becomes "p_x".
+/// The name in a header's field: "  \"p_x [m]\"" becomes "p_x".
 std::string name_in(std::string_view field) {
   return cleaned(field.substr(0, field.find_first_of("[(", 1)));
 }
 
-/// "  \"p_x [m]\"" becomes "m".
+/// The unit in a header's field: "  \"p_x [m]\"" becomes "m".
 std::string unit_in(std::string_view field) {
   const std::size_t open = field.find_first_of("[(", 1);
   if (open == std::string_view::npos) return {};
@@ -39,7 +39,8 @@ std::string unit_in(std::string_view field) {
   return cleaned(field.substr(0, field.find_first_of("])")));
 }
 
-/// In a header in blanks, "roll [deg]" is one column.
+/// Joins names with their units, because "roll [deg]" is one column even where blanks separate
+/// columns.
 void join_units(std::string_view line, std::vector<std::string_view>& fields) {
   std::vector<std::string_view> joined;
   for (const std::string_view field : fields) {
@@ -54,12 +55,13 @@ void join_units(std::string_view line, std::vector<std::string_view>& fields) {
   fields = std::move(joined);
 }
 
-/// Where the field whose quotes open at `open` ends; 0 where they do not close right before that.
+/// Index of the end of the field whose quotes open at `open`; 0 where the quotes do not close right
+/// before a separator or the end of the line.
 std::size_t end_of_quoted(std::string_view line, std::size_t open, char separator) {
   for (std::size_t at = line.find('"', open + 1); at != std::string_view::npos;
        at = line.find('"', at + 1)) {
     if (at + 1 < line.size() && line[at + 1] == '"') {
-      ++at;  // two stand for one
+      ++at;  // two quotes in a quoted field stand for one
       continue;
     }
     const std::size_t end = std::min(line.find_first_not_of(" \t", at + 1), line.size());

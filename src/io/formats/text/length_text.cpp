@@ -15,7 +15,8 @@ std::optional<double> number_of(std::string_view text) {
   return value;
 }
 
-/// The decimal times a power of ten, rounded once: by its exponent.
+/// The decimal times a power of ten, computed by changing its exponent so that it is rounded only
+/// once.
 std::optional<double> shifted(std::string_view digits, int power) {
   const std::size_t at = digits.find_first_of("eE");
   int exponent = 0;
@@ -29,7 +30,7 @@ std::optional<double> shifted(std::string_view digits, int power) {
   return number_of(std::string(digits.substr(0, at)) + "e" + std::to_string(exponent + power));
 }
 
-/// Of ten, where a unit is such a power of a metre.
+/// The exponent where a unit is a power of ten of a metre; otherwise nullopt.
 std::optional<int> power_of(const NamedUnit& unit) {
   int power = 0;
   std::uint32_t above = unit.numerator, below = unit.denominator;
@@ -45,7 +46,7 @@ std::optional<double> length_in(std::string_view digits, const NamedUnit& unit) 
   return static_cast<double>(static_cast<long double>(*value) * unit.numerator / unit.denominator);
 }
 
-/// "0.2ft" is the double nearest to 0.2.
+/// A length in international feet; "0.2ft" gives the double nearest to 0.2.
 double feet_in(double number, const NamedUnit& unit) {
   constexpr long double kFoot = 3048, kTenThousand = 10'000;
   return static_cast<double>(number * (unit.numerator * kTenThousand / unit.denominator) / kFoot);

@@ -6,7 +6,7 @@
 namespace clearway {
 namespace {
 
-/// Behind a block, to find the end of its last line; a longer line takes a second look.
+/// Bytes read behind a block to find the end of its last line; a longer line takes a second read.
 constexpr std::uint64_t kUsualLine = 1 << 10;
 
 }  // namespace
@@ -17,14 +17,15 @@ LineBlocks::LineBlocks(const InputBuffer& input)
 std::string_view LineBlocks::read(std::size_t block, std::vector<char>& room) const {
   const std::uint64_t first = begin_ + block * kBlockBytes;
   const std::uint64_t last = std::min(end_, first + kBlockBytes);
-  const std::uint64_t from = block == 0 ? first : first - 1;  // does a line end right before it?
+  // Includes the byte before, to see whether a line ends there.
+  const std::uint64_t from = block == 0 ? first : first - 1;
   std::uint64_t loaded = from;
   const auto load_to = [&](std::uint64_t to) {
     room.resize(to - from);
     input_.read_at(loaded, std::as_writable_bytes(std::span(room).subspan(loaded - from)));
     loaded = to;
   };
-  /// Where the line that the byte before `at` belongs to has ended.
+  /// Finds the end of the line to which the byte before `at` belongs.
   const auto line_end = [&](std::uint64_t at) {
     const auto found =
         std::find(room.begin() + static_cast<std::ptrdiff_t>(at - 1 - from), room.end(), '\n');

@@ -10,28 +10,28 @@
 
 namespace clearway {
 
-/// The lines of the rest of a text, in blocks that can be read at the same time. A line belongs to
-/// the block in which it begins.
+/// Divides the rest of a text into blocks of lines that can be read at the same time. A line
+/// belongs to the block in which it begins.
 class LineBlocks {
  public:
   static constexpr std::size_t kBlockBytes = std::size_t{1} << 18;  ///< fits in L2
 
-  /// input: can seek, stands at the start of a line, and outlives this.
+  /// input: can seek, stands at the start of a line, and outlives this object.
   explicit LineBlocks(const InputBuffer& input);
 
   std::size_t count() const { return (end_ - begin_ + kBlockBytes - 1) / kBlockBytes; }
 
-  /// The lines of a block, the last without its line break perhaps; `room` holds them. May be
-  /// called from several threads at once. A line that is too long is cut, and is too long still.
+  /// The lines of a block; the last may lack its line break. `room` holds the text. May be called
+  /// from several threads at once. A line that is too long is cut, but remains longer than allowed.
   std::string_view read(std::size_t block, std::vector<char>& room) const;
 
  private:
   const InputBuffer& input_;
-  std::uint64_t begin_, end_;  ///< bytes of the file
+  std::uint64_t begin_, end_;  ///< range of bytes in the file
 };
 
-/// Calls use(line) for the lines of a block, as InputBuffer::next_line has them, until it returns
-/// false. False then, and for a line that is too long.
+/// Calls use(line) for the lines of a block, in the form of InputBuffer::next_line(), until it
+/// returns false. Returns false in that case and for a line that is too long.
 template <typename Use>
 bool each_line(std::string_view block, Use use) {
   while (!block.empty()) {

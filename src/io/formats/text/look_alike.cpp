@@ -9,8 +9,9 @@
 namespace clearway {
 namespace {
 
-constexpr double kUnitTolerance = 0.01;    // of a norm, as for the poses of a trajectory
-constexpr double kFarthestMetres = 1e8;    // no coordinate on Earth is beyond
+// Deviation of a norm from 1, as for the poses of a trajectory.
+constexpr double kUnitTolerance = 0.01;
+constexpr double kFarthestMetres = 1e8;    // greater than any coordinate on Earth
 constexpr std::size_t kFewestIndices = 3;  // lines
 constexpr std::size_t kFewestTimes = 10;   // lines
 
@@ -20,7 +21,7 @@ bool is_unit(std::span<const double> numbers) {
   return std::abs(std::sqrt(square) - 1) <= kUnitTolerance;
 }
 
-/// numbers: three rows of four or more.
+/// Whether the numbers, in three rows of four or more, begin each row with a row of a rotation.
 bool is_rotation(std::span<const double> numbers) {
   const auto at = [&](std::size_t row, std::size_t column) { return numbers[row * 4 + column]; };
   for (std::size_t i = 0; i < 3; ++i) {
@@ -33,7 +34,7 @@ bool is_rotation(std::span<const double> numbers) {
   return true;
 }
 
-/// Written without point, sign and exponent.
+/// Whether a number is written with digits alone, without point, sign and exponent.
 bool is_counting(const char* begin, const char* end) {
   return begin != end && std::all_of(begin, end, [](char c) { return c >= '0' && c <= '9'; });
 }
@@ -89,8 +90,8 @@ bool LookAlike::times_and_quaternions() const {
          all_rows([](const Row& row) { return is_unit(std::span(row.numbers).subspan(4, 4)); });
 }
 
-/// Not of the layouts of scans that look alike: a normal and a curvature of 0, and an intensity of
-/// 0 and a normal.
+/// Whether the rows are positions and quaternions. Two layouts of scans that look alike are
+/// excluded: a normal with a curvature of 0, and an intensity of 0 with a normal.
 bool LookAlike::positions_and_quaternions() const {
   const auto unit = [this](std::size_t first, std::size_t count) {
     return all_rows(
@@ -99,7 +100,8 @@ bool LookAlike::positions_and_quaternions() const {
   return unit(3, 4) && !unit(3, 3) && !unit(4, 3);
 }
 
-/// Not of a regular grid of points, whose second column stays or counts too.
+/// Whether the first column is an index. A regular grid of points is excluded, whose second column
+/// stays the same or counts too.
 bool LookAlike::index_first() const {
   if (rows_.size() < kFewestIndices || fewest_numbers() < 4) return false;
   const auto counts = [this](std::size_t column, double step) {
@@ -126,7 +128,7 @@ bool LookAlike::time_first() const {
 
 std::string LookAlike::verdict() const {
   const std::size_t n = same_numbers();
-  // A number may stand before or behind each matrix: its index, or how good it is.
+  // A number may precede or follow each matrix: its index, or its quality.
   for (const std::size_t numbers : {12u, 16u}) {
     if ((n == numbers && matrices(0)) || (n == numbers + 1 && (matrices(0) || matrices(1)))) {
       return "a trajectory (" + std::to_string(n) + " numbers a line, a rigid " +

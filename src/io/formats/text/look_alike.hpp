@@ -8,14 +8,14 @@
 
 namespace clearway {
 
-/// Tells from the first lines of a text without names of columns whether it is something else than
-/// points (docs/design/conversion.md, "Text that is no table of points"). What it is taken for must
-/// hold on every line looked at, so that points pass.
+/// Recognises from the first lines of a text without column names that it is something else than
+/// points (docs/design/conversion.md, "Text that is no table of points"). A resemblance must hold
+/// on every line examined, so that points pass.
 class LookAlike {
  public:
   static constexpr std::size_t kMostLines = 100;
 
-  /// The next line of data, without leading blanks.
+  /// Takes the next line of data, which has no leading blanks.
   void add(std::string_view line);
 
   /// What the lines look like, for a message; empty for points.
@@ -26,13 +26,14 @@ class LookAlike {
 
   struct Row {
     std::array<double, kMostNumbers> numbers{};
-    std::size_t count = 0;           ///< numbers at the line's start
-    bool whole = false;              ///< the line is nothing but these
-    std::array<bool, 2> counting{};  ///< the first two are written as 0, 1, 2, ...
+    std::size_t count = 0;  ///< how many numbers the line starts with
+    bool whole = false;     ///< whether the line consists of these numbers alone
+    /// Whether each of the first two is written as a whole number such as 0, 1 or 2.
+    std::array<bool, 2> counting{};
   };
 
   std::size_t fewest_numbers() const;
-  /// The number of numbers of every line; 0 where lines differ or hold anything else.
+  /// How many numbers every line has; 0 where lines differ or hold anything else.
   std::size_t same_numbers() const;
   template <typename Holds>
   bool all_rows(Holds holds) const;

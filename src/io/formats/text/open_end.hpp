@@ -11,14 +11,14 @@
 
 namespace clearway {
 
-/// Notices a last line without a line break, of one reading of a text with a point a line. Where
-/// the text declares how many points it has, that is noted, and refused where values or digits are
-/// missing. Where it does not, missing values are warned of, as the text may be cut.
+/// Notices in one reading of a text with one point per line that its last line lacks a line break.
+/// Where the text declares its number of points, this is noted, and refused where values or digits
+/// are missing. Otherwise missing values cause a warning, because the text may be cut.
 class OpenEnd {
  public:
   explicit OpenEnd(bool counted = true) : counted_(counted) {}
 
-  /// Every line of a point, after it was read. input: where it comes from.
+  /// Called for every line of a point after it was read. input: the text that the line comes from.
   void see(const InputBuffer& input, std::string_view line) {
     if (values_ == 0 || !input.line_terminated()) look(input, line);
   }
@@ -28,9 +28,9 @@ class OpenEnd {
   void look(const InputBuffer& input, std::string_view line);
 
   bool counted_;
-  std::size_t values_ = 0;  // of the first line
-  std::size_t found_ = 0;   // of the last one, where it is open
-  std::uint64_t line_ = 0;  // its number; 0: not open
+  std::size_t values_ = 0;  // number of values in the first line
+  std::size_t found_ = 0;   // number of values in the last line, where it lacks a line break
+  std::uint64_t line_ = 0;  // number of the last line; 0 where it has a line break
 };
 
 }  // namespace clearway

@@ -28,7 +28,8 @@ std::optional<std::uint64_t> PointBlocks::read(InputBuffer& input, const ParseBl
     part.points.reserve(part.lines);
     part.good = (block.empty() || block.ends_with('\n')) && parse(block, part.points);
   };
-  // Reads happen in a stage of a pipeline: a thread that waits here must not begin another stage.
+  // Reading happens in a stage of a pipeline, so a thread that waits here must not begin another
+  // stage.
   tbb::this_task_arena::isolate([&] {
     const ParallelScope scope;
     const auto piece = piece_of(scope, read_one);

@@ -9,7 +9,7 @@
 namespace clearway {
 namespace {
 
-/// Digits with one comma between them, a sign in front perhaps.
+/// Whether a field is digits with one comma between them, perhaps after a sign.
 bool has_decimal_comma(std::string_view field) {
   if (field.starts_with('-') || field.starts_with('+')) field.remove_prefix(1);
   const std::size_t comma = field.find(',');
@@ -45,7 +45,8 @@ std::optional<std::uint64_t> count_in(std::string_view line) {
 }
 
 std::uint64_t most_points_in_rest(const InputBuffer& input) {
-  constexpr std::uint64_t kShortest = 6;  // bytes of "0 0 0" and a line break, which may lack
+  // Bytes of "0 0 0" and a line break, which the last line may lack.
+  constexpr std::uint64_t kShortest = 6;
   return (*input.size() - input.position() + 1) / kShortest;
 }
 

@@ -15,7 +15,7 @@ namespace clearway {
 
 inline constexpr CoordinateColumns kFirstThree{0, 1, 2};
 
-/// Where the lines of a text hold x, y and z, and how they are parsed.
+/// Parses the lines of a text: the columns of x, y and z, and their separator.
 class PointLine {
  public:
   PointLine() = default;
@@ -24,27 +24,27 @@ class PointLine {
       : columns_(columns), separator_(separator) {}
 
   const CoordinateColumns& columns() const { return columns_; }
-  /// False where the line, which has no leading blanks, is anything else than a point.
+  /// Parses a line without leading blanks; returns false where it is anything else than a point.
   bool parse(std::string_view line, Vec3& point);
 
  private:
   CoordinateColumns columns_ = kFirstThree;
-  char separator_ = ' ';  ///< not used for the first three columns
+  char separator_ = ' ';  ///< separator; not used for the first three columns
   std::vector<std::string_view> fields_;
 };
 
-/// x y z in the first three columns and anything behind them, in blanks, commas or semicolons;
-/// false for anything else. line: without leading blanks.
+/// Parses x, y and z in the first three columns, followed by anything, separated by blanks, commas
+/// or semicolons. Returns false for anything else. line: without leading blanks.
 bool parse_point(std::string_view line, Vec3& point);
 
-/// A line of nothing but a whole number from 0. line: without leading blanks.
+/// The value of a line that is nothing but a whole number from 0. line: without leading blanks.
 std::optional<std::uint64_t> count_in(std::string_view line);
 
-/// At most as many points can stand in the rest of the input: each takes a line.
+/// Upper bound of the number of points in the rest of the input, as each takes a line.
 std::uint64_t most_points_in_rest(const InputBuffer& input);
 
-/// The line of each of `points`, ascending numbers from 0 on. next_point: goes on by one point of
-/// the input, which stands at the first; false at the end.
+/// The line number of each of `points`, which are ascending numbers counted from 0. next_point:
+/// advances the input, which stands before the first point, by one point; returns false at the end.
 template <typename NextPoint>
 std::vector<std::uint64_t> lines_of_points(std::span<const std::uint64_t> points,
                                            const InputBuffer& input, NextPoint next_point) {
@@ -57,19 +57,21 @@ std::vector<std::uint64_t> lines_of_points(std::span<const std::uint64_t> points
 
 std::string_view without_leading_blanks(std::string_view line);
 
-/// Blank lines and those that start with # or //. line: without leading blanks.
+/// Whether a line is blank or starts with # or //. line: without leading blanks.
 bool is_text_comment(std::string_view line);
 
-/// The next line that is neither blank nor a comment, without leading blanks; false at the end.
+/// Reads the next line that is neither blank nor a comment, without leading blanks; returns false
+/// at the end.
 bool next_data_line(InputBuffer& input, std::string_view& line);
 
-/// What separates the fields of a line of data: ',', ';' or ' ' for any blanks.
+/// The separator of the fields of a line of data: ',', ';' or ' ' for any blanks.
 char separator_of(std::string_view line);
 
-/// How many fields a line has, at separator_of() it.
+/// The number of fields of a line, separated by separator_of(line).
 std::size_t count_fields(std::string_view line);
 
-/// For a refused line: a half sentence where its numbers have decimal commas, else nothing.
+/// For the message about a refused line: half a sentence where its numbers have decimal commas,
+/// otherwise empty.
 std::string decimal_commas_in(std::string_view line);
 
 }  // namespace clearway

@@ -16,7 +16,7 @@ constexpr std::string_view kNorth[] = {"northing", "north", "n",        "utm_nor
                                        "hochwert", "utm_n", "utm_north"};
 constexpr std::string_view kHeight[] = {"height", "elevation", "altitude", "h",
                                         "elev",   "alt",       "hgt"};
-/// Units of a point's coordinates that no scan is read in, beside those lengths.
+/// Units of coordinates, besides units of length, in which no scan is read.
 constexpr std::string_view kOthers[] = {"mil",    "um",      "deg",    "°",
                                         "degree", "degrees", "arcsec", "rad"};
 
@@ -37,7 +37,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(start, text.find_last_not_of(kBlanks) - start + 1);
 }
 
-/// "# columns: x y z" becomes "x y z".
+/// Removes a comment mark and a label: "# columns: x y z" becomes "x y z".
 std::string_view without_mark_and_label(std::string_view line) {
   line = trimmed(line);
   while (line.starts_with('#')) line.remove_prefix(1);
@@ -50,7 +50,7 @@ std::string_view without_mark_and_label(std::string_view line) {
   return line;
 }
 
-/// Of a field such as "X [m]": what stands in brackets.
+/// The text in brackets in a field such as "X [m]".
 std::string bracketed_unit(std::string_view field) {
   const std::size_t open = field.find_first_of("[(");
   if (open == std::string_view::npos) return {};
@@ -63,7 +63,7 @@ std::string bracketed_unit(std::string_view field) {
 void add_name(TableHeader& header, std::string_view field) {
   std::string name = table_name(field);
   std::string unit = bracketed_unit(field);
-  // The longest unit counts: "x_us_ft" is a column x.
+  // The longest unit is taken: "x_us_ft" is a column x.
   std::size_t mark = unit.empty() ? name.find('_', 1) : std::string::npos;
   for (; mark != std::string::npos; mark = name.find('_', mark + 1)) {
     const std::string_view end = std::string_view(name).substr(mark + 1);
@@ -76,7 +76,7 @@ void add_name(TableHeader& header, std::string_view field) {
   header.units.push_back(std::move(unit));
 }
 
-/// The only column with one of the names.
+/// The only column with one of the names; nullopt where there is none or more than one.
 std::optional<std::size_t> find_one(const TableHeader& header, Names names) {
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < header.names.size(); ++i) {
@@ -92,7 +92,7 @@ bool has(const TableHeader& header, Names names) {
                      [&](const std::string& name) { return is_one_of(name, names); });
 }
 
-/// Names such as qx or q_rs_x for each of x, y, z and w.
+/// Whether there are names such as qx or q_rs_x for each of x, y, z and w.
 bool has_quaternion(const TableHeader& header) {
   return std::all_of(std::begin("xyzw"), std::end("xyzw") - 1, [&](char part) {
     return std::any_of(header.names.begin(), header.names.end(), [&](const std::string& name) {
@@ -122,7 +122,7 @@ TableHeader parse_table_header(std::string_view line) {
   std::vector<std::string_view> fields;
   split_fields(line, header.separator, fields);
   for (const std::string_view field : fields) {
-    // In "X [m] Y [m]" with blanks for separators the unit is a field of its own.
+    // In "X [m] Y [m]", where blanks separate columns, the unit is a field of its own.
     if (header.separator == ' ' && !header.units.empty() && field.find_first_of("[(") == 0) {
       header.units.back() = bracketed_unit(field);
     } else {

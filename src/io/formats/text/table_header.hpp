@@ -17,8 +17,9 @@ using CoordinateColumns = std::array<std::size_t, 3>;
 /// A line that names the columns of a table of points.
 struct TableHeader {
   char separator = ' ';            ///< ',', ';' or ' ' for any blanks
-  std::vector<std::string> names;  ///< lower case, without quotes, blanks and units
-  std::vector<std::string> units;  ///< of each name, as in brackets or behind `_`; lower case
+  std::vector<std::string> names;  ///< names in lower case, without quotes, blanks and units
+  /// Unit of each name, given in brackets or behind `_`; lower case.
+  std::vector<std::string> units;
 };
 
 /// Splits a header line. A comment mark and a label that ends in a colon are dropped.
@@ -27,21 +28,22 @@ TableHeader parse_table_header(std::string_view line);
 /// The lower-case form of a name, as TableHeader holds it.
 std::string table_name(std::string_view field);
 
-/// The index of the only column of that name; none where there is no such column or more than one.
+/// The index of the only column of that name; nullopt where there is no such column or more than
+/// one.
 std::optional<std::size_t> column_named(const TableHeader& header, std::string_view name);
 
-/// x, y and z; or easting, northing and a height, in whatever order. None where one is missing or
-/// named twice.
+/// The columns of x, y and z, or of easting, northing and height, in any order. Nullopt where one
+/// is missing or named twice.
 std::optional<CoordinateColumns> coordinate_columns(const TableHeader& header);
 
-/// What other table than one of points the names tell, for a message; empty where they do not.
+/// What kind of table the names indicate if not one of points, for a message; otherwise empty.
 std::string other_table(const TableHeader& header);
 
-/// The unit of the three columns as the header says.
+/// The unit of the columns x, y and z as the header gives it.
 struct TableUnit {
   LengthUnit unit = LengthUnit::kUnknown;
   bool any_foot = false;  ///< see CloudInfo
-  std::string refused;    ///< a unit that is not read, or two different ones; empty: none
+  std::string refused;    ///< the unit that is not read, or the two that differ; otherwise empty
 };
 TableUnit unit_of(const TableHeader& header, const CoordinateColumns& columns);
 

@@ -8,7 +8,7 @@
 
 namespace clearway {
 
-/// Text in memory. A double becomes the shortest digits that give it back.
+/// Text in memory. A double is written with the fewest digits that give it back exactly.
 class TextBuffer {
  public:
   TextBuffer& operator<<(std::string_view text) {

@@ -16,12 +16,12 @@ inline const char* skip_blanks(const char* at, const char* end) {
   return at;
 }
 
-/// strtod for what std::from_chars finds out of range: too small gives 0 or the nearest number, too
-/// large is refused (false).
+/// Parses with strtod a number that std::from_chars finds out of range. One that is too small gives
+/// 0 or the nearest number; one that is too large is refused (false).
 bool parse_extreme_number(const char* begin, const char* end, double& value);
 
-/// Parses the number that starts at `at` (nan, inf and a leading + included) and moves `at` behind
-/// it; false where there is none. What may follow is the caller's business.
+/// Parses the number that starts at `at` (including nan, inf and a leading +) and moves `at` behind
+/// it. Returns false where there is none. The caller checks what follows.
 inline bool parse_number(const char*& at, const char* end, double& value) {
   const char* start = at;
   if (start != end && *start == '+' && end - start > 1 && start[1] != '-') ++start;
@@ -32,8 +32,8 @@ inline bool parse_number(const char*& at, const char* end, double& value) {
   return true;
 }
 
-/// Skips the separator of two numbers: blanks, or one comma or semicolon with or without blanks
-/// around it. Returns ',', ';' or ' ' for blanks alone, and 0 where there is none.
+/// Skips the separator between two numbers: blanks, or one comma or semicolon with or without
+/// blanks around it. Returns ',', ';' or ' ' for blanks alone, and 0 where there is none.
 inline char skip_separator(const char*& at, const char* end) {
   const char* const start = at;
   at = skip_blanks(at, end);
@@ -45,12 +45,12 @@ inline char skip_separator(const char*& at, const char* end) {
   return at != start ? ' ' : '\0';
 }
 
-/// Parses a line that consists of nothing but numbers, up to out.size() of them, in blanks, commas
-/// or semicolons, one kind throughout. Returns how many there are (out.size() + 1 for more); none
-/// for anything else in the line.
+/// Parses a line that consists of nothing but numbers, up to out.size() of them, separated by
+/// blanks, commas or semicolons, of one kind throughout. Returns how many there are (out.size() + 1
+/// for more); nullopt for anything else in the line.
 std::optional<std::size_t> parse_number_line(std::string_view line, std::span<double> out);
 
-/// The whole of a word as a whole number from 0; none for anything else, and for one that is too
+/// Parses a whole word as a whole number from 0; nullopt for anything else and for one that is too
 /// large.
 inline std::optional<std::uint64_t> parse_count(std::string_view word) {
   std::uint64_t value = 0;
@@ -60,7 +60,7 @@ inline std::optional<std::uint64_t> parse_count(std::string_view word) {
   return value;
 }
 
-/// The whole of a field, blanks around it aside, as a number.
+/// Parses a whole field, apart from blanks around it, as a number.
 std::optional<double> parse_whole_number(std::string_view field);
 
 }  // namespace clearway

@@ -9,8 +9,8 @@
 
 namespace clearway {
 
-/// Text appended through a TextBuffer to a file. The file stays the caller's; what was not flushed
-/// is lost. Throws ResourceError as File does.
+/// Appends text through a TextBuffer to a file. The caller owns the file; what is not flushed is
+/// lost. Throws ResourceError as File does.
 class TextWriter {
  public:
   explicit TextWriter(const File& file) : file_(file) { buffer_.reserve(kBufferBytes); }

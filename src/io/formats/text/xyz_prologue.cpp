@@ -71,7 +71,7 @@ class PrologueReader {
     out_.count_line = input_.line();
   }
 
-  /// Whether a first line is one of data, by the columns as far as they are known.
+  /// Whether a first line is data, judged by the columns as far as they are known.
   bool is_point(std::string_view line) {
     Vec3 point{};
     if (!options_.columns.empty()) {
@@ -88,7 +88,7 @@ class PrologueReader {
     return PointLine().parse(line, point);
   }
 
-  /// The columns that the caller named; none for names where `header` is null or lacks one.
+  /// The columns that the caller chose; nullopt for names where `header` is null or lacks one.
   std::optional<CoordinateColumns> chosen_columns(const TableHeader* header) const {
     CoordinateColumns columns{};
     for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -109,7 +109,8 @@ class PrologueReader {
     return options_.columns[0] + ", " + options_.columns[1] + ", " + options_.columns[2];
   }
 
-  /// A first line that is no point.
+  /// Reads a first line that is no point: the header that names the columns, or something to
+  /// refuse.
   void read_header(std::string_view line) {
     TableHeader header = parse_table_header(line);
     std::optional<CoordinateColumns> columns;
@@ -136,7 +137,8 @@ class PrologueReader {
     header_ = std::move(header);
   }
 
-  /// Whether one of the columns holds a number: then the line is a damaged point, not a header.
+  /// Whether one of the columns holds a number, in which case the line is a damaged point and no
+  /// header.
   static bool has_number(std::string_view line, char separator, const CoordinateColumns& columns) {
     std::vector<std::string_view> fields;
     split_fields(line, separator, fields);
@@ -145,7 +147,8 @@ class PrologueReader {
     });
   }
 
-  /// Behind a header: the lines may be separated in another way than its names.
+  /// Finds the separator of the lines behind a header, which may differ from the one between its
+  /// names.
   void settle_separator(std::string_view line) {
     Vec3 point{};
     PointLine other(out_.line.columns(), separator_of(line));
@@ -153,7 +156,7 @@ class PrologueReader {
     all_named_ = all_named_ || header_->names.size() == fields_;
   }
 
-  /// From the comments, or as the caller said, for the first line of data.
+  /// Chooses the columns at the first line of data, from the comments or as the caller said.
   void choose_columns(std::string_view line) {
     const char separator = separator_of(line);
     if (!options_.columns.empty()) return use_chosen(separator);
@@ -191,7 +194,7 @@ class PrologueReader {
     use(named_by ? *named_by : TableHeader{}, *columns, separator);
   }
 
-  /// Whether the names are those of the lines: as many, or fewer that start with x, y and z.
+  /// Whether the names fit the lines: there are as many, or fewer that start with x, y and z.
   bool fits(const TableHeader& header, const CoordinateColumns& columns) const {
     if (header.names.size() == fields_) return true;
     return header.names.size() < fields_ && *std::max_element(columns.begin(), columns.end()) == 2;
@@ -221,7 +224,8 @@ class PrologueReader {
                              "; the first three are read as x, y and z");
   }
 
-  /// line: the first of data, which was read.
+  /// Throws InputError where the text looks like something else than points. line: the first line
+  /// of data, which was already read.
   void refuse_look_alike(std::string_view line) {
     const std::uint64_t number = input_.line();
     LookAlike look_alike;
@@ -241,10 +245,10 @@ class PrologueReader {
   InputBuffer& input_;
   const PointReadOptions& options_;
   XyzPrologue out_;
-  std::size_t fields_ = 0;             ///< of the first point's line
-  std::vector<Comment> comments_;      ///< the last first
-  std::optional<TableHeader> header_;  ///< the line of its own that names the columns
-  bool all_named_ = false;             ///< every column has a name, or the caller chose three
+  std::size_t fields_ = 0;             ///< number of fields in the line of the first point
+  std::vector<Comment> comments_;      ///< comments in reverse order
+  std::optional<TableHeader> header_;  ///< header on a line of its own that names the columns
+  bool all_named_ = false;  ///< whether every column has a name, or the caller chose three
 };
 
 }  // namespace

@@ -60,10 +60,10 @@ class XyzReader final : public PointReader {
   }
 
  private:
-  /// Points that a line declares to follow it.
+  /// The number of points that a line declares to follow it.
   struct Count {
     std::uint64_t points = 0;
-    std::uint64_t line = 0;  ///< 0: the text declares none
+    std::uint64_t line = 0;  ///< line of the number; 0 where the text declares none
   };
 
   bool is_counted() const { return first_.line > 0; }
@@ -78,7 +78,7 @@ class XyzReader final : public PointReader {
     return true;
   }
 
-  /// Reads ahead, but for the first line, and where that did not go lately.
+  /// Reads blocks ahead, except for the first line and for a while after that has failed.
   bool read_blocks() {
     if (in_turn_ > 0) {
       --in_turn_;
@@ -128,7 +128,7 @@ class XyzReader final : public PointReader {
     return false;
   }
 
-  /// Behind all points that were declared: the number of more points.
+  /// Called behind all declared points: reads the number of further points.
   void begin_count(std::string_view line) {
     const auto points = count_in(line);
     if (!points) {
@@ -191,12 +191,12 @@ class XyzReader final : public PointReader {
   std::size_t remarks_at_start_ = 0;
   InputBuffer::Mark first_point_;
   Count first_;
-  Count count_;                 ///< where the reader is
-  std::uint64_t declared_ = 0;  ///< up to there
-  std::uint64_t counts_ = 0;    ///< so many, this one included
-  std::uint64_t next_ = 0;      ///< lines of points read behind the count
+  Count count_;                 ///< the count whose points are being read
+  std::uint64_t declared_ = 0;  ///< sum of all counts up to count_
+  std::uint64_t counts_ = 0;    ///< number of counts so far, including count_
+  std::uint64_t next_ = 0;      ///< points of count_ read so far
   PointBlocks blocks_;
-  std::size_t in_turn_ = 1;  ///< so many lines are read one by one
+  std::size_t in_turn_ = 1;  ///< number of lines to read one by one before reading ahead
   OpenEnd open_end_;
   bool finished_ = false;
 };

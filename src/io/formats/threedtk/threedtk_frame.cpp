@@ -13,10 +13,10 @@
 namespace clearway {
 namespace {
 
-constexpr double kCentimetres = 100;  // in a metre
+constexpr double kCentimetres = 100;  // centimetres in a metre
 constexpr std::size_t kFrameNumbers = 17;
 
-/// Which axis of 3DTK an axis of ours is, and its sign.
+/// The axis of 3DTK that corresponds to each of Clearway's axes.
 constexpr std::array<std::size_t, 3> kAxis{2, 0, 1};
 constexpr std::array<double, 3> kSign{1, -1, 1};
 
@@ -53,7 +53,7 @@ ThreedtkMatrix threedtk_matrix(std::span<const double, 3> position,
     s[k] = std::sin(radians);
     c[k] = std::cos(radians);
   }
-  // The product Rx Ry Rz of rotations about x, y and z, column by column.
+  // The product Rx Ry Rz of rotations about x, y and z, column-major.
   return {c[1] * c[2],
           s[0] * s[1] * c[2] + c[0] * s[2],
           s[0] * s[2] - c[0] * s[1] * c[2],

@@ -8,37 +8,39 @@
 #include "io/formats/input_buffer.hpp"
 #include "io/trajectory/pose_input.hpp"
 
-/// 3DTK's frame and Clearway's. 3DTK is left-handed, in centimetres: x right, y up, z forward. Its
-/// readers take right-handed metres with x forward, y left and z up for
+/// Conversion between 3DTK's frame and Clearway's. 3DTK is left-handed, in centimetres: x right,
+/// y up, z forward. Its readers convert right-handed metres with x forward, y left and z up by
 ///   x3 = -100 y, y3 = 100 z, z3 = 100 x
 /// (3DTK, src/scanio/helper.cc, ScanDataTransform_xyz; globals.icc, toRieglMat). Scans and poses of
-/// 3DTK's own formats come back by the inverse of that, docs/design/scan-formats.md.
+/// 3DTK's own formats are converted by the inverse, see docs/design/scan-formats.md.
 namespace clearway {
 
-/// 4 x 4, column by column as 3DTK keeps and prints it: p' = M p, centimetres, left-handed.
+/// A 4 x 4 matrix, column-major as 3DTK stores and prints it: p' = M p, centimetres, left-handed.
 using ThreedtkMatrix = std::array<double, 16>;
 
-/// Right-handed metres.
+/// The point in right-handed metres.
 Vec3 from_threedtk(const Vec3& point);
-/// The same motion as a right-handed row-major 3 x 4 matrix in metres.
+/// The motion of a ThreedtkMatrix as a right-handed row-major 3 x 4 matrix in metres.
 std::array<double, 12> from_threedtk(const ThreedtkMatrix& matrix);
 
-/// position: centimetres. angles: degrees about x, y and z, in the order of 3DTK's EulerToMatrix4.
+/// Makes the matrix of a pose. position: centimetres. angles: degrees about x, y and z, in the
+/// order of 3DTK's EulerToMatrix4.
 ThreedtkMatrix threedtk_matrix(std::span<const double, 3> position,
                                std::span<const double, 3> angles);
 
-/// numbers: those of a .pose file, x y z and three angles; a seventh, the time of 3DTK's tools, is
-/// not used. pose: right-handed, metres.
+/// Makes a pose of the numbers of a .pose file: x y z and three angles. A seventh number, the time
+/// that 3DTK's tools write, is not used. pose: right-handed, metres.
 Objection pose_of_threedtk_euler(std::span<const double> numbers, Pose& pose);
 
-/// numbers: those of one line of a .frames file, a ThreedtkMatrix and maybe the colour that 3DTK
-/// shows the scan in. pose: right-handed, metres, rigid unless `allow_non_rigid`.
+/// Makes a pose of the numbers in a line of a .frames file: a ThreedtkMatrix, perhaps followed by
+/// the colour in which 3DTK shows the scan. pose: right-handed, metres, rigid unless
+/// `allow_non_rigid`.
 Objection pose_of_threedtk_frame(std::span<const double> numbers, bool allow_non_rigid, Pose& pose);
 
-/// Reads a .pose file: its numbers, on any lines. Throws InputError.
+/// Reads a .pose file, whose numbers may be on any lines. Throws InputError.
 Pose read_threedtk_pose(InputBuffer& input);
-/// Reads a .frames file to its end. The last line counts: where the scan came to lie. Throws
-/// InputError, also for a malformed line before the last one.
+/// Reads a .frames file to its end. The last line is used, which is where registration left the
+/// scan. Throws InputError, also for a malformed line before the last one.
 Pose read_threedtk_frames(InputBuffer& input);
 
 }  // namespace clearway

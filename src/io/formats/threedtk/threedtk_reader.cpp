@@ -17,9 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostHeaderLines = 10;  // that are no points, as 3DTK's own readers allow
+constexpr int kMostHeaderLines = 10;  // lines that are no points, as 3DTK's own readers allow
 
-/// What a folder holds beside a scan.
+/// Which other files of 3DTK the folder of a scan holds.
 struct Neighbours {
   bool scans = false, poses = false, frames = false;
 };
@@ -46,7 +46,7 @@ Message warning(const char* code, const std::string& text) {
   return {Message::Severity::kWarning, code, text};
 }
 
-/// Where a scan lies, and what is to be said of it.
+/// Finds the pose of a scan and adds remarks about it.
 Pose find_pose(const fs::path& scan, std::vector<Message>& remarks) {
   constexpr const char* kFrame =
       ". 3DTK's left-handed centimetres became right-handed metres, x forward, y left, z up";
@@ -126,7 +126,8 @@ class ThreedtkReader final : public PointReader {
             r[6] * p.x + r[7] * p.y + r[8] * p.z + t[2]};
   }
 
-  /// Lines before the first point that are none: counts, or what the scanner wrote of itself.
+  /// Skips lines before the first point that are no points, such as counts or what the scanner
+  /// recorded.
   void skip_header() {
     input_.skip_byte_order_mark();
     InputBuffer::Mark start = input_.mark();

@@ -64,7 +64,7 @@ std::string ignored_lists_text(const ResultHeader& header) {
   return text + (text.empty() ? "" : ", ") + "boxes " + boxes_text(header.ignore_boxes);
 }
 
-/// What was to be ignored, whatever classes the environment has.
+/// The lists of what was to be ignored in words, whatever classes the environment has.
 std::string asked_to_ignore_text(const ResultHeader& header) {
   if (!header.ignores_points()) return "none";
   const std::string boxes =
@@ -205,7 +205,7 @@ ProfileComparison compare_profiles(const ResultReader& a, const ResultReader& b)
       if (!out.first) out.first = out.poses;
     }
   }
-  from_b.read(rows_b);  // of both, the end checks the hash
+  from_b.read(rows_b);  // at its end, each stream checks the hash
   return out;
 }
 

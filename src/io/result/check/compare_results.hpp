@@ -10,27 +10,29 @@
 
 namespace clearway {
 
-/// Something that two results were asked differently, in words: "radius", "0.1 m", "0.2 m".
+/// A difference between the queries of two results, in words: "radius", "0.1 m", "0.2 m".
 struct QueryDifference {
   std::string what, a, b;
 };
 
-/// A point that the two results do not say the same of.
+/// A point for which the two results differ.
 struct PointDifference {
   enum class Kind { kOnlyInA, kOnlyInB, kFirstPose, kLastPose, kCoordinates };
 
   Kind kind;
   std::uint64_t source;
-  Vec3 xyz;                                                         ///< as a has it, where a has it
-  std::optional<std::uint32_t> first_pose_a, first_pose_b;          ///< where that result has it
-  std::optional<std::uint32_t> last_pose_a = {}, last_pose_b = {};  ///< likewise
+  Vec3 xyz;  ///< coordinates in a, or in b where a lacks the point
+  std::optional<std::uint32_t> first_pose_a, first_pose_b;  ///< where that result has first poses
+  /// Where that result has last poses.
+  std::optional<std::uint32_t> last_pose_a = {}, last_pose_b = {};
 };
 
 /// How the clearances of two results differ.
 struct ClearanceComparison {
   std::uint64_t in_a = 0, in_b = 0;
   std::uint64_t common = 0, only_in_a = 0, only_in_b = 0;
-  /// Of common points, in distance, pose or, where both have them, body and coordinates.
+  /// Number of common points that differ in distance or pose, in body where both results have the
+  /// same bodies, or in coordinates where both have them.
   std::uint64_t differing = 0;
 
   bool equal() const { return only_in_a == 0 && only_in_b == 0 && differing == 0; }
@@ -40,8 +42,9 @@ struct ClearanceComparison {
 /// How the profiles of two results differ, pose by pose.
 struct ProfileComparison {
   std::uint64_t poses = 0;
-  std::uint64_t differing = 0;              ///< in distance, point, its coordinates or chainage
-  std::optional<std::uint64_t> first = {};  ///< pose that differs
+  /// Poses that differ in distance, point, its coordinates or chainage.
+  std::uint64_t differing = 0;
+  std::optional<std::uint64_t> first = {};  ///< first pose that differs
 
   bool equal() const { return differing == 0; }
   friend bool operator==(const ProfileComparison&, const ProfileComparison&) = default;
@@ -50,19 +53,20 @@ struct ProfileComparison {
 struct Comparison {
   std::uint64_t in_a = 0, in_b = 0;
   std::uint64_t common = 0, only_in_a = 0, only_in_b = 0;
-  std::uint64_t differing_coordinates = 0;  ///< of common points
-  /// Of common points, where both have them, in pose or, of the same bodies, in body.
+  std::uint64_t differing_coordinates = 0;  ///< number of common points whose coordinates differ
+  /// Number of common points that differ in first pose or, for the same bodies, in body. Only where
+  /// both results have first poses.
   std::optional<std::uint64_t> differing_first_poses;
-  /// Of common points, where both have last poses.
+  /// Number of common points that differ in last pose. Only where both results have last poses.
   std::optional<std::uint64_t> differing_last_poses = {};
-  std::optional<ClearanceComparison> clearances;  ///< where both have them
-  /// Where both have one, of the same trajectory.
+  std::optional<ClearanceComparison> clearances;  ///< only where both results have clearances
+  /// Only where both results have a profile of the same trajectory.
   std::optional<ProfileComparison> profiles;
   std::vector<QueryDifference> queries;
-  std::vector<PointDifference> points;  ///< the first ones, ascending by source
+  std::vector<PointDifference> points;  ///< the first of the differing points, ascending by source
 
-  /// The same points at the same places with the same first poses, clearances and profile, whatever
-  /// was asked.
+  /// Whether both results have the same points at the same places with the same first poses,
+  /// clearances and profile. Differing queries and last poses do not count.
   bool equal() const {
     return only_in_a == 0 && only_in_b == 0 && differing_coordinates == 0 &&
            differing_first_poses.value_or(0) == 0 && differing_last_poses.value_or(0) == 0 &&
@@ -70,14 +74,15 @@ struct Comparison {
   }
 };
 
-/// Of the model, the trajectory and the parameters: what was asked, of whichever environment.
+/// Differences in what was asked: model, trajectory and parameters, whatever the environment.
 std::vector<QueryDifference> question_differences(const ResultHeader& a, const ResultHeader& b);
 
-/// The same with the environment, how its coordinates are stored, and its classes.
+/// Differences in what was asked, and in the environment, how its coordinates are stored, and its
+/// classes.
 std::vector<QueryDifference> query_differences(const ResultHeader& a, const ResultHeader& b);
 
-/// Merges both results in constant memory; keeps up to `kept` differing points. Throws InputError
-/// when they are about different environments, whose indices cannot be compared.
+/// Compares two results in constant memory and keeps up to `kept` differing points. Throws
+/// InputError when they are about different environments, whose indices cannot be compared.
 Comparison compare_results(const ResultReader& a, const ResultReader& b, std::size_t kept);
 
 }  // namespace clearway

@@ -55,7 +55,7 @@ bool is_intact_result(const std::filesystem::path& file, const ResultHeader& hea
     const ResultReader result(file, Parts::kAccepted);
     ResultHeader found = result.header();
     found.last_pose =
-        header.last_pose;  // older releases wrote none, and answered the same question
+        header.last_pose;  // Older releases wrote no last poses, but answered the same question.
     return found == header && !verify_result(result, progress);
   } catch (const InputError&) {
     return false;

@@ -30,7 +30,7 @@ struct Range {
   }
 };
 
-/// What the poses of a file had in common with the map.
+/// Ranges of the map's properties at the poses of a file.
 struct Ranges {
   Range north, scale, height;
 };
@@ -49,7 +49,8 @@ MapProjection open_projection(const TrajectoryOptions& options, const std::strin
   }
 }
 
-/// The rotation of a pose follows one angle, so the map must turn all directions alike.
+/// Checks that the map turns all directions at a pose alike, because its rotation uses a single
+/// angle.
 void check_shape(const MapProjection& map, const AttitudeRow& row, const std::string& name,
                  TrajectoryFile& out) {
   const double skew = map.skew(row.position[0], row.position[1], row.position[2]);
@@ -125,7 +126,7 @@ void remark_map(const MapProjection& map, const TrajectoryOptions& options, cons
 void remark_datum(const MapProjection& map, const TrajectoryOptions& options,
                   const std::string& name, TrajectoryFile& out) {
   const double accuracy = map.accuracy();
-  constexpr double kExpected = 1;  // metres, between WGS 84 and its kin
+  constexpr double kExpected = 1;  // metres, between WGS 84 and similar datums
   if (accuracy == 0) return;
   const std::string datum = options.datum.empty() ? "WGS 84" : options.datum;
   const std::string text = name + ": positions were taken as " + datum + ", and the datum of " +

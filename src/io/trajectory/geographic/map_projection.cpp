@@ -15,13 +15,14 @@
 namespace clearway {
 namespace {
 
-constexpr double kSemiMajor = 6378137;               // of WGS 84
-constexpr double kEccentricity2 = 6.69437999014e-3;  // squared, of WGS 84
+constexpr double kSemiMajor = 6378137;               // semi-major axis of WGS 84, metres
+constexpr double kEccentricity2 = 6.69437999014e-3;  // squared eccentricity of WGS 84
 
-/// The text that PROJ logs, rather than printing it.
+/// Keeps the text that PROJ logs, instead of printing it.
 void keep_log(void* kept, int, const char* text) { *static_cast<std::string*>(kept) = text; }
 
-/// Well-known text from a file must not make PROJ open other files (docs/design/security.md).
+/// Whether a well-known text names files, which a text from a file must not make PROJ open
+/// (docs/design/security.md).
 bool names_files(std::string_view wkt) {
   std::string upper(wkt);
   std::ranges::transform(upper, upper.begin(), [](char c) {
@@ -36,7 +37,7 @@ bool names_files(std::string_view wkt) {
 }  // namespace
 
 struct MapProjection::Parts {
-  std::string log;  ///< outlives the context
+  std::string log;  ///< must outlive the context
   ProjContext context;
   ProjObject transformation;
 
@@ -119,15 +120,15 @@ bool MapProjection::project(double longitude, double latitude, double height,
       proj_trans(parts_->transformation.get(), PJ_FWD, proj_coord(longitude, latitude, height, 0));
   for (int k = 0; k < 3; ++k) {
     xyz[k] = place.v[k];
-    if (!std::isfinite(xyz[k])) return false;  // HUGE_VAL: an error
+    if (!std::isfinite(xyz[k])) return false;  // PROJ returns HUGE_VAL for an error
   }
   return true;
 }
 
-/// What a metre to true north or east is on the map, in its unit; zeros outside the map.
+/// The vector on the map, in its unit, of a metre to true north or east; zeros outside the map.
 Vec3 MapProjection::slope(double longitude, double latitude, double height,
                           bool along_north) const {
-  constexpr double kStep = 1e-4;  // degrees: 11 m, over which a map bends by less than 1e-10
+  constexpr double kStep = 1e-4;  // degrees; 11 m, over which a map bends by less than 1e-10
   const double sine = std::sin(latitude * kDegree);
   const double w2 = 1 - kEccentricity2 * sine * sine;
   double metres = 2 * kStep * kDegree * kSemiMajor / std::sqrt(w2);
@@ -150,7 +151,8 @@ std::optional<MapProjection::Place> MapProjection::place(double longitude, doubl
   const Vec3 north = slope(longitude, latitude, height, true);
   const double scale = std::hypot(north.x, north.y) * unit_;
   if (!(scale > 0)) return std::nullopt;
-  const double vertical = vertical_unit_ > 0 ? vertical_unit_ : 1;  // a height that passed through
+  // A height that was not converted.
+  const double vertical = vertical_unit_ > 0 ? vertical_unit_ : 1;
   return Place{{xyz[0], xyz[1], xyz[2] * vertical / unit_}, std::atan2(north.x, north.y), scale};
 }
 

@@ -17,9 +17,9 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-constexpr double kHighest = 1e5;  // metres; no scanner flies there
+constexpr double kHighest = 1e5;  // metres; no scanner flies as high
 
-/// The numbers of a record that make a pose; radians and metres.
+/// The numbers of a record that make a pose, in radians and metres.
 struct Record {
   double time, latitude, longitude, altitude, roll, pitch, heading, wander;
 };
@@ -31,12 +31,12 @@ Record record_of(std::span<const std::byte> bytes) {
 }
 
 std::string objection_to_angle(const char* name, double value, double most) {
-  if (std::abs(value) <= most) return {};  // not: NaN
+  if (std::abs(value) <= most) return {};  // false for NaN
   return std::string(name) + " " + brief(value) + " is no angle in radians up to " + brief(most) +
          (std::isfinite(value) ? "; SBET has radians, not degrees" : "");
 }
 
-/// Why a record is no pose; empty where it is one.
+/// Why a record is not a pose; empty where it is one.
 std::string objection_to(const Record& record) {
   constexpr double kTurn = 2 * std::numbers::pi + 1e-6;
   const struct {

@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kSlack = 1 + 1e-9;
 
-/// Angles in radians can be counted on beyond a turn, but not so far in a tilt.
+/// Greatest roll and pitch in radians. A heading in radians may be counted on beyond a full turn,
+/// but a tilt not so far.
 constexpr double kMostTiltRadians = 2 * std::numbers::pi;
 constexpr double kMostTurnRadians = 20 * std::numbers::pi;
 
@@ -35,7 +36,7 @@ Largest largest_of(std::span<const AttitudeRow> rows) {
   return most;
 }
 
-/// Of the texts in a header; the first that is not empty has to hold for all.
+/// The unit named by the texts in a header; the first that is not empty must hold for all.
 AngleUnit declared_unit(std::span<const std::string> texts, const std::string& name) {
   AngleUnit unit = AngleUnit::kDeclared;
   std::size_t declared = 0;
@@ -59,7 +60,7 @@ AngleUnit declared_unit(std::span<const std::string> texts, const std::string& n
 
 const char* text_of(AngleUnit unit) { return unit == AngleUnit::kDegrees ? "degrees" : "radians"; }
 
-/// What header and options say; kDeclared where neither does.
+/// The unit that header or options name; kDeclared where neither does. Throws where they differ.
 AngleUnit said_unit(AngleUnit header, AngleUnit option, const std::string& name) {
   if (header != AngleUnit::kDeclared && option != AngleUnit::kDeclared && header != option) {
     refuse(name, std::string("the header has angles in ") + text_of(header) +
@@ -70,7 +71,7 @@ AngleUnit said_unit(AngleUnit header, AngleUnit option, const std::string& name)
 
 double factor_of(AngleUnit unit) { return unit == AngleUnit::kDegrees ? kDegree : 1; }
 
-/// Radians of a unit of roll, pitch and the third angle.
+/// Radians per unit of roll, pitch and the third angle.
 double attitude_factor(const Largest& most, const PoseColumns& columns,
                        const TrajectoryOptions& options, TrajectoryFile& out,
                        const std::string& name) {
@@ -91,7 +92,7 @@ double attitude_factor(const Largest& most, const PoseColumns& columns,
   return kDegree;
 }
 
-/// Degrees of a unit of latitude and longitude.
+/// Degrees per unit of latitude and longitude.
 double geographic_factor(const Largest& most, const PoseColumns& columns,
                          const TrajectoryOptions& options, const std::string& name) {
   AngleUnit unit = declared_unit(std::span(columns.position_units).first(2), name);

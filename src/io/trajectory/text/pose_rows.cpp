@@ -14,7 +14,7 @@
 namespace clearway {
 namespace {
 
-/// Seconds of a time whose unit only its size tells: those since 1970 in ns, us, ms or s.
+/// A time in seconds, whose unit only its size tells: ns, us, ms or s since 1970.
 double seconds_of(double time) {
   constexpr double kNanoseconds = 1e17;
   constexpr double kMicroseconds = 1e14;
@@ -26,7 +26,7 @@ double seconds_of(double time) {
                                          : 1);
 }
 
-/// Without blanks and quotes around it.
+/// The field without the blanks and quotes around it.
 std::string_view bare_text(std::string_view field) {
   constexpr std::string_view kAround = " \t\"'";
   const std::size_t first = field.find_first_not_of(kAround);
@@ -34,7 +34,7 @@ std::string_view bare_text(std::string_view field) {
   return field.substr(first, field.find_last_not_of(kAround) + 1 - first);
 }
 
-/// What a field says, without quotes around it; in quotes, two within stand for one (RFC 4180).
+/// The name in a field, without quotes around it; within quotes, two stand for one (RFC 4180).
 std::string name_of_pose(std::string_view field) {
   const std::size_t open = field.find('"'), close = field.rfind('"');
   const bool quoted = open != close && bare_text(field.substr(0, open)).empty() &&
@@ -92,8 +92,8 @@ PoseRows::PoseRows(TrajectoryFormat format, std::optional<PoseColumns> columns,
   if (is_geographic()) units = units.subspan(2);
   unit_ = unit_of_positions(units, options_, name_);
   metres_ = unit_.metres_in(options_.environment_unit);
-  // The environment's own unit is left alone here and in convert_positions(): turned into metres
-  // and back, the numbers would not be the same.
+  // Numbers in the environment's own unit are kept here and in convert_positions(), because they
+  // would change if converted into metres and back.
   const bool stays = metres_ == options_.environment_unit && !is_geographic();
   if (unit_.is_known() && !stays) in_metres_ = UnitFactor(metres_);
 }
@@ -269,7 +269,7 @@ void PoseRows::finish(TrajectoryFile& out) {
   if (names_.size() == out.poses.size()) out.names = std::move(names_);
   out.unit = unit_;
   if (metres_ == 0) return;
-  // Places on a map are in the map's unit already; the unit was that of heights.
+  // Places on a map are in the map's unit already; the file's unit was that of heights.
   out.in_metres = metres_ != options_.environment_unit && !is_geographic();
   if (metres_ == 1) return;
   if (is_geographic()) {

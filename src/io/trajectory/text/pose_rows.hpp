@@ -15,24 +15,25 @@
 
 namespace clearway {
 
-/// How many numbers a line has instead of those expected. count: none for a line that is not all
-/// numbers, one above `most` for more.
+/// The objection that a line has another number of numbers than expected. count: nullopt for a line
+/// that is not all numbers, one above `most` for more.
 Objection objection_to_count(std::string_view line, std::optional<std::size_t> count,
                              std::size_t most, const std::string& expected);
 
-/// Reads lines of text into poses, all in one format that is known.
+/// Reads lines of text into poses, all in one known format.
 class PoseRows {
  public:
-  /// columns: of kCsv and kEuroc. name: of the file, for messages.
+  /// columns: for kCsv and kEuroc. name: the file's, for messages.
   PoseRows(TrajectoryFormat format, std::optional<PoseColumns> columns, TrajectoryOptions options,
            std::string name);
 
-  /// Why the line is no pose; without text where it is one.
+  /// Adds the pose of a line. Returns why the line is not a pose; without text where it is one.
   Objection add(std::string_view line);
-  /// For up to `lines` other lines of the file, behind the first; to be appended.
+  /// An empty object for up to `lines` further lines of the file behind the first, to be filled and
+  /// appended.
   PoseRows for_lines(std::size_t lines) const;
   void append(std::vector<PoseRows> parts);
-  /// After the last line.
+  /// Moves all poses to `out`. Called after the last line.
   void finish(TrajectoryFile& out);
 
  private:
@@ -50,10 +51,11 @@ class PoseRows {
   std::optional<PoseColumns> columns_;
   TrajectoryOptions options_;
   std::string name_;
-  FileUnit unit_;                ///< of positions
-  double metres_ = 0;            ///< of that unit; 0 where it is not known
-  UnitFactor in_metres_{1};      ///< from that unit; from the environment's unit into itself
-  std::size_t row_numbers_ = 0;  ///< 12 or 16 in every line; 0: none yet
+  FileUnit unit_;      ///< unit of positions
+  double metres_ = 0;  ///< metres of that unit; 0 where it is not known
+  /// Conversion from that unit to metres; none from the environment's own unit.
+  UnitFactor in_metres_{1};
+  std::size_t row_numbers_ = 0;  ///< 12 or 16 numbers in every line; 0 before the first line
   std::array<double, 16> numbers_{};
   std::vector<std::string_view> fields_;
   std::vector<Pose> poses_;

@@ -8,10 +8,10 @@
 
 namespace clearway {
 
-/// The unit of positions: what the header says, or the options; none where neither does. A header
-/// in "ft" does not contradict options that say which foot it is.
-/// texts: the units in the header, lower case, or empty. Throws InputError where they are not
-/// known, differ, are there for some positions only, or contradict the options.
+/// The unit of positions that the header names, or the options; not known where neither does. A
+/// header in "ft" does not contradict options that say which foot it is. texts: the units in the
+/// header, in lower case, or empty. Throws InputError where they are not known, differ, exist only
+/// for some positions, or contradict the options.
 FileUnit unit_of_positions(std::span<const std::string> texts, const TrajectoryOptions& options,
                            const std::string& name);
 

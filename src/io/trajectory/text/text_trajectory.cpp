@@ -68,8 +68,8 @@ class TextTrajectory {
     refuse_line(input_.name(), input_.line(), objection.text, objection.remedy);
   }
 
-  /// Reads all lines behind the first pose at the same time. False, and nothing read, where one is
-  /// refused or may be cut: who reads them in turn knows its number.
+  /// Reads all lines behind the first pose in parallel. Returns false, with nothing read, where one
+  /// is refused or may be cut; reading them one after the other then finds its number.
   bool read_blocks() {
     const LineBlocks blocks(input_);
     if (blocks.count() < 2) return false;
@@ -109,7 +109,7 @@ class TextTrajectory {
     if (auto columns = pose_columns(parse_column_names(line))) columns_ = std::move(columns);
   }
 
-  /// Whether the first line that is no comment names columns; refused where they make no pose.
+  /// Whether the first line that is no comment names columns. Throws where these make no pose.
   bool is_header(std::string_view line) {
     if (starts_with_number(line)) return false;
     if (format_ == TrajectoryFormat::kEuroc) return true;
@@ -123,7 +123,7 @@ class TextTrajectory {
     return true;
   }
 
-  /// Settles the format by the first line of numbers.
+  /// Determines the format by the first line of numbers.
   void start(std::string_view line) {
     std::vector<std::string_view> fields;
     split_quoted_fields(line, columns_ ? columns_->separator : ',', fields);
@@ -147,7 +147,7 @@ class TextTrajectory {
     rows_.emplace(format_, std::move(columns_), options_, input_.name());
   }
 
-  /// By the number of numbers, where there is no header.
+  /// Guesses the format by the number of numbers, where there is no header.
   void guess(std::string_view line) {
     std::array<double, 16> numbers{};
     const auto count = parse_number_line(line, numbers);
@@ -173,11 +173,11 @@ class TextTrajectory {
 
   InputBuffer input_;
   TrajectoryOptions options_;
-  TrajectoryFormat format_;             ///< kAuto until the first numbers
-  std::optional<PoseColumns> columns_;  ///< what a header or a comment has named
-  bool started_ = false;                ///< a header has been read
-  bool ends_in_number_ = false;         ///< as a file that was cut may
-  std::optional<PoseRows> rows_;        ///< from the first line of numbers on
+  TrajectoryFormat format_;             ///< kAuto before the first line of numbers
+  std::optional<PoseColumns> columns_;  ///< columns that a header or a comment has named
+  bool started_ = false;                ///< whether a header has been read
+  bool ends_in_number_ = false;   ///< whether the file ends in a number, as one that was cut may
+  std::optional<PoseRows> rows_;  ///< exists from the first line of numbers on
 };
 
 }  // namespace

@@ -39,7 +39,7 @@ constexpr std::string_view kQuaternion[] = {"q",
                                             "field.pose.pose.orientation."};
 constexpr std::string_view kMatrix[] = {"r", "r_"};
 
-/// The columns with the suffixes in turn; empty where one is missing or not the only one.
+/// The columns with each of the suffixes; empty where one is missing or not unique.
 std::vector<std::size_t> find_all(const ColumnNames& header,
                                   std::span<const std::string_view> prefixes,
                                   std::span<const std::string_view> suffixes) {
@@ -52,14 +52,15 @@ std::vector<std::size_t> find_all(const ColumnNames& header,
   return found;
 }
 
-/// "roll_deg" is a column "roll" in the unit "deg". A unit in brackets stays.
+/// The header with units split from names: "roll_deg" is a column "roll" in the unit "deg". A unit
+/// in brackets stays.
 ColumnNames with_units(ColumnNames header) {
   static constexpr std::string_view kAngles[] = {"deg", "degree", "degrees",
                                                  "rad", "radian", "radians"};
   for (std::size_t i = 0; i < header.names.size(); ++i) {
     std::string& name = header.names[i];
     if (!header.units[i].empty()) continue;
-    // The longest unit counts: "x_us_ft" is a column x.
+    // The longest unit is taken: "x_us_ft" is a column x.
     for (std::size_t at = name.find('_', 1); at != std::string::npos; at = name.find('_', at + 1)) {
       const std::string_view unit = std::string_view(name).substr(at + 1);
       if (find_unit(unit) == nullptr && std::ranges::find(kAngles, unit) == std::end(kAngles)) {
@@ -73,7 +74,7 @@ ColumnNames with_units(ColumnNames header) {
   return header;
 }
 
-/// The only column with one of the names.
+/// The only column with one of the names; nullopt where there is none or more than one.
 std::optional<std::size_t> find_one(const ColumnNames& header,
                                     std::span<const std::string_view> names) {
   return header.find(names, "");
@@ -112,7 +113,8 @@ bool find_position(const ColumnNames& header, PoseColumns& columns) {
     columns.position = {xyz[0], xyz[1], xyz[2]};
     return true;
   }
-  if (!height || map == globe) return false;  // none, or both: which is meant?
+  // Neither, or both, so that it is not clear which is meant.
+  if (!height || map == globe) return false;
   const auto first = globe ? find_one(header, kLongitude) : find_one(header, kEasting);
   const auto second = globe ? find_one(header, kLatitude) : find_one(header, kNorthing);
   if (!first || !second) return false;

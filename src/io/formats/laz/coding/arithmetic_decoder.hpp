@@ -10,22 +10,22 @@
 namespace clearway::laz {
 
 /// The arithmetic decoder of LAZ, after A. Said, "Introduction to Arithmetic Coding - Theory and
-/// Practice", HP Laboratories HPL-2004-76. Its inner loop checks no bounds: the caller provides the
-/// bytes that one point can take at most, kMostBytes... a call, and kReadAhead more.
+/// Practice", HP Laboratories HPL-2004-76. Its inner loop checks no bounds: the caller provides as
+/// many bytes as one point can take, which is kMostBytes... for each call, and kReadAhead more.
 ///
-/// A value to be copied: a loop that works on its own copy keeps it in registers.
+/// It is a value to be copied, because a loop that works on its own copy keeps it in registers.
 class ArithmeticDecoder {
  public:
   static constexpr std::size_t kStartBytes = 4;
-  static constexpr std::size_t kReadAhead = 4;  ///< read beyond the cursor, but not used
-  // Bytes that one call takes at most.
+  static constexpr std::size_t kReadAhead = 4;  ///< bytes read beyond the cursor, but not used
+  // Most bytes that one call consumes.
   static constexpr std::size_t kMostBytesSymbol = 2;
   static constexpr std::size_t kMostBytesBits = 5;
 
   ArithmeticDecoder() = default;
   explicit ArithmeticDecoder(const std::byte* bytes)
       : cursor_(bytes + kStartBytes), value_(big_endian(bytes)) {
-    // No encoder gives this value. Refused, as everything below relies on value < length.
+    // No encoder gives this value. It is refused because everything below relies on value < length.
     if (value_ == length_) {
       --value_;
       damage_ = 1;
@@ -34,11 +34,11 @@ class ArithmeticDecoder {
 
   const std::byte* cursor() const { return cursor_; }
   void move_to(const std::byte* cursor) { cursor_ = cursor; }
-  /// Whether what was decoded cannot come from an encoder.
+  /// Whether the decoded data cannot come from an encoder.
   bool damaged() const { return damage_ != 0; }
   void note_damage() { damage_ = 1; }
 
-  /// value < length always holds, and length >= 2^24. So place < 2^15 + 64.
+  /// Decodes a symbol. value < length always holds, and length >= 2^24, so place < 2^15 + 64.
   template <unsigned kMost>
   [[gnu::always_inline]] inline unsigned symbol(SymbolModel<kMost>& model) {
     const std::uint32_t unit = length_ >> kSymbolShift;
@@ -64,7 +64,7 @@ class ArithmeticDecoder {
     return bit;
   }
 
-  /// Bits without a model; count <= 32.
+  /// Decodes bits without a model; count <= 32.
   [[gnu::always_inline]] inline std::uint32_t bits(unsigned count) {
     if (count <= kMostBitsAtOnce) return some_bits(count);
     const std::uint32_t low = some_bits(16);
@@ -88,7 +88,7 @@ class ArithmeticDecoder {
     return bits;
   }
 
-  /// Shifts whole bytes in until the length has its upper byte again.
+  /// Shifts whole bytes in until the highest byte of the length is not zero.
   [[gnu::always_inline]] inline void normalise() {
     const unsigned shift = static_cast<unsigned>(__builtin_clz(length_)) & 24u;
     const std::uint64_t wide = std::uint64_t{value_} << 32 | big_endian(cursor_);

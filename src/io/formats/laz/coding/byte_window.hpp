@@ -10,31 +10,33 @@
 
 namespace clearway::laz {
 
-/// Thrown where a chunk cannot be what an encoder wrote. The reader of the file adds its name, the
-/// chunk and what to do.
+/// Thrown where a chunk cannot come from an encoder. The reader of the file adds the file's name,
+/// the chunk and advice.
 struct DamagedChunk {
   std::string what;
 };
 
-/// A run of bytes of a file, loaded piece by piece, for a decoder that checks no bounds: behind the
-/// last byte of the run there are as many zeros as it may read before it asks again.
+/// A run of bytes of a file, loaded piece by piece for a decoder that checks no bounds. Behind the
+/// last byte of the run there are as many zeros as the decoder may read before it calls ahead()
+/// again.
 class ByteWindow {
  public:
-  /// The bytes [begin, end) of the input, which must outlive its use. `most`: bytes read at most
-  /// between two calls of ahead(). Returns the first byte. Throws DamagedChunk where begin > end.
+  /// Opens the bytes [begin, end) of the input, which must outlive its use. most: greatest number
+  /// of bytes read between two calls of ahead(). Returns the first byte. Throws DamagedChunk where
+  /// begin > end.
   const std::byte* open(const InputBuffer& input, std::uint64_t begin, std::uint64_t end,
                         std::ptrdiff_t most);
 
-  /// The place of the byte at `cursor`, with `most` bytes to be read from there. Throws
-  /// DamagedChunk where the cursor is behind the run's end.
+  /// The address of the byte at `cursor`, from which `most` bytes may be read. Throws DamagedChunk
+  /// where the cursor is behind the end of the run.
   const std::byte* ahead(const std::byte* cursor) {
     if (loaded_ - cursor >= most_) return cursor;
     return refill(cursor);
   }
-  /// The next `count` bytes. Throws DamagedChunk where the run ends before them.
+  /// Takes the next `count` bytes. Throws DamagedChunk where the run ends before them.
   std::span<const std::byte> take(const std::byte*& cursor, std::size_t count);
 
-  /// Of the byte at `cursor` in the file.
+  /// Position in the file of the byte at `cursor`.
   std::uint64_t position(const std::byte* cursor) const {
     return next_ - static_cast<std::uint64_t>(loaded_ - cursor);
   }
@@ -50,7 +52,7 @@ class ByteWindow {
   std::uint64_t end_ = 0;
   std::ptrdiff_t most_ = 0;
   std::vector<std::byte> buffer_;
-  const std::byte* loaded_ = nullptr;  ///< behind the last byte loaded
+  const std::byte* loaded_ = nullptr;  ///< address behind the last byte loaded
 };
 
 }  // namespace clearway::laz

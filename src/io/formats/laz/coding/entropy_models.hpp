@@ -7,17 +7,17 @@
 #include <memory>
 #include <type_traits>
 
-/// The adaptive models of LAZ. How their counts become probabilities, and when, is part of the
-/// format: docs/design/laz.md. How a symbol is found is not.
+/// The adaptive models of LAZ. How and when their counts become probabilities is part of the format
+/// (docs/design/laz.md); how a symbol is found is not.
 namespace clearway::laz {
 
 constexpr unsigned kSymbolShift = 15;  ///< probabilities of symbols are fractions of 2^15
-constexpr unsigned kBitShift = 13;     ///< of bits, of 2^13
+constexpr unsigned kBitShift = 13;     ///< probabilities of bits are fractions of 2^13
 
-/// What is common to models of any alphabet.
+/// Counts that models of any alphabet have in common.
 struct SymbolCounts {
   std::uint32_t until_update;
-  std::uint32_t cycle;  ///< symbols between two updates
+  std::uint32_t cycle;  ///< number of symbols between two updates
   std::uint32_t total = 0;
 };
 
@@ -36,7 +36,7 @@ class SymbolModel {
 
   /// A symbol not greater than the one at `place`, and rarely much less.
   unsigned guess(std::uint32_t place) const { return guess_[place >> slot_shift_]; }
-  /// Where the symbol's range begins; beyond every place for the one behind the last.
+  /// Start of the symbol's range; for the symbol behind the last, a number beyond every place.
   std::uint32_t first(unsigned symbol) const { return first_[symbol]; }
   bool is_last(unsigned symbol) const { return symbol + 1 == symbols_; }
 
@@ -47,7 +47,7 @@ class SymbolModel {
 
  private:
   using Symbol = std::conditional_t<(kMost <= 256), std::uint8_t, std::uint16_t>;
-  /// Two slots a symbol or more, up to 2^10 in all.
+  /// At least two slots per symbol, up to 2^10 in all.
   static constexpr unsigned slot_bits(unsigned symbols) {
     return std::min(static_cast<unsigned>(std::bit_width(2 * symbols - 1)), 10u);
   }
@@ -95,8 +95,8 @@ class SymbolModel {
   std::array<Symbol, slots(slot_bits(kMost))> guess_;
 };
 
-/// A model, or what is made of several, as it is at a chunk's start. To be copied: that takes less
-/// than to count anew.
+/// A model, or an object of several models, in its state at the start of a chunk. Copying it is
+/// faster than counting anew.
 template <typename Model>
 const Model& fresh() {
   static const Model model;
@@ -116,7 +116,7 @@ void renew(std::unique_ptr<Model>& model) {
   }
 }
 
-/// The same as SymbolModel for one bit.
+/// A model like SymbolModel, for a single bit.
 class BitModel {
  public:
   std::uint32_t zero_share() const { return zero_share_; }

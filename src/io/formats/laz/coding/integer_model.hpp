@@ -8,13 +8,14 @@
 
 namespace clearway::laz {
 
-constexpr unsigned kBitsWithModel = 8;  ///< of a corrector; lower ones have none
-/// Bytes that one corrector takes at most: its width, its upper bits, its lower bits.
+/// Highest bits of a corrector that have a model; lower bits have none.
+constexpr unsigned kBitsWithModel = 8;
+/// Most bytes that one corrector takes: its width, its upper bits, its lower bits.
 constexpr std::size_t kMostBytesInteger =
     2 * ArithmeticDecoder::kMostBytesSymbol + ArithmeticDecoder::kMostBytesBits;
 
-/// How an integer of kBits differs from its prediction: the corrector's width k by a model, and its
-/// place within [-(2^k - 1), 2^k] by another for each k.
+/// Decodes how an integer of kBits differs from its prediction: the corrector's width k by one
+/// model, and its place within [-(2^k - 1), 2^k] by another for each k.
 template <unsigned kBits>
 class CorrectorModel {
  public:
@@ -26,7 +27,7 @@ class CorrectorModel {
     }
   }
 
-  /// The corrector; its width is left in `width`.
+  /// Decodes a corrector and sets `width` to its width.
   [[gnu::always_inline]] inline std::uint32_t decode(ArithmeticDecoder& decoder, WidthModel& widths,
                                                      unsigned& width) {
     const unsigned k = decoder.symbol(widths);
@@ -49,18 +50,18 @@ class CorrectorModel {
   std::array<SymbolModel<256>, kPlaces> places_;
 };
 
-/// Integers of kBits by their difference from a prediction, in one of kContexts contexts.
+/// Decodes integers of kBits by their difference from a prediction, in one of kContexts contexts.
 template <unsigned kBits, unsigned kContexts>
 class IntegerModel {
  public:
-  /// The prediction plus its corrector, modulo 2^kBits.
+  /// Decodes an integer: the prediction plus its corrector, modulo 2^kBits.
   [[gnu::always_inline]] inline std::uint32_t decode(ArithmeticDecoder& decoder,
                                                      std::uint32_t prediction, unsigned context) {
     const std::uint32_t value =
         prediction + corrector_.decode(decoder, widths_[context], last_width_);
     return value & kMask;
   }
-  /// Of the corrector decoded last.
+  /// Width of the last decoded corrector.
   unsigned last_width() const { return last_width_; }
 
  private:

@@ -8,7 +8,8 @@
 
 namespace clearway::laz {
 
-/// A model of bytes for each value that the byte had in the point before, made when first needed.
+/// A model of a byte for each value that the byte had in the point before. Models are created when
+/// first needed.
 class ModelsByValue {
  public:
   void renew() { used_.fill(false); }

@@ -6,12 +6,13 @@
 
 namespace clearway::laz {
 
-/// The models of x and y that point formats 0 to 5 (item version 2) and 6 to 10 share.
+/// The models of x and y, which point formats 0 to 5 (item version 2) and 6 to 10 share.
 struct PlaneModels {
   IntegerModel<32, 2> dx;
   IntegerModel<32, 22> dy;
 
-  /// Differences from the point before, from their medians. single: the pulse's only return.
+  /// The difference of x or y from the point before, predicted by a median. single: whether the
+  /// point is the pulse's only return.
   [[gnu::always_inline]] inline std::int32_t decode_dx(ArithmeticDecoder& decoder,
                                                        std::int32_t median, bool single) {
     return static_cast<std::int32_t>(
@@ -27,11 +28,11 @@ struct PlaneModels {
   unsigned mean_width() const { return (dx.last_width() + dy.last_width()) / 2; }
 };
 
-/// The same of z.
+/// The model of z, which point formats 0 to 5 (item version 2) and 6 to 10 share.
 struct HeightModel {
   IntegerModel<32, 20> z;
 
-  /// mean_width: of the same point's x and y.
+  /// mean_width: mean width of the correctors of the same point's x and y.
   [[gnu::always_inline]] inline std::int32_t decode(ArithmeticDecoder& decoder, std::int32_t last,
                                                     bool single, unsigned mean_width) {
     const unsigned context = (single ? 1 : 0) + (mean_width < 18 ? mean_width & ~1u : 18);

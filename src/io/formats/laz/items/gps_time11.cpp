@@ -8,7 +8,7 @@ std::uint32_t product(std::uint32_t factor, std::int32_t difference) {
   return factor * static_cast<std::uint32_t>(difference);
 }
 
-/// Bits without a model: 64 of them.
+/// Skips 64 bits, which have no model.
 void skip_long(ArithmeticDecoder& decoder) {
   for (int i = 0; i < 4; ++i) decoder.bits(16);
 }
@@ -18,7 +18,7 @@ void skip_long(ArithmeticDecoder& decoder) {
 void GpsTimeVersion2::begin() { renew(models_); }
 
 ArithmeticDecoder GpsTimeVersion2::skip(ArithmeticDecoder decoder) {
-  // An encoder changes the sequence once at most.
+  // An encoder changes the sequence at most once.
   for (int changes = 0; changes < 4; ++changes) {
     const bool done = models_.sequences[models_.current].difference == 0
                           ? skip_after_none(decoder)
@@ -29,7 +29,7 @@ ArithmeticDecoder GpsTimeVersion2::skip(ArithmeticDecoder decoder) {
   return decoder;
 }
 
-/// False where only the sequence changed.
+/// Skips a time in a sequence whose difference is 0; returns false where only the sequence changed.
 bool GpsTimeVersion2::skip_after_none(ArithmeticDecoder& decoder) {
   const unsigned symbol = decoder.symbol(models_.after_none);
   Sequence& sequence = models_.sequences[models_.current];
@@ -84,7 +84,7 @@ void GpsTimeVersion2::skip_multiple(ArithmeticDecoder& decoder, unsigned symbol)
   }
 }
 
-/// A time too far from the last one for 32 bits begins a sequence.
+/// Skips a time that is too far from the last one for 32 bits and begins a sequence.
 void GpsTimeVersion2::skip_jump(ArithmeticDecoder& decoder) {
   models_.newest = (models_.newest + 1) & 3u;
   models_.difference.decode(decoder, 0, 8);

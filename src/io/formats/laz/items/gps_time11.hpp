@@ -7,18 +7,20 @@
 
 namespace clearway::laz {
 
-/// Bytes that a GPS time takes at most, in any version.
+/// Most bytes that a GPS time takes, in any version.
 constexpr std::size_t kMostBytesGpsTime = 64;
 
-/// The item GPSTIME11, version 2: four sequences of times, each with the difference that its next
-/// time is expected to be a multiple of. Only what later points depend on is kept.
+/// The item GPSTIME11, version 2: four sequences of times. The next time of a sequence is expected
+/// to differ by a multiple of the sequence's difference. Only the state that later points depend on
+/// is kept.
 class GpsTimeVersion2 {
  public:
   void begin();
   ArithmeticDecoder skip(ArithmeticDecoder decoder);
 
  private:
-  /// Symbols of `multiple`: 0 to 500, then -1 to -10, then these; others name another sequence.
+  /// Symbols of `multiple` stand for 0 to 500 and then -1 to -10; after these come kUnchanged and
+  /// kJump, and further symbols choose another sequence.
   static constexpr std::uint32_t kGreatestMultiple = 500;
   static constexpr std::uint32_t kLeastMultiple = 510;  ///< the symbol of -10
   static constexpr std::uint32_t kUnchanged = 511;
@@ -26,7 +28,8 @@ class GpsTimeVersion2 {
 
   struct Sequence {
     std::int32_t difference = 0;
-    unsigned extremes = 0;  ///< differences that were no multiple, since the last that was
+    /// Number of differences that were no multiple since the last one that was.
+    unsigned extremes = 0;
   };
   struct Models {
     SymbolModel<516> multiple;
@@ -44,7 +47,7 @@ class GpsTimeVersion2 {
   Models models_ = fresh<Models>();
 };
 
-/// Version 1: one sequence.
+/// The item GPSTIME11, version 1, with one sequence.
 class GpsTimeVersion1 {
  public:
   void begin();

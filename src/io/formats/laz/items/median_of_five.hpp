@@ -6,9 +6,9 @@
 
 namespace clearway::laz {
 
-/// A running median, by which LAZ predicts differences: five values in order, of which every new
-/// one replaces the least or the greatest. Which one it is turns over when a new value is not on
-/// the side where the last one was dropped.
+/// A running median, by which LAZ predicts differences. It holds five values in order, and each new
+/// value replaces the least or the greatest. Which of the two is replaced changes when a new value
+/// is not on the side where the last one was dropped.
 class MedianOfFive {
  public:
   std::int32_t median() const { return values_[2]; }

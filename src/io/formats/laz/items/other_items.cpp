@@ -3,9 +3,10 @@
 namespace clearway::laz {
 
 ArithmeticDecoder RgbVersion2::skip(ArithmeticDecoder decoder) {
-  constexpr unsigned kOthers = 64;  // green and blue differ from red
+  constexpr unsigned kOthers = 64;  // bit of `changed`: green and blue differ from red
   const unsigned changed = decoder.symbol(models_.changed);
-  // The bits are the bytes in the order of the record; the low bytes of green and blue come first.
+  // Each bit stands for a byte, in the order of the record; the low bytes of green and blue come
+  // first.
   for (const unsigned byte : {0u, 1u, 2u, 4u, 3u, 5u}) {
     if (byte > 1 && (changed & kOthers) == 0) break;
     if ((changed >> byte & 1u) != 0) decoder.symbol(models_.bytes[byte]);

@@ -7,13 +7,13 @@
 
 #include "io/formats/laz/coding/integer_model.hpp"
 
-/// Items of point formats 0 to 5 of which no coordinate depends. They are decoded as far as the
-/// stream's next symbols need it.
+/// Items of point formats 0 to 5 that do not affect coordinates. They are decoded as far as the
+/// next symbols of the stream depend on them.
 namespace clearway::laz {
 
 constexpr std::size_t kMostBytesRgb = 64;
 constexpr std::size_t kMostBytesWavePacket = 64;
-constexpr std::size_t kMostBytesByte = 6;  ///< each
+constexpr std::size_t kMostBytesByte = 6;  ///< per byte
 
 /// The item RGB12, version 2.
 class RgbVersion2 {
@@ -29,7 +29,7 @@ class RgbVersion2 {
   Models models_ = fresh<Models>();
 };
 
-/// Version 1.
+/// The item RGB12, version 1.
 class RgbVersion1 {
  public:
   void begin() { renew(models_); }
@@ -43,7 +43,7 @@ class RgbVersion1 {
   Models models_ = fresh<Models>();
 };
 
-/// The item WAVEPACKET13, of which there is one version.
+/// The item WAVEPACKET13, which has only one version.
 class WavePacket {
  public:
   void begin() { renew(models_); }
@@ -60,7 +60,7 @@ class WavePacket {
   Models models_ = fresh<Models>();
 };
 
-/// The item BYTE: `count` extra bytes. Version 2.
+/// The item BYTE, version 2: `count` extra bytes.
 class BytesVersion2 {
  public:
   explicit BytesVersion2(std::size_t count) : models_(count, fresh<SymbolModel<256>>()) {}
@@ -71,7 +71,7 @@ class BytesVersion2 {
   std::vector<SymbolModel<256>> models_;
 };
 
-/// Version 1.
+/// The item BYTE, version 1: `count` extra bytes.
 class BytesVersion1 {
  public:
   explicit BytesVersion1(std::size_t count)

@@ -14,7 +14,7 @@ namespace clearway::laz {
 
 using Quanta = std::array<std::int32_t, 3>;
 
-/// The fields of point formats 0 to 5 that later points depend on: those that choose models.
+/// The fields of point formats 0 to 5 that later points depend on, because they choose models.
 struct Point10Fields {
   Quanta position;
   std::uint8_t returns;  ///< byte 14 of the record: return number, number of returns, flags
@@ -29,23 +29,24 @@ struct Point10Fields {
   std::uint8_t point_class() const { return classification & 0x1F; }
 };
 
-/// The item's bits of `changed`.
+/// The bits of `changed` in the item POINT10.
 struct Point10Changes {
-  static constexpr unsigned kReturns = 32, kIntensity = 16;        // version 2
-  static constexpr unsigned kOldIntensity = 32, kOldReturns = 16;  // version 1
+  static constexpr unsigned kReturns = 32, kIntensity = 16;        // in version 2
+  static constexpr unsigned kOldIntensity = 32, kOldReturns = 16;  // in version 1
   static constexpr unsigned kClassification = 8, kScanAngle = 4, kUserData = 2, kSource = 1;
 };
 
-/// Bytes that the item takes at most, in any version.
+/// Most bytes that the item takes, in any version.
 constexpr std::size_t kMostBytesPoint10 = 128;
 
-/// The item POINT10, version 2, which LASzip writes since its release 2.0 (2011).
+/// The item POINT10, version 2, which LASzip has written since its release 2.0 (2011).
 class Point10Version2 {
  public:
   void begin(const std::byte* record);
-  /// The next point's position.
+  /// Decodes the next point and returns its position.
   [[gnu::always_inline]] inline Quanta next(ArithmeticDecoder& decoder);
-  std::uint8_t point_class() const { return last_.point_class(); }  ///< of that point
+  /// Class of the last decoded point.
+  std::uint8_t point_class() const { return last_.point_class(); }
 
  private:
   struct Models {
@@ -59,16 +60,16 @@ class Point10Version2 {
     std::array<std::int32_t, 8> heights{};
   };
 
-  /// What else changed, but the byte of returns. A decoder by value, here and below, as one whose
-  /// address is known outside a loop is kept in memory.
+  /// Decodes the changed attributes except the byte of returns. Here and below a decoder is passed
+  /// by value, because one whose address is known outside a loop is kept in memory.
   ArithmeticDecoder next_attributes(ArithmeticDecoder decoder, unsigned changed);
 
   Point10Fields last_;
-  std::unique_ptr<Models> models_;  ///< none before the first chunk
+  std::unique_ptr<Models> models_;  ///< null before the first chunk
   ModelsByValue returns_, classification_, user_data_;
 };
 
-/// Version 1.
+/// The item POINT10, version 1.
 class Point10Version1 {
  public:
   void begin(const std::byte* record);
@@ -82,14 +83,15 @@ class Point10Version1 {
     SymbolModel<64> changed;
     IntegerModel<16, 1> intensity, source;
     IntegerModel<8, 2> scan_angle;
-    std::array<std::int32_t, 3> last_dx{}, last_dy{};  ///< in a ring
+    /// A ring buffer, whose oldest entry is replaced next.
+    std::array<std::int32_t, 3> last_dx{}, last_dy{};
     unsigned oldest = 0;
   };
 
   ArithmeticDecoder next_attributes(ArithmeticDecoder decoder, unsigned changed, unsigned width);
 
   Point10Fields last_;
-  std::unique_ptr<Models> models_;  ///< none before the first chunk
+  std::unique_ptr<Models> models_;  ///< null before the first chunk
   ModelsByValue returns_, classification_, user_data_;
 };
 

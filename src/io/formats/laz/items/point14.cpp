@@ -18,7 +18,7 @@ void Point14::begin(const std::byte* record, bool has_heights) {
   start(channels_[current_], first);
 }
 
-/// Begins a channel with the last point of another.
+/// Begins a channel with the last point of another one.
 void Point14::start(Channel& channel, const Channel& from) {
   renew(channel.models);
   class_models_[static_cast<std::size_t>(&channel - channels_.data())].renew();

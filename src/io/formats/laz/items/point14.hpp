@@ -11,24 +11,27 @@
 
 namespace clearway::laz {
 
-/// Bytes that a point takes at most of any layer.
+/// Most bytes that a point takes in any layer.
 constexpr std::size_t kMostBytesPoint14 = 64;
 
-/// Three layers of the item POINT14: one of scanner channels, returns, x and y, one of z, and one
-/// of classes. Versions 2 to 4 do not differ in them.
+/// Decodes three layers of the item POINT14: one of scanner channels, returns, x and y, one of z,
+/// and one of classes. Versions 2 to 4 do not differ in these.
 class Point14 {
  public:
   using Quanta = std::array<std::int32_t, 3>;
 
-  /// has_heights: whether the layer of z is there; otherwise z does not change.
+  /// Begins a chunk with its first record. has_heights: whether the layer of z exists; otherwise z
+  /// does not change.
   void begin(const std::byte* record, bool has_heights);
-  /// The next point's position. plane: the first layer; heights: the layer of z.
+  /// Decodes the next point and returns its position. plane: the first layer; heights: the layer of
+  /// z.
   [[gnu::always_inline]] inline Quanta next(ArithmeticDecoder& plane, ArithmeticDecoder& heights);
-  /// Of that point, from the layer of classes. Only where that is there; else none changes.
+  /// Decodes the class of the point that next() decoded, from the layer of classes. Only where that
+  /// layer exists; otherwise no class changes.
   [[gnu::always_inline]] inline std::uint8_t next_class(ArithmeticDecoder& classes);
 
  private:
-  /// Bits of `changed`; the two lowest say how the return number differs.
+  /// Bits of `changed`; the two lowest encode how the return number differs.
   static constexpr unsigned kChannelChanged = 64, kTimeChanged = 16, kReturnsChanged = 4;
   static constexpr unsigned kReturnChange = 3;
 
@@ -44,8 +47,8 @@ class Point14 {
 
   /// A scanner channel: its models and its last point.
   struct Channel {
-    std::unique_ptr<Models> models;  ///< none before it is first used
-    bool used = false;               ///< in this chunk
+    std::unique_ptr<Models> models;  ///< null before the channel is first used
+    bool used = false;               ///< whether the channel was used in this chunk
     Quanta position{};
     std::array<std::int32_t, 8> heights{};
     unsigned number_of_returns = 0, return_number = 0;
@@ -58,7 +61,7 @@ class Point14 {
   ArithmeticDecoder next_returns(ArithmeticDecoder plane, unsigned changed);
 
   std::array<Channel, 4> channels_;
-  std::array<ModelsByValue, 4> class_models_;  ///< of the channels
+  std::array<ModelsByValue, 4> class_models_;  ///< models of the class for each channel
   unsigned current_ = 0;
   bool has_heights_ = false;
 };

@@ -4,14 +4,14 @@
 #include <cstdint>
 #include <string_view>
 
-/// By which of a pulse's returns a point is, LAZ chooses the models of its coordinates. The tables
-/// are facts of the format: docs/design/laz.md.
+/// LAZ chooses the models of a point's coordinates by its return number and the pulse's number of
+/// returns. The tables are facts of the format: docs/design/laz.md.
 namespace clearway::laz {
 
 template <unsigned kSize>
 using ReturnTable = std::array<std::array<std::uint8_t, kSize>, kSize>;
 
-/// rows: a line for each number of returns, a hexadecimal digit for each return number.
+/// rows: one line for each number of returns, with one hexadecimal digit for each return number.
 template <unsigned kSize>
 constexpr ReturnTable<kSize> return_table(std::string_view rows) {
   ReturnTable<kSize> table{};
@@ -23,7 +23,7 @@ constexpr ReturnTable<kSize> return_table(std::string_view rows) {
   return table;
 }
 
-/// Of point formats 0 to 5.
+/// The table of point formats 0 to 5.
 constexpr ReturnTable<8> kReturnMap10 = return_table<8>(
     "fedcba98"
     "e0136aa9"
@@ -34,7 +34,7 @@ constexpr ReturnTable<8> kReturnMap10 = return_table<8>(
     "9abcdefe"
     "89abcdef");
 
-/// Of point formats 6 to 10.
+/// The table of point formats 6 to 10.
 constexpr ReturnTable<16> kReturnMap14 = return_table<16>(
     "0123453445555555"
     "1013333333333333"
@@ -53,7 +53,8 @@ constexpr ReturnTable<16> kReturnMap14 = return_table<16>(
     "5334444444444555"
     "5334444444444455");
 
-/// How deep a return is, up to 7: returns behind it, or wrongly numbered ones before it.
+/// The depth of a return, up to 7: the number of returns behind it, or for wrong numbers by how
+/// much the return number exceeds the number of returns.
 constexpr unsigned return_level(unsigned returns, unsigned number) {
   const unsigned level = returns < number ? number - returns : returns - number;
   return level < 7 ? level : 7;
