@@ -3,33 +3,160 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "clearway/conflicts.hpp"
+#include "clearway/error.hpp"
+#include "clearway/vec3.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/query/body_pose.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/callback_progress.hpp"
+#include "core/util/format.hpp"
+#include "core/util/progress.hpp"
 #include "findings/check_conflicts.hpp"
 #include "findings/colliding_points.hpp"
-#include "findings/conflict_memory.hpp"
 #include "findings/group/cell_grid.hpp"
 #include "findings/group/join_cells.hpp"
 #include "findings/group/point_groups.hpp"
-#include "findings/least_distances.hpp"
 #include "findings/least_shift.hpp"
 #include "findings/path_stretches.hpp"
 #include "findings/side.hpp"
+#include "findings/tally.hpp"
 #include "findings/tally_points.hpp"
 #include "findings/touched_first.hpp"
 #include "io/formats/wkt.hpp"
+#include "io/result/result.hpp"
 #include "io/result/result_rows.hpp"
 #include "io/system/thread_limit.hpp"
 
 namespace clearway {
 namespace {
+
+/// What find_conflicts() takes of the memory budget. The checks throw ResourceError with an amount
+/// that is enough.
+class ConflictMemory {
+ public:
+  ConflictMemory(std::uint64_t allowed, std::uint64_t points, std::uint64_t poses)
+      : allowed_(allowed), points_(points), poses_(poses) {}
+
+  /// Called before the points are read: checks the memory of the points and their grid.
+  void check_points() const;
+  /// Called before the cells of the grid are kept: checks the memory of that many cells.
+  void check_cells(std::uint64_t cells) const;
+  /// Called before groups are summed up: checks the memory of that many cells and parts.
+  void check_parts(std::uint64_t cells, std::uint64_t parts) const;
+
+ private:
+  std::uint64_t fixed() const;
+  std::uint64_t with_cells(std::uint64_t cells) const;
+  void check(std::uint64_t needed, std::uint64_t enough) const;
+
+  std::uint64_t allowed_, points_, poses_;
+};
+
+constexpr std::uint64_t kProgram = std::uint64_t{32} << 20;  // includes the reader's buffers
+constexpr std::uint64_t kMostPoints = 0xffff'fffe;
+
+/// Bytes of a cell: what the grid holds of it, its set, its group, and the count of its points.
+constexpr std::uint64_t kBytesOfCell = CellGrid::kBytesOfCell + 3 * sizeof(std::uint32_t);
+/// Bytes of a point once it is in the grid, including its source, first and last pose, body and
+/// part.
+constexpr std::uint64_t kBytesOfSortedPoint = CellGrid::kBytesOfPoint + sizeof(std::uint64_t) +
+                                              3 * sizeof(std::uint32_t) + 1 + kJoinBytesOfPoint;
+constexpr std::uint64_t kBytesOfUnsortedPoint =
+    CollidingPoints::kBytesOfPoint + CellGrid::kBytesOfPoint;
+/// Bytes of a part and its conflict, which counts twice because vectors grow to twice their size.
+constexpr std::uint64_t kBytesOfPart = sizeof(Tally) + 2 * sizeof(Conflict) + 32;
+
+std::uint64_t ConflictMemory::fixed() const {
+  return kProgram + poses_ * (sizeof(Pose) + sizeof(double) + sizeof(std::uint32_t));
+}
+
+std::uint64_t ConflictMemory::with_cells(std::uint64_t cells) const {
+  return fixed() + cells * kBytesOfCell +
+         points_ * std::max(kBytesOfUnsortedPoint, kBytesOfSortedPoint);
+}
+
+void ConflictMemory::check_points() const {
+  if (points_ > kMostPoints) {
+    throw UsageError(format_count(points_) + " colliding points; conflicts are made of up to " +
+                     format_count(kMostPoints));
+  }
+  check(fixed() + points_ * kBytesOfUnsortedPoint, with_cells(points_));
+}
+
+void ConflictMemory::check_cells(std::uint64_t cells) const {
+  check(with_cells(cells), with_cells(cells));
+}
+
+void ConflictMemory::check_parts(std::uint64_t cells, std::uint64_t parts) const {
+  if (parts > kMostPoints) {
+    throw UsageError(format_count(parts) + " conflicts; expected fewer than " +
+                     format_count(kMostPoints));
+  }
+  const std::uint64_t needed = with_cells(cells) + parts * kBytesOfPart;
+  check(needed, needed);
+}
+
+void ConflictMemory::check(std::uint64_t needed, std::uint64_t enough) const {
+  if (needed <= allowed_) return;
+  throw ResourceError(format_size(allowed_) + " of memory is too little: the conflicts of " +
+                          counted(points_, "point") + " need at least " + format_size(needed),
+                      Remedy::kMoreMemory, static_cast<double>(enough));
+}
+
+/// The point of a conflict that is nearest to the model.
+struct ConflictDistance {
+  static constexpr std::uint64_t kNone = ~std::uint64_t{0};
+  double distance = 0;  ///< metres, below 0 inside solids
+  /// Source index; of equally near points the smallest.
+  std::uint64_t source = kNone;
+  std::uint32_t pose = 0;
+  std::optional<Vec3> xyz;  ///< missing in files before version 3
+  /// The body that is so near, for a vehicle.
+  std::optional<std::uint32_t> body = {};
+  std::uint64_t inside = 0;  ///< number of points with a distance below 0
+};
+
+/// Joins the clearances with the colliding points; both are in ascending order of their source.
+/// Returns the nearest point of each conflict at the conflict's number, from 1 to `conflicts`.
+/// conflict_of: the conflict of each row, 0 for none.
+std::vector<ConflictDistance> least_distances(const ResultReader& result,
+                                              std::span<const std::uint64_t> source,
+                                              std::span<const std::uint32_t> conflict_of,
+                                              std::size_t conflicts, Progress& progress) {
+  std::vector<ConflictDistance> out(conflicts + 1);
+  progress.begin("distances", result.clearances(), "points");
+  ClearanceRowStream stream(result);
+  std::size_t row = 0;
+  for (ClearanceRows rows; stream.read(rows);) {
+    throw_if_stopped(progress);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      while (row < source.size() && source[row] < rows.source[i]) ++row;
+      if (row == source.size() || source[row] != rows.source[i]) continue;
+      if (conflict_of[row] == 0) continue;
+      ConflictDistance& least = out[conflict_of[row]];
+      if (rows.distance[i] < 0) ++least.inside;
+      if (least.source == ConflictDistance::kNone || rows.distance[i] < least.distance) {
+        least = {rows.distance[i],
+                 rows.source[i],
+                 rows.pose[i],
+                 rows.xyz.empty() ? std::nullopt : std::optional(rows.xyz[i]),
+                 rows.body.empty() ? std::nullopt : std::optional(rows.body[i]),
+                 least.inside};
+      }
+    }
+    progress.advance(rows.size());
+  }
+  progress.end();
+  return out;
+}
 
 /// One call of find_conflicts(), step by step.
 class ConflictSearch {

@@ -4,19 +4,69 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "clearway/found_place.hpp"
+#include "core/query/profile_set.hpp"
 #include "core/query/signed_root.hpp"
+#include "core/util/progress.hpp"
+#include "io/result/result.hpp"
+#include "io/store/store_reader.hpp"
 #include "io/system/thread_limit.hpp"
 #include "stream/write/encode_rows.hpp"
 #include "stream/write/gather_rows.hpp"
-#include "stream/write/write_profile.hpp"
 #include "stream/write/write_rows.hpp"
 
 namespace clearway {
 namespace {
+
+/// Number of poses that are written at a time.
+constexpr std::uint64_t kPoses = 1 << 14;
+
+Vec3 position_of(const StoreReader& store, std::uint64_t entry) {
+  const auto q = store.coordinates(static_cast<std::uint32_t>(entry / store.cell_entries()));
+  const auto i = static_cast<std::uint32_t>(entry % store.cell_entries());
+  return position(store.quantisation(), q[0][i], q[1][i], q[2][i]);
+}
+
+/// Appends the nearest points of all poses, and returns the nearest of them. chainage: that of
+/// every pose, metres. is_part: whether this is a part of a result, for which the squares are
+/// written, too. Throws InputError for a damaged cell, ResourceError for a full disk, Interrupted
+/// when the progress asks to stop.
+std::optional<FoundPlace> write_profile(const StoreReader& store, const ProfileSet& profile,
+                                        std::span<const double> chainage, bool is_part,
+                                        ResultWriter& writer, Progress& progress) {
+  constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+  std::optional<FoundPlace> least;
+  std::vector<double> distance;
+  std::vector<std::uint64_t> source;
+  std::vector<Vec3> xyz;
+  std::vector<double> squared;
+  for (std::uint64_t first = 0; first < profile.poses(); first += kPoses) {
+    throw_if_stopped(progress);
+    const std::uint64_t end = std::min(profile.poses(), first + kPoses);
+    distance.clear();
+    source.clear();
+    xyz.clear();
+    squared.clear();
+    for (std::uint64_t pose = first; pose < end; ++pose) {
+      const ProfilePoint& point = profile.at(pose);
+      distance.push_back(signed_root(point.squared));
+      source.push_back(point.source);
+      if (is_part) squared.push_back(point.squared);
+      xyz.push_back(point.found() ? position_of(store, point.entry)
+                                  : Vec3{kNowhere, kNowhere, kNowhere});
+      if (!point.found() || (least && least->distance <= distance.back())) continue;
+      least = {point.source, static_cast<std::uint32_t>(pose), xyz.back(), distance.back()};
+    }
+    writer.append_profile(distance, source, xyz, chainage.subspan(first, end - first), squared);
+  }
+  return least;
+}
 
 /// Memory for chunks that the file's writer holds back, and for what the profile is written from.
 constexpr std::uint64_t kWriterBytes = std::uint64_t{12} << 20;

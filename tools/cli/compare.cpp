@@ -1,19 +1,148 @@
 #include <CLI/CLI.hpp>
+#include <array>
+#include <charconv>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
 
 #include "cli/commands.hpp"
-#include "cli/comparison_text.hpp"
 #include "cli/conflicts/conflict_comparison.hpp"
 #include "cli/run_again.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
 #include "cli/verdict.hpp"
+#include "core/util/format.hpp"
 #include "io/result/check/compare_results.hpp"
 
 namespace clearway::tool {
 namespace {
+
+const char* kind_text(PointDifference::Kind kind) {
+  switch (kind) {
+    case PointDifference::Kind::kOnlyInA:
+      return "only in a";
+    case PointDifference::Kind::kOnlyInB:
+      return "only in b";
+    case PointDifference::Kind::kFirstPose:
+      return "first pose";
+    case PointDifference::Kind::kLastPose:
+      return "last pose";
+    case PointDifference::Kind::kCoordinates:
+      return "coordinates";
+  }
+  return "";
+}
+
+std::string point_text(const PointDifference& point) {
+  std::string text = "  ";
+  text.append(kind_text(point.kind)).append("  ").append(std::to_string(point.source)).append(" ");
+  for (int k = 0; k < 3; ++k) {
+    std::array<char, 32> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), point.xyz[k]).ptr;
+    text.append(" ").append(digits.data(), end);
+  }
+  if (point.kind == PointDifference::Kind::kFirstPose) {
+    text += "  pose " + std::to_string(*point.first_pose_a) + " / " +
+            std::to_string(*point.first_pose_b);
+  }
+  if (point.kind == PointDifference::Kind::kLastPose) {
+    text +=
+        "  pose " + std::to_string(*point.last_pose_a) + " / " + std::to_string(*point.last_pose_b);
+  }
+  return text + "\n";
+}
+
+std::uint64_t all_differences(const Comparison& c) {
+  return c.only_in_a + c.only_in_b + c.differing_coordinates + c.differing_first_poses.value_or(0) +
+         c.differing_last_poses.value_or(0);
+}
+
+nlohmann::ordered_json point_json(const PointDifference& point) {
+  nlohmann::ordered_json out{{"kind", kind_text(point.kind)},
+                             {"source", point.source},
+                             {"xyz", {point.xyz.x, point.xyz.y, point.xyz.z}}};
+  if (point.first_pose_a) out["first_pose_a"] = *point.first_pose_a;
+  if (point.first_pose_b) out["first_pose_b"] = *point.first_pose_b;
+  if (point.last_pose_a) out["last_pose_a"] = *point.last_pose_a;
+  if (point.last_pose_b) out["last_pose_b"] = *point.last_pose_b;
+  return out;
+}
+
+/// A comparison in words, in many lines. a, b: the names of the compared files.
+std::string comparison_text(const Comparison& c, const std::string& a, const std::string& b) {
+  std::string text = "a: " + counted(c.in_a, "colliding point") + " in " + a + "\n" +
+                     "b: " + counted(c.in_b, "colliding point") + " in " + b + "\n" +
+                     "in both: " + format_count(c.common) + "\n" +
+                     "only in a: " + format_count(c.only_in_a) + "\n" +
+                     "only in b: " + format_count(c.only_in_b) + "\n";
+  if (c.differing_first_poses) {
+    text += "differing first poses: " + format_count(*c.differing_first_poses) + "\n";
+  }
+  if (c.differing_last_poses) {
+    text += "differing last poses: " + format_count(*c.differing_last_poses) + "\n";
+  }
+  if (c.differing_coordinates > 0) {
+    text += "differing coordinates: " + format_count(c.differing_coordinates) + "\n";
+  }
+  if (c.clearances) {
+    text += "clearances in both: " + format_count(c.clearances->common) +
+            ", only in a: " + format_count(c.clearances->only_in_a) +
+            ", only in b: " + format_count(c.clearances->only_in_b) +
+            ", differing: " + format_count(c.clearances->differing) + "\n";
+  }
+  if (c.profiles) {
+    text += "differing poses of the profile: " + format_count(c.profiles->differing);
+    if (c.profiles->first) text += ", the first is pose " + std::to_string(*c.profiles->first);
+    text += "\n";
+  }
+  for (const QueryDifference& query : c.queries) {
+    text += "queries differ: " + query.what + ": " + query.a + " / " + query.b + "\n";
+  }
+  if (!c.points.empty()) {
+    text += "first " + format_count(c.points.size()) + " of " + format_count(all_differences(c)) +
+            " differences, with source index and x y z:\n";
+    for (const PointDifference& point : c.points) text += point_text(point);
+  }
+  return text + (c.equal() ? "equal\n" : "different\n");
+}
+
+/// A comparison as one JSON object, on one line. a, b: the names of the compared files.
+std::string comparison_json(const Comparison& c, const std::string& a, const std::string& b) {
+  nlohmann::ordered_json out{{"equal", c.equal()},
+                             {"a", {{"file", a}, {"colliding_points", c.in_a}}},
+                             {"b", {{"file", b}, {"colliding_points", c.in_b}}},
+                             {"common", c.common},
+                             {"only_in_a", c.only_in_a},
+                             {"only_in_b", c.only_in_b},
+                             {"differing_coordinates", c.differing_coordinates},
+                             {"differing_first_poses", nullptr}};
+  if (c.differing_first_poses) out["differing_first_poses"] = *c.differing_first_poses;
+  if (c.differing_last_poses) out["differing_last_poses"] = *c.differing_last_poses;
+  out["clearances"] = nullptr;
+  if (c.clearances) {
+    out["clearances"] = {
+        {"in_a", c.clearances->in_a},           {"in_b", c.clearances->in_b},
+        {"common", c.clearances->common},       {"only_in_a", c.clearances->only_in_a},
+        {"only_in_b", c.clearances->only_in_b}, {"differing", c.clearances->differing}};
+  }
+  out["profiles"] = nullptr;
+  if (c.profiles) {
+    out["profiles"] = {{"poses", c.profiles->poses},
+                       {"differing", c.profiles->differing},
+                       {"first_differing_pose", nullptr}};
+    if (c.profiles->first) out["profiles"]["first_differing_pose"] = *c.profiles->first;
+  }
+  auto& queries = out["question_differences"] = nlohmann::ordered_json::array();
+  for (const QueryDifference& query : c.queries) {
+    queries.push_back({{"what", query.what}, {"a", query.a}, {"b", query.b}});
+  }
+  auto& points = out["differences"] = nlohmann::ordered_json::array();
+  for (const PointDifference& point : c.points) points.push_back(point_json(point));
+  // File names need not be UTF-8.
+  return out.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
 
 struct CompareOptions {
   std::filesystem::path a, b;

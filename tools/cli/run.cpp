@@ -1,18 +1,28 @@
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "clearway/clearway.hpp"
+#include "clearway/model.hpp"
+#include "clearway/store.hpp"
+#include "clearway/trajectory.hpp"
+#include "clearway/vehicle.hpp"
 #include "cli/commands.hpp"
 #include "cli/input_roles.hpp"
-#include "cli/memory_use.hpp"
 #include "cli/run_options.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/exit_code.hpp"
@@ -22,7 +32,6 @@
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
 #include "cli/support/warnings_json.hpp"
-#include "cli/vehicle/run_query.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "cli/verdict.hpp"
 #include "core/query/ignored_text.hpp"
@@ -34,6 +43,83 @@
 
 namespace clearway::tool {
 namespace {
+
+/// Watches the resident memory of this process, without mapped files, every few milliseconds from a
+/// thread of its own as long as the object lives. Source: /proc/self/statm.
+class MemoryWatch {
+ public:
+  MemoryWatch();
+  ~MemoryWatch();
+  MemoryWatch(const MemoryWatch&) = delete;
+  MemoryWatch& operator=(const MemoryWatch&) = delete;
+
+  /// The largest resident memory that was seen so far, bytes; 0 where the system does not tell.
+  std::uint64_t peak_bytes();
+
+ private:
+  std::uint64_t anonymous_bytes() const;
+  void look();
+
+  int statm_;
+  std::uint64_t page_bytes_;
+  std::atomic<std::uint64_t> peak_{0};
+  std::atomic<bool> stopped_{false};
+  std::thread thread_;
+};
+
+std::uint64_t MemoryWatch::anonymous_bytes() const {
+  char text[128] = {};
+  if (::pread(statm_, text, sizeof text - 1, 0) <= 0) return 0;
+  unsigned long long total = 0, resident = 0, shared = 0;
+  if (std::sscanf(text, "%llu %llu %llu", &total, &resident, &shared) != 3) return 0;
+  return resident < shared ? 0 : (resident - shared) * page_bytes_;
+}
+
+MemoryWatch::MemoryWatch()
+    : statm_(::open("/proc/self/statm", O_RDONLY | O_CLOEXEC)),
+      page_bytes_(static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE))),
+      thread_([this] {
+        while (!stopped_) {
+          look();
+          std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+      }) {}
+
+MemoryWatch::~MemoryWatch() {
+  stopped_ = true;
+  thread_.join();
+  if (statm_ >= 0) ::close(statm_);
+}
+
+std::uint64_t MemoryWatch::peak_bytes() {
+  look();
+  return peak_;
+}
+
+void MemoryWatch::look() {
+  const std::uint64_t now = anonymous_bytes();
+  std::uint64_t peak = peak_;
+  while (now > peak && !peak_.compare_exchange_weak(peak, now)) {
+  }
+}
+
+/// Reads the query of a run: model or vehicle, and trajectory. Warnings of the inputs are logged at
+/// once, and go into the report with those of the search.
+Query read_query(RunOptions& options, const Store& store, PoseLabels& labels) {
+  std::vector<Message>& warnings = options.search.input_warnings;
+  const ModelOptions how = model_options_of(options);
+  Query query({}, {}, options.query);
+  if (options.vehicle.empty()) query.model = read_model(options.model, how, &warnings);
+  options.trajectory_options.default_crs = store.crs_wkt();
+  query.poses = read_trajectory(options.trajectory, options.trajectory_options, &warnings, &labels);
+  if (!options.vehicle.empty()) {
+    query.bodies =
+        read_vehicle(options.vehicle, query.poses,
+                     {how, options.trajectory_options, options.search.threads}, &warnings);
+  }
+  for (const Message& warning : warnings) log_message(warning);
+  return query;
+}
 
 constexpr const char* kHowToResume =
     "the same command with --resume, without --force, continues from the finished work";

@@ -2,19 +2,185 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <initializer_list>
 #include <map>
+#include <string>
 #include <utility>
 
 #include "campaign/outcome.hpp"
-#include "campaign/page/campaign_style.hpp"
-#include "campaign/page/page_cell.hpp"
 #include "campaign/task_list.hpp"
 #include "core/util/format.hpp"
 #include "io/conflicts/markup_text.hpp"
 
 namespace clearway::campaign {
 namespace {
+
+/// The style sheet of a campaign's page.
+extern const char* const kCampaignStyle;
+
+const char* const kCampaignStyle = R"css(:root {
+  --ink: #111827; --soft: #4b5563; --line: #d1d5db; --focus: #1d4ed8;
+  font: 15px/1.45 system-ui, "Segoe UI", "DejaVu Sans", Arial, sans-serif; color: var(--ink);
+}
+* { box-sizing: border-box; }
+body { margin: 0; background: #eef0f3; }
+header { display: flex; align-items: baseline; gap: 0.3rem 1.4rem; flex-wrap: wrap;
+  padding: 0.5rem 1.2rem; background: var(--ink); color: #fff; }
+header h1 { font-size: 1.15rem; margin: 0; overflow-wrap: anywhere; }
+header p { margin: 0; color: #cbd5e1; font-size: 0.9rem; }
+main { padding: 0.8rem 1.2rem; display: grid; gap: 0.8rem; }
+section { background: #fff; border: 1px solid var(--line); border-radius: 8px;
+  padding: 0.8rem 1.1rem; min-width: 0; }
+h2 { font-size: 1.15rem; margin: 0 0 0.5rem; }
+:focus-visible { outline: 3px solid var(--focus); outline-offset: 2px; }
+.answer { font-size: 1.5rem; font-weight: 600; margin: 0 0 0.6rem; line-height: 1.25; }
+.legend { list-style: none; display: flex; flex-wrap: wrap; gap: 0.5rem; margin: 0; padding: 0; }
+.legend li { padding: 0.25rem 0.7rem; border-radius: 5px; font-size: 0.92rem; }
+.legend b { font-size: 1.15rem; }
+.sign { display: inline-block; width: 1.1em; text-align: center; font-weight: 700; }
+.conflict { --back: #fbdccf; --front: #8a2404; --edge: #b4330a; }
+.doubtful { --back: #fff3cd; --front: #6b4700; --edge: #a16207; }
+.undecided { --back: #e9e3f8; --front: #4a2a8a; --edge: #7c5cc4; }
+.clear { --back: #e3f4ef; --front: #005645; --edge: #9fd3c4; }
+.failed { --back: #3f4652; --front: #fff; --edge: #111827; }
+.not_done { --back: #fff; --front: #4b5563; --edge: #9ca3af; }
+.legend li, .matrix td { background: var(--back); color: var(--front);
+  border: 1.5px solid var(--edge); }
+.legend .not_done, .matrix .not_done { border-style: dashed; }
+.note { margin: 0.5rem 0 0; color: var(--soft); font-size: 0.9rem; }
+.scroll { overflow: auto; max-height: 85vh; }
+table { border-collapse: separate; border-spacing: 3px; font-variant-numeric: tabular-nums; }
+.matrix th { background: #fff; text-align: left; padding: 0.25rem 0.6rem; font-weight: 600;
+  max-width: 16rem; overflow-wrap: anywhere; }
+.matrix thead th { position: sticky; top: 0; z-index: 2; vertical-align: bottom; }
+.matrix th:first-child { position: sticky; left: 0; z-index: 1; }
+.matrix thead th:first-child { z-index: 3; }
+.matrix small { display: block; font-weight: 400; color: var(--soft); }
+.matrix td { border-radius: 5px; min-width: 6.6rem; padding: 0; line-height: 1.25; }
+.matrix td > a, .matrix td:not(:has(a)) { padding: 0.3rem 0.5rem; }
+.matrix td > a { display: block; color: inherit; text-decoration: none; }
+.matrix td > a:hover .word, .matrix td > a:focus .word { text-decoration: underline; }
+.matrix td small { padding-left: 1.7em; color: inherit; white-space: nowrap; }
+.matrix td b { font-weight: 600; padding-left: 1.4em; white-space: nowrap; }
+.list { border-spacing: 0; width: 100%; }
+.list th { text-align: left; background: #e5e9ef; padding: 0.2rem 0.5rem; }
+.list td { padding: 0.2rem 0.5rem; border-top: 1px solid #e5e7eb; vertical-align: top;
+  overflow-wrap: anywhere; }
+.list td:first-child { width: 4rem; }
+.list td:nth-child(2) { width: 22%; }
+.list a { color: var(--focus); }
+@page { size: A4 landscape; margin: 12mm; }
+@media print {
+  :root { font-size: 8.5pt; }
+  body { background: #fff; print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+  header { background: none; color: var(--ink); padding: 0 0 2mm; border-bottom: 1px solid; }
+  header p { color: var(--soft); }
+  main { display: block; padding: 3mm 0 0; }
+  section { border: 0; padding: 0; margin: 0 0 6mm; }
+  .scroll { overflow: visible; max-height: none; }
+  .matrix th, .matrix thead th, .matrix th:first-child { position: static; }
+  thead { display: table-header-group; }
+  tr, .legend { break-inside: avoid; }
+  h2 { break-after: avoid; }
+  .matrix td { min-width: 0; }
+  .many { font-size: 6pt; border-spacing: 1px; width: 100%; table-layout: fixed; }
+  .many th:first-child { width: 28mm; }
+  .many th { padding: 0.3mm; }
+  .many .word { display: none; }
+  .many td b { padding: 0; white-space: normal; }
+  .matrix.many td > a, .matrix.many td:not(:has(a)) { padding: 0.4mm; }
+}
+)css";
+
+using nlohmann::ordered_json;
+
+/// A path as the text of a link, in which every byte that is not plain becomes %XX.
+std::string link_text(const std::string& path) {
+  constexpr std::string_view kPlain = "/-._~", kDigits = "0123456789ABCDEF";
+  std::string link;
+  for (const char c : path) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (letter || kPlain.find(c) != std::string_view::npos) {
+      link += c;
+    } else {
+      link += {'%', kDigits[byte >> 4], kDigits[byte & 15]};
+    }
+  }
+  return link;
+}
+
+/// The word in a cell: "conflict", "undecided", "clear", "clear?" where there were warnings,
+/// "failed (3)", or the name of the task's status, such as "missing".
+std::string cell_word(const TaskLook& look) {
+  const Outcome outcome = outcome_of(look);
+  switch (outcome) {
+    case Outcome::kDoubtful:
+      return "clear?";
+    case Outcome::kFailed:
+      return "failed (" + std::to_string(look.state->exit_code) + ")";
+    case Outcome::kUnfinished:
+      return name_of(look.status);
+    default:
+      return words_of(outcome).word;
+  }
+}
+
+/// The least distance in a cell, for example "0.032 m"; where it is not known, a bound such as "<
+/// 0.1 m". Empty where nothing is known, because the task is not done or its search could not have
+/// found anything.
+std::string cell_distance(const Task& task, const TaskLook& look) {
+  const Outcome outcome = outcome_of(look);
+  if (look.status != TaskStatus::kDone || outcome == Outcome::kUndecided) return "";
+  const ordered_json& facts = look.state->facts;
+  const ordered_json& least = facts["least"];
+  if (!least.is_null()) {
+    const auto distance = least["distance"].get<double>();
+    const std::string length = format_brief(std::abs(distance)) + " " + task.unit;
+    return length.starts_with("0 ") || distance >= 0 ? length : length + " deep inside";
+  }
+  const auto radius = task.question["radius"].get<double>();
+  const double asked = std::max(
+      {radius, task.question["clearance"].get<double>(), task.question["profile"].get<double>()});
+  return (outcome != Outcome::kConflict ? "≥ " + format_number(asked)
+                                        : "< " + format_number(radius)) +
+         " " + task.unit;
+}
+
+/// The details of a cell, as a line of text.
+std::string cell_details(const Task& task, const TaskLook& look) {
+  if (look.status == TaskStatus::kFailed) {
+    return (look.shard > 0 ? "shard " + std::to_string(look.shard) + ": " : "") + "exit code " +
+           std::to_string(look.state->exit_code) + ": " + look.state->message;
+  }
+  if (look.status == TaskStatus::kOutdated) {
+    return std::string(name_of(look.status)) + ": " + look.changed;
+  }
+  if (look.status != TaskStatus::kDone) return name_of(look.status);
+  const ordered_json& facts = look.state->facts;
+  std::string text = words_of(outcome_of(look)).word;
+  const std::string distance = cell_distance(task, look), caveats = caveats_of(facts);
+  if (!distance.empty()) text += ", least distance " + distance;
+  const auto points = facts["colliding_points"].get<std::uint64_t>();
+  if (points > 0) {
+    text += ", " + counted(points, "colliding point");
+  }
+  return text + (caveats.empty() ? "" : "; " + caveats);
+}
+
+/// The link of a cell, relative to the campaign's folder: for a failed task its log; for a finished
+/// one its report or, where there is none, its run.json; otherwise empty.
+std::string cell_link(const Task& task, const TaskLook& look) {
+  const std::string folder = task.folder().string() + "/";
+  if (look.status == TaskStatus::kFailed) {
+    const std::string of = look.shard > 0 ? "shards/" + std::to_string(look.shard) + "/" : "";
+    return link_text(folder + of + "log.txt");
+  }
+  if (look.status != TaskStatus::kDone) return "";
+  const bool report = std::ranges::find(task.outputs, kReportName) != task.outputs.end();
+  return link_text(folder + (report ? kReportName : "run.json"));
+}
 
 using nlohmann::ordered_json;
 

@@ -1,6 +1,8 @@
 #include "io/merge/merge_parts.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <limits>
@@ -11,12 +13,57 @@
 
 #include "clearway/error.hpp"
 #include "clearway/result.hpp"
-#include "io/merge/merge_memory.hpp"
+#include "core/util/format.hpp"
+#include "io/merge/part_set.hpp"
 #include "io/result/result_cursor.hpp"
+#include "io/result/result_rows.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
 namespace {
+
+/// Bytes of the program and of what the writer holds back.
+constexpr std::uint64_t kFixedBytes = std::uint64_t{32} << 20;
+/// Bytes of an open file: its metadata in HDF5.
+constexpr std::uint64_t kFileBytes = std::uint64_t{512} << 10;
+/// Most bytes of a dataset's chunks that HDF5 caches.
+constexpr std::uint64_t kCacheBytes = std::uint64_t{1} << 20;
+
+constexpr std::size_t kLeastRows = 1 << 10;
+
+/// Bytes of a row in the widest table of points, and of a row of the profile.
+constexpr std::uint64_t kPointBytes = 48, kPoseBytes = 56;
+
+std::uint64_t cached_bytes(std::uint64_t rows, std::initializer_list<std::uint64_t> value_bytes) {
+  std::uint64_t bytes = 0;
+  for (const std::uint64_t one : value_bytes) bytes += std::min(kCacheBytes, rows * one);
+  return bytes;
+}
+
+std::uint64_t needed_bytes(const PartSet& set, std::size_t batch_rows) {
+  std::uint64_t bytes = kFixedBytes + 4 * batch_rows * kPoseBytes;
+  for (const ResultReader& part : set.parts()) {
+    const std::uint64_t rows = std::max(part.collisions(), part.clearances());
+    bytes += kFileBytes + cached_bytes(part.collisions(), {8, 24, 4, 4}) +
+             cached_bytes(part.clearances(), {8, 24, 8, 4}) +
+             cached_bytes(part.profile_rows(), {8, 8, 24, 8, 8}) +
+             std::min<std::uint64_t>(batch_rows, rows) * kPointBytes;
+  }
+  return bytes;
+}
+
+/// Number of rows of each part that merging holds at once, a power of two, chosen so that it takes
+/// at most `memory_bytes`. Throws ResourceError where even the fewest rows are too many.
+std::size_t batch_rows_of(const PartSet& set, std::uint64_t memory_bytes) {
+  for (std::size_t rows = ResultRowStream::kBatchRows; rows >= kLeastRows; rows /= 2) {
+    if (needed_bytes(set, rows) <= memory_bytes) return rows;
+  }
+  const std::uint64_t needed = needed_bytes(set, kLeastRows);
+  throw ResourceError(format_size(memory_bytes) + " of memory is too little: to merge " +
+                          std::to_string(set.parts().size()) + " parts needs " +
+                          format_size(needed),
+                      Remedy::kMoreMemory, static_cast<double>(needed));
+}
 
 /// Number of rows that are given to the writer at once.
 constexpr std::size_t kRows = 1 << 12;

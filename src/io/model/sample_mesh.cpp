@@ -1,17 +1,251 @@
 #include "io/model/sample_mesh.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
+#include "clearway/vec3.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/util/format.hpp"
 #include "io/formats/mesh/vertex_welder.hpp"
-#include "io/model/surface_cover.hpp"
 #include "io/model/triangle_frame.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
 namespace {
+
+/// Points in a hash grid that finds those within a reach.
+class SampleSet {
+ public:
+  /// reach: above 0; coordinates are at most 2^31 times as large.
+  explicit SampleSet(double reach) : reach_(reach), heads_(1024, kNone) {}
+
+  const std::vector<Vec3>& points() const { return points_; }
+  std::vector<Vec3> take_points() { return std::move(points_); }
+  std::size_t size() const { return points_.size(); }
+
+  void add(const Vec3& point);
+
+  /// Calls use(point) until it returns true, at most kMostLooks times and the last added point
+  /// first. It is called for the points within the reach of `place`, except for some at the reach
+  /// up to rounding, and for some farther ones. Returns whether `use` returned true.
+  template <typename Use>
+  bool any_near(const Vec3& place, Use use) const {
+    const Cell middle = cell_of(place);
+    std::uint32_t looks = 0;
+    for (std::int64_t x = middle.x - 1; x <= middle.x + 1; ++x) {
+      for (std::int64_t y = middle.y - 1; y <= middle.y + 1; ++y) {
+        for (std::int64_t z = middle.z - 1; z <= middle.z + 1; ++z) {
+          for (std::uint32_t i = heads_[slot_of({x, y, z})]; i != kNone; i = next_[i]) {
+            if (use(points_[i])) return true;
+            if (++looks == kMostLooks) return false;
+          }
+        }
+      }
+    }
+    return false;
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  /// Most calls of `use` in any_near(). Without a limit, all vertices of a fine part that a coarse
+  /// triangle passes would be examined for each of the triangle's places.
+  static constexpr std::uint32_t kMostLooks = 1024;
+
+  struct Cell {
+    std::int64_t x, y, z;
+  };
+
+  Cell cell_of(const Vec3& point) const;
+  /// The slot of a cell; cells that share a slot share their points.
+  std::size_t slot_of(const Cell& cell) const {
+    std::uint64_t hash = static_cast<std::uint64_t>(cell.x) * 0x9E3779B97F4A7C15;
+    hash = (hash ^ (hash >> 32) ^ static_cast<std::uint64_t>(cell.y)) * 0xD6E8FEB86659FD93;
+    hash = (hash ^ (hash >> 32) ^ static_cast<std::uint64_t>(cell.z)) * 0xD6E8FEB86659FD93;
+    return (hash ^ (hash >> 32)) & (heads_.size() - 1);
+  }
+  void grow();
+
+  double reach_;
+  std::vector<Vec3> points_;
+  std::vector<std::uint32_t> next_;  // next point of the same slot
+  // First point of each slot; the number of slots is a power of two.
+  std::vector<std::uint32_t> heads_;
+};
+
+SampleSet::Cell SampleSet::cell_of(const Vec3& point) const {
+  return {static_cast<std::int64_t>(std::floor(point.x / reach_)),
+          static_cast<std::int64_t>(std::floor(point.y / reach_)),
+          static_cast<std::int64_t>(std::floor(point.z / reach_))};
+}
+
+void SampleSet::add(const Vec3& point) {
+  if (points_.size() == heads_.size()) grow();
+  std::uint32_t& head = heads_[slot_of(cell_of(point))];
+  next_.push_back(head);
+  head = static_cast<std::uint32_t>(points_.size());
+  points_.push_back(point);
+}
+
+void SampleSet::grow() {
+  heads_.assign(2 * heads_.size(), kNone);
+  for (std::uint32_t i = 0; i < points_.size(); ++i) {
+    std::uint32_t& head = heads_[slot_of(cell_of(points_[i]))];
+    next_[i] = head;
+    head = i;
+  }
+}
+
+/// Samples that cover triangles: no place of a triangle given to cover() is farther than `spacing`
+/// from a sample. The bounds are derived in docs/design/model.md, section "The cover".
+class SurfaceCover {
+ public:
+  /// most: number of samples that may be added before cover() gives up.
+  SurfaceCover(double spacing, std::uint64_t most);
+
+  void add(const Vec3& sample) { samples_.add(sample); }
+  /// Adds the samples that cover a triangle, whose corners are samples already. Returns false where
+  /// `most` samples do not suffice.
+  bool cover(const Vec3& a, const Vec3& b, const Vec3& c);
+  /// Estimated number of samples for a triangle: about the number of nodes of its lattice; 0 where
+  /// its corners suffice.
+  double estimate(const Vec3& a, const Vec3& b, const Vec3& c) const;
+
+  SampleSet& samples() { return samples_; }
+
+ private:
+  struct Lattice;
+
+  bool corners_cover(const TriangleFrame& triangle) const;
+  bool cover_node(const TriangleFrame& triangle, const FlatPolygon& region, const FlatPlace& node);
+  bool covered(const TriangleFrame& triangle, const FlatPolygon& region, int splits) const;
+
+  double spacing_, reach_;
+  std::uint64_t most_;
+  SampleSet samples_;
+};
+
+// Shares of the spacing, which the proof adds up.
+constexpr double kMargin = 0x1p-16;  // reserve for all rounding
+constexpr double kFlat = 0x1p-17;    // a triangle of less height is treated as its longest side
+// Distance by which the sides are moved outwards before clipping.
+constexpr double kClipMargin = 0x1p-18;
+constexpr int kSplits = 5;  // splits of a region to find whether several samples cover it
+
+/// The sides of a triangle, moved outwards by `margin`.
+std::array<HalfPlane, 3> sides_of(const TriangleFrame& t, double margin) {
+  const auto side = [margin](const FlatPlace& a, const FlatPlace& b) {
+    const double x = b.x - a.x, y = b.y - a.y, length = std::hypot(x, y);
+    const double along = -y / length, up = x / length;
+    return HalfPlane{along, up, margin - (along * a.x + up * a.y)};
+  };
+  const FlatPlace a{0, 0}, b{t.length, 0}, c{t.foot, t.height};
+  return {side(a, b), side(b, c), side(c, a)};
+}
+
+/// A lattice of rows of nodes parallel to the longest side, where every other row is shifted by
+/// half a step. Each place of the triangle is within `reach` of its nearest node.
+struct SurfaceCover::Lattice {
+  double rows, row_step;  ///< number of rows, and the distance from one to the next
+  double steps, step;     ///< number of steps in a row, and the length of one
+  double first_row;       ///< height of the first row above the longest side
+  double radius;          ///< radius of the circle about a node's region, at most the reach
+  FlatPolygon region;     ///< region of a node at (0, 0): the places nearest to it
+
+  Lattice(const TriangleFrame& t, double reach) {
+    rows = std::max(1.0, std::ceil((t.height + 2 * reach) / (1.5 * reach)) - 1);
+    row_step = (t.height + 2 * reach) / (rows + 1);
+    const double widest = 2 * std::sqrt(row_step * (2 * reach - row_step));
+    steps = std::max(1.0, std::ceil(t.length / widest));
+    step = t.length / steps;
+    first_row = row_step - reach;
+    radius = (step * step / 4 + row_step * row_step) / (2 * row_step);
+    const double half = step / 2, side = row_step - radius;
+    region = {{0, -radius}, {half, -side}, {half, side},
+              {0, radius},  {-half, side}, {-half, -side}};
+    if (t.height == 0) region = {{-half, 0}, {half, 0}};
+  }
+};
+
+SurfaceCover::SurfaceCover(double spacing, std::uint64_t most)
+    : spacing_(spacing), reach_(spacing * (1 - kMargin)), most_(most), samples_(spacing) {}
+
+bool SurfaceCover::corners_cover(const TriangleFrame& triangle) const {
+  if (triangle.length <= reach_) return true;
+  return triangle.height > 0 && triangle.corner_distance() <= reach_;
+}
+
+double SurfaceCover::estimate(const Vec3& a, const Vec3& b, const Vec3& c) const {
+  TriangleFrame triangle(a, b, c);
+  if (triangle.height <= kFlat * spacing_) triangle.flatten();
+  if (corners_cover(triangle)) return 0;
+  const Lattice lattice(triangle, reach_);
+  return lattice.rows * (lattice.steps / 2 + 1) + lattice.steps;
+}
+
+bool SurfaceCover::cover(const Vec3& a, const Vec3& b, const Vec3& c) {
+  TriangleFrame t(a, b, c);
+  if (t.height <= kFlat * spacing_) t.flatten();
+  if (corners_cover(t)) return true;
+  const Lattice lattice(t, reach_);
+  const auto sides = sides_of(t, kClipMargin * spacing_);
+  for (double row = 0; row < lattice.rows; ++row) {
+    const double y = lattice.first_row + row * lattice.row_step;
+    const double shift = std::fmod(row, 2) * lattice.step / 2;
+    const double low = t.height > 0 ? std::clamp((y - lattice.radius) / t.height, 0.0, 1.0) : 0;
+    const double left = t.foot * low, right = t.length - (t.length - t.foot) * low;
+    const double first = std::floor((left - shift) / lattice.step - 0.5) - 1;
+    const double last = std::ceil((right - shift) / lattice.step + 0.5) + 1;
+    for (double k = first; k <= last; ++k) {
+      const FlatPlace node{shift + k * lattice.step, y};
+      FlatPolygon region = lattice.region.moved_by(node);
+      if (t.height > 0) {
+        for (const HalfPlane& side : sides) region = region.clipped(side);
+      } else {
+        region = region.clipped({1, 0, 0}).clipped({-1, 0, t.length});
+      }
+      if (!region.empty() && !cover_node(t, region, node)) return false;
+    }
+  }
+  return true;
+}
+
+bool SurfaceCover::cover_node(const TriangleFrame& triangle, const FlatPolygon& region,
+                              const FlatPlace& node) {
+  if (covered(triangle, region, kSplits)) return true;
+  if (samples_.size() >= most_) return false;
+  samples_.add(triangle.nearest_in_space(node));
+  return true;
+}
+
+/// Whether samples cover a region: a single one covers all of it, or each of its parts is covered.
+bool SurfaceCover::covered(const TriangleFrame& triangle, const FlatPolygon& region,
+                           int splits) const {
+  std::array<Vec3, FlatPolygon::kMostCorners> corners;
+  FlatPlace middle{0, 0};
+  std::size_t count = 0;
+  for (const FlatPlace& corner : region) {
+    corners[count++] = triangle.in_space(corner);
+    middle.x += corner.x;
+    middle.y += corner.y;
+  }
+  const auto share = static_cast<double>(count);
+  const Vec3 inside = triangle.in_space({middle.x / share, middle.y / share});
+  const double limit = reach_ * reach_;
+  bool any = false;
+  const bool one = samples_.any_near(inside, [&](const Vec3& sample) {
+    if (squared_distance(sample, inside) > limit) return false;
+    any = true;
+    return std::all_of(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(count),
+                       [&](const Vec3& p) { return squared_distance(sample, p) <= limit; });
+  });
+  if (one || !any || splits == 0) return one;
+  const auto [first, second] = region.halves();
+  return (first.empty() || covered(triangle, first, splits - 1)) &&
+         (second.empty() || covered(triangle, second, splits - 1));
+}
 
 // Greatest coordinate in spacings, which the proof requires.
 constexpr double kMostSpacings = 0x1p28;

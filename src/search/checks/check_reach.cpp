@@ -1,10 +1,246 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clearway/error.hpp"
+#include "core/geometry/point_box.hpp"
+#include "core/trajectory/motion_tree_ref.hpp"
 #include "search/checks/checks.hpp"
+#include "search/checks/facts/ground.hpp"
 #include "search/checks/facts/path_cover.hpp"
-#include "search/checks/likely_remedy.hpp"
+#include "search/checks/question.hpp"
 #include "search/checks/words.hpp"
 
 namespace clearway {
 namespace {
+
+/// At most this many poses are tried.
+constexpr std::size_t kTried = 64;
+/// The least share of the tried poses that has to meet the scan.
+constexpr double kHelps = 0.75;
+
+using Change = Pose (*)(const Pose&);
+
+Pose at(const Pose& pose, double x, double y, double z) {
+  Pose out = pose;
+  out.translation[0] = x;
+  out.translation[1] = y;
+  out.translation[2] = z;
+  return out;
+}
+
+template <int kThousandths, int kDivisor = 1000>
+Pose scaled(const Pose& pose) {
+  const double factor = static_cast<double>(kThousandths) / kDivisor;
+  const double* t = pose.translation;
+  return at(pose, t[0] * factor, t[1] * factor, t[2] * factor);
+}
+
+Pose inverted(const Pose& pose) {
+  Pose out = pose;
+  for (int k = 0; k < 3; ++k) {
+    out.translation[k] = 0;
+    for (int j = 0; j < 3; ++j) {
+      out.rotation[3 * k + j] = pose.rotation[3 * j + k];
+      out.translation[k] -= pose.rotation[3 * j + k] * pose.translation[j];
+    }
+  }
+  return out;
+}
+
+struct Hypothesis {
+  Change change;
+  const char* sentence;
+  bool scales = false;
+};
+
+// Changes of the poses in order of preference: the first that fits is named.
+constexpr Hypothesis kHypotheses[] = {
+    {scaled<1>, "The path fits when its positions are divided by 1000: they seem to be millimetres",
+     true},
+    {scaled<10>, "The path fits when its positions are divided by 100: they seem to be centimetres",
+     true},
+    {[](const Pose& p) { return at(p, p.translation[1], p.translation[0], p.translation[2]); },
+     "The path fits with x and y swapped: it may have northing before easting"},
+    {inverted,
+     "The path fits with every pose inverted: the poses seem to map the scan into the "
+     "model's frame. They have to map the model into the scan's"},
+    {[](const Pose& p) { return at(p, p.translation[2], -p.translation[0], -p.translation[1]); },
+     "The path fits when its z points forward and its y down: it seems to be in a camera's frame"},
+    {[](const Pose& p) { return at(p, p.translation[0], -p.translation[2], p.translation[1]); },
+     "The path fits when its y points up: y and z seem to be swapped"},
+    {[](const Pose& p) { return at(p, p.translation[0], p.translation[1], -p.translation[2]); },
+     "The path fits with z negated: its z seems to point down"},
+    {[](const Pose& p) { return at(p, p.translation[1], p.translation[0], -p.translation[2]); },
+     "The path fits with x and y swapped and z negated: it seems to be north, east, down"},
+    {scaled<3048, 10000>,
+     "The path fits when its positions are multiplied by 0.3048: they seem to be feet", true},
+    {scaled<10000, 3048>,
+     "The path fits when its positions are divided by 0.3048: the scan seems to be in feet", true},
+    {scaled<1000000>,
+     "The path fits when its positions are multiplied by 1000: they seem to be kilometres, or the "
+     "scan millimetres",
+     true}};
+
+class Trial {
+ public:
+  Trial(const Question& question, const PathCover& cover)
+      : question_(question),
+        cover_(cover),
+        slice_(body_slice(question.model)),
+        tried_(spread_poses(question.query.poses.size(), kTried)),
+        path_(path_box()) {}
+
+  std::string remedy() const {
+    if (question_.unit != LengthUnit::kDegrees && looks_like_degrees()) {
+      return "The path's positions look like degrees. Convert them to the scan's coordinates";
+    }
+    if (const auto height = height_difference()) {
+      return "In plan the path fits, but it lies " + length_text(std::abs(*height), unit()) +
+             (*height > 0 ? " above" : " below") +
+             " what was scanned: heights may refer to different zeros, such as ellipsoid and sea "
+             "level";
+    }
+    for (const Hypothesis& hypothesis : kHypotheses) {
+      if (!helps(hypothesis.change)) continue;
+      return hypothesis.sentence + (hypothesis.scales ? doubts(hypothesis.change) : "");
+    }
+    return shift();
+  }
+
+ private:
+  LengthUnit unit() const { return question_.unit; }
+
+  Box path_box() const {
+    const Vec3 first = question_.query.poses.front().position();
+    Box box{first, first};
+    for (const Pose& pose : question_.query.poses) {
+      const Vec3 p = pose.position();
+      box = box.united({p, p});
+    }
+    return box;
+  }
+
+  template <typename CoversPose>
+  bool most_of(CoversPose covers) const {
+    std::size_t met = 0;
+    for (const std::uint32_t i : tried_) met += covers(question_.query.poses[i]) ? 1 : 0;
+    return static_cast<double>(met) >= kHelps * static_cast<double>(tried_.size());
+  }
+
+  bool helps(Change change) const {
+    if (fits_anywhere(change)) return false;
+    return most_of([&](const Pose& pose) { return cover_.covers(moved(slice_, change(pose))); });
+  }
+
+  /// Whether the change makes the path so much shorter than the model that it fits at any place,
+  /// which is no hint.
+  bool fits_anywhere(Change change) const {
+    const Vec3 lo = change(at_corner(path_.lo)).position();
+    const Vec3 hi = change(at_corner(path_.hi)).position();
+    const double shorter = half_diagonal({lo, hi});
+    const double longest = Sides(question_.model).longest;
+    constexpr std::size_t kMany = 10;
+    if (shorter < longest / 4 && question_.query.poses.size() >= kMany) return true;
+    return shorter < half_diagonal(path_) && shorter < longest / 2;
+  }
+
+  /// Reasons to doubt a change of scale, because a factor often brings a path near some scanned
+  /// place, wherever the path belongs.
+  std::string doubts(Change change) const {
+    std::string text;
+    if (!meets_ground(change)) text += ". But then the model would not stand on the ground";
+    if (fits_by_shift())
+      text += ". Or the path is of another place: a shift by about " + shift_text() +
+              " would bring it to the scan's middle";
+    return text;
+  }
+
+  bool meets_ground(Change change) const {
+    const ScanPoints points(question_.cloud);
+    const Box body = body_slice(question_.model);
+    constexpr double kHigh = 1;  // metres
+    try {
+      return most_of([&](const Pose& pose) {
+        const auto height = height_above_ground(points, body, change(pose));
+        return height && *height < kHigh * question_.metre;
+      });
+    } catch (const InputError&) {
+      return true;  // a damaged cell is reported by the search
+    }
+  }
+
+  static Pose at_corner(const Vec3& corner) {
+    return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {corner.x, corner.y, corner.z}};
+  }
+
+  bool looks_like_degrees() const {
+    const Box& e = question_.environment;
+    const bool small = std::max(std::abs(path_.lo.x), std::abs(path_.hi.x)) <= 360 &&
+                       std::max(std::abs(path_.lo.y), std::abs(path_.hi.y)) <= 360;
+    const bool short_path = path_.hi.x - path_.lo.x < 1 && path_.hi.y - path_.lo.y < 1;
+    const bool grid = std::min(std::abs(e.lo.x), std::abs(e.lo.y)) > 10'000;
+    return small && short_path && grid && question_.query.poses.size() > 1;
+  }
+
+  /// How far the path lies above the scan, if it would meet the scan without regard to height.
+  std::optional<double> height_difference() const {
+    std::vector<double> heights;
+    const bool in_plan = most_of([&](const Pose& pose) {
+      Box column = moved(slice_, pose);
+      const double bottom = column.lo.z;
+      column.lo.z = question_.environment.lo.z;
+      column.hi.z = question_.environment.hi.z;
+      const auto nearest = cover_.scan().nearest(column, cover_.reach());
+      if (nearest.found) heights.push_back(bottom - nearest.block.lo.z);
+      return nearest.found;
+    });
+    if (!in_plan) return std::nullopt;
+    const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+    std::nth_element(heights.begin(), middle, heights.end());
+    return *middle;
+  }
+
+  bool fits_by_shift() const {
+    bool fits = true;
+    for (int k = 0; k < 3; ++k) {
+      const double room = question_.environment.hi[k] - question_.environment.lo[k];
+      fits = fits && path_.hi[k] - path_.lo[k] <= room + cover_.far();
+    }
+    return fits;
+  }
+
+  std::string shift_text() const {
+    std::string by;
+    for (int k = 0; k < 3; ++k) {
+      by += (k == 0 ? "" : ", ") + figure(question_.environment.centre()[k] - path_.centre()[k]);
+    }
+    return by;
+  }
+
+  std::string shift() const {
+    if (fits_by_shift()) {
+      return "A shift of the path by about " + shift_text() +
+             " would bring it there. Is one of the two in local coordinates, or in another grid?";
+    }
+    return "Compare the frame and the unit of path and scan";
+  }
+
+  const Question& question_;
+  const PathCover& cover_;
+  Box slice_;
+  std::vector<std::uint32_t> tried_;
+  Box path_;
+};
+
+/// A sentence that tells how model, path and environment would meet: in another unit, with axes
+/// swapped, with the poses inverted, or after a shift. It is a guess for people; nothing is
+/// changed. Where no such change helps, it names what to compare.
+std::string likely_remedy(const Question& question, const PathCover& cover) {
+  return Trial(question, cover).remedy();
+}
 
 /// The box around the model's boxes at all poses.
 Box swept_box(const Question& question) {

@@ -1,18 +1,97 @@
 #include "cli/campaign/task_queue.hpp"
 
+#include <fcntl.h>
+#include <signal.h>
 #include <spdlog/spdlog.h>
+#include <sys/prctl.h>
+#include <sys/types.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "campaign/outcome.hpp"
 #include "clearway/error.hpp"
-#include "cli/campaign/child.hpp"
+#include "cli/clearway_program.hpp"
 #include "cli/support/exit_code.hpp"
 
 namespace clearway::tool {
 namespace {
+
+/// A command of this program that is to run in a process of its own.
+struct ChildCommand {
+  std::vector<std::string> words;  ///< the command line, without the program's name
+  std::filesystem::path folder;    ///< the folder that the command works in
+  std::filesystem::path log;       ///< appended to: standard error, and output if `output` is empty
+  std::filesystem::path output;    ///< replaced by standard output; empty: that goes to the log
+  std::vector<int> foreign;        ///< the caller's descriptors that the child closes
+  sigset_t signals{};              ///< the signal mask of the child
+};
+
+/// Opens `path` as `descriptor`. False where that fails.
+bool open_as(int descriptor, const char* path, int flags) {
+  const int opened = ::open(path, flags | O_CLOEXEC, 0666);
+  if (opened < 0) return false;
+  if (opened == descriptor) return true;
+  const bool done = ::dup2(opened, descriptor) >= 0;
+  ::close(opened);
+  return done;
+}
+
+bool take_place(const ChildCommand& command, pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) return false;  // the parent died before prctl
+  ::setpgid(0, 0);
+  for (const int descriptor : command.foreign) ::close(descriptor);
+  constexpr int kAppend = O_WRONLY | O_CREAT | O_APPEND, kReplace = O_WRONLY | O_CREAT | O_TRUNC;
+  const bool to_log = command.output.empty();
+  return open_as(STDIN_FILENO, "/dev/null", O_RDONLY) &&
+         open_as(STDERR_FILENO, command.log.c_str(), kAppend) &&
+         open_as(STDOUT_FILENO, to_log ? command.log.c_str() : command.output.c_str(),
+                 to_log ? kAppend : kReplace) &&
+         ::chdir(command.folder.c_str()) == 0 &&
+         ::sigprocmask(SIG_SETMASK, &command.signals, nullptr) == 0;
+}
+
+int call_program(const ChildCommand& command) {
+  std::vector<std::string> words{"clearway"};
+  words.insert(words.end(), command.words.begin(), command.words.end());
+  std::vector<char*> pointers;
+  pointers.reserve(words.size() + 1);
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  return run_clearway(static_cast<int>(words.size()), pointers.data());
+}
+
+/// Forks a child that calls the program's entry, without loading the program again, and returns its
+/// process id. The calling process must have one thread. The child is killed when the caller dies,
+/// and has a process group of its own, so that signals of the terminal reach the caller alone.
+/// Throws ResourceError.
+pid_t start_child(const ChildCommand& command) {
+  std::fflush(nullptr);
+  const pid_t parent = ::getpid();
+  const pid_t child = ::fork();
+  if (child < 0) {
+    throw ResourceError("cannot start a process: " + std::string(std::strerror(errno)));
+  }
+  if (child > 0) return child;
+  int code = kResource;
+  try {
+    if (take_place(command, parent)) code = call_program(command);
+  } catch (const std::exception&) {  // no exception of the child may reach the caller's code
+    code = kResource;
+  }
+  std::fflush(nullptr);
+  ::_exit(code);
+}
 
 constexpr int kMostFailures = 3;  ///< a task that fails with kResource is tried twice more
 

@@ -1,14 +1,147 @@
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
+#include <iterator>
 #include <limits>
 #include <span>
 
-#include "io/formats/e57/e57_prototype.hpp"
 #include "io/formats/e57/e57_scan.hpp"
 #include "io/formats/e57/e57_xml.hpp"
 #include "io/trajectory/pose_input.hpp"
 
 namespace clearway {
 namespace {
+
+/// Names of the fields, in the order of E57Place.
+constexpr std::string_view kPlaceNames[] = {
+    "cartesianX",     "cartesianY",       "cartesianZ",         "cartesianInvalidState",
+    "sphericalRange", "sphericalAzimuth", "sphericalElevation", "sphericalInvalidState"};
+static_assert(std::size(kPlaceNames) == kE57Places);
+
+/// Greatest number of bytestreams; a data packet has no room for the lengths of more.
+constexpr std::size_t kMostStreams = (65536 - 6) / 2;
+
+E57Field integer_field(const E57Xml& xml, pugi::xml_node node, bool scaled) {
+  using Limits = std::numeric_limits<std::int64_t>;
+  E57Field field;
+  field.kind = E57Field::Kind::kInteger;
+  field.minimum = xml.number_attribute<std::int64_t>(node, "minimum").value_or(Limits::min());
+  const auto maximum = xml.number_attribute<std::int64_t>(node, "maximum").value_or(Limits::max());
+  if (maximum < field.minimum) {
+    xml.refuse_at(node, "goes from " + std::to_string(field.minimum) + " to " +
+                            std::to_string(maximum) + "; expected minimum <= maximum");
+  }
+  field.bits = static_cast<unsigned>(std::bit_width(static_cast<std::uint64_t>(maximum) -
+                                                    static_cast<std::uint64_t>(field.minimum)));
+  if (!scaled) return field;
+  field.scale = xml.number_attribute<double>(node, "scale").value_or(1);
+  field.offset = xml.number_attribute<double>(node, "offset").value_or(0);
+  if (!std::isfinite(field.scale) || field.scale == 0 || !std::isfinite(field.offset)) {
+    xml.refuse_at(node,
+                  "has a scale or an offset that is 0 or not finite; expected a scale "
+                  "other than 0");
+  }
+  return field;
+}
+
+E57Field float_field(const E57Xml& xml, pugi::xml_node node) {
+  const std::string_view precision = xml.attribute(node, "precision").value_or("double");
+  E57Field field;
+  if (precision == "single") {
+    field.kind = E57Field::Kind::kFloat32;
+    field.bits = 32;
+  } else if (precision == "double") {
+    field.kind = E57Field::Kind::kFloat64;
+    field.bits = 64;
+  } else {
+    xml.refuse_at(node, "has another precision; expected single or double");
+  }
+  return field;
+}
+
+E57Field field_of(const E57Xml& xml, pugi::xml_node node) {
+  const std::string_view type = xml.type_of(node);
+  if (type == "Float") return float_field(xml, node);
+  if (type == "Integer") return integer_field(xml, node, false);
+  if (type == "ScaledInteger") return integer_field(xml, node, true);
+  if (type == "String") return {};
+  xml.refuse_at(node,
+                "has a type that no point can have; expected Float, Integer, ScaledInteger or "
+                "String");
+}
+
+void note_place(const E57Xml& xml, pugi::xml_node node, E57Scan& scan) {
+  const auto* const found =
+      std::find(std::begin(kPlaceNames), std::end(kPlaceNames), std::string_view(node.name()));
+  if (found == std::end(kPlaceNames)) return;
+  std::uint32_t& place = scan.places[static_cast<std::size_t>(found - kPlaceNames)];
+  if (place != kNoE57Stream) xml.refuse_at(node, "stands twice; expected it once in a prototype");
+  if (scan.fields.back().kind == E57Field::Kind::kText) {
+    xml.refuse_at(node, "is a text; expected a number");
+  }
+  place = static_cast<std::uint32_t>(scan.fields.size() - 1);
+}
+
+bool is_branch(std::string_view type) { return type == "Structure" || type == "Vector"; }
+
+/// The next element in document order within `top` that is neither `node` nor inside it.
+pugi::xml_node next_behind(pugi::xml_node node, pugi::xml_node top) {
+  while (node != top && !node.next_sibling()) node = node.parent();
+  return node == top ? pugi::xml_node() : node.next_sibling();
+}
+
+/// Throws InputError where a scan has some but not all of three fields.
+void check_complete(const E57Xml& xml, pugi::xml_node prototype, const E57Scan& scan,
+                    E57Place first, E57Place second, E57Place third) {
+  const int found = int{scan.has(first)} + int{scan.has(second)} + int{scan.has(third)};
+  if (found == 0 || found == 3) return;
+  for (const E57Place place : {first, second, third}) {
+    if (scan.has(place)) continue;
+    xml.refuse_at(prototype, "has no " + std::string(kPlaceNames[place]) + " beside " +
+                                 std::string(kPlaceNames[first]) +
+                                 " or its like; expected all three coordinates");
+  }
+}
+
+/// Throws InputError for codecs other than bit packing, the only one that E57 1.0 defines and which
+/// needs no entry.
+void check_codecs(const E57Xml& xml, pugi::xml_node points) {
+  for (const pugi::xml_node codec : xml.find(points, "codecs", "Vector").children()) {
+    for (const pugi::xml_node part : codec.children()) {
+      const std::string_view name = part.name();
+      if (part.type() != pugi::node_element || name == "inputs" || name == "bitPackCodec") continue;
+      xml.refuse_at(part,
+                    "is a codec that is not read; expected bitPackCodec. Export the scan "
+                    "without compression, or as LAS or PLY");
+    }
+  }
+}
+
+/// Reads from the element `points` which bytestreams a scan has and which of them hold coordinates.
+/// Fields of extensions count as bytestreams and are not read.
+void read_e57_prototype(const E57Xml& xml, pugi::xml_node points, E57Scan& scan) {
+  const pugi::xml_node prototype = xml.get(points, "prototype", "Structure");
+  for (pugi::xml_node node = prototype.first_child(); node;) {
+    const bool is_element = node.type() == pugi::node_element;
+    if (is_element && is_branch(xml.type_of(node)) && node.first_child()) {
+      node = node.first_child();
+      continue;
+    }
+    if (is_element && !is_branch(xml.type_of(node))) {
+      if (scan.fields.size() == kMostStreams) {
+        xml.refuse_at(node, "is one field too many; expected at most " +
+                                std::to_string(kMostStreams) + " in a point");
+      }
+      scan.fields.push_back(field_of(xml, node));
+      if (node.parent() == prototype) note_place(xml, node, scan);
+    }
+    node = next_behind(node, prototype);
+  }
+  check_complete(xml, prototype, scan, kE57X, kE57Y, kE57Z);
+  check_complete(xml, prototype, scan, kE57Range, kE57Azimuth, kE57Elevation);
+  check_codecs(xml, points);
+}
 
 /// The numbers of a structure's children, all of which must exist.
 template <std::size_t count>

@@ -2,13 +2,28 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "io/formats/byte_load.hpp"
-#include "io/formats/las/epsg_unit.hpp"
+#include "io/formats/proj_objects.hpp"
 
 namespace clearway {
 namespace {
+
+void keep_quiet(void*, int, const char*) {}
+
+/// The unit, in metres, of a projected coordinate reference system with this EPSG code; nullopt
+/// where PROJ's database is not installed or lacks the code.
+std::optional<double> unit_of_epsg(std::uint16_t code) {
+  const ProjContext context = start_proj(keep_quiet, nullptr);
+  if (!context) return std::nullopt;
+  const ProjObject crs(proj_create_from_database(
+      context.get(), "EPSG", std::to_string(code).c_str(), PJ_CATEGORY_CRS, 0, nullptr));
+  if (!crs) return std::nullopt;
+  const double metres = unit_of_axis(context.get(), crs.get(), 0);
+  return metres != 0 ? std::optional(metres) : std::nullopt;
+}
 
 // Key of the model's type: 1 projected, 2 geographic, 3 geocentric.
 constexpr std::uint16_t kModelType = 1024;
