@@ -26,6 +26,7 @@ CLOCK = [(re.compile(pattern), word) for pattern, word, _ in (
     (rb'"peak_host_bytes": ?\d+', b'"peak_host_bytes": BYTES', "memory at its greatest"),
     (rb'"bytes_moved": ?\{[^{}]*\}', b'"bytes_moved": BYTES', "as the system counts them"),
     (rb'"outputs_id": ?"\w+"', b'"outputs_id": HASH', "hash of commands that name the folder"),
+    (rb'"modified": ?-?\d+', b'"modified": TIME', "time of an input file"),
 )]
 # What depends on which thread finds a point first; of commands with a profile and several threads.
 THREADS = [(re.compile(rb"tests: [^\n]*"), b"tests: COUNTS")]
