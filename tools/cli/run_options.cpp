@@ -70,7 +70,7 @@ void add_inputs(CLI::App& command, RunOptions& options) {
   command
       .add_option("--vehicle", options.vehicle,
                   "Instead of --model: a JSON file of several bodies that follow the "
-                  "trajectory, each in its own way; engine sweep on the CPU")
+                  "trajectory, each in its own way; engine sweep only")
       ->group(title_of(OptionGroup::kModel))
       ->type_name("FILE")
       ->excludes(model);
