@@ -44,9 +44,9 @@ bool HitRuns<Element>::prepare() const {
 template <typename Element>
 void HitRuns<Element>::make() const {
   const double spacing = std::min(model_.spacing(), kSpacingOfRadius * sweep_.radius);
-  made_.emplace(
+  made_.emplace(Made{
       MotionCurves(motion_, model_.box(), sweep_.radius * kRoundedUp + sweep_.rounding, spacing),
-      WideTreeOf<StoredElement<Element>>(model_));
+      WideTreeOf<StoredElement<Element>>(model_)});
 }
 
 template <typename Element>
