@@ -40,7 +40,7 @@ std::vector<OptionKey> query_keys() {
   std::vector<OptionKey> keys;
   const auto add = [&keys](const auto& field) {
     using Value = std::remove_cvref_t<decltype(field.of({}))>;
-    if (field.name == std::string_view("radius")) return;
+    if (field.is_required()) return;
     keys.push_back({field.name, field.option,
                     std::is_same_v<Value, bool>               ? ValueKind::kFlag
                     : std::is_same_v<Value, double>           ? ValueKind::kLength

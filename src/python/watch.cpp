@@ -71,7 +71,7 @@ Watch::Watch(py::object progress, py::object message, py::object stop)
 
 void Watch::keep(const ProgressUpdate& update) {
   const std::lock_guard lock(mutex_);
-  // Of several updates of a stage that is not finished, only the last is kept.
+  // While a stage is not finished, a new update takes the place of the one before it.
   if (!news_.progress.empty() && !news_.progress.back().finished) news_.progress.pop_back();
   news_.progress.push_back({std::string(update.stage), std::string(update.unit), update.done,
                             update.total, update.finished});

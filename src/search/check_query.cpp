@@ -47,7 +47,7 @@ void check_numbers(const QueryParameters& query, const SearchOptions& options) {
   for_each_value_field([&](const auto& field) {
     if constexpr (std::is_same_v<decltype(field), const QueryField<double>&>) {
       const std::string topic = std::string("the ") + field.topic;
-      check(topic.c_str(), field.of(query), field.member != &QueryParameters::radius);
+      check(topic.c_str(), field.of(query), !field.is_required());
     }
   });
   check("the field's voxel", options.field_voxel, true);

@@ -18,11 +18,6 @@
 namespace clearway::tool {
 namespace {
 
-bool is_required(const QueryField<double>& field) {
-  return field.member == &QueryParameters::radius;
-}
-bool is_required(const QueryField<bool>&) { return false; }
-
 CLI::Option* add_field(CLI::App& command, const QueryField<double>& field, RunOptions& options) {
   return options.lengths.add(command, field.option, options.query.*field.member, field.help);
 }
@@ -78,7 +73,7 @@ void add_inputs(CLI::App& command, RunOptions& options) {
       ->type_name("FILE")
       ->required();
   for_each_value_field([&](const auto& field) {
-    if (is_required(field)) add_field(command, field, options)->required();
+    if (field.is_required()) add_field(command, field, options)->required();
   });
   command.add_option("-o,--output", options.output, "The result, an HDF5 file")
       ->type_name("FILE")
@@ -106,7 +101,7 @@ void add_query(CLI::App& command, RunOptions& options) {
   {
     const GroupScope group(command, OptionGroup::kAsked);
     for_each_value_field([&](const auto& field) {
-      if (!is_required(field)) add_field(command, field, options);
+      if (!field.is_required()) add_field(command, field, options);
     });
   }
   const GroupScope group(command, OptionGroup::kIgnored);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "clearway/query.hpp"
@@ -23,6 +24,14 @@ struct QueryField {
   std::uint32_t since = 0;
 
   const Value& of(const QueryParameters& query) const { return query.*member; }
+  /// Whether every question has to give it, which has no default.
+  bool is_required() const {
+    if constexpr (std::is_same_v<Value, double>) {
+      return member == &QueryParameters::radius;
+    } else {
+      return false;
+    }
+  }
   bool is_default(const QueryParameters& query) const { return of(query) == of(QueryParameters{}); }
 };
 

@@ -11,4 +11,7 @@ namespace clearway {
 /// consecutive positions, in double and in this order.
 std::vector<double> chainage_of(std::span<const Pose> poses);
 
+/// The chainage of the last pose, metres; 0 where there are no poses.
+double path_length(std::span<const Pose> poses);
+
 }  // namespace clearway

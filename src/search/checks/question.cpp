@@ -4,10 +4,8 @@
 #include <cmath>
 
 #include "core/geometry/point_box.hpp"
-#include "core/trajectory/chainage.hpp"
 
 namespace clearway {
-namespace {}  // namespace
 
 Question::Question(const PackedCloud& environment_points, LengthUnit length_unit,
                    const Query& asked)
@@ -44,14 +42,6 @@ double scale_of(const Pose& pose) {
   double sum = 0;
   for (const double r : pose.rotation) sum += r * r;
   return std::sqrt(sum / 3);
-}
-
-double path_length(const std::vector<Pose>& poses) {
-  double length = 0;
-  for (std::size_t i = 1; i < poses.size(); ++i) {
-    length += std::sqrt(squared_distance(poses[i - 1].position(), poses[i].position()));
-  }
-  return length;
 }
 
 }  // namespace clearway

@@ -7,6 +7,7 @@
 #include "core/cloud/packed_cloud.hpp"
 #include "core/geometry/box.hpp"
 #include "core/geometry/sweep_bounds.hpp"
+#include "core/trajectory/chainage.hpp"
 #include "io/formats/point_reader.hpp"
 
 namespace clearway {
@@ -50,8 +51,5 @@ struct Sides {
 
 /// The factor by which a pose stretches lengths, on average over the axes; 1 for a rigid one.
 double scale_of(const Pose& pose);
-
-/// Length of the path, straight from pose to pose.
-double path_length(const std::vector<Pose>& poses);
 
 }  // namespace clearway

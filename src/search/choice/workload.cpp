@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry/point_box.hpp"
+#include "core/trajectory/chainage.hpp"
 
 namespace clearway {
 namespace {
@@ -54,14 +55,6 @@ class NearPoints {
   double count_ = 0;
 };
 
-double path_length_of(std::span<const Pose> poses) {
-  double length = 0;
-  for (std::size_t i = 1; i < poses.size(); ++i) {
-    length += clearway::length(poses[i].position() - poses[i - 1].position());
-  }
-  return length;
-}
-
 Workload workload_of_model(const PackedCloud& cloud, const QueryParameters& query,
                            const Model& model, std::span<const Pose> poses) {
   return workload_of(cloud, query, model.empty() ? Box{} : box_of(model.vertices),
@@ -102,7 +95,7 @@ Workload workload_of(const PackedCloud& cloud, const QueryParameters& query, con
     near_points += NearPoints(cloud, reach, poses[pose]).count() / static_cast<double>(samples);
   }
   // A model that moves on by its length meets as many points again.
-  const double places = std::min(work.poses, 1 + path_length_of(poses) / length);
+  const double places = std::min(work.poses, 1 + path_length(poses) / length);
   work.reached_points = std::min(static_cast<double>(cloud.point_count()), near_points * places);
   return work;
 }
