@@ -35,9 +35,23 @@ bool is_doubt(std::string_view code);
 /// The codes of the warnings that are doubts by is_doubt(), each once, in alphabetical order.
 std::vector<std::string> doubts_among(const std::vector<Message>& warnings);
 
+/// What the tables of a result say in short: their numbers of rows and the places that matter most.
+struct TableSummary {
+  std::uint64_t colliding_points = 0;
+  std::uint64_t clearance_points = 0;  ///< number of points closer than the clearance asked for
+  std::uint64_t inside_points = 0;     ///< number of clearance_points inside a solid of the model
+  /// Number of poses closer than the profile's distance asked for
+  std::uint64_t profile_poses = 0;
+  /// The point with the smallest first pose, the one with the least clearance, and the least
+  /// distance of the profile at its first pose, each where the query asks for it. If several points
+  /// are equal, the one with the smallest source index counts. Coordinates are NaN for files before
+  /// version 3, which lack them.
+  std::optional<FoundPlace> first_place, least_clearance, least_profile;
+};
+
 /// The answer to a query in short. Everything that words or counts an answer takes it from here:
 /// search() and merge() report it, and Result::answer() reads it from a file.
-struct Answer {
+struct Answer : TableSummary {
   /// What the query asked for; its lists of ignored classes and boxes are ascending, without
   /// duplicates
   QueryParameters parameters;
@@ -47,11 +61,6 @@ struct Answer {
   /// than this from a sample. With several bodies it is the greatest spacing; 0 if no model is a
   /// sampled mesh.
   double model_spacing = 0;
-  std::uint64_t colliding_points = 0;
-  std::uint64_t clearance_points = 0;  ///< number of points closer than the clearance asked for
-  std::uint64_t inside_points = 0;     ///< number of clearance_points inside a solid of the model
-  /// Number of poses closer than the profile's distance asked for
-  std::uint64_t profile_poses = 0;
   /// How many points of the whole environment the search left out; its lists are in the order of
   /// those of the parameters.
   IgnoredPointCounts ignored;
@@ -59,11 +68,6 @@ struct Answer {
   /// model first touches more than half a metre above its lowest point. 0 if no point is ignored,
   /// nullopt if the number is not known, as in results of earlier releases.
   std::optional<std::uint64_t> ignored_colliding = 0, ignored_colliding_high = 0;
-  /// The point with the smallest first pose, the one with the least clearance, and the least
-  /// distance of the profile at its first pose, each where the query asks for it. If several points
-  /// are equal, the one with the smallest source index counts. Coordinates are NaN for files before
-  /// version 3, which lack them.
-  std::optional<FoundPlace> first_place, least_clearance, least_profile;
   std::vector<std::string> bodies;  ///< names of the bodies, if the query has several
   std::optional<Shard> shard;  ///< the shard that this answer is about; nullopt for a whole query
   /// True if single precision alone decided, so that the answer is not exact

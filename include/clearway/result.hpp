@@ -17,6 +17,24 @@ namespace clearway {
 
 class ResultReader;
 
+/// Environment points that the model touches, one row per point, ascending by source index.
+struct Collisions {
+  std::vector<std::uint64_t> source;  ///< index of the point in the order of the scans
+  std::vector<Vec3> xyz;
+  /// The first pose that touches each point, as QueryParameters::first_pose defines it; empty
+  /// unless the query asked for it. In files of release 0.1.0 with motion between poses it may be
+  /// one higher, because their ways did not include their ends.
+  std::vector<std::uint32_t> first_pose = {};
+  /// Index of the body that touches each point at its first pose. Empty unless the query has bodies
+  /// and asked for first poses.
+  std::vector<std::uint32_t> body = {};
+  /// The greatest index of a pose that touches each point; between poses, the start of the last way
+  /// that does. Empty if there are no first poses, and for files of older releases.
+  std::vector<std::uint32_t> last_pose = {};
+
+  std::size_t size() const { return source.size(); }
+};
+
 /// Distances of environment points to the model, one row per point, ascending by source index.
 struct Clearances {
   std::vector<std::uint64_t> source;
@@ -24,6 +42,8 @@ struct Clearances {
   std::vector<double> distance;          ///< metres, the least over all poses
   std::vector<std::uint32_t> pose;       ///< the first pose that has this distance
   std::vector<std::uint32_t> body = {};  ///< the body that has this distance; empty without bodies
+
+  std::size_t size() const { return source.size(); }
 };
 
 /// For every pose of the trajectory, the least distance between the model and the environment.
@@ -37,10 +57,12 @@ struct Profile {
   std::vector<std::uint64_t> source;
   std::vector<Vec3> xyz;         ///< position of the nearest point; NaN where there is none
   std::vector<double> chainage;  ///< metres along the positions of the path
+
+  std::size_t size() const { return distance.size(); }
 };
 
-/// A result that search() wrote. Columns are read when they are asked for; row i of each belongs to
-/// the same colliding point. Throws InputError if the file is damaged, ResourceError if it cannot
+/// A result that search() wrote. Tables and columns are read when they are asked for; row i of each
+/// column of a table belongs to the same point or pose. Throws InputError if the file is damaged, ResourceError if it cannot
 /// be read.
 class Result {
  public:
@@ -58,20 +80,15 @@ class Result {
   /// The verdict and the places that matter most. Reads all tables of the file.
   Answer answer() const;
 
-  std::vector<std::uint64_t> source() const;  ///< source indices, ascending
+  Collisions collisions() const;
+  // Single columns of collisions(), for those who need no more.
+  std::vector<std::uint64_t> source() const;
   std::vector<Vec3> xyz() const;
-  /// The first pose of each point, as QueryParameters::first_pose defines it; empty unless the
-  /// query asked for it. In files of release 0.1.0 with motion between poses it may be one higher,
-  /// because their ways did not include their ends.
   std::vector<std::uint32_t> first_pose() const;
-  /// The greatest index of a pose that touches each point; between poses, the start of the last way
-  /// that does. Empty if there are no first poses, and for files of older releases.
   std::vector<std::uint32_t> last_pose() const;
+  std::vector<std::uint32_t> first_body() const;
   /// Names of the bodies of a query that has several; otherwise empty.
   const std::vector<std::string>& bodies() const;
-  /// Index in bodies() of the body that touches each point at its first pose. Empty unless the
-  /// query has bodies and asked for first poses.
-  std::vector<std::uint32_t> first_body() const;
   Clearances clearance() const;  ///< empty unless the query asked for clearances
   Profile profile() const;       ///< empty unless the query asked for a profile
   /// Largest gap between the samples of the mesh, metres, the greatest of all bodies; 0 if no model

@@ -5,7 +5,7 @@
 #include <atomic>
 
 #include "io/formats/requantize.hpp"
-#include "io/result/result_rows.hpp"
+#include "io/result/result.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
@@ -42,8 +42,8 @@ CollidingPoints read_colliding_points(const ResultReader& result, Progress& prog
   out.last_pose.reserve(result.collisions());
   if (result.header().has_first_bodies()) out.body.reserve(result.collisions());
   progress.begin("read", result.collisions(), "points");
-  ResultRowStream stream(result);
-  for (ResultRows rows; stream.read(rows);) {
+  RowStream<Collisions> stream(result);
+  for (Collisions rows; stream.read(rows);) {
     throw_if_stopped(progress);
     const std::size_t bad = requantize_rows(result.header().quantisation, rows.xyz,
                                             out.quanta.data() + out.source.size());

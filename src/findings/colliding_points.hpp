@@ -23,7 +23,7 @@ struct CollidingPoints {
   std::vector<std::uint8_t> body;
 };
 
-/// Reads all colliding points of a result. Throws InputError as ResultRowStream does, and for
+/// Reads all colliding points of a result. Throws InputError as RowStream does, and for
 /// coordinates that are not those of stored integers.
 CollidingPoints read_colliding_points(const ResultReader& result, Progress& progress);
 

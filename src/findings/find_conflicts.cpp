@@ -32,7 +32,7 @@
 #include "findings/touched_first.hpp"
 #include "io/formats/wkt.hpp"
 #include "io/result/result.hpp"
-#include "io/result/result_rows.hpp"
+#include "io/result/result.hpp"
 #include "io/system/thread_limit.hpp"
 
 namespace clearway {
@@ -133,9 +133,9 @@ std::vector<ConflictDistance> least_distances(const ResultReader& result,
                                               std::size_t conflicts, Progress& progress) {
   std::vector<ConflictDistance> out(conflicts + 1);
   progress.begin("distances", result.clearances(), "points");
-  ClearanceRowStream stream(result);
+  RowStream<Clearances> stream(result);
   std::size_t row = 0;
-  for (ClearanceRows rows; stream.read(rows);) {
+  for (Clearances rows; stream.read(rows);) {
     throw_if_stopped(progress);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       while (row < source.size() && source[row] < rows.source[i]) ++row;
@@ -457,9 +457,9 @@ class ConflictSearch {
       every.push_back((conflict.points + most - 1) / most);
     }
     std::vector<std::vector<Vec3>> out(out_.listed.size());
-    ResultRowStream stream(reader_);
+    RowStream<Collisions> stream(reader_);
     std::size_t row = 0;
-    for (ResultRows rows; stream.read(rows);) {
+    for (Collisions rows; stream.read(rows);) {
       throw_if_stopped(progress_);
       for (std::size_t i = 0; i < rows.size(); ++i, ++row) {
         const std::uint32_t id = conflict_of_row[row];

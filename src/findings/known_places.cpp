@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "io/result/result_rows.hpp"
+#include "io/result/result.hpp"
 
 namespace clearway {
 namespace {
@@ -83,9 +83,9 @@ class Places {
 /// Calls visit(point) for each row of a result.
 template <typename Visit>
 void for_each_point(const GroupedResult& of, Visit visit) {
-  ResultRowStream stream(of.result.reader());
+  RowStream<Collisions> stream(of.result.reader());
   std::size_t row = 0;
-  for (ResultRows rows; stream.read(rows);) {
+  for (Collisions rows; stream.read(rows);) {
     for (const Vec3& p : rows.xyz) visit(NumberedPoint{p, of.conflict_of[row++]});
   }
 }

@@ -20,6 +20,11 @@ struct ClearanceColumns : Columns {
 struct ProfileColumns : Columns {
   py::array chainage;
 };
+/// Columns that the result does not have are None.
+struct CollisionColumns {
+  py::array source, xyz;
+  py::object first_pose, last_pose, body;
+};
 
 /// Makes the columns that clearances and profile have in common. The arrays take over the vectors.
 template <typename Shared, typename Read>
@@ -28,6 +33,23 @@ Shared common_columns(Read& read) {
   columns.source = to_array(std::move(read.source));
   columns.xyz = to_array(std::move(read.xyz));
   columns.distance = to_array(std::move(read.distance));
+  return columns;
+}
+
+CollisionColumns collisions(const Result& result) {
+  Collisions read = without_gil([&] { return result.collisions(); });
+  const auto array_or_none = [&](std::vector<std::uint32_t>& values, bool there) -> py::object {
+    if (!there) return py::none();
+    return to_array(std::move(values));
+  };
+  const std::size_t rows = read.size();
+  const bool first_pose = result.parameters().first_pose;
+  CollisionColumns columns;
+  columns.source = to_array(std::move(read.source));
+  columns.xyz = to_array(std::move(read.xyz));
+  columns.first_pose = array_or_none(read.first_pose, first_pose);
+  columns.last_pose = array_or_none(read.last_pose, first_pose && read.last_pose.size() == rows);
+  columns.body = array_or_none(read.body, first_pose && !result.bodies().empty());
   return columns;
 }
 
@@ -66,6 +88,25 @@ py::object first_body(const Result& result) {
 }
 
 void add_columns(py::module_& module) {
+  py::class_<CollisionColumns>(module, "Collisions",
+                               "The points that the model touches: arrays of one length, in which "
+                               "row i of each is the same point.")
+      .def_readonly("source", &CollisionColumns::source,
+                    "The index of each point in the order of the scans, ascending: n uint64.")
+      .def_readonly("xyz", &CollisionColumns::xyz,
+                    "The coordinates of the points: n x 3 float64, metres.")
+      .def_readonly("first_pose", &CollisionColumns::first_pose,
+                    "The first pose that touches each point: n uint32. None where the query did "
+                    "not ask for it.")
+      .def_readonly("last_pose", &CollisionColumns::last_pose,
+                    "The last pose that touches each point: n uint32. Between poses, the start of "
+                    "the last way that does. None where the query did not ask for first poses, or "
+                    "an older release wrote the file.")
+      .def_readonly("body", &CollisionColumns::body,
+                    "The body that touches each point at its first pose, as an index of "
+                    "Result.bodies(): n uint32. None where there is one model, or the query did "
+                    "not ask for first poses.")
+      .def("__len__", [](const CollisionColumns& c) { return c.source.size(); });
   py::class_<ClearanceColumns>(module, "Clearances",
                                "The distances of environment points to the moving model: arrays of "
                                "one length, in which row i of each is the same point.")
@@ -149,6 +190,9 @@ void add_results(py::module_& module) {
       .def(
           "answer", [](const Result& r) { return without_gil([&] { return r.answer(); }); },
           "The verdict and the places that matter most, an Answer. Reads all tables.")
+      .def("collisions", collisions,
+           "The colliding points with all of their columns: Collisions. The methods below read one "
+           "column each.")
       .def(
           "source",
           [](const Result& r) { return to_array(without_gil([&] { return r.source(); })); },

@@ -141,7 +141,7 @@ void write_inputs(JsonText& json, const ReportFacts& facts) {
   const ResultHeader& header = facts.result.reader().header();
   json.key("inputs").begin('{');
   json.key("result").begin('{').field("name", options.result_name);
-  json.field("hash", hash_text(facts.result.reader().collisions_hash())).end('}');
+  json.field("hash", hash_text(facts.result.reader().recorded_hash<Collisions>())).end('}');
   json.key("environment").begin('{').field("name", options.environment_name);
   json.field("points", header.environment_points);
   json.field("hash", hash_text(header.environment_hash));
@@ -339,7 +339,7 @@ void write_inside(JsonText& json, const ReportFacts& facts) {
   }
   const bool counts = header.clearance > 0;
   const double depth = facts.least ? std::max(0.0, -facts.least->distance) : 0;
-  json.begin('{').field("points", counts ? std::optional(facts.points.inside) : std::nullopt);
+  json.begin('{').field("points", counts ? std::optional(facts.points.summary.inside_points) : std::nullopt);
   json.field("depth", depth).end('}');
 }
 

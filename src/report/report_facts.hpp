@@ -14,6 +14,19 @@
 
 namespace clearway {
 
+/// The least distance that the result knows, and where it is.
+struct LeastDistance {
+  double distance = 0;  ///< metres
+  std::uint32_t pose = 0;
+  std::uint64_t source = 0;
+  std::optional<Vec3> xyz;
+  /// The side on which xyz lies at the pose, as for conflicts.
+  Side side = Side::kUnknown;
+  std::optional<double> lateral = {}, height = {};
+  /// The body of a vehicle that is so near.
+  std::optional<std::uint32_t> body = {};
+};
+
 /// Everything that the page says in words and numbers.
 struct ReportFacts {
   const Result& result;

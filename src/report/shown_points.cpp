@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "io/result/result_cursor.hpp"
+#include "io/result/answer.hpp"
+#include "io/result/result.hpp"
 
 namespace clearway {
 namespace {
@@ -58,7 +59,7 @@ class PointReader {
   ShownPoints read(Progress& progress) {
     const std::uint64_t rows = result_.collisions() + result_.clearances();
     progress.begin("points of the result", rows, "rows");
-    RowCursor row(result_);
+    CollisionCursor row(result_);
     ClearanceCursor clearance(result_);
     std::uint64_t done = 0;
     while (!row.at_end() || !clearance.at_end()) {
@@ -66,8 +67,10 @@ class PointReader {
           !row.at_end() && (clearance.at_end() || row.source() <= clearance.source());
       const bool measured =
           !clearance.at_end() && (!collides || row.source() == clearance.source());
-      if (measured) note_least(row, clearance, collides);
-      if (collides) add_colliding(row, measured ? clearance.distance() : radius_);
+      if (collides) summarise_batch(row);
+      if (measured) summarise_batch(clearance);
+      if (measured && collides) place_least(row);
+      if (collides) add_colliding(row, measured ? clearance.get(&Clearances::distance) : radius_);
       if (measured && !collides) add_other(clearance);
       if (collides) row.advance();
       if (measured) clearance.advance();
@@ -93,19 +96,21 @@ class PointReader {
     return k;
   }
 
-  void note_least(const RowCursor& row, const ClearanceCursor& clearance, bool collides) {
-    if (clearance.distance() < 0) ++out_.inside;
-    if (out_.least && out_.least->distance <= clearance.distance()) return;
-    out_.least = {clearance.distance(), clearance.pose(), clearance.source(), {}, {}, {}, {}};
-    out_.least->body = clearance.body();
-    if (collides) {
-      out_.least->xyz = row.xyz();
-    } else if (has_places_) {
-      out_.least->xyz = clearance.xyz();
-    }
+  /// Summarises the rows around a cursor when it comes to the first of them.
+  template <typename Rows>
+  void summarise_batch(const RowCursor<Rows>& cursor) {
+    if (!cursor.at_end() && cursor.index() == 0) summarise(cursor.rows(), out_.summary);
   }
 
-  void add_colliding(const RowCursor& row, double distance) {
+  /// Gives the least clearance of a result without coordinates of clearances those of the colliding
+  /// point that it is.
+  void place_least(const CollisionCursor& row) {
+    std::optional<FoundPlace>& least = out_.summary.least_clearance;
+    if (has_places_ || !least || least->source != row.source()) return;
+    least->xyz = row.get(&Collisions::xyz);
+  }
+
+  void add_colliding(const CollisionCursor& row, double distance) {
     const std::uint8_t k = class_of(distance, true);
     const std::size_t at = row_++;
     ++out_.of_class[k];
@@ -113,23 +118,23 @@ class PointReader {
       ++wanted_;
     }
     if (wanted_ < selection_.wanted.size() && selection_.wanted[wanted_] == row.source()) {
-      out_.places[row.source()] = row.xyz();
+      out_.places[row.source()] = row.get(&Collisions::xyz);
     }
     const std::size_t conflict = picks_.size() > 1 ? (*selection_.conflict_of)[at] : 0;
     if (!picks_[conflict].next()) return;
     ++out_.shown_class[k];
-    out_.points.push_back(page_point(lattice_, row.xyz(), k));
+    out_.points.push_back(page_point(lattice_, row.get(&Collisions::xyz), k));
   }
 
   void add_other(const ClearanceCursor& clearance) {
-    if (clearance.distance() >= selection_.classes.back()) return;
-    const std::uint8_t k = class_of(clearance.distance(), false);
+    if (clearance.get(&Clearances::distance) >= selection_.classes.back()) return;
+    const std::uint8_t k = class_of(clearance.get(&Clearances::distance), false);
     ++out_.of_class[k];
     if (!has_places_) {
       ++out_.without_place;
     } else if (other_pick_.next()) {
       ++out_.shown_class[k];
-      out_.points.push_back(page_point(lattice_, clearance.xyz(), k));
+      out_.points.push_back(page_point(lattice_, clearance.get(&Clearances::xyz), k));
     }
   }
 

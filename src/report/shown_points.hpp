@@ -13,19 +13,6 @@
 
 namespace clearway {
 
-/// The least distance that the result knows, and where it is.
-struct LeastDistance {
-  double distance = 0;  ///< metres
-  std::uint32_t pose = 0;
-  std::uint64_t source = 0;
-  std::optional<Vec3> xyz;
-  /// The side on which xyz lies at the pose, as for conflicts.
-  Side side = Side::kUnknown;
-  std::optional<double> lateral = {}, height = {};
-  /// The body of a vehicle that is so near.
-  std::optional<std::uint32_t> body = {};
-};
-
 /// The points of the result that the page shows: colliding points, and others that are closer than
 /// the last class.
 struct ShownPoints {
@@ -39,8 +26,7 @@ struct ShownPoints {
   /// Number of points that do not collide, are closer than the last class, and have no
   /// coordinates, because the result has none for clearances.
   std::uint64_t without_place = 0;
-  std::uint64_t inside = 0;            ///< number of points with a clearance below 0
-  std::optional<LeastDistance> least;  ///< the least of the clearances
+  TableSummary summary;  ///< what collisions and clearances say in short
   /// Coordinates of the colliding points whose source was asked for, by source.
   std::map<std::uint64_t, Vec3> places;
 };

@@ -140,6 +140,8 @@ class Report {
     ReportSummary summary;
     find_conflicts_and_points(summary.conflicts);
     profile_ = result_.profile();
+    static_cast<TableSummary&>(answer_) = points_.summary;
+    summarise(profile_, answer_);
     find_least();
     environment_lattice_.step = std::max(kEnvironmentStep, lattice_.step);
     environment_lattice_.origin = lattice_.origin;
@@ -179,19 +181,21 @@ class Report {
 
   void find_least() {
     chainage_ = chainage_of(poses_);
-    least_ = points_.least;
     least_of_ = "clearance";
-    if (!least_) {
-      const auto nearest = std::ranges::min_element(profile_.distance);
-      if (nearest == profile_.distance.end() || !std::isfinite(*nearest)) return;
-      const auto pose = static_cast<std::size_t>(nearest - profile_.distance.begin());
-      least_ = {*nearest,
-                static_cast<std::uint32_t>(pose),
-                profile_.source[pose],
-                profile_.xyz[pose],
-                {},
-                {},
-                {}};
+    if (const auto& nearest = answer_.least_clearance) {
+      const bool has_place = std::isfinite(nearest->xyz.x);
+      least_ = {.distance = nearest->distance,
+                .pose = nearest->pose,
+                .source = nearest->source,
+                .xyz = has_place ? std::optional(nearest->xyz) : std::nullopt};
+      if (!answer_.bodies.empty()) least_->body = nearest->body;
+    } else {
+      const auto& on_profile = answer_.least_profile;
+      if (!on_profile) return;
+      least_ = {.distance = on_profile->distance,
+                .pose = on_profile->pose,
+                .source = on_profile->source,
+                .xyz = on_profile->xyz};
       least_of_ = "profile";
       if (is_vehicle()) find_nearest_body();
     }
@@ -277,7 +281,7 @@ class Report {
   }
 
   const Result& result_;
-  const Answer answer_;
+  Answer answer_;
   const Store& store_;
   const Model& model_;
   const std::vector<Pose>& poses_;

@@ -331,10 +331,9 @@ class Search {
     try {
       const std::vector<double> chainage =
           query_.profile > 0 ? chainage_of(query_.poses) : std::vector<double>();
-      report_written(
+      static_cast<TableSummary&>(report_) =
           write_result(store_, found.result, header_, pending_.partial(), found.write_bytes,
-                       progress_, chainage, options_.threads, findings()),
-          found.result.profile, report_);
+                       progress_, chainage, options_.threads, findings());
       pending_.publish();
     } catch (const ResourceError& error) {
       throw ResourceError(error.what(), Remedy::kResume);

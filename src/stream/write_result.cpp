@@ -10,10 +10,10 @@
 #include <span>
 #include <vector>
 
-#include "clearway/found_place.hpp"
 #include "core/query/profile_set.hpp"
 #include "core/query/signed_root.hpp"
 #include "core/util/progress.hpp"
+#include "io/result/answer.hpp"
 #include "io/result/result.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/system/thread_limit.hpp"
@@ -33,39 +33,31 @@ Vec3 position_of(const StoreReader& store, std::uint64_t entry) {
   return position(store.quantisation(), q[0][i], q[1][i], q[2][i]);
 }
 
-/// Appends the nearest points of all poses, and returns the nearest of them. chainage: that of
-/// every pose, metres. is_part: whether this is a part of a result, for which the squares are
-/// written, too. Throws InputError for a damaged cell, ResourceError for a full disk, Interrupted
-/// when the progress asks to stop.
-std::optional<FoundPlace> write_profile(const StoreReader& store, const ProfileSet& profile,
-                                        std::span<const double> chainage, bool is_part,
-                                        ResultWriter& writer, Progress& progress) {
+/// Appends and summarises the nearest points of all poses. chainage: that of every pose, metres.
+/// is_part: whether this is a part of a result, for which the squares are written, too. Throws
+/// InputError for a damaged cell, ResourceError for a full disk, Interrupted when the progress asks
+/// to stop.
+void write_profile(const StoreReader& store, const ProfileSet& profile,
+                   std::span<const double> chainage, bool is_part, ResultWriter& writer,
+                   Progress& progress, TableSummary& summary) {
   constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
-  std::optional<FoundPlace> least;
-  std::vector<double> distance;
-  std::vector<std::uint64_t> source;
-  std::vector<Vec3> xyz;
-  std::vector<double> squared;
+  ProfileRows rows;
   for (std::uint64_t first = 0; first < profile.poses(); first += kPoses) {
     throw_if_stopped(progress);
     const std::uint64_t end = std::min(profile.poses(), first + kPoses);
-    distance.clear();
-    source.clear();
-    xyz.clear();
-    squared.clear();
+    clear_rows(rows);
     for (std::uint64_t pose = first; pose < end; ++pose) {
       const ProfilePoint& point = profile.at(pose);
-      distance.push_back(signed_root(point.squared));
-      source.push_back(point.source);
-      if (is_part) squared.push_back(point.squared);
-      xyz.push_back(point.found() ? position_of(store, point.entry)
-                                  : Vec3{kNowhere, kNowhere, kNowhere});
-      if (!point.found() || (least && least->distance <= distance.back())) continue;
-      least = {point.source, static_cast<std::uint32_t>(pose), xyz.back(), distance.back()};
+      rows.distance.push_back(signed_root(point.squared));
+      rows.source.push_back(point.source);
+      rows.xyz.push_back(point.found() ? position_of(store, point.entry)
+                                       : Vec3{kNowhere, kNowhere, kNowhere});
+      rows.chainage.push_back(chainage[pose]);
+      if (is_part) rows.squared.push_back(point.squared);
     }
-    writer.append_profile(distance, source, xyz, chainage.subspan(first, end - first), squared);
+    writer.append(rows);
+    summarise(rows, summary, first);
   }
-  return least;
 }
 
 /// Memory for chunks that the file's writer holds back, and for what the profile is written from.
@@ -163,7 +155,7 @@ class ResultWriting {
         writer_(writer),
         progress_(progress) {}
 
-  void write_collisions(const SetCells& in, std::optional<FoundPlace>& first) {
+  void write_collisions(const SetCells& in, TableSummary& summary) {
     const WritePlan plan = plan_of<CollisionRow>(store_, memory_bytes_);
     const HitSet& hits = answer_.hits;
     const bool first_pose = hits.has_first_pose();
@@ -180,18 +172,15 @@ class ResultWriting {
     const auto encode_rows = [&](std::span<const CollisionRow> rows) {
       return clearway::encode_rows(writer_, meaning_, rows);
     };
-    const auto keep_first = [&](const CollisionPiece& piece) {
-      if (!piece.place || (first && first->pose <= piece.place->pose)) return;
-      first = piece.place;
-    };
+    const auto keep = [&](const auto& piece) { add_summary(piece.summary, summary); };
     write_set<CollisionRow>(store_, hits, in, plan, progress_, rows_of,
                             [&](std::span<const CollisionRow> rows) {
-                              write_rows<EncodedCollisions>(writer_, rows, plan.pieces, progress_,
-                                                            encode_rows, keep_first);
+                              write_rows<Collisions>(writer_, rows, plan.pieces, progress_,
+                                                     encode_rows, keep);
                             });
   }
 
-  void write_clearances(const SetCells& in, WrittenResult& out) {
+  void write_clearances(const SetCells& in, TableSummary& summary) {
     const WritePlan plan = plan_of<ClearanceRow>(store_, memory_bytes_);
     const ClearanceSet& clearances = answer_.clearances;
     const auto rows_of = [&](std::uint32_t cell) {
@@ -205,15 +194,11 @@ class ResultWriting {
     const auto encode_rows = [&](std::span<const ClearanceRow> rows) {
       return clearway::encode_rows(writer_, meaning_, rows);
     };
-    const auto keep_least = [&](const ClearancePiece& piece) {
-      out.inside_points += piece.inside;
-      std::optional<FoundPlace>& least = out.least_clearance;
-      if (!least || piece.place->distance < least->distance) least = piece.place;
-    };
+    const auto keep = [&](const auto& piece) { add_summary(piece.summary, summary); };
     write_set<ClearanceRow>(store_, clearances, in, plan, progress_, rows_of,
                             [&](std::span<const ClearanceRow> rows) {
-                              write_rows<EncodedClearances>(writer_, rows, plan.pieces, progress_,
-                                                            encode_rows, keep_least);
+                              write_rows<Clearances>(writer_, rows, plan.pieces, progress_,
+                                                     encode_rows, keep);
                             });
   }
 
@@ -226,37 +211,35 @@ class ResultWriting {
   Progress& progress_;
 };
 
-WrittenResult write_tables(const StoreReader& store, const SearchResult& answer,
-                           const ResultHeader& header, const std::filesystem::path& path,
-                           std::uint64_t memory_bytes, Progress& progress,
-                           std::span<const double> chainage, const ResultFindings& findings) {
-  WrittenResult out;
+TableSummary write_tables(const StoreReader& store, const SearchResult& answer,
+                          const ResultHeader& header, const std::filesystem::path& path,
+                          std::uint64_t memory_bytes, Progress& progress,
+                          std::span<const double> chainage, const ResultFindings& findings) {
+  TableSummary summary;
   const SetCells collisions = cells_of(store, answer.hits);
   const SetCells clearances =
       header.clearance > 0 ? cells_of(store, answer.clearances) : SetCells();
-  out.collisions = collisions.entries;
-  out.clearances = clearances.entries;
-  ResultWriter writer(path, header, out.collisions, out.clearances);
-  progress.begin("write", out.collisions + out.clearances, "points");
+  ResultWriter writer(path, header, collisions.entries, clearances.entries);
+  progress.begin("write", collisions.entries + clearances.entries, "points");
   ResultWriting writing(store, answer, header, memory_bytes, writer, progress);
-  writing.write_collisions(collisions, out.first_place);
-  writing.write_clearances(clearances, out);
+  writing.write_collisions(collisions, summary);
+  writing.write_clearances(clearances, summary);
   if (header.profile > 0) {
-    out.least_profile =
-        write_profile(store, answer.profile, chainage, header.part.has_value(), writer, progress);
+    write_profile(store, answer.profile, chainage, header.part.has_value(), writer, progress,
+                  summary);
   }
   writer.finish(findings);
   progress.end();
-  return out;
+  return summary;
 }
 
 }  // namespace
 
-WrittenResult write_result(const StoreReader& store, const SearchResult& answer,
-                           const ResultHeader& header, const std::filesystem::path& path,
-                           std::uint64_t memory_bytes, Progress& progress,
-                           std::span<const double> chainage, int threads,
-                           const ResultFindings& findings) {
+TableSummary write_result(const StoreReader& store, const SearchResult& answer,
+                          const ResultHeader& header, const std::filesystem::path& path,
+                          std::uint64_t memory_bytes, Progress& progress,
+                          std::span<const double> chainage, int threads,
+                          const ResultFindings& findings) {
   if (threads == 0) threads = tbb::this_task_arena::max_concurrency();
   return ThreadLimit(threads).run([&] {
     return write_tables(store, answer, header, path, memory_bytes, progress, chainage, findings);

@@ -2,10 +2,9 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <span>
 
-#include "clearway/found_place.hpp"
+#include "clearway/answer.hpp"
 #include "core/query/search_result.hpp"
 #include "core/util/progress.hpp"
 #include "io/result/result.hpp"
@@ -13,27 +12,17 @@
 
 namespace clearway {
 
-/// What was written to a result: its numbers of rows, and for each table that has any the place
-/// that matters most. Of several such places it is the one with the smallest source index, in the
-/// profile that of the first pose.
-struct WrittenResult {
-  std::uint64_t collisions = 0, clearances = 0;
-  std::uint64_t inside_points = 0;        ///< number of clearances below 0
-  std::optional<FoundPlace> first_place;  ///< only with first poses
-  std::optional<FoundPlace> least_clearance, least_profile;
-};
-
-/// Writes a result file at `path`: the colliding points, and the clearances if the header asks for
+/// Writes a result file at `path`, and returns what its tables say in short: the colliding points, and the clearances if the header asks for
 /// them, ascending by source index; then the profile if the header asks for it. chainage: that of
 /// every pose, metres, for a profile. Takes at most `memory_bytes`, but no less than
 /// least_write_bytes(): if the rows exceed them, it makes several passes over the cells that have
 /// any, each for the next range of source indices. threads: 0 for all cores. Throws InputError for
 /// a damaged cell, ResourceError for a full disk, Interrupted when the progress asks to stop.
-WrittenResult write_result(const StoreReader& store, const SearchResult& answer,
-                           const ResultHeader& header, const std::filesystem::path& path,
-                           std::uint64_t memory_bytes, Progress& progress,
-                           std::span<const double> chainage = {}, int threads = 0,
-                           const ResultFindings& findings = {});
+TableSummary write_result(const StoreReader& store, const SearchResult& answer,
+                          const ResultHeader& header, const std::filesystem::path& path,
+                          std::uint64_t memory_bytes, Progress& progress,
+                          std::span<const double> chainage = {}, int threads = 0,
+                          const ResultFindings& findings = {});
 
 /// The least memory in which write_result() works, bytes.
 std::uint64_t least_write_bytes(const StoreReader& store);

@@ -15,7 +15,7 @@ TEST_CASE("programs read profile, model box and the places of clearances") {
   header.poses = 12;
   header.profile = 0.75;
   header.clearance = 0.5;
-  const ClearanceRows clearances = sample_clearances(header, 9);
+  const Clearances clearances = sample_clearances(header, 9);
   const ProfileRows rows = sample_profile(header);
   write_result(folder / "a.h5", header, {}, 1000, clearances, rows);
   const Result result(folder / "a.h5");

@@ -88,14 +88,14 @@ TEST_CASE("a result's columns are those of its file") {
   const SearchReport report = search(store, scene.query, output, {.threads = 2});
   const Result result(output);
   const ResultReader reader(output);
-  const ResultRows rows = read_rows(reader);
+  const Collisions rows = read_rows(reader);
   REQUIRE(result.size() > 0);
   CHECK(result.size() == report.colliding_points);
   CHECK(result.parameters() == QueryParameters(scene.query));
   CHECK(result.environment_points() == 40'000);
   CHECK(result.poses() == 200);
   CHECK(same_rows({result.source(), result.xyz(), result.first_pose()}, rows));
-  ClearanceRows expected;
+  Clearances expected;
   expected.source.resize(reader.clearances());
   expected.xyz.resize(reader.clearances());
   expected.distance.resize(reader.clearances());

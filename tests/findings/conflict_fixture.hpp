@@ -25,7 +25,7 @@ struct Found {
   Quantisation quantisation{{0.001, 0.001, 0.001}, {0, 0, 0}};
   std::vector<Pose> poses{translation({0, 0, 0}), translation({1, 0, 0})};
   double clearance = 0;
-  ClearanceRows clearances = {};
+  Clearances clearances = {};
   std::uint64_t solids = 0;
   std::vector<Body> bodies = {};         ///< the bodies of a vehicle
   std::vector<std::uint32_t> body = {};  ///< the body of each row, where there are bodies
@@ -49,8 +49,8 @@ struct Found {
     return out;
   }
 
-  ResultRows rows() const {
-    ResultRows out;
+  Collisions rows() const {
+    Collisions out;
     out.body = body;
     for (std::size_t i = 0; i < quanta.size(); ++i) {
       out.source.push_back(source.empty() ? i : source[i]);

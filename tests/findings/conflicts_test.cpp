@@ -237,7 +237,7 @@ TEST_CASE("what cannot be grouped is refused") {
 
   ResultHeader header = found.header();
   header.first_pose = false;
-  ResultRows rows = found.rows();
+  Collisions rows = found.rows();
   rows.first_pose.clear();
   write_result(folder / "set.h5", header, rows);
   try {

@@ -36,6 +36,13 @@ class BodyTest(SceneTest):
         found = np.flatnonzero(least >= 0)
         np.testing.assert_array_equal(result.source(), found)
         np.testing.assert_array_equal(result.first_pose(), least[found])
+        collisions = result.collisions()
+        self.assertEqual(len(collisions), result.size())
+        for column, alone in ((collisions.source, result.source()), (collisions.xyz, result.xyz()),
+                              (collisions.first_pose, result.first_pose()),
+                              (collisions.last_pose, result.last_pose()),
+                              (collisions.body, result.first_body())):
+            np.testing.assert_array_equal(column, alone)
         np.testing.assert_array_equal(result.first_body(), (ahead != least)[found])
 
     def test_a_profile_tells_what_was_not_searched(self):

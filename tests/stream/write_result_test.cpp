@@ -37,14 +37,14 @@ class Site {
   }
 
   /// What the last call of written() reported.
-  const WrittenResult& found() const { return found_; }
+  const TableSummary& found() const { return found_; }
 
   ResultReader result() const { return ResultReader(folder_ / "out.h5"); }
 
  private:
   ScratchFolder folder_;
   std::optional<StoreReader> store_;
-  mutable WrittenResult found_;
+  mutable TableSummary found_;
 };
 
 ResultHeader header_of(const StoreReader& store) {
@@ -99,9 +99,9 @@ TEST_CASE("collisions and clearances written in several passes give the bytes of
 
   const std::vector<Vec3> places = places_of(site.store());
   const ResultReader result = site.result();
-  ClearanceRows batch;
+  Clearances batch;
   std::uint64_t wrong = 0, source = 0;
-  for (ClearanceRowStream stream(result); stream.read(batch);) {
+  for (RowStream<Clearances> stream(result); stream.read(batch);) {
     for (std::size_t i = 0; i < batch.size(); ++i, ++source) {
       if (source % 5 == 2) ++source;
       wrong += batch.source[i] != source ||
@@ -131,9 +131,9 @@ TEST_CASE("rows that are appended give the bytes of rows that are written from a
   const ResultHeader header = header_of(site.store());
   const std::string once = site.written(answer, header, std::uint64_t{1} << 30);
   const ResultReader result = site.result();
-  const ResultRows rows = read_rows(result);
-  ClearanceRows clearances, batch;
-  for (ClearanceRowStream stream(result); stream.read(batch);) {
+  const Collisions rows = read_rows(result);
+  Clearances clearances, batch;
+  for (RowStream<Clearances> stream(result); stream.read(batch);) {
     clearances.source.insert(clearances.source.end(), batch.source.begin(), batch.source.end());
     clearances.xyz.insert(clearances.xyz.end(), batch.xyz.begin(), batch.xyz.end());
     clearances.distance.insert(clearances.distance.end(), batch.distance.begin(),
@@ -150,21 +150,21 @@ TEST_CASE("writing a result gives the places that reading it gives") {
   const SearchResult answer = answer_for(site.store());
   site.written(answer, header_of(site.store()), 0);
   const ResultReader result = site.result();
-  const ResultRows rows = read_rows(result);
+  const Collisions rows = read_rows(result);
   std::size_t first = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows.first_pose[i] < rows.first_pose[first]) first = i;
   }
   std::optional<FoundPlace> least;
-  ClearanceRows batch;
-  for (ClearanceRowStream stream(result); stream.read(batch);) {
+  Clearances batch;
+  for (RowStream<Clearances> stream(result); stream.read(batch);) {
     for (std::size_t i = 0; i < batch.size(); ++i) {
       if (least && batch.distance[i] >= least->distance) continue;
       least = {batch.source[i], batch.pose[i], batch.xyz[i], batch.distance[i]};
     }
   }
-  CHECK(site.found().collisions == result.collisions());
-  CHECK(site.found().clearances == result.clearances());
+  CHECK(site.found().colliding_points == result.collisions());
+  CHECK(site.found().clearance_points == result.clearances());
   CHECK(site.found().first_place ==
         FoundPlace{rows.source[first], rows.first_pose[first], rows.xyz[first], 0});
   CHECK(site.found().least_clearance == least);

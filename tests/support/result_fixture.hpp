@@ -12,7 +12,7 @@
 
 #include "clearway/result.hpp"
 #include "io/result/result.hpp"
-#include "io/result/result_rows.hpp"
+#include "io/result/result.hpp"
 
 namespace clearway::test {
 
@@ -73,8 +73,8 @@ inline ResultHeader sample_header(bool first_pose) {
 }
 
 /// Makes `count` rows with gaps, negative quanta and first poses above 2^31.
-inline ResultRows sample_rows(const ResultHeader& header, std::size_t count) {
-  ResultRows rows;
+inline Collisions sample_rows(const ResultHeader& header, std::size_t count) {
+  Collisions rows;
   for (std::size_t i = 0; i < count; ++i) {
     const auto q = static_cast<std::int32_t>(i * 2654435761u);
     rows.source.push_back(3 * i + i % 3 + (i > count / 2 ? 4'000'000'000 : 0));
@@ -85,8 +85,8 @@ inline ResultRows sample_rows(const ResultHeader& header, std::size_t count) {
   return rows;
 }
 
-inline ClearanceRows sample_clearances(const ResultHeader& header, std::size_t count) {
-  ClearanceRows rows;
+inline Clearances sample_clearances(const ResultHeader& header, std::size_t count) {
+  Clearances rows;
   for (std::size_t i = 0; i < count; ++i) {
     const auto q = static_cast<std::int32_t>(i * 40503u);
     rows.source.push_back(2 * i + 1);
@@ -114,52 +114,51 @@ inline ProfileRows sample_profile(const ResultHeader& header) {
   return rows;
 }
 
+/// The rows `from` to `from + count - 1`.
+template <typename Rows>
+Rows part_of(const Rows& rows, std::size_t from, std::size_t count) {
+  Rows out;
+  for_each_column<Rows>([&](const auto& column) {
+    if ((rows.*column.values).empty()) return;
+    const auto begin = (rows.*column.values).begin() + static_cast<std::ptrdiff_t>(from);
+    (out.*column.values).assign(begin, begin + static_cast<std::ptrdiff_t>(count));
+  });
+  return out;
+}
+
+template <typename Rows>
+void append_in_steps(ResultWriter& writer, const ResultHeader& header, const Rows& rows,
+                     std::size_t step) {
+  for (std::size_t from = 0; from < rows.size(); from += step) {
+    Rows part = part_of(rows, from, std::min(step, rows.size() - from));
+    if constexpr (std::is_same_v<Rows, Collisions>) {
+      if (!header.first_pose) part.first_pose.clear();
+      if (!header.last_pose) part.last_pose.clear();
+    }
+    writer.append(part);
+  }
+}
+
 /// Writes a result, with append() calls of `step` rows each.
 inline void write_result(const std::filesystem::path& path, const ResultHeader& header,
-                         const ResultRows& rows, std::size_t step = 1000,
-                         const ClearanceRows& clearances = {}, const ProfileRows& profile = {}) {
+                         const Collisions& rows, std::size_t step = 1000,
+                         const Clearances& clearances = {}, const ProfileRows& profile = {}) {
   ResultWriter writer(path, header, rows.size(), clearances.size());
-  for (std::size_t from = 0; from < rows.size(); from += step) {
-    const std::size_t count = std::min(step, rows.size() - from);
-    writer.append(std::span(rows.source).subspan(from, count),
-                  std::span(rows.xyz).subspan(from, count),
-                  header.first_pose ? std::span(rows.first_pose).subspan(from, count)
-                                    : std::span<const std::uint32_t>(),
-                  rows.body.empty() ? std::span<const std::uint32_t>()
-                                    : std::span(rows.body).subspan(from, count));
-  }
-  for (std::size_t from = 0; from < clearances.size(); from += step) {
-    const std::size_t count = std::min(step, clearances.size() - from);
-    writer.append_clearances(std::span(clearances.source).subspan(from, count),
-                             std::span(clearances.xyz).subspan(from, count),
-                             std::span(clearances.distance).subspan(from, count),
-                             std::span(clearances.pose).subspan(from, count),
-                             clearances.body.empty()
-                                 ? std::span<const std::uint32_t>()
-                                 : std::span(clearances.body).subspan(from, count));
-  }
-  for (std::size_t from = 0; from < profile.size(); from += step) {
-    const std::size_t count = std::min(step, profile.size() - from);
-    writer.append_profile(std::span(profile.distance).subspan(from, count),
-                          std::span(profile.source).subspan(from, count),
-                          std::span(profile.xyz).subspan(from, count),
-                          std::span(profile.chainage).subspan(from, count));
-  }
+  append_in_steps(writer, header, rows, step);
+  append_in_steps(writer, header, clearances, step);
+  append_in_steps(writer, header, profile, step);
   writer.finish();
 }
 
-inline ResultRows read_rows(const ResultReader& reader) {
-  ResultRows all, batch;
-  ResultRowStream stream(reader);
-  while (stream.read(batch)) {
-    all.source.insert(all.source.end(), batch.source.begin(), batch.source.end());
-    all.xyz.insert(all.xyz.end(), batch.xyz.begin(), batch.xyz.end());
-    all.first_pose.insert(all.first_pose.end(), batch.first_pose.begin(), batch.first_pose.end());
-  }
+/// Reads a table from front to back.
+template <typename Rows = Collisions>
+Rows read_rows(const ResultReader& reader) {
+  Rows all, batch;
+  for (RowStream<Rows> stream(reader); stream.read(batch);) append_rows(batch, all);
   return all;
 }
 
-inline bool same_rows(const ResultRows& a, const ResultRows& b) {
+inline bool same_rows(const Collisions& a, const Collisions& b) {
   return a.source == b.source && a.xyz == b.xyz && a.first_pose == b.first_pose;
 }
 

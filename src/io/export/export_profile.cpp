@@ -9,7 +9,7 @@
 #include "io/export/row_sink.hpp"
 #include "io/formats/text/csv_cell.hpp"
 #include "io/formats/text/text_writer.hpp"
-#include "io/result/result_rows.hpp"
+#include "io/result/result.hpp"
 #include "io/system/pending_file.hpp"
 
 namespace clearway {
@@ -88,7 +88,7 @@ void export_profile(const ResultReader& result, const PoseLabels& labels, double
     const File file = File::create(pending.partial());
     ProfileTable table(file, result, labels, chainage_start);
     progress.begin("export", result.profile_rows(), "poses");
-    ProfileRowStream stream(result);
+    RowStream<ProfileRows> stream(result);
     for (ProfileRows rows; stream.read(rows);) {
       throw_if_stopped(progress);
       table.write(rows);

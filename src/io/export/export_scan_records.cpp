@@ -13,7 +13,7 @@
 #include "io/formats/byte_load.hpp"
 #include "io/formats/las/las_extra_bytes.hpp"
 #include "io/formats/requantize.hpp"
-#include "io/result/result_cursor.hpp"
+#include "io/result/result.hpp"
 #include "io/system/input_error.hpp"
 #include "io/system/pending_file.hpp"
 
@@ -45,8 +45,8 @@ std::vector<std::uint64_t> collisions_of(const std::vector<ScanFile>& files,
                                          const ResultReader& result, const Progress& progress) {
   std::vector<std::uint64_t> counts(files.size());
   std::size_t at = 0;
-  ResultRowStream stream(result);
-  for (ResultRows rows; stream.read(rows);) {
+  RowStream<Collisions> stream(result);
+  for (Collisions rows; stream.read(rows);) {
     throw_if_stopped(progress);
     for (const std::uint64_t source : rows.source) {
       while (source >= files[at].end()) ++at;
@@ -130,17 +130,17 @@ class ExtendedRecord {
   }
 
   std::span<const std::byte> of(std::span<const std::byte> record,
-                                const std::array<std::int32_t, 3>& q, const RowCursor& row) {
+                                const std::array<std::int32_t, 3>& q, const CollisionCursor& row) {
     std::memcpy(bytes_.data(), record.data(), own_bytes_);
     std::memcpy(bytes_.data(), q.data(), sizeof q);
     std::byte* out = bytes_.data() + own_bytes_;
     if (first_pose_) {
-      const std::uint32_t pose = *row.first_pose();
+      const std::uint32_t pose = row.get(&Collisions::first_pose);
       std::memcpy(out, &pose, sizeof pose);
       out += sizeof pose;
     }
     if (body_) {
-      const std::uint32_t body = *row.body();
+      const std::uint32_t body = row.get(&Collisions::body);
       std::memcpy(out, &body, sizeof body);
       out += sizeof body;
     }
@@ -171,7 +171,7 @@ class ExtendedRecord {
 
   double distance_of(std::uint64_t source) {
     while (!distances_->at_end() && distances_->source() < source) distances_->advance();
-    return !distances_->at_end() && distances_->source() == source ? distances_->distance()
+    return !distances_->at_end() && distances_->source() == source ? distances_->get(&Clearances::distance)
                                                                    : kNoDistance;
   }
 
@@ -187,7 +187,7 @@ std::string place_text(const Vec3& p) { return shown(p.x) + " " + shown(p.y) + "
 /// the record.
 std::array<std::int32_t, 3> checked_place(const ResultReader& result, const LasRecordReader& scan,
                                           std::uint64_t point, std::span<const std::byte> record,
-                                          const RowCursor& row) {
+                                          const CollisionCursor& row) {
   const Quantisation& quantisation = result.header().quantisation;
   const Quantisation& own = scan.header().quantisation;
   const bool same_scale = own == quantisation;
@@ -197,7 +197,7 @@ std::array<std::int32_t, 3> checked_place(const ResultReader& result, const LasR
   for (int k = 0; k < 3; ++k) {
     const auto q = load<std::int32_t>(record.data() + 4 * k);
     found[k] = coordinate(own, k, q);
-    const double expected = row.xyz()[k];
+    const double expected = row.get(&Collisions::xyz)[k];
     // The coordinate was rounded to the result's scale, where this differs.
     const double most = std::abs(quantisation.scale[k]) * (0.5 + 1e-6) +
                         8 * std::numeric_limits<double>::epsilon() * std::abs(expected);
@@ -212,7 +212,7 @@ std::array<std::int32_t, 3> checked_place(const ResultReader& result, const LasR
   if (equal) return out;
   refuse(scan.name(), "point " + std::to_string(point) + " (source index " +
                           std::to_string(row.source()) + ") is at " + place_text(found) +
-                          ", but at " + place_text(row.xyz()) + " in " + result.name() + ": " +
+                          ", but at " + place_text(row.get(&Collisions::xyz)) + " in " + result.name() + ": " +
                           kNotTheScans +
                           ". Give the files and folders that were converted, in the same order");
 }
@@ -225,7 +225,7 @@ void copy_records(const ResultReader& result, const std::vector<ScanFile>& files
   LasRecordWriter writer(out, format);
   std::optional<LasRecordReader> scan;
   std::size_t file = 0;
-  for (RowCursor row(result); !row.at_end(); row.advance()) {
+  for (CollisionCursor row(result); !row.at_end(); row.advance()) {
     while (row.source() >= files[file].end()) {
       ++file;
       scan.reset();

@@ -7,7 +7,11 @@
 #include <atomic>
 #include <cctype>
 #include <cstddef>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "clearway/error.hpp"
@@ -60,8 +64,9 @@ bool set_quanta(const Quantisation& quantisation, const Vec3& p, std::array<std:
   return true;
 }
 
-Quanta quanta_of(const ExportTable& table, const ExportRows& rows) {
-  const Quantisation& quantisation = table.result.header().quantisation;
+template <typename Rows>
+Quanta quanta_of(const ResultReader& result, const Rows& rows) {
+  const Quantisation& quantisation = result.header().quantisation;
   Quanta out(rows.xyz.size());
   std::atomic<std::size_t> first_wrong = out.size();
   for_each_block(out.size(), [&](std::size_t, std::size_t first, std::size_t end) {
@@ -74,61 +79,91 @@ Quanta quanta_of(const ExportTable& table, const ExportRows& rows) {
     }
   });
   if (first_wrong == out.size()) return out;
-  throw InputError(table.result.name() + ": /" + table.group + "/xyz, source " +
+  throw InputError(result.name() + ": /" + Table<Rows>::kGroup + "/xyz, source " +
                    std::to_string(rows.source[first_wrong]) +
                    ": expected a whole multiple of the scale above the offset");
 }
 
-class LasSink final : public RowSink {
- public:
-  LasSink(const ExportTable& table, const File& file)
-      : table_(table), writer_(file, header_of(table)) {}
+/// The columns of a table that are exported as fields of its points.
+template <typename Rows>
+std::vector<PointField> fields_of(const ResultHeader& header) {
+  std::vector<PointField> out;
+  for_each_column<Rows>([&](const auto& column) {
+    if (column.field == nullptr || !column.is_in(header)) return;
+    using Value = typename std::decay_t<decltype(column)>::Value;
+    out.push_back({column.dataset,
+                   std::is_same_v<Value, double> ? PointField::Type::kDouble
+                                                 : PointField::Type::kUint32,
+                   column.field});
+  });
+  return out;
+}
 
-  void write(const ExportRows& rows) override {
-    writer_.write(quanta_of(table_, rows), {rows.first_pose, rows.distance, rows.pose, rows.body});
+/// The values of those columns.
+template <typename Rows>
+std::vector<FieldValues> values_of(const ResultHeader& header, const Rows& rows) {
+  std::vector<FieldValues> out;
+  for_each_column<Rows>([&](const auto& column) {
+    using Value = typename std::decay_t<decltype(column)>::Value;
+    if constexpr (std::is_constructible_v<FieldValues, std::span<const Value>>) {
+      if (column.field == nullptr || !column.is_in(header)) return;
+      out.emplace_back(std::span<const Value>(rows.*column.values));
+    }
+  });
+  return out;
+}
+
+template <typename Rows>
+class LasSink final : public RowSink<Rows> {
+ public:
+  LasSink(const ResultReader& result, const QuantumBox& bounds, const File& file)
+      : result_(result),
+        writer_(file, {result.header().quantisation, result.rows<Rows>(), bounds,
+                       result.header().crs_wkt, fields_of<Rows>(result.header())}) {}
+
+  void write(const Rows& rows) override {
+    writer_.write(quanta_of(result_, rows), values_of(result_.header(), rows));
   }
   void finish() override { writer_.finish(); }
 
  private:
-  static LasHeader header_of(const ExportTable& table) {
-    const ResultHeader& header = table.result.header();
-    return {header.quantisation, table.rows,     table.bounds, header.crs_wkt,
-            table.first_pose,    table.distance, table.body};
-  }
-
-  const ExportTable table_;
+  const ResultReader& result_;
   LasWriter writer_;
 };
 
-class PlySink final : public RowSink {
+template <typename Rows>
+class PlySink final : public RowSink<Rows> {
  public:
-  PlySink(const ExportTable& table, const File& file)
-      : writer_(file, PlyOutput{.points = table.rows,
-                                .coordinates = PlyCoordinates::kFloat64,
-                                .first_pose = table.first_pose,
-                                .distance = table.distance,
-                                .body = table.body}) {}
+  PlySink(const ResultReader& result, const File& file)
+      : result_(result),
+        writer_(file, {.points = result.rows<Rows>(), .fields = fields_of<Rows>(result.header())}) {
+  }
 
-  void write(const ExportRows& rows) override {
-    writer_.write(rows.xyz, {rows.first_pose, rows.distance, rows.pose, rows.body});
+  void write(const Rows& rows) override {
+    writer_.write(rows.xyz, values_of(result_.header(), rows));
   }
   void finish() override { writer_.finish(); }
 
  private:
+  const ResultReader& result_;
   PlyWriter writer_;
 };
 
-class XyzSink final : public RowSink {
+/// Writes coordinates, and behind those of clearances the distance and its pose.
+template <typename Rows>
+class XyzSink final : public RowSink<Rows> {
  public:
-  XyzSink(const ExportTable& table, const File& file)
-      : file_(file), position_(table.result.header().quantisation) {}
+  XyzSink(const ResultReader& result, const File& file)
+      : file_(file), position_(result.header().quantisation) {}
 
-  void write(const ExportRows& rows) override {
+  void write(const Rows& rows) override {
     write_blocks(file_, rows.xyz.size(), [&](TextBuffer& out, std::size_t first, std::size_t end) {
       PositionText position = position_;
       for (std::size_t i = first; i < end; ++i) {
         position.write(out, rows.xyz[i], " ");
-        if (!rows.distance.empty()) out << " " << rows.distance[i] << " " << rows.pose[i];
+        if constexpr (std::is_same_v<Rows, Clearances>) {
+          out << " " << rows.distance[i] << " " << rows.pose[i];
+        }
         out << "\n";
       }
     });
@@ -140,41 +175,42 @@ class XyzSink final : public RowSink {
   const PositionText position_;
 };
 
-/// Writes CSV. The clearances of a result of version 2 have no coordinates.
-class CsvSink final : public RowSink {
+/// Writes source, coordinates and fields. The clearances of a result of version 2 have no
+/// coordinates.
+template <typename Rows>
+class CsvSink final : public RowSink<Rows> {
  public:
-  CsvSink(const ExportTable& table, const File& file)
-      : file_(file), position_(table.result.header().quantisation) {
+  CsvSink(const ResultReader& result, const File& file)
+      : header_(result.header()), file_(file), position_(result.header().quantisation) {
     TextWriter out(file);
     out << "source";
-    if (!table.distance || table.result.header().has_clearance_xyz()) out << ",x,y,z";
-    if (table.first_pose) out << ",first_pose";
-    if (table.distance) out << ",distance,pose";
-    if (table.body) out << ",body";
+    for_each_column<Rows>([&](const auto& column) {
+      if (!column.is_in(header_)) return;
+      if (std::string_view(column.dataset) == result_names::kXyz) out << ",x,y,z";
+      if (column.field != nullptr) out << "," << column.dataset;
+    });
     out << "\n";
     out.flush();
   }
 
-  void write(const ExportRows& rows) override {
-    write_blocks(file_, rows.source.size(),
-                 [&](TextBuffer& out, std::size_t first, std::size_t end) {
-                   PositionText position = position_;
-                   for (std::size_t i = first; i < end; ++i) write_row(rows, i, position, out);
-                 });
+  void write(const Rows& rows) override {
+    const std::vector<FieldValues> values = values_of(header_, rows);
+    write_blocks(file_, rows.size(), [&](TextBuffer& out, std::size_t first, std::size_t end) {
+      PositionText position = position_;
+      for (std::size_t i = first; i < end; ++i) {
+        out << rows.source[i];
+        if (!rows.xyz.empty()) position.write(out << ",", rows.xyz[i], ",");
+        for (const FieldValues& field : values) {
+          std::visit([&](const auto& of_points) { out << "," << of_points[i]; }, field);
+        }
+        out << "\n";
+      }
+    });
   }
   void finish() override {}
 
  private:
-  static void write_row(const ExportRows& rows, std::size_t i, PositionText& position,
-                        TextBuffer& out) {
-    out << rows.source[i];
-    if (!rows.xyz.empty()) position.write(out << ",", rows.xyz[i], ",");
-    if (!rows.first_pose.empty()) out << "," << rows.first_pose[i];
-    if (!rows.distance.empty()) out << "," << rows.distance[i] << "," << rows.pose[i];
-    if (!rows.body.empty()) out << "," << rows.body[i];
-    out << "\n";
-  }
-
+  const ResultHeader& header_;
   const File& file_;
   const PositionText position_;
 };
@@ -191,27 +227,41 @@ ExportFormat export_format_of(const std::filesystem::path& output) {
                    ": unknown output format; the name must end in .las, .ply, .xyz or .csv");
 }
 
-std::unique_ptr<RowSink> make_row_sink(ExportFormat format, const ExportTable& table,
-                                       const File& file) {
+template <typename Rows>
+std::unique_ptr<RowSink<Rows>> make_row_sink(ExportFormat format, const ResultReader& result,
+                                             const QuantumBox& bounds, const File& file) {
   switch (format) {
     case ExportFormat::kLas:
-      return std::make_unique<LasSink>(table, file);
+      return std::make_unique<LasSink<Rows>>(result, bounds, file);
     case ExportFormat::kPly:
-      return std::make_unique<PlySink>(table, file);
+      return std::make_unique<PlySink<Rows>>(result, file);
     case ExportFormat::kXyz:
-      return std::make_unique<XyzSink>(table, file);
+      return std::make_unique<XyzSink<Rows>>(result, file);
     case ExportFormat::kCsv:
       break;
   }
-  return std::make_unique<CsvSink>(table, file);
+  return std::make_unique<CsvSink<Rows>>(result, file);
 }
 
-void unite_rows(const ExportTable& table, const ExportRows& rows, bool& any, QuantumBox& box) {
-  for (const auto& [x, y, z] : quanta_of(table, rows)) {
-    const QuantumBox point{{x, y, z}, {x, y, z}};
-    box = any ? box.united(point) : point;
-    any = true;
+template <typename Rows>
+QuantumBox bounds_of(const ResultReader& result, const Progress& progress) {
+  std::optional<QuantumBox> box;
+  RowStream<Rows> stream(result);
+  for (Rows rows; stream.read(rows);) {
+    throw_if_stopped(progress);
+    for (const auto& [x, y, z] : quanta_of(result, rows)) {
+      const QuantumBox point{{x, y, z}, {x, y, z}};
+      box = box ? box->united(point) : point;
+    }
   }
+  return box.value_or(QuantumBox{});
 }
+
+template std::unique_ptr<RowSink<Collisions>> make_row_sink(ExportFormat, const ResultReader&,
+                                                            const QuantumBox&, const File&);
+template std::unique_ptr<RowSink<Clearances>> make_row_sink(ExportFormat, const ResultReader&,
+                                                            const QuantumBox&, const File&);
+template QuantumBox bounds_of<Collisions>(const ResultReader&, const Progress&);
+template QuantumBox bounds_of<Clearances>(const ResultReader&, const Progress&);
 
 }  // namespace clearway

@@ -12,11 +12,10 @@
 #include <vector>
 
 #include "clearway/error.hpp"
-#include "clearway/result.hpp"
 #include "core/util/format.hpp"
 #include "io/merge/part_set.hpp"
-#include "io/result/result_cursor.hpp"
-#include "io/result/result_rows.hpp"
+#include "io/result/answer.hpp"
+#include "io/result/result.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
@@ -31,23 +30,36 @@ constexpr std::uint64_t kCacheBytes = std::uint64_t{1} << 20;
 
 constexpr std::size_t kLeastRows = 1 << 10;
 
-/// Bytes of a row in the widest table of points, and of a row of the profile.
-constexpr std::uint64_t kPointBytes = 48, kPoseBytes = 56;
-
-std::uint64_t cached_bytes(std::uint64_t rows, std::initializer_list<std::uint64_t> value_bytes) {
+/// Bytes of the values of a row, with all columns.
+template <typename Rows>
+std::uint64_t row_bytes() {
   std::uint64_t bytes = 0;
-  for (const std::uint64_t one : value_bytes) bytes += std::min(kCacheBytes, rows * one);
+  for_each_column<Rows>([&](const auto& column) {
+    bytes += sizeof(typename std::decay_t<decltype(column)>::Value);
+  });
+  return bytes;
+}
+
+/// Most bytes of chunks that HDF5 caches for a table.
+template <typename Rows>
+std::uint64_t cached_bytes(const ResultReader& part) {
+  std::uint64_t bytes = 0;
+  for_each_column<Rows>([&](const auto& column) {
+    if (!column.is_in(part.header())) return;
+    using Value = typename std::decay_t<decltype(column)>::Value;
+    bytes += std::min(kCacheBytes, part.rows<Rows>() * sizeof(Value));
+  });
   return bytes;
 }
 
 std::uint64_t needed_bytes(const PartSet& set, std::size_t batch_rows) {
-  std::uint64_t bytes = kFixedBytes + 4 * batch_rows * kPoseBytes;
+  std::uint64_t bytes = kFixedBytes + 4 * batch_rows * row_bytes<ProfileRows>();
+  const std::uint64_t point_bytes = std::max(row_bytes<Collisions>(), row_bytes<Clearances>());
   for (const ResultReader& part : set.parts()) {
     const std::uint64_t rows = std::max(part.collisions(), part.clearances());
-    bytes += kFileBytes + cached_bytes(part.collisions(), {8, 24, 4, 4}) +
-             cached_bytes(part.clearances(), {8, 24, 8, 4}) +
-             cached_bytes(part.profile_rows(), {8, 8, 24, 8, 8}) +
-             std::min<std::uint64_t>(batch_rows, rows) * kPointBytes;
+    bytes += kFileBytes + cached_bytes<Collisions>(part) + cached_bytes<Clearances>(part) +
+             cached_bytes<ProfileRows>(part) +
+             std::min<std::uint64_t>(batch_rows, rows) * point_bytes;
   }
   return bytes;
 }
@@ -55,7 +67,7 @@ std::uint64_t needed_bytes(const PartSet& set, std::size_t batch_rows) {
 /// Number of rows of each part that merging holds at once, a power of two, chosen so that it takes
 /// at most `memory_bytes`. Throws ResourceError where even the fewest rows are too many.
 std::size_t batch_rows_of(const PartSet& set, std::uint64_t memory_bytes) {
-  for (std::size_t rows = ResultRowStream::kBatchRows; rows >= kLeastRows; rows /= 2) {
+  for (std::size_t rows = kBatchRows; rows >= kLeastRows; rows /= 2) {
     if (needed_bytes(set, rows) <= memory_bytes) return rows;
   }
   const std::uint64_t needed = needed_bytes(set, kLeastRows);
@@ -98,96 +110,51 @@ void for_each_row(const PartSet& set, std::deque<Cursor>& cursors, Visit visit) 
 class PartMerge {
  public:
   PartMerge(const PartSet& set, const std::filesystem::path& path, std::size_t batch_rows,
-            Progress& progress, Answer& answer)
+            Progress& progress, TableSummary& summary)
       : set_(set),
         batch_rows_(batch_rows),
         progress_(progress),
-        out_(answer),
+        summary_(summary),
         writer_(path, set.header(), set.collisions(), set.clearances()) {}
 
   void run() {
+    summary_ = {};
     progress_.begin("merge", set_.collisions() + set_.clearances(), "points");
-    merge_collisions();
-    if (set_.header().clearance > 0) merge_clearances();
-    if (set_.header().profile > 0) merge_profile();
+    merge_points<Collisions>();
+    if (Table<Clearances>::is_in(set_.header())) merge_points<Clearances>();
+    if (Table<ProfileRows>::is_in(set_.header())) merge_profile();
     writer_.finish(set_.findings());
     progress_.end();
   }
 
  private:
-  template <typename Cursor>
-  std::deque<Cursor> cursors() const {
-    std::deque<Cursor> all;
-    for (const ResultReader& part : set_.parts()) all.emplace_back(part, batch_rows_);
-    return all;
-  }
-
-  void merge_collisions() {
-    auto all = cursors<RowCursor>();
-    ResultRows rows;
-    const auto flush = [&] {
-      writer_.append(rows.source, rows.xyz, rows.first_pose, rows.body, rows.last_pose);
-      written(rows);
-      rows.first_pose.clear();
-      rows.last_pose.clear();
-    };
-    for_each_row(set_, all, [&](const RowCursor& row) {
-      rows.source.push_back(row.source());
-      rows.xyz.push_back(row.xyz());
-      if (const auto pose = row.first_pose()) {
-        rows.first_pose.push_back(*pose);
-        if (!out_.first_place || *pose < out_.first_place->pose) {
-          out_.first_place = {row.source(), *pose, row.xyz(), 0, row.body().value_or(0)};
-        }
-      }
-      if (const auto body = row.body()) rows.body.push_back(*body);
-      if (set_.header().last_pose) rows.last_pose.push_back(*row.last_pose());
-      if (rows.size() == kRows) flush();
-    });
-    flush();
-  }
-
-  void merge_clearances() {
-    auto all = cursors<ClearanceCursor>();
-    ClearanceRows rows;
-    const auto flush = [&] {
-      writer_.append_clearances(rows.source, rows.xyz, rows.distance, rows.pose, rows.body);
-      written(rows);
-      rows.distance.clear();
-      rows.pose.clear();
-    };
-    for_each_row(set_, all, [&](const ClearanceCursor& row) {
-      rows.source.push_back(row.source());
-      rows.xyz.push_back(row.xyz());
-      rows.distance.push_back(row.distance());
-      rows.pose.push_back(row.pose());
-      if (row.distance() < 0) ++out_.inside_points;
-      if (!out_.least_clearance || row.distance() < out_.least_clearance->distance) {
-        out_.least_clearance = {row.source(), row.pose(), row.xyz(), row.distance(),
-                                row.body().value_or(0)};
-      }
-      if (const auto body = row.body()) rows.body.push_back(*body);
-      if (rows.size() == kRows) flush();
-    });
-    flush();
-  }
-
+  /// Merges a table of points, of which each is in one part.
   template <typename Rows>
-  void written(Rows& rows) {
-    throw_if_stopped(progress_);
-    progress_.advance(rows.size());
-    rows.source.clear();
-    rows.xyz.clear();
-    rows.body.clear();
+  void merge_points() {
+    std::deque<RowCursor<Rows>> cursors;
+    for (const ResultReader& part : set_.parts()) cursors.emplace_back(part, batch_rows_);
+    Rows rows;
+    const auto flush = [&] {
+      throw_if_stopped(progress_);
+      writer_.append(rows);
+      summarise(rows, summary_);
+      progress_.advance(rows.size());
+      clear_rows(rows);
+    };
+    for_each_row(set_, cursors, [&](const RowCursor<Rows>& row) {
+      append_row(set_.header(), row.rows(), row.index(), rows);
+      if (rows.size() == kRows) flush();
+    });
+    flush();
   }
 
   /// Merges the profiles: for each pose the part with the least squared distance, and of several
   /// the one with the smallest source.
   void merge_profile() {
-    std::deque<ProfileRowStream> streams;
+    std::deque<RowStream<ProfileRows>> streams;
     for (const ResultReader& part : set_.parts()) streams.emplace_back(part, batch_rows_);
-    std::uint32_t first = 0;
-    for (ProfileRows best, rows; streams.front().read(best);) {
+    std::uint64_t first = 0;
+    for (ProfileRows best, rows; streams.front().read(best); first += best.size()) {
       for (std::size_t part = 1; part < streams.size(); ++part) {
         streams[part].read(rows);
         if (rows.chainage != best.chainage) {
@@ -196,9 +163,9 @@ class PartMerge {
         }
         keep_nearer(rows, best);
       }
-      writer_.append_profile(best.distance, best.source, best.xyz, best.chainage);
-      keep_least(best, first);
-      first += static_cast<std::uint32_t>(best.size());
+      best.squared.clear();  // only parts have them
+      writer_.append(best);
+      summarise(best, summary_, first);
       throw_if_stopped(progress_);
     }
     // Reads the other streams to their ends, where their hashes are checked.
@@ -213,35 +180,24 @@ class PartMerge {
       const bool nearer = rows.squared[i] < best.squared[i] ||
                           (rows.squared[i] == best.squared[i] && rows.source[i] < best.source[i]);
       if (!nearer) continue;
-      best.distance[i] = rows.distance[i];
-      best.source[i] = rows.source[i];
-      best.xyz[i] = rows.xyz[i];
-      best.squared[i] = rows.squared[i];
-    }
-  }
-
-  void keep_least(const ProfileRows& rows, std::uint32_t first) {
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (rows.source[i] == Profile::kNoPoint) continue;
-      ++out_.profile_poses;
-      if (out_.least_profile && out_.least_profile->distance <= rows.distance[i]) continue;
-      out_.least_profile = {rows.source[i], first + static_cast<std::uint32_t>(i), rows.xyz[i],
-                            rows.distance[i]};
+      for_each_column<ProfileRows>([&](const auto& column) {
+        (best.*column.values)[i] = (rows.*column.values)[i];
+      });
     }
   }
 
   const PartSet& set_;
   const std::size_t batch_rows_;
   Progress& progress_;
-  Answer& out_;
+  TableSummary& summary_;
   ResultWriter writer_;
 };
 
 }  // namespace
 
 void merge_parts(const PartSet& set, const std::filesystem::path& path, std::uint64_t memory_bytes,
-                 Progress& progress, Answer& answer) {
-  PartMerge(set, path, batch_rows_of(set, memory_bytes), progress, answer).run();
+                 Progress& progress, TableSummary& summary) {
+  PartMerge(set, path, batch_rows_of(set, memory_bytes), progress, summary).run();
 }
 
 }  // namespace clearway

@@ -1,56 +1,27 @@
 #include "io/result/answer.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <limits>
 
 #include "clearway/result.hpp"
-#include "io/result/result_rows.hpp"
+#include "io/result/result.hpp"
 
 namespace clearway {
 namespace {
 
-/// Finds the first place: the row with the smallest first pose, and of several the one with the
-/// smallest source, because rows ascend by source.
-void fold_collisions(const ResultReader& result, Answer& answer) {
-  if (!result.header().first_pose) return;
-  std::optional<FoundPlace>& first = answer.first_place;
-  ResultRowStream stream(result);
-  for (ResultRows rows; stream.read(rows);) {
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (first && rows.first_pose[i] >= first->pose) continue;
-      first = {rows.source[i], rows.first_pose[i], rows.xyz[i], 0,
-               rows.body.empty() ? 0 : rows.body[i]};
-    }
-  }
+/// Takes a place if it is the first one that is found, or less than the least so far.
+template <typename IsLess>
+void keep_least(const FoundPlace& place, std::optional<FoundPlace>& least, IsLess is_less) {
+  if (!least || is_less(place, *least)) least = place;
 }
 
-void fold_clearances(const ResultReader& result, Answer& answer) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  std::optional<FoundPlace>& least = answer.least_clearance;
-  ClearanceRowStream stream(result);
-  for (ClearanceRows rows; stream.read(rows);) {
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (rows.distance[i] < 0) ++answer.inside_points;
-      if (least && rows.distance[i] >= least->distance) continue;
-      least = {rows.source[i], rows.pose[i],
-               rows.xyz.empty() ? Vec3{kNone, kNone, kNone} : rows.xyz[i], rows.distance[i],
-               rows.body.empty() ? 0 : rows.body[i]};
-    }
-  }
-}
+bool is_earlier(const FoundPlace& a, const FoundPlace& b) { return a.pose < b.pose; }
+bool is_nearer(const FoundPlace& a, const FoundPlace& b) { return a.distance < b.distance; }
 
-void fold_profile(const ResultReader& result, Answer& answer) {
-  std::optional<FoundPlace>& least = answer.least_profile;
-  std::uint32_t pose = 0;
-  ProfileRowStream stream(result);
-  for (ProfileRows rows; stream.read(rows);) {
-    for (std::size_t i = 0; i < rows.size(); ++i, ++pose) {
-      if (rows.source[i] == Profile::kNoPoint) continue;
-      ++answer.profile_poses;
-      if (least && rows.distance[i] >= least->distance) continue;
-      least = {rows.source[i], pose, rows.xyz[i], rows.distance[i]};
-    }
-  }
+template <typename Rows>
+void summarise_table(const ResultReader& result, TableSummary& summary) {
+  RowStream<Rows> stream(result);
+  for (Rows rows; stream.read(rows);) summarise(rows, summary);
 }
 
 /// The doubts that follow from the header's counts, for files of earlier releases, which kept none.
@@ -68,6 +39,53 @@ std::vector<Message> doubts_by_counts(const ResultHeader& header) {
 }
 
 }  // namespace
+
+void summarise(const Collisions& rows, TableSummary& summary) {
+  summary.colliding_points += rows.size();
+  const auto earliest = std::ranges::min_element(rows.first_pose);
+  if (earliest == rows.first_pose.end()) return;
+  const auto i = static_cast<std::size_t>(earliest - rows.first_pose.begin());
+  keep_least({rows.source[i], *earliest, rows.xyz[i], 0, rows.body.empty() ? 0 : rows.body[i]},
+             summary.first_place, is_earlier);
+}
+
+void summarise(const Clearances& rows, TableSummary& summary) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  summary.clearance_points += rows.size();
+  summary.inside_points += static_cast<std::uint64_t>(
+      std::ranges::count_if(rows.distance, [](double distance) { return distance < 0; }));
+  const auto nearest = std::ranges::min_element(rows.distance);
+  if (nearest == rows.distance.end()) return;
+  const auto i = static_cast<std::size_t>(nearest - rows.distance.begin());
+  keep_least({rows.source[i], rows.pose[i],
+              rows.xyz.empty() ? Vec3{kNone, kNone, kNone} : rows.xyz[i], *nearest,
+              rows.body.empty() ? 0 : rows.body[i]},
+             summary.least_clearance, is_nearer);
+}
+
+void summarise(const Profile& rows, TableSummary& summary, std::uint64_t first_pose) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows.source[i] == Profile::kNoPoint) continue;
+    ++summary.profile_poses;
+    keep_least({rows.source[i], static_cast<std::uint32_t>(first_pose + i), rows.xyz[i],
+                rows.distance[i]},
+               summary.least_profile, is_nearer);
+  }
+}
+
+void add_summary(const TableSummary& later, TableSummary& summary) {
+  summary.colliding_points += later.colliding_points;
+  summary.clearance_points += later.clearance_points;
+  summary.inside_points += later.inside_points;
+  summary.profile_poses += later.profile_poses;
+  const auto keep = [](const std::optional<FoundPlace>& place, std::optional<FoundPlace>& least,
+                       auto is_less) {
+    if (place) keep_least(*place, least, is_less);
+  };
+  keep(later.first_place, summary.first_place, is_earlier);
+  keep(later.least_clearance, summary.least_clearance, is_nearer);
+  keep(later.least_profile, summary.least_profile, is_nearer);
+}
 
 Answer answer_of(const ResultHeader& header) {
   Answer answer;
@@ -116,9 +134,17 @@ Answer counted_answer(const ResultReader& result) {
 
 Answer answer_of(const ResultReader& result) {
   Answer answer = counted_answer(result);
-  fold_collisions(result, answer);
-  fold_clearances(result, answer);
-  fold_profile(result, answer);
+  TableSummary summary;
+  if (result.header().first_pose) {
+    summarise_table<Collisions>(result, summary);
+  } else {
+    summary.colliding_points = result.collisions();  // no row says more
+  }
+  summarise_table<Clearances>(result, summary);
+  std::uint64_t pose = 0;
+  RowStream<ProfileRows> stream(result);
+  for (ProfileRows rows; stream.read(rows); pose += rows.size()) summarise(rows, summary, pose);
+  static_cast<TableSummary&>(answer) = summary;
   return answer;
 }
 

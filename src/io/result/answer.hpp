@@ -15,6 +15,15 @@ void add_doubts(const std::vector<Message>& warnings, Answer& answer);
 /// Sets in `answer` what a search found besides its tables.
 void add_findings(const ResultFindings& findings, Answer& answer);
 
+/// Adds what rows say to the summary of those before them, which have smaller sources or, in a
+/// profile, smaller poses: `first_pose` is that of the first row.
+void summarise(const Collisions& rows, TableSummary& summary);
+void summarise(const Clearances& rows, TableSummary& summary);
+void summarise(const Profile& rows, TableSummary& summary, std::uint64_t first_pose = 0);
+
+/// Adds the summary of later rows to that of those before them.
+void add_summary(const TableSummary& later, TableSummary& summary);
+
 /// The answer from the header, the findings and the numbers of rows. It lacks what only the rows
 /// tell: places, points inside the model and poses of the profile. Reads no table.
 Answer counted_answer(const ResultReader& result);

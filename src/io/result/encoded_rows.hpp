@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -9,11 +8,11 @@
 #include <span>
 #include <stdexcept>
 #include <tuple>
-#include <utility>
+#include <type_traits>
 #include <vector>
 
-#include "clearway/vec3.hpp"
 #include "io/hdf5/stored_chunk.hpp"
+#include "io/result/tables.hpp"
 
 namespace clearway {
 
@@ -81,87 +80,74 @@ class EncodedColumn {
   std::vector<EncodedChunk> chunks_;
 };
 
+/// An encoded column, or nothing where the result does not have it.
+template <typename Value>
+using OptionalColumn = std::optional<EncodedColumn<Value>>;
+
 /// Consecutive rows of a table, encoded by any thread for ResultWriter to write.
-template <typename... Values>
+template <typename Rows>
 class EncodedRows {
  public:
-  using Columns = std::tuple<std::optional<EncodedColumn<Values>>...>;
-  using Present = std::array<bool, sizeof...(Values)>;
+  using Columns = PerColumn<Rows, OptionalColumn>;
 
   /// table_rows: number of rows of the whole table.
-  EncodedRows(std::uint64_t table_rows, const Present& present) {
-    std::size_t i = 0;
-    each_column(columns_, [&](auto& column) {
-      if (present[i++]) column.emplace(table_rows);
+  EncodedRows(std::uint64_t table_rows, const ResultHeader& header) {
+    for_each_column<Rows>(columns_, [&](const auto& column, auto& encoded) {
+      if (column.is_in(header)) encoded.emplace(table_rows);
     });
   }
 
-  std::size_t size() const { return rows_; }
+  std::size_t size() const { return size_; }
 
-  /// Appends rows, at most kEncodedRows in all; the span of a column that is not written is empty.
-  /// Throws std::logic_error for spans of unequal lengths, and for sources that do not ascend where
-  /// the first column holds sources.
-  void add(std::span<const Values>... values) {
-    const auto spans = std::tuple(values...);
-    const std::size_t rows = std::get<0>(spans).size();
-    each_column(columns_, [&, i = std::size_t{0}](const auto& column) mutable {
-      const std::array lengths{values.size()...};
-      if (lengths[i++] != (column ? rows : 0)) {
+  /// Appends the rows `first` to `first + count - 1`, so that there are at most kEncodedRows in
+  /// all. Throws std::logic_error for columns of unequal lengths, where those that are not written
+  /// must be empty, and for sources of points that do not ascend.
+  void add(const Rows& rows, std::size_t first, std::size_t count) {
+    if (count > kEncodedRows - size_) throw std::logic_error("ResultWriter: too many rows at once");
+    for_each_column<Rows>(columns_, [&](const auto& column, const auto& encoded) {
+      if ((rows.*column.values).size() != (encoded ? rows.size() : 0)) {
         throw std::logic_error("ResultWriter: rows of unequal lengths");
       }
     });
-    if (rows > kEncodedRows - rows_) throw std::logic_error("ResultWriter: too many rows at once");
-    if constexpr (kHasSources) check_ascending(std::get<0>(spans));
-    const auto add_each = [&]<std::size_t... I>(std::index_sequence<I...>) {
-      ((std::get<I>(columns_) ? std::get<I>(columns_)->add(std::get<I>(spans)) : void()), ...);
-    };
-    add_each(std::index_sequence_for<Values...>());
-    rows_ += rows;
+    if constexpr (kHasSources) check_ascending(std::span(rows.source).subspan(first, count));
+    for_each_column<Rows>(columns_, [&](const auto& column, auto& encoded) {
+      if (encoded) encoded->add(std::span(rows.*column.values).subspan(first, count));
+    });
+    size_ += count;
   }
+  void add(const Rows& rows) { add(rows, 0, rows.size()); }
 
   /// Fills the last chunk of each column with zeros and appends the checksums. Called after the
   /// last add().
   void seal() {
-    each_column(columns_, [](auto& column) {
-      if (column) column->seal();
-    });
+    std::apply([](auto&... column) { ((column ? column->seal() : void()), ...); }, columns_);
   }
 
   Columns& columns() { return columns_; }
   const Columns& columns() const { return columns_; }
 
+  /// Whether sources must ascend, as they do in tables of points.
   static constexpr bool has_sources() { return kHasSources; }
-  /// First and last source of the rows added so far; only for tables whose first column holds
-  /// sources.
+  /// First and last source of the rows added so far; only for tables that have sources.
   std::uint64_t first_source() const { return first_source_; }
   std::uint64_t last_source() const { return last_source_; }
 
  private:
-  static constexpr bool kHasSources =
-      std::is_same_v<std::tuple_element_t<0, std::tuple<Values...>>, std::uint64_t>;
-
-  template <typename Tuple, typename Visit>
-  static void each_column(Tuple& columns, Visit visit) {
-    std::apply([&](auto&... column) { (visit(column), ...); }, columns);
-  }
+  static constexpr bool kHasSources = !std::is_same_v<Rows, ProfileRows>;
 
   void check_ascending(std::span<const std::uint64_t> sources) {
     for (std::size_t i = 0; i < sources.size(); ++i) {
-      if (rows_ + i > 0 && sources[i] <= last_source_) {
+      if (size_ + i > 0 && sources[i] <= last_source_) {
         throw std::logic_error("ResultWriter: rows not ascending by source");
       }
       last_source_ = sources[i];
     }
-    if (rows_ == 0 && !sources.empty()) first_source_ = sources.front();
+    if (size_ == 0 && !sources.empty()) first_source_ = sources.front();
   }
 
   Columns columns_;
-  std::size_t rows_ = 0;
+  std::size_t size_ = 0;
   std::uint64_t first_source_ = 0, last_source_ = 0;
 };
-
-using EncodedCollisions =
-    EncodedRows<std::uint64_t, Vec3, std::uint32_t, std::uint32_t, std::uint32_t>;
-using EncodedClearances = EncodedRows<std::uint64_t, Vec3, double, std::uint32_t, std::uint32_t>;
 
 }  // namespace clearway

@@ -10,6 +10,10 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "clearway/error.hpp"
@@ -17,11 +21,8 @@
 #include "io/hdf5/hdf5.hpp"
 #include "io/hdf5/stored_chunk.hpp"
 #include "io/result/as_numbers.hpp"
+#include "io/result/column_hashes.hpp"
 #include "io/result/result.hpp"
-#include "io/result/result_names.hpp"
-#include "io/result/result_reader_state.hpp"
-#include "io/result/row_checks.hpp"
-#include "io/system/xxh64.hpp"
 
 namespace clearway {
 namespace {
@@ -102,8 +103,6 @@ bool ParallelRead::run() const {
   return true;
 }
 
-namespace names = result_names;
-
 /// Calls `call` and turns a failure of HDF5 into an InputError: since the file could be opened, its
 /// content must be damaged. Errors of system calls pass through.
 template <typename Call>
@@ -122,26 +121,188 @@ void check_range(std::uint64_t first, std::size_t count, std::uint64_t rows) {
   }
 }
 
-template <typename... Spans>
-void check_lengths(std::size_t rows, const Spans&... spans) {
-  if (((spans.size() != rows) || ...)) {
-    throw std::logic_error("ResultReader: rows of unequal lengths");
+/// The values as a dataset holds them: points as a sequence of x, y, z.
+template <typename Value>
+auto numbers_of(std::span<Value> values) {
+  if constexpr (std::is_same_v<Value, Vec3>) {
+    return as_numbers(values);
+  } else {
+    return values;
   }
 }
 
-/// Whether many threads may read these rows, which they may where the rows begin and end with
-/// chunks.
-bool are_whole_chunks(std::uint64_t first, std::size_t count, std::uint64_t rows) {
-  return first % kEncodedRows == 0 && (count % kEncodedRows == 0 || first + count == rows);
-}
+/// A dataset that is read, or nothing where the result does not have the column.
+template <typename Value>
+using OptionalRead = std::optional<
+    hdf5::Rows<std::conditional_t<std::is_same_v<Value, Vec3>, double, Value>>>;
 
-template <typename... Columns>
-void add_to(std::span<Xxh64Stream> hashes, const Columns&... columns) {
-  std::size_t i = 0;
-  ((columns.empty() ? void() : hashes[i].update(std::as_bytes(columns)), ++i), ...);
-}
+/// The datasets of a table, which are read together.
+template <typename Rows>
+class TableReader {
+ public:
+  /// Opens the datasets that a result with this header has. name: that of the file. Both must
+  /// outlive this object.
+  TableReader(const hdf5::Id& file, const std::string& name, const ResultHeader& header)
+      : name_(name), header_(header) {
+    if (!Table<Rows>::is_in(header)) return;
+    hash_ = hdf5::read_number<std::uint64_t>(file, Table<Rows>::kHash, name);
+    for_each_column<Rows>(datasets_, [&](const auto& column, auto& dataset) {
+      using Value = typename std::decay_t<decltype(column)>::Value;
+      using Dataset = typename std::decay_t<decltype(dataset)>::value_type;
+      if (!column.is_in(header)) return;
+      if (column.own_hash != nullptr) {
+        own_hashes_.push_back(hdf5::read_number<std::uint64_t>(file, column.own_hash, name));
+      }
+      const std::string path = std::string(Table<Rows>::kGroup) + "/" + column.dataset;
+      dataset.emplace(Dataset::open(file, path, std::is_same_v<Value, Vec3> ? 3 : 0, name));
+      if (!rows_) rows_ = dataset->rows();
+      if (dataset->rows() == *rows_) return;
+      throw InputError(name + ": the datasets of /" + Table<Rows>::kGroup +
+                       " differ in their rows");
+    });
+  }
+
+  std::uint64_t rows() const { return rows_.value_or(0); }
+  std::uint64_t recorded_hash() const { return hash_; }
+
+  void read(std::uint64_t first, std::size_t count, Rows& out, RowHashes<Rows>* hashes) const {
+    check_range(first, count, rows());
+    for_each_column<Rows>(datasets_, [&](const auto& column, const auto& dataset) {
+      (out.*column.values).resize(dataset ? count : 0);
+    });
+    RowHashes<Rows> unused;
+    RowHashes<Rows>& sums = hashes != nullptr ? *hashes : unused;
+    if (!read_chunks(first, count, out, sums)) read_in_order(first, out, sums);
+    Table<Rows>::check(read_from(first), out);
+  }
+
+  void check_hashes(const RowHashes<Rows>& hashes) const {
+    if (!rows_) return;
+    ColumnHashes of_table;
+    std::size_t i = 0, own = 0;
+    for_each_column<Rows>(datasets_, [&](const auto& column, const auto& dataset) {
+      const std::uint64_t digest = hashes[i++].digest();
+      if (!dataset) return;
+      if (column.own_hash == nullptr) return of_table.add_digest(digest);
+      if (digest == own_hashes_[own++]) return;
+      refuse_damaged(std::string(Table<Rows>::kGroup) + "/" + column.dataset);
+    });
+    if (of_table.digest() != hash_) refuse_damaged(Table<Rows>::kGroup);
+  }
+
+  template <typename Value>
+  std::vector<Value> column(std::vector<Value> Rows::*values) const {
+    std::vector<Value> out;
+    for_each_column<Rows>(datasets_, [&](const auto& column, const auto& dataset) {
+      if constexpr (std::is_same_v<decltype(column.values), std::vector<Value> Rows::* const>) {
+        if (column.values != values || !dataset) return;
+        out.resize(rows());
+        read_column(column, *dataset, 0, std::span(out));
+      }
+    });
+    return out;
+  }
+
+ private:
+  RowsRead read_from(std::uint64_t first) const {
+    return {name_, header_, Table<Rows>::kGroup, first};
+  }
+
+  [[noreturn]] void refuse_damaged(const std::string& path) const {
+    throw InputError(name_ + ": /" + path +
+                     ": its rows are damaged (their hash is not the one recorded)");
+  }
+
+  template <typename Value, typename Dataset>
+  void read_column(const Column<Rows, Value>& column, const Dataset& dataset, std::uint64_t first,
+                   std::span<Value> out) const {
+    as_input(name_, [&] { dataset.read(first, numbers_of(out)); });
+    column.check(read_from(first), column.dataset, out);
+  }
+
+  void read_in_order(std::uint64_t first, Rows& out, RowHashes<Rows>& hashes) const {
+    std::size_t i = 0;
+    for_each_column<Rows>(datasets_, [&](const auto& column, const auto& dataset) {
+      Xxh64Stream& hash = hashes[i++];
+      if (!dataset) return;
+      const auto values = std::span(out.*column.values);
+      read_column(column, *dataset, first, values);
+      hash.update(std::as_bytes(values));
+    });
+  }
+
+  /// Reads rows that begin and end with chunks by many threads. Returns false where they do not,
+  /// where the chunks are stored in another way, and where anything about them is wrong, which
+  /// read_in_order() then names.
+  bool read_chunks(std::uint64_t first, std::size_t count, Rows& out,
+                   RowHashes<Rows>& hashes) const {
+    const bool whole =
+        first % kEncodedRows == 0 && (count % kEncodedRows == 0 || first + count == rows());
+    if (!whole) return false;
+    ParallelRead read;
+    bool readable = true;
+    as_input(name_, [&] {
+      std::size_t i = 0;
+      for_each_column<Rows>(datasets_, [&](const auto& column, const auto& dataset) {
+        Xxh64Stream& hash = hashes[i++];
+        if (!dataset || !readable) return;
+        using Value = typename std::decay_t<decltype(column)>::Value;
+        readable = read.add(*dataset, first, std::span(out.*column.values), hash,
+                            [this, &column](std::uint64_t row, std::span<const Value> values) {
+                              column.check(read_from(row), column.dataset, values);
+                            });
+      });
+    });
+    return readable && read.run() && is_ordered(out);
+  }
+
+  /// Whether the rows are in order also from each chunk to the next, which no check of a chunk sees.
+  static bool is_ordered(const Rows& rows) {
+    const auto& order = rows.*Table<Rows>::kOrder;
+    for (std::size_t i = 1; i < order.size(); ++i) {
+      if (!Table<Rows>::may_follow(order[i - 1], order[i])) return false;
+    }
+    return true;
+  }
+
+  const std::string& name_;
+  const ResultHeader& header_;
+  PerColumn<Rows, OptionalRead> datasets_;
+  std::optional<std::uint64_t> rows_;  ///< nullopt where the result does not have the table
+  std::uint64_t hash_ = 0;
+  std::vector<std::uint64_t> own_hashes_;  ///< of the columns that have their own
+};
 
 }  // namespace
+
+/// The open file and tables of a result that is read.
+struct ResultReader::State {
+  explicit State(const std::filesystem::path& path)
+      : name(path.string()),
+        file(hdf5::open_file(path)),
+        header(read_result_header(file, name)),
+        findings(read_result_findings(file, name, header)),
+        tables(TableReader<Collisions>(file, name, header),
+               TableReader<Clearances>(file, name, header),
+               TableReader<ProfileRows>(file, name, header)) {
+    if (header.profile > 0 && table<ProfileRows>().rows() != header.poses) {
+      throw InputError(name + ": /profile has " + std::to_string(table<ProfileRows>().rows()) +
+                       " rows, expected one for each of " + std::to_string(header.poses) +
+                       " poses");
+    }
+  }
+
+  template <typename Rows>
+  const TableReader<Rows>& table() const {
+    return std::get<TableReader<Rows>>(tables);
+  }
+
+  std::string name;
+  hdf5::Id file;
+  ResultHeader header;
+  ResultFindings findings;
+  std::tuple<TableReader<Collisions>, TableReader<Clearances>, TableReader<ProfileRows>> tables;
+};
 
 ResultReader::ResultReader(const std::filesystem::path& path, Parts parts) {
   state_ = as_input(path.string(), [&] { return std::make_unique<State>(path); });
@@ -165,163 +326,50 @@ ResultReader& ResultReader::operator=(ResultReader&& other) noexcept {
 const std::string& ResultReader::name() const { return state_->name; }
 const ResultHeader& ResultReader::header() const { return state_->header; }
 const ResultFindings& ResultReader::findings() const { return state_->findings; }
-std::uint64_t ResultReader::collisions() const { return state_->source.rows(); }
-std::uint64_t ResultReader::collisions_hash() const { return state_->collisions_hash; }
-std::uint64_t ResultReader::clearances_hash() const { return state_->clearance_hash; }
-std::uint64_t ResultReader::profile_hash() const { return state_->profile_hash; }
 
-void ResultReader::read_collisions(std::uint64_t first, std::span<std::uint64_t> source,
-                                   std::span<Vec3> xyz, std::span<std::uint32_t> first_pose,
-                                   std::span<Xxh64Stream> hashes) const {
-  const State& s = *state_;
-  check_lengths(source.size(), xyz);
-  check_lengths(s.first_pose ? source.size() : 0, first_pose);
-  check_range(first, source.size(), collisions());
-  ParallelRead read;
-  const RowChecks checks = s.checks(names::kGroup, first);
-  const bool there =
-      are_whole_chunks(first, source.size(), collisions()) && as_input(s.name, [&] {
-        return read.add(s.source, first, source, hashes[0],
-                        checks.from_any_row(&RowChecks::sources)) &&
-               read.add(s.xyz, first, xyz, hashes[1], checks.from_any_row(&RowChecks::points)) &&
-               (!s.first_pose || read.add(*s.first_pose, first, first_pose, hashes[2],
-                                          checks.for_poses(names::kFirstPose)));
-      });
-  if (there && read.run() && ascends_at_chunks(source, s.source.chunk_rows())) return;
-  read_source(first, source);
-  read_xyz(first, xyz);
-  if (s.first_pose) read_first_pose(first, first_pose);
-  add_to(hashes, source, xyz, first_pose);
+template <typename Rows>
+std::uint64_t ResultReader::rows() const {
+  return state_->table<Rows>().rows();
 }
 
-void ResultReader::read_source(std::uint64_t first, std::span<std::uint64_t> out) const {
-  check_range(first, out.size(), collisions());
-  as_input(state_->name, [&] { state_->source.read(first, out); });
-  state_->checks(names::kGroup, first).sources(out);
+template <typename Rows>
+std::uint64_t ResultReader::recorded_hash() const {
+  return state_->table<Rows>().recorded_hash();
 }
 
-void ResultReader::read_xyz(std::uint64_t first, std::span<Vec3> out) const {
-  check_range(first, out.size(), collisions());
-  as_input(state_->name, [&] { state_->xyz.read(first, as_numbers(out)); });
-  state_->checks(names::kGroup, first).points(out);
+template <typename Rows>
+void ResultReader::read(std::uint64_t first, std::size_t count, Rows& out,
+                        RowHashes<Rows>* hashes) const {
+  state_->table<Rows>().read(first, count, out, hashes);
 }
 
-void ResultReader::read_first_pose(std::uint64_t first, std::span<std::uint32_t> out) const {
-  check_range(first, out.size(), collisions());
-  if (!state_->first_pose) throw std::logic_error("ResultReader: no first poses");
-  as_input(state_->name, [&] { state_->first_pose->read(first, out); });
-  state_->checks(names::kGroup, first).poses(names::kFirstPose, out);
+template <typename Rows>
+void ResultReader::check_hashes(const RowHashes<Rows>& hashes) const {
+  state_->table<Rows>().check_hashes(hashes);
 }
 
-void ResultReader::read_last_pose(std::uint64_t first, std::span<std::uint32_t> out) const {
-  check_range(first, out.size(), collisions());
-  if (!state_->last_pose) throw std::logic_error("ResultReader: no last poses");
-  as_input(state_->name, [&] { state_->last_pose->read(first, out); });
-  state_->checks(names::kGroup, first).poses(names::kLastPose, out);
+template <typename Rows, typename Value>
+std::vector<Value> ResultReader::column(std::vector<Value> Rows::*values) const {
+  return state_->table<Rows>().column(values);
 }
 
-std::uint64_t ResultReader::last_pose_hash() const { return state_->last_pose_hash; }
-
-void ResultReader::read_first_body(std::uint64_t first, std::span<std::uint32_t> out) const {
-  check_range(first, out.size(), collisions());
-  if (!state_->body) throw std::logic_error("ResultReader: no bodies");
-  as_input(state_->name, [&] { state_->body->read(first, out); });
-  state_->checks(names::kGroup, first).bodies(out);
-}
-
-void ResultReader::read_clearance_body(std::uint64_t first, std::span<std::uint32_t> out) const {
-  const auto& datasets = state_->clearance;
-  if (!datasets || !datasets->body) throw std::logic_error("ResultReader: no bodies");
-  check_range(first, out.size(), clearances());
-  as_input(state_->name, [&] { datasets->body->read(first, out); });
-  state_->checks(names::kClearanceGroup, first).bodies(out);
-}
-
-std::uint64_t ResultReader::clearances() const {
-  return state_->clearance ? state_->clearance->source.rows() : 0;
-}
-
-void ResultReader::read_clearances(std::uint64_t first, std::span<std::uint64_t> source,
-                                   std::span<Vec3> xyz, std::span<double> distance,
-                                   std::span<std::uint32_t> pose) const {
-  auto& datasets = state_->clearance;
-  if (!datasets) throw std::logic_error("ResultReader: no clearances");
-  check_lengths(source.size(), distance, pose);
-  check_lengths(datasets->xyz ? source.size() : 0, xyz);
-  check_range(first, source.size(), clearances());
-  as_input(state_->name, [&] {
-    datasets->source.read(first, source);
-    if (datasets->xyz) datasets->xyz->read(first, as_numbers(xyz));
-    datasets->distance.read(first, distance);
-    datasets->pose.read(first, pose);
-  });
-  const RowChecks checks = state_->checks(names::kClearanceGroup, first);
-  checks.sources(source);
-  checks.points(xyz);
-  checks.clearances(distance);
-  checks.poses(names::kPose, pose);
-}
-
-void ResultReader::read_clearances(std::uint64_t first, std::span<std::uint64_t> source,
-                                   std::span<Vec3> xyz, std::span<double> distance,
-                                   std::span<std::uint32_t> pose,
-                                   std::span<Xxh64Stream> hashes) const {
-  const State& s = *state_;
-  const auto& datasets = s.clearance;
-  if (!datasets) throw std::logic_error("ResultReader: no clearances");
-  check_lengths(source.size(), distance, pose);
-  check_lengths(datasets->xyz ? source.size() : 0, xyz);
-  check_range(first, source.size(), clearances());
-  ParallelRead read;
-  const RowChecks checks = s.checks(names::kClearanceGroup, first);
-  const std::size_t next = datasets->xyz ? 1 : 0;
-  const bool there =
-      are_whole_chunks(first, source.size(), clearances()) && as_input(s.name, [&] {
-        return read.add(datasets->source, first, source, hashes[0],
-                        checks.from_any_row(&RowChecks::sources)) &&
-               (!datasets->xyz || read.add(*datasets->xyz, first, xyz, hashes[next],
-                                           checks.from_any_row(&RowChecks::points))) &&
-               read.add(datasets->distance, first, distance, hashes[next + 1],
-                        checks.from_any_row(&RowChecks::clearances)) &&
-               read.add(datasets->pose, first, pose, hashes[next + 2],
-                        checks.for_poses(names::kPose));
-      });
-  if (there && read.run() && ascends_at_chunks(source, datasets->source.chunk_rows())) return;
-  read_clearances(first, source, xyz, distance, pose);
-  if (datasets->xyz) {
-    add_to(hashes, source, xyz, distance, pose);
-  } else {
-    add_to(hashes, source, distance, pose);
-  }
-}
-
-std::uint64_t ResultReader::profile_rows() const {
-  return state_->profile ? state_->profile->distance.rows() : 0;
-}
-
-void ResultReader::read_profile(std::uint64_t first, std::span<double> distance,
-                                std::span<std::uint64_t> source, std::span<Vec3> xyz,
-                                std::span<double> chainage) const {
-  auto& datasets = state_->profile;
-  if (!datasets) throw std::logic_error("ResultReader: no profile");
-  check_lengths(distance.size(), source, xyz, chainage);
-  check_range(first, distance.size(), profile_rows());
-  as_input(state_->name, [&] {
-    datasets->distance.read(first, distance);
-    datasets->source.read(first, source);
-    datasets->xyz.read(first, as_numbers(xyz));
-    datasets->chainage.read(first, chainage);
-  });
-  const RowChecks checks = state_->checks(names::kProfileGroup, first);
-  checks.profile(distance, source, xyz);
-  checks.chainages(chainage);
-}
-
-void ResultReader::read_profile_squared(std::uint64_t first, std::span<double> out) const {
-  const auto& datasets = state_->profile;
-  if (!datasets || !datasets->squared) throw std::logic_error("ResultReader: no squares");
-  check_range(first, out.size(), profile_rows());
-  as_input(state_->name, [&] { datasets->squared->read(first, out); });
-}
+template std::uint64_t ResultReader::rows<Collisions>() const;
+template std::uint64_t ResultReader::rows<Clearances>() const;
+template std::uint64_t ResultReader::rows<ProfileRows>() const;
+template std::uint64_t ResultReader::recorded_hash<Collisions>() const;
+template void ResultReader::read(std::uint64_t, std::size_t, Collisions&,
+                                 RowHashes<Collisions>*) const;
+template void ResultReader::read(std::uint64_t, std::size_t, Clearances&,
+                                 RowHashes<Clearances>*) const;
+template void ResultReader::read(std::uint64_t, std::size_t, ProfileRows&,
+                                 RowHashes<ProfileRows>*) const;
+template void ResultReader::check_hashes<Collisions>(const RowHashes<Collisions>&) const;
+template void ResultReader::check_hashes<Clearances>(const RowHashes<Clearances>&) const;
+template void ResultReader::check_hashes<ProfileRows>(const RowHashes<ProfileRows>&) const;
+template std::vector<std::uint64_t> ResultReader::column(
+    std::vector<std::uint64_t> Collisions::*) const;
+template std::vector<Vec3> ResultReader::column(std::vector<Vec3> Collisions::*) const;
+template std::vector<std::uint32_t> ResultReader::column(
+    std::vector<std::uint32_t> Collisions::*) const;
 
 }  // namespace clearway

@@ -1,8 +1,7 @@
-#include <array>
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <optional>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -12,10 +11,7 @@
 #include "clearway/error.hpp"
 #include "io/hdf5/hdf5.hpp"
 #include "io/result/column_hashes.hpp"
-#include "io/result/encoded_rows.hpp"
 #include "io/result/result.hpp"
-#include "io/result/result_header.hpp"
-#include "io/result/result_names.hpp"
 #include "io/system/file.hpp"
 
 namespace clearway {
@@ -70,61 +66,59 @@ class ResultColumn {
   Xxh64Stream hash_;
 };
 
-/// A group of datasets with the same number of rows, which are written in pieces.
-template <typename... Values>
-class ResultTable {
- public:
-  using Names = std::array<const char*, sizeof...(Values)>;
-  using Rows = EncodedRows<Values...>;
+/// A dataset that is written, or nothing where the result does not have the column.
+template <typename Value>
+using OptionalWritten = std::optional<ResultColumn<Value>>;
 
-  /// rows: the promised number of rows. A column whose name is null is not written.
-  ResultTable(const hdf5::Id& file, const char* group, const Names& names, std::uint64_t rows)
-      : group_(hdf5::create_group(file, group)), promised_(rows) {
-    std::size_t i = 0;
-    each([&](auto& column) {
-      present_[i] = names[i] != nullptr;
-      if (present_[i]) column.emplace(group_, names[i], rows);
-      ++i;
+/// A group of datasets with the same number of rows, which are written in pieces.
+template <typename Rows>
+class TableWriter {
+ public:
+  /// rows: the promised number of rows. The header must outlive this object.
+  TableWriter(const hdf5::Id& file, const ResultHeader& header, std::uint64_t rows)
+      : group_(hdf5::create_group(file, Table<Rows>::kGroup)), header_(header), promised_(rows) {
+    for_each_column<Rows>(columns_, [&](const auto& column, auto& dataset) {
+      if (column.is_in(header)) dataset.emplace(group_, column.dataset, rows);
     });
   }
 
   /// Bytes that the chunks of all promised rows take in the file.
   std::uint64_t bytes() const {
     std::uint64_t total = 0;
-    std::size_t i = 0;
-    ((total += present_[i++] ? stored_bytes<Values>(promised_) : 0), ...);
+    for_each_column<Rows>(columns_, [&](const auto& column, const auto& dataset) {
+      using Value = typename std::decay_t<decltype(column)>::Value;
+      if (dataset) total += stored_bytes<Value>(promised_);
+    });
     return total;
   }
 
-  Rows new_rows() const { return {promised_, present_}; }
+  EncodedRows<Rows> new_rows() const { return {promised_, header_}; }
 
   /// Adds sealed rows to the hashes. The rows come in order and kEncodedRows at a time, except for
   /// a table's last.
-  void hash(const Rows& rows) {
-    each_with(rows.columns(), [](auto& column, const auto& values) { column.hash(values); });
+  void hash(const EncodedRows<Rows>& rows) {
+    each_with(rows.columns(), [](auto& dataset, const auto& values) { dataset.hash(values); });
   }
 
-  void write(Rows& rows) {
+  void write(EncodedRows<Rows>& rows) {
     check_order(rows);
-    each_with(rows.columns(), [](auto& column, auto& values) { column.write(values); });
+    each_with(rows.columns(), [](auto& dataset, auto& values) { dataset.write(values); });
     written_ += rows.size();
     last_source_ = rows.last_source();
   }
 
   /// Appends any number of rows. Throws std::logic_error as EncodedRows does, and for more rows
   /// than promised.
-  void append(std::span<const Values>... values) {
-    const std::size_t rows = std::get<0>(std::tuple(values...)).size();
-    check_lengths(rows, {values.size()...});
-    if (rows > promised_ - written_ - (buffered_ ? buffered_->size() : 0)) too_many();
+  void append(const Rows& rows) {
+    if (rows.size() > promised_ - written_ - (buffered_ ? buffered_->size() : 0)) too_many();
     std::size_t from = 0;
     do {
       if (!buffered_) buffered_.emplace(new_rows());
-      const std::size_t count = std::min(rows - from, kEncodedRows - buffered_->size());
-      buffered_->add(part_of(values, from, count)...);
+      const std::size_t count = std::min(rows.size() - from, kEncodedRows - buffered_->size());
+      buffered_->add(rows, from, count);
       from += count;
       if (buffered_->size() == kEncodedRows) flush();
-    } while (from < rows);
+    } while (from < rows.size());
   }
 
   void flush() {
@@ -144,24 +138,21 @@ class ResultTable {
 
   /// Writes the chunks that are held back. Nothing is written after them.
   void write_held() {
-    each([](auto& column) {
-      if (column) column->write_held();
-    });
+    std::apply([](auto&... dataset) { ((dataset ? dataset->write_held() : void()), ...); },
+               columns_);
   }
 
-  /// ColumnHashes of the first `columns` columns, or of all of them.
-  std::uint64_t hash(std::size_t columns = sizeof...(Values)) {
+  /// Writes the hash of the table, and then those of the columns that have their own.
+  void write_hashes(const hdf5::Id& file) {
     ColumnHashes hashes;
-    std::size_t i = 0;
-    each([&](auto& column) {
-      if (i++ < columns && column) hashes.add_digest(column->digest());
+    for_each_column<Rows>(columns_, [&](const auto& column, const auto& dataset) {
+      if (dataset && column.own_hash == nullptr) hashes.add_digest(dataset->digest());
     });
-    return hashes.digest();
-  }
-
-  /// XXH64 of the last column, which must be one that is written.
-  std::uint64_t hash_of_last() {
-    return std::get<sizeof...(Values) - 1>(columns_).value().digest();
+    hdf5::write_number(file, Table<Rows>::kHash, hashes.digest());
+    for_each_column<Rows>(columns_, [&](const auto& column, const auto& dataset) {
+      if (!dataset || column.own_hash == nullptr) return;
+      hdf5::write_number(file, column.own_hash, dataset->digest());
+    });
   }
 
  private:
@@ -169,15 +160,7 @@ class ResultTable {
     throw std::logic_error("ResultWriter: more rows than promised");
   }
 
-  void check_lengths(std::size_t rows,
-                     const std::array<std::size_t, sizeof...(Values)>& lengths) const {
-    for (std::size_t i = 0; i < lengths.size(); ++i) {
-      if (lengths[i] == (present_[i] ? rows : 0)) continue;
-      throw std::logic_error("ResultWriter: rows of unequal lengths");
-    }
-  }
-
-  void check_order(const Rows& rows) const {
+  void check_order(const EncodedRows<Rows>& rows) const {
     if (rows.size() > promised_ - written_) too_many();
     if (rows.size() < kEncodedRows && written_ + rows.size() < promised_) {
       throw std::logic_error("ResultWriter: rows in pieces of another length");
@@ -188,55 +171,22 @@ class ResultTable {
     }
   }
 
-  /// The values `from` to `from + count - 1` of a column, or none for a column that is not written.
-  template <typename Value>
-  static std::span<const Value> part_of(std::span<const Value> values, std::size_t from,
-                                        std::size_t count) {
-    return values.empty() ? values : values.subspan(from, count);
-  }
-
-  template <typename Visit>
-  void each(Visit visit) {
-    std::apply([&](auto&... column) { (visit(column), ...); }, columns_);
-  }
-
-  /// Calls visit(column, its values) for the columns that are written.
+  /// Calls visit(dataset, its values) for the columns that are written.
   template <typename Columns, typename Visit>
   void each_with(Columns& values, Visit visit) {
-    const auto at = [&]<std::size_t... I>(std::index_sequence<I...>) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
       ((std::get<I>(columns_) ? visit(*std::get<I>(columns_), *std::get<I>(values)) : void()), ...);
-    };
-    at(std::index_sequence_for<Values...>());
+    }(std::make_index_sequence<kColumnsOf<Rows>>());
   }
 
   hdf5::Id group_;
+  PerColumn<Rows, OptionalWritten> columns_;
+  const ResultHeader& header_;
   std::uint64_t promised_, written_ = 0, last_source_ = 0;
-  typename Rows::Present present_{};
-  std::tuple<std::optional<ResultColumn<Values>>...> columns_;
-  std::optional<Rows> buffered_;
+  std::optional<EncodedRows<Rows>> buffered_;
 };
 
 namespace names = result_names;
-
-using CollisionTable =
-    ResultTable<std::uint64_t, Vec3, std::uint32_t, std::uint32_t, std::uint32_t>;
-
-/// Number of columns in the collisions' hash. The last poses, which older releases did not write,
-/// have a hash of their own.
-constexpr std::size_t kHashedColumns = 4;
-using ClearanceTable = ResultTable<std::uint64_t, Vec3, double, std::uint32_t, std::uint32_t>;
-using ProfileTable = ResultTable<double, std::uint64_t, Vec3, double, double>;
-
-CollisionTable::Names collision_columns(const ResultHeader& header) {
-  return {names::kSource, names::kXyz, header.first_pose ? names::kFirstPose : nullptr,
-          header.has_first_bodies() ? names::kBody : nullptr,
-          header.last_pose ? names::kLastPose : nullptr};
-}
-
-ClearanceTable::Names clearance_columns(const ResultHeader& header) {
-  return {names::kSource, names::kXyz, names::kDistance, names::kPose,
-          header.bodies.empty() ? nullptr : names::kBody};
-}
 
 ResultFindings without_doubts(ResultFindings findings) {
   findings.doubts.clear();
@@ -246,27 +196,59 @@ ResultFindings without_doubts(ResultFindings findings) {
 }  // namespace
 
 struct ResultWriter::State {
-  State(const std::filesystem::path& path, const ResultHeader& header, std::uint64_t rows,
-        std::uint64_t clearance_rows)
+  State(const std::filesystem::path& path, const ResultHeader& result, std::uint64_t collisions,
+        std::uint64_t clearances)
       : name(path.string()),
-        is_empty(rows == 0),
+        header(result),
+        is_empty(collisions == 0),
         file(hdf5::create_file(path)),
-        output(File::open_for_writing(path)),
-        has_last_pose(header.last_pose),
-        collisions(std::in_place, file, names::kGroup, collision_columns(header), rows) {
-    if (header.clearance > 0) {
-      clearances.emplace(file, names::kClearanceGroup, clearance_columns(header), clearance_rows);
-    }
-    if (header.profile > 0) {
-      profile.emplace(
-          file, names::kProfileGroup,
-          ProfileTable::Names{names::kDistance, names::kSource, names::kXyz, names::kChainage,
-                              header.part ? names::kSquared : nullptr},
-          header.poses);
-    }
+        output(File::open_for_writing(path)) {
+    begin<Collisions>(collisions);
+    begin<Clearances>(clearances);
+    begin<ProfileRows>(header.poses);
     write_result_header(file, header);
-    output.reserve_ahead(collisions->bytes() + (clearances ? clearances->bytes() : 0) +
-                         (profile ? profile->bytes() : 0));
+    std::uint64_t bytes = 0;
+    each([&](auto& table) { bytes += table.bytes(); });
+    output.reserve_ahead(bytes);
+  }
+
+  template <typename Rows>
+  void begin(std::uint64_t rows) {
+    if (Table<Rows>::is_in(header)) optional_table<Rows>().emplace(file, header, rows);
+  }
+
+  template <typename Rows>
+  std::optional<TableWriter<Rows>>& optional_table() {
+    return std::get<std::optional<TableWriter<Rows>>>(tables);
+  }
+
+  template <typename Rows>
+  TableWriter<Rows>& table() {
+    if (auto& table = optional_table<Rows>()) return *table;
+    throw std::logic_error(std::string("ResultWriter: no ") + Table<Rows>::kGroup);
+  }
+
+  /// Calls visit(table) for the tables that the result has, in the order of the file.
+  template <typename Visit>
+  void each(Visit visit) {
+    std::apply([&](auto&... table) { ((table ? visit(*table) : void()), ...); }, tables);
+  }
+
+  /// Checks that the tables before that of these rows have all of their promised rows, and flushes
+  /// them.
+  template <typename Rows>
+  void complete_before() {
+    bool before = true;
+    each([&]<typename Other>(TableWriter<Other>& table) {
+      before = before && !std::is_same_v<Other, Rows>;
+      if (before) complete(table);
+    });
+  }
+
+  template <typename Rows>
+  void complete(TableWriter<Rows>& table) {
+    table.check_complete();
+    hdf5::naming(name, [&] { table.flush(); });
   }
 
   /// Starts the transfer of what has been written to the disk, while the rest is computed.
@@ -278,24 +260,15 @@ struct ResultWriter::State {
     synced = end;
   }
 
-  /// Checks that a table has all of its promised rows and flushes it, before those of the next
-  /// table are written.
-  template <typename Table>
-  void complete(std::optional<Table>& table) {
-    if (!table) return;
-    table->check_complete();
-    hdf5::naming(name, [&] { table->flush(); });
-  }
-
   std::string name;
+  ResultHeader header;
   bool is_empty;  ///< whether nothing collides
   hdf5::Id file;
-  File output;  ///< a second handle of the same file
-  bool has_last_pose;
+  File output;               ///< a second handle of the same file
   std::uint64_t synced = 0;  ///< bytes of the file that are on their way to the disk
-  std::optional<CollisionTable> collisions;
-  std::optional<ClearanceTable> clearances;
-  std::optional<ProfileTable> profile;
+  std::tuple<std::optional<TableWriter<Collisions>>, std::optional<TableWriter<Clearances>>,
+             std::optional<TableWriter<ProfileRows>>>
+      tables;
 };
 
 ResultWriter::ResultWriter(const std::filesystem::path& path, const ResultHeader& header,
@@ -309,81 +282,54 @@ ResultWriter::~ResultWriter() {
   state_.reset();
 }
 
-void ResultWriter::append(std::span<const std::uint64_t> source, std::span<const Vec3> xyz,
-                          std::span<const std::uint32_t> first_pose,
-                          std::span<const std::uint32_t> body,
-                          std::span<const std::uint32_t> last_pose) {
-  State& s = *state_;
-  hdf5::naming(s.name, [&] { s.collisions->append(source, xyz, first_pose, body, last_pose); });
+template <typename Rows>
+void ResultWriter::append(const Rows& rows) {
+  TableWriter<Rows>& table = state_->table<Rows>();
+  state_->complete_before<Rows>();
+  hdf5::naming(state_->name, [&] { table.append(rows); });
 }
 
-void ResultWriter::append_clearances(std::span<const std::uint64_t> source,
-                                     std::span<const Vec3> xyz, std::span<const double> distance,
-                                     std::span<const std::uint32_t> pose,
-                                     std::span<const std::uint32_t> body) {
-  State& s = *state_;
-  if (!s.clearances) throw std::logic_error("ResultWriter: no clearances");
-  s.complete(s.collisions);
-  hdf5::naming(s.name, [&] { s.clearances->append(source, xyz, distance, pose, body); });
+template <typename Rows>
+EncodedRows<Rows> ResultWriter::new_rows() const {
+  return state_->table<Rows>().new_rows();
 }
 
-void ResultWriter::append_profile(std::span<const double> distance,
-                                  std::span<const std::uint64_t> source, std::span<const Vec3> xyz,
-                                  std::span<const double> chainage,
-                                  std::span<const double> squared) {
-  State& s = *state_;
-  if (!s.profile) throw std::logic_error("ResultWriter: no profile");
-  s.complete(s.collisions);
-  s.complete(s.clearances);
-  hdf5::naming(s.name, [&] { s.profile->append(distance, source, xyz, chainage, squared); });
+template <typename Rows>
+void ResultWriter::hash(const EncodedRows<Rows>& rows) {
+  state_->table<Rows>().hash(rows);
 }
 
-EncodedCollisions ResultWriter::new_collisions() const { return state_->collisions->new_rows(); }
-
-EncodedClearances ResultWriter::new_clearances() const {
-  if (!state_->clearances) throw std::logic_error("ResultWriter: no clearances");
-  return state_->clearances->new_rows();
-}
-
-void ResultWriter::hash(const EncodedCollisions& rows) { state_->collisions->hash(rows); }
-void ResultWriter::hash(const EncodedClearances& rows) { state_->clearances->hash(rows); }
-
-void ResultWriter::write(EncodedCollisions& rows) {
-  hdf5::naming(state_->name, [&] { state_->collisions->write(rows); });
+template <typename Rows>
+void ResultWriter::write(EncodedRows<Rows>& rows) {
+  TableWriter<Rows>& table = state_->table<Rows>();
+  state_->complete_before<Rows>();
+  hdf5::naming(state_->name, [&] { table.write(rows); });
   state_->written();
-}
-
-void ResultWriter::write(EncodedClearances& rows) {
-  State& s = *state_;
-  s.complete(s.collisions);
-  hdf5::naming(s.name, [&] { s.clearances->write(rows); });
-  s.written();
 }
 
 void ResultWriter::finish(const ResultFindings& findings) {
   State& s = *state_;
-  s.complete(s.collisions);
-  s.complete(s.clearances);
-  s.complete(s.profile);
+  s.each([&](auto& table) { s.complete(table); });
   hdf5::naming(s.name, [&] {
-    hdf5::write_number(s.file, names::kCollisionsHash, s.collisions->hash(kHashedColumns));
-    if (s.has_last_pose) {
-      hdf5::write_number(s.file, names::kLastPoseHash, s.collisions->hash_of_last());
-    }
-    if (s.clearances) hdf5::write_number(s.file, names::kClearanceHash, s.clearances->hash());
-    if (s.profile) hdf5::write_number(s.file, names::kProfileHash, s.profile->hash());
+    s.each([&](auto& table) { table.write_hashes(s.file); });
     write_result_findings(s.file, s.is_empty ? findings : without_doubts(findings));
     hdf5::write_number(s.file, "complete", std::uint8_t{1});
-    s.collisions->write_held();
-    if (s.clearances) s.clearances->write_held();
-    if (s.profile) s.profile->write_held();
+    s.each([](auto& table) { table.write_held(); });
     hdf5::check(H5Fflush(s.file.get(), H5F_SCOPE_LOCAL), "write the result");
     // After the flush, closing has nothing left to write and cannot fail for a full disk.
-    s.profile.reset();
-    s.clearances.reset();
-    s.collisions.reset();
+    std::apply([](auto&... table) { (table.reset(), ...); }, s.tables);
     s.file.close("close the result");
   });
 }
+
+template void ResultWriter::append(const Collisions&);
+template void ResultWriter::append(const Clearances&);
+template void ResultWriter::append(const ProfileRows&);
+template EncodedRows<Collisions> ResultWriter::new_rows() const;
+template EncodedRows<Clearances> ResultWriter::new_rows() const;
+template void ResultWriter::hash(const EncodedRows<Collisions>&);
+template void ResultWriter::hash(const EncodedRows<Clearances>&);
+template void ResultWriter::write(EncodedRows<Collisions>&);
+template void ResultWriter::write(EncodedRows<Clearances>&);
 
 }  // namespace clearway

@@ -26,6 +26,7 @@ from ._clearway import (
     Body,
     Box,
     Clearances,
+    Collisions,
     Conflict,
     Conflicts,
     ConvertReport,

@@ -1,7 +1,6 @@
 #include "search/counts/report_counts.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "io/result/answer.hpp"
 
@@ -35,18 +34,6 @@ void report_finished(const ResultReader& result, SearchReport& report) {
   report.searched = searched;
   report.model_spacing = std::max(report.model_spacing, spacing);
   add_doubts(report.warnings, report);
-}
-
-void report_written(const WrittenResult& written, const ProfileSet& profile, SearchReport& report) {
-  report.colliding_points = written.collisions;
-  report.clearance_points = written.clearances;
-  report.inside_points = written.inside_points;
-  report.first_place = written.first_place;
-  report.least_clearance = written.least_clearance;
-  report.least_profile = written.least_profile;
-  for (std::uint32_t pose = 0; pose < profile.poses(); ++pose) {
-    if (!std::isinf(profile.at(pose).squared)) ++report.profile_poses;
-  }
 }
 
 }  // namespace clearway

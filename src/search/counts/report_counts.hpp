@@ -1,10 +1,8 @@
 #pragma once
 
 #include "clearway/search.hpp"
-#include "core/query/profile_set.hpp"
 #include "io/result/result.hpp"
 #include "io/store/store_reader.hpp"
-#include "stream/write_result.hpp"
 
 /// Fills in what the report of a search counts.
 namespace clearway {
@@ -14,8 +12,5 @@ void report_sizes(const StoreReader& store, const Query& query, SearchReport& re
 
 /// Fills in the answer of a result that was complete already.
 void report_finished(const ResultReader& result, SearchReport& report);
-
-/// Fills in the answer of a result that was just written.
-void report_written(const WrittenResult& written, const ProfileSet& profile, SearchReport& report);
 
 }  // namespace clearway

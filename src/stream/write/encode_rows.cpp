@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "io/result/answer.hpp"
+
 namespace clearway {
 namespace {
 
@@ -25,71 +27,55 @@ Vec3 xyz_of(const Quantisation& quantisation, const std::int32_t (&q)[3]) {
   return position(quantisation, q[0], q[1], q[2]);
 }
 
-/// The row of least rank. Of several it is the one with the smallest source index, because rows
-/// ascend by it.
-template <typename Row, typename RankOf>
-const Row& least_row(std::span<const Row> rows, RankOf rank_of) {
-  return *std::ranges::min_element(rows, {}, rank_of);
-}
-
-/// The columns of a strip of rows.
-struct Strip {
-  std::vector<std::uint64_t> source;
-  std::vector<Vec3> xyz;
-  std::vector<double> distance;
-  std::vector<std::uint32_t> pose, body, last_pose;
-};
-
 }  // namespace
 
-std::shared_ptr<CollisionPiece> encode_rows(const ResultWriter& writer, const RowMeaning& meaning,
-                                            std::span<const CollisionRow> rows) {
+std::shared_ptr<WritePiece<Collisions>> encode_rows(const ResultWriter& writer,
+                                                    const RowMeaning& meaning,
+                                                    std::span<const CollisionRow> rows) {
   const Quantisation& quantisation = meaning.quantisation;
   const BodyNumbers numbers = meaning.numbers;
-  const bool first_pose = meaning.header.first_pose;
-  const auto pose_of = [&](const auto& row) { return numbers.pose_of(row.first_pose); };
-  const auto body_of = [&](const auto& row) { return numbers.body_of(row.first_pose); };
-  auto out = std::make_shared<CollisionPiece>(writer.new_collisions());
-  Strip columns;
+  auto out = std::make_shared<WritePiece<Collisions>>(writer.new_rows<Collisions>());
+  Collisions columns;
   for_each_strip(rows, [&](std::span<const CollisionRow> strip) {
     set_column(columns.source, strip, [](const auto& row) { return row.source; });
     set_column(columns.xyz, strip, [&](const auto& row) { return xyz_of(quantisation, row.q); });
-    if (first_pose) set_column(columns.pose, strip, pose_of);
-    if (meaning.header.has_first_bodies()) set_column(columns.body, strip, body_of);
+    if (meaning.header.first_pose) {
+      set_column(columns.first_pose, strip,
+                 [&](const auto& row) { return numbers.pose_of(row.first_pose); });
+    }
+    if (meaning.header.has_first_bodies()) {
+      set_column(columns.body, strip,
+                 [&](const auto& row) { return numbers.body_of(row.first_pose); });
+    }
     if (meaning.header.last_pose) {
       set_column(columns.last_pose, strip, [](const auto& row) { return row.last_pose; });
     }
-    out->rows.add(columns.source, columns.xyz, columns.pose, columns.body, columns.last_pose);
+    out->rows.add(columns);
+    summarise(columns, out->summary);
   });
   out->rows.seal();
-  if (first_pose) {
-    const CollisionRow& first = least_row(rows, pose_of);
-    out->place = {first.source, pose_of(first), xyz_of(quantisation, first.q), 0, body_of(first)};
-  }
   return out;
 }
 
-std::shared_ptr<ClearancePiece> encode_rows(const ResultWriter& writer, const RowMeaning& meaning,
-                                            std::span<const ClearanceRow> rows) {
+std::shared_ptr<WritePiece<Clearances>> encode_rows(const ResultWriter& writer,
+                                                    const RowMeaning& meaning,
+                                                    std::span<const ClearanceRow> rows) {
   const Quantisation& quantisation = meaning.quantisation;
   const BodyNumbers numbers = meaning.numbers;
-  const auto pose_of = [&](const auto& row) { return numbers.pose_of(row.pose); };
-  const auto body_of = [&](const auto& row) { return numbers.body_of(row.pose); };
-  auto out = std::make_shared<ClearancePiece>(writer.new_clearances());
-  Strip columns;
+  auto out = std::make_shared<WritePiece<Clearances>>(writer.new_rows<Clearances>());
+  Clearances columns;
   for_each_strip(rows, [&](std::span<const ClearanceRow> strip) {
     set_column(columns.source, strip, [](const auto& row) { return row.source; });
     set_column(columns.xyz, strip, [&](const auto& row) { return xyz_of(quantisation, row.q); });
     set_column(columns.distance, strip, [](const auto& row) { return row.distance; });
-    for (const double distance : columns.distance) out->inside += distance < 0;
-    set_column(columns.pose, strip, pose_of);
-    if (!meaning.header.bodies.empty()) set_column(columns.body, strip, body_of);
-    out->rows.add(columns.source, columns.xyz, columns.distance, columns.pose, columns.body);
+    set_column(columns.pose, strip, [&](const auto& row) { return numbers.pose_of(row.pose); });
+    if (!meaning.header.bodies.empty()) {
+      set_column(columns.body, strip, [&](const auto& row) { return numbers.body_of(row.pose); });
+    }
+    out->rows.add(columns);
+    summarise(columns, out->summary);
   });
   out->rows.seal();
-  const ClearanceRow& least = least_row(rows, &ClearanceRow::distance);
-  out->place = {least.source, pose_of(least), xyz_of(quantisation, least.q), least.distance,
-                body_of(least)};
   return out;
 }
 

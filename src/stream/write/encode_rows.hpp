@@ -31,16 +31,12 @@ struct RowMeaning {
   BodyNumbers numbers;
 };
 
-using CollisionPiece = WritePiece<EncodedCollisions>;
-using ClearancePiece = WritePiece<EncodedClearances>;
-
-/// Encodes rows, at least one, that ascend by source index. With first poses, the piece names the
-/// first row that has the smallest one.
-std::shared_ptr<CollisionPiece> encode_rows(const ResultWriter& writer, const RowMeaning& meaning,
-                                            std::span<const CollisionRow> rows);
-/// Encodes rows, at least one, that ascend by source index. The piece names the first row that has
-/// the least distance.
-std::shared_ptr<ClearancePiece> encode_rows(const ResultWriter& writer, const RowMeaning& meaning,
-                                            std::span<const ClearanceRow> rows);
+/// Encodes and summarises rows that ascend by source index.
+std::shared_ptr<WritePiece<Collisions>> encode_rows(const ResultWriter& writer,
+                                                    const RowMeaning& meaning,
+                                                    std::span<const CollisionRow> rows);
+std::shared_ptr<WritePiece<Clearances>> encode_rows(const ResultWriter& writer,
+                                                    const RowMeaning& meaning,
+                                                    std::span<const ClearanceRow> rows);
 
 }  // namespace clearway

@@ -5,35 +5,30 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
-#include <utility>
 
-#include "clearway/found_place.hpp"
+#include "clearway/answer.hpp"
 #include "core/util/progress.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "io/result/result.hpp"
 
 namespace clearway {
 
-/// Encoded rows and, if asked for, the place of the row that matters most.
-template <typename Encoded>
+/// Encoded rows of a table, and what they say in short.
+template <typename Rows>
 struct WritePiece {
-  explicit WritePiece(Encoded encoded) : rows(std::move(encoded)) {}
-
-  Encoded rows;
-  std::optional<FoundPlace> place;
-  std::uint64_t inside = 0;  ///< rows with a distance below 0
+  EncodedRows<Rows> rows;
+  TableSummary summary = {};
 };
 
 /// Encodes rows, kEncodedRows at a time, on many threads, and hashes and writes them in order.
 /// at_once: greatest number of pieces in memory. encode(rows): returns a shared pointer to a piece
 /// of sealed rows; done(piece): called for each piece in order. Throws as ResultWriter does, and
 /// Interrupted when the progress asks to stop.
-template <typename Encoded, typename Row, typename Encode, typename Done>
+template <typename Rows, typename Row, typename Encode, typename Done>
 void write_rows(ResultWriter& writer, std::span<const Row> rows, std::size_t at_once,
                 Progress& progress, Encode encode, Done done) {
-  using Piece = std::shared_ptr<WritePiece<Encoded>>;
+  using Piece = std::shared_ptr<WritePiece<Rows>>;
   std::size_t next = 0;
   const ParallelScope scope;
   const SerialStage input, hashed, output;

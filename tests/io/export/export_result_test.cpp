@@ -31,7 +31,7 @@ Value value_at(const std::string& bytes, std::size_t at) {
 
 struct Sample {
   ResultHeader header;
-  ResultRows rows;
+  Collisions rows;
 };
 
 Sample sample(bool first_pose, std::size_t count, const std::string& crs = "") {

@@ -56,8 +56,8 @@ struct Scans {
   ScratchFolder folder;
   LasBytes first, second;
   ResultHeader header = sample_header(true);
-  ResultRows rows;
-  ClearanceRows clearances;
+  Collisions rows;
+  Clearances clearances;
 };
 
 template <typename Value>

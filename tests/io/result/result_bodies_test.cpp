@@ -27,8 +27,8 @@ struct Vehicle {
 
   void write(const std::string& name) const {
     ResultWriter writer(folder / name, header, rows.size(), near.size());
-    writer.append(rows.source, rows.xyz, rows.first_pose, rows.body);
-    writer.append_clearances(near.source, near.xyz, near.distance, near.pose, near.body);
+    writer.append(rows);
+    writer.append(near);
     writer.finish();
   }
   std::optional<std::string> fault(const std::string& name) const {
@@ -38,8 +38,8 @@ struct Vehicle {
 
   ScratchFolder folder;
   ResultHeader header = sample_header(true);
-  ResultRows rows;
-  ClearanceRows near;
+  Collisions rows;
+  Clearances near;
 };
 
 void overwrite(const std::filesystem::path& path, const char* dataset, std::uint32_t value) {
@@ -61,12 +61,12 @@ TEST_CASE("a vehicle's result is read as it was written") {
   const ResultReader result(vehicle.folder / "out.h5");
   CHECK(result.header() == vehicle.header);
   std::vector<std::uint32_t> bodies, nearest;
-  ResultRowStream stream(result);
-  for (ResultRows rows; stream.read(rows);) {
+  RowStream<Collisions> stream(result);
+  for (Collisions rows; stream.read(rows);) {
     bodies.insert(bodies.end(), rows.body.begin(), rows.body.end());
   }
-  ClearanceRowStream clearances(result);
-  for (ClearanceRows rows; clearances.read(rows);) {
+  RowStream<Clearances> clearances(result);
+  for (Clearances rows; clearances.read(rows);) {
     nearest.insert(nearest.end(), rows.body.begin(), rows.body.end());
   }
   CHECK(bodies == vehicle.rows.body);
@@ -94,21 +94,20 @@ TEST_CASE("bodies without first poses are only those of clearances") {
   vehicle.write("out.h5");
   CHECK_FALSE(vehicle.fault("out.h5"));
   const ResultReader result(vehicle.folder / "out.h5");
-  std::vector<std::uint32_t> none(1);
-  CHECK_THROWS_AS(result.read_first_body(0, none), std::logic_error);
-  CHECK_NOTHROW(result.read_clearance_body(0, none));
+  CHECK(result.column(&Collisions::body).empty());
+  CHECK(read_rows<Clearances>(result).body == vehicle.near.body);
 }
 
 TEST_CASE("the writer takes bodies exactly where the header has them") {
   const Vehicle vehicle;
-  const auto& rows = vehicle.rows;
+  Collisions rows = vehicle.rows;
+  rows.body.clear();
   ResultWriter writer(vehicle.folder / "a.h5", vehicle.header, rows.size(), 0);
-  CHECK_THROWS_AS(writer.append(rows.source, rows.xyz, rows.first_pose), std::logic_error);
+  CHECK_THROWS_AS(writer.append(rows), std::logic_error);
   ResultHeader model = vehicle.header;
   model.bodies.clear();
   ResultWriter of_model(vehicle.folder / "b.h5", model, rows.size(), 0);
-  CHECK_THROWS_AS(of_model.append(rows.source, rows.xyz, rows.first_pose, rows.body),
-                  std::logic_error);
+  CHECK_THROWS_AS(of_model.append(vehicle.rows), std::logic_error);
 }
 
 TEST_CASE("a body that there is not and a changed one are noticed") {

@@ -16,17 +16,6 @@ ResultHeader header_with_clearance() {
   return header;
 }
 
-ClearanceRows read_all(const ResultReader& reader) {
-  ClearanceRows all, batch;
-  for (ClearanceRowStream stream(reader); stream.read(batch);) {
-    all.source.insert(all.source.end(), batch.source.begin(), batch.source.end());
-    all.xyz.insert(all.xyz.end(), batch.xyz.begin(), batch.xyz.end());
-    all.distance.insert(all.distance.end(), batch.distance.begin(), batch.distance.end());
-    all.pose.insert(all.pose.end(), batch.pose.begin(), batch.pose.end());
-  }
-  return all;
-}
-
 std::optional<std::string> fault_of(const std::filesystem::path& path) {
   NoProgress progress;
   return verify_result(ResultReader(path), progress);
@@ -38,13 +27,13 @@ TEST_CASE("clearances are read as they were written") {
   const ScratchFolder folder;
   const ResultHeader header = header_with_clearance();
   const std::size_t count = GENERATE(0u, 1u, 65'536u, 150'000u);
-  const ResultRows rows = sample_rows(header, 70'000);
-  const ClearanceRows clearances = sample_clearances(header, count);
+  const Collisions rows = sample_rows(header, 70'000);
+  const Clearances clearances = sample_clearances(header, count);
   write_result(folder / "a.h5", header, rows, 1000, clearances);
   const ResultReader reader(folder / "a.h5");
   CHECK(reader.header() == header);
   CHECK(reader.clearances() == count);
-  const ClearanceRows read = read_all(reader);
+  const Clearances read = read_rows<Clearances>(reader);
   CHECK(read.source == clearances.source);
   CHECK(read.xyz == clearances.xyz);
   CHECK(read.distance == clearances.distance);
@@ -61,19 +50,17 @@ TEST_CASE("a result without clearances has none") {
   write_result(folder / "a.h5", header, sample_rows(header, 3));
   const ResultReader reader(folder / "a.h5");
   CHECK(reader.clearances() == 0);
-  CHECK(read_all(reader).size() == 0);
+  CHECK(read_rows<Clearances>(reader).size() == 0);
   ResultWriter writer(folder / "b.h5", header, 0);
-  CHECK_THROWS_AS(writer.append_clearances({}, {}, {}, {}), std::logic_error);
+  CHECK_THROWS_AS(writer.append(Clearances{}), std::logic_error);
 }
 
 TEST_CASE("a writer refuses clearances that do not belong to its result") {
   const ScratchFolder folder;
   const ResultHeader header = header_with_clearance();
-  const ClearanceRows rows = sample_clearances(header, 3);
+  const Clearances rows = sample_clearances(header, 3);
   const auto append = [&](ResultWriter& writer, std::size_t first, std::size_t count) {
-    writer.append_clearances(
-        std::span(rows.source).subspan(first, count), std::span(rows.xyz).subspan(first, count),
-        std::span(rows.distance).subspan(first, count), std::span(rows.pose).subspan(first, count));
+    writer.append(part_of(rows, first, count));
   };
   ResultWriter writer(folder / "a.h5", header, 0, 2);
   CHECK_THROWS_AS(append(writer, 0, 3), std::logic_error);
@@ -87,7 +74,7 @@ TEST_CASE("a writer refuses clearances that do not belong to its result") {
 TEST_CASE("clearances that no run can have found are faults") {
   const ScratchFolder folder;
   const ResultHeader header = header_with_clearance();
-  ClearanceRows rows = sample_clearances(header, 70'000);
+  Clearances rows = sample_clearances(header, 70'000);
   const auto at = GENERATE(as<std::size_t>(), 0, 65'536, 69'999);
   std::string expected;
   SECTION("too far") { rows.distance[at] = std::nextafter(0.75, 1), expected = "distance"; }
@@ -107,8 +94,8 @@ TEST_CASE("clearances that no run can have found are faults") {
 TEST_CASE("clearances are compared where both results have them") {
   const ScratchFolder folder;
   const ResultHeader header = header_with_clearance();
-  const ClearanceRows a = sample_clearances(header, 1000);
-  ClearanceRows b = a;
+  const Clearances a = sample_clearances(header, 1000);
+  Clearances b = a;
   b.distance[5] = std::nextafter(b.distance[5], 0);
   b.pose[7] ^= 1;
   b.xyz[9].z += 0.01;

@@ -22,17 +22,6 @@ ResultHeader header_with_profile(std::uint64_t poses) {
   return header;
 }
 
-ProfileRows read_all(const ResultReader& reader) {
-  ProfileRows all, batch;
-  for (ProfileRowStream stream(reader); stream.read(batch);) {
-    all.distance.insert(all.distance.end(), batch.distance.begin(), batch.distance.end());
-    all.source.insert(all.source.end(), batch.source.begin(), batch.source.end());
-    all.xyz.insert(all.xyz.end(), batch.xyz.begin(), batch.xyz.end());
-    all.chainage.insert(all.chainage.end(), batch.chainage.begin(), batch.chainage.end());
-  }
-  return all;
-}
-
 /// Whether two lists have the same bits, so that NaN equals NaN.
 bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
@@ -50,14 +39,14 @@ TEST_CASE("a profile is read as it was written") {
   const auto poses = GENERATE(as<std::uint64_t>(), 0, 1, 65'536, 150'000);
   const ResultHeader header = header_with_profile(poses);
   const std::size_t others = poses == 0 ? 0 : 70'000;
-  const ResultRows rows = sample_rows(header, others);
-  const ClearanceRows clearances = sample_clearances(header, others);
+  const Collisions rows = sample_rows(header, others);
+  const Clearances clearances = sample_clearances(header, others);
   const ProfileRows profile = sample_profile(header);
   write_result(folder / "a.h5", header, rows, 1000, clearances, profile);
   const ResultReader reader(folder / "a.h5");
   CHECK(reader.header() == header);
   CHECK(reader.profile_rows() == poses);
-  const ProfileRows read = read_all(reader);
+  const ProfileRows read = read_rows<ProfileRows>(reader);
   CHECK(read.distance == profile.distance);
   CHECK(read.source == profile.source);
   CHECK(same_bits(read.xyz, profile.xyz));
@@ -73,9 +62,9 @@ TEST_CASE("a result without a profile has none") {
   write_result(folder / "a.h5", sample_header(false), {});
   const ResultReader reader(folder / "a.h5");
   CHECK(reader.profile_rows() == 0);
-  CHECK(read_all(reader).size() == 0);
+  CHECK(read_rows<ProfileRows>(reader).size() == 0);
   ResultWriter writer(folder / "b.h5", sample_header(false), 0);
-  CHECK_THROWS_AS(writer.append_profile({}, {}, {}, {}), std::logic_error);
+  CHECK_THROWS_AS(writer.append(ProfileRows{}), std::logic_error);
 }
 
 TEST_CASE("a writer refuses a profile that does not belong to its result") {
@@ -83,9 +72,9 @@ TEST_CASE("a writer refuses a profile that does not belong to its result") {
   const ResultHeader header = header_with_profile(3);
   const ProfileRows rows = sample_profile(header);
   const auto append = [&](ResultWriter& writer, std::size_t count, std::size_t sources) {
-    writer.append_profile(std::span(rows.distance).first(count),
-                          std::span(rows.source).first(sources), std::span(rows.xyz).first(count),
-                          std::span(rows.chainage).first(count));
+    ProfileRows part = part_of(rows, 0, count);
+    part.source.resize(sources);
+    writer.append(part);
   };
   ResultWriter writer(folder / "a.h5", header, 0);
   CHECK_THROWS_AS(append(writer, 3, 2), std::logic_error);

@@ -17,7 +17,7 @@ namespace {
 /// Reads the colliding points. True where they and the header are as written; throws InputError
 /// where damage is noticed.
 bool reads_as(const std::filesystem::path& path, const ResultHeader& header,
-              const ResultRows& rows) {
+              const Collisions& rows) {
   const ResultReader reader(path);
   return reader.header() == header && same_rows(read_rows(reader), rows);
 }
@@ -25,14 +25,14 @@ bool reads_as(const std::filesystem::path& path, const ResultHeader& header,
 /// Reads every table. True where they and the header are as written; throws InputError where damage
 /// is noticed.
 bool reads_tables(const std::filesystem::path& path, const ResultHeader& header,
-                  const ResultRows& rows, const ClearanceRows& clearances,
+                  const Collisions& rows, const Clearances& clearances,
                   const ProfileRows& profile) {
   if (!reads_as(path, header, rows)) return false;
   const ResultReader reader(path);
-  ClearanceRows near, no_more;
+  Clearances near, no_more;
   ProfileRows along, no_poses;
-  ClearanceRowStream near_stream(reader);
-  ProfileRowStream along_stream(reader);
+  RowStream<Clearances> near_stream(reader);
+  RowStream<ProfileRows> along_stream(reader);
   if (!near_stream.read(near) || near_stream.read(no_more)) return false;
   if (!along_stream.read(along) || along_stream.read(no_poses)) return false;
   return near.source == clearances.source && near.xyz == clearances.xyz &&
@@ -94,8 +94,8 @@ TEST_CASE("a flipped byte anywhere is noticed or changes nothing") {
   header.crs_wkt = GENERATE(std::string("EPSG"), std::string(6000, 'w'));
   header.poses = 6;
   header.clearance = header.profile = 0.5;
-  const ResultRows rows = sample_rows(header, 5);
-  const ClearanceRows near = sample_clearances(header, 7);
+  const Collisions rows = sample_rows(header, 5);
+  const Clearances near = sample_clearances(header, 7);
   const ProfileRows along = sample_profile(header);
   write_result(folder / "out.h5", header, rows, 1000, near, along);
   const std::string bytes = bytes_of(folder / "out.h5");
@@ -119,7 +119,7 @@ TEST_CASE("a flipped byte anywhere is noticed or changes nothing") {
 TEST_CASE("datasets of another type or shape, or with impossible values, are refused") {
   const ScratchFolder folder;
   const ResultHeader header = sample_header(true);
-  const ResultRows rows = sample_rows(header, 3);
+  const Collisions rows = sample_rows(header, 3);
   const auto path = folder / "out.h5";
   write_result(path, header, rows);
   const auto refused = [&](const std::string& expectation) {
@@ -181,7 +181,7 @@ TEST_CASE("datasets of another type or shape, or with impossible values, are ref
 TEST_CASE("sources that do not ascend from one batch to the next are refused") {
   const ScratchFolder folder;
   const ResultHeader header = sample_header(false);
-  ResultRows rows = sample_rows(header, 65'537);
+  Collisions rows = sample_rows(header, 65'537);
   write_result(folder / "out.h5", header, rows);
   rows.source.back() = rows.source[65'535];
   replace_dataset<std::uint64_t>(folder / "out.h5", "/collisions/source", rows.source, 0);

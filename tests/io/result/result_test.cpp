@@ -19,7 +19,7 @@ TEST_CASE("a result is read as it was written") {
   header.between_poses = GENERATE(false, true);
   header.ways_without_ends = header.has_poses_of_ways() && count % 2 == 1;
   header.crs_wkt = GENERATE(std::string(), std::string("PROJCS[\"ETRS89 / UTM 32N — ä\"]"));
-  const ResultRows rows = sample_rows(header, count);
+  const Collisions rows = sample_rows(header, count);
   write_result(folder / "out.h5", header, rows);
 
   const ResultReader reader(folder / "out.h5");
@@ -32,28 +32,25 @@ TEST_CASE("a result is read as it was written") {
 TEST_CASE("a result is read by any range of rows") {
   const ScratchFolder folder;
   const ResultHeader header = sample_header(true);
-  const ResultRows rows = sample_rows(header, 70'000);
+  const Collisions rows = sample_rows(header, 70'000);
   write_result(folder / "out.h5", header, rows);
   const ResultReader reader(folder / "out.h5");
   for (const std::size_t first : {0u, 8'191u, 8'192u, 32'767u, 65'535u, 69'990u}) {
-    std::vector<std::uint64_t> source(10);
-    std::vector<Vec3> xyz(10);
-    std::vector<std::uint32_t> pose(10);
-    reader.read_source(first, source);
-    reader.read_xyz(first, xyz);
-    reader.read_first_pose(first, pose);
-    CHECK(std::equal(source.begin(), source.end(), rows.source.begin() + first));
-    CHECK(std::equal(xyz.begin(), xyz.end(), rows.xyz.begin() + first));
-    CHECK(std::equal(pose.begin(), pose.end(), rows.first_pose.begin() + first));
+    Collisions read;
+    reader.read(first, 10, read);
+    CHECK(same_rows(read, part_of(rows, first, 10)));
   }
-  std::vector<std::uint64_t> source(10);
-  CHECK_THROWS_AS(reader.read_source(69'991, source), std::logic_error);
+  Collisions read;
+  CHECK_THROWS_AS(reader.read(69'991, 10, read), std::logic_error);
+  CHECK(reader.column(&Collisions::source) == rows.source);
+  CHECK(reader.column(&Collisions::xyz) == rows.xyz);
+  CHECK(reader.column(&Collisions::first_pose) == rows.first_pose);
 }
 
 TEST_CASE("equal contents give equal bytes, however they were appended and named") {
   const ScratchFolder folder;
   const ResultHeader header = sample_header(GENERATE(false, true));
-  const ResultRows rows = sample_rows(header, 150'000);
+  const Collisions rows = sample_rows(header, 150'000);
   write_result(folder / "a.h5", header, rows, 150'000);
   const std::string bytes = bytes_of(folder / "a.h5");
   for (const std::size_t step : {7u, 8'192u, 65'537u, 149'999u}) {
@@ -81,15 +78,14 @@ TEST_CASE("results of different queries differ in their bytes") {
 TEST_CASE("a writer refuses rows that do not belong to its result") {
   const ScratchFolder folder;
   const ResultHeader header = sample_header(true);
-  const ResultRows rows = sample_rows(header, 4);
+  const Collisions rows = sample_rows(header, 4);
   ResultWriter writer(folder / "out.h5", header, 3);
-  CHECK_THROWS_AS(writer.append(rows.source, rows.xyz, rows.first_pose), std::logic_error);
-  const auto source = std::span(rows.source).first(2);
-  const auto xyz = std::span(rows.xyz).first(2);
-  CHECK_THROWS_AS(writer.append(source, xyz, {}), std::logic_error);
-  writer.append(source, xyz, std::span(rows.first_pose).first(2));
-  CHECK_THROWS_AS(writer.append(source.first(1), xyz.first(1), std::span(rows.first_pose).first(1)),
-                  std::logic_error);
+  CHECK_THROWS_AS(writer.append(rows), std::logic_error);
+  Collisions two = part_of(rows, 0, 2);
+  two.first_pose.clear();
+  CHECK_THROWS_AS(writer.append(two), std::logic_error);
+  writer.append(part_of(rows, 0, 2));
+  CHECK_THROWS_AS(writer.append(part_of(rows, 0, 1)), std::logic_error);
   CHECK_THROWS_AS(writer.finish(), std::logic_error);
 }
 

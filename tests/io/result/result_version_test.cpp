@@ -42,8 +42,8 @@ TEST_CASE("a result of version 2 is read, and has no coordinates of clearances")
   NoProgress progress;
   CHECK(verify_result(reader, progress).value_or("") == "");
   CHECK(read_rows(reader).source == std::vector<std::uint64_t>{3, 8});
-  ClearanceRows rows;
-  CHECK(ClearanceRowStream(reader).read(rows));
+  Clearances rows;
+  CHECK(RowStream<Clearances>(reader).read(rows));
   CHECK(rows.source == std::vector<std::uint64_t>{3, 5, 8});
   CHECK(rows.distance == std::vector<double>{0.05, 0.3, 0.02});
   CHECK(rows.xyz.empty());

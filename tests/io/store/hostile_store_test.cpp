@@ -160,8 +160,8 @@ TEST_CASE("rows of a result that turn to zeros, checksum and all, are noticed") 
   const ScratchFolder folder;
   ResultHeader header = sample_header(true);
   header.clearance = 0.5;
-  const ResultRows rows = sample_rows(header, 50);
-  const ClearanceRows clearance_rows = sample_clearances(header, 50);
+  const Collisions rows = sample_rows(header, 50);
+  const Clearances clearance_rows = sample_clearances(header, 50);
   write_result(folder / "out.h5", header, rows, 1000, clearance_rows);
   const std::string bytes = bytes_of(folder / "out.h5");
   std::size_t noticed = 0;
@@ -174,9 +174,9 @@ TEST_CASE("rows of a result that turn to zeros, checksum and all, are noticed") 
     INFO("bytes " << at << " to " << end);
     try {
       const ResultReader reader(folder / "out.h5");
-      const ResultRows read = read_rows(reader);
-      ClearanceRowStream clearances(reader);
-      ClearanceRows near, none;
+      const Collisions read = read_rows(reader);
+      RowStream<Clearances> clearances(reader);
+      Clearances near, none;
       clearances.read(near);
       clearances.read(none);  // the hash is checked at the end
       CHECK(near.pose == clearance_rows.pose);

@@ -28,14 +28,14 @@ ResultHeader header_of(std::uint64_t points, double clearance) {
   return header;
 }
 
-ResultRows rows_of(const Sources& sources) {
+Collisions rows_of(const Sources& sources) {
   return {.source = sources, .xyz = std::vector<Vec3>(sources.size()), .first_pose = {}};
 }
 
 ResultReader truth_of(const ScratchFolder& folder, const Distances& distances,
                       double clearance = kClearance) {
   Sources hits;
-  ClearanceRows clearances;
+  Clearances clearances;
   for (std::uint64_t i = 0; i < distances.size(); ++i) {
     if (distances[i] < kRadius) hits.push_back(i);
     if (distances[i] >= clearance) continue;

@@ -234,7 +234,7 @@ TEST_CASE("the result is that of brute force") {
   const auto model = read_model_points(work.hall.path("model.ply"));
   const auto poses = read_trajectory(work.hall.path("trajectory.txt"), {});
   const auto first = brute_force_first_poses(environment, {model, poses, {0.1, true}});
-  ResultRows expected;
+  Collisions expected;
   for (std::size_t i = 0; i < first.size(); ++i) {
     if (first[i] == HitSet::kNever) continue;
     expected.source.push_back(i);

@@ -14,7 +14,7 @@ namespace {
 struct Pair {
   Pair() {
     ResultHeader header = sample_header(true);
-    ResultRows rows = sample_rows(header, 4);
+    Collisions rows = sample_rows(header, 4);
     write_result(folder / "a.h5", header, rows);
     rows.source.erase(rows.source.begin() + 1);
     rows.xyz.erase(rows.xyz.begin() + 1);
@@ -77,7 +77,7 @@ TEST_CASE("compare --json is one JSON object") {
   CHECK(json["question_differences"].size() == 1);
   CHECK(json["question_differences"][0]["what"] == "radius");
   REQUIRE(json["differences"].size() == 2);
-  const ResultRows rows = sample_rows(sample_header(true), 4);
+  const Collisions rows = sample_rows(sample_header(true), 4);
   CHECK(json["differences"][0]["kind"] == "only in a");
   CHECK(json["differences"][0]["source"] == rows.source[1]);
   CHECK(json["differences"][0]["xyz"][2].get<double>() == rows.xyz[1].z);

@@ -37,9 +37,9 @@ struct Inputs {
   std::vector<Pose> poses;
 };
 
-ClearanceRows brute_clearances(const Inputs& inputs) {
+Clearances brute_clearances(const Inputs& inputs) {
   const auto all = brute_force_clearances(inputs.environment, inputs.query());
-  ClearanceRows rows;
+  Clearances rows;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!(all[i].squared < kClearance * kClearance)) continue;
     rows.source.push_back(i);
@@ -49,9 +49,9 @@ ClearanceRows brute_clearances(const Inputs& inputs) {
   return rows;
 }
 
-ResultRows brute_collisions(const Inputs& inputs, Query query) {
+Collisions brute_collisions(const Inputs& inputs, Query query) {
   const auto first = brute_force_first_poses(inputs.environment, query);
-  ResultRows rows;
+  Collisions rows;
   for (std::size_t i = 0; i < first.size(); ++i) {
     if (first[i] == HitSet::kNever) continue;
     rows.source.push_back(i);
@@ -61,11 +61,11 @@ ResultRows brute_collisions(const Inputs& inputs, Query query) {
   return rows;
 }
 
-ClearanceRows clearances_of(const std::filesystem::path& path) {
+Clearances clearances_of(const std::filesystem::path& path) {
   const ResultReader result(path);
-  ClearanceRows rows;
+  Clearances rows;
   REQUIRE(result.clearances() <= 65'536);  // one batch
-  ClearanceRowStream(result).read(rows);
+  RowStream<Clearances>(result).read(rows);
   return rows;
 }
 
@@ -83,7 +83,7 @@ std::string without_places(const std::string& csv) {
 }
 
 /// The CSV that `export --what clearance` writes, without the places.
-std::string csv_of(const ClearanceRows& rows) {
+std::string csv_of(const Clearances& rows) {
   std::string text = "source,distance,pose\n";
   for (std::size_t i = 0; i < rows.size(); ++i) {
     char distance[40];
@@ -104,14 +104,14 @@ TEST_CASE("clearances are those of brute force, beside the same collisions") {
       work.run_hall(work.hall / "site.h5", "out.h5",
                     std::string("--clearance 0.4 --json") + (first_pose ? " --first-pose" : ""));
   REQUIRE(run.exit_code == 0);
-  const ClearanceRows expected = brute_clearances(inputs);
-  const ClearanceRows rows = clearances_of(work.folder / "out.h5");
+  const Clearances expected = brute_clearances(inputs);
+  const Clearances rows = clearances_of(work.folder / "out.h5");
   CHECK(rows.source == expected.source);
   CHECK(rows.distance == expected.distance);
   CHECK(rows.pose == expected.pose);
   Query query = inputs.query();
   query.first_pose = first_pose;
-  const ResultRows collisions = brute_collisions(inputs, query);
+  const Collisions collisions = brute_collisions(inputs, query);
   CHECK(collisions.size() > 100);
   CHECK(expected.size() > collisions.size() + 100);
   CHECK(same_rows(read_rows(ResultReader(work.folder / "out.h5")), collisions));
@@ -139,7 +139,7 @@ TEST_CASE("a profile is that of brute force, beside the same collisions") {
   const ResultReader result(work.folder / "out.h5");
   ProfileRows rows;
   REQUIRE(result.profile_rows() == expected.size());
-  REQUIRE(ProfileRowStream(result).read(rows));
+  REQUIRE(RowStream<ProfileRows>(result).read(rows));
   std::uint64_t wrong = 0, found = 0;
   for (std::size_t pose = 0; pose < expected.size(); ++pose) {
     wrong += rows.distance[pose] != std::sqrt(expected[pose].squared);
@@ -221,7 +221,7 @@ TEST_CASE("between poses both engines find what brute force finds") {
   Query query = inputs.query();
   const std::size_t at_poses = brute_collisions(inputs, query).size();
   query.between_poses = true;
-  const ResultRows expected = brute_collisions(inputs, query);
+  const Collisions expected = brute_collisions(inputs, query);
   CHECK(expected.size() > at_poses);
   CHECK(same_rows(read_rows(ResultReader(work.folder / "sweep.h5")), expected));
 

@@ -124,7 +124,7 @@ void check_against_brute_force(const Crop& crop, double radius) {
               .exit_code == 0);
   const auto positions = crop.positions();
   const auto first = brute_force_first_poses(positions, {crop.model, crop.poses, {radius, true}});
-  ResultRows expected;
+  Collisions expected;
   for (std::size_t i = 0; i < first.size(); ++i) {
     if (first[i] == HitSet::kNever) continue;
     expected.source.push_back(i);
@@ -138,7 +138,7 @@ void check_against_brute_force(const Crop& crop, double radius) {
   Query query{crop.model, crop.poses, {radius}};
   query.profile = 0.5;
   ProfileRows profile;
-  REQUIRE(ProfileRowStream(result).read(profile));
+  REQUIRE(RowStream<ProfileRows>(result).read(profile));
   const auto nearest = brute_force_profile(positions, query);
   for (std::size_t pose = 0; pose < nearest.size(); ++pose) {
     CHECK(profile.distance[pose] == std::sqrt(nearest[pose].squared));

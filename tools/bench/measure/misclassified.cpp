@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "io/result/result_cursor.hpp"
+#include "io/result/result.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway::bench {
@@ -36,7 +36,7 @@ class Distances {
   std::optional<double> of(std::uint64_t source) {
     while (!rows_.at_end() && rows_.source() < source) rows_.advance();
     if (rows_.at_end() || rows_.source() != source) return std::nullopt;
-    return rows_.distance();
+    return rows_.get(&Clearances::distance);
   }
 
   /// Reads the rows that are left, because their hash is checked at the end.
@@ -60,7 +60,7 @@ Misclassified misclassified(const ResultReader& truth, const ResultReader& other
                              " environment points; expected at least the " +
                              std::to_string(out.environment_points) + " of " + truth.name());
   }
-  RowCursor right(truth), found(other);
+  CollisionCursor right(truth), found(other);
   Distances distances(truth);
   const auto note = [&](double d) {
     const double distance = std::abs(d - radius);
@@ -97,7 +97,7 @@ NearBoundary points_near_boundary(const ResultReader& truth, double radius) {
   const auto ulps = [ulp](std::size_t i) { return std::ldexp(ulp, static_cast<int>(i)); };
   check_reach(truth, radius + ulps(out.size() - 1));
   for (ClearanceCursor rows(truth); !rows.at_end(); rows.advance()) {
-    const double distance = std::abs(rows.distance() - radius);  // exact near the radius (Sterbenz)
+    const double distance = std::abs(rows.get(&Clearances::distance) - radius);  // exact near the radius (Sterbenz)
     for (std::size_t i = out.size(); i > 0 && distance <= ulps(i - 1); --i) ++out[i - 1];
   }
   return out;

@@ -9,7 +9,7 @@
 
 #include "io/formats/las/las_writer.hpp"
 #include "io/result/result.hpp"
-#include "io/result/result_cursor.hpp"
+#include "io/result/result.hpp"
 #include "scene/random.hpp"
 
 namespace clearway::bench {
@@ -61,7 +61,7 @@ Json decided_at_boundary(const std::filesystem::path& result) {
   const std::vector<std::int32_t> steps = steps_beside_boundary();
   std::vector<bool> found(steps.size());
   const ResultReader reader(result);
-  for (RowCursor rows(reader); !rows.at_end(); rows.advance()) found.at(rows.source()) = true;
+  for (CollisionCursor rows(reader); !rows.at_end(); rows.advance()) found.at(rows.source()) = true;
   std::vector<int> points(kOctaves), wrong(kOctaves);
   int false_hits = 0, misses = 0;
   for (std::size_t i = 0; i < steps.size(); ++i) {

@@ -16,7 +16,7 @@
 #include "io/conflicts/bcf/deflated.hpp"
 #include "io/conflicts/bcf/picture.hpp"
 #include "io/conflicts/conflict_fields.hpp"
-#include "io/result/result_rows.hpp"
+#include "io/result/result.hpp"
 #include "io/system/file.hpp"
 
 namespace clearway {
@@ -234,9 +234,9 @@ ConflictPoints conflict_points(const ResultReader& result, const Conflicts& conf
   constexpr std::size_t kMost = ConflictPictures::kMostPoints;
   ConflictPoints out(conflicts.listed.size());
   std::vector<std::uint64_t> seen(out.size());
-  ResultRowStream stream(result);
+  RowStream<Collisions> stream(result);
   std::size_t row = 0;
-  for (ResultRows rows; stream.read(rows);) {
+  for (Collisions rows; stream.read(rows);) {
     for (const Vec3& p : rows.xyz) {
       const std::uint32_t id = conflict_of[row++];
       if (id == 0) continue;

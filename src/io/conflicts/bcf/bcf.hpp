@@ -21,7 +21,7 @@ struct ConflictPictures {
 };
 
 /// At most kMostPoints points of each conflict, every n-th. conflict_of: the conflict of each row,
-/// as find_conflicts() returns it. Throws as ResultRowStream does.
+/// as find_conflicts() returns it. Throws as RowStream<Collisions> does.
 ConflictPoints conflict_points(const ResultReader& result, const Conflicts& conflicts,
                                const std::vector<std::uint32_t>& conflict_of);
 

@@ -35,17 +35,16 @@ struct Layout {
 Layout layout_of(const LasHeader& header) {
   Layout out{};
   out.version_14 = header.points > std::numeric_limits<std::uint32_t>::max() ||
-                   !header.crs_wkt.empty() || header.first_pose || header.distance || header.body;
+                   !header.crs_wkt.empty() || !header.fields.empty();
   // Including its zero byte.
   out.wkt_bytes = header.crs_wkt.empty() ? 0 : header.crs_wkt.size() + 1;
   out.wkt_evlr = out.wkt_bytes > std::numeric_limits<std::uint16_t>::max();
   out.wkt_vlr = out.wkt_bytes > 0 && !out.wkt_evlr;
-  out.extra_fields = static_cast<std::uint16_t>((header.first_pose ? 1 : 0) +
-                                                (header.distance ? 2 : 0) + (header.body ? 1 : 0));
-  const int extra =
-      (header.first_pose ? 4 : 0) + (header.distance ? 8 + 4 : 0) + (header.body ? 4 : 0);
-  out.record_bytes =
-      static_cast<std::uint16_t>((out.version_14 ? kRecordBytes6 : kRecordBytes0) + extra);
+  out.extra_fields = static_cast<std::uint16_t>(header.fields.size());
+  out.record_bytes = out.version_14 ? kRecordBytes6 : kRecordBytes0;
+  for (const PointField& field : header.fields) {
+    out.record_bytes = static_cast<std::uint16_t>(out.record_bytes + field.bytes());
+  }
   out.vlrs = (out.wkt_vlr ? 1 : 0) + (out.extra_fields > 0 ? 1 : 0);
   out.points_offset = out.version_14 ? kHeaderSize14 : kHeaderSize12;
   out.points_offset += out.vlrs * kVlrHeaderBytes;
@@ -112,15 +111,11 @@ void put_extra_bytes_vlr(ByteWriter& out, const LasHeader& header, const Layout&
   put_record_header(out, "LASF_Spec", 4,
                     static_cast<std::uint16_t>(layout.extra_fields * kLasExtraBytes),
                     "extra bytes");
-  if (header.first_pose) {
-    out.put(las_extra_bytes("first_pose", LasExtraType::kUint32, "first pose that touches"));
-  }
-  if (header.distance) {
-    out.put(las_extra_bytes("distance", LasExtraType::kDouble, "least distance to the model"));
-    out.put(las_extra_bytes("pose", LasExtraType::kUint32, "pose that has the distance"));
-  }
-  if (header.body) {
-    out.put(las_extra_bytes("body", LasExtraType::kUint32, "body of that pose"));
+  for (const PointField& field : header.fields) {
+    out.put(las_extra_bytes(
+        field.name,
+        field.type == PointField::Type::kUint32 ? LasExtraType::kUint32 : LasExtraType::kDouble,
+        field.description));
   }
 }
 
@@ -176,22 +171,13 @@ LasWriter::LasWriter(const File& file, const LasHeader& header)
 LasWriter::~LasWriter() = default;
 
 void LasWriter::write(std::span<const std::array<std::int32_t, 3>> quanta,
-                      const LasExtras& extras) {
-  const LasHeader& header = state_->header;
-  const std::size_t distances = header.distance ? quanta.size() : 0;
-  if (extras.first_pose.size() != (header.first_pose ? quanta.size() : 0) ||
-      extras.distance.size() != distances || extras.pose.size() != distances ||
-      extras.body.size() != (header.body ? quanta.size() : 0)) {
-    throw std::logic_error("LasWriter: extra bytes do not match the header");
-  }
+                      std::span<const FieldValues> values) {
+  check_fields(state_->header.fields, values, quanta.size());
   for (std::size_t i = 0; i < quanta.size(); ++i) {
     state_->put_point(quanta[i]);
-    if (header.first_pose) state_->out.put(extras.first_pose[i]);
-    if (header.distance) {
-      state_->out.put(extras.distance[i]);
-      state_->out.put(extras.pose[i]);
+    for (const FieldValues& field : values) {
+      std::visit([&](const auto& of_points) { state_->out.put(of_points[i]); }, field);
     }
-    if (header.body) state_->out.put(extras.body[i]);
   }
   state_->written += quanta.size();
 }

@@ -5,9 +5,11 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/geometry/quantisation.hpp"
 #include "core/geometry/quantum_box.hpp"
+#include "io/formats/point_field.hpp"
 #include "io/system/file.hpp"
 
 namespace clearway {
@@ -16,20 +18,9 @@ namespace clearway {
 struct LasHeader {
   Quantisation quantisation;
   std::uint64_t points = 0;
-  QuantumBox bounds{};      ///< box of all points; ignored for 0 points
-  std::string crs_wkt{};    ///< CRS; empty for none
-  bool first_pose = false;  ///< adds the extra-bytes field "first_pose", uint32
-  bool distance = false;    ///< adds the extra-bytes fields "distance", double, and "pose", uint32
-  bool body = false;        ///< adds the extra-bytes field "body", uint32
-};
-
-/// Additional values of consecutive points. A span has one value per point where the header has the
-/// field, and is empty otherwise.
-struct LasExtras {
-  std::span<const std::uint32_t> first_pose{};
-  std::span<const double> distance{};
-  std::span<const std::uint32_t> pose{};
-  std::span<const std::uint32_t> body{};
+  QuantumBox bounds{};    ///< box of all points; ignored for 0 points
+  std::string crs_wkt{};  ///< CRS; empty for none
+  std::vector<PointField> fields{};  ///< become extra bytes
 };
 
 /// Writes LAS front to back, so that the output may be a pipe: version 1.2 with point format 0, or
@@ -41,7 +32,9 @@ class LasWriter {
   LasWriter(const File& file, const LasHeader& header);
   ~LasWriter();
 
-  void write(std::span<const std::array<std::int32_t, 3>> quanta, const LasExtras& extras = {});
+  /// values: those of each field of the header. Throws std::logic_error where they do not fit.
+  void write(std::span<const std::array<std::int32_t, 3>> quanta,
+             std::span<const FieldValues> values = {});
 
   /// Flushes. Throws std::logic_error unless exactly header.points points were written.
   void finish();

@@ -13,9 +13,10 @@ std::string header_text(const PlyOutput& header) {
   if (!header.comment.empty()) text += "comment " + header.comment + "\n";
   text += "element vertex " + std::to_string(header.points) + "\n";
   for (const char* axis : {"x", "y", "z"}) text += type + axis + "\n";
-  if (header.first_pose) text += "property uint first_pose\n";
-  if (header.distance) text += "property double distance\nproperty uint pose\n";
-  if (header.body) text += "property uint body\n";
+  for (const PointField& field : header.fields) {
+    text += field.type == PointField::Type::kUint32 ? "property uint " : "property double ";
+    text += field.name + "\n";
+  }
   return text + "end_header\n";
 }
 
@@ -26,13 +27,8 @@ PlyWriter::PlyWriter(const File& file, const PlyOutput& header) : out_(file), he
   out_.put_text(text, text.size());
 }
 
-void PlyWriter::write(std::span<const Vec3> points, const PlyExtras& extras) {
-  const std::size_t distances = header_.distance ? points.size() : 0;
-  if (extras.first_pose.size() != (header_.first_pose ? points.size() : 0) ||
-      extras.distance.size() != distances || extras.pose.size() != distances ||
-      extras.body.size() != (header_.body ? points.size() : 0)) {
-    throw std::logic_error("PlyWriter: properties do not match the header");
-  }
+void PlyWriter::write(std::span<const Vec3> points, std::span<const FieldValues> values) {
+  check_fields(header_.fields, values, points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
       if (header_.coordinates == PlyCoordinates::kFloat32) {
@@ -41,12 +37,9 @@ void PlyWriter::write(std::span<const Vec3> points, const PlyExtras& extras) {
         out_.put(points[i][k]);
       }
     }
-    if (header_.first_pose) out_.put(extras.first_pose[i]);
-    if (header_.distance) {
-      out_.put(extras.distance[i]);
-      out_.put(extras.pose[i]);
+    for (const FieldValues& field : values) {
+      std::visit([&](const auto& of_points) { out_.put(of_points[i]); }, field);
     }
-    if (header_.body) out_.put(extras.body[i]);
   }
   written_ += points.size();
 }

@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "clearway/vec3.hpp"
 #include "io/formats/byte_writer.hpp"
+#include "io/formats/point_field.hpp"
 #include "io/system/file.hpp"
 
 namespace clearway {
@@ -16,19 +18,8 @@ enum class PlyCoordinates { kFloat32, kFloat64 };
 struct PlyOutput {
   std::uint64_t points = 0;
   PlyCoordinates coordinates = PlyCoordinates::kFloat64;
-  bool first_pose = false;  ///< adds the property "first_pose", uint
-  bool distance = false;    ///< adds the properties "distance", double, and "pose", uint
-  bool body = false;        ///< adds the property "body", uint
-  std::string comment{};    ///< comment of one line; empty for none
-};
-
-/// Additional properties of consecutive points. A span has one value per point where the header has
-/// the property, and is empty otherwise.
-struct PlyExtras {
-  std::span<const std::uint32_t> first_pose{};
-  std::span<const double> distance{};
-  std::span<const std::uint32_t> pose{};
-  std::span<const std::uint32_t> body{};
+  std::vector<PointField> fields{};  ///< become properties of type uint or double
+  std::string comment{};             ///< comment of one line; empty for none
 };
 
 /// Writes a point cloud as binary little-endian PLY, front to back: the element "vertex" with the
@@ -38,7 +29,8 @@ class PlyWriter {
  public:
   PlyWriter(const File& file, const PlyOutput& header);
 
-  void write(std::span<const Vec3> points, const PlyExtras& extras = {});
+  /// values: those of each field of the header. Throws std::logic_error where they do not fit.
+  void write(std::span<const Vec3> points, std::span<const FieldValues> values = {});
 
   /// Flushes. Throws std::logic_error unless exactly header.points points were written.
   void finish();

@@ -5,7 +5,6 @@
 #include "core/query/ignored_text.hpp"
 #include "core/query/query_fields.hpp"
 #include "core/util/format.hpp"
-#include "io/result/result_cursor.hpp"
 #include "io/system/input_error.hpp"
 #include "io/system/xxh64.hpp"
 
@@ -124,11 +123,11 @@ class Merge {
         a_, b_,
         [&] {
           ++out_.only_in_a;
-          keep({Kind::kOnlyInA, a_.source(), a_.xyz(), a_.first_pose(), std::nullopt});
+          keep({Kind::kOnlyInA, a_.source(), a_.get(&Collisions::xyz), a_.find(&Collisions::first_pose), std::nullopt});
         },
         [&] {
           ++out_.only_in_b;
-          keep({Kind::kOnlyInB, b_.source(), b_.xyz(), std::nullopt, b_.first_pose()});
+          keep({Kind::kOnlyInB, b_.source(), b_.get(&Collisions::xyz), std::nullopt, b_.find(&Collisions::first_pose)});
         },
         [&] { common(); });
     return std::move(out_);
@@ -139,19 +138,19 @@ class Merge {
 
   void common() {
     ++out_.common;
-    const PointDifference point{Kind::kFirstPose, a_.source(), a_.xyz(), a_.first_pose(),
-                                b_.first_pose()};
-    const bool same_body = !same_bodies_ || a_.body() == b_.body();
+    const PointDifference point{Kind::kFirstPose, a_.source(), a_.get(&Collisions::xyz), a_.find(&Collisions::first_pose),
+                                b_.find(&Collisions::first_pose)};
+    const bool same_body = !same_bodies_ || a_.find(&Collisions::body) == b_.find(&Collisions::body);
     if (out_.differing_first_poses && (point.first_pose_a != point.first_pose_b || !same_body)) {
       ++*out_.differing_first_poses;
       keep(point);
     }
-    if (out_.differing_last_poses && a_.last_pose() != b_.last_pose()) {
+    if (out_.differing_last_poses && a_.find(&Collisions::last_pose) != b_.find(&Collisions::last_pose)) {
       ++*out_.differing_last_poses;
       keep({Kind::kLastPose, point.source, point.xyz, point.first_pose_a, point.first_pose_b,
-            a_.last_pose(), b_.last_pose()});
+            a_.find(&Collisions::last_pose), b_.find(&Collisions::last_pose)});
     }
-    if (a_.xyz() != b_.xyz()) {
+    if (a_.get(&Collisions::xyz) != b_.get(&Collisions::xyz)) {
       ++out_.differing_coordinates;
       keep({Kind::kCoordinates, point.source, point.xyz, point.first_pose_a, point.first_pose_b});
     }
@@ -161,7 +160,7 @@ class Merge {
     if (out_.points.size() < kept_) out_.points.push_back(point);
   }
 
-  RowCursor a_, b_;
+  CollisionCursor a_, b_;
   std::size_t kept_;
   bool same_bodies_;
   Comparison out_;
@@ -171,16 +170,18 @@ ClearanceComparison compare_clearances(const ResultReader& a, const ResultReader
   ClearanceComparison out;
   out.in_a = a.clearances();
   out.in_b = b.clearances();
-  const bool xyz = a.header().has_clearance_xyz() && b.header().has_clearance_xyz();
   const bool bodies = a.header().bodies == b.header().bodies;
   ClearanceCursor from_a(a), from_b(b);
   merge_rows(
       from_a, from_b, [&] { ++out.only_in_a; }, [&] { ++out.only_in_b; },
       [&] {
         ++out.common;
-        const bool same =
-            from_a.distance() == from_b.distance() && from_a.pose() == from_b.pose() &&
-            (!bodies || from_a.body() == from_b.body()) && (!xyz || from_a.xyz() == from_b.xyz());
+        bool same = true;
+        for_each_column<Clearances>([&](const auto& column) {
+          const auto in_a = from_a.find(column.values), in_b = from_b.find(column.values);
+          const bool is_body = std::string_view(column.dataset) == result_names::kBody;
+          if (in_a && in_b && (bodies || !is_body)) same = same && *in_a == *in_b;
+        });
         if (!same) ++out.differing;
       });
   return out;
@@ -192,7 +193,7 @@ bool has_same_path(const ResultHeader& a, const ResultHeader& b) {
 
 ProfileComparison compare_profiles(const ResultReader& a, const ResultReader& b) {
   ProfileComparison out;
-  ProfileRowStream from_a(a), from_b(b);
+  RowStream<ProfileRows> from_a(a), from_b(b);
   ProfileRows rows_a, rows_b;
   while (from_a.read(rows_a) && from_b.read(rows_b)) {
     for (std::size_t i = 0; i < rows_a.size(); ++i, ++out.poses) {

@@ -5,7 +5,7 @@
 #include "clearway/error.hpp"
 #include "clearway/result.hpp"
 #include "io/formats/requantize.hpp"
-#include "io/result/result_rows.hpp"
+#include "io/result/result.hpp"
 
 namespace clearway {
 namespace {
@@ -23,9 +23,9 @@ void check_points(const ResultReader& result, std::span<const std::uint64_t> sou
   }
 }
 
-template <typename Rows, typename Stream>
+template <typename Rows>
 void check_table(const ResultReader& result, Progress& progress) {
-  Stream stream(result);
+  RowStream<Rows> stream(result);
   for (Rows rows; stream.read(rows);) {
     check_points(result, rows.source, rows.xyz);
     progress.advance(rows.size());
@@ -39,9 +39,9 @@ std::optional<std::string> verify_result(const ResultReader& result, Progress& p
                  "rows");
   std::optional<std::string> fault;
   try {
-    check_table<ResultRows, ResultRowStream>(result, progress);
-    check_table<ClearanceRows, ClearanceRowStream>(result, progress);
-    check_table<ProfileRows, ProfileRowStream>(result, progress);
+    check_table<Collisions>(result, progress);
+    check_table<Clearances>(result, progress);
+    check_table<ProfileRows>(result, progress);
   } catch (const InputError& error) {
     fault = error.what();
   }

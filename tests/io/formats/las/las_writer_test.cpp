@@ -21,7 +21,8 @@ test::WrittenBytes written(const LasHeader& header, const Quanta& points,
                            const std::vector<std::uint32_t>& poses = {}) {
   const File file = test::nameless_file();
   LasWriter writer(file, header);
-  writer.write(points, {poses});
+  const FieldValues field = std::span<const std::uint32_t>(poses);
+  writer.write(points, std::span(&field, header.fields.size()));
   writer.finish();
   return test::WrittenBytes(file);
 }
@@ -109,7 +110,7 @@ TEST_CASE("LAS 1.4 with a CRS, field by field") {
 
 TEST_CASE("LAS point format 6 with first poses, field by field") {
   LasHeader header = header_of(3);
-  header.first_pose = true;
+  header.fields = {{"first_pose"}};
   const std::vector<std::uint32_t> poses{0, 4000000000u, 17};
   const auto bytes = written(header, kPoints, poses);
   REQUIRE(bytes.at<std::uint32_t>(96) == 375 + 54 + 192);
@@ -136,7 +137,7 @@ TEST_CASE("LAS point format 6 with first poses, field by field") {
 
 TEST_CASE("a CRS and first poses together declare both records") {
   LasHeader header = header_of(1);
-  header.first_pose = true;
+  header.fields = {{"first_pose"}};
   header.crs_wkt = kWkt;
   const auto bytes = written(header, {kPoints[1]}, {9});
   CHECK(bytes.at<std::uint32_t>(100) == 2);
@@ -197,7 +198,9 @@ TEST_CASE("another number of LAS points than promised is a programmer's mistake"
   LasWriter writer(file, header_of(2));
   writer.write(Quanta{kPoints[0]});
   CHECK_THROWS_AS(writer.finish(), std::logic_error);
-  CHECK_THROWS_AS(writer.write(kPoints, {std::vector<std::uint32_t>{1, 2, 3}}), std::logic_error);
+  const std::vector<std::uint32_t> poses{1, 2, 3};
+  const FieldValues field = std::span<const std::uint32_t>(poses);
+  CHECK_THROWS_AS(writer.write(kPoints, std::span(&field, 1)), std::logic_error);
 }
 
 TEST_CASE("a full disk is a resource error") {

@@ -29,8 +29,10 @@ TEST_CASE("a double PLY holds header and coordinates bit for bit") {
 TEST_CASE("a float PLY with first poses") {
   const File file = test::nameless_file();
   PlyWriter writer(file,
-                   {.points = 1, .coordinates = PlyCoordinates::kFloat32, .first_pose = true});
-  writer.write(std::vector<Vec3>{{0.1, -2, 3}}, {std::vector<std::uint32_t>{4000000000u}});
+                   {.points = 1, .coordinates = PlyCoordinates::kFloat32, .fields = {{"first_pose"}}});
+  const std::vector<std::uint32_t> pose{4000000000u};
+  const FieldValues field = std::span<const std::uint32_t>(pose);
+  writer.write(std::vector<Vec3>{{0.1, -2, 3}}, std::span(&field, 1));
   writer.finish();
   const std::string header =
       "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"
@@ -49,6 +51,8 @@ TEST_CASE("a PLY with another number of points than promised is refused") {
   PlyWriter writer(file, {.points = 2});
   writer.write(std::vector<Vec3>{{1, 2, 3}});
   CHECK_THROWS_AS(writer.finish(), std::logic_error);
-  CHECK_THROWS_AS(writer.write(std::vector<Vec3>{{1, 2, 3}}, {std::vector<std::uint32_t>{0}}),
+  const std::vector<std::uint32_t> pose{0};
+  const FieldValues field = std::span<const std::uint32_t>(pose);
+  CHECK_THROWS_AS(writer.write(std::vector<Vec3>{{1, 2, 3}}, std::span(&field, 1)),
                   std::logic_error);
 }

@@ -14,7 +14,7 @@ namespace {
 
 struct Side {
   ResultHeader header;
-  ResultRows rows;
+  Collisions rows;
 };
 
 Comparison compare(const Side& a, const Side& b, std::size_t kept = 100) {
@@ -29,7 +29,7 @@ Side sample(std::size_t count, bool first_pose = true) {
   return {header, sample_rows(header, count)};
 }
 
-void erase_row(ResultRows& rows, std::ptrdiff_t at) {
+void erase_row(Collisions& rows, std::ptrdiff_t at) {
   rows.source.erase(rows.source.begin() + at);
   rows.xyz.erase(rows.xyz.begin() + at);
   if (!rows.first_pose.empty()) rows.first_pose.erase(rows.first_pose.begin() + at);

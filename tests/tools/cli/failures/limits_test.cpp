@@ -99,7 +99,7 @@ TEST_CASE("more than 2^16 cells, and more than 10^6 poses") {
   const json report = place.search("a.h5", "path.txt", "--radius 0.0105 --first-pose", "out.h5");
   CHECK(report["cells_total"] > 65'536);
   CHECK(report["poses"] == kPoses);
-  const ResultRows rows = read_rows(ResultReader(place.folder / "out.h5"));
+  const Collisions rows = read_rows(ResultReader(place.folder / "out.h5"));
   REQUIRE(rows.size() == 1102);
   CHECK(rows.source.back() == kPoints - 1);
   CHECK(rows.first_pose.back() == kPoses - 1);
@@ -111,8 +111,8 @@ TEST_CASE("sources above 2^32 come back from a result and its exports") {
   ResultHeader header = sample_header(true);
   header.environment_points = std::uint64_t{1} << 34;
   header.clearance = 0.5;
-  ResultRows rows = sample_rows(header, 10);
-  ClearanceRows clearances = sample_clearances(header, 10);
+  Collisions rows = sample_rows(header, 10);
+  Clearances clearances = sample_clearances(header, 10);
   for (std::uint64_t& source : rows.source) source += std::uint64_t{1} << 32;
   for (std::uint64_t& source : clearances.source) source += std::uint64_t{3} << 32;
   write_result(place.folder / "big.h5", header, rows, 1000, clearances);
@@ -174,7 +174,7 @@ TEST_CASE("sources above 2^32 of a store come through a run, an export and a com
   CHECK(report["colliding_points"] == 6);
   const ResultReader result(place.folder / "out.h5");
   CHECK(result.header().environment_points == kFirst + 50);
-  const ResultRows rows = read_rows(result);
+  const Collisions rows = read_rows(result);
   std::vector<std::uint64_t> expected;
   for (const std::uint64_t at : {19, 20, 21, 39, 40, 41}) expected.push_back(kFirst + at);
   CHECK(rows.source == expected);
@@ -209,7 +209,7 @@ TEST_CASE("a model of 10^7 points is searched, or refused where memory does not 
   const Outcome outcome = place.run(search + place.path("out.h5"));
   INFO(outcome.err);
   REQUIRE(outcome.exit_code == 0);
-  const ResultRows rows = read_rows(ResultReader(place.folder / "out.h5"));
+  const Collisions rows = read_rows(ResultReader(place.folder / "out.h5"));
   std::vector<std::uint64_t> expected;
   for (std::uint64_t i = 0; i < above.size(); ++i) {
     if (above[i][2] <= 10) expected.push_back(i);

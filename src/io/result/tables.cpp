@@ -1,0 +1,105 @@
+#include "io/result/tables.hpp"
+
+#include <cmath>
+
+#include "clearway/error.hpp"
+
+namespace clearway {
+namespace {
+
+namespace names = result_names;
+
+bool is_finite(const Vec3& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+bool is_absent(const Vec3& p) { return std::isnan(p.x) && std::isnan(p.y) && std::isnan(p.z); }
+
+/// Whether the number can be a distance in metres: 0 or more, or any finite number where the model
+/// has solids.
+bool is_distance(const ResultHeader& header, double distance) {
+  return distance >= 0 || (header.model_solids > 0 && distance < 0 && std::isfinite(distance));
+}
+
+}  // namespace
+
+void RowsRead::refuse_row(const char* dataset, std::size_t row, const std::string& expected) const {
+  throw InputError(name + ": /" + group + "/" + dataset + ", row " + std::to_string(first + row) +
+                   ": expected " + expected);
+}
+
+void check_sources(const RowsRead& read, const char* dataset,
+                   std::span<const std::uint64_t> source) {
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    if (source[i] < read.header.environment_points && (i == 0 || source[i] > source[i - 1])) {
+      continue;
+    }
+    read.refuse_row(dataset, i, "an index above the row before and below environment_points");
+  }
+}
+
+void check_points(const RowsRead& read, const char* dataset, std::span<const Vec3> xyz) {
+  for (std::size_t i = 0; i < xyz.size(); ++i) {
+    if (!is_finite(xyz[i])) read.refuse_row(dataset, i, "finite coordinates");
+  }
+}
+
+void check_poses(const RowsRead& read, const char* dataset, std::span<const std::uint32_t> pose) {
+  for (std::size_t i = 0; i < pose.size(); ++i) {
+    if (pose[i] >= read.header.poses) read.refuse_row(dataset, i, "a pose below poses");
+  }
+}
+
+void check_bodies(const RowsRead& read, const char* dataset, std::span<const std::uint32_t> body) {
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    if (body[i] >= read.header.bodies.size()) read.refuse_row(dataset, i, "one of the bodies");
+  }
+}
+
+void check_clearances(const RowsRead& read, const char* dataset, std::span<const double> distance) {
+  for (std::size_t i = 0; i < distance.size(); ++i) {
+    if (!(is_distance(read.header, distance[i]) && distance[i] <= read.header.clearance)) {
+      read.refuse_row(dataset, i, "a distance from 0 to the clearance");
+    }
+  }
+}
+
+void check_chainages(const RowsRead& read, const char* dataset, std::span<const double> chainage) {
+  for (std::size_t i = 0; i < chainage.size(); ++i) {
+    if (read.first == 0 && i == 0 && chainage[i] != 0) read.refuse_row(dataset, i, "0");
+    if (!(chainage[i] >= (i > 0 ? chainage[i - 1] : 0))) {
+      read.refuse_row(dataset, i, "metres, not below the row before");
+    }
+  }
+}
+
+void Table<Collisions>::check(const RowsRead& read, const Collisions& rows) {
+  for (std::size_t i = 0; i < rows.last_pose.size(); ++i) {
+    if (rows.last_pose[i] >= rows.first_pose[i]) continue;
+    read.refuse_row(names::kLastPose, i, "a pose that is not before the first one");
+  }
+}
+
+void Table<ProfileRows>::check(const RowsRead& read, const ProfileRows& rows) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows.source[i] == Profile::kNoPoint) {
+      if (!(std::isinf(rows.distance[i]) && rows.distance[i] > 0)) {
+        read.refuse_row(names::kDistance, i, "infinity, as the pose has no point");
+      }
+      if (!is_absent(rows.xyz[i])) {
+        read.refuse_row(names::kXyz, i, "no numbers (NaN), as the pose has no point");
+      }
+      continue;
+    }
+    if (rows.source[i] >= read.header.environment_points) {
+      read.refuse_row(names::kSource, i, "an index below environment_points, or 2^64 - 1 for none");
+    }
+    // The root of a number below fl(D D) may round to D, so D itself is valid.
+    if (!(is_distance(read.header, rows.distance[i]) && rows.distance[i] <= read.header.profile)) {
+      read.refuse_row(names::kDistance, i, "a distance from 0 to the profile's");
+    }
+    if (!is_finite(rows.xyz[i])) read.refuse_row(names::kXyz, i, "finite coordinates");
+  }
+}
+
+}  // namespace clearway

@@ -1,0 +1,220 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "clearway/result.hpp"
+#include "clearway/vec3.hpp"
+#include "io/result/result_header.hpp"
+#include "io/result/result_names.hpp"
+#include "io/system/xxh64.hpp"
+
+/// The schema of a result's tables: for each table its columns, in the order of the file, with the
+/// results that have them and what their values must be. Writer, reader, streams, merge, verify,
+/// compare and exports take the columns from here, so a new column is a member of the rows and a
+/// line of the schema.
+namespace clearway {
+
+/// The rows of a profile as a file keeps them.
+struct ProfileRows : Profile {
+  /// The squared distances whose roots are the distances; empty unless the file is a part.
+  std::vector<double> squared = {};
+};
+
+/// Where rows were read, for the messages of their checks.
+struct RowsRead {
+  const std::string& name;  ///< name of the file
+  const ResultHeader& header;
+  const char* group;
+  std::uint64_t first;  ///< the row of the group that the first value belongs to
+
+  /// Throws InputError that names the row.
+  [[noreturn]] void refuse_row(const char* dataset, std::size_t row,
+                               const std::string& expected) const;
+};
+
+/// A column of a table whose rows are `Rows`.
+template <typename Rows, typename T>
+struct Column {
+  using Value = T;
+
+  const char* dataset;
+  /// The values, one for each row; no values where the result does not have the column.
+  std::vector<T> Rows::*values;
+  bool (*is_in)(const ResultHeader& header);  ///< whether a result has the column
+  /// Throws InputError for a value that no run can have written. Thread safe.
+  void (*check)(const RowsRead& read, const char* dataset, std::span<const T> values);
+  /// Describes the column in exported files, in up to 31 characters. Null for a column that is not
+  /// exported as a field of its own.
+  const char* field = nullptr;
+  /// The attribute that keeps the hash of this column alone, which is therefore no part of the
+  /// table's hash: a column that was added later must not change what older readers check.
+  const char* own_hash = nullptr;
+};
+
+// Checks of values that several columns share.
+void check_sources(const RowsRead& read, const char* dataset, std::span<const std::uint64_t>);
+void check_points(const RowsRead& read, const char* dataset, std::span<const Vec3>);
+void check_poses(const RowsRead& read, const char* dataset, std::span<const std::uint32_t>);
+void check_bodies(const RowsRead& read, const char* dataset, std::span<const std::uint32_t>);
+void check_clearances(const RowsRead& read, const char* dataset, std::span<const double>);
+void check_chainages(const RowsRead& read, const char* dataset, std::span<const double>);
+/// For values that only the check of whole rows can judge.
+template <typename T>
+void check_with_rows(const RowsRead&, const char*, std::span<const T>) {}
+
+/// The schema of the table with these rows.
+template <typename Rows>
+struct Table;
+
+template <>
+struct Table<Collisions> {
+  using Rows = Collisions;
+  static constexpr const char* kGroup = result_names::kGroup;
+  static constexpr const char* kHash = result_names::kCollisionsHash;
+  static bool is_in(const ResultHeader&) { return true; }
+
+  static constexpr std::tuple kColumns{
+      Column<Rows, std::uint64_t>{result_names::kSource, &Rows::source,
+                                  [](const ResultHeader&) { return true; }, check_sources},
+      Column<Rows, Vec3>{result_names::kXyz, &Rows::xyz, [](const ResultHeader&) { return true; },
+                         check_points},
+      Column<Rows, std::uint32_t>{result_names::kFirstPose, &Rows::first_pose,
+                                  [](const ResultHeader& h) { return h.first_pose; }, check_poses,
+                                  "first pose that touches"},
+      Column<Rows, std::uint32_t>{result_names::kBody, &Rows::body,
+                                  [](const ResultHeader& h) { return h.has_first_bodies(); },
+                                  check_bodies, "body of that pose"},
+      Column<Rows, std::uint32_t>{result_names::kLastPose, &Rows::last_pose,
+                                  [](const ResultHeader& h) { return h.last_pose; }, check_poses,
+                                  nullptr, result_names::kLastPoseHash}};
+
+  /// The column by which rows ascend, and whether `after` may follow `before`.
+  static constexpr auto kOrder = &Rows::source;
+  static constexpr const char* kOrderDataset = result_names::kSource;
+  static bool may_follow(std::uint64_t before, std::uint64_t after) { return after > before; }
+  static constexpr const char* kExpectedOrder = "an index above the row before";
+
+  /// Throws InputError where the columns of a row contradict each other.
+  static void check(const RowsRead& read, const Rows& rows);
+};
+
+template <>
+struct Table<Clearances> {
+  using Rows = Clearances;
+  static constexpr const char* kGroup = result_names::kClearanceGroup;
+  static constexpr const char* kHash = result_names::kClearanceHash;
+  static bool is_in(const ResultHeader& header) { return header.clearance > 0; }
+
+  static constexpr std::tuple kColumns{
+      Column<Rows, std::uint64_t>{result_names::kSource, &Rows::source,
+                                  [](const ResultHeader&) { return true; }, check_sources},
+      Column<Rows, Vec3>{result_names::kXyz, &Rows::xyz,
+                         [](const ResultHeader& h) { return h.has_clearance_xyz(); }, check_points},
+      Column<Rows, double>{result_names::kDistance, &Rows::distance,
+                           [](const ResultHeader&) { return true; }, check_clearances,
+                           "least distance to the model"},
+      Column<Rows, std::uint32_t>{result_names::kPose, &Rows::pose,
+                                  [](const ResultHeader&) { return true; }, check_poses,
+                                  "pose that has the distance"},
+      Column<Rows, std::uint32_t>{result_names::kBody, &Rows::body,
+                                  [](const ResultHeader& h) { return !h.bodies.empty(); },
+                                  check_bodies, "body of that pose"}};
+
+  static constexpr auto kOrder = &Rows::source;
+  static constexpr const char* kOrderDataset = result_names::kSource;
+  static bool may_follow(std::uint64_t before, std::uint64_t after) { return after > before; }
+  static constexpr const char* kExpectedOrder = "an index above the row before";
+  static void check(const RowsRead&, const Rows&) {}
+};
+
+template <>
+struct Table<ProfileRows> {
+  using Rows = ProfileRows;
+  static constexpr const char* kGroup = result_names::kProfileGroup;
+  static constexpr const char* kHash = result_names::kProfileHash;
+  static bool is_in(const ResultHeader& header) { return header.profile > 0; }
+
+  static constexpr std::tuple kColumns{
+      Column<Rows, double>{result_names::kDistance, &Rows::distance,
+                           [](const ResultHeader&) { return true; }, check_with_rows<double>},
+      Column<Rows, std::uint64_t>{result_names::kSource, &Rows::source,
+                                  [](const ResultHeader&) { return true; },
+                                  check_with_rows<std::uint64_t>},
+      Column<Rows, Vec3>{result_names::kXyz, &Rows::xyz, [](const ResultHeader&) { return true; },
+                         check_with_rows<Vec3>},
+      Column<Rows, double>{result_names::kChainage, &Rows::chainage,
+                           [](const ResultHeader&) { return true; }, check_chainages},
+      Column<Rows, double>{result_names::kSquared, &Rows::squared,
+                           [](const ResultHeader& h) { return h.part.has_value(); },
+                           check_with_rows<double>}};
+
+  static constexpr auto kOrder = &Rows::chainage;
+  static constexpr const char* kOrderDataset = result_names::kChainage;
+  static bool may_follow(double before, double after) { return after >= before; }
+  static constexpr const char* kExpectedOrder = "metres, not below the row before";
+
+  /// Throws InputError unless distance, source and point of each pose agree. A pose without a point
+  /// has infinity, Profile::kNoPoint and NaN.
+  static void check(const RowsRead& read, const Rows& rows);
+};
+
+template <typename Rows>
+inline constexpr std::size_t kColumnsOf = std::tuple_size_v<decltype(Table<Rows>::kColumns)>;
+
+/// Calls visit(column) for each column of a table, in the order of the file.
+template <typename Rows, typename Visit>
+void for_each_column(Visit visit) {
+  std::apply([&](const auto&... column) { (visit(column), ...); }, Table<Rows>::kColumns);
+}
+
+/// Calls visit(column, state) for each column of a table; `states` is a tuple or an array with one
+/// state for each column.
+template <typename Rows, typename States, typename Visit>
+void for_each_column(States& states, Visit visit) {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (visit(std::get<I>(Table<Rows>::kColumns), std::get<I>(states)), ...);
+  }(std::make_index_sequence<kColumnsOf<Rows>>());
+}
+
+/// A tuple with one State<Value> for each column of a table.
+template <typename Rows, template <typename> typename State>
+using PerColumn = decltype(std::apply(
+    [](const auto&... column) {
+      return std::tuple<State<typename std::decay_t<decltype(column)>::Value>...>();
+    },
+    Table<Rows>::kColumns));
+
+/// Hashes of the values of each column, in the order of the rows.
+template <typename Rows>
+using RowHashes = std::array<Xxh64Stream, kColumnsOf<Rows>>;
+
+/// Removes all rows and keeps the memory.
+template <typename Rows>
+void clear_rows(Rows& rows) {
+  for_each_column<Rows>([&](const auto& column) { (rows.*column.values).clear(); });
+}
+
+/// Appends row `i` of `from`, in the columns that a result with this header has.
+template <typename Rows>
+void append_row(const ResultHeader& header, const Rows& from, std::size_t i, Rows& to) {
+  for_each_column<Rows>([&](const auto& column) {
+    if (column.is_in(header)) (to.*column.values).push_back((from.*column.values)[i]);
+  });
+}
+
+/// Appends all rows of `from`.
+template <typename Rows>
+void append_rows(const Rows& from, Rows& to) {
+  for_each_column<Rows>([&](const auto& column) {
+    const auto& values = from.*column.values;
+    (to.*column.values).insert((to.*column.values).end(), values.begin(), values.end());
+  });
+}
+
+}  // namespace clearway
