@@ -62,8 +62,8 @@ struct Profile {
 };
 
 /// A result that search() wrote. Tables and columns are read when they are asked for; row i of each
-/// column of a table belongs to the same point or pose. Throws InputError if the file is damaged, ResourceError if it cannot
-/// be read.
+/// column of a table belongs to the same point or pose. Throws InputError if the file is damaged,
+/// ResourceError if it cannot be read.
 class Result {
  public:
   explicit Result(const std::filesystem::path& path);

@@ -32,7 +32,6 @@
 #include "findings/touched_first.hpp"
 #include "io/formats/wkt.hpp"
 #include "io/result/result.hpp"
-#include "io/result/result.hpp"
 #include "io/system/thread_limit.hpp"
 
 namespace clearway {

@@ -339,7 +339,8 @@ void write_inside(JsonText& json, const ReportFacts& facts) {
   }
   const bool counts = header.clearance > 0;
   const double depth = facts.least ? std::max(0.0, -facts.least->distance) : 0;
-  json.begin('{').field("points", counts ? std::optional(facts.points.summary.inside_points) : std::nullopt);
+  json.begin('{').field("points",
+                        counts ? std::optional(facts.points.summary.inside_points) : std::nullopt);
   json.field("depth", depth).end('}');
 }
 

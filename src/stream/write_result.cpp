@@ -173,11 +173,10 @@ class ResultWriting {
       return clearway::encode_rows(writer_, meaning_, rows);
     };
     const auto keep = [&](const auto& piece) { add_summary(piece.summary, summary); };
-    write_set<CollisionRow>(store_, hits, in, plan, progress_, rows_of,
-                            [&](std::span<const CollisionRow> rows) {
-                              write_rows<Collisions>(writer_, rows, plan.pieces, progress_,
-                                                     encode_rows, keep);
-                            });
+    write_set<CollisionRow>(
+        store_, hits, in, plan, progress_, rows_of, [&](std::span<const CollisionRow> rows) {
+          write_rows<Collisions>(writer_, rows, plan.pieces, progress_, encode_rows, keep);
+        });
   }
 
   void write_clearances(const SetCells& in, TableSummary& summary) {
@@ -195,11 +194,10 @@ class ResultWriting {
       return clearway::encode_rows(writer_, meaning_, rows);
     };
     const auto keep = [&](const auto& piece) { add_summary(piece.summary, summary); };
-    write_set<ClearanceRow>(store_, clearances, in, plan, progress_, rows_of,
-                            [&](std::span<const ClearanceRow> rows) {
-                              write_rows<Clearances>(writer_, rows, plan.pieces, progress_,
-                                                     encode_rows, keep);
-                            });
+    write_set<ClearanceRow>(
+        store_, clearances, in, plan, progress_, rows_of, [&](std::span<const ClearanceRow> rows) {
+          write_rows<Clearances>(writer_, rows, plan.pieces, progress_, encode_rows, keep);
+        });
   }
 
  private:

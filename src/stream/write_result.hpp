@@ -12,12 +12,13 @@
 
 namespace clearway {
 
-/// Writes a result file at `path`, and returns what its tables say in short: the colliding points, and the clearances if the header asks for
-/// them, ascending by source index; then the profile if the header asks for it. chainage: that of
-/// every pose, metres, for a profile. Takes at most `memory_bytes`, but no less than
-/// least_write_bytes(): if the rows exceed them, it makes several passes over the cells that have
-/// any, each for the next range of source indices. threads: 0 for all cores. Throws InputError for
-/// a damaged cell, ResourceError for a full disk, Interrupted when the progress asks to stop.
+/// Writes a result file at `path`, and returns what its tables say in short: the colliding points,
+/// and the clearances if the header asks for them, ascending by source index; then the profile if
+/// the header asks for it. chainage: that of every pose, metres, for a profile. Takes at most
+/// `memory_bytes`, but no less than least_write_bytes(): if the rows exceed them, it makes several
+/// passes over the cells that have any, each for the next range of source indices. threads: 0 for
+/// all cores. Throws InputError for a damaged cell, ResourceError for a full disk, Interrupted when
+/// the progress asks to stop.
 TableSummary write_result(const StoreReader& store, const SearchResult& answer,
                           const ResultHeader& header, const std::filesystem::path& path,
                           std::uint64_t memory_bytes, Progress& progress,

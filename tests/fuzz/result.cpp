@@ -1,7 +1,8 @@
 // Any bytes, read as a result.
+#include "io/result/result.hpp"
+
 #include "io/result/check/compare_results.hpp"
 #include "io/result/check/verify_result.hpp"
-#include "io/result/result.hpp"
 #include "memory_file.hpp"
 
 using namespace clearway;

@@ -12,7 +12,6 @@
 
 #include "clearway/result.hpp"
 #include "io/result/result.hpp"
-#include "io/result/result.hpp"
 
 namespace clearway::test {
 

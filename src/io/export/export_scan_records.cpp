@@ -171,8 +171,9 @@ class ExtendedRecord {
 
   double distance_of(std::uint64_t source) {
     while (!distances_->at_end() && distances_->source() < source) distances_->advance();
-    return !distances_->at_end() && distances_->source() == source ? distances_->get(&Clearances::distance)
-                                                                   : kNoDistance;
+    return !distances_->at_end() && distances_->source() == source
+               ? distances_->get(&Clearances::distance)
+               : kNoDistance;
   }
 
   bool first_pose_, body_;
@@ -212,8 +213,8 @@ std::array<std::int32_t, 3> checked_place(const ResultReader& result, const LasR
   if (equal) return out;
   refuse(scan.name(), "point " + std::to_string(point) + " (source index " +
                           std::to_string(row.source()) + ") is at " + place_text(found) +
-                          ", but at " + place_text(row.get(&Collisions::xyz)) + " in " + result.name() + ": " +
-                          kNotTheScans +
+                          ", but at " + place_text(row.get(&Collisions::xyz)) + " in " +
+                          result.name() + ": " + kNotTheScans +
                           ". Give the files and folders that were converted, in the same order");
 }
 

@@ -91,10 +91,10 @@ std::vector<PointField> fields_of(const ResultHeader& header) {
   for_each_column<Rows>([&](const auto& column) {
     if (column.field == nullptr || !column.is_in(header)) return;
     using Value = typename std::decay_t<decltype(column)>::Value;
-    out.push_back({column.dataset,
-                   std::is_same_v<Value, double> ? PointField::Type::kDouble
-                                                 : PointField::Type::kUint32,
-                   column.field});
+    out.push_back(
+        {column.dataset,
+         std::is_same_v<Value, double> ? PointField::Type::kDouble : PointField::Type::kUint32,
+         column.field});
   });
   return out;
 }

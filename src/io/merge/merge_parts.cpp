@@ -34,9 +34,8 @@ constexpr std::size_t kLeastRows = 1 << 10;
 template <typename Rows>
 std::uint64_t row_bytes() {
   std::uint64_t bytes = 0;
-  for_each_column<Rows>([&](const auto& column) {
-    bytes += sizeof(typename std::decay_t<decltype(column)>::Value);
-  });
+  for_each_column<Rows>(
+      [&](const auto& column) { bytes += sizeof(typename std::decay_t<decltype(column)>::Value); });
   return bytes;
 }
 
@@ -180,9 +179,8 @@ class PartMerge {
       const bool nearer = rows.squared[i] < best.squared[i] ||
                           (rows.squared[i] == best.squared[i] && rows.source[i] < best.source[i]);
       if (!nearer) continue;
-      for_each_column<ProfileRows>([&](const auto& column) {
-        (best.*column.values)[i] = (rows.*column.values)[i];
-      });
+      for_each_column<ProfileRows>(
+          [&](const auto& column) { (best.*column.values)[i] = (rows.*column.values)[i]; });
     }
   }
 

@@ -57,19 +57,19 @@ void summarise(const Clearances& rows, TableSummary& summary) {
   const auto nearest = std::ranges::min_element(rows.distance);
   if (nearest == rows.distance.end()) return;
   const auto i = static_cast<std::size_t>(nearest - rows.distance.begin());
-  keep_least({rows.source[i], rows.pose[i],
-              rows.xyz.empty() ? Vec3{kNone, kNone, kNone} : rows.xyz[i], *nearest,
-              rows.body.empty() ? 0 : rows.body[i]},
-             summary.least_clearance, is_nearer);
+  keep_least(
+      {rows.source[i], rows.pose[i], rows.xyz.empty() ? Vec3{kNone, kNone, kNone} : rows.xyz[i],
+       *nearest, rows.body.empty() ? 0 : rows.body[i]},
+      summary.least_clearance, is_nearer);
 }
 
 void summarise(const Profile& rows, TableSummary& summary, std::uint64_t first_pose) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows.source[i] == Profile::kNoPoint) continue;
     ++summary.profile_poses;
-    keep_least({rows.source[i], static_cast<std::uint32_t>(first_pose + i), rows.xyz[i],
-                rows.distance[i]},
-               summary.least_profile, is_nearer);
+    keep_least(
+        {rows.source[i], static_cast<std::uint32_t>(first_pose + i), rows.xyz[i], rows.distance[i]},
+        summary.least_profile, is_nearer);
   }
 }
 

@@ -133,8 +133,8 @@ auto numbers_of(std::span<Value> values) {
 
 /// A dataset that is read, or nothing where the result does not have the column.
 template <typename Value>
-using OptionalRead = std::optional<
-    hdf5::Rows<std::conditional_t<std::is_same_v<Value, Vec3>, double, Value>>>;
+using OptionalRead =
+    std::optional<hdf5::Rows<std::conditional_t<std::is_same_v<Value, Vec3>, double, Value>>>;
 
 /// The datasets of a table, which are read together.
 template <typename Rows>
@@ -194,7 +194,7 @@ class TableReader {
   std::vector<Value> column(std::vector<Value> Rows::*values) const {
     std::vector<Value> out;
     for_each_column<Rows>(datasets_, [&](const auto& column, const auto& dataset) {
-      if constexpr (std::is_same_v<decltype(column.values), std::vector<Value> Rows::* const>) {
+      if constexpr (std::is_same_v<decltype(column.values), std::vector<Value> Rows::*const>) {
         if (column.values != values || !dataset) return;
         out.resize(rows());
         read_column(column, *dataset, 0, std::span(out));
@@ -256,7 +256,8 @@ class TableReader {
     return readable && read.run() && is_ordered(out);
   }
 
-  /// Whether the rows are in order also from each chunk to the next, which no check of a chunk sees.
+  /// Whether the rows are in order also from each chunk to the next, which no check of a chunk
+  /// sees.
   static bool is_ordered(const Rows& rows) {
     const auto& order = rows.*Table<Rows>::kOrder;
     for (std::size_t i = 1; i < order.size(); ++i) {

@@ -176,7 +176,8 @@ class TableWriter {
   void each_with(Columns& values, Visit visit) {
     [&]<std::size_t... I>(std::index_sequence<I...>) {
       ((std::get<I>(columns_) ? visit(*std::get<I>(columns_), *std::get<I>(values)) : void()), ...);
-    }(std::make_index_sequence<kColumnsOf<Rows>>());
+    }
+    (std::make_index_sequence<kColumnsOf<Rows>>());
   }
 
   hdf5::Id group_;

@@ -179,7 +179,8 @@ template <typename Rows, typename States, typename Visit>
 void for_each_column(States& states, Visit visit) {
   [&]<std::size_t... I>(std::index_sequence<I...>) {
     (visit(std::get<I>(Table<Rows>::kColumns), std::get<I>(states)), ...);
-  }(std::make_index_sequence<kColumnsOf<Rows>>());
+  }
+  (std::make_index_sequence<kColumnsOf<Rows>>());
 }
 
 /// A tuple with one State<Value> for each column of a table.

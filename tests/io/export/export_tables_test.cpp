@@ -29,9 +29,9 @@ struct Tables {
     const Vec3 b = position(header.quantisation, 5, 6, -7);
     const double none = std::numeric_limits<double>::quiet_NaN();
     profile = {{{0.25, std::numeric_limits<double>::infinity(), 0.1},
-               {9, Profile::kNoPoint, 3},
-               {b, {none, none, none}, a},
-               {0, 1.5, 2.25}}};
+                {9, Profile::kNoPoint, 3},
+                {b, {none, none, none}, a},
+                {0, 1.5, 2.25}}};
     write_result(folder / "a.h5", header, {}, 1000, {{3, 9}, {a, b}, {0.5, 0.1}, {2, 0}}, profile);
   }
   std::string clearances(const std::string& name) const {

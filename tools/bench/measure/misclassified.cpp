@@ -97,7 +97,8 @@ NearBoundary points_near_boundary(const ResultReader& truth, double radius) {
   const auto ulps = [ulp](std::size_t i) { return std::ldexp(ulp, static_cast<int>(i)); };
   check_reach(truth, radius + ulps(out.size() - 1));
   for (ClearanceCursor rows(truth); !rows.at_end(); rows.advance()) {
-    const double distance = std::abs(rows.get(&Clearances::distance) - radius);  // exact near the radius (Sterbenz)
+    const double distance =
+        std::abs(rows.get(&Clearances::distance) - radius);  // exact near the radius (Sterbenz)
     for (std::size_t i = out.size(); i > 0 && distance <= ulps(i - 1); --i) ++out[i - 1];
   }
   return out;

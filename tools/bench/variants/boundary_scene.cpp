@@ -9,7 +9,6 @@
 
 #include "io/formats/las/las_writer.hpp"
 #include "io/result/result.hpp"
-#include "io/result/result.hpp"
 #include "scene/random.hpp"
 
 namespace clearway::bench {

@@ -18,8 +18,8 @@ namespace clearway {
 struct LasHeader {
   Quantisation quantisation;
   std::uint64_t points = 0;
-  QuantumBox bounds{};    ///< box of all points; ignored for 0 points
-  std::string crs_wkt{};  ///< CRS; empty for none
+  QuantumBox bounds{};               ///< box of all points; ignored for 0 points
+  std::string crs_wkt{};             ///< CRS; empty for none
   std::vector<PointField> fields{};  ///< become extra bytes
 };
 

@@ -123,11 +123,13 @@ class Merge {
         a_, b_,
         [&] {
           ++out_.only_in_a;
-          keep({Kind::kOnlyInA, a_.source(), a_.get(&Collisions::xyz), a_.find(&Collisions::first_pose), std::nullopt});
+          keep({Kind::kOnlyInA, a_.source(), a_.get(&Collisions::xyz),
+                a_.find(&Collisions::first_pose), std::nullopt});
         },
         [&] {
           ++out_.only_in_b;
-          keep({Kind::kOnlyInB, b_.source(), b_.get(&Collisions::xyz), std::nullopt, b_.find(&Collisions::first_pose)});
+          keep({Kind::kOnlyInB, b_.source(), b_.get(&Collisions::xyz), std::nullopt,
+                b_.find(&Collisions::first_pose)});
         },
         [&] { common(); });
     return std::move(out_);
@@ -138,14 +140,16 @@ class Merge {
 
   void common() {
     ++out_.common;
-    const PointDifference point{Kind::kFirstPose, a_.source(), a_.get(&Collisions::xyz), a_.find(&Collisions::first_pose),
-                                b_.find(&Collisions::first_pose)};
-    const bool same_body = !same_bodies_ || a_.find(&Collisions::body) == b_.find(&Collisions::body);
+    const PointDifference point{Kind::kFirstPose, a_.source(), a_.get(&Collisions::xyz),
+                                a_.find(&Collisions::first_pose), b_.find(&Collisions::first_pose)};
+    const bool same_body =
+        !same_bodies_ || a_.find(&Collisions::body) == b_.find(&Collisions::body);
     if (out_.differing_first_poses && (point.first_pose_a != point.first_pose_b || !same_body)) {
       ++*out_.differing_first_poses;
       keep(point);
     }
-    if (out_.differing_last_poses && a_.find(&Collisions::last_pose) != b_.find(&Collisions::last_pose)) {
+    if (out_.differing_last_poses &&
+        a_.find(&Collisions::last_pose) != b_.find(&Collisions::last_pose)) {
       ++*out_.differing_last_poses;
       keep({Kind::kLastPose, point.source, point.xyz, point.first_pose_a, point.first_pose_b,
             a_.find(&Collisions::last_pose), b_.find(&Collisions::last_pose)});

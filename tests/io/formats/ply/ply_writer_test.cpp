@@ -28,8 +28,8 @@ TEST_CASE("a double PLY holds header and coordinates bit for bit") {
 
 TEST_CASE("a float PLY with first poses") {
   const File file = test::nameless_file();
-  PlyWriter writer(file,
-                   {.points = 1, .coordinates = PlyCoordinates::kFloat32, .fields = {{"first_pose"}}});
+  PlyWriter writer(
+      file, {.points = 1, .coordinates = PlyCoordinates::kFloat32, .fields = {{"first_pose"}}});
   const std::vector<std::uint32_t> pose{4000000000u};
   const FieldValues field = std::span<const std::uint32_t>(pose);
   writer.write(std::vector<Vec3>{{0.1, -2, 3}}, std::span(&field, 1));
