@@ -194,7 +194,7 @@ class TableReader {
   std::vector<Value> column(std::vector<Value> Rows::*values) const {
     std::vector<Value> out;
     for_each_column<Rows>(datasets_, [&](const auto& column, const auto& dataset) {
-      if constexpr (std::is_same_v<decltype(column.values), std::vector<Value> Rows::*const>) {
+      if constexpr (std::is_same_v<decltype(column.values), std::vector<Value> Rows::*>) {
         if (column.values != values || !dataset) return;
         out.resize(rows());
         read_column(column, *dataset, 0, std::span(out));
