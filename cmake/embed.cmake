@@ -19,7 +19,7 @@ const std::string_view page_parts::k${name}{reinterpret_cast<const char*>(k${nam
 " PARENT_SCOPE)
 endfunction()
 
-set(text "#include \"report/page_parts.hpp\"
+set(text "#include \"report/page.hpp\"
 
 namespace clearway {
 ")

@@ -1,7 +1,7 @@
 # Sourced by tools/test.sh: builds with the sanitizers and runs the fast tests under them.
 
 # OpenMP is seen through libomp's archer; src/core/util/tsan_annotations.hpp tells of oneTBB.
-thread_tests=(stream_tests cpu_tests grid_tests io_convert_tests api_tests)
+thread_tests=(stream_tests cpu_tests grid_tests io_convert_tests library_tests)
 # Threads that wait in a loop take the processor from those that work.
 export OMP_WAIT_POLICY=passive
 

@@ -1,11 +1,93 @@
 #include "campaign/plan.hpp"
 
+#include <algorithm>
+#include <charconv>
+#include <optional>
 #include <span>
+#include <string_view>
+#include <system_error>
 
-#include "campaign/question.hpp"
-#include "io/system/xxh64.hpp"
+#include "clearway/error.hpp"
+#include "core/query/query_fields.hpp"
+#include "core/util/format.hpp"
+#include "io/files/input_error.hpp"
+#include "io/files/json.hpp"
+#include "io/files/xxh64.hpp"
+#include "io/result/journal.hpp"
 
 namespace clearway::campaign {
+namespace {
+
+nlohmann::ordered_json ignored_of(const ResultHeader& header) {
+  nlohmann::ordered_json boxes = nlohmann::ordered_json::array();
+  for (const Box& box : header.ignore_boxes) {
+    boxes.push_back({box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z});
+  }
+  nlohmann::ordered_json ignored{{"classes", header.ignore_classes}, {"boxes", boxes}};
+  if (!header.ignore_classes.empty()) ignored["classes_hash"] = hash_text(header.classes_hash);
+  return ignored;
+}
+
+/// The question that a complete result or part answers; nothing where there is no such file.
+std::optional<nlohmann::ordered_json> question_in(const std::filesystem::path& file) {
+  std::error_code unknown;
+  if (!std::filesystem::exists(file, unknown)) return std::nullopt;
+  try {
+    return question_of(ResultReader(file, Parts::kAccepted).header());
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+void ask_for_part(const Shard& shard, const std::string& store, nlohmann::ordered_json& question) {
+  question["shard"] = to_string(shard);
+  question["store"] = store;
+}
+
+nlohmann::ordered_json question_of(const ResultHeader& header) {
+  nlohmann::ordered_json question;
+  for_each_value_field([&](const auto& field) { question[field.name] = field.of(header); });
+  question.update({{"single_precision", header.float_precision},
+                   {"environment_points", header.environment_points},
+                   {"environment_hash", hash_text(header.environment_hash)},
+                   {"model_points", header.model_points},
+                   {"model_hash", hash_text(header.model_hash)},
+                   {"poses", header.poses},
+                   {"trajectory_hash", hash_text(header.trajectory_hash)}});
+  if (header.ignores_points()) question["ignored"] = ignored_of(header);
+  if (header.model_triangles > 0) question["model_triangles"] = header.model_triangles;
+  if (header.part) ask_for_part(header.part->shard, hash_text(header.part->store), question);
+  return question;
+}
+
+bool answers(const std::filesystem::path& file, const nlohmann::ordered_json& question) {
+  return question_in(file) == question;
+}
+
+bool answers_another(const std::filesystem::path& file, const nlohmann::ordered_json& question) {
+  const auto found = question_in(file);
+  return found && *found != question;
+}
+
+bool is_journal_of_others(const std::filesystem::path& file,
+                          const nlohmann::ordered_json& question) {
+  std::error_code unknown;
+  if (!std::filesystem::exists(file, unknown)) return false;
+  try {
+    const JournalReader journal(file);
+    if (!journal.identity()) return false;
+    return std::ranges::any_of(*journal.identity(), [&](const auto& field) {
+      const auto& [name, value] = field;
+      return (name == "model" && question["model_hash"] != value) ||
+             (name == "trajectory" && question["trajectory_hash"] != value);
+    });
+  } catch (const Error&) {
+    return false;  // the run reports what is wrong with it
+  }
+}
+
 namespace {
 
 std::string id_of(const nlohmann::ordered_json& value) {
@@ -210,6 +292,184 @@ Plan make_plan(const Campaign& campaign,
     }
   }
   return plan;
+}
+
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr int kFormat = 2;  // format 1 has no fingerprints of the stores of shards
+constexpr std::string_view kEnd = "]}";
+
+ordered_json json_of(const Task& task) {
+  ordered_json line{{"task", task.number},
+                    {"vehicle", task.vehicle},
+                    {"route", task.route},
+                    {"environment", task.environment},
+                    {"radius", task.radius},
+                    {"unit", task.unit},
+                    {"folder", task.folder().string()}};
+  if (task.shard) line["shard"] = {task.shard->number, task.shard->count};
+  if (task.shards > 0) {
+    line["shards"] = task.shards;
+    line["store"] = task.store;
+  }
+  line["question"] = task.question;
+  line["outputs"] = task.outputs;
+  line["outputs_id"] = task.outputs_id;
+  line["commands"] = task.commands;
+  return line;
+}
+
+Task task_of(const ordered_json& line) {
+  Task task;
+  line.at("task").get_to(task.number);
+  line.at("vehicle").get_to(task.vehicle);
+  line.at("route").get_to(task.route);
+  line.at("environment").get_to(task.environment);
+  line.at("radius").get_to(task.radius);
+  line.at("unit").get_to(task.unit);
+  if (line.contains("shard")) {
+    const ordered_json& shard = line["shard"];
+    task.shard = Shard{shard.at(0).get<std::uint32_t>(), shard.at(1).get<std::uint32_t>()};
+  }
+  if (line.contains("shards")) {
+    line["shards"].get_to(task.shards);
+    line.at("store").get_to(task.store);
+  }
+  task.question = line.at("question");
+  line.at("outputs").get_to(task.outputs);
+  line.at("outputs_id").get_to(task.outputs_id);
+  line.at("commands").get_to(task.commands);
+  return task;
+}
+
+/// The lines of a plan: a head, one line for each task, and the end.
+class PlanLines {
+  template <typename Read>
+  auto guarded(const Read& read) const {
+    try {
+      return read();
+    } catch (const JsonError& error) {
+      damaged(error.what());
+    } catch (const ordered_json::exception& error) {
+      damaged(error.what());
+    }
+  }
+
+ public:
+  explicit PlanLines(const std::filesystem::path& folder) : file_(folder / kPlanName) {
+    std::error_code unknown;
+    if (!std::filesystem::exists(file_, unknown)) {
+      throw UsageError(folder.string() +
+                       ": holds no campaign; clearway campaign plan makes one there");
+    }
+    text_ = text_of_file(file_);
+    for (std::string_view rest = text_; !rest.empty();) {
+      const std::size_t end = std::min(rest.find('\n'), rest.size());
+      lines_.push_back(rest.substr(0, end));
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+    if (lines_.size() < 2 || lines_.back() != kEnd) damaged("its end is missing");
+  }
+
+  std::size_t tasks() const { return lines_.size() - 2; }
+
+  std::string name() const {
+    return guarded([&] {
+      const ordered_json head = parse_json(std::string(lines_[0]) + std::string(kEnd));
+      if (head.at("format") != kFormat) damaged("it is of another version of clearway");
+      return head.at("campaign").get<std::string>();
+    });
+  }
+
+  Task task(std::size_t number) const {
+    return guarded([&] {
+      std::string_view line = lines_[number + 1];
+      if (line.ends_with(',')) line.remove_suffix(1);
+      Task task = task_of(parse_json(line));
+      if (task.number != number || task.commands.empty()) damaged("its tasks are not in order");
+      return task;
+    });
+  }
+
+ private:
+  [[noreturn]] void damaged(const std::string& why) const {
+    refuse(file_.string(),
+           "is damaged: " + why + "; clearway campaign plan --force makes it again");
+  }
+
+  std::filesystem::path file_;
+  std::string text_;
+  std::vector<std::string_view> lines_;
+};
+
+}  // namespace
+
+std::string plan_text(const Plan& plan) {
+  std::string text = ordered_json{{"format", kFormat}, {"campaign", plan.name}}.dump();
+  text.pop_back();
+  text += ",\"tasks\":[\n";
+  for (const Task& task : plan.tasks) {
+    text += json_of(task).dump() + (&task == &plan.tasks.back() ? "\n" : ",\n");
+  }
+  return text + std::string(kEnd) + "\n";
+}
+
+Plan read_plan(const std::filesystem::path& folder) {
+  const PlanLines lines(folder);
+  Plan plan{lines.name(), {}};
+  for (std::size_t i = 0; i < lines.tasks(); ++i) plan.tasks.push_back(lines.task(i));
+  return plan;
+}
+
+Plan read_plan(const std::filesystem::path& folder, const TaskList& tasks) {
+  const PlanLines lines(folder);
+  Plan plan{lines.name(), {}};
+  for (const std::size_t number : tasks) {
+    if (number >= lines.tasks()) {
+      throw UsageError("--task " + std::to_string(number) + ": the plan has the tasks 0 to " +
+                       std::to_string(lines.tasks() - 1));
+    }
+    plan.tasks.push_back(lines.task(number));
+  }
+  return plan;
+}
+
+namespace {
+
+constexpr std::size_t kMostTasks = 10'000'000;
+
+std::optional<std::size_t> task_number(std::string_view text) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole && number < kMostTasks ? std::optional(number) : std::nullopt;
+}
+
+}  // namespace
+
+std::string task_list_text(const TaskList& tasks) {
+  std::string text;
+  for (const std::string& range : number_ranges(tasks)) text += (text.empty() ? "" : ",") + range;
+  return text;
+}
+
+std::optional<TaskList> parse_task_list(const std::string& text) {
+  TaskList tasks;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    const std::string_view part = std::string_view(text).substr(begin, comma - begin);
+    const std::size_t dash = std::min(part.find('-'), part.size());
+    const auto first = task_number(part.substr(0, dash));
+    const auto last = dash < part.size() ? task_number(part.substr(dash + 1)) : first;
+    if (!first || !last || *last < *first) return std::nullopt;
+    for (std::size_t task = *first; task <= *last; ++task) tasks.push_back(task);
+    begin = comma + 1;
+  }
+  std::ranges::sort(tasks);
+  tasks.erase(std::unique(tasks.begin(), tasks.end()), tasks.end());
+  return tasks;
 }
 
 }  // namespace clearway::campaign

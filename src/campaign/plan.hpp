@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -10,8 +11,27 @@
 
 #include "campaign/campaign_file.hpp"
 #include "clearway/shard.hpp"
+#include "io/result/result.hpp"
 
 namespace clearway::campaign {
+
+/// What distinguishes the questions that results answer: parameters, and sizes and hashes of the
+/// inputs; for a part also which part it is, and of which store.
+nlohmann::ordered_json question_of(const ResultHeader& header);
+
+/// Turns the question of a result into that of one of its parts. store: the fingerprint as text,
+/// because parts of two stores of the same points do not fit together.
+void ask_for_part(const Shard& shard, const std::string& store, nlohmann::ordered_json& question);
+
+/// Whether the file is a complete result or part that answers this question. Its rows are not read.
+bool answers(const std::filesystem::path& file, const nlohmann::ordered_json& question);
+
+/// Whether the file is a complete result or part that answers another question.
+bool answers_another(const std::filesystem::path& file, const nlohmann::ordered_json& question);
+
+/// Whether the file is the journal of a run with another model or trajectory.
+bool is_journal_of_others(const std::filesystem::path& file,
+                          const nlohmann::ordered_json& question);
 
 /// One command line of a task, without the program's name. Names such as "out.h5" are relative to
 /// the task's folder.
@@ -88,5 +108,26 @@ struct RunFacts {
 /// the task would refuse.
 Plan make_plan(const Campaign& campaign,
                const std::function<RunFacts(const PlannedRun&)>& facts_of);
+
+/// Numbers of tasks, ascending.
+using TaskList = std::vector<std::size_t>;
+
+/// The numbers as sbatch --array takes them, for example "3,7-9".
+std::string task_list_text(const TaskList& tasks);
+
+/// The numbers in such a text, each once; nothing where it is no such text.
+std::optional<TaskList> parse_task_list(const std::string& text);
+
+inline constexpr const char* kPlanName = "plan.json";
+
+/// The plan as one JSON object with one line for each task, so that a task can be read without
+/// parsing all of them.
+std::string plan_text(const Plan& plan);
+
+/// Reads the plan of a campaign's folder: all of its tasks, or those with the numbers in `tasks`,
+/// in their order. Throws UsageError where there is no plan or no task with a number, and
+/// InputError where the plan is damaged.
+Plan read_plan(const std::filesystem::path& folder);
+Plan read_plan(const std::filesystem::path& folder, const TaskList& tasks);
 
 }  // namespace clearway::campaign

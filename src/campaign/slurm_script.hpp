@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "campaign/task_list.hpp"
+#include "campaign/plan.hpp"
 
 namespace clearway::campaign {
 

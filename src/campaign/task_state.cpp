@@ -1,12 +1,201 @@
 #include "campaign/task_state.hpp"
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
+#include <numeric>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
 
-#include "campaign/question.hpp"
+#include "campaign/plan.hpp"
 #include "clearway/error.hpp"
-#include "io/system/file_lock.hpp"
+#include "core/util/format.hpp"
+#include "io/files/file.hpp"
+#include "io/files/input_error.hpp"
+#include "io/files/json.hpp"
+#include "io/models/vehicle_file.hpp"
 
 namespace clearway::campaign {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<InputStamp> stamp_of(const std::string& what, const fs::path& file) {
+  std::error_code failed;
+  const fs::file_time_type modified = fs::last_write_time(file, failed);
+  if (failed) return std::nullopt;
+  const std::uintmax_t bytes = fs::is_directory(file, failed) ? 0 : fs::file_size(file, failed);
+  if (failed) return std::nullopt;
+  using Nanoseconds = std::chrono::nanoseconds;
+  return InputStamp{what, file.string(), bytes,
+                    std::chrono::duration_cast<Nanoseconds>(modified.time_since_epoch()).count()};
+}
+
+/// The files that a vehicle's file names; none where it cannot be read, which the run will report.
+std::vector<std::pair<std::string, fs::path>> files_of_bodies(const fs::path& vehicle) {
+  std::vector<std::pair<std::string, fs::path>> files;
+  try {
+    for (const BodyEntry& body : read_vehicle_file(vehicle, 1)) {
+      files.emplace_back("model", body.model);
+      if (!body.trajectory.empty()) files.emplace_back("trajectory", body.trajectory);
+    }
+  } catch (const Error&) {
+    files.clear();
+  }
+  return files;
+}
+
+/// The words of the task's `clearway run`, which is the second command of a merge and the first of
+/// any other task; null where there is none.
+const Command* run_of_commands(const Task& task) {
+  const auto run = std::ranges::find_if(
+      task.commands, [](const Command& words) { return !words.empty() && words[0] == "run"; });
+  return run == task.commands.end() ? nullptr : &*run;
+}
+
+}  // namespace
+
+std::vector<InputStamp> stamps_of(const Task& task) {
+  constexpr std::array<std::pair<std::string_view, const char*>, 4> kOptions{
+      {{"--env=", "environment"},
+       {"--model=", "model"},
+       {"--vehicle=", "vehicle"},
+       {"--trajectory=", "trajectory"}}};
+  std::vector<std::pair<std::string, fs::path>> files;
+  if (const Command* run = run_of_commands(task)) {
+    for (const std::string& word : *run) {
+      for (const auto& [option, what] : kOptions) {
+        if (word.starts_with(option)) files.emplace_back(what, word.substr(option.size()));
+      }
+    }
+  }
+  std::vector<InputStamp> stamps;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (files[i].first == "vehicle") {
+      for (auto& file : files_of_bodies(files[i].second)) files.push_back(std::move(file));
+    }
+    auto stamp = stamp_of(files[i].first, files[i].second);
+    if (stamp && std::ranges::find(stamps, *stamp) == stamps.end()) stamps.push_back(*stamp);
+  }
+  return stamps;
+}
+
+std::string changed_since(const std::vector<InputStamp>& stamps) {
+  std::string text;
+  for (const InputStamp& stamp : stamps) {
+    const auto now = stamp_of(stamp.what, stamp.file);
+    if (!now || *now == stamp) continue;
+    text += (text.empty() ? "the " : ", the ") + stamp.what + " file " +
+            fs::path(stamp.file).filename().string() + " changed";
+  }
+  return text.empty() ? "" : text + " since this run";
+}
+
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string warning_words(const ordered_json& facts) {
+  const ordered_json& codes = facts["warnings"];
+  if (codes.empty()) return "";
+  std::string text = counted(codes.size(), "warning") + " (";
+  for (const auto& code : codes) {
+    text += (text.ends_with('(') ? "" : ", ") + code.get<std::string>();
+  }
+  return text + ")";
+}
+
+}  // namespace
+
+const OutcomeWords& words_of(Outcome outcome) {
+  static constexpr std::array<OutcomeWords, kOutcomes.size()> kWords{
+      {{"conflict", "■", "conflict", "conflict: a point is closer than the radius"},
+       {"undecided", "?", "undecided",
+        "undecided: the search could not have found anything, and the warnings say why"},
+       {"doubtful", "△", "clear with warnings",
+        "clear, but something was warned of: read the warnings below"},
+       {"clear", "○", "clear", "clear: no point is closer than the radius"},
+       {"failed", "✕", "failed", "failed: nothing is known"},
+       {"not_done", "…", "not done",
+        "not done yet, or a file has changed since: nothing is known"}}};
+  return kWords.at(static_cast<std::size_t>(outcome));
+}
+
+Outcome outcome_of(const TaskLook& look) {
+  if (look.status == TaskStatus::kFailed) return Outcome::kFailed;
+  if (look.status != TaskStatus::kDone) return Outcome::kUnfinished;
+  const ordered_json& facts = look.state->facts;
+  if (facts["verdict"] == "clear") {
+    return facts["warnings"].empty() ? Outcome::kClear : Outcome::kDoubtful;
+  }
+  return facts["verdict"] == "conflict" ? Outcome::kConflict : Outcome::kUndecided;
+}
+
+RunLooks run_looks(const Plan& plan, const std::vector<TaskLook>& looks) {
+  RunLooks runs{{plan.name, {}}, {}};
+  std::optional<TaskLook> failed;  // one of the shards that come before their run
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    if (plan.tasks[i].shard) {
+      if (looks[i].status == TaskStatus::kFailed && !failed) {
+        failed = looks[i];
+        failed->shard = plan.tasks[i].shard->number;
+      }
+      continue;
+    }
+    const bool done = looks[i].status == TaskStatus::kDone;
+    runs.plan.tasks.push_back(plan.tasks[i]);
+    runs.looks.push_back(failed && !done ? *failed : looks[i]);
+    failed.reset();
+  }
+  return runs;
+}
+
+OutcomeCounts::OutcomeCounts(const std::vector<TaskLook>& looks) {
+  for (const TaskLook& look : looks) ++counts_.at(static_cast<std::size_t>(outcome_of(look)));
+}
+
+std::size_t OutcomeCounts::all() const {
+  return std::accumulate(counts_.begin(), counts_.end(), std::size_t{0});
+}
+
+std::string OutcomeCounts::text() const {
+  std::string text = counted(all(), "run") + ": ";
+  for (const Outcome outcome : kOutcomes) {
+    text += (outcome == kOutcomes.front() ? "" : ", ") + format_count(of(outcome)) + " " +
+            words_of(outcome).word;
+  }
+  return text;
+}
+
+ordered_json OutcomeCounts::json() const {
+  ordered_json out;
+  for (const Outcome outcome : kOutcomes) out[words_of(outcome).name] = of(outcome);
+  return out;
+}
+
+std::string ignored_words(const ordered_json& facts) {
+  const ordered_json ignored = facts.value("ignored", ordered_json());
+  if (ignored.is_null() || ignored["points"] == 0) return "";
+  std::string text = counted(ignored["points"].get<std::uint64_t>(), "point") + " ignored";
+  if (const ordered_json& colliding = ignored["colliding"]; !colliding.is_null()) {
+    text += ", of which " + format_count(colliding.get<std::uint64_t>()) + " would collide";
+  }
+  return text;
+}
+
+bool is_exact(const ordered_json& facts) { return facts.value("exact", true); }
+
+std::string caveats_of(const ordered_json& facts) {
+  std::string text;
+  for (const std::string& one : {warning_words(facts), ignored_words(facts),
+                                 std::string(is_exact(facts) ? "" : "not exact")}) {
+    if (!one.empty()) text += (text.empty() ? "" : "; ") + one;
+  }
+  return text;
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -98,6 +287,129 @@ bool may_succeed(const TaskLook& look) {
   constexpr int kResource = 4;
   if (look.status != TaskStatus::kFailed) return true;
   return look.state->exit_code == kResource || look.state->inputs_changed;
+}
+
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr const char* kStateName = "state.json";
+constexpr std::array kEndings{"begun", "done", "interrupted", "failed"};
+
+Ending ending_of(const std::string& name) {
+  for (std::size_t i = 0; i < kEndings.size(); ++i) {
+    if (name == kEndings[i]) return static_cast<Ending>(i);
+  }
+  return Ending::kBegun;
+}
+
+ordered_json place_of(const ordered_json& place) {
+  if (place.is_null()) return nullptr;
+  ordered_json out{{"pose", place.at("pose")}, {"chainage", place.at("chainage")}};
+  if (place.contains("distance")) out["distance"] = place.at("distance");
+  return out;
+}
+
+/// The counts of ignored points; null where the query ignores nothing.
+ordered_json ignored_of(const ordered_json& ignored) {
+  if (ignored.at("classes").empty() && ignored.at("boxes").empty()) return nullptr;
+  return {{"points", ignored.at("points")},
+          {"colliding", ignored.value("colliding", ordered_json())}};
+}
+
+ordered_json json_of(const std::vector<InputStamp>& stamps) {
+  ordered_json out = ordered_json::array();
+  for (const InputStamp& stamp : stamps) {
+    out.push_back({{"what", stamp.what},
+                   {"file", stamp.file},
+                   {"bytes", stamp.bytes},
+                   {"modified", stamp.modified}});
+  }
+  return out;
+}
+
+std::vector<InputStamp> stamps_in(const ordered_json& list) {
+  std::vector<InputStamp> stamps;
+  for (const ordered_json& one : list) {
+    InputStamp& stamp = stamps.emplace_back();
+    one.at("what").get_to(stamp.what);
+    one.at("file").get_to(stamp.file);
+    one.at("bytes").get_to(stamp.bytes);
+    one.at("modified").get_to(stamp.modified);
+  }
+  return stamps;
+}
+
+}  // namespace
+
+std::optional<TaskState> read_state(const std::filesystem::path& folder) {
+  std::error_code unknown;
+  if (!std::filesystem::exists(folder / kStateName, unknown)) return std::nullopt;
+  try {
+    const ordered_json json = parse_json(text_of_file(folder / kStateName));
+    TaskState state;
+    state.ending = ending_of(json.at("state").get<std::string>());
+    json.at("question_id").get_to(state.question_id);
+    json.at("outputs_id").get_to(state.outputs_id);
+    json.at("exit_code").get_to(state.exit_code);
+    json.at("message").get_to(state.message);
+    json.at("tries").get_to(state.tries);
+    json.at("seconds").get_to(state.seconds);
+    json.at("host").get_to(state.host);
+    json.at("time").get_to(state.time);
+    state.inputs_changed = json.value("inputs_changed", false);
+    state.inputs = stamps_in(json.value("inputs", ordered_json::array()));
+    state.facts = json.at("facts");
+    return state;
+  } catch (const JsonError&) {
+    return std::nullopt;
+  } catch (const ordered_json::exception&) {
+    return std::nullopt;
+  } catch (const ResourceError&) {
+    return std::nullopt;
+  }
+}
+
+void write_state(const std::filesystem::path& folder, const TaskState& state) {
+  const ordered_json json{{"state", kEndings.at(static_cast<std::size_t>(state.ending))},
+                          {"exit_code", state.exit_code},
+                          {"message", state.message},
+                          {"tries", state.tries},
+                          {"seconds", state.seconds},
+                          {"host", state.host},
+                          {"time", state.time},
+                          {"question_id", state.question_id},
+                          {"outputs_id", state.outputs_id},
+                          {"inputs_changed", state.inputs_changed},
+                          {"inputs", json_of(state.inputs)},
+                          {"facts", state.facts}};
+  replace_file(folder / kStateName,
+               json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+}
+
+ordered_json task_facts(const std::filesystem::path& run_json, const ordered_json& question) {
+  try {
+    const ordered_json run = parse_json(text_of_file(run_json));
+    ordered_json warnings = ordered_json::array(), texts = ordered_json::array();
+    for (const auto& warning : run.at("warnings")) {
+      warnings.push_back(warning.at("code"));
+      texts.push_back(warning.at("message"));
+    }
+    const ordered_json& profile = run.at("least_profile");
+    return {{"verdict", run.at("verdict")},
+            {"reasons", run.value("reasons", ordered_json::array())},
+            {"exact", question.at("tolerance") == 0 && question.at("single_precision") == false},
+            {"colliding_points", run.at("colliding_points")},
+            {"ignored", ignored_of(run.at("ignored"))},
+            {"least", place_of(profile.is_null() ? run.at("least_clearance") : profile)},
+            {"first", place_of(run.at("first_place"))},
+            {"warnings", std::move(warnings)},
+            {"warning_texts", std::move(texts)}};
+  } catch (const JsonError& error) {
+    throw ResourceError(run_json.string() + ": is not what the run printed: " + error.what());
+  } catch (const ordered_json::exception& error) {
+    throw ResourceError(run_json.string() + ": is not what the run printed: " + error.what());
+  }
 }
 
 }  // namespace clearway::campaign

@@ -1,14 +1,76 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "campaign/plan.hpp"
-#include "campaign/state_file.hpp"
-#include "io/system/file.hpp"
+#include "io/files/file.hpp"
 
 namespace clearway::campaign {
+
+/// Size and time of a file that a task reads. A task's state keeps them, so that anyone who looks
+/// at a result can see that it belongs to an earlier file, without reading the file.
+struct InputStamp {
+  std::string what;  ///< "model", "trajectory", "vehicle" or "environment"
+  std::string file;
+  std::uint64_t bytes = 0;
+  /// Time of the last modification in nanoseconds, as the file system counts it.
+  std::int64_t modified = 0;
+  friend bool operator==(const InputStamp&, const InputStamp&) = default;
+};
+
+/// Stamps of all files that the task's run reads, as they are now; for a vehicle also those of the
+/// files that its file names. Missing files are left out.
+std::vector<InputStamp> stamps_of(const Task& task);
+
+/// Names the files that changed, for example "the model file truck.ply changed since this run";
+/// empty where no file did. A missing file has not been replaced, so it does not count.
+std::string changed_since(const std::vector<InputStamp>& stamps);
+
+/// How far the last try of a task came.
+enum class Ending { kBegun, kDone, kInterrupted, kFailed };
+
+/// The contents of state.json in the folder of a task.
+// NOLINTNEXTLINE(bugprone-exception-escape): of JSON that is moved
+struct TaskState {
+  Ending ending = Ending::kBegun;
+  /// The task's ids in the plan by which it was last tried.
+  std::string question_id, outputs_id;
+  int exit_code = 0;
+  /// The last thing that the program said; empty where all went well.
+  std::string message;
+  std::uint64_t tries = 0;
+  double seconds = 0;  ///< duration of the last try
+  /// Host of the last try, and the time of its end in UTC.
+  std::string host, time;
+  /// Whether the task failed because an input is not the planned one. Another try succeeds once the
+  /// input is put back.
+  bool inputs_changed = false;
+  /// The files that the task read, as they were when it began. Empty in states of earlier releases.
+  std::vector<InputStamp> inputs = {};
+  /// Facts about the result once the task is done: see task_facts().
+  nlohmann::ordered_json facts;
+  friend bool operator==(const TaskState&, const TaskState&) = default;
+};
+
+/// The state in a folder. Nothing where there is none, or none that can be read, since a crash of
+/// the system may cut the file short.
+std::optional<TaskState> read_state(const std::filesystem::path& folder);
+
+void write_state(const std::filesystem::path& folder, const TaskState& state);
+
+/// The facts about a result, from what `clearway run --json` printed: verdict and its reasons,
+/// colliding_points, ignored points (null where the query ignores none), least distance and first
+/// place with pose and chainage, codes and texts of the warnings; and from the task's question,
+/// whether it asks for an exact answer. Throws ResourceError where the file is cut short.
+nlohmann::ordered_json task_facts(const std::filesystem::path& run_json,
+                                  const nlohmann::ordered_json& question);
 
 /// What can be said about a task. kBegun: another process works on it, or it was interrupted; the
 /// file system has no locks that tell which. kOutdated: it finished, but a file that it read has
@@ -47,5 +109,72 @@ bool may_succeed(const TaskLook& look);
 
 /// The file in the task's folder that a process holds locked while it works on the task.
 inline constexpr const char* kLockName = "lock";
+
+/// What is known of a run, as the page, `campaign status` and `campaign run` count it. Each run has
+/// exactly one of these.
+enum class Outcome {
+  kConflict,
+  kUndecided,  ///< the search could not have found anything
+  kDoubtful,   ///< clear, but there were warnings
+  kClear,
+  kFailed,
+  kUnfinished
+};
+inline constexpr std::array kOutcomes{Outcome::kConflict, Outcome::kUndecided,
+                                      Outcome::kDoubtful, Outcome::kClear,
+                                      Outcome::kFailed,   Outcome::kUnfinished};
+
+struct OutcomeWords {
+  /// The name in JSON, and as a class of the style sheet, for example "doubtful".
+  const char* name;
+  /// A character that tells the outcome without colour.
+  const char* sign;
+  /// The word after a count, for example "clear with warnings".
+  const char* word;
+  /// The text of the legend, which says what the outcome means.
+  const char* words;
+};
+const OutcomeWords& words_of(Outcome outcome);
+
+Outcome outcome_of(const TaskLook& look);
+
+/// The tasks of a plan that are runs, not shards, with their state. A run one of whose shards has
+/// failed has failed itself.
+struct RunLooks {
+  Plan plan;
+  std::vector<TaskLook> looks;
+};
+RunLooks run_looks(const Plan& plan, const std::vector<TaskLook>& looks);
+
+/// How many runs have each outcome, in the order of kOutcomes. The counts add up to the number of
+/// runs.
+class OutcomeCounts {
+ public:
+  /// looks: those of run_looks().
+  explicit OutcomeCounts(const std::vector<TaskLook>& looks);
+
+  std::size_t of(Outcome outcome) const { return counts_.at(static_cast<std::size_t>(outcome)); }
+  std::size_t all() const;
+  /// For example "5 runs: 1 conflict, 1 undecided, 1 clear with warnings, 1 clear, 1 failed, 0 not
+  /// done".
+  std::string text() const;
+  /// An object with the counts under the names of the outcomes.
+  nlohmann::ordered_json json() const;
+
+ private:
+  std::array<std::size_t, kOutcomes.size()> counts_{};
+};
+
+/// What has to be said beside the verdict of a run that is done, for example "2 warnings
+/// (out-of-reach, scan-ends); 1,234 points ignored, of which 56 would collide; not exact". Empty
+/// where there is nothing to say.
+std::string caveats_of(const nlohmann::ordered_json& facts);
+
+/// Whether the run was asked for an exact answer, that is, without a tolerance and in double
+/// precision.
+bool is_exact(const nlohmann::ordered_json& facts);
+
+/// For example "1,234 points ignored, of which 56 would collide"; empty where none is ignored.
+std::string ignored_words(const nlohmann::ordered_json& facts);
 
 }  // namespace clearway::campaign

@@ -7,7 +7,7 @@
 #include "core/geometry/point_box.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/geometry/triangle.hpp"
-#include "core/query/hit_set.hpp"
+#include "core/query/search_result.hpp"
 
 namespace clearway {
 namespace {

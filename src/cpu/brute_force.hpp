@@ -6,7 +6,7 @@
 
 #include "clearway/query.hpp"
 #include "clearway/vec3.hpp"
-#include "core/query/clearance_set.hpp"
+#include "core/query/search_result.hpp"
 
 namespace clearway {
 

@@ -5,8 +5,8 @@
 
 #include "core/grid/grid_arrays.hpp"
 #include "core/grid/grid_search.hpp"
-#include "core/page/page_result_arrays.hpp"
-#include "core/query/hit_set.hpp"
+#include "core/page/page_pool.hpp"
+#include "core/query/search_result.hpp"
 
 namespace clearway {
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <mutex>
@@ -13,15 +14,48 @@
 #include <vector>
 
 #include "clearway/error.hpp"
-#include "core/cloud/kd_order.hpp"
 #include "core/cloud/packed_cloud.hpp"
 #include "core/geometry/predicate.hpp"
-#include "core/query/hit_set.hpp"
+#include "core/geometry/rigid.hpp"
 #include "core/query/ignored_points.hpp"
+#include "core/query/search_result.hpp"
 #include "cpu/first_failure.hpp"
 #include "cpu/range_search.hpp"
 
 namespace clearway {
+
+PoseTree::PoseTree(std::span<const Pose> poses, std::uint32_t first, std::uint32_t count,
+                   const Box& model, bool between_poses) {
+  nodes_.reserve(std::size_t{2} * count);
+  add(poses, first, count, model, between_poses);
+}
+
+std::uint32_t PoseTree::add(std::span<const Pose> poses, std::uint32_t first, std::uint32_t count,
+                            const Box& model, bool between_poses) {
+  const std::uint32_t reference = first + count / 2;
+  double motion = 0;
+  const bool moves_on = between_poses && first + count < poses.size();
+  for (std::uint32_t i = first; i < first + count + (moves_on ? 1 : 0); ++i) {
+    if (i != reference) {
+      motion = std::max(motion, displacement_bound(model, poses[reference], poses[i]));
+    }
+  }
+  // Each coordinate of either of two points moved by the reference pose errs by at most `rounding`.
+  const double rounding =
+      2 * std::sqrt(3.0) * 1.01 * transform_rounding(reach_of(model), poses[reference]);
+  const auto self = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.push_back(
+      {first, count, reference, 0, 0, motion + rounding, greatest_stretch_bound(poses[reference])});
+  if (count > 1) {
+    const std::uint32_t earlier = add(poses, first, count / 2, model, between_poses);
+    const std::uint32_t later =
+        add(poses, first + count / 2, count - count / 2, model, between_poses);
+    nodes_[self].earlier = earlier;
+    nodes_[self].later = later;
+  }
+  return self;
+}
+
 namespace {
 
 /// The ignored points of a search without pages. During the search they count as hit at the first

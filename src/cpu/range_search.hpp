@@ -5,10 +5,10 @@
 
 #include "clearway/query.hpp"
 #include "core/query/pose_journal.hpp"
-#include "cpu/block_cache.hpp"
+#include "cpu/cell_search.hpp"
 #include "cpu/environment_tree.hpp"
+#include "cpu/kdtree_engine.hpp"
 #include "cpu/model_spheres.hpp"
-#include "cpu/pose_tree.hpp"
 #include "cpu/resolved_points.hpp"
 
 namespace clearway {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/query/hit_set.hpp"
+#include "core/query/search_result.hpp"
 #include "cpu/environment_tree.hpp"
 
 namespace clearway {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/cloud/kd_order.hpp"
+#include "core/cloud/packed_cloud.hpp"
 
 namespace clearway {
 template <typename Element>

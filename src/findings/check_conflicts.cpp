@@ -4,10 +4,10 @@
 #include <string>
 
 #include "core/util/format.hpp"
-#include "findings/side.hpp"
-#include "io/system/input_error.hpp"
-#include "io/system/xxh64.hpp"
-#include "io/trajectory/content_hash.hpp"
+#include "findings/touched_first.hpp"
+#include "io/files/input_error.hpp"
+#include "io/files/xxh64.hpp"
+#include "io/paths/content_hash.hpp"
 
 namespace clearway {
 namespace {
@@ -71,6 +71,25 @@ void check_bodies_of(const ResultReader& result, std::span<const Body> bodies) {
          "is the result of another vehicle (hash " + hash_text(header.model_hash) + ", given " +
              hash_text(hash) + ")",
          Remedy::kSameModel);
+}
+
+namespace {
+
+constexpr double kMostOfThePath = 0.5;
+
+}  // namespace
+
+std::vector<Message> conflict_warnings(const Conflicts& conflicts, const std::string& unit) {
+  const double length = conflicts.longest_group;
+  if (!(length > 0 && length >= kMostOfThePath * conflicts.path_length)) return {};
+  return {{Message::Severity::kWarning,
+           "one-long-conflict",
+           "one group of " + counted(conflicts.longest_group_points, "point") + " spans " +
+               format_brief(length) + " " + unit + " of " + format_brief(conflicts.path_length) +
+               " " + unit + " of path, as wheels do that stand on the ground",
+           {{"points", static_cast<double>(conflicts.longest_group_points)},
+            {"length", length},
+            {"path_length", conflicts.path_length}}}};
 }
 
 }  // namespace clearway

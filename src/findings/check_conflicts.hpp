@@ -1,9 +1,11 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "clearway/conflicts.hpp"
+#include "clearway/progress.hpp"
 #include "io/result/result.hpp"
 
 namespace clearway {
@@ -15,5 +17,9 @@ void check_conflicts(const ResultReader& result, const std::vector<Pose>& poses,
 
 /// Throws InputError where a result is not that of the vehicle with these bodies.
 void check_bodies_of(const ResultReader& result, std::span<const Body> bodies);
+
+/// Warns of conflicts that are of little use: "one-long-conflict" for a group that spans most of
+/// the path. unit: the symbol of the unit of length.
+std::vector<Message> conflict_warnings(const Conflicts& conflicts, const std::string& unit);
 
 }  // namespace clearway

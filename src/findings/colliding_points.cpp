@@ -4,9 +4,9 @@
 
 #include <atomic>
 
-#include "io/formats/requantize.hpp"
+#include "io/files/input_error.hpp"
 #include "io/result/result.hpp"
-#include "io/system/input_error.hpp"
+#include "io/scans/requantize.hpp"
 
 namespace clearway {
 namespace {

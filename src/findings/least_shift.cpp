@@ -10,7 +10,7 @@
 #include "core/geometry/predicate.hpp"
 #include "core/geometry/solid_parts.hpp"
 #include "core/geometry/triangle_box.hpp"
-#include "core/query/body_pose.hpp"
+#include "core/query/body_numbers.hpp"
 
 namespace clearway {
 namespace {

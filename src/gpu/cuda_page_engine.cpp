@@ -2,10 +2,9 @@
 
 #include <cassert>
 
+#include "gpu/cuda_objects.hpp"
 #include "gpu/cuda_page_search.hpp"
-#include "gpu/cuda_stream.hpp"
-#include "gpu/device_clock.hpp"
-#include "gpu/pinned_buffer.hpp"
+#include "gpu/device_arrays.hpp"
 
 namespace clearway {
 namespace {

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/page/page_result_arrays.hpp"
+#include "core/page/page_pool.hpp"
 #include "core/util/array_run.hpp"
-#include "gpu/cuda_check.hpp"
+#include "gpu/cuda_objects.hpp"
 #include "gpu/device_arrays.hpp"
 
 namespace clearway {

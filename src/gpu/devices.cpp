@@ -1,6 +1,6 @@
 #include "gpu/devices.hpp"
 
-#include "gpu/cuda_check.hpp"
+#include "gpu/cuda_objects.hpp"
 #include "gpu/grid_kernels.hpp"
 #include "gpu/sweep_kernels.hpp"
 

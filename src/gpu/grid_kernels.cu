@@ -2,7 +2,7 @@
 #include <cub/device/device_radix_sort.cuh>
 
 #include "core/grid/grid_search.hpp"
-#include "gpu/cuda_check.hpp"
+#include "gpu/cuda_objects.hpp"
 #include "gpu/grid_kernels.hpp"
 
 namespace clearway {

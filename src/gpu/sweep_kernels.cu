@@ -1,6 +1,6 @@
 #include "core/sweep/profile/profile_page.hpp"
 #include "core/sweep/sweep_block.hpp"
-#include "gpu/cuda_check.hpp"
+#include "gpu/cuda_objects.hpp"
 #include "gpu/sweep_kernels.hpp"
 
 namespace clearway {

@@ -11,8 +11,8 @@
 #include "core/geometry/predicate.hpp"
 #include "core/geometry/solid_parts.hpp"
 #include "core/geometry/triangle.hpp"
-#include "core/query/body_pose.hpp"
-#include "io/model/sample_mesh.hpp"
+#include "core/query/body_numbers.hpp"
+#include "io/models/sample_mesh.hpp"
 #include "report/shown_poses.hpp"
 
 namespace clearway {

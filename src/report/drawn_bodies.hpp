@@ -9,7 +9,7 @@
 #include "clearway/body.hpp"
 #include "clearway/box.hpp"
 #include "clearway/report.hpp"
-#include "report/packed_points.hpp"
+#include "report/page.hpp"
 
 namespace clearway {
 

@@ -5,7 +5,7 @@
 
 #include "clearway/store.hpp"
 #include "core/util/progress.hpp"
-#include "report/packed_points.hpp"
+#include "report/page.hpp"
 #include "report/path_places.hpp"
 
 namespace clearway {

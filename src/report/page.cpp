@@ -1,13 +1,159 @@
 #include "report/page.hpp"
 
-#include <span>
-#include <string_view>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+#include <zlib.h>
 
-#include "io/conflicts/markup_text.hpp"
-#include "io/system/file.hpp"
-#include "report/page_parts.hpp"
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <stdexcept>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "io/files/file.hpp"
+#include "io/result/conflicts/markup_text.hpp"
 
 namespace clearway {
+namespace {
+
+constexpr int kDeflateLevel = 6;
+constexpr int kCurveBits = 21;  // bits of each axis
+
+/// The lowest 21 bits, with two zero bits between neighbouring ones.
+std::uint64_t spread_bits(std::uint64_t v) {
+  v &= 0x1fffff;
+  v = (v | v << 32) & 0x1f00000000ffff;
+  v = (v | v << 16) & 0x1f0000ff0000ff;
+  v = (v | v << 8) & 0x100f00f00f00f00f;
+  v = (v | v << 4) & 0x10c30c30c30c30c3;
+  v = (v | v << 2) & 0x1249249249249249;
+  return v;
+}
+
+struct Placed {
+  std::uint64_t key;
+  PagePoint point;
+  friend bool operator<(const Placed& a, const Placed& b) {
+    const auto all = [](const Placed& placed) {
+      const PagePoint& p = placed.point;
+      return std::tuple(placed.key, p.q[0], p.q[1], p.q[2], p.tag);
+    };
+    return all(a) < all(b);
+  }
+};
+
+std::string zlib_of(std::string_view bytes) {
+  uLongf size = compressBound(static_cast<uLong>(bytes.size()));
+  std::string out(size, '\0');
+  const int status = compress2(reinterpret_cast<Bytef*>(out.data()), &size,
+                               reinterpret_cast<const Bytef*>(bytes.data()),
+                               static_cast<uLong>(bytes.size()), kDeflateLevel);
+  if (status != Z_OK) throw std::runtime_error("zlib: compress2 failed");
+  out.resize(size);
+  return out;
+}
+
+}  // namespace
+
+PageLattice lattice_for(const Box& box, double finest) {
+  PageLattice lattice;
+  double extent = 0;
+  for (int k = 0; k < 3; ++k) {
+    lattice.origin[k] = std::round((box.lo[k] + box.hi[k]) / 2);
+    extent = std::max(extent, box.hi[k] - box.lo[k]);
+  }
+  lattice.step = std::max(finest, extent / 0x1p29);
+  return lattice;
+}
+
+PagePoint page_point(const PageLattice& lattice, const Vec3& xyz, std::uint8_t tag) {
+  PagePoint out{.q = {}, .tag = tag};
+  for (int k = 0; k < 3; ++k) {
+    const double q = (xyz[k] - lattice.origin[k]) / lattice.step;
+    out.q[k] = static_cast<std::int32_t>(std::clamp(std::round(q), -0x1p30, 0x1p30));
+  }
+  return out;
+}
+
+void sort_along_curve(std::vector<PagePoint>& points) {
+  if (points.empty()) return;
+  std::int64_t lo[3], extent = 1;
+  for (int k = 0; k < 3; ++k) {
+    const auto [least, most] =
+        std::ranges::minmax(points, {}, [k](const PagePoint& point) { return point.q[k]; });
+    lo[k] = least.q[k];
+    extent = std::max<std::int64_t>(extent, std::int64_t{most.q[k]} - lo[k]);
+  }
+  int shift = 0;
+  while (extent >> shift >= std::int64_t{1} << kCurveBits) ++shift;
+  std::vector<Placed> placed(points.size());
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+    std::uint64_t key = 0;
+    for (int k = 0; k < 3; ++k) {
+      key |= spread_bits(static_cast<std::uint64_t>(points[i].q[k] - lo[k]) >> shift) << k;
+    }
+    placed[i] = {key, points[i]};
+  });
+  tbb::parallel_sort(placed.begin(), placed.end());
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = placed[i].point;
+}
+
+std::string delta_planes(std::span<const std::int32_t> values) {
+  const std::size_t n = values.size();
+  std::string out(4 * n, '\0');
+  std::uint32_t previous = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto value = static_cast<std::uint32_t>(values[i]);
+    const auto delta = static_cast<std::int32_t>(value - previous);
+    const auto zigzag =
+        static_cast<std::uint32_t>(delta) << 1 ^ static_cast<std::uint32_t>(delta >> 31);
+    for (std::size_t plane = 0; plane < 4; ++plane) {
+      out[plane * n + i] = static_cast<char>(zigzag >> (8 * plane) & 0xff);
+    }
+    previous = value;
+  }
+  return out;
+}
+
+std::string deflated_base64(std::string_view bytes) {
+  static constexpr char kDigits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  const std::string deflated = zlib_of(bytes);
+  std::string out;
+  out.reserve((deflated.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < deflated.size(); i += 3) {
+    std::uint32_t three = 0;
+    const std::size_t here = std::min<std::size_t>(3, deflated.size() - i);
+    for (std::size_t k = 0; k < 3; ++k) {
+      three = three << 8 | (k < here ? static_cast<unsigned char>(deflated[i + k]) : 0U);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      out += k <= here ? kDigits[three >> (18 - 6 * k) & 63] : '=';
+    }
+  }
+  return out;
+}
+
+void append_columns(const std::string& name, const std::vector<PagePoint>& points,
+                    std::vector<PageColumn>& columns) {
+  const std::size_t first = columns.size();
+  for (const char* axis : {".x", ".y", ".z", ".tag"}) columns.push_back({name + axis, {}});
+  tbb::parallel_for(0, 4, [&](int k) {
+    std::string bytes;
+    if (k < 3) {
+      std::vector<std::int32_t> values(points.size());
+      for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i].q[k];
+      bytes = delta_planes(values);
+    } else {
+      bytes.resize(points.size());
+      for (std::size_t i = 0; i < points.size(); ++i) bytes[i] = static_cast<char>(points[i].tag);
+    }
+    columns[first + static_cast<std::size_t>(k)].base64 = deflated_base64(bytes);
+  });
+}
+
 namespace {
 
 class PageFile {

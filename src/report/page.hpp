@@ -1,11 +1,67 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "clearway/box.hpp"
+#include "clearway/vec3.hpp"
 #include "core/util/progress.hpp"
-#include "report/packed_points.hpp"
+
+namespace clearway {
+
+/// The lattice of the points on the page: a point with the integers q lies at origin + step * q.
+struct PageLattice {
+  Vec3 origin{};
+  double step = 0.001;
+};
+
+/// A lattice for the points of a box. Its step is `finest` or, for a large box, so much coarser
+/// that the integers of every point have 31 bits.
+PageLattice lattice_for(const Box& box, double finest);
+
+/// A point on the page, with what the browser needs to know about it.
+struct PagePoint {
+  std::int32_t q[3];
+  /// The height of an environment point (EnvironmentSample), the class of a point of the result
+  /// (ShownPoints), or the body of a model point.
+  std::uint8_t tag;
+};
+
+PagePoint page_point(const PageLattice& lattice, const Vec3& xyz, std::uint8_t tag);
+
+/// Sorts points along a Morton curve, so that neighbours follow each other and their differences
+/// are small. The order depends only on the points.
+void sort_along_curve(std::vector<PagePoint>& points);
+
+/// A column of the page: its bytes, deflated and in base64. docs/design/report.md describes the
+/// layout.
+struct PageColumn {
+  std::string name;
+  std::string base64;
+};
+
+/// The differences of consecutive values, zigzag-encoded, in four planes of bytes.
+std::string delta_planes(std::span<const std::int32_t> values);
+
+/// The bytes compressed in zlib format, then in base64.
+std::string deflated_base64(std::string_view bytes);
+
+/// Appends the columns NAME.x, NAME.y, NAME.z and NAME.tag.
+void append_columns(const std::string& name, const std::vector<PagePoint>& points,
+                    std::vector<PageColumn>& columns);
+
+}  // namespace clearway
+
+/// The files of src/report/page, which the build puts into the program.
+namespace clearway::page_parts {
+
+extern const std::string_view kHtml, kStyle, kScript;
+
+}  // namespace clearway::page_parts
 
 namespace clearway {
 

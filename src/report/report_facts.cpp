@@ -12,15 +12,15 @@
 #include <vector>
 
 #include "clearway/vec3.hpp"
-#include "core/query/ignored_text.hpp"
+#include "core/query/ignored_points.hpp"
 #include "core/query/query_fields.hpp"
 #include "core/util/format.hpp"
 #include "findings/conflict_rank.hpp"
-#include "io/conflicts/json_text.hpp"
+#include "io/files/xxh64.hpp"
+#include "io/result/conflicts/json_text.hpp"
 #include "io/result/result.hpp"
-#include "io/store/class_names.hpp"
+#include "io/store/store_metadata.hpp"
 #include "io/store/store_reader.hpp"
-#include "io/system/xxh64.hpp"
 #include "report/shown_poses.hpp"
 
 namespace clearway {

@@ -9,7 +9,7 @@
 #include "clearway/conflicts.hpp"
 #include "clearway/result.hpp"
 #include "core/util/progress.hpp"
-#include "report/packed_points.hpp"
+#include "report/page.hpp"
 
 namespace clearway {
 

@@ -8,7 +8,7 @@
 #include "clearway/pose.hpp"
 #include "clearway/result.hpp"
 #include "clearway/trajectory.hpp"
-#include "report/packed_points.hpp"
+#include "report/page.hpp"
 
 namespace clearway {
 

@@ -2,11 +2,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <future>
 #include <string>
 #include <vector>
 
 #include "clearway/search.hpp"
-#include "core/util/message_log.hpp"
+#include "core/util/messages.hpp"
 #include "gpu/devices.hpp"
 
 namespace clearway {
@@ -59,5 +60,24 @@ CudaDevice one_with_room(int count, const OpenDevice& open, std::uint64_t wanted
 /// used.
 DeviceChoice automatic_choice(int count, const OpenDevice& open, std::uint64_t wanted_bytes,
                               const MessageLog& log);
+
+/// Starts GPUs on threads of their own: makes their contexts and loads the engine's kernels. A
+/// failure is not reported here but where the GPU is used, which tries once more.
+class DeviceStart {
+ public:
+  /// Starts the GPUs that options name, or the first one, all at once. Starts none where options
+  /// rule out GPUs.
+  explicit DeviceStart(const SearchOptions& options);
+
+  /// Waits until all GPUs have started or failed.
+  void wait() const;
+
+  /// Wall clock of the slowest start in seconds. Waits until all GPUs have started, and throws what
+  /// a start has thrown.
+  double seconds() const;
+
+ private:
+  std::vector<std::shared_future<double>> starts_;
+};
 
 }  // namespace clearway

@@ -1,10 +1,151 @@
 #include "search/memory_budget.hpp"
 
+#include <algorithm>
+
 #include "clearway/error.hpp"
-#include "core/query/profile_set.hpp"
+#include "core/query/search_result.hpp"
 #include "core/util/format.hpp"
+#include "cpu/cell_search.hpp"
+#include "stream/plan.hpp"
+#include "stream/run_pages.hpp"
+#include "stream/write_result.hpp"
 
 namespace clearway {
+namespace {
+
+/// Where memory is short, pages get smaller once the number of slots is down to this.
+constexpr std::uint32_t kFewSlots = 4;
+
+/// The layouts that an engine may have, from the best to the least.
+std::vector<SlotLayout> layouts(const PageEngineNeeds& needs, std::uint64_t least_page_bytes) {
+  std::vector<SlotLayout> out;
+  for (std::uint32_t cells = needs.page_cells; cells > 0; cells /= 2) {
+    const std::uint64_t wanted = needs.page_bytes / needs.page_cells * cells;
+    const std::uint32_t fewest = cells > 1 ? std::min(needs.most_slots, kFewSlots) : 1;
+    for (std::uint32_t slots = needs.most_slots; slots >= fewest; --slots) {
+      out.push_back({slots, std::max(wanted, least_page_bytes), cells});
+    }
+  }
+  if (out.back().page_bytes > least_page_bytes) out.push_back({1, least_page_bytes, 1});
+  return out;
+}
+
+}  // namespace
+
+std::uint64_t PageEngineKind::most_poses(const MotionTree& motion,
+                                         std::span<const PlannedCell> cells) const {
+  std::uint64_t most = 0;
+  for (const PlannedCell& cell : cells) most = std::max(most, pose_count(motion, cell.nodes));
+  return most;
+}
+
+PageBudget::PageBudget(const StoreReader& store, const Query& asked, const Query& searched,
+                       std::uint64_t thinned_bytes, std::uint64_t memory_bytes,
+                       PageEngineKind& kind, const ShardCells* only, IgnoredPoints::Search search)
+    : store_(store),
+      asked_(asked),
+      memory_bytes_(memory_bytes),
+      kind_(kind),
+      only_(only),
+      keeps_answer_(search == IgnoredPoints::Search::kOthers),
+      ignored_(store, asked, search),
+      masked_(asked.ignores_points()),
+      trees_(kind.whose_trees(searched), kind.needs().threads - kind.needs().waiting_threads),
+      building_bytes_(tree_building_bytes(asked)),
+      kept_bytes_(program_bytes(kind.needs().threads) + input_bytes(store, asked) + thinned_bytes +
+                  (keeps_answer_ ? search_result_bytes(store, asked) : 0)) {}
+
+void PageBudget::find() {
+  const std::vector<PageEngineKind::IndexSize> sizes = kind_.index_sizes();
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    if (fits_with(sizes[i], i + 1 == sizes.size())) return;
+  }
+  if (smallest_bytes_) refuse_memory(*smallest_bytes_, memory_bytes_);
+  refuse_device_memory(smallest_device_bytes_, kind_.needs().most_device_bytes,
+                       kind_.needs().short_device);
+}
+
+/// Bytes that are kept from here to the end of the run. Each page in flight has at most one record
+/// of the journal at a time.
+std::uint64_t PageBudget::kept_bytes(const SlotLayout& layout) const {
+  if (!keeps_answer_) return kept_bytes_;
+  const std::uint64_t pages = std::uint64_t{kind_.needs().devices} * layout.slots;
+  const auto threads = static_cast<std::uint64_t>(kind_.needs().threads);
+  return kept_bytes_ +
+         SearchJournal::most_bytes(store_, asked_, static_cast<int>(std::min(pages, threads)));
+}
+
+/// Bytes that the search starts with: trees, index and plan.
+std::uint64_t PageBudget::planned_bytes() const {
+  constexpr std::uint64_t kHeapBlock = 16;
+  // While cells are sorted, half of them are in memory twice.
+  std::uint64_t bytes = trees_.allocated_bytes() + kind_.index_bytes() +
+                        3 * cells_.capacity() * sizeof(PlannedCell) / 2 +
+                        run_pages_bytes(cells_.size());
+  for (const PlannedCell& cell : cells_) {
+    bytes += cell.nodes.capacity() * sizeof(std::uint32_t) + kHeapBlock;
+  }
+  return bytes;
+}
+
+/// Builds an index of this size and a plan, and returns whether a layout fits the memory with them.
+/// any_layout: all layouts are tried, not only the best, as on a GPU.
+bool PageBudget::fits_with(const PageEngineKind::IndexSize& size, bool any_layout) {
+  const std::uint64_t building =
+      std::max(trees_.allocated_bytes() + size.while_built, building_bytes_);
+  if (size.while_built > 0 && kept_bytes_ + building > memory_bytes_) return false;
+  cells_.clear();
+  const Stopwatch clock;
+  const PoseReach& reach = kind_.build_index(trees_, size.bytes);
+  const double indexed = clock.seconds();
+  cells_ = kind_.plan_cells(store_, reach);
+  std::erase_if(cells_, [&](const PlannedCell& cell) {
+    return (only_ != nullptr && !only_->contains(cell.cell)) || ignored_.skips(cell.cell);
+  });
+  index_seconds_ += indexed;
+  plan_seconds_ += clock.seconds() - indexed;
+  kind_.resolve_devices();
+  const std::uint64_t planned = planned_bytes();
+  const std::uint64_t most_poses = kind_.most_poses(trees_.motion, cells_);
+  for (const SlotLayout& layout :
+       layouts(kind_.needs(), smallest_page_bytes(store_, cells_, masked_))) {
+    if (fits(layout, planned, building, most_poses)) {
+      fits(as_needed(layout), planned, building, most_poses);
+      return true;
+    }
+    if (!any_layout && !kind_.needs().on_gpu) break;  // a GPU gets fewer slots first
+  }
+  return false;
+}
+
+/// The layout reduced to what the plan's pages fill; the pages stay the same.
+SlotLayout PageBudget::as_needed(const SlotLayout& layout) const {
+  const auto pages = paginate(store_, cells_, layout.page_bytes, layout.cells, masked_);
+  SlotLayout needed{.slots = 1, .page_bytes = 0, .cells = 1};
+  for (const PlannedPage& page : pages) {
+    needed.page_bytes = std::max(needed.page_bytes, page.shape.bytes());
+    needed.cells = std::max(needed.cells, page.shape.cells);
+  }
+  const std::uint64_t of_a_device = divide_up(pages.size(), kind_.needs().devices);
+  needed.slots = static_cast<std::uint32_t>(
+      std::clamp<std::uint64_t>(of_a_device, needed.slots, layout.slots));
+  return needed;
+}
+
+bool PageBudget::fits(const SlotLayout& layout, std::uint64_t planned, std::uint64_t building,
+                      std::uint64_t most_poses) {
+  const std::uint64_t searching = planned + kind_.host_bytes(layout, most_poses);
+  const std::uint64_t kept = kept_bytes(layout);
+  layout_ = layout;
+  needed_bytes_ = kept + std::max(searching, keeps_answer_ ? least_write_bytes(store_) : 0);
+  const std::uint64_t budget = std::max(needed_bytes_, kept + building);
+  const std::uint64_t on_device = kind_.device_bytes(layout);
+  const bool device_fits = on_device <= kind_.needs().most_device_bytes;
+  if (device_fits && budget <= memory_bytes_) return true;
+  if (device_fits) smallest_bytes_ = std::min(smallest_bytes_.value_or(budget), budget);
+  smallest_device_bytes_ = std::min(smallest_device_bytes_, on_device);
+  return false;
+}
 
 std::uint64_t program_bytes(int threads) {
   constexpr std::uint64_t kProgram = std::uint64_t{8} << 20;

@@ -7,7 +7,7 @@
 #include "core/util/progress.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/kinds/page_engine_kind.hpp"
-#include "search/shard/shard_cells.hpp"
+#include "search/shard_cells.hpp"
 #include "stream/search_journal.hpp"
 
 namespace clearway {
@@ -28,5 +28,16 @@ Found search_pages(const StoreReader& store, const Query& query, std::uint64_t m
                    PageEngineKind& kind, const ShardCells* only,
                    const std::function<SearchJournal*()>& open_journal, Progress& progress,
                    SearchReport& report, const MessageLog& log);
+
+/// The most bytes that a search with engine kdtree takes, beside the mapped store. options.threads
+/// is not 0.
+std::uint64_t kdtree_needed_bytes(const StoreReader& store, const Query& query,
+                                  const SearchOptions& options);
+
+/// Searches all cells, or those of `only`, with engine kdtree. options.threads is not 0. Throws
+/// ResourceError where the memory is too little.
+Found search_kdtree(const StoreReader& store, const Query& query, const ShardCells* only,
+                    const SearchOptions& options, SearchJournal* journal, Progress& progress,
+                    SearchReport& report);
 
 }  // namespace clearway

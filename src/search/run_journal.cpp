@@ -3,12 +3,11 @@
 #include <algorithm>
 
 #include "clearway/error.hpp"
-#include "core/query/ignored_text.hpp"
+#include "core/query/ignored_points.hpp"
 #include "core/query/query_fields.hpp"
 #include "core/util/format.hpp"
-#include "io/result/check/compare_results.hpp"
-#include "io/result/check/verify_result.hpp"
-#include "io/system/xxh64.hpp"
+#include "io/files/xxh64.hpp"
+#include "io/result/check_results.hpp"
 
 namespace clearway {
 namespace {

@@ -5,13 +5,12 @@
 #include <string>
 
 #include "clearway/search.hpp"
-#include "core/util/message_log.hpp"
+#include "core/util/messages.hpp"
 #include "core/util/progress.hpp"
-#include "io/journal/journal.hpp"
+#include "io/files/pending_file.hpp"
+#include "io/result/journal.hpp"
 #include "io/result/result.hpp"
 #include "io/store/store_reader.hpp"
-#include "io/system/pending_file.hpp"
-#include "stream/journalled_work.hpp"
 #include "stream/search_journal.hpp"
 
 namespace clearway {

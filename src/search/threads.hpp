@@ -2,7 +2,7 @@
 
 #include <tbb/task_arena.h>
 
-#include "io/system/thread_limit.hpp"
+#include "io/files/thread_limit.hpp"
 
 namespace clearway {
 

@@ -4,17 +4,160 @@
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cassert>
+#include <cstring>
 #include <deque>
 #include <mutex>
 #include <vector>
 
 #include "core/util/tsan_annotations.hpp"
-#include "io/system/thread_limit.hpp"
-#include "stream/collect_page.hpp"
-#include "stream/stage_page.hpp"
+#include "io/files/thread_limit.hpp"
+#include "stream/plan.hpp"
 
 namespace clearway {
+
+std::uint64_t entry_of(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                       std::uint32_t point) {
+  return std::uint64_t{cells[point / cloud.cell_entries()].cell} * cloud.cell_entries() +
+         point % cloud.cell_entries();
+}
+
+void collect_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                  const PageResult& answer, SearchResult& all) {
+  assert(answer.hits.size() == cells.size() * cloud.blocks_per_cell());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto hits = part_of_cell(answer.hits, i, cloud.blocks_per_cell());
+    const std::uint64_t first_word = std::uint64_t{cells[i].cell} * cloud.blocks_per_cell();
+    for (std::size_t block = 0; block < hits.size(); ++block) {
+      if (hits[block] != 0) all.hits.mark_word(first_word + block, hits[block]);
+    }
+    const std::uint64_t first_entry = std::uint64_t{cells[i].cell} * cloud.cell_entries();
+    const auto poses = part_of_cell(answer.first_poses, i, cloud.cell_entries());
+    for (std::size_t entry = 0; entry < poses.size(); ++entry) {
+      if (poses[entry] != HitSet::kNever) all.hits.mark(first_entry + entry, poses[entry]);
+    }
+    const auto clearances = part_of_cell(answer.clearances, i, cloud.cell_entries());
+    for (std::size_t entry = 0; entry < clearances.size(); ++entry) {
+      if (clearances[entry].found()) all.clearances.set(first_entry + entry, clearances[entry]);
+    }
+  }
+  for (const ProfileFact& fact : answer.profile) {
+    const std::uint64_t entry = entry_of(cloud, cells, fact.point);
+    const auto index = static_cast<std::uint32_t>(fact.point % cloud.cell_entries());
+    const std::uint32_t cell = cells[fact.point / cloud.cell_entries()].cell;
+    all.profile.offer(fact.pose, {fact.squared, cloud.source_of(cell, index), entry});
+  }
+}
+
+namespace {
+
+/// Appends to a section of a page; the destructor fills what is left of the section with zeros.
+class Section {
+ public:
+  Section(std::span<std::byte> page, std::uint64_t begin, std::uint64_t end)
+      : left_(page.subspan(begin, end - begin)) {}
+  ~Section() { std::fill(left_.begin(), left_.end(), std::byte{0}); }
+  Section(const Section&) = delete;
+  Section& operator=(const Section&) = delete;
+
+  std::span<std::byte> take(std::uint64_t bytes) {
+    const auto taken = left_.first(bytes);
+    left_ = left_.subspan(bytes);
+    return taken;
+  }
+
+  template <typename Value>
+  void append(std::span<const Value> values) {
+    if (!values.empty()) {
+      std::memcpy(take(values.size_bytes()).data(), values.data(), values.size_bytes());
+    }
+  }
+
+ private:
+  std::span<std::byte> left_;
+};
+
+}  // namespace
+
+PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                     std::span<std::byte> page) {
+  std::uint64_t none = 0;
+  return stage_page(cloud, cells, page, IgnoredPoints(cloud, {}), none);
+}
+
+PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                     std::span<std::byte> page, const IgnoredPoints& ignored,
+                     std::uint64_t& ignored_points) {
+  const PageShape shape = page_shape(cloud, cells, ignored.any());
+  assert(shape.bytes() <= page.size());
+  Section headers(page, 0, shape.nodes_at());
+  Section nodes(page, shape.nodes_at(), shape.blocks_at());
+  Section blocks(page, shape.blocks_at(), shape.masks_at());
+  Section masks(page, shape.masks_at(), shape.payload_at());
+  Section payload(page, shape.payload_at(), shape.bytes());
+  std::uint32_t first_node = 0;
+  std::vector<std::uint64_t> searched(shape.masked ? shape.blocks_per_cell : 0);
+  for (const PlannedCell& planned : cells) {
+    const Cell& cell = cloud.cells()[planned.cell];
+    PageCell header{.cell = planned.cell,
+                    .count = cell.count,
+                    .first_node = first_node,
+                    .node_count = static_cast<std::uint32_t>(planned.nodes.size()),
+                    .box = cell.box,
+                    .chunks = {}};
+    first_node += header.node_count;
+    const auto packed =
+        cloud.read_packed(planned.cell, payload.take(cloud.packed_bytes(planned.cell)));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      header.chunks[axis] = {static_cast<std::uint64_t>(packed[axis].payload() - page.data()),
+                             packed[axis].minimum(), packed[axis].minbits()};
+    }
+    headers.append(std::span<const PageCell>(&header, 1));
+    nodes.append(std::span(planned.nodes));
+    blocks.append(cloud.blocks().subspan(std::size_t{planned.cell} * shape.blocks_per_cell,
+                                         shape.blocks_per_cell));
+    if (!shape.masked) continue;
+    ignored_points += ignored.mask(planned.cell, searched, [&] { return packed; });
+    masks.append(std::span<const std::uint64_t>(searched));
+  }
+  return shape;
+}
+
+namespace {
+
+double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+double busy_seconds(const std::vector<PageTimes>& pages, Interval PageTimes::*stage) {
+  std::vector<Interval> intervals;
+  intervals.reserve(pages.size());
+  for (const PageTimes& page : pages) intervals.push_back(page.*stage);
+  return busy_seconds(std::move(intervals));
+}
+
+}  // namespace
+
+double busy_seconds(std::vector<Interval> intervals) {
+  std::sort(intervals.begin(), intervals.end(),
+            [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
+  Clock::duration busy{};
+  Clock::time_point until = Clock::time_point::min();
+  for (const Interval& interval : intervals) {
+    if (interval.end <= until) continue;
+    busy += std::max(interval.end - std::max(interval.begin, until), Clock::duration{});
+    until = std::max(until, interval.end);
+  }
+  return seconds(busy);
+}
+
+StageTimes stage_times(const std::vector<PageTimes>& pages) {
+  return {.read = busy_seconds(pages, &PageTimes::read),
+          .upload = busy_seconds(pages, &PageTimes::upload),
+          .compute = busy_seconds(pages, &PageTimes::compute),
+          .collect = busy_seconds(pages, &PageTimes::collect)};
+}
+
 namespace {
 
 std::uint64_t points_of(const PackedCloud& cloud, std::span<const PlannedCell> cells) {

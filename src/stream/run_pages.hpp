@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "clearway/query.hpp"
 #include "core/cloud/packed_cloud.hpp"
@@ -9,11 +12,52 @@
 #include "core/query/ignored_points.hpp"
 #include "core/query/search_result.hpp"
 #include "core/util/progress.hpp"
-#include "stream/paginate.hpp"
+#include "stream/plan.hpp"
 #include "stream/search_journal.hpp"
-#include "stream/stage_times.hpp"
 
 namespace clearway {
+
+/// The entry of a point of a page; `cells` are the page's cells.
+std::uint64_t entry_of(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                       std::uint32_t point);
+
+/// Adds the answer of a page of these cells to `all`. Cells are disjoint and a block is a word, so
+/// different pages may be collected at once and in any order; the nearest points of poses are only
+/// offered. Throws InputError if the source index of such a point cannot be read.
+void collect_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                  const PageResult& answer, SearchResult& all);
+
+/// Fills `page` with the cells from the cloud: headers, motion nodes, block boxes, masks if points
+/// are ignored, and packed coordinates, which are read straight into it. page: aligned to
+/// kPageAlignment, and at least as large as the page of these cells. ignored_points: increased by
+/// the number of ignored points in these cells. Thread safe. Throws what reading the cells throws.
+PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                     std::span<std::byte> page, const IgnoredPoints& ignored,
+                     std::uint64_t& ignored_points);
+
+/// Fills `page` with the cells if no point is ignored.
+PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                     std::span<std::byte> page);
+
+/// The times at which the stages of one page ran.
+struct PageTimes {
+  Interval read{}, upload{}, compute{}, collect{};
+};
+
+/// Wall-clock seconds in which at least one worker of a stage was busy.
+struct StageTimes {
+  double read = 0;  ///< including staging and checking
+  double upload = 0;
+  double compute = 0;
+  double collect = 0;
+  double total = 0;  ///< seconds from the first page to the last one
+};
+
+/// Length of the union of the intervals, seconds. An interval that does not end after it begins has
+/// no length.
+double busy_seconds(std::vector<Interval> intervals);
+
+StageTimes stage_times(const std::vector<PageTimes>& pages);
 
 /// Takes what was found in a page of these cells. Several threads call it at once, each with
 /// another page.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
@@ -12,9 +14,30 @@
 #include "core/page/page_engine.hpp"
 #include "core/query/pose_journal.hpp"
 #include "core/query/search_result.hpp"
-#include "io/journal/journal.hpp"
+#include "io/result/journal.hpp"
 
 namespace clearway {
+
+/// Calls visit(i) for every set bit i, in ascending order.
+template <typename Visit>
+void for_each_bit(std::uint64_t bits, Visit visit) {
+  for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
+/// The kind of a record in a search's journal; its first byte.
+enum class JournalRecordKind : std::uint8_t {
+  kCell = 1,
+  kMarks = 2,
+  kFinishedPoses = 3,
+  kProfile = 4
+};
+
+/// How much of a run a journal holds. Throws InputError for a record that is not of a run.
+struct JournalledWork {
+  std::uint64_t cells = 0;  ///< finished cells, for engines that work on pages
+  std::uint64_t poses = 0;
+};
+JournalledWork journalled_work(const JournalReader& journal);
 
 /// The answer of a run as far as it is known, in a journal file: cell by cell from engines that
 /// work on pages, marks and finished poses from other engines (docs/design/journal.md).

@@ -1,8 +1,8 @@
 // Where the conflicts of a vehicle lie, seen from its bodies.
 #include "clearway/error.hpp"
 #include "findings/conflict_fixture.hpp"
-#include "io/conflicts/bcf/bcf_text.hpp"
 #include "io/result/answer.hpp"
+#include "io/result/conflicts/bcf/bcf_text.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

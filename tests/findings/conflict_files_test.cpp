@@ -6,11 +6,11 @@
 
 #include "clearway/error.hpp"
 #include "findings/conflict_fixture.hpp"
-#include "io/conflicts/json_text.hpp"
-#include "io/conflicts/markup_text.hpp"
-#include "io/conflicts/write_conflicts.hpp"
-#include "io/formats/scan_crs.hpp"
 #include "io/result/answer.hpp"
+#include "io/result/conflicts/json_text.hpp"
+#include "io/result/conflicts/markup_text.hpp"
+#include "io/result/conflicts/write_conflicts.hpp"
+#include "io/scans/scan_crs.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "clearway/conflicts.hpp"
-#include "io/trajectory/content_hash.hpp"
+#include "io/paths/content_hash.hpp"
 #include "support/result_fixture.hpp"
 #include "support/scenes.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "clearway/clearway.hpp"
 #include "core/geometry/quantisation.hpp"
-#include "core/query/hit_set.hpp"
+#include "core/query/search_result.hpp"
 #include "cpu/brute_force.hpp"
 #include "support/scenes.hpp"
 #include "support/solid_scene.hpp"

@@ -1,7 +1,7 @@
 // Groups of a real scan's colliding points, against all pairs, as scanned and moved far away.
 #include "clearway/clearway.hpp"
 #include "findings/conflict_fixture.hpp"
-#include "io/formats/requantize.hpp"
+#include "io/scans/requantize.hpp"
 #include "support/test_data.hpp"
 
 using namespace clearway;

@@ -1,7 +1,7 @@
 // Any bytes, read as E57. The checksums of pages would refuse nearly all of them, so the first byte
 // says what is done before: 0 is nothing; for 1 the checksums are corrected; otherwise the bytes
 // are the content, which is put into pages with right checksums and file size.
-#include "io/formats/e57/e57_reader.hpp"
+#include "io/scans/e57/e57_reader.hpp"
 #include "read_points.hpp"
 #include "support/bytes/e57_bytes.hpp"
 

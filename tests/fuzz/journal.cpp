@@ -1,13 +1,12 @@
 // Any bytes as a journal: either it is refused, or what it says belongs to the cloud and the query,
 // and a run can continue from it. The first byte chooses query and kind: the bytes of a file, or
 // payloads (their size in two bytes before each) of records whose hashes are right.
-#include "io/journal/journal.hpp"
+#include "io/result/journal.hpp"
 
 #include <cstring>
 #include <optional>
 
 #include "memory_file.hpp"
-#include "stream/journalled_work.hpp"
 #include "stream/search_journal.hpp"
 #include "support/clouds.hpp"
 #include "support/memory_cloud.hpp"

@@ -1,10 +1,11 @@
 // Any bytes as the JSON files that people write. The first byte chooses a vehicle's file, a
 // campaign's, or any value, which has to be what the JSON library reads.
+#include "io/files/json.hpp"
+
 #include <cstdlib>
 
 #include "campaign/campaign_file.hpp"
-#include "io/json/parse_json.hpp"
-#include "io/vehicle/vehicle_file.hpp"
+#include "io/models/vehicle_file.hpp"
 #include "memory_file.hpp"
 
 using namespace clearway;

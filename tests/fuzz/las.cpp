@@ -1,5 +1,5 @@
 // Any bytes, read as LAS: from a file and from a pipe.
-#include "io/formats/las/las_reader.hpp"
+#include "io/scans/las/las_reader.hpp"
 #include "read_points.hpp"
 
 using namespace clearway;

@@ -1,8 +1,8 @@
 // Any bytes as LAS, whose records are copied as export --scans does.
 #include <cstdlib>
 
-#include "io/export/scan_records.hpp"
-#include "io/formats/las/las_extra_bytes.hpp"
+#include "io/result/export/export_scan_records.hpp"
+#include "io/scans/las/las_header.hpp"
 #include "memory_file.hpp"
 
 using namespace clearway;

@@ -1,7 +1,7 @@
 // LAZ: any bytes as a file; or, behind a sound header, as its chunk table and chunks.
 #include <string_view>
 
-#include "io/formats/las/las_reader.hpp"
+#include "io/scans/las/las_reader.hpp"
 #include "read_points.hpp"
 #include "support/bytes/laz/laz_bytes.hpp"
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "clearway/error.hpp"
-#include "io/system/file.hpp"
+#include "io/files/file.hpp"
 
 namespace clearway::test {
 

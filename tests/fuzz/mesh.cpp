@@ -4,9 +4,9 @@
 #include <cstdlib>
 
 #include "core/geometry/point_box.hpp"
-#include "io/formats/mesh/mesh_reader.hpp"
-#include "io/model/mesh_facts.hpp"
-#include "io/model/sample_mesh.hpp"
+#include "io/models/mesh/mesh_reader.hpp"
+#include "io/models/mesh_facts.hpp"
+#include "io/models/sample_mesh.hpp"
 #include "memory_file.hpp"
 
 using namespace clearway;

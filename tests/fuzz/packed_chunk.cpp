@@ -1,10 +1,9 @@
 // Any bytes as a packed chunk: either it is refused, or every way to decode it gives the same
 // values. The first two bytes are the number of values.
-#include "core/cloud/packed_chunk.hpp"
-
 #include <cstdlib>
 #include <memory>
 
+#include "core/cloud/packed_cloud.hpp"
 #include "one_cell_cloud.hpp"
 #include "staged_values.hpp"
 

@@ -1,5 +1,5 @@
 // Any bytes, read as PCD.
-#include "io/formats/pcd/pcd_reader.hpp"
+#include "io/scans/pcd/pcd_reader.hpp"
 #include "read_points.hpp"
 
 using namespace clearway;

@@ -1,5 +1,5 @@
 // Any bytes, read as PLY.
-#include "io/formats/ply/ply_reader.hpp"
+#include "io/scans/ply/ply_reader.hpp"
 #include "read_points.hpp"
 
 using namespace clearway;

@@ -1,8 +1,8 @@
 // Any bytes, read as PTX or PTS text, as a scan of 3DTK, or as a file with its pose: the first byte
 // chooses.
-#include "io/formats/ptx/ptx_reader.hpp"
-#include "io/formats/threedtk/threedtk_frame.hpp"
-#include "io/formats/threedtk/threedtk_reader.hpp"
+#include "io/scans/ptx/ptx_reader.hpp"
+#include "io/scans/threedtk/threedtk_frame.hpp"
+#include "io/scans/threedtk/threedtk_reader.hpp"
 #include "read_points.hpp"
 #include "support/reader_fixture.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <cstdlib>
 
-#include "io/formats/input_buffer.hpp"
-#include "io/formats/point_reader.hpp"
+#include "io/scans/input_buffer.hpp"
+#include "io/scans/point_reader.hpp"
 #include "memory_file.hpp"
 
 namespace clearway::test {

@@ -1,8 +1,7 @@
 // Any bytes, read as a result.
 #include "io/result/result.hpp"
 
-#include "io/result/check/compare_results.hpp"
-#include "io/result/check/verify_result.hpp"
+#include "io/result/check_results.hpp"
 #include "memory_file.hpp"
 
 using namespace clearway;

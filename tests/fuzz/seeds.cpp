@@ -2,8 +2,8 @@
 #include <fstream>
 #include <iostream>
 
-#include "core/cloud/packed_chunk.hpp"
-#include "io/journal/journal.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "io/result/journal.hpp"
 #include "support/bytes/e57_bytes.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/bytes/laz/laz_samples.hpp"

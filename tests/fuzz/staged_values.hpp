@@ -8,8 +8,8 @@
 
 #include "core/page/page.hpp"
 #include "memory_file.hpp"
-#include "stream/paginate.hpp"
-#include "stream/stage_page.hpp"
+#include "stream/plan.hpp"
+#include "stream/run_pages.hpp"
 
 namespace clearway::test {
 

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <set>
 
-#include "io/hdf5/hdf5.hpp"
-#include "io/system/xxh64.hpp"
+#include "io/files/hdf5.hpp"
+#include "io/files/xxh64.hpp"
 #include "read_store.hpp"
 #include "support/clouds.hpp"
 

@@ -1,6 +1,6 @@
 // Any bytes, read as XYZ or PTS text, with the columns that they name and with columns that the
 // caller chose.
-#include "io/formats/text/xyz_reader.hpp"
+#include "io/scans/text/xyz_reader.hpp"
 #include "read_points.hpp"
 
 using namespace clearway;

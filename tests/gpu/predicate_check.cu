@@ -1,4 +1,4 @@
-#include "gpu/cuda_check.hpp"
+#include "gpu/cuda_objects.hpp"
 #include "gpu/device_arrays.hpp"
 #include "predicate_check.hpp"
 

@@ -1,9 +1,8 @@
-#include "search/choice/choose_engine.hpp"
+#include "search/choose_engine.hpp"
 
 #include <catch2/catch.hpp>
 #include <optional>
 
-#include "search/choice/cpu_estimate.hpp"
 #include "support/store_fixture.hpp"
 
 using namespace clearway;

@@ -1,8 +1,8 @@
 // The choice between CPU and GPU by estimate.
-#include "search/choice/device_estimate.hpp"
-
 #include <catch2/catch.hpp>
 #include <vector>
+
+#include "search/choose_engine.hpp"
 
 using namespace clearway;
 

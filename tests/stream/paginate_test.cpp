@@ -1,9 +1,8 @@
-#include "stream/paginate.hpp"
-
 #include <catch2/catch.hpp>
 
 #include "clearway/error.hpp"
 #include "planned_scene.hpp"
+#include "stream/plan.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "core/query/hit_set.hpp"
+#include "core/query/search_result.hpp"
 #include "cpu/brute_force.hpp"
 #include "planned_scene.hpp"
 

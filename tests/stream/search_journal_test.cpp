@@ -10,7 +10,6 @@
 #include "cpu/kdtree_engine.hpp"
 #include "cpu/sweep_engine.hpp"
 #include "planned_scene.hpp"
-#include "stream/journalled_work.hpp"
 #include "stream/run_pages.hpp"
 #include "support/file_size_limit.hpp"
 #include "support/result_fixture.hpp"

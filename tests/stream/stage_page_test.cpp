@@ -1,12 +1,11 @@
-#include "stream/stage_page.hpp"
-
 #include <catch2/catch.hpp>
 #include <cstring>
 
 #include "clearway/error.hpp"
-#include "core/page/page_chunk.hpp"
+#include "core/page/page.hpp"
 #include "planned_scene.hpp"
-#include "stream/paginate.hpp"
+#include "stream/plan.hpp"
+#include "stream/run_pages.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

@@ -1,6 +1,6 @@
-#include "stream/stage_times.hpp"
-
 #include <catch2/catch.hpp>
+
+#include "stream/run_pages.hpp"
 
 using namespace clearway;
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "io/result/check/verify_result.hpp"
+#include "io/result/check_results.hpp"
 #include "support/clouds.hpp"
 #include "support/store_fixture.hpp"
 

@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "core/cloud/packed_chunk.hpp"
+#include "core/cloud/packed_cloud.hpp"
 
 namespace clearway::test {
 

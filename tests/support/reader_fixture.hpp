@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "clearway/error.hpp"
-#include "io/formats/point_reader.hpp"
+#include "io/scans/point_reader.hpp"
 
 namespace clearway::test {
 

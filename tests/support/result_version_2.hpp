@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "io/hdf5/hdf5.hpp"
-#include "io/result/column_hashes.hpp"
+#include "io/files/hdf5.hpp"
+#include "io/files/xxh64.hpp"
 
 namespace clearway::test {
 

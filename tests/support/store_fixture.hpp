@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "io/convert/convert.hpp"
-#include "io/formats/las/las_writer.hpp"
-#include "io/formats/ply/ply_writer.hpp"
+#include "io/scans/las/las_writer.hpp"
+#include "io/scans/ply/ply_writer.hpp"
+#include "io/store/convert/convert.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/store/verify_store.hpp"
 #include "support/result_fixture.hpp"

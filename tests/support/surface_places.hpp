@@ -3,7 +3,7 @@
 #include <random>
 #include <vector>
 
-#include "io/formats/mesh/triangle_mesh.hpp"
+#include "io/models/mesh/mesh_builder.hpp"
 
 namespace clearway::test {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "io/formats/mesh/triangle_mesh.hpp"
+#include "io/models/mesh/mesh_builder.hpp"
 
 namespace clearway::test {
 

@@ -11,10 +11,9 @@
 #include "bench/peers/compare_engines.hpp"
 #include "bench/stages/time_stages.hpp"
 #include "clearway/error.hpp"
-#include "cli/support/exit_code.hpp"
+#include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
-#include "cli/support/signals.hpp"
-#include "cli/support/standard_output.hpp"
+#include "cli/support/program.hpp"
 
 namespace clearway::bench {
 namespace {

@@ -9,12 +9,11 @@
 #include "cli/commands.hpp"
 #include "cli/conflicts/conflict_comparison.hpp"
 #include "cli/run_again.hpp"
+#include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
-#include "cli/support/signals.hpp"
-#include "cli/support/standard_output.hpp"
 #include "cli/verdict.hpp"
 #include "core/util/format.hpp"
-#include "io/result/check/compare_results.hpp"
+#include "io/result/check_results.hpp"
 
 namespace clearway::tool {
 namespace {

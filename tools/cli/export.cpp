@@ -14,18 +14,15 @@
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/program_json.hpp"
-#include "cli/support/signals.hpp"
-#include "cli/support/standard_output.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "cli/verdict.hpp"
 #include "core/util/format.hpp"
-#include "io/export/export_profile.hpp"
-#include "io/export/export_result.hpp"
-#include "io/export/export_scan_records.hpp"
-#include "io/formats/wkt.hpp"
+#include "io/files/pending_file.hpp"
+#include "io/paths/content_hash.hpp"
 #include "io/result/answer.hpp"
-#include "io/system/pending_file.hpp"
-#include "io/trajectory/content_hash.hpp"
+#include "io/result/export/export_result.hpp"
+#include "io/result/export/export_scan_records.hpp"
+#include "io/scans/scan_crs.hpp"
 
 namespace clearway::tool {
 namespace {

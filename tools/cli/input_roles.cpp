@@ -3,8 +3,8 @@
 #include <string>
 
 #include "clearway/error.hpp"
-#include "io/inspect/file_kind.hpp"
-#include "io/system/input_error.hpp"
+#include "io/files/input_error.hpp"
+#include "io/store/file_kind.hpp"
 
 namespace clearway::tool {
 namespace {

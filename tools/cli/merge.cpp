@@ -10,17 +10,14 @@
 
 #include "cli/commands.hpp"
 #include "cli/support/console.hpp"
-#include "cli/support/exit_code.hpp"
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
+#include "cli/support/program.hpp"
 #include "cli/support/program_json.hpp"
-#include "cli/support/signals.hpp"
-#include "cli/support/standard_output.hpp"
-#include "cli/support/warnings_json.hpp"
 #include "cli/verdict.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
-#include "io/system/open_files.hpp"
+#include "io/files/file.hpp"
 
 namespace clearway::tool {
 namespace {

@@ -14,16 +14,14 @@
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
-#include "cli/support/signals.hpp"
-#include "cli/support/standard_output.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/util/format.hpp"
-#include "io/formats/ply/ply_header.hpp"
-#include "io/formats/ply/ply_writer.hpp"
-#include "io/model/mesh_facts.hpp"
-#include "io/model/model_input.hpp"
-#include "io/model/point_gaps.hpp"
-#include "io/system/pending_file.hpp"
+#include "io/files/pending_file.hpp"
+#include "io/models/mesh_facts.hpp"
+#include "io/models/model_input.hpp"
+#include "io/models/sample_mesh.hpp"
+#include "io/scans/ply/ply_header.hpp"
+#include "io/scans/ply/ply_writer.hpp"
 
 namespace clearway::tool {
 namespace {

@@ -17,14 +17,11 @@
 #include "cli/run_again.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
-#include "cli/support/option_groups.hpp"
 #include "cli/support/options.hpp"
-#include "cli/support/signals.hpp"
-#include "cli/support/standard_output.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "core/util/format.hpp"
-#include "io/system/pending_file.hpp"
+#include "io/files/pending_file.hpp"
 
 namespace clearway::tool {
 namespace {

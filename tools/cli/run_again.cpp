@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "cli/run_options.hpp"
-#include "cli/support/option_groups.hpp"
+#include "cli/support/options.hpp"
 #include "core/util/format.hpp"
 #include "io/result/result.hpp"
 

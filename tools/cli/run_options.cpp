@@ -7,12 +7,11 @@
 
 #include "clearway/error.hpp"
 #include "cli/ignored/ignored_options.hpp"
-#include "cli/support/option_groups.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "core/query/query_fields.hpp"
-#include "io/formats/text/text_number.hpp"
-#include "io/model/model_input.hpp"
+#include "io/files/text_number.hpp"
+#include "io/models/model_input.hpp"
 #include "search/check_query.hpp"
 
 namespace clearway::tool {

@@ -13,9 +13,8 @@
 #include "cli/commands.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
-#include "cli/support/signals.hpp"
 #include "core/util/format.hpp"
-#include "io/system/pending_file.hpp"
+#include "io/files/pending_file.hpp"
 #include "scene/write.hpp"
 
 namespace clearway::tool {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "cli/ignored/ignored_options.hpp"
-#include "core/query/ignored_text.hpp"
+#include "core/query/ignored_points.hpp"
 #include "core/query/spacing_text.hpp"
 #include "core/util/format.hpp"
 #include "io/result/answer.hpp"

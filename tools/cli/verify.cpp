@@ -10,12 +10,10 @@
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/program_json.hpp"
-#include "cli/support/standard_output.hpp"
-#include "io/hdf5/hdf5.hpp"
-#include "io/journal/journal.hpp"
-#include "io/result/check/verify_result.hpp"
+#include "io/files/hdf5.hpp"
+#include "io/result/check_results.hpp"
+#include "io/result/journal.hpp"
 #include "io/store/verify_store.hpp"
-#include "stream/journalled_work.hpp"
 #include "stream/search_journal.hpp"
 
 namespace clearway::tool {

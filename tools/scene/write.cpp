@@ -9,8 +9,8 @@
 #include <charconv>
 #include <string>
 
-#include "io/formats/las/las_writer.hpp"
-#include "io/formats/ply/ply_writer.hpp"
+#include "io/scans/las/las_writer.hpp"
+#include "io/scans/ply/ply_writer.hpp"
 
 namespace clearway::scene {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/util/progress.hpp"
-#include "io/system/file.hpp"
+#include "io/files/file.hpp"
 #include "scene/scene.hpp"
 
 namespace clearway::scene {

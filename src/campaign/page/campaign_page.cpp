@@ -8,10 +8,10 @@
 #include <string>
 #include <utility>
 
-#include "campaign/outcome.hpp"
-#include "campaign/task_list.hpp"
+#include "campaign/plan.hpp"
+#include "campaign/task_state.hpp"
 #include "core/util/format.hpp"
-#include "io/conflicts/markup_text.hpp"
+#include "io/result/conflicts/markup_text.hpp"
 
 namespace clearway::campaign {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "campaign/outcome.hpp"
+#include "campaign/task_state.hpp"
 
 namespace clearway::campaign {
 

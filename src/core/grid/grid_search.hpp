@@ -5,7 +5,7 @@
 #include "core/grid/float_predicate.hpp"
 #include "core/grid/grid_build.hpp"
 #include "core/grid/grid_task.hpp"
-#include "core/query/hit_set.hpp"
+#include "core/query/search_result.hpp"
 #include "core/util/device_bits.hpp"
 
 /// The functions of the search. Every bound: docs/design/numerics.md, "Grid". Source: Schauer et

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/cloud/kd_order.hpp"
+#include "core/cloud/packed_cloud.hpp"
 #include "core/grid/grid_view.hpp"
 #include "core/util/macros.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/cloud/kd_order.hpp"
+#include "core/cloud/packed_cloud.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/geometry/sweep_bounds.hpp"

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/cloud/kd_order.hpp"
-#include "core/geometry/quantum_box.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "core/geometry/quantisation.hpp"
 #include "core/util/macros.hpp"
 
 /// A page: one run of bytes that holds what an engine needs of some planned cells, the same on the
@@ -126,6 +126,13 @@ CLEARWAY_HD inline std::int32_t PageRef::value(const PageChunk& chunk, std::uint
   const std::uint64_t delta = reversed << (bit % 8) >> (64 - chunk.minbits);
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(chunk.minimum) +
                                    static_cast<std::uint32_t>(delta));
+}
+
+/// A chunk of a page on the host, for decoding many values at once. count: the cloud's cell_points.
+inline PackedChunk<std::int32_t> packed_chunk(const PageRef& page, const PageChunk& chunk,
+                                              std::uint32_t count) {
+  return PackedChunk<std::int32_t>::of_payload(page.begin + chunk.payload, count, chunk.minbits,
+                                               chunk.minimum);
 }
 
 }  // namespace clearway

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "core/page/page.hpp"
-#include "core/query/clearance_set.hpp"
-#include "core/query/profile_set.hpp"
+#include "core/query/search_result.hpp"
 
 namespace clearway {
 

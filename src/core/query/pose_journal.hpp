@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/query/hit_set.hpp"
+#include "core/query/search_result.hpp"
 
 namespace clearway {
 

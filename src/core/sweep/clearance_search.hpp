@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/query/clearance_set.hpp"
+#include "core/query/search_result.hpp"
 #include "core/sweep/sweep_filter.hpp"
 
 namespace clearway {

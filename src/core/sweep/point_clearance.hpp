@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/query/clearance_set.hpp"
+#include "core/query/search_result.hpp"
 #include "core/sweep/point_curve.hpp"
 #include "core/sweep/solid_depth.hpp"
 #include "core/sweep/sweep_ref.hpp"

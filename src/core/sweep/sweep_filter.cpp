@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "core/query/hit_set.hpp"
+#include "core/query/search_result.hpp"
 #include "core/sweep/tolerance.hpp"
 #include "core/util/bit_reversal_order.hpp"
 

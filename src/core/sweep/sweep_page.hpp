@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "core/page/page.hpp"
-#include "core/query/clearance_set.hpp"
+#include "core/query/search_result.hpp"
 #include "core/sweep/sweep_ref.hpp"
 
 namespace clearway {

@@ -1,13 +1,51 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "clearway/pose.hpp"
 #include "clearway/progress.hpp"
+#include "clearway/vec3.hpp"
 
 namespace clearway {
+
+/// The least jump that is reported if no radius is known, in metres.
+inline constexpr double kLeastJump = 0.1;
+
+/// A step that is far longer than those around it: poses are missing there, or one of them is
+/// wrong.
+struct Jump {
+  std::size_t pose = 0;  ///< pose from which the step starts
+  double length = 0;
+  double usual = 0;  ///< median of the steps around it
+};
+
+/// The distances of consecutive positions; one fewer than poses.
+std::vector<double> step_lengths(std::span<const Pose> poses);
+
+/// The steps that are longer than `least` and more than five times as long as the median of the ten
+/// steps around them: five before and five after, or fewer at the ends. Steps of length 0 are
+/// skipped, because a model that stands still says nothing of how long its steps are.
+std::vector<Jump> jumps_of(std::span<const double> steps, double least);
+
+/// The single warning "trajectory-jump" for all jumps, or a note if the poses are rows of a grid.
+/// jumps: not empty, with poses as users count them. The text begins with `prefix`, for example
+/// "path.txt: ", and ends with `consequence`, which is a sentence such as ". Nothing is searched
+/// there", or empty. unit: unit of the lengths, "m" or "ft".
+Message jump_warning(std::span<const Jump> jumps, const std::string& prefix,
+                     const std::string& unit, const std::string& consequence);
+
+/// The greatest distance of a point from the origin; 0 for no points.
+double farthest_from_origin(std::span<const Vec3> points);
+
+/// Bound, for each step, of the distance between the true motion of a model point and the straight
+/// way between two poses: L (1 - cos(turn / 2)) + kappa step^2 / 8, where L is `reach`, the
+/// greatest distance of the model from its origin. kappa is the greatest turn / step of this step
+/// and of those of its two neighbours that are at least a fifth as long; for a step of length 0 it
+/// is 0. docs/design/numerics.md, "Between poses".
+std::vector<double> chord_deviations(std::span<const Pose> poses, double reach);
 
 /// The form in which a file held rotations.
 enum class RotationSource { kMatrices, kQuaternions, kAngles };

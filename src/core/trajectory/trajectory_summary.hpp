@@ -9,6 +9,12 @@
 
 namespace clearway {
 
+/// displacement_bound() in metres, but 0 for equal poses, whose model points coincide exactly.
+double motion_bound(const Box& model, const Pose& a, const Pose& b);
+
+/// The greatest motion_bound() of two consecutive poses, metres; 0 for fewer than two poses.
+double largest_motion(const Box& model, std::span<const Pose> poses);
+
 /// An axis of the model's frame, or its opposite.
 struct BodyAxis {
   int axis = 0;  ///< 0 for x, 1 for y, 2 for z

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace clearway {
 
@@ -20,5 +22,35 @@ std::string format_number(double value);
 
 /// A number with four digits, for messages.
 std::string format_brief(double value);
+
+/// The runs of ascending numbers as texts, such as "3" and "7-9".
+template <typename Number>
+std::vector<std::string> number_ranges(const std::vector<Number>& numbers) {
+  std::vector<std::string> ranges;
+  for (std::size_t i = 0; i < numbers.size();) {
+    std::size_t last = i;
+    while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
+    ranges.push_back(std::to_string(numbers[i]));
+    if (last > i) ranges.back() += "-" + std::to_string(numbers[last]);
+    i = last + 1;
+  }
+  return ranges;
+}
+
+/// Converts numbers from one unit to another. Each is rounded only once if one unit is a whole
+/// multiple of the other: 9 millimetres are the double nearest to 0.009.
+class UnitFactor {
+ public:
+  /// Lengths of both units in metres, above 0.
+  explicit UnitFactor(double from, double to = 1)
+      : factor_(from / to), parts_(std::round(to / from)), divides_(1 / parts_ == factor_) {}
+
+  double operator()(double value) const { return divides_ ? value / parts_ : value * factor_; }
+  double factor() const { return factor_; }
+
+ private:
+  double factor_, parts_;
+  bool divides_;
+};
 
 }  // namespace clearway

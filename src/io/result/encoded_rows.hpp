@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "io/hdf5/stored_chunk.hpp"
+#include "io/files/stored_chunk.hpp"
 #include "io/result/tables.hpp"
 
 namespace clearway {

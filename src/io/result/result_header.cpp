@@ -9,13 +9,13 @@
 #include "clearway/error.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/query/query_fields.hpp"
-#include "io/hdf5/hdf5.hpp"
-#include "io/hdf5/kept_warnings.hpp"
+#include "io/files/hdf5.hpp"
+#include "io/files/input_error.hpp"
+#include "io/files/kept_warnings.hpp"
+#include "io/files/xxh64.hpp"
 #include "io/result/as_numbers.hpp"
-#include "io/result/column_hashes.hpp"
 #include "io/result/result.hpp"
 #include "io/result/result_names.hpp"
-#include "io/system/input_error.hpp"
 
 namespace clearway {
 namespace {
@@ -328,6 +328,11 @@ void read_more(const hdf5::Id& file, const std::string& name, ResultHeader& head
 }
 
 }  // namespace
+
+std::string environment_text(const ResultHeader& header) {
+  return std::to_string(header.environment_points) + " points, hash " +
+         hash_text(header.environment_hash);
+}
 
 void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   const Vec3 model_box[2] = {header.model_box.lo, header.model_box.hi};

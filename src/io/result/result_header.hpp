@@ -13,7 +13,7 @@
 #include "clearway/shard.hpp"
 #include "clearway/unsearched.hpp"
 #include "core/geometry/quantisation.hpp"
-#include "io/hdf5/hdf5.hpp"
+#include "io/files/hdf5.hpp"
 
 namespace clearway {
 
@@ -98,6 +98,9 @@ struct ResultHeader : QueryParameters {
   bool has_clearance_xyz() const { return version >= 3; }
   friend bool operator==(const ResultHeader&, const ResultHeader&) = default;
 };
+
+/// The environment in words, by its number of points and its hash.
+std::string environment_text(const ResultHeader& header);
 
 /// What a search found besides its tables. It does not take part in the comparison of questions.
 struct ResultFindings {

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -17,11 +18,13 @@
 #include <vector>
 
 #include "clearway/error.hpp"
+#include "clearway/result.hpp"
 #include "core/util/tsan_annotations.hpp"
-#include "io/hdf5/hdf5.hpp"
-#include "io/hdf5/stored_chunk.hpp"
+#include "io/files/hdf5.hpp"
+#include "io/files/stored_chunk.hpp"
+#include "io/files/xxh64.hpp"
+#include "io/result/answer.hpp"
 #include "io/result/as_numbers.hpp"
-#include "io/result/column_hashes.hpp"
 #include "io/result/result.hpp"
 
 namespace clearway {
@@ -372,5 +375,57 @@ template std::vector<std::uint64_t> ResultReader::column(
 template std::vector<Vec3> ResultReader::column(std::vector<Vec3> Collisions::*) const;
 template std::vector<std::uint32_t> ResultReader::column(
     std::vector<std::uint32_t> Collisions::*) const;
+
+Result::Result(const std::filesystem::path& path) : reader_(std::make_unique<ResultReader>(path)) {}
+Result::~Result() = default;
+Result::Result(Result&&) noexcept = default;
+Result& Result::operator=(Result&&) noexcept = default;
+
+std::uint64_t Result::size() const { return reader_->collisions(); }
+const QueryParameters& Result::parameters() const { return reader_->header(); }
+std::uint64_t Result::environment_points() const { return reader_->header().environment_points; }
+const IgnoredPointCounts& Result::ignored() const { return reader_->header().ignored; }
+std::uint64_t Result::poses() const { return reader_->header().poses; }
+Answer Result::answer() const { return answer_of(*reader_); }
+
+Collisions Result::collisions() const {
+  Collisions out;
+  reader_->read(0, reader_->rows<Collisions>(), out);
+  return out;
+}
+
+std::vector<std::uint64_t> Result::source() const { return reader_->column(&Collisions::source); }
+std::vector<Vec3> Result::xyz() const { return reader_->column(&Collisions::xyz); }
+std::vector<std::uint32_t> Result::first_pose() const {
+  return reader_->column(&Collisions::first_pose);
+}
+std::vector<std::uint32_t> Result::last_pose() const {
+  return reader_->column(&Collisions::last_pose);
+}
+std::vector<std::uint32_t> Result::first_body() const { return reader_->column(&Collisions::body); }
+const std::vector<std::string>& Result::bodies() const { return reader_->header().bodies; }
+
+Clearances Result::clearance() const {
+  Clearances out;
+  reader_->read(0, reader_->rows<Clearances>(), out);
+  return out;
+}
+
+Profile Result::profile() const {
+  ProfileRows out;
+  reader_->read(0, reader_->rows<ProfileRows>(), out);
+  for (const auto& [first, last] : reader_->findings().without_bodies) {
+    std::fill(out.distance.begin() + first, out.distance.begin() + last + 1,
+              std::numeric_limits<double>::quiet_NaN());
+  }
+  return std::move(static_cast<Profile&>(out));
+}
+
+double Result::model_spacing() const { return reader_->header().model_spacing.metres; }
+
+std::optional<Box> Result::model_box() const {
+  if (!reader_->header().has_model_box()) return std::nullopt;
+  return reader_->header().model_box;
+}
 
 }  // namespace clearway

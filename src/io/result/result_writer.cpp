@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "clearway/error.hpp"
-#include "io/hdf5/hdf5.hpp"
-#include "io/result/column_hashes.hpp"
+#include "io/files/file.hpp"
+#include "io/files/hdf5.hpp"
+#include "io/files/xxh64.hpp"
 #include "io/result/result.hpp"
-#include "io/system/file.hpp"
 
 namespace clearway {
 namespace {

@@ -10,9 +10,9 @@
 
 #include "clearway/result.hpp"
 #include "clearway/vec3.hpp"
+#include "io/files/xxh64.hpp"
 #include "io/result/result_header.hpp"
 #include "io/result/result_names.hpp"
-#include "io/system/xxh64.hpp"
 
 /// The schema of a result's tables: for each table its columns, in the order of the file, with the
 /// results that have them and what their values must be. Writer, reader, streams, merge, verify,

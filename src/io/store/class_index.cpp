@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "io/result/column_hashes.hpp"
-#include "io/system/input_error.hpp"
+#include "io/files/input_error.hpp"
+#include "io/files/xxh64.hpp"
 
 namespace clearway {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/hdf5/hdf5.hpp"
+#include "io/files/hdf5.hpp"
 #include "io/store/store_metadata.hpp"
 
 namespace clearway {

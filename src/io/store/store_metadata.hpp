@@ -9,9 +9,35 @@
 
 #include "clearway/progress.hpp"
 #include "core/geometry/quantisation.hpp"
-#include "io/formats/length_unit.hpp"
+#include "io/files/xxh64.hpp"
+#include "io/scans/length_unit.hpp"
 
 namespace clearway {
+
+/// The ASPRS name of a class of points (LAS 1.4, point formats 6 to 10); "" for reserved and
+/// user-defined classes.
+constexpr const char* class_name(std::uint8_t value) {
+  constexpr std::array kNames{"never classified",
+                              "unclassified",
+                              "ground",
+                              "low vegetation",
+                              "medium vegetation",
+                              "high vegetation",
+                              "building",
+                              "low point (noise)",
+                              "",
+                              "water",
+                              "rail",
+                              "road surface",
+                              "",
+                              "wire, guard",
+                              "wire, conductor",
+                              "transmission tower",
+                              "wire connector",
+                              "bridge deck",
+                              "high noise"};
+  return value < kNames.size() ? kNames[value] : "";
+}
 
 inline constexpr std::uint32_t kStoreVersion = 2;
 
@@ -63,6 +89,35 @@ inline std::vector<Message> store_warnings(const StoreMetadata& metadata) {
   std::vector<Message> warnings = metadata.warnings;
   for (Message& warning : warnings) warning.code.insert(0, kStorePrefix);
   return warnings;
+}
+
+}  // namespace clearway
+
+/// Names and tables that the store's writer and reader share (docs/design/store-format.md).
+namespace clearway {
+
+inline const std::string kStoreFormat = "clearway store";
+inline constexpr std::uint32_t kMostCellPoints = 1U << 20;
+inline constexpr const char* kPointDatasets[4] = {"x", "y", "z", "source"};
+
+/// Dataset of /sources; only where there are several files.
+inline constexpr const char* kSourcePoints = "points";
+
+/// The datasets of /cells, row-major. Each cell has four chunks: x, y, z, source.
+struct CellIndex {
+  std::vector<std::uint32_t> count;    // [cells]
+  std::vector<std::int32_t> box;       // [cells, 6]
+  std::vector<std::uint64_t> address;  // [cells, 4]
+  std::vector<std::uint32_t> bytes;    // [cells, 4]
+  std::vector<std::uint64_t> xxh64;    // [cells, 4]
+};
+
+inline void add_index(const CellIndex& index, ColumnHashes& hashes) {
+  hashes.add(index.count);
+  hashes.add(index.box);
+  hashes.add(index.address);
+  hashes.add(index.bytes);
+  hashes.add(index.xxh64);
 }
 
 }  // namespace clearway

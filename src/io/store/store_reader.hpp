@@ -8,10 +8,25 @@
 #include <vector>
 
 #include "core/cloud/packed_cloud.hpp"
-#include "io/store/store_index.hpp"
-#include "io/system/mapped_file.hpp"
+#include "io/files/mapped_file.hpp"
+#include "io/store/class_index.hpp"
+#include "io/store/store_metadata.hpp"
 
 namespace clearway {
+
+/// Everything in a store except the chunks of its points.
+struct StoreIndex {
+  StoreMetadata metadata;
+  CellIndex cells;
+  ClassIndex classes;  ///< empty where the store has none
+  std::vector<TopNode> top;
+  std::vector<BlockBox> blocks;  ///< the same number of block boxes for every cell
+};
+
+/// Reads the index of a store, whose file has `file_bytes` bytes, and checks it against its hash.
+/// Throws InputError when the file is not a complete store of this version with an intact index, or
+/// when another tool rewrote it.
+StoreIndex read_store_index(const std::filesystem::path& path, std::uint64_t file_bytes);
 
 /// A store opened for reading: its index in memory, its points in a read-only map of the file.
 /// Throws InputError when the file is not an intact, complete store of this version, or when

@@ -18,14 +18,14 @@
 #include <utility>
 
 #include "clearway/error.hpp"
-#include "core/cloud/kd_order.hpp"
+#include "core/cloud/packed_cloud.hpp"
 #include "core/util/tsan_annotations.hpp"
-#include "io/hdf5/hdf5.hpp"
-#include "io/hdf5/kept_warnings.hpp"
+#include "io/files/file.hpp"
+#include "io/files/hdf5.hpp"
+#include "io/files/kept_warnings.hpp"
+#include "io/files/xxh64.hpp"
 #include "io/store/class_index.hpp"
-#include "io/store/store_layout.hpp"
-#include "io/system/file.hpp"
-#include "io/system/xxh64.hpp"
+#include "io/store/store_metadata.hpp"
 
 namespace clearway {
 namespace {

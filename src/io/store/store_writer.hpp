@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/cloud/cell_tree.hpp"
+#include "core/cloud/packed_cloud.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "io/store/store_metadata.hpp"
 

@@ -4,7 +4,7 @@
 #include <unordered_set>
 
 #include "clearway/error.hpp"
-#include "core/cloud/kd_order.hpp"
+#include "core/cloud/packed_cloud.hpp"
 
 namespace clearway {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/util/message_log.hpp"
-#include "search/checks/facts/path_cover.hpp"
+#include "core/util/messages.hpp"
+#include "search/checks/facts/path_facts.hpp"
 #include "search/checks/facts/path_looks.hpp"
 #include "search/checks/question.hpp"
 

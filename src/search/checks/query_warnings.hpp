@@ -1,10 +1,25 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
+#include "clearway/progress.hpp"
 #include "clearway/query.hpp"
-#include "core/util/message_log.hpp"
+#include "core/util/messages.hpp"
 #include "io/store/store_reader.hpp"
 
 namespace clearway {
+
+/// What the checks found about one body of a vehicle.
+struct BodyMessages {
+  std::string name;
+  std::vector<Message> messages;
+};
+
+/// Adds what was found to the log, with the names of the bodies, and once where several have it in
+/// common. A warning that the ground, or what is beside the path, is missing is given for the
+/// vehicle where it holds for all of its bodies that the scan covers; otherwise it is not given.
+void tell_of_bodies(const std::vector<BodyMessages>& bodies, MessageLog& log);
 
 /// Warns where a query may answer something else than was meant, because of a path in another
 /// frame, a model in another unit, or steps that skip things. Reads the store's index, and the

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "core/geometry/point_box.hpp"
 
@@ -42,6 +43,53 @@ double scale_of(const Pose& pose) {
   double sum = 0;
   for (const double r : pose.rotation) sum += r * r;
   return std::sqrt(sum / 3);
+}
+
+std::string figure(double value) {
+  const double size = std::abs(value);
+  char text[64];
+  if (size >= 1e9 || (size > 0 && size < 1e-4) || !std::isfinite(value)) {
+    std::snprintf(text, sizeof text, "%.3g", value);
+    return text;
+  }
+  const int digits =
+      size == 0 ? 0 : std::max(0, 2 - static_cast<int>(std::floor(std::log10(size))));
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  std::string out = text;
+  if (out.find('.') != std::string::npos) {
+    out.erase(out.find_last_not_of('0') + 1);
+    if (out.ends_with('.')) out.pop_back();
+  }
+  return out == "-0" ? "0" : out;
+}
+
+std::string unit_name(LengthUnit unit) {
+  return unit == LengthUnit::kFoot || unit == LengthUnit::kUsSurveyFoot ? "ft" : "m";
+}
+
+std::string length_text(double length, LengthUnit unit) {
+  return figure(length) + " " + unit_name(unit);
+}
+
+std::string size_text(const Box& box, LengthUnit unit) {
+  return figure(box.hi.x - box.lo.x) + " x " + figure(box.hi.y - box.lo.y) + " x " +
+         length_text(box.hi.z - box.lo.z, unit);
+}
+
+std::string extent_text(const Box& box) {
+  std::string text;
+  for (int k = 0; k < 3; ++k) {
+    text += std::string(k == 0 ? "" : ", ") + "xyz"[k] + " " + figure(box.lo[k]) + " to " +
+            figure(box.hi[k]);
+  }
+  return text;
+}
+
+std::string share_text(double share) {
+  const long percent = std::lround(100 * share);
+  if (percent == 0 && share > 0) return "below 1 %";
+  if (percent == 100 && share < 1) return "above 99 %";
+  return std::to_string(percent) + " %";
 }
 
 }  // namespace clearway

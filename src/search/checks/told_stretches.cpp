@@ -5,7 +5,7 @@
 
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
-#include "search/checks/words.hpp"
+#include "search/checks/question.hpp"
 
 namespace clearway {
 namespace {

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/util/message_log.hpp"
+#include "core/util/messages.hpp"
 #include "search/checks/facts/path_looks.hpp"
 #include "search/checks/question.hpp"
 

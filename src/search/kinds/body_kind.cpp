@@ -11,9 +11,9 @@
 #include "core/page/page_engine.hpp"
 #include "core/page/page_pool.hpp"
 #include "core/query/body_numbers.hpp"
-#include "core/query/hit_set.hpp"
+#include "core/query/search_result.hpp"
 #include "core/sweep/profile/host_profile.hpp"
-#include "search/bodies/body_queries.hpp"
+#include "search/body_queries.hpp"
 #include "search/kinds/sweep_kind.hpp"
 
 namespace clearway {

@@ -11,7 +11,7 @@
 #include "core/page/page_engine.hpp"
 #include "core/page/page_pool.hpp"
 #include "core/page/pose_reach.hpp"
-#include "core/util/message_log.hpp"
+#include "core/util/messages.hpp"
 #include "search/query_trees.hpp"
 #include "stream/plan.hpp"
 

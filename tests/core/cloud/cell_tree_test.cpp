@@ -1,9 +1,7 @@
-#include "core/cloud/cell_tree.hpp"
-
 #include <catch2/catch.hpp>
 
 #include "clearway/error.hpp"
-#include "core/cloud/kd_order.hpp"
+#include "core/cloud/packed_cloud.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;

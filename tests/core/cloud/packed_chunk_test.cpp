@@ -1,9 +1,8 @@
-#include "core/cloud/packed_chunk.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <memory>
 
+#include "core/cloud/packed_cloud.hpp"
 #include "support/packed_values.hpp"
 
 using namespace clearway;

@@ -1,9 +1,8 @@
-#include "core/geometry/quantum_box.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "core/geometry/quantisation.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;

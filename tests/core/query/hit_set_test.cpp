@@ -1,8 +1,8 @@
-#include "core/query/hit_set.hpp"
-
 #include <barrier>
 #include <catch2/catch.hpp>
 #include <thread>
+
+#include "core/query/search_result.hpp"
 
 using namespace clearway;
 

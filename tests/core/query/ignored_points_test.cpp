@@ -4,7 +4,6 @@
 #include <limits>
 #include <random>
 
-#include "core/query/ignored_text.hpp"
 #include "support/memory_cloud.hpp"
 
 using namespace clearway;

@@ -6,7 +6,7 @@
 
 #include "clearway/error.hpp"
 #include "core/geometry/predicate.hpp"
-#include "core/trajectory/trajectory_motion.hpp"
+#include "core/trajectory/trajectory_summary.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;

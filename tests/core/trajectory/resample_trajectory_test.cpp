@@ -5,8 +5,7 @@
 #include <cmath>
 
 #include "core/geometry/predicate.hpp"
-#include "core/trajectory/thin_trajectory.hpp"
-#include "core/trajectory/trajectory_motion.hpp"
+#include "core/trajectory/trajectory_summary.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;

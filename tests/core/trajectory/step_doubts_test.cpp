@@ -1,10 +1,9 @@
-#include "core/trajectory/step_doubts.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <string>
 
+#include "core/trajectory/trajectory_doubts.hpp"
 #include "support/attitudes.hpp"
 
 using namespace clearway;

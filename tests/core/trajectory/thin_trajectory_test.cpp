@@ -1,11 +1,10 @@
-#include "core/trajectory/thin_trajectory.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/geometry/predicate.hpp"
-#include "core/trajectory/trajectory_motion.hpp"
+#include "core/trajectory/resample_trajectory.hpp"
+#include "core/trajectory/trajectory_summary.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;

@@ -1,8 +1,7 @@
-#include "core/util/message_log.hpp"
-
 #include <catch2/catch.hpp>
 
 #include "clearway/error.hpp"
+#include "core/util/messages.hpp"
 
 namespace clearway {
 namespace {

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "clearway/error.hpp"
-#include "io/result/check/compare_results.hpp"
+#include "io/result/check_results.hpp"
 #include "support/leaks_of_hdf5.hpp"
 #include "support/result_fixture.hpp"
 

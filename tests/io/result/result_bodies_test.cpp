@@ -3,9 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include "clearway/error.hpp"
-#include "io/hdf5/hdf5.hpp"
-#include "io/result/check/compare_results.hpp"
-#include "io/result/check/verify_result.hpp"
+#include "io/files/hdf5.hpp"
+#include "io/result/check_results.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;

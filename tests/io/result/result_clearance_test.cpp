@@ -1,7 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "io/result/check/compare_results.hpp"
-#include "io/result/check/verify_result.hpp"
+#include "io/result/check_results.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;

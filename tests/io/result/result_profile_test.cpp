@@ -4,8 +4,7 @@
 
 #include "clearway/error.hpp"
 #include "clearway/result.hpp"
-#include "io/result/check/compare_results.hpp"
-#include "io/result/check/verify_result.hpp"
+#include "io/result/check_results.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;

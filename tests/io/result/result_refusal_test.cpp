@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "clearway/error.hpp"
-#include "io/hdf5/hdf5.hpp"
+#include "io/files/hdf5.hpp"
 #include "io/result/result.hpp"
 #include "support/leaks_of_hdf5.hpp"
 #include "support/result_fixture.hpp"

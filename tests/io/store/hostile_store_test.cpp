@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "clearway/error.hpp"
-#include "io/hdf5/hdf5.hpp"
+#include "io/files/hdf5.hpp"
 #include "support/clouds.hpp"
 #include "support/leaks_of_hdf5.hpp"
 

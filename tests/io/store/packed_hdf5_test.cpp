@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "io/hdf5/hdf5.hpp"
+#include "io/files/hdf5.hpp"
 #include "support/packed_values.hpp"
 
 using namespace clearway;

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "clearway/error.hpp"
-#include "io/hdf5/hdf5.hpp"
+#include "io/files/hdf5.hpp"
 #include "io/store/store_reader.hpp"
 #include "support/clouds.hpp"
 #include "support/store_fixture.hpp"

@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "clearway/error.hpp"
-#include "io/hdf5/hdf5.hpp"
+#include "io/files/hdf5.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/store/store_writer.hpp"
 #include "support/clouds.hpp"

@@ -1,7 +1,7 @@
 // What the checks of several bodies together tell about the vehicle.
-#include "search/checks/body_messages.hpp"
-
 #include <catch2/catch.hpp>
+
+#include "search/checks/query_warnings.hpp"
 
 using namespace clearway;
 

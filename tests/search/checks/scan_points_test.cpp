@@ -1,10 +1,8 @@
-#include "search/checks/facts/scan_points.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "clearway/error.hpp"
-#include "search/checks/facts/ground.hpp"
+#include "search/checks/facts/scan_facts.hpp"
 #include "support/memory_cloud.hpp"
 
 using namespace clearway;

@@ -1,9 +1,9 @@
-#include "search/shard/divide_cells.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <numeric>
 #include <random>
+
+#include "search/shard_cells.hpp"
 
 using namespace clearway;
 

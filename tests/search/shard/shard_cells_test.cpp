@@ -1,10 +1,9 @@
-#include "search/shard/shard_cells.hpp"
+#include "search/shard_cells.hpp"
 
 #include <catch2/catch.hpp>
 #include <memory>
 
 #include "clearway/error.hpp"
-#include "search/shard/cell_work.hpp"
 #include "support/result_fixture.hpp"
 #include "support/store_fixture.hpp"
 

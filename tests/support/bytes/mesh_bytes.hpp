@@ -4,7 +4,7 @@
 #include <cstring>
 #include <string>
 
-#include "io/formats/mesh/triangle_mesh.hpp"
+#include "io/models/mesh/mesh_builder.hpp"
 
 namespace clearway::test {
 

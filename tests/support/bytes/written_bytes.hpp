@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/system/file.hpp"
+#include "io/files/file.hpp"
 
 namespace clearway::test {
 

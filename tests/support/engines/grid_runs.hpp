@@ -5,7 +5,7 @@
 #include "clearway/query.hpp"
 #include "core/cloud/packed_cloud.hpp"
 #include "core/grid/grid_scene.hpp"
-#include "core/query/hit_set.hpp"
+#include "core/query/search_result.hpp"
 
 namespace clearway {
 

@@ -6,7 +6,7 @@
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
 #include "core/geometry/predicate.hpp"
-#include "io/formats/las/las_reader.hpp"
+#include "io/scans/las/las_reader.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;

@@ -12,7 +12,7 @@
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
 #include "core/geometry/rigid.hpp"
-#include "io/formats/ply/ply_writer.hpp"
+#include "io/scans/ply/ply_writer.hpp"
 #include "scene/random.hpp"
 #include "support/result_fixture.hpp"
 

@@ -8,8 +8,8 @@
 #include <set>
 
 #include "clearway/error.hpp"
-#include "io/formats/las/las_writer.hpp"
-#include "io/formats/point_reader.hpp"
+#include "io/scans/las/las_writer.hpp"
+#include "io/scans/point_reader.hpp"
 #include "scene/random.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/result_fixture.hpp"

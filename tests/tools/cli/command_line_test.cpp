@@ -4,7 +4,7 @@
 
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
-#include "core/query/hit_set.hpp"
+#include "core/query/search_result.hpp"
 #include "cpu/brute_force.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/clouds.hpp"

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "clearway/error.hpp"
+#include "io/files/pending_file.hpp"
 #include "io/store/store_reader.hpp"
-#include "io/system/pending_file.hpp"
 #include "tools/cli/support/program.hpp"
 
 using namespace clearway;

@@ -7,7 +7,7 @@
 
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
-#include "core/query/hit_set.hpp"
+#include "core/query/search_result.hpp"
 #include "cpu/brute_force.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/hall.hpp"

@@ -8,7 +8,7 @@
 
 #include "clearway/model.hpp"
 #include "core/geometry/angle.hpp"
-#include "io/formats/point_reader.hpp"
+#include "io/scans/point_reader.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/asked.hpp"
 #include "tools/cli/support/program.hpp"

@@ -4,7 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "io/convert/convert.hpp"
+#include "io/store/convert/convert.hpp"
 #include "io/store/store_reader.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/store_fixture.hpp"

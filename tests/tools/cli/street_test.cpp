@@ -7,9 +7,9 @@
 
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
-#include "core/query/hit_set.hpp"
+#include "core/query/search_result.hpp"
 #include "cpu/brute_force.hpp"
-#include "io/formats/point_reader.hpp"
+#include "io/scans/point_reader.hpp"
 #include "support/store_fixture.hpp"
 #include "support/test_data.hpp"
 #include "tools/cli/support/program.hpp"

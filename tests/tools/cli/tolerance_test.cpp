@@ -6,7 +6,7 @@
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
 #include "cpu/brute_force.hpp"
-#include "io/journal/journal.hpp"
+#include "io/result/journal.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/hall.hpp"
 

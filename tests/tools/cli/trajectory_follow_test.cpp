@@ -5,7 +5,7 @@
 
 #include "clearway/trajectory.hpp"
 #include "core/util/progress.hpp"
-#include "io/trajectory/trajectory_writer.hpp"
+#include "io/paths/trajectory_file.hpp"
 #include "support/scenes.hpp"
 #include "tools/cli/support/program.hpp"
 

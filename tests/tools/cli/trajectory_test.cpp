@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "core/trajectory/trajectory_motion.hpp"
-#include "io/trajectory/trajectory_writer.hpp"
+#include "core/trajectory/trajectory_summary.hpp"
+#include "io/paths/trajectory_file.hpp"
 #include "support/scenes.hpp"
 #include "tools/cli/support/program.hpp"
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clearway/file_unit.hpp"
-#include "io/convert/convert.hpp"
+#include "io/store/convert/convert.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/program.hpp"

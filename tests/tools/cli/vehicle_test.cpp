@@ -6,7 +6,7 @@
 
 #include "clearway/result.hpp"
 #include "clearway/trajectory.hpp"
-#include "io/trajectory/trajectory_writer.hpp"
+#include "io/paths/trajectory_file.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/program.hpp"
 

@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "core/geometry/predicate.hpp"
-#include "scene/attitude.hpp"
 #include "scene/path.hpp"
 #include "scene/scanning/roughness.hpp"
+#include "scene/scene.hpp"
 #include "scene/vector.hpp"
 #include "scene/vehicles/mesh.hpp"
 

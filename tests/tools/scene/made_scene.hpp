@@ -10,7 +10,7 @@
 #include "core/geometry/predicate.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "core/util/progress.hpp"
-#include "io/system/file.hpp"
+#include "io/files/file.hpp"
 #include "scene/scene.hpp"
 #include "scene/write.hpp"
 

@@ -2,7 +2,7 @@
 // to the memory of the device.
 #include "bench/experiments/bench.hpp"
 #include "bench/measure/scoring.hpp"
-#include "cli/support/standard_output.hpp"
+#include "cli/support/console.hpp"
 
 namespace clearway::bench {
 namespace {

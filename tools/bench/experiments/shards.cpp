@@ -5,7 +5,7 @@
 
 #include "bench/experiments/bench.hpp"
 #include "clearway/error.hpp"
-#include "cli/support/standard_output.hpp"
+#include "cli/support/console.hpp"
 
 namespace clearway::bench {
 namespace {

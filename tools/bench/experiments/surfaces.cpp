@@ -6,7 +6,7 @@
 #include "bench/measure/scoring.hpp"
 #include "bench/variants/variants.hpp"
 #include "clearway/error.hpp"
-#include "io/system/input_error.hpp"
+#include "io/files/input_error.hpp"
 
 namespace clearway::bench {
 namespace {

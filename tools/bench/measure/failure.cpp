@@ -3,7 +3,7 @@
 #include <cmath>
 #include <regex>
 
-#include "cli/support/exit_code.hpp"
+#include "cli/support/program.hpp"
 
 namespace clearway::bench {
 

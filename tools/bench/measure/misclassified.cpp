@@ -5,8 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include "io/files/input_error.hpp"
 #include "io/result/result.hpp"
-#include "io/system/input_error.hpp"
 
 namespace clearway::bench {
 namespace {

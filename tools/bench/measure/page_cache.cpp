@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "clearway/error.hpp"
-#include "io/system/file.hpp"
+#include "io/files/file.hpp"
 
 namespace clearway::bench {
 

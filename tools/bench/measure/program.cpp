@@ -14,10 +14,10 @@
 #include <span>
 
 #include "clearway/error.hpp"
-#include "cli/support/exit_code.hpp"
-#include "cli/support/signals.hpp"
+#include "cli/support/console.hpp"
+#include "cli/support/program.hpp"
 #include "core/util/stopwatch.hpp"
-#include "io/system/file.hpp"
+#include "io/files/file.hpp"
 
 namespace clearway::bench {
 namespace {

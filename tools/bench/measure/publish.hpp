@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
-#include "io/system/file.hpp"
-#include "io/system/pending_file.hpp"
+#include "io/files/file.hpp"
+#include "io/files/pending_file.hpp"
 
 namespace clearway::bench {
 

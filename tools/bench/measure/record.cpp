@@ -5,7 +5,7 @@
 #include <span>
 
 #include "clearway/error.hpp"
-#include "io/system/pending_file.hpp"
+#include "io/files/pending_file.hpp"
 
 namespace clearway::bench {
 namespace {

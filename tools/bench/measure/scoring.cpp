@@ -3,8 +3,8 @@
 #include <cstring>
 
 #include "bench/measure/misclassified.hpp"
-#include "io/result/check/compare_results.hpp"
-#include "io/system/mapped_file.hpp"
+#include "io/files/mapped_file.hpp"
+#include "io/result/check_results.hpp"
 
 namespace clearway::bench {
 

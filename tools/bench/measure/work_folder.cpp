@@ -8,8 +8,8 @@
 #include <span>
 
 #include "clearway/error.hpp"
-#include "io/system/file_lock.hpp"
-#include "io/system/pending_file.hpp"
+#include "io/files/file.hpp"
+#include "io/files/pending_file.hpp"
 
 namespace clearway::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bench/measure/record.hpp"
-#include "io/system/file.hpp"
+#include "io/files/file.hpp"
 
 namespace clearway::bench {
 

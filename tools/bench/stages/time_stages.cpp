@@ -11,13 +11,11 @@
 #include "core/sweep/sweep_filter.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/query_trees.hpp"
-#include "stream/paginate.hpp"
 #include "stream/plan.hpp"
 #include "stream/run_pages.hpp"
 #ifdef CLEARWAY_CUDA
 #include "gpu/devices.hpp"
 #include "gpu/sweep_engine.hpp"
-#include "stream/stage_page.hpp"
 #endif
 
 namespace clearway::bench {

@@ -7,7 +7,7 @@
 #include "clearway/error.hpp"
 #include "clearway/model.hpp"
 #include "core/geometry/point_box.hpp"
-#include "io/formats/text/text_writer.hpp"
+#include "io/files/text_writer.hpp"
 
 namespace clearway::bench {
 namespace {

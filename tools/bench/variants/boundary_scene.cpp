@@ -7,8 +7,8 @@
 #include <fstream>
 #include <limits>
 
-#include "io/formats/las/las_writer.hpp"
 #include "io/result/result.hpp"
+#include "io/scans/las/las_writer.hpp"
 #include "scene/random.hpp"
 
 namespace clearway::bench {

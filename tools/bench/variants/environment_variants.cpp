@@ -7,11 +7,11 @@
 #include "bench/measure/publish.hpp"
 #include "bench/variants/variants.hpp"
 #include "clearway/error.hpp"
-#include "io/formats/byte_load.hpp"
-#include "io/formats/las/las_header.hpp"
-#include "io/formats/las/las_reader.hpp"
-#include "io/formats/las/las_writer.hpp"
-#include "io/system/input_error.hpp"
+#include "io/files/bytes.hpp"
+#include "io/files/input_error.hpp"
+#include "io/scans/las/las_header.hpp"
+#include "io/scans/las/las_reader.hpp"
+#include "io/scans/las/las_writer.hpp"
 #include "scene/random.hpp"
 
 /// Bytes of the LAS header: ASPRS LAS 1.4 R15, section 2.4.

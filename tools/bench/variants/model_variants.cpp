@@ -8,8 +8,8 @@
 #include "clearway/error.hpp"
 #include "clearway/model.hpp"
 #include "core/geometry/predicate.hpp"
-#include "io/formats/ply/ply_writer.hpp"
-#include "io/system/input_error.hpp"
+#include "io/files/input_error.hpp"
+#include "io/scans/ply/ply_writer.hpp"
 
 namespace clearway::bench {
 namespace {

@@ -9,8 +9,8 @@
 #include "clearway/error.hpp"
 #include "clearway/trajectory.hpp"
 #include "core/util/progress.hpp"
-#include "io/system/input_error.hpp"
-#include "io/trajectory/trajectory_writer.hpp"
+#include "io/files/input_error.hpp"
+#include "io/paths/trajectory_file.hpp"
 #include "scene/random.hpp"
 
 namespace clearway::bench {

@@ -1,3 +1,5 @@
+#include "campaign/plan.hpp"
+
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -6,17 +8,14 @@
 #include <filesystem>
 #include <memory>
 
-#include "campaign/plan_file.hpp"
 #include "campaign/slurm_script.hpp"
 #include "clearway/search.hpp"
 #include "cli/campaign/commands.hpp"
 #include "cli/campaign/question_reader.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
-#include "cli/support/signals.hpp"
-#include "cli/support/standard_output.hpp"
 #include "core/util/format.hpp"
-#include "io/system/file_text.hpp"
+#include "io/files/input_error.hpp"
 
 namespace clearway::tool {
 namespace {

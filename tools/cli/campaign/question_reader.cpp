@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "campaign/question.hpp"
+#include "campaign/plan.hpp"
 #include "clearway/clearway.hpp"
 #include "cli/commands.hpp"
 #include "cli/input_roles.hpp"
@@ -14,12 +14,12 @@
 #include "core/geometry/point_box.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/util/format.hpp"
-#include "io/formats/length_unit.hpp"
+#include "io/files/xxh64.hpp"
+#include "io/paths/content_hash.hpp"
+#include "io/scans/length_unit.hpp"
 #include "io/store/store_reader.hpp"
-#include "io/system/xxh64.hpp"
-#include "io/trajectory/content_hash.hpp"
 #include "search/check_query.hpp"
-#include "search/choice/workload.hpp"
+#include "search/choose_engine.hpp"
 
 namespace clearway::tool {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "campaign/plan.hpp"
-#include "cli/campaign/run_estimate.hpp"
+#include "cli/campaign/task_queue.hpp"
 #include "cli/run_options.hpp"
 #include "io/result/result.hpp"
 

@@ -8,14 +8,13 @@
 #include <span>
 
 #include "campaign/page/campaign_page.hpp"
-#include "campaign/plan_file.hpp"
+#include "campaign/plan.hpp"
 #include "campaign/task_state.hpp"
 #include "clearway/error.hpp"
 #include "cli/campaign/commands.hpp"
+#include "cli/support/console.hpp"
 #include "cli/support/program_json.hpp"
-#include "cli/support/signals.hpp"
-#include "cli/support/standard_output.hpp"
-#include "io/system/pending_file.hpp"
+#include "io/files/pending_file.hpp"
 
 namespace clearway::tool {
 namespace {

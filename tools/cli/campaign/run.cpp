@@ -7,13 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "campaign/outcome.hpp"
-#include "campaign/plan_file.hpp"
-#include "campaign/task_list.hpp"
+#include "campaign/plan.hpp"
+#include "campaign/task_state.hpp"
 #include "clearway/error.hpp"
 #include "cli/campaign/commands.hpp"
 #include "cli/campaign/task_queue.hpp"
-#include "cli/support/exit_code.hpp"
+#include "cli/support/program.hpp"
 
 namespace clearway::tool {
 namespace {

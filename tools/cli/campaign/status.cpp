@@ -7,13 +7,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "campaign/outcome.hpp"
-#include "campaign/plan_file.hpp"
-#include "campaign/task_list.hpp"
+#include "campaign/plan.hpp"
 #include "campaign/task_state.hpp"
 #include "cli/campaign/commands.hpp"
+#include "cli/support/console.hpp"
 #include "cli/support/program_json.hpp"
-#include "cli/support/standard_output.hpp"
 #include "core/util/format.hpp"
 
 namespace clearway::tool {

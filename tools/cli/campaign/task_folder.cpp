@@ -11,12 +11,12 @@
 #include <chrono>
 #include <cstring>
 
-#include "campaign/question.hpp"
+#include "campaign/plan.hpp"
 #include "clearway/error.hpp"
-#include "cli/support/exit_code.hpp"
-#include "io/journal/journal.hpp"
-#include "io/system/file_lock.hpp"
-#include "io/system/file_text.hpp"
+#include "cli/support/program.hpp"
+#include "io/files/file.hpp"
+#include "io/files/input_error.hpp"
+#include "io/result/journal.hpp"
 
 namespace clearway::tool {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "campaign/task_state.hpp"
 #include "core/util/stopwatch.hpp"
-#include "io/system/file.hpp"
+#include "io/files/file.hpp"
 
 namespace clearway::tool {
 

@@ -2,8 +2,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "clearway/conflicts.hpp"
 #include "cli/conflicts/conflict_inputs.hpp"
+#include "findings/match_conflicts.hpp"
+#include "io/result/check_results.hpp"
 
 namespace clearway::tool {
 
@@ -25,5 +31,56 @@ void add_conflict_comparison(CLI::App& command, ConflictComparison& options,
 /// to be listed, or answers another question and that was not allowed.
 bool compare_conflicts(ConflictComparison& options, const std::filesystem::path& a,
                        const std::filesystem::path& b, std::uint64_t show, bool json);
+
+}  // namespace clearway::tool
+
+namespace clearway::tool {
+
+/// The listed conflict with this id; ids count from 1.
+inline const Conflict& conflict_at(const Conflicts& conflicts, std::uint32_t id) {
+  return conflicts.listed[id - 1];
+}
+
+/// A result and its conflicts.
+struct ComparedResult {
+  std::string file;
+  double radius = 0;
+  std::string unit;
+  Conflicts conflicts;
+};
+
+/// The outcome of a comparison of two results' conflicts.
+struct ComparedConflicts {
+  ComparedResult a, b;
+  std::vector<QueryDifference> questions;
+  bool other_question_allowed = false;
+  bool distances_known = false;  ///< whether both results have distances; if not, none is worse
+  double worse_by = 0;
+  ConflictMatch match;  ///< which conflicts are new, gone and the same, worse or not
+  /// Ids of the same conflict in a and b where b's is worse.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> worse;
+  /// Indices into b.conflicts.small of the groups that a has nothing near.
+  std::vector<std::size_t> new_small;
+
+  bool same_question() const { return questions.empty() || other_question_allowed; }
+  /// Whether b is no worse than a, and answers the same question or an allowed one.
+  bool holds() const {
+    return same_question() && match.added.empty() && worse.empty() && new_small.empty();
+  }
+};
+
+/// What the comparison found, in one sentence: the last line of the text.
+std::string sentence_of(const ComparedConflicts& found);
+
+/// The comparison as one JSON object, with a line break at its end.
+std::string json_of(const ComparedConflicts& found);
+
+/// Throws UsageError unless `output` ends in .csv, .json or .html, the forms in which a comparison
+/// is written.
+void check_comparison_ending(const std::filesystem::path& output);
+
+/// Writes the comparison to `path`, in the form that the ending of `output` names.
+void write_comparison(const ComparedConflicts& found, const std::filesystem::path& output,
+                      const std::filesystem::path& path);
 
 }  // namespace clearway::tool

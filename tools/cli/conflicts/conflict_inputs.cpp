@@ -7,14 +7,13 @@
 #include "clearway/error.hpp"
 #include "clearway/vehicle.hpp"
 #include "cli/support/console.hpp"
-#include "cli/support/option_groups.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "core/util/format.hpp"
+#include "io/files/input_error.hpp"
+#include "io/files/xxh64.hpp"
+#include "io/paths/content_hash.hpp"
 #include "io/result/result.hpp"
-#include "io/system/input_error.hpp"
-#include "io/system/xxh64.hpp"
-#include "io/trajectory/content_hash.hpp"
 
 namespace clearway::tool {
 namespace {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <set>
 
-#include "core/query/ignored_text.hpp"
-#include "io/formats/text/text_number.hpp"
+#include "core/query/ignored_points.hpp"
+#include "io/files/text_number.hpp"
 
 namespace clearway::tool {
 namespace {

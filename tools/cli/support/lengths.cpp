@@ -8,10 +8,10 @@
 #include <cmath>
 #include <string_view>
 
-#include "cli/support/option_groups.hpp"
-#include "io/formats/length_unit.hpp"
-#include "io/formats/text/column_names.hpp"
-#include "io/formats/wkt.hpp"
+#include "cli/support/options.hpp"
+#include "io/scans/length_unit.hpp"
+#include "io/scans/scan_crs.hpp"
+#include "io/scans/text/table_header.hpp"
 
 namespace clearway::tool {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "clearway/store.hpp"
 #include "clearway/vec3.hpp"
-#include "io/formats/text/length_text.hpp"
+#include "io/files/text_number.hpp"
 
 namespace CLI {
 class App;

@@ -9,7 +9,7 @@
 
 #include "clearway/error.hpp"
 #include "cli/support/lengths.hpp"
-#include "io/formats/text/length_text.hpp"
+#include "io/files/text_number.hpp"
 
 namespace clearway::tool {
 namespace {

@@ -5,6 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
+#include <vector>
+
+#include "clearway/progress.hpp"
+#include "io/store/store_metadata.hpp"
 
 namespace clearway::tool {
 
@@ -14,5 +18,21 @@ nlohmann::ordered_json program_json(
 
 /// The text of one JSON object, in which bytes of names that are no UTF-8 are replaced.
 std::string text_of_json(const nlohmann::ordered_json& object);
+
+}  // namespace clearway::tool
+
+namespace clearway::tool {
+
+/// The files that a store was made of: "name", "bytes", "xxh64", and "first_source" and "points",
+/// which say which source indices are theirs and are null where the store does not tell.
+nlohmann::ordered_json sources_json(const StoreMetadata& store);
+
+}  // namespace clearway::tool
+
+namespace clearway::tool {
+
+/// The `warnings` of a command's JSON: an array of {"code", "message", "numbers": {name: value}}.
+/// A number that is not finite becomes null.
+nlohmann::ordered_json warnings_json(const std::vector<Message>& warnings);
 
 }  // namespace clearway::tool

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "cli/support/lengths.hpp"
-#include "cli/support/option_groups.hpp"
-#include "io/formats/text/column_names.hpp"
-#include "io/trajectory/trajectory_file.hpp"
+#include "cli/support/options.hpp"
+#include "io/paths/trajectory_file.hpp"
+#include "io/scans/text/table_header.hpp"
 
 namespace clearway::tool {
 namespace {

@@ -16,18 +16,15 @@
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
-#include "cli/support/signals.hpp"
-#include "cli/support/standard_output.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "cli/trajectory/commands.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/resample_trajectory.hpp"
-#include "core/trajectory/step_doubts.hpp"
-#include "core/trajectory/thin_trajectory.hpp"
-#include "core/trajectory/trajectory_motion.hpp"
+#include "core/trajectory/trajectory_doubts.hpp"
+#include "core/trajectory/trajectory_summary.hpp"
 #include "core/util/format.hpp"
-#include "io/system/pending_file.hpp"
-#include "io/trajectory/trajectory_writer.hpp"
+#include "io/files/pending_file.hpp"
+#include "io/paths/trajectory_file.hpp"
 
 namespace clearway::tool {
 namespace {

@@ -12,13 +12,12 @@
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
-#include "cli/support/standard_output.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "cli/trajectory/commands.hpp"
 #include "cli/trajectory/description.hpp"
 #include "core/geometry/point_box.hpp"
-#include "core/trajectory/step_doubts.hpp"
-#include "core/trajectory/trajectory_motion.hpp"
+#include "core/trajectory/trajectory_doubts.hpp"
+#include "core/trajectory/trajectory_summary.hpp"
 #include "core/util/format.hpp"
 
 namespace clearway::tool {

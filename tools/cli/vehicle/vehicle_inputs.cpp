@@ -3,7 +3,7 @@
 #include <string>
 
 #include "clearway/error.hpp"
-#include "io/vehicle/vehicle_file.hpp"
+#include "io/models/vehicle_file.hpp"
 
 namespace clearway::tool {
 

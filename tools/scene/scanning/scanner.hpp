@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/geometry/quantisation.hpp"
-#include "core/geometry/quantum_box.hpp"
 #include "scene/path.hpp"
 #include "scene/random.hpp"
 #include "scene/sites/world.hpp"

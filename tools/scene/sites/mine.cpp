@@ -1,8 +1,8 @@
 #include <cmath>
 
-#include "scene/attitude.hpp"
+#include "scene/scene.hpp"
 #include "scene/sites/kinds.hpp"
-#include "scene/vehicles/models.hpp"
+#include "scene/vehicles/vehicles.hpp"
 
 /// Like El Teniente: galleries around a block of rock, scanned stop and go, and a front loader that
 /// follows a B-spline through the stations (the paper, section 4.3).

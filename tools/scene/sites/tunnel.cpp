@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/attitude.hpp"
+#include "scene/scene.hpp"
 #include "scene/sites/kinds.hpp"
-#include "scene/vehicles/models.hpp"
+#include "scene/vehicles/vehicles.hpp"
 
 /// Like the Train Tunnel: a curved tunnel between two open stretches, seen from two crossed scan
 /// planes on the back of a train, and a wagon whose bogies follow the track (the paper,

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/query/profile_set.hpp"
+#include "core/query/search_result.hpp"
 #include "core/sweep/sweep_page.hpp"
 #include "core/util/device_bits.hpp"
 #include "core/util/shared_double.hpp"

@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "core/geometry/point_box.hpp"
-#include "search/checks/facts/ground.hpp"
-#include "search/checks/facts/scan_points.hpp"
+#include "search/checks/facts/scan_facts.hpp"
 
 namespace clearway {
 namespace {

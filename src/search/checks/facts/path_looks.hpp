@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "search/checks/facts/path_cover.hpp"
+#include "search/checks/facts/path_facts.hpp"
 #include "search/checks/question.hpp"
 
 namespace clearway {

@@ -1,8 +1,7 @@
-#include "io/result/check/compare_results.hpp"
-
 #include <catch2/catch.hpp>
 
 #include "clearway/error.hpp"
+#include "io/result/check_results.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "io/formats/point_reader.hpp"
+#include "io/scans/point_reader.hpp"
 #include "support/bytes/laz/laz_bytes.hpp"
 
 namespace clearway::test {

@@ -2,7 +2,7 @@
 // finished, and finished work is used once there is room.
 #include <catch2/catch.hpp>
 
-#include "io/journal/journal.hpp"
+#include "io/result/journal.hpp"
 #include "tools/cli/support/hall.hpp"
 #include "tools/cli/support/small_disk.hpp"
 

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "core/cloud/packed_chunk.hpp"
+#include "core/cloud/packed_cloud.hpp"
 #include "io/store/store_writer.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/program.hpp"

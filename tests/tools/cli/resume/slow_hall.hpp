@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "io/journal/journal.hpp"
-#include "io/system/pending_file.hpp"
+#include "io/files/pending_file.hpp"
+#include "io/result/journal.hpp"
 #include "tools/cli/support/process.hpp"
 #include "tools/cli/support/program.hpp"
 

@@ -7,8 +7,8 @@
 
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
-#include "io/formats/point_reader.hpp"
-#include "io/trajectory/trajectory_writer.hpp"
+#include "io/paths/trajectory_file.hpp"
+#include "io/scans/point_reader.hpp"
 #include "support/store_fixture.hpp"
 
 namespace clearway::test {

@@ -1,0 +1,74 @@
+#include "io/files/input_error.hpp"
+
+#include <unistd.h>
+
+#include <charconv>
+#include <cstdio>
+#include <span>
+#include <system_error>
+
+#include "clearway/error.hpp"
+#include "io/files/file.hpp"
+
+namespace clearway {
+
+void refuse(const std::string& name, const std::string& what, Remedy remedy, double amount) {
+  throw InputError(name + ": " + what, remedy, amount);
+}
+
+void refuse_byte(const std::string& name, std::uint64_t byte, const std::string& what) {
+  refuse(name, "byte " + std::to_string(byte) + ": " + what);
+}
+
+void refuse_line(const std::string& name, std::uint64_t line, const std::string& what,
+                 Remedy remedy) {
+  refuse(name, "line " + std::to_string(line) + ": " + what, remedy);
+}
+
+std::string excerpt(std::string_view text) {
+  constexpr std::size_t kLongest = 40;
+  std::string result = "\"";
+  for (const char c : text.substr(0, kLongest)) {
+    result += c == '\t' ? ' ' : c >= ' ' && c <= '~' ? c : '?';
+  }
+  return result + (text.size() > kLongest ? "...\"" : "\"");
+}
+
+std::string shown(double value) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+}
+
+std::string brief(double value) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.9g", value);
+  return digits;
+}
+
+namespace fs = std::filesystem;
+
+std::string text_of_file(const fs::path& path) {
+  const File file = File::open_regular(path);
+  std::string text;
+  std::string piece(1 << 16, '\0');
+  while (const std::size_t bytes = file.read_some(std::as_writable_bytes(std::span(piece)))) {
+    text.append(piece, 0, bytes);
+  }
+  return text;
+}
+
+void replace_file(const fs::path& path, std::string_view text) {
+  const fs::path written = path.string() + ".new." + std::to_string(::getpid());
+  try {
+    File::create(written).write(std::as_bytes(std::span(text)));
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(written, ignored);
+    throw;
+  }
+  std::error_code failed;
+  fs::rename(written, path, failed);
+  if (failed) throw ResourceError(path.string() + ": cannot write: " + failed.message());
+}
+
+}  // namespace clearway

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "clearway/error.hpp"
+
+namespace clearway {
+
+/// Throws InputError "name: what".
+[[noreturn]] void refuse(const std::string& name, const std::string& what,
+                         Remedy remedy = Remedy::kNone, double amount = 0);
+
+/// Throws InputError "name: byte N: what". `byte` counts from 0.
+[[noreturn]] void refuse_byte(const std::string& name, std::uint64_t byte, const std::string& what);
+
+/// Throws InputError "name: line N: what". `line` counts from 1.
+[[noreturn]] void refuse_line(const std::string& name, std::uint64_t line, const std::string& what,
+                              Remedy remedy = Remedy::kNone);
+
+/// The start of a text from a file in double quotes, fit for a message: at most 40 characters,
+/// unprintable bytes as '?'.
+std::string excerpt(std::string_view text);
+
+/// A double for a message, with all the digits that tell it from its neighbours.
+std::string shown(double value);
+
+/// A double for a message, rounded to nine digits.
+std::string brief(double value);
+
+/// The whole contents of a small file. Throws ResourceError.
+std::string text_of_file(const std::filesystem::path& path);
+
+/// Writes the file under another name and renames it, so that readers see either the old or the new
+/// contents. It is not synced: after a crash of the system the file may be empty. Throws
+/// ResourceError.
+void replace_file(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace clearway

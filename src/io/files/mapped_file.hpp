@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "io/files/file.hpp"
+
+namespace clearway {
+
+/// A read-only map of a whole file. If the file shrinks or fails under the map, the system sends
+/// SIGBUS, which install_map_fault_handler() turns into a message and an exit code.
+class MappedFile {
+ public:
+  explicit MappedFile(const std::filesystem::path& path);
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+  ~MappedFile();
+
+  const std::string& name() const { return file_.name(); }
+  std::span<const std::byte> bytes() const { return bytes_; }
+  /// The file itself, for reads that do not go through the map.
+  const File& file() const { return file_; }
+
+ private:
+  File file_;
+  std::span<const std::byte> bytes_;
+};
+
+/// Makes a fault under any MappedFile print the file's name to standard error and end the process
+/// with `exit_code`. Only for programs, not for libraries.
+void install_map_fault_handler(int exit_code);
+
+}  // namespace clearway

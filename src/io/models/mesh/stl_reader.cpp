@@ -1,0 +1,208 @@
+#include <strings.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "io/files/bytes.hpp"
+#include "io/files/input_error.hpp"
+#include "io/files/text_number.hpp"
+#include "io/models/mesh/mesh_builder.hpp"
+#include "io/models/mesh/mesh_reader.hpp"
+#include "io/scans/text/table_header.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr std::uint64_t kHeaderBytes = 84;    // 80 bytes of text, then the number of triangles
+constexpr std::uint64_t kTriangleBytes = 50;  // normal, three vertices, two bytes of any use
+
+/// Builds a mesh of triangles whose corners repeat their positions; equal positions become one
+/// vertex.
+class StlMesh {
+ public:
+  explicit StlMesh(std::string name) : name_(std::move(name)) {}
+
+  void add(const std::array<Vec3, 3>& corners, const FilePlace& at) {
+    std::array<std::uint32_t, 3> triangle{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3& corner = corners[i];
+      if (!std::isfinite(corner.x) || !std::isfinite(corner.y) || !std::isfinite(corner.z)) {
+        refuse(name_, at.text() + ": vertex (" + shown(corner.x) + ", " + shown(corner.y) + ", " +
+                          shown(corner.z) + "); expected finite coordinates");
+      }
+      triangle[i] = welder_.number_of(corner);
+    }
+    if (file_.mesh.vertices.size() > VertexWelder::kMostVertices) {
+      refuse(name_, at.text() + ": more than 4 thousand million vertices; expected fewer");
+    }
+    file_.mesh.triangles.push_back(triangle);
+  }
+
+  MeshFile finish() { return std::move(file_); }
+
+ private:
+  std::string name_;
+  MeshFile file_;
+  VertexWelder welder_{file_.mesh.vertices};
+};
+
+MeshFile read_binary_stl(InputBuffer& input, std::uint32_t triangles) {
+  StlMesh mesh(input.name());
+  for (std::uint32_t i = 0; i < triangles; ++i) {
+    const std::uint64_t start = input.position();
+    const auto bytes = input.take(kTriangleBytes);
+    if (bytes.empty()) refuse_byte(input.name(), start, "ends within a triangle");
+    std::array<Vec3, 3> corners{};
+    for (int corner = 0; corner < 3; ++corner) {
+      for (int k = 0; k < 3; ++k) {
+        corners[static_cast<std::size_t>(corner)][k] =
+            static_cast<double>(load<float>(bytes.data() + 12 + 12 * corner + 4 * k));
+      }
+    }
+    mesh.add(corners, {"byte", start});
+  }
+  return mesh.finish();
+}
+
+class AsciiStlParser {
+ public:
+  explicit AsciiStlParser(InputBuffer& input) : input_(input), mesh_(input.name()) {}
+
+  MeshFile parse() {
+    bool any = false;
+    while (next_line()) {
+      expect({"solid"}, "`solid NAME`");
+      any = true;
+      read_solid();
+    }
+    if (!any) refuse(input_.name(), "holds no text; expected `solid NAME`");
+    return mesh_.finish();
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    refuse_line(input_.name(), input_.line(), what);
+  }
+
+  /// Reads the words of the next line that has any; returns false at the end.
+  bool next_line() {
+    do {
+      if (!input_.next_line(line_)) return false;
+      split_fields(line_, ' ', words_);
+    } while (words_.empty());
+    return true;
+  }
+
+  bool starts_with(std::initializer_list<std::string_view> keywords) const {
+    if (words_.size() < keywords.size()) return false;
+    return std::equal(keywords.begin(), keywords.end(), words_.begin(),
+                      [](std::string_view keyword, std::string_view word) {
+                        return std::ranges::equal(keyword, word, [](char a, char b) {
+                          return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b);
+                        });
+                      });
+  }
+
+  void expect(std::initializer_list<std::string_view> keywords, const char* expected) const {
+    if (!starts_with(keywords)) fail(excerpt(line_) + "; expected " + expected);
+  }
+
+  void need_line(const char* expected) {
+    if (next_line()) return;
+    refuse(input_.name(), "ends after line " + std::to_string(input_.line()) + "; expected " +
+                              expected + ". The file may be cut");
+  }
+
+  void read_solid() {
+    for (;;) {
+      need_line("`facet` or `endsolid`");
+      if (starts_with({"endsolid"}) || starts_with({"end", "solid"})) return;
+      expect({"facet"}, "`facet normal X Y Z` or `endsolid`");
+      read_facet();
+    }
+  }
+
+  void read_facet() {
+    need_line("`outer loop`");
+    expect({"outer", "loop"}, "`outer loop`");
+    std::array<Vec3, 3> corners{};
+    for (Vec3& corner : corners) {
+      need_line("`vertex X Y Z`");
+      read_vertex(corner);
+    }
+    const FilePlace last{"line", input_.line()};
+    need_line("`endloop`");
+    expect({"endloop"}, "`endloop` behind three vertices");
+    need_line("`endfacet`");
+    expect({"endfacet"}, "`endfacet`");
+    mesh_.add(corners, last);
+  }
+
+  void read_vertex(Vec3& corner) const {
+    bool valid = starts_with({"vertex"}) && words_.size() == 4;
+    for (std::size_t k = 0; valid && k < 3; ++k) {
+      const auto value = parse_whole_number(words_[k + 1]);
+      valid = value.has_value();
+      if (value) corner[static_cast<int>(k)] = *value;
+    }
+    if (!valid) fail(excerpt(line_) + "; expected `vertex X Y Z`");
+  }
+
+  InputBuffer& input_;
+  std::string_view line_;
+  std::vector<std::string_view> words_;
+  StlMesh mesh_;
+};
+
+/// The start of a file as that of a binary one: its declared number of triangles, 0 where the file
+/// is too short for it.
+struct StlStart {
+  std::uint32_t triangles = 0;
+  bool is_text = false;  ///< whether it begins as the text form does and has no zero byte
+};
+
+StlStart start_of(InputBuffer& input) {
+  const InputBuffer::Mark start = input.mark();
+  const std::size_t count = std::min<std::uint64_t>(*input.size(), 512);
+  const auto bytes = input.take(count);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::size_t word = std::min(text.find_first_not_of(" \t\r\n"), text.size());
+  StlStart found;
+  found.is_text = text.find('\0') == std::string_view::npos && text.size() >= word + 5 &&
+                  ::strncasecmp(text.data() + word, "solid", 5) == 0;
+  if (count >= kHeaderBytes) found.triangles = load<std::uint32_t>(bytes.data() + 80);
+  input.return_to(start);
+  return found;
+}
+
+}  // namespace
+
+// Reads STL. A file is binary where its size fits the declared number of triangles, because the
+// text before that may begin with "solid". Source: 3D Systems, Stereolithography interface
+// specification, 1989.
+MeshFile read_stl(InputBuffer input) {
+  const std::uint64_t size = *input.size();
+  const StlStart start = start_of(input);
+  const std::uint64_t expected = kHeaderBytes + kTriangleBytes * start.triangles;
+  if (size >= kHeaderBytes && size == expected) {
+    input.skip(kHeaderBytes);
+    return read_binary_stl(input, start.triangles);
+  }
+  if (start.is_text) return AsciiStlParser(input).parse();
+  if (size < kHeaderBytes) {
+    refuse(input.name(), "has " + std::to_string(size) +
+                             " bytes; expected a binary STL file with 84 or more, or text that "
+                             "starts with `solid`");
+  }
+  refuse_byte(input.name(), 80,
+              "declares " + std::to_string(start.triangles) + " triangles, that is " +
+                  std::to_string(expected) + " bytes in all; the file has " + std::to_string(size) +
+                  ". It may be cut; export it again");
+}
+
+}  // namespace clearway

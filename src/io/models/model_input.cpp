@@ -1,0 +1,377 @@
+#include "io/models/model_input.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "clearway/error.hpp"
+#include "clearway/model.hpp"
+#include "core/util/format.hpp"
+#include "io/files/input_error.hpp"
+#include "io/models/mesh/mesh_reader.hpp"
+#include "io/models/mesh_facts.hpp"
+#include "io/models/sample_mesh.hpp"
+#include "io/models/surface_of.hpp"
+#include "io/scans/length_unit.hpp"
+#include "io/scans/point_reader.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr double kBendToTell = 0.1;  // share of the spacing above which a bend is reported
+
+void tell(std::vector<Message>& messages, const ModelInput& input, const std::string& text,
+          std::vector<std::pair<std::string, double>> numbers = {}, std::string code = {}) {
+  const auto severity = code.empty() ? Message::Severity::kNote : Message::Severity::kWarning;
+  messages.push_back(
+      {severity, std::move(code), input.path.string() + ": " + text, std::move(numbers)});
+}
+
+/// Appends the points of a batch. first: number of the batch's first record, where records without
+/// a point count too.
+void append(const PointBatch& batch, const CloudInfo& info, std::uint64_t first,
+            const std::string& name, std::vector<Vec3>& points) {
+  for (const auto& q : batch.quanta) {
+    points.push_back(position(*info.quantisation, q[0], q[1], q[2]));
+  }
+  std::size_t absent = 0;
+  for (std::size_t i = 0; i < batch.positions.size(); ++i) {
+    if (absent < batch.absent.size() && batch.absent[absent] == i) {
+      ++absent;
+      continue;
+    }
+    const Vec3& p = batch.positions[i];
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+      refuse(name, "model point " + std::to_string(first + i) + " (counted from 0) is (" +
+                       shown(p.x) + ", " + shown(p.y) + ", " + shown(p.z) +
+                       "); expected finite coordinates");
+    }
+    points.push_back(p);
+  }
+}
+
+void read_points(ModelInput& input) {
+  const auto reader = open_point_file(input.path);
+  PointBatch batch;
+  for (std::uint64_t first = 0; reader->read(batch); first += batch.size()) {
+    append(batch, reader->info(), first, input.path.string(), input.mesh.vertices);
+  }
+  input.messages = reader->info().remarks;
+  input.sampled_spacing = reader->info().model_spacing;
+  const CloudInfo& info = reader->info();
+  const double metres = metres_of(info.unit);
+  input.declared_unit = info.any_foot ? FileUnit(metres) : FileUnit::exactly(metres);
+  if (reader->info().faces > 0) {
+    tell(input.messages, input,
+         "its " + format_count(reader->info().faces) + " faces are left out");
+  }
+}
+
+/// Makes a file that draws only single points a model of these points, like a scan's file.
+void take_single_points(ModelInput& input) {
+  const std::uint64_t drawn = input.remarks.single_points;
+  if (drawn == 0 || drawn != input.mesh.triangles.size()) return;
+  std::vector<Vec3> points;
+  std::vector<bool> is_drawn(input.mesh.vertices.size());
+  for (const auto& point : input.mesh.triangles) {
+    points.push_back(input.mesh.vertices[point[0]]);
+    is_drawn[point[0]] = true;
+  }
+  const auto loose = static_cast<std::uint64_t>(std::ranges::count(is_drawn, false));
+  if (loose > 0) input.messages.push_back(loose_vertices_warning(input, loose));
+  input.mesh = {std::move(points), {}};
+}
+
+/// Reads the file as a mesh; returns false where it is none. with_faces: whether the faces are
+/// wanted; otherwise the vertices alone are kept as points.
+bool read_as_mesh(ModelInput& input, bool with_faces) {
+  File file = File::open_for_reading(input.path);
+  const auto format = mesh_format_of(file, input.path);
+  if (!format) return false;
+  MeshFile read = read_mesh(InputBuffer(std::move(file), InputBuffer::Access::kSeek), *format);
+  if (format == MeshFormat::kPly && read.mesh.triangles.empty()) return false;
+  input.mesh = std::move(read.mesh);
+  input.remarks = std::move(read.remarks);
+  if (with_faces) {
+    take_single_points(input);
+  } else {
+    input.between_vertices = std::exchange(input.mesh.triangles, {});
+  }
+  return true;
+}
+
+/// Warns where the model's and the environment's feet differ so much that a model in the scan's
+/// coordinates would be elsewhere with the other foot.
+void warn_of_two_feet(ModelInput& input, double unit, double environment_unit, double largest) {
+  if (!is_foot(unit) || !is_foot(environment_unit)) return;
+  const double moved = feet_apart(largest * environment_unit, unit, environment_unit);
+  if (!(moved > kFeetApart)) return;
+  tell(input.messages, input, two_feet_text("its coordinates", unit, environment_unit, moved),
+       {{"metres", moved}}, "two-feet");
+}
+
+/// Converts the model into the environment's unit, where the file's unit is known.
+void scale(ModelInput& input, const ModelOptions& options) {
+  const FileUnit named = options.unit.is_known() ? options.unit : input.declared_unit;
+  const double unit = named.metres_in(options.environment_unit);
+  if (unit == 0) return;
+  if (unit == options.environment_unit) {
+    if (is_foot(unit)) {
+      tell(input.messages, input,
+           "its coordinates are in " + units_text(unit) +
+               ", as the environment is, and are taken as they are",
+           {{"metres", unit}});
+    }
+    return;
+  }
+  const UnitFactor scaled(unit, options.environment_unit);
+  double largest = 0;
+  for (Vec3& p : input.mesh.vertices) {
+    const Vec3 place{scaled(p.x), scaled(p.y), scaled(p.z)};
+    if (!std::isfinite(place.x) || !std::isfinite(place.y) || !std::isfinite(place.z)) {
+      refuse(input.path.string(), "(" + shown(p.x) + ", " + shown(p.y) + ", " + shown(p.z) +
+                                      ") is too large in the environment's unit; expected finite "
+                                      "coordinates");
+    }
+    p = place;
+    largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  }
+  input.remarks.largest_bend *= scaled.factor();
+  input.sampled_spacing *= scaled.factor();
+  warn_of_two_feet(input, unit, options.environment_unit, largest);
+  if (options.environment_unit_is_assumed) {
+    tell(input.messages, input, unit_assumed_text("its coordinates", unit), {{"metres", unit}},
+         "unit-assumed");
+  }
+  if (options.unit.is_known()) return;
+  tell(input.messages, input,
+       "its unit is " + shown(unit) + " m, the environment's " + shown(options.environment_unit) +
+           " m: its coordinates are converted",
+       {{"metres", unit}});
+}
+
+/// Adds remarks on a mesh, or on single vertices in a mesh's file, to the messages.
+void tell_remarks(ModelInput& input) {
+  const MeshRemarks& remarks = input.remarks;
+  if (remarks.last_line_open) {
+    tell(input.messages, input,
+         "the last line has no line break; make sure that the file is whole");
+  }
+  if (remarks.crossing > 0) {
+    tell(input.messages, input,
+         format_count(remarks.crossing) + " faces have an outline that crosses itself, the first " +
+             remarks.first_crossing + "; what they mean is not certain",
+         {{"faces", static_cast<double>(remarks.crossing)}}, "mesh-crossing-faces");
+  }
+}
+
+Model sampled(const ModelInput& input, const ModelOptions& options,
+              std::vector<Message>& messages) {
+  const double spacing = options.spacing > 0 ? options.spacing : default_spacing(options.radius);
+  if (spacing == 0) {
+    refuse(input.path.string(),
+           "a mesh of " + contents_of(input) + "; expected a spacing for the points of its surface",
+           Remedy::kModelSpacing, 0);
+  }
+  const TriangleMesh surface = kept_surface(input, options, messages);
+  Model shape = sample_mesh(surface, spacing, input.path.string());
+  shape.spacing = spacing;
+  tell_bend(input, spacing, "the spacing", messages);
+  tell(messages, input,
+       "a mesh of " + contents_of(input) + ", sampled to " + format_count(shape.vertices.size()) +
+           " points; no place of its surface is farther than " + format_number(spacing) +
+           " m from one",
+       {{"triangles", static_cast<double>(surface.triangles.size())},
+        {"points", static_cast<double>(shape.vertices.size())},
+        {"spacing", spacing}});
+  return shape;
+}
+
+void leave_out_below(const ModelInput& input, double above, std::vector<Vec3>& points,
+                     std::vector<Message>& messages) {
+  const std::size_t all = points.size();
+  if (!std::isfinite(above)) {
+    throw UsageError(input.path.string() + ": " + shown(above) +
+                     " m as the lowest height of the model; expected a finite number");
+  }
+  const double highest = std::ranges::max_element(points, {}, [](const Vec3& p) { return p.z; })->z;
+  std::erase_if(points, [above](const Vec3& p) { return p.z < above; });
+  if (points.empty()) {
+    refuse(input.path.string(), "all " + format_count(all) +
+                                    " points of the model are below z = " + format_number(above) +
+                                    " m, the highest at " + format_number(highest) +
+                                    " m; expected one at least that is not left out");
+  }
+  const std::size_t left_out = all - points.size();
+  tell(messages, input,
+       format_count(left_out) + " of " + format_count(all) +
+           " model points are below z = " + format_number(above) + " m, and are left out",
+       {{"left_out", static_cast<double>(left_out)}, {"above", above}});
+}
+
+/// A model of all vertices of a mesh, or of all points of another file.
+Model vertices_of(const ModelInput& input, const ModelOptions& options,
+                  std::vector<Message>& messages) {
+  Model shape = input.mesh.vertices;
+  shape.spacing = input.sampled_spacing;
+  if (shape.spacing > 0) {
+    if (options.above) {
+      throw UsageError(input.path.string() +
+                       ": samples of a mesh, whose spacing would not hold beside a cut; cut the "
+                       "mesh at the height first, and sample it then");
+    }
+    tell(messages, input,
+         "samples of a mesh; no place of its surface is farther than " +
+             format_number(shape.spacing) + " m from one",
+         {{"spacing", shape.spacing}});
+  }
+  if (!input.between_vertices.empty()) {
+    shape.spacing =
+        distance_to_vertices({input.mesh.vertices, input.between_vertices}, options.above);
+    tell(messages, input,
+         "the model is the vertices of a mesh, " + format_count(input.mesh.vertices.size()) +
+             ", and its faces are left out; places of its surface are up to " +
+             format_brief(shape.spacing) + " m from the nearest vertex",
+         {{"spacing", shape.spacing}});
+  }
+  if (options.above) leave_out_below(input, *options.above, shape.vertices, messages);
+  return shape;
+}
+
+}  // namespace
+
+void tell_bend(const ModelInput& input, double allowed, const std::string& of_what,
+               std::vector<Message>& messages) {
+  const double bend = input.remarks.largest_bend;
+  if (!(bend > kBendToTell * allowed)) return;
+  const std::string text = "a face with more than three corners is bent by " + format_brief(bend) +
+                           " m (" + input.remarks.largest_bend_at +
+                           "); how it is cut into triangles changes the surface by about as much";
+  if (bend <= allowed) return tell(messages, input, text);
+  tell(messages, input, text + ", which is more than " + of_what + ". Export the mesh as triangles",
+       {{"bend", bend}, {"spacing", allowed}}, "mesh-bent-faces");
+}
+
+std::string contents_of(const ModelInput& input) {
+  const auto& [segments, points] = std::pair(input.remarks.segments, input.remarks.single_points);
+  const std::uint64_t triangles = input.mesh.triangles.size() - segments - points;
+  std::string text = counted(triangles, "triangle");
+  if (segments > 0) text += (points > 0 ? ", " : " and ") + counted(segments, "line segment");
+  if (points > 0) text += " and " + counted(points, "single point");
+  return text;
+}
+
+Message loose_vertices_warning(const ModelInput& input, std::uint64_t vertices) {
+  return {
+      Message::Severity::kWarning,
+      "loose-vertices",
+      input.path.string() + ": " + counted(vertices, "vertex", "vertices") +
+          (vertices == 1 ? " belongs" : " belong") +
+          " to no face, line or point of the file, and " + (vertices == 1 ? "is" : "are") +
+          " not part of the model. If they stand for a thing, such as a mast, the answer leaves "
+          "it out: join them by lines in the program that made the file",
+      {{"vertices", static_cast<double>(vertices)}}};
+}
+
+ModelInput read_model_input(const std::filesystem::path& path, const ModelOptions& options) {
+  if (!(options.unit.metres() >= 0) || !(options.environment_unit > 0)) {
+    throw UsageError(path.string() + ": units of " + shown(options.unit.metres()) + " m and " +
+                     shown(options.environment_unit) + " m; expected numbers above 0");
+  }
+  const bool with_faces = !options.vertices_only;
+  ModelInput input;
+  input.path = path;
+  const bool mesh = read_as_mesh(input, with_faces);
+  if (!mesh) read_points(input);
+  if (input.mesh.vertices.empty()) {
+    refuse(path.string(), "the model has no points; expected one at least");
+  }
+  scale(input, options);
+  tell_remarks(input);
+  if (mesh && !input.is_mesh() && input.between_vertices.empty()) {
+    tell(input.messages, input,
+         input.remarks.single_points > 0 ? "draws single points alone: the model is these, " +
+                                               format_count(input.mesh.vertices.size())
+                                         : "has no faces: the model is its vertices, " +
+                                               format_count(input.mesh.vertices.size()));
+  }
+  return input;
+}
+
+void check_model_options(const ModelOptions& options) {
+  const bool surface = options.as == ModelAs::kSurface || options.as == ModelAs::kSolid;
+  if (!surface || !options.asks_for_points()) return;
+  throw UsageError(
+      "a surface is searched as it is: a spacing, and the vertices alone, are of points",
+      Remedy::kModelPoints);
+}
+
+ModelAs resolved_kind(const ModelInput& input, const ModelOptions& options) {
+  check_model_options(options);
+  if (options.as != ModelAs::kAuto) return options.as;
+  return input.is_mesh() && !options.asks_for_points() ? ModelAs::kSurface : ModelAs::kPoints;
+}
+
+Model points_of(const ModelInput& input, const ModelOptions& options,
+                std::vector<Message>& messages) {
+  messages.insert(messages.end(), input.messages.begin(), input.messages.end());
+  return input.is_mesh() ? sampled(input, options, messages)
+                         : vertices_of(input, options, messages);
+}
+
+namespace {
+
+Model solids_of(const ModelInput& input, const ModelOptions& options, std::vector<Message>& told) {
+  if (options.above) {
+    throw UsageError(input.path.string() +
+                     ": cut at a height, parts of the model are open and no longer solid; search "
+                     "its surface, or take a file without what is to be left out");
+  }
+  MeshParts parts = parts_with_solids(surface_of(input, options, told), input.path.string());
+  const auto tell = [&](const std::string& text) {
+    told.push_back({Message::Severity::kNote, "", input.path.string() + ": " + text, {}});
+  };
+  tell(summary_of(parts));
+  const std::string faults = faults_of(parts);
+  if (!faults.empty()) tell("what keeps parts from being solid: " + faults);
+  return {std::move(parts.mesh.vertices), std::move(parts.mesh.triangles),
+          std::move(parts.solid_of)};
+}
+
+}  // namespace
+
+std::vector<Vec3> read_model_points(const std::filesystem::path& path, const ModelOptions& options,
+                                    std::vector<Message>* messages) {
+  ModelOptions how = options;
+  how.as = ModelAs::kPoints;
+  return read_model(path, how, messages).vertices;
+}
+
+Model read_model(const std::filesystem::path& path, const ModelOptions& options,
+                 std::vector<Message>* messages) {
+  check_model_options(options);
+  const ModelInput input = read_model_input(path, options);
+  std::vector<Message> told;
+  Model shape;
+  switch (resolved_kind(input, options)) {
+    case ModelAs::kSolid:
+      shape = solids_of(input, options, told);
+      break;
+    case ModelAs::kSurface: {
+      TriangleMesh surface = surface_of(input, options, told);
+      shape = {std::move(surface.vertices), std::move(surface.triangles)};
+      break;
+    }
+    default:
+      shape = points_of(input, options, told);
+  }
+  if (messages) messages->insert(messages->end(), told.begin(), told.end());
+  return shape;
+}
+
+std::vector<Vec3> read_model_points(const std::filesystem::path& path,
+                                    std::vector<Message>* messages) {
+  return read_model_points(path, ModelOptions{}, messages);
+}
+
+}  // namespace clearway

@@ -1,0 +1,40 @@
+#include "io/paths/content_hash.hpp"
+
+#include <bit>
+
+#include "io/files/xxh64.hpp"
+
+namespace clearway {
+
+static_assert(std::endian::native == std::endian::little);
+static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Pose) == 12 * sizeof(double));
+
+std::uint64_t hash_of_model(const Model& model) {
+  Xxh64Stream hash;
+  hash.update(std::as_bytes(std::span(model.vertices)));
+  hash.update(std::as_bytes(std::span(model.triangles)));
+  hash.update(std::as_bytes(std::span(model.solid_of)));
+  return hash.digest();
+}
+
+std::uint64_t hash_of_trajectory(std::span<const Pose> poses) {
+  return xxh64(std::as_bytes(poses));
+}
+
+std::uint64_t hash_of_bodies(std::span<const Body> bodies) {
+  Xxh64Stream hash;
+  const auto add = [&hash](std::uint64_t number) {
+    hash.update(std::as_bytes(std::span(&number, 1)));
+  };
+  for (const Body& body : bodies) {
+    add(body.name.size());
+    hash.update(std::as_bytes(std::span(body.name)));
+    add(hash_of_model(body.model));
+    add(body.path_pose.size());
+    hash.update(std::as_bytes(std::span(body.path_pose)));
+    add(hash_of_trajectory(body.poses));
+  }
+  return hash.digest();
+}
+
+}  // namespace clearway

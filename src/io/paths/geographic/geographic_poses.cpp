@@ -1,0 +1,176 @@
+#include "io/paths/geographic/geographic_poses.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/geometry/angle.hpp"
+#include "io/files/input_error.hpp"
+#include "io/paths/geographic/map_projection.hpp"
+#include "io/scans/length_unit.hpp"
+
+namespace clearway {
+namespace {
+
+struct Range {
+  double least = 0, greatest = 0;
+  bool empty = true;
+
+  void add(double value) {
+    least = empty ? value : std::min(least, value);
+    greatest = empty ? value : std::max(greatest, value);
+    empty = false;
+  }
+  std::string text() const {
+    char digits[80];
+    std::snprintf(digits, sizeof digits, "%.6g", least);
+    const std::string from = digits;
+    std::snprintf(digits, sizeof digits, "%.6g", greatest);
+    return from == digits ? from : from + " to " + digits;
+  }
+};
+
+/// Ranges of the map's properties at the poses of a file.
+struct Ranges {
+  Range north, scale, height;
+};
+
+MapProjection open_projection(const TrajectoryOptions& options, const std::string& name) {
+  if (options.crs.empty() && options.default_crs.empty()) {
+    refuse(name,
+           "positions are latitudes and longitudes; expected the projected coordinate reference "
+           "system of the environment",
+           Remedy::kNameCrs);
+  }
+  try {
+    return MapProjection(options);
+  } catch (const InputError& error) {
+    refuse(name, error.what(), error.remedy());
+  }
+}
+
+/// Checks that the map turns all directions at a pose alike, because its rotation uses a single
+/// angle.
+void check_shape(const MapProjection& map, const AttitudeRow& row, const std::string& name,
+                 TrajectoryFile& out) {
+  const double skew = map.skew(row.position[0], row.position[1], row.position[2]);
+  constexpr double kMirrored = 1;
+  constexpr double kConformal = 1e-3;
+  if (skew > kMirrored) {
+    refuse(name, map.name() + " has axes that mirror the map; expected easting and northing",
+           Remedy::kNameCrs);
+  }
+  if (skew > kConformal) {
+    out.warn("map-distorts",
+             name + ": " + map.name() + " distorts angles by " + brief(skew / kDegree) +
+                 " degrees; a rigid model does not fit such a map",
+             {{"degrees", skew / kDegree}});
+  }
+}
+
+void remark_heights(const MapProjection& map, const TrajectoryOptions& options,
+                    const Ranges& ranges, const std::string& name, TrajectoryFile& out) {
+  if (map.converts_heights()) {
+    out.note("heights-converted",
+             name + ": heights are those of " + map.name() + ", from " + ranges.height.text());
+    return;
+  }
+  const std::string what =
+      name + ": heights are ellipsoidal, as in the file, from " + ranges.height.text();
+  const std::vector<std::pair<std::string, double>> numbers{{"least", ranges.height.least},
+                                                            {"greatest", ranges.height.greatest}};
+  if (options.crs.ends_with("+ellipsoidal")) {
+    out.note("ellipsoidal-heights", what, numbers);
+    return;
+  }
+  out.warn("ellipsoidal-heights",
+           what +
+               ". Heights above sea level differ by up to 107 m. Give a CRS with a vertical part, "
+               "or add +ellipsoidal to it where the scan has such heights too",
+           numbers);
+}
+
+void remark_map(const MapProjection& map, const TrajectoryOptions& options, const Ranges& ranges,
+                const std::string& name, TrajectoryFile& out) {
+  constexpr double kFeet = 0.9;
+  constexpr double kGoodScale = 2e-3;
+  out.note("map-projection",
+           name + ": positions are in " + map.name() +
+               (options.crs.empty() ? ", as the environment" : "") + "; true north lies " +
+               Range{ranges.north.least / kDegree, ranges.north.greatest / kDegree, false}.text() +
+               " degrees clockwise from its northing; its scale, " + ranges.scale.text() +
+               ", is not applied to the model",
+           {{"least_scale", ranges.scale.least}, {"greatest_scale", ranges.scale.greatest}});
+  const double unit = map.metres_per_unit(), environment = options.environment_unit;
+  if (environment != 1 && std::abs(unit - environment) > 1e-9) {
+    out.warn("map-unit",
+             name + ": positions are in the unit of " + map.name() + ", " + brief(unit) +
+                 " m, but the environment is in " + units_text(environment) +
+                 ". Give the CRS of the environment",
+             {{"metres", unit}});
+  } else if (unit < kFeet) {
+    out.note("map-unit",
+             name + ": the unit of " + map.name() + " is " + brief(unit) +
+                 " m; model, radius and lever arm are to be in it too",
+             {{"metres", unit}});
+  }
+  const double worst = std::max(ranges.scale.greatest - 1, 1 - ranges.scale.least);
+  if (worst > kGoodScale) {
+    out.warn("map-scale",
+             name + ": lengths on the map of " + map.name() + " are wrong by " +
+                 brief(100 * worst) + " % here; another zone or another CRS may be meant",
+             {{"error", worst}});
+  }
+}
+
+void remark_datum(const MapProjection& map, const TrajectoryOptions& options,
+                  const std::string& name, TrajectoryFile& out) {
+  const double accuracy = map.accuracy();
+  constexpr double kExpected = 1;  // metres, between WGS 84 and similar datums
+  if (accuracy == 0) return;
+  const std::string datum = options.datum.empty() ? "WGS 84" : options.datum;
+  const std::string text = name + ": positions were taken as " + datum + ", and the datum of " +
+                           map.name() + " is reached with an accuracy of " +
+                           (accuracy > 0 ? brief(accuracy) + " m" : "unknown size") +
+                           "; name the datum of the file where it is another";
+  if (accuracy > 0 && accuracy <= kExpected) {
+    out.note("datum-accuracy", text, {{"metres", accuracy}});
+  } else {
+    out.warn("datum-accuracy", text, {{"metres", accuracy}});
+  }
+}
+
+}  // namespace
+
+void append_geographic_poses(std::span<const AttitudeRow> rows, AngleFrame frame,
+                             const TrajectoryOptions& options, const std::string& name,
+                             TrajectoryFile& out) {
+  if (rows.empty()) return;
+  const MapProjection map = open_projection(options, name);
+  check_shape(map, rows[0], name, out);
+  Ranges ranges;
+  out.poses.reserve(out.poses.size() + rows.size());
+  for (const AttitudeRow& row : rows) {
+    const auto place = map.place(row.position[0], row.position[1], row.position[2]);
+    if (!place) {
+      refuse(name,
+             "pose " + std::to_string(out.poses.size()) + ": " + map.name() +
+                 " does not reach latitude " + brief(row.position[1]) + ", longitude " +
+                 brief(row.position[0]) + "; expected a CRS of this place",
+             Remedy::kNameCrs);
+    }
+    Pose pose{{}, {place->position.x, place->position.y, place->position.z}};
+    set_rotation(row, frame, place->north, pose);
+    out.poses.push_back(pose);
+    ranges.north.add(place->north);
+    ranges.scale.add(place->scale);
+    ranges.height.add(place->position.z);
+  }
+  out.crs = map.name();
+  out.metres_per_unit = map.metres_per_unit();
+  remark_map(map, options, ranges, name, out);
+  remark_heights(map, options, ranges, name, out);
+  remark_datum(map, options, name, out);
+}
+
+}  // namespace clearway

@@ -1,0 +1,338 @@
+#include "io/paths/text/pose_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "clearway/file_unit.hpp"
+#include "clearway/trajectory.hpp"
+#include "io/files/input_error.hpp"
+#include "io/files/text_number.hpp"
+#include "io/paths/text/trajectory_columns.hpp"
+#include "io/scans/length_unit.hpp"
+#include "io/scans/text/point_blocks.hpp"
+
+namespace clearway {
+namespace {
+
+FileUnit unit_in_header(std::span<const std::string> texts, const std::string& name) {
+  FileUnit declared;
+  for (const std::string& text : texts) {
+    if (text.empty()) continue;
+    const auto unit = file_unit_of(text);
+    if (!unit) {
+      refuse(name,
+             "the header has positions in " + excerpt(text) + "; expected " + file_unit_list());
+    }
+    if (declared.is_known() && declared != *unit) {
+      refuse(name, "the header has positions in several units; expected one");
+    }
+    declared = *unit;
+  }
+  const bool all = std::ranges::none_of(texts, &std::string::empty);
+  if (declared.is_known() && declared.metres() != 1 && !all) {
+    refuse(name, "the header has a unit for some of the positions; expected one for all or none");
+  }
+  return declared;
+}
+
+bool contradict(const FileUnit& header, const FileUnit& option) {
+  if (!header.is_known() || !option.is_known() || header == option) return false;
+  const bool vague = header.is_any_foot() || option.is_any_foot();
+  return !(vague && is_foot(header.metres()) && is_foot(option.metres()));
+}
+
+/// The unit of positions that the header names, or the options; not known where neither does. A
+/// header in "ft" does not contradict options that say which foot it is. texts: the units in the
+/// header, in lower case, or empty. Throws InputError where they are not known, differ, exist only
+/// for some positions, or contradict the options.
+FileUnit unit_of_positions(std::span<const std::string> texts, const TrajectoryOptions& options,
+                           const std::string& name) {
+  const FileUnit declared = unit_in_header(texts, name), option = options.metres_per_unit;
+  if (contradict(declared, option)) {
+    refuse(name, "the header has positions in units of " + brief(declared.metres()) +
+                     " m, but a unit of " + brief(option.metres()) + " m was declared");
+  }
+  const bool option_counts = !declared.is_known() || (declared.is_any_foot() && option.is_known());
+  return option_counts ? option : declared;
+}
+
+/// A time in seconds, whose unit only its size tells: ns, us, ms or s since 1970.
+double seconds_of(double time) {
+  constexpr double kNanoseconds = 1e17;
+  constexpr double kMicroseconds = 1e14;
+  constexpr double kMilliseconds = 1e11;
+  const double size = std::abs(time);
+  return time * (size >= kNanoseconds    ? 1e-9
+                 : size >= kMicroseconds ? 1e-6
+                 : size >= kMilliseconds ? 1e-3
+                                         : 1);
+}
+
+/// The field without the blanks and quotes around it.
+std::string_view bare_text(std::string_view field) {
+  constexpr std::string_view kAround = " \t\"'";
+  const std::size_t first = field.find_first_not_of(kAround);
+  if (first == std::string_view::npos) return {};
+  return field.substr(first, field.find_last_not_of(kAround) + 1 - first);
+}
+
+/// The name in a field, without quotes around it; within quotes, two stand for one (RFC 4180).
+std::string name_of_pose(std::string_view field) {
+  const std::size_t open = field.find('"'), close = field.rfind('"');
+  const bool quoted = open != close && bare_text(field.substr(0, open)).empty() &&
+                      bare_text(field.substr(close)).empty();
+  if (!quoted) return std::string(bare_text(field));
+  const std::string_view inner = field.substr(open + 1, close - open - 1);
+  if (inner.find("\"\"") == std::string_view::npos) return std::string(bare_text(field));
+  std::string name;
+  for (std::size_t i = 0; i < inner.size(); ++i) {
+    name += inner[i];
+    if (inner.substr(i).starts_with("\"\"")) ++i;
+  }
+  return name;
+}
+
+}  // namespace
+
+Objection objection_to_count(std::string_view line, std::optional<std::size_t> count,
+                             std::size_t most, const std::string& expected) {
+  if (const std::string commas = decimal_commas_in(line); !commas.empty()) {
+    return {excerpt(line) + commas + ", as in 0.25"};
+  }
+  if (!count) return {excerpt(line) + "; expected numbers only, in blanks or commas: " + expected};
+  const std::string found =
+      *count > most ? "more than " + std::to_string(most) : std::to_string(*count);
+  switch (*count) {
+    case 3:
+    case 4:
+      return {found +
+              " numbers; a matrix spread over several lines is not read. Expected each "
+              "pose on one line: " +
+              expected};
+    case 6:
+      return {
+          "6 numbers; for a position and three angles, expected a header before them, for "
+          "example: x y z roll_deg pitch_deg heading_deg"};
+    case 7:
+      return {
+          "7 numbers; for a position and a quaternion, the order of the quaternion is to be "
+          "named: the format is pose-xyzw (w last) or pose-wxyz (w first)",
+          Remedy::kNameFormat};
+    default:
+      return {found + " numbers; expected " + expected};
+  }
+}
+
+PoseRows::PoseRows(TrajectoryFormat format, std::optional<PoseColumns> columns,
+                   TrajectoryOptions options, std::string name)
+    : format_(format),
+      columns_(std::move(columns)),
+      options_(std::move(options)),
+      name_(std::move(name)) {
+  std::span<const std::string> units;
+  if (columns_) units = columns_->position_units;
+  if (is_geographic()) units = units.subspan(2);
+  unit_ = unit_of_positions(units, options_, name_);
+  metres_ = unit_.metres_in(options_.environment_unit);
+  // Numbers in the environment's own unit are kept here and in convert_positions(), because they
+  // would change if converted into metres and back.
+  const bool stays = metres_ == options_.environment_unit && !is_geographic();
+  if (unit_.is_known() && !stays) in_metres_ = UnitFactor(metres_);
+}
+
+Objection PoseRows::add(std::string_view line) {
+  switch (format_) {
+    case TrajectoryFormat::kMatrix:
+      return add_matrix(line);
+    case TrajectoryFormat::kTum:
+    case TrajectoryFormat::kPoseXyzw:
+    case TrajectoryFormat::kPoseWxyz:
+      return add_quaternion(line);
+    default:
+      return add_columns(line);
+  }
+}
+
+PoseRows PoseRows::for_lines(std::size_t lines) const {
+  PoseRows part(format_, columns_, options_, name_);
+  part.row_numbers_ = row_numbers_;
+  const bool angles = columns_ && columns_->rotation.size() == 3;
+  if (angles) {
+    part.angles_.reserve(lines);
+  } else {
+    part.poses_.reserve(lines);
+  }
+  if (!times_.empty()) part.times_.reserve(lines);
+  if (!names_.empty()) part.names_.reserve(lines);
+  return part;
+}
+
+void PoseRows::append(std::vector<PoseRows> parts) {
+  const auto append_all = [&parts](auto PoseRows::*list, auto& out) {
+    std::size_t all = out.size();
+    for (const PoseRows& part : parts) all += (part.*list).size();
+    out.reserve(all);
+    for (PoseRows& part : parts) {
+      auto& from = part.*list;
+      out.insert(out.end(), std::make_move_iterator(from.begin()),
+                 std::make_move_iterator(from.end()));
+      from = {};
+    }
+  };
+  append_all(&PoseRows::poses_, poses_);
+  append_all(&PoseRows::angles_, angles_);
+  append_all(&PoseRows::times_, times_);
+  append_all(&PoseRows::names_, names_);
+}
+
+void PoseRows::push(const Pose& pose) {
+  poses_.push_back(pose);
+  for (double& coordinate : poses_.back().translation) coordinate = in_metres_(coordinate);
+}
+
+Objection PoseRows::add_matrix(std::string_view line) {
+  const auto count = parse_number_line(line, numbers_);
+  if (count != 12u && count != 16u) {
+    return objection_to_count(line, count, numbers_.size(), "12 or 16, a row-major matrix");
+  }
+  if (row_numbers_ == 0) row_numbers_ = *count;
+  if (count != row_numbers_) {
+    return {std::to_string(*count) + " numbers; expected " + std::to_string(row_numbers_) +
+            " as in the first line"};
+  }
+  Pose pose{};
+  Objection objection =
+      pose_of_matrix(std::span(numbers_).first(*count), options_.allow_non_rigid, pose);
+  if (objection.text.empty()) push(pose);
+  return objection;
+}
+
+Objection PoseRows::add_quaternion(std::string_view line) {
+  const auto count = parse_number_line(line, numbers_);
+  const bool tum = format_ == TrajectoryFormat::kTum;
+  const bool w_first = format_ == TrajectoryFormat::kPoseWxyz;
+  if (count != (tum ? 8u : 7u)) {
+    return {count ? (*count > numbers_.size() ? "more than 16" : std::to_string(*count)) +
+                        " numbers; expected " +
+                        (tum       ? "8: t x y z qx qy qz qw"
+                         : w_first ? "7: x y z qw qx qy qz"
+                                   : "7: x y z qx qy qz qw")
+                  : objection_to_count(line, count, numbers_.size(), "a pose").text};
+  }
+  if (tum && !std::isfinite(numbers_[0])) return {"expected a finite time"};
+  const auto numbers = std::span<const double>(numbers_).subspan(tum ? 1 : 0, 7);
+  std::array<double, 4> quaternion{numbers[3], numbers[4], numbers[5], numbers[6]};
+  if (w_first) quaternion = {numbers[4], numbers[5], numbers[6], numbers[3]};
+  Pose pose{};
+  Objection objection = pose_of_quaternion(numbers.first<3>(), quaternion, pose);
+  if (!objection.text.empty()) return objection;
+  if (tum) add_time(seconds_of(numbers_[0]));
+  push(pose);
+  return {};
+}
+
+Objection PoseRows::add_columns(std::string_view line) {
+  split_quoted_fields(line, columns_->separator, fields_);
+  if (fields_.size() != columns_->fields) {
+    return {std::to_string(fields_.size()) + " columns; expected " +
+            std::to_string(columns_->fields) + " as before"};
+  }
+  std::array<double, 3> position{};
+  Objection objection = numbers_in(columns_->position, position);
+  if (!objection.text.empty()) return objection;
+  if (columns_->rotation.size() == 3) return add_angles(position);
+  std::array<double, 9> rotation{};
+  const auto found = std::span(rotation).first(columns_->rotation.size());
+  objection = numbers_in(columns_->rotation, found);
+  if (!objection.text.empty()) return objection;
+  Pose pose{};
+  if (found.size() == 4) {
+    objection = pose_of_quaternion(position, std::span<const double>(found).first<4>(), pose);
+  } else {
+    std::array<double, 12> matrix{};
+    for (std::size_t k = 0; k < 9; ++k) matrix[4 * (k / 3) + k % 3] = rotation[k];
+    for (std::size_t k = 0; k < 3; ++k) matrix[4 * k + 3] = position[k];
+    objection = pose_of_matrix(matrix, options_.allow_non_rigid, pose);
+  }
+  if (!objection.text.empty()) return objection;
+  add_labels();
+  push(pose);
+  return {};
+}
+
+Objection PoseRows::add_angles(const std::array<double, 3>& position) {
+  std::array<double, 3> angles{};
+  Objection objection = numbers_in(columns_->rotation, angles);
+  if (!objection.text.empty()) return objection;
+  const double sum = position[0] + position[1] + position[2] + angles[0] + angles[1] + angles[2];
+  if (!std::isfinite(sum)) return {"expected finite numbers"};
+  const UnitFactor horizontal = is_geographic() ? UnitFactor(1) : in_metres_;
+  angles_.push_back({{horizontal(position[0]), horizontal(position[1]), in_metres_(position[2])},
+                     angles[0],
+                     angles[1],
+                     angles[2]});
+  add_labels();
+  return {};
+}
+
+void PoseRows::add_labels() {
+  if (columns_->time) {
+    const auto time = parse_whole_number(fields_[*columns_->time]);
+    if (time && std::isfinite(*time)) add_time(seconds_of(*time));
+  }
+  if (columns_->name) names_.push_back(name_of_pose(fields_[*columns_->name]));
+}
+
+Objection PoseRows::numbers_in(std::span<const std::size_t> columns, std::span<double> out) const {
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const auto value = parse_whole_number(fields_[columns[k]]);
+    if (!value) {
+      if (fields_[columns[k]].find(',') != std::string_view::npos) {
+        return {excerpt(fields_[columns[k]]) + " in column " + std::to_string(columns[k] + 1) +
+                " has a decimal comma, which is not read; write a decimal point, as in 0.25"};
+      }
+      return {excerpt(fields_[columns[k]]) + " in column " + std::to_string(columns[k] + 1) +
+              "; expected a number"};
+    }
+    out[k] = *value;
+  }
+  return {};
+}
+
+void PoseRows::finish(TrajectoryFile& out) {
+  out.format = format_;
+  out.poses = std::move(poses_);
+  const bool quaternions =
+      columns_ ? columns_->rotation.size() == 4 : format_ != TrajectoryFormat::kMatrix;
+  if (quaternions) out.rotations = RotationSource::kQuaternions;
+  const bool angles = columns_ && columns_->rotation.size() == 3;
+  if (angles) append_poses_of_angles(std::move(angles_), *columns_, options_, name_, out);
+  if (times_.size() == out.poses.size()) out.times = std::move(times_);
+  if (names_.size() == out.poses.size()) out.names = std::move(names_);
+  out.unit = unit_;
+  if (metres_ == 0) return;
+  // Places on a map are in the map's unit already; the file's unit was that of heights.
+  out.in_metres = metres_ != options_.environment_unit && !is_geographic();
+  if (metres_ == 1) return;
+  if (is_geographic()) {
+    out.note("trajectory-unit",
+             name_ + ": heights were multiplied by " + brief(metres_) + " to give metres",
+             {{"metres", metres_}});
+  } else if (metres_ == options_.environment_unit) {
+    out.metres_per_unit = metres_;
+    out.note("trajectory-unit",
+             name_ + ": positions are in " + units_text(metres_) +
+                 ", as the environment is, and are taken as they are",
+             {{"metres", metres_}});
+  } else {
+    out.note("trajectory-unit",
+             name_ + ": positions were multiplied by " + brief(metres_) + " to give metres",
+             {{"metres", metres_}});
+  }
+}
+
+}  // namespace clearway

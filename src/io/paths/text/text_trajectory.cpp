@@ -1,0 +1,189 @@
+#include "io/paths/text/text_trajectory.hpp"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/util/tsan_annotations.hpp"
+#include "io/files/input_error.hpp"
+#include "io/files/text_number.hpp"
+#include "io/paths/text/pose_rows.hpp"
+#include "io/scans/text/point_blocks.hpp"
+#include "io/scans/text/table_header.hpp"
+
+namespace clearway {
+namespace {
+
+bool starts_with_number(std::string_view line) {
+  const char* at = line.data();
+  double value = 0;
+  return parse_number(at, at + line.size(), value);
+}
+
+class TextTrajectory {
+ public:
+  TextTrajectory(InputBuffer input, const TrajectoryOptions& options)
+      : input_(std::move(input)), options_(options), format_(options.format) {}
+
+  void read(TrajectoryFile& out) {
+    input_.skip_byte_order_mark();
+    std::string_view line;
+    while (input_.next_line(line)) {
+      line = without_leading_blanks(line);
+      if (line.empty()) continue;
+      if (is_text_comment(line)) {
+        if (!rows_ && reads_names()) note_header(line);
+      } else if (!rows_ && !started_ && is_header(line)) {
+        started_ = true;
+      } else {
+        const bool first = !rows_;
+        if (first) start(line);
+        const Objection objection = rows_->add(line);
+        if (!objection.text.empty()) fail(objection);
+        ends_in_number_ = !input_.line_terminated() && line.ends_with('.');
+        if (first && input_.can_seek() && read_blocks()) break;
+      }
+    }
+    out.format = format_;
+    if (rows_) rows_->finish(out);
+    if (ends_in_number_) {
+      out.warn("cut-text",
+               input_.name() +
+                   ": the file ends without a line break within a number, so it may be "
+                   "cut",
+               {{"line", static_cast<double>(input_.line())}});
+    }
+  }
+
+ private:
+  [[noreturn]] void fail(const Objection& objection) const {
+    refuse_line(input_.name(), input_.line(), objection.text, objection.remedy);
+  }
+
+  /// Reads all lines behind the first pose in parallel. Returns false, with nothing read, where one
+  /// is refused or may be cut; reading them one after the other then finds its number.
+  bool read_blocks() {
+    const LineBlocks blocks(input_);
+    if (blocks.count() < 2) return false;
+    std::vector<PoseRows> parts(blocks.count(), rows_->for_lines(0));
+    std::atomic<bool> good = true;
+    tbb::enumerable_thread_specific<std::vector<char>> rooms;
+    const auto read_one = [&](std::size_t i) {
+      if (!good) return;
+      const std::string_view block = blocks.read(i, rooms.local());
+      const auto lines = static_cast<std::size_t>(std::ranges::count(block, '\n')) + 1;
+      PoseRows part = rows_->for_lines(lines);
+      if (!add_lines(block, part)) good = false;
+      parts[i] = std::move(part);
+    };
+    const ParallelScope scope;
+    const auto piece = piece_of(scope, read_one);
+    scope.begin();
+    tbb::parallel_for(std::size_t{0}, parts.size(), piece);
+    if (good) rows_->append(std::move(parts));
+    return good;
+  }
+
+  static bool add_lines(std::string_view block, PoseRows& rows) {
+    std::string_view last;
+    const bool good = each_line(block, [&](std::string_view line) {
+      last = line = without_leading_blanks(line);
+      return is_text_comment(line) || rows.add(line).text.empty();
+    });
+    return good && (block.ends_with('\n') || !last.ends_with('.'));
+  }
+
+  bool reads_names() const {
+    return format_ == TrajectoryFormat::kAuto || format_ == TrajectoryFormat::kCsv;
+  }
+
+  void note_header(std::string_view line) {
+    if (auto columns = pose_columns(parse_column_names(line))) columns_ = std::move(columns);
+  }
+
+  /// Whether the first line that is no comment names columns. Throws where these make no pose.
+  bool is_header(std::string_view line) {
+    if (starts_with_number(line)) return false;
+    if (format_ == TrajectoryFormat::kEuroc) return true;
+    if (!reads_names()) return false;
+    const ColumnNames names = parse_column_names(line);
+    columns_ = pose_columns(names);
+    if (!columns_) {
+      fail({excerpt(line) + ": " + objection_to_header(names)});
+    }
+    format_ = TrajectoryFormat::kCsv;
+    return true;
+  }
+
+  /// Determines the format by the first line of numbers.
+  void start(std::string_view line) {
+    std::vector<std::string_view> fields;
+    split_quoted_fields(line, columns_ ? columns_->separator : ',', fields);
+    if (format_ == TrajectoryFormat::kEuroc) {
+      if (fields.size() < 8) {
+        fail({std::to_string(fields.size()) +
+              " columns; expected at least 8 with commas: time, position x y z, quaternion w x y "
+              "z"});
+      }
+      columns_ = euroc_columns(fields.size());
+    } else if (format_ == TrajectoryFormat::kCsv && !columns_) {
+      fail({"expected a header that names the columns before the first numbers"});
+    } else if (format_ == TrajectoryFormat::kAuto) {
+      if (columns_ && columns_->fields == fields.size()) {
+        format_ = TrajectoryFormat::kCsv;
+      } else {
+        columns_.reset();
+        guess(line);
+      }
+    }
+    rows_.emplace(format_, std::move(columns_), options_, input_.name());
+  }
+
+  /// Guesses the format by the number of numbers, where there is no header.
+  void guess(std::string_view line) {
+    std::array<double, 16> numbers{};
+    const auto count = parse_number_line(line, numbers);
+    if (count == 12u || count == 16u) {
+      format_ = TrajectoryFormat::kMatrix;
+      return;
+    }
+    if (count != 8u) {
+      fail(objection_to_count(
+          line, count, numbers.size(),
+          "12 or 16 (a matrix), 8 (TUM: t x y z qx qy qz qw), or a header that names the columns. "
+          "EuRoC without a header has to be named"));
+    }
+    constexpr double kSurelyNanoseconds = 1e14;
+    if (numbers[0] >= kSurelyNanoseconds) {
+      fail(
+          {"8 numbers with a time in nanoseconds, but no header; the format can be tum (qx qy qz "
+           "qw) or euroc (qw qx qy qz)",
+           Remedy::kNameFormat});
+    }
+    format_ = TrajectoryFormat::kTum;
+  }
+
+  InputBuffer input_;
+  TrajectoryOptions options_;
+  TrajectoryFormat format_;             ///< kAuto before the first line of numbers
+  std::optional<PoseColumns> columns_;  ///< columns that a header or a comment has named
+  bool started_ = false;                ///< whether a header has been read
+  bool ends_in_number_ = false;   ///< whether the file ends in a number, as one that was cut may
+  std::optional<PoseRows> rows_;  ///< exists from the first line of numbers on
+};
+
+}  // namespace
+
+void read_text_trajectory(InputBuffer input, const TrajectoryOptions& options,
+                          TrajectoryFile& out) {
+  TextTrajectory(std::move(input), options).read(out);
+}
+
+}  // namespace clearway

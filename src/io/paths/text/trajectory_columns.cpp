@@ -1,0 +1,372 @@
+#include "io/paths/text/trajectory_columns.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include "core/geometry/angle.hpp"
+#include "io/files/input_error.hpp"
+#include "io/paths/geographic/geographic_poses.hpp"
+#include "io/scans/length_unit.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr std::string_view kPosition[] = {"",
+                                          "t",
+                                          "t_",
+                                          "p",
+                                          "p_",
+                                          "pos",
+                                          "pos_",
+                                          "position_",
+                                          "position.",
+                                          "pose.position.",
+                                          "p_rs_r_",
+                                          "translation_",
+                                          "translation.",
+                                          "field.pose.position.",
+                                          "field.pose.pose.position."};
+constexpr std::string_view kQuaternion[] = {"q",
+                                            "q_",
+                                            "quat_",
+                                            "quaternion_",
+                                            "orientation_",
+                                            "orientation.",
+                                            "rotation_",
+                                            "rotation.",
+                                            "pose.orientation.",
+                                            "q_rs_",
+                                            "field.pose.orientation.",
+                                            "field.pose.pose.orientation."};
+constexpr std::string_view kMatrix[] = {"r", "r_"};
+
+/// The columns with each of the suffixes; empty where one is missing or not unique.
+std::vector<std::size_t> find_all(const ColumnNames& header,
+                                  std::span<const std::string_view> prefixes,
+                                  std::span<const std::string_view> suffixes) {
+  std::vector<std::size_t> found;
+  for (const std::string_view suffix : suffixes) {
+    const auto column = header.find(prefixes, suffix);
+    if (!column) return {};
+    found.push_back(*column);
+  }
+  return found;
+}
+
+/// The header with units split from names: "roll_deg" is a column "roll" in the unit "deg". A unit
+/// in brackets stays.
+ColumnNames with_units(ColumnNames header) {
+  static constexpr std::string_view kAngles[] = {"deg", "degree", "degrees",
+                                                 "rad", "radian", "radians"};
+  for (std::size_t i = 0; i < header.names.size(); ++i) {
+    std::string& name = header.names[i];
+    if (!header.units[i].empty()) continue;
+    // The longest unit is taken: "x_us_ft" is a column x.
+    for (std::size_t at = name.find('_', 1); at != std::string::npos; at = name.find('_', at + 1)) {
+      const std::string_view unit = std::string_view(name).substr(at + 1);
+      if (find_unit(unit) == nullptr && std::ranges::find(kAngles, unit) == std::end(kAngles)) {
+        continue;
+      }
+      header.units[i] = unit;
+      name.resize(at);
+      break;
+    }
+  }
+  return header;
+}
+
+/// The only column with one of the names; nullopt where there is none or more than one.
+std::optional<std::size_t> find_one(const ColumnNames& header,
+                                    std::span<const std::string_view> names) {
+  return header.find(names, "");
+}
+
+constexpr std::string_view kEasting[] = {"easting", "east"};
+constexpr std::string_view kNorthing[] = {"northing", "north"};
+constexpr std::string_view kHeight[] = {"height", "altitude", "alt", "elevation", "elev", "z"};
+constexpr std::string_view kLatitude[] = {"latitude", "lat"};
+constexpr std::string_view kLongitude[] = {"longitude", "long", "lon", "lng"};
+constexpr std::string_view kRoll[] = {"roll"};
+constexpr std::string_view kPitch[] = {"pitch"};
+constexpr std::string_view kHeading[] = {"heading", "azimuth"};
+constexpr std::string_view kYaw[] = {"yaw"};
+constexpr std::string_view kTime[] = {"time",     "timestamp", "t",       "gpstime",
+                                      "gps_time", "sec",       "seconds", "stamp"};
+
+constexpr std::string_view kName[] = {"name",     "pose_name", "label", "station", "image",
+                                      "filename", "file_name", "file",  "scan"};
+constexpr std::string_view kIndex[] = {"index",   "id",    "pose",   "pose_id", "pose_index",
+                                       "pose_nr", "frame", "number", "nr",      "seq"};
+
+bool has(const ColumnNames& header, std::span<const std::string_view> names) {
+  return std::any_of(header.names.begin(), header.names.end(), [names](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  });
+}
+
+bool find_position(const ColumnNames& header, PoseColumns& columns) {
+  static constexpr std::string_view kXyz[] = {"x", "y", "z"};
+  const auto xyz = find_all(header, kPosition, kXyz);
+  const auto height = find_one(header, kHeight);
+  const bool map = has(header, kEasting) || has(header, kNorthing);
+  const bool globe = has(header, kLatitude) || has(header, kLongitude);
+  if (!xyz.empty() && !map && !globe) {
+    columns.position = {xyz[0], xyz[1], xyz[2]};
+    return true;
+  }
+  // Neither, or both, so that it is not clear which is meant.
+  if (!height || map == globe) return false;
+  const auto first = globe ? find_one(header, kLongitude) : find_one(header, kEasting);
+  const auto second = globe ? find_one(header, kLatitude) : find_one(header, kNorthing);
+  if (!first || !second) return false;
+  columns.position = {*first, *second, *height};
+  columns.geographic = globe;
+  return true;
+}
+
+bool find_angles(const ColumnNames& header, PoseColumns& columns) {
+  const auto roll = find_one(header, kRoll);
+  const auto pitch = find_one(header, kPitch);
+  const auto heading = find_one(header, kHeading);
+  const auto yaw = find_one(header, kYaw);
+  if (!roll || !pitch || heading.has_value() == yaw.has_value()) return false;
+  columns.heading = heading.has_value();
+  columns.rotation = {*roll, *pitch, heading ? *heading : *yaw};
+  return true;
+}
+
+bool find_rotation(const ColumnNames& header, PoseColumns& columns) {
+  static constexpr std::string_view kXyzw[] = {"x", "y", "z", "w"};
+  static constexpr std::string_view kFromZero[] = {"00", "01", "02", "10", "11",
+                                                   "12", "20", "21", "22"};
+  static constexpr std::string_view kFromOne[] = {"11", "12", "13", "21", "22",
+                                                  "23", "31", "32", "33"};
+  auto& found = columns.rotation;
+  found = find_all(header, kQuaternion, kXyzw);
+  if (found.empty()) found = find_all(header, kMatrix, kFromZero);
+  if (found.empty()) found = find_all(header, kMatrix, kFromOne);
+  return !found.empty() || find_angles(header, columns);
+}
+
+}  // namespace
+
+std::optional<PoseColumns> pose_columns(const ColumnNames& given) {
+  const ColumnNames header = with_units(given);
+  PoseColumns columns{.separator = header.separator, .fields = header.names.size()};
+  if (!find_position(header, columns) || !find_rotation(header, columns)) return std::nullopt;
+  if (columns.geographic && columns.rotation.size() != 3) return std::nullopt;
+  for (std::size_t k = 0; k < 3; ++k) {
+    columns.position_units[k] = header.units[columns.position[k]];
+    if (columns.rotation.size() == 3) columns.angle_units[k] = header.units[columns.rotation[k]];
+  }
+  columns.time = find_one(header, kTime);
+  columns.name = find_one(header, kName);
+  if (!columns.name) columns.name = find_one(header, kIndex);
+  return columns;
+}
+
+std::string objection_to_header(const ColumnNames& given) {
+  static constexpr std::string_view kPhotogrammetric[] = {"omega", "phi", "kappa"};
+  const ColumnNames header = with_units(given);
+  PoseColumns columns{};
+  if (has(header, kPhotogrammetric)) {
+    return "omega, phi and kappa are not read, as their order and axes differ between programs; "
+           "expected roll, pitch and heading, or a quaternion or a matrix";
+  }
+  const bool globe = has(header, kLatitude) || has(header, kLongitude);
+  if (globe && (has(header, kEasting) || has(header, kNorthing))) {
+    return "both latitude and longitude and easting and northing; expected one of them";
+  }
+  if (has(header, kHeading) && has(header, kYaw))
+    return "both heading and yaw; expected one of them";
+  if (!find_position(header, columns)) {
+    return "no position; expected the columns x y z (or tx, p_x, pos_x, ...), easting northing "
+           "height, or latitude longitude height";
+  }
+  if (globe) {
+    return "latitude and longitude without angles; expected roll, pitch and heading beside them";
+  }
+  return "no rotation; expected the columns qx qy qz qw (or q_x, ...), r00 to r22, or roll pitch "
+         "heading";
+}
+
+PoseColumns euroc_columns(std::size_t fields) {
+  PoseColumns columns{.separator = ',', .fields = fields};
+  columns.position = {1, 2, 3};
+  columns.rotation = {5, 6, 7, 4};
+  columns.time = 0;
+  return columns;
+}
+
+namespace {
+
+constexpr double kSlack = 1 + 1e-9;
+
+/// Greatest roll and pitch in radians. A heading in radians may be counted on beyond a full turn,
+/// but a tilt not so far.
+constexpr double kMostTiltRadians = 2 * std::numbers::pi;
+constexpr double kMostTurnRadians = 20 * std::numbers::pi;
+
+struct Largest {
+  double tilt = 0, turn = 0, latitude = 0, longitude = 0;
+};
+
+Largest largest_of(std::span<const AttitudeRow> rows) {
+  Largest most;
+  for (const AttitudeRow& row : rows) {
+    most.tilt = std::max({most.tilt, std::abs(row.roll), std::abs(row.pitch)});
+    most.turn = std::max(most.turn, std::abs(row.yaw));
+    most.latitude = std::max(most.latitude, std::abs(row.position[1]));
+    most.longitude = std::max(most.longitude, std::abs(row.position[0]));
+  }
+  return most;
+}
+
+/// The unit named by the texts in a header; the first that is not empty must hold for all.
+AngleUnit declared_unit(std::span<const std::string> texts, const std::string& name) {
+  AngleUnit unit = AngleUnit::kDeclared;
+  std::size_t declared = 0;
+  for (const std::string& text : texts) {
+    if (text.empty()) continue;
+    const bool degrees = text.starts_with("deg") || text == "\xC2\xB0";
+    if (!degrees && !text.starts_with("rad")) {
+      refuse(name, "the header has angles in " + excerpt(text) + "; expected deg or rad");
+    }
+    const AngleUnit found = degrees ? AngleUnit::kDegrees : AngleUnit::kRadians;
+    if (declared++ > 0 && found != unit) {
+      refuse(name, "the header has angles in degrees and in radians; expected one unit");
+    }
+    unit = found;
+  }
+  if (declared != 0 && declared != texts.size()) {
+    refuse(name, "the header has a unit for some of the angles; expected it for all or none");
+  }
+  return unit;
+}
+
+const char* text_of(AngleUnit unit) { return unit == AngleUnit::kDegrees ? "degrees" : "radians"; }
+
+/// The unit that header or options name; kDeclared where neither does. Throws where they differ.
+AngleUnit said_unit(AngleUnit header, AngleUnit option, const std::string& name) {
+  if (header != AngleUnit::kDeclared && option != AngleUnit::kDeclared && header != option) {
+    refuse(name, std::string("the header has angles in ") + text_of(header) +
+                     ", but they were declared to be " + text_of(option));
+  }
+  return header != AngleUnit::kDeclared ? header : option;
+}
+
+double factor_of(AngleUnit unit) { return unit == AngleUnit::kDegrees ? kDegree : 1; }
+
+/// Radians per unit of roll, pitch and the third angle.
+double attitude_factor(const Largest& most, const PoseColumns& columns,
+                       const TrajectoryOptions& options, TrajectoryFile& out,
+                       const std::string& name) {
+  const AngleUnit unit =
+      said_unit(declared_unit(columns.angle_units, name), options.angle_unit, name);
+  const bool surely_degrees = most.tilt > kMostTiltRadians || most.turn > kMostTurnRadians;
+  const std::string largest = "angles up to " + brief(std::max(most.tilt, most.turn));
+  if (unit == AngleUnit::kRadians && surely_degrees) {
+    refuse(name, largest + " are declared to be radians; these look like degrees");
+  }
+  if (unit != AngleUnit::kDeclared) return factor_of(unit);
+  if (!surely_degrees) {
+    refuse(name, largest + " may be degrees or radians; expected a unit, as in the column roll_deg",
+           Remedy::kDeclareAngles);
+  }
+  out.note("angles-in-degrees", name + ": " + largest + " were taken as degrees",
+           {{"greatest", std::max(most.tilt, most.turn)}});
+  return kDegree;
+}
+
+/// Degrees per unit of latitude and longitude.
+double geographic_factor(const Largest& most, const PoseColumns& columns,
+                         const TrajectoryOptions& options, const std::string& name) {
+  AngleUnit unit = declared_unit(std::span(columns.position_units).first(2), name);
+  const bool surely_degrees = most.latitude > std::numbers::pi / 2 * kSlack ||
+                              most.longitude > 2 * std::numbers::pi * kSlack;
+  if (unit == AngleUnit::kDeclared) {
+    unit = surely_degrees ? AngleUnit::kDegrees : options.angle_unit;
+  }
+  const std::string largest =
+      "latitudes up to " + brief(most.latitude) + " and longitudes up to " + brief(most.longitude);
+  if (unit == AngleUnit::kDeclared) {
+    refuse(name, largest + " may be degrees or radians; expected a unit, as in the column lat_deg",
+           Remedy::kDeclareAngles);
+  }
+  if (unit == AngleUnit::kRadians && surely_degrees) {
+    refuse(name, largest + " are declared to be radians; these look like degrees");
+  }
+  if (most.latitude * factor_of(unit) > std::numbers::pi / 2 * kSlack) {
+    refuse(name, largest + "; expected latitudes within 90 degrees");
+  }
+  return factor_of(unit) / kDegree;
+}
+
+AngleFrame frame_of(const PoseColumns& columns, const TrajectoryOptions& options,
+                    const std::string& name) {
+  if (columns.heading && options.angle_frame == AngleFrame::kEnu) {
+    refuse(name,
+           "a heading is counted clockwise from north, but enu was declared; expected a "
+           "column called yaw");
+  }
+  if (columns.heading) return AngleFrame::kNed;
+  if (options.angle_frame == AngleFrame::kDeclared) {
+    refuse(name,
+           "a yaw may be counted clockwise from north (ned) or counter-clockwise from east (enu)",
+           Remedy::kDeclareAngles);
+  }
+  return options.angle_frame;
+}
+
+void note_angle_frame(AngleFrame frame, bool geographic, const std::string& name,
+                      TrajectoryFile& out) {
+  const std::string from = geographic ? "true " : "the map's ";
+  out.note("angle-frame",
+           name +
+               (frame == AngleFrame::kNed
+                    ? ": angles are a heading clockwise from " + from +
+                          "north, a pitch nose up, and a roll right side down"
+                    : ": angles are a yaw counter-clockwise from " + from +
+                          "east (x), a pitch nose down, and a roll right side down") +
+               "; the model is to have x forward, y left and z up");
+}
+
+}  // namespace
+
+void append_poses_of_angles(std::vector<AttitudeRow> rows, const PoseColumns& columns,
+                            const TrajectoryOptions& options, const std::string& name,
+                            TrajectoryFile& out) {
+  if (rows.empty()) return;
+  out.rotations = RotationSource::kAngles;
+  const Largest most = largest_of(rows);
+  const AngleFrame frame = frame_of(columns, options, name);
+  const double to_radians = attitude_factor(most, columns, options, out, name);
+  for (AttitudeRow& row : rows) {
+    row.roll *= to_radians;
+    row.pitch *= to_radians;
+    row.yaw *= to_radians;
+  }
+  note_angle_frame(frame, columns.geographic, name, out);
+  if (columns.geographic) {
+    const double to_degrees = geographic_factor(most, columns, options, name);
+    for (AttitudeRow& row : rows) {
+      row.position[0] *= to_degrees;
+      row.position[1] *= to_degrees;
+    }
+    append_geographic_poses(rows, frame, options, name, out);
+    return;
+  }
+  out.poses.reserve(rows.size());
+  for (const AttitudeRow& row : rows) {
+    Pose pose{{}, {row.position[0], row.position[1], row.position[2]}};
+    set_rotation(row, frame, 0, pose);
+    out.poses.push_back(pose);
+  }
+}
+
+}  // namespace clearway

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/paths/pose_input.hpp"
+#include "io/paths/trajectory_file.hpp"
+#include "io/scans/text/table_header.hpp"
+
+namespace clearway {
+
+/// The columns of a table from which poses are made.
+struct PoseColumns {
+  char separator = ',';
+  std::size_t fields = 0;                 ///< number of fields in every line
+  std::array<std::size_t, 3> position{};  ///< x y z; longitude, latitude, height where geographic
+  /// 4 columns: quaternion x y z w; 9: matrix, row-major; 3: angles
+  std::vector<std::size_t> rotation{};
+  bool geographic = false;
+  bool heading = false;             ///< whether the third angle is called heading instead of yaw
+  std::string position_units[3]{};  ///< units in the header, in lower case, or empty
+  std::string angle_units[3]{};  ///< units of three angles in the header, in lower case, or empty
+  std::optional<std::size_t> time{};  ///< column called time
+  std::optional<std::size_t> name{};  ///< column with a name or an index
+};
+
+/// The columns that a header names; nullopt where one is missing or named twice.
+std::optional<PoseColumns> pose_columns(const ColumnNames& header);
+
+/// Why a header makes no pose, and what is expected.
+std::string objection_to_header(const ColumnNames& header);
+
+/// The columns of EuRoC: time, position, quaternion w x y z, then any others; `fields` columns in
+/// all.
+PoseColumns euroc_columns(std::size_t fields);
+
+/// Appends the poses of a table with roll, pitch and heading or yaw. rows: angles in the units of
+/// the file; positions in metres already unless they are geographic. name: the file's, for
+/// messages. Throws InputError where unit or frame of the angles are neither declared nor certain,
+/// and where the values contradict them.
+void append_poses_of_angles(std::vector<AttitudeRow> rows, const PoseColumns& columns,
+                            const TrajectoryOptions& options, const std::string& name,
+                            TrajectoryFile& out);
+
+}  // namespace clearway

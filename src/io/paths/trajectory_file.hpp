@@ -1,0 +1,54 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clearway/pose.hpp"
+#include "clearway/trajectory.hpp"
+#include "core/trajectory/trajectory_doubts.hpp"
+#include "core/util/progress.hpp"
+#include "io/files/file.hpp"
+
+namespace clearway {
+
+/// The contents of a trajectory's file and how they were interpreted.
+struct TrajectoryFile {
+  std::vector<Pose> poses;
+  std::vector<double> times;       ///< seconds, one per pose; empty where the file has none
+  std::vector<std::string> names;  ///< one per pose; empty where the file has none
+  TrajectoryFormat format = TrajectoryFormat::kAuto;
+  std::string crs;  ///< CRS into which latitudes and longitudes were converted, or empty
+  /// Metres per unit of the positions; 1 except for a CRS in another unit.
+  double metres_per_unit = 1;
+  /// Whether the positions certainly are in metres, because a unit was declared or the format has
+  /// one.
+  bool in_metres = false;
+  FileUnit unit = {};  ///< unit of the positions in the file, where a header or an option names it
+  RotationSource rotations = RotationSource::kMatrices;
+  std::vector<Message> remarks;  ///< notes and warnings
+
+  void note(const char* code, std::string text,
+            std::vector<std::pair<std::string, double>> numbers = {}) {
+    remarks.push_back({Message::Severity::kNote, code, std::move(text), std::move(numbers)});
+  }
+  void warn(const char* code, std::string text,
+            std::vector<std::pair<std::string, double>> numbers = {}) {
+    remarks.push_back({Message::Severity::kWarning, code, std::move(text), std::move(numbers)});
+  }
+};
+
+/// Reads a trajectory as read_trajectory() does, with details of the file.
+TrajectoryFile read_trajectory_file(const std::filesystem::path& path,
+                                    const TrajectoryOptions& options);
+
+/// The command line's name of a format: "matrix", "tum", ...
+const char* name_of(TrajectoryFormat format);
+
+/// Writes one pose per line as 16 numbers: its 4 x 4 matrix, row-major, with digits that
+/// read_trajectory() reads back to the same doubles. Throws ResourceError and Interrupted.
+void write_trajectory(std::span<const Pose> poses, const File& file, Progress& progress);
+
+}  // namespace clearway

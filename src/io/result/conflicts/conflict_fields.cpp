@@ -1,0 +1,192 @@
+#include "io/result/conflicts/conflict_fields.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "core/query/ignored_points.hpp"
+#include "io/files/xxh64.hpp"
+#include "io/result/conflicts/json_text.hpp"
+
+namespace clearway {
+namespace {
+
+template <typename Value, typename Number>
+FieldValue value_of(const std::optional<Number>& number) {
+  return number ? FieldValue(static_cast<Value>(*number)) : FieldValue();
+}
+
+}  // namespace
+
+std::vector<ConflictField> fields_of(const Conflict& c, const ResultHeader& header) {
+  std::vector<ConflictField> fields{{"id", std::uint64_t{c.id}},
+                                    {"points", c.points},
+                                    {"source", c.source},
+                                    {"lo_x", c.box.lo.x},
+                                    {"lo_y", c.box.lo.y},
+                                    {"lo_z", c.box.lo.z},
+                                    {"hi_x", c.box.hi.x},
+                                    {"hi_y", c.box.hi.y},
+                                    {"hi_z", c.box.hi.z},
+                                    {"centroid_x", c.centroid.x},
+                                    {"centroid_y", c.centroid.y},
+                                    {"centroid_z", c.centroid.z},
+                                    {"first_pose", std::uint64_t{c.first_pose}},
+                                    {"last_pose", std::uint64_t{c.last_pose}},
+                                    {"chainage_from", c.chainage_from},
+                                    {"chainage_to", c.chainage_to},
+                                    {"least_distance", value_of<double>(c.least_distance)},
+                                    {"nearest_pose", value_of<std::uint64_t>(c.nearest_pose)},
+                                    {"nearest_source", value_of<std::uint64_t>(c.nearest_source)},
+                                    {"encroachment", value_of<double>(c.encroachment)},
+                                    {"side", std::string_view(name_of(c.side))},
+                                    {"lateral", value_of<double>(c.lateral)},
+                                    {"height", value_of<double>(c.height)},
+                                    {"group", c.group},
+                                    {"depth", value_of<double>(c.depth)},
+                                    {"points_inside", value_of<std::uint64_t>(c.points_inside)},
+                                    {"obstacle_chainage", value_of<double>(c.obstacle_chainage)},
+                                    {"shift_left", value_of<double>(c.shift_left)},
+                                    {"shift_right", value_of<double>(c.shift_right)}};
+  if (c.body) {
+    fields.push_back({"body", std::uint64_t{*c.body}});
+    fields.push_back({"body_name", std::string_view(header.bodies.at(*c.body))});
+  }
+  return fields;
+}
+
+std::optional<double> rounded_up(std::optional<double> shift) {
+  if (shift) *shift = std::ceil(*shift * 1000) / 1000;
+  return shift;
+}
+
+Conflict as_conflict(const SmallGroup& group) {
+  Conflict out;
+  out.points = group.points;
+  out.source = out.group = group.source;
+  out.box = group.box;
+  for (int k = 0; k < 3; ++k) out.centroid[k] = (group.box.lo[k] + group.box.hi[k]) / 2;
+  out.first_pose = group.first_pose;
+  out.last_pose = group.last_pose;
+  out.chainage_from = group.chainage_from;
+  out.chainage_to = group.chainage_to;
+  return out;
+}
+
+std::vector<Conflict> small_groups_instead(const Conflicts& conflicts) {
+  std::vector<Conflict> out;
+  if (!conflicts.listed.empty()) return out;
+  for (const SmallGroup& group : conflicts.small) out.push_back(as_conflict(group));
+  return out;
+}
+
+std::vector<ConflictField> sample_fields(const ResultHeader& header) {
+  Conflict conflict;
+  if (!header.bodies.empty()) conflict.body = 0;
+  return fields_of(conflict, header);
+}
+
+namespace {
+
+std::string message_json(const Message& message) {
+  std::string numbers;
+  for (const auto& [name, value] : message.numbers) {
+    numbers += (numbers.empty() ? "" : ", ") + json_string(name) + ": " + json_number(value);
+  }
+  return "{\"code\": " + json_string(message.code) + ", \"message\": " + json_string(message.text) +
+         ", \"numbers\": {" + numbers + "}}";
+}
+
+std::string warnings_json(const std::vector<Message>& warnings) {
+  std::string out;
+  for (const Message& warning : warnings) out += (out.empty() ? "" : ", ") + message_json(warning);
+  return "[" + out + "]";
+}
+
+std::string names_json(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + json_string(name);
+  return "[" + out + "]";
+}
+
+/// Most small groups that a file lists, the first ones along the path; nobody reads millions.
+constexpr std::size_t kMostSmallGroups = 1000;
+
+std::string small_json(const std::vector<SmallGroup>& groups) {
+  std::string out;
+  for (std::size_t i = 0; i < std::min(groups.size(), kMostSmallGroups); ++i) {
+    const SmallGroup& group = groups[i];
+    out += (i == 0 ? "" : ", ") + ("{\"points\": " + std::to_string(group.points)) +
+           ", \"source\": " + std::to_string(group.source) +
+           ", \"lo\": " + json_vector(group.box.lo) + ", \"hi\": " + json_vector(group.box.hi) +
+           ", \"first_pose\": " + std::to_string(group.first_pose) +
+           ", \"last_pose\": " + std::to_string(group.last_pose) +
+           ", \"chainage_from\": " + json_number(group.chainage_from) +
+           ", \"chainage_to\": " + json_number(group.chainage_to) + "}";
+  }
+  return "[" + out + "]";
+}
+
+class Members {
+ public:
+  void add(std::string_view name, const std::string& json) {
+    text_ += (text_.empty() ? "  " : ",\n  ") + json_string(name) + ": " + json;
+  }
+  void add_count(std::string_view name, std::uint64_t count) { add(name, std::to_string(count)); }
+  void add_length(std::string_view name, double length) { add(name, json_number(length)); }
+  void add_hash(std::string_view name, std::uint64_t hash) {
+    add(name, json_string(hash_text(hash)));
+  }
+  std::string text() && { return std::move(text_); }
+
+ private:
+  std::string text_;
+};
+
+}  // namespace
+
+std::string summary_json(const ConflictFile& file) {
+  const ResultHeader& header = file.header;
+  const Conflicts& conflicts = file.conflicts;
+  Members out;
+  out.add("kind", json_string("conflicts"));
+  out.add("unit", json_string(symbol_of(file.unit())));
+  out.add_length("radius", header.radius);
+  out.add_length("clearance", header.clearance);
+  out.add("between_poses", header.between_poses ? "true" : "false");
+  out.add("verdict", json_string(name_of(file.answer.verdict())));
+  out.add("doubts", names_json(file.answer.doubts));
+  if (header.ignores_points()) {
+    out.add_count("ignored_points", header.ignored.points);
+    const auto& colliding = file.answer.ignored_colliding;
+    out.add("ignored_colliding", colliding ? std::to_string(*colliding) : "null");
+    out.add("ignored", json_string(ignored_text(header)));
+  }
+  out.add_length("gap", file.options.gap);
+  out.add_count("min_points", file.options.min_points);
+  out.add_length("split", file.options.split);
+  out.add_count("environment_points", header.environment_points);
+  out.add_count("model_points", header.model_points);
+  out.add_count("poses", header.poses);
+  if (!header.bodies.empty()) out.add("bodies", names_json(header.bodies));
+  out.add_hash("environment_hash", header.environment_hash);
+  out.add_hash("model_hash", header.model_hash);
+  out.add_hash("trajectory_hash", header.trajectory_hash);
+  out.add("crs_wkt", json_string(header.crs_wkt));
+  out.add_length("path_length", conflicts.path_length);
+  out.add_count("colliding_points", conflicts.colliding_points);
+  out.add_count("conflict_count", conflicts.listed.size());
+  out.add_count("groups", conflicts.groups);
+  out.add_count("small_groups", conflicts.small_groups);
+  out.add_count("small_points", conflicts.small_points);
+  out.add("small", small_json(conflicts.small));
+  out.add("has_last_poses", conflicts.has_last_poses ? "true" : "false");
+  out.add_length("longest_group", conflicts.longest_group);
+  out.add_count("longest_group_points", conflicts.longest_group_points);
+  out.add("warnings", warnings_json(file.warnings));
+  return std::move(out).text();
+}
+
+}  // namespace clearway

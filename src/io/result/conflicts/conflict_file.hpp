@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "clearway/answer.hpp"
+#include "clearway/conflicts.hpp"
+#include "clearway/pose.hpp"
+#include "io/result/result.hpp"
+#include "io/scans/scan_crs.hpp"
+
+namespace clearway {
+
+/// The contents of a file of conflicts. The references must outlive the writing.
+struct ConflictFile {
+  const Conflicts& conflicts;
+  const ConflictOptions& options;  ///< the options with which the conflicts were found
+  const ResultHeader& header;      ///< header of the result
+  const Answer& answer;            ///< answer of the result, of which the counts suffice
+  const std::vector<Pose>& poses;
+  std::vector<Message> warnings;
+  /// Date for formats that need one: an ISO 8601 time in UTC.
+  std::string date = kNoDate;
+
+  /// Unit of all lengths, which the scan's coordinate reference system names.
+  LengthUnit unit() const { return units_of_wkt(header.crs_wkt).horizontal; }
+  /// Metres per unit of length; 1 where the unit is not known.
+  double metres_per_unit() const { return metres_of(unit()) > 0 ? metres_of(unit()) : 1; }
+
+  static constexpr const char* kNoDate = "2000-01-01T00:00:00Z";
+};
+
+enum class ConflictFormat { kCsv, kJson, kGeoJson, kGeoPackage, kBcf };
+
+/// The format by the ending of a name: .csv, .json, .geojson, .gpkg, .bcf or .bcfzip. Throws
+/// UsageError for others.
+ConflictFormat conflict_format_of(const std::filesystem::path& output);
+
+}  // namespace clearway

@@ -1,0 +1,402 @@
+#include "io/result/export/export_result.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cctype>
+#include <cstddef>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "clearway/error.hpp"
+#include "clearway/result.hpp"
+#include "core/util/tsan_annotations.hpp"
+#include "io/files/file.hpp"
+#include "io/files/pending_file.hpp"
+#include "io/files/text_writer.hpp"
+#include "io/result/export/position_text.hpp"
+#include "io/result/result.hpp"
+#include "io/scans/las/las_writer.hpp"
+#include "io/scans/ply/ply_writer.hpp"
+#include "io/scans/requantize.hpp"
+
+namespace clearway {
+namespace {
+
+/// Number of rows that a thread works on at a time.
+inline constexpr std::size_t kBlockRows = 1 << 12;
+
+/// Calls work(block, first row, end) for each block of rows, with many threads.
+template <typename Work>
+void for_each_block(std::size_t rows, Work work) {
+  const ParallelScope scope;
+  const auto run_block = piece_of(scope, [&](std::size_t block) {
+    work(block, block * kBlockRows, std::min(rows, (block + 1) * kBlockRows));
+  });
+  scope.begin();
+  tbb::parallel_for(std::size_t{0}, (rows + kBlockRows - 1) / kBlockRows, run_block);
+}
+
+/// Appends rows to a file. Many threads make the texts by write_rows(text, first row, end).
+template <typename WriteRows>
+void write_blocks(const File& file, std::size_t rows, WriteRows write_rows) {
+  std::vector<TextBuffer> blocks((rows + kBlockRows - 1) / kBlockRows);
+  for_each_block(rows, [&](std::size_t block, std::size_t first, std::size_t end) {
+    write_rows(blocks[block], first, end);
+  });
+  for (const TextBuffer& block : blocks) file.write(std::as_bytes(std::span(block.text())));
+}
+
+using Quanta = std::vector<std::array<std::int32_t, 3>>;
+
+/// Finds the stored integers of a position; returns false where a coordinate is not on the scale.
+bool set_quanta(const Quantisation& quantisation, const Vec3& p, std::array<std::int32_t, 3>& out) {
+  for (int k = 0; k < 3; ++k) {
+    const auto q = quantum_at(quantisation, k, p[k]);
+    if (!q) return false;
+    out[static_cast<std::size_t>(k)] = *q;
+  }
+  return true;
+}
+
+template <typename Rows>
+Quanta quanta_of(const ResultReader& result, const Rows& rows) {
+  const Quantisation& quantisation = result.header().quantisation;
+  Quanta out(rows.xyz.size());
+  std::atomic<std::size_t> first_wrong = out.size();
+  for_each_block(out.size(), [&](std::size_t, std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      if (set_quanta(quantisation, rows.xyz[i], out[i])) continue;
+      std::size_t seen = first_wrong;
+      while (i < seen && !first_wrong.compare_exchange_weak(seen, i)) {
+      }
+      return;
+    }
+  });
+  if (first_wrong == out.size()) return out;
+  throw InputError(result.name() + ": /" + Table<Rows>::kGroup + "/xyz, source " +
+                   std::to_string(rows.source[first_wrong]) +
+                   ": expected a whole multiple of the scale above the offset");
+}
+
+/// The columns of a table that are exported as fields of its points.
+template <typename Rows>
+std::vector<PointField> fields_of(const ResultHeader& header) {
+  std::vector<PointField> out;
+  for_each_column<Rows>([&](const auto& column) {
+    if (column.field == nullptr || !column.is_in(header)) return;
+    using Value = typename std::decay_t<decltype(column)>::Value;
+    out.push_back(
+        {column.dataset,
+         std::is_same_v<Value, double> ? PointField::Type::kDouble : PointField::Type::kUint32,
+         column.field});
+  });
+  return out;
+}
+
+/// The values of those columns.
+template <typename Rows>
+std::vector<FieldValues> values_of(const ResultHeader& header, const Rows& rows) {
+  std::vector<FieldValues> out;
+  for_each_column<Rows>([&](const auto& column) {
+    using Value = typename std::decay_t<decltype(column)>::Value;
+    if constexpr (std::is_constructible_v<FieldValues, std::span<const Value>>) {
+      if (column.field == nullptr || !column.is_in(header)) return;
+      out.emplace_back(std::span<const Value>(rows.*column.values));
+    }
+  });
+  return out;
+}
+
+template <typename Rows>
+class LasSink final : public RowSink<Rows> {
+ public:
+  LasSink(const ResultReader& result, const QuantumBox& bounds, const File& file)
+      : result_(result),
+        writer_(file, {result.header().quantisation, result.rows<Rows>(), bounds,
+                       result.header().crs_wkt, fields_of<Rows>(result.header())}) {}
+
+  void write(const Rows& rows) override {
+    writer_.write(quanta_of(result_, rows), values_of(result_.header(), rows));
+  }
+  void finish() override { writer_.finish(); }
+
+ private:
+  const ResultReader& result_;
+  LasWriter writer_;
+};
+
+template <typename Rows>
+class PlySink final : public RowSink<Rows> {
+ public:
+  PlySink(const ResultReader& result, const File& file)
+      : result_(result),
+        writer_(file, {.points = result.rows<Rows>(), .fields = fields_of<Rows>(result.header())}) {
+  }
+
+  void write(const Rows& rows) override {
+    writer_.write(rows.xyz, values_of(result_.header(), rows));
+  }
+  void finish() override { writer_.finish(); }
+
+ private:
+  const ResultReader& result_;
+  PlyWriter writer_;
+};
+
+/// Writes coordinates, and behind those of clearances the distance and its pose.
+template <typename Rows>
+class XyzSink final : public RowSink<Rows> {
+ public:
+  XyzSink(const ResultReader& result, const File& file)
+      : file_(file), position_(result.header().quantisation) {}
+
+  void write(const Rows& rows) override {
+    write_blocks(file_, rows.xyz.size(), [&](TextBuffer& out, std::size_t first, std::size_t end) {
+      PositionText position = position_;
+      for (std::size_t i = first; i < end; ++i) {
+        position.write(out, rows.xyz[i], " ");
+        if constexpr (std::is_same_v<Rows, Clearances>) {
+          out << " " << rows.distance[i] << " " << rows.pose[i];
+        }
+        out << "\n";
+      }
+    });
+  }
+  void finish() override {}
+
+ private:
+  const File& file_;
+  const PositionText position_;
+};
+
+/// Writes source, coordinates and fields. The clearances of a result of version 2 have no
+/// coordinates.
+template <typename Rows>
+class CsvSink final : public RowSink<Rows> {
+ public:
+  CsvSink(const ResultReader& result, const File& file)
+      : header_(result.header()), file_(file), position_(result.header().quantisation) {
+    TextWriter out(file);
+    out << "source";
+    for_each_column<Rows>([&](const auto& column) {
+      if (!column.is_in(header_)) return;
+      if (std::string_view(column.dataset) == result_names::kXyz) out << ",x,y,z";
+      if (column.field != nullptr) out << "," << column.dataset;
+    });
+    out << "\n";
+    out.flush();
+  }
+
+  void write(const Rows& rows) override {
+    const std::vector<FieldValues> values = values_of(header_, rows);
+    write_blocks(file_, rows.size(), [&](TextBuffer& out, std::size_t first, std::size_t end) {
+      PositionText position = position_;
+      for (std::size_t i = first; i < end; ++i) {
+        out << rows.source[i];
+        if (!rows.xyz.empty()) position.write(out << ",", rows.xyz[i], ",");
+        for (const FieldValues& field : values) {
+          std::visit([&](const auto& of_points) { out << "," << of_points[i]; }, field);
+        }
+        out << "\n";
+      }
+    });
+  }
+  void finish() override {}
+
+ private:
+  const ResultHeader& header_;
+  const File& file_;
+  const PositionText position_;
+};
+
+}  // namespace
+
+ExportFormat export_format_of(const std::filesystem::path& output) {
+  const std::string ending = file_ending(output);
+  if (ending == ".las") return ExportFormat::kLas;
+  if (ending == ".ply") return ExportFormat::kPly;
+  if (ending == ".xyz") return ExportFormat::kXyz;
+  if (ending == ".csv") return ExportFormat::kCsv;
+  throw UsageError(output.string() +
+                   ": unknown output format; the name must end in .las, .ply, .xyz or .csv");
+}
+
+template <typename Rows>
+std::unique_ptr<RowSink<Rows>> make_row_sink(ExportFormat format, const ResultReader& result,
+                                             const QuantumBox& bounds, const File& file) {
+  switch (format) {
+    case ExportFormat::kLas:
+      return std::make_unique<LasSink<Rows>>(result, bounds, file);
+    case ExportFormat::kPly:
+      return std::make_unique<PlySink<Rows>>(result, file);
+    case ExportFormat::kXyz:
+      return std::make_unique<XyzSink<Rows>>(result, file);
+    case ExportFormat::kCsv:
+      break;
+  }
+  return std::make_unique<CsvSink<Rows>>(result, file);
+}
+
+template <typename Rows>
+QuantumBox bounds_of(const ResultReader& result, const Progress& progress) {
+  std::optional<QuantumBox> box;
+  RowStream<Rows> stream(result);
+  for (Rows rows; stream.read(rows);) {
+    throw_if_stopped(progress);
+    for (const auto& [x, y, z] : quanta_of(result, rows)) {
+      const QuantumBox point{{x, y, z}, {x, y, z}};
+      box = box ? box->united(point) : point;
+    }
+  }
+  return box.value_or(QuantumBox{});
+}
+
+template std::unique_ptr<RowSink<Collisions>> make_row_sink(ExportFormat, const ResultReader&,
+                                                            const QuantumBox&, const File&);
+template std::unique_ptr<RowSink<Clearances>> make_row_sink(ExportFormat, const ResultReader&,
+                                                            const QuantumBox&, const File&);
+template QuantumBox bounds_of<Collisions>(const ResultReader&, const Progress&);
+template QuantumBox bounds_of<Clearances>(const ResultReader&, const Progress&);
+
+namespace {
+
+template <typename Rows>
+void export_table(const ResultReader& result, const std::filesystem::path& output, bool overwrite,
+                  Progress& progress) {
+  const ExportFormat format = export_format_of(output);
+  refuse_overwriting(output, {result.name()});
+  PendingFile pending(output, overwrite);
+  {
+    const File file = File::create(pending.partial());
+    QuantumBox bounds{};
+    if (format == ExportFormat::kLas) bounds = bounds_of<Rows>(result, progress);
+    const auto sink = make_row_sink<Rows>(format, result, bounds, file);
+    progress.begin("export", result.rows<Rows>(), "points");
+    RowStream<Rows> stream(result);
+    for (Rows rows; stream.read(rows);) {
+      throw_if_stopped(progress);
+      sink->write(rows);
+      progress.advance(rows.size());
+    }
+    sink->finish();
+    progress.end();
+  }
+  pending.publish();
+}
+
+}  // namespace
+
+void export_result(const ResultReader& result, const std::filesystem::path& output, bool overwrite,
+                   Progress& progress) {
+  export_table<Collisions>(result, output, overwrite, progress);
+}
+
+void export_clearances(const ResultReader& result, const std::filesystem::path& output,
+                       bool overwrite, Progress& progress) {
+  if (!(result.header().clearance > 0)) {
+    throw UsageError(result.name() + ": has no clearances", Remedy::kAskForClearance);
+  }
+  if (!result.header().has_clearance_xyz() && export_format_of(output) != ExportFormat::kCsv) {
+    throw InputError(result.name() +
+                     ": is of version 2 and has no coordinates of clearances; run the query again, "
+                     "or export a .csv without coordinates");
+  }
+  export_table<Clearances>(result, output, overwrite, progress);
+}
+
+namespace {
+
+class ProfileTable {
+ public:
+  ProfileTable(const File& file, const ResultReader& result, const PoseLabels& labels,
+               double chainage_start)
+      : out_(file),
+        position_(result.header().quantisation),
+        labels_(labels),
+        chainage_start_(chainage_start),
+        has_bodies_(!result.header().bodies.empty()),
+        unsearched_(result.findings().without_bodies) {
+    out_ << "pose";
+    if (!labels.time.empty()) out_ << ",time";
+    if (!labels.name.empty()) out_ << ",name";
+    out_ << ",chainage,distance,source,x,y,z" << (has_bodies_ ? ",searched\n" : "\n");
+  }
+
+  void write(const ProfileRows& rows) {
+    for (std::size_t i = 0; i < rows.size(); ++i, ++pose_) {
+      out_ << pose_;
+      if (!labels_.time.empty()) out_ << "," << labels_.time[pose_];
+      if (!labels_.name.empty()) out_ << "," << csv_cell(labels_.name[pose_]);
+      out_ << "," << chainage_start_ + rows.chainage[i] << ",";
+      if (rows.source[i] == Profile::kNoPoint) {
+        out_ << ",,,,";
+        end_row();
+        continue;
+      }
+      out_ << rows.distance[i] << "," << rows.source[i] << ",";
+      position_.write(out_, rows.xyz[i], ",");
+      end_row();
+    }
+  }
+  void finish() { out_.flush(); }
+
+ private:
+  void end_row() {
+    while (next_ < unsearched_.size() && unsearched_[next_][1] < pose_) ++next_;
+    const bool searched = next_ == unsearched_.size() || pose_ < unsearched_[next_][0];
+    out_ << (!has_bodies_ ? "\n" : searched ? ",1\n" : ",0\n");
+  }
+
+  TextWriter out_;
+  PositionText position_;
+  const PoseLabels& labels_;
+  double chainage_start_;
+  bool has_bodies_;
+  const std::vector<std::array<std::uint32_t, 2>>& unsearched_;
+  /// Index of the first run of unsearched_ that does not end before the pose.
+  std::size_t next_ = 0;
+  std::uint64_t pose_ = 0;
+};
+
+}  // namespace
+
+void export_profile(const ResultReader& result, const PoseLabels& labels, double chainage_start,
+                    const std::filesystem::path& output, bool overwrite, Progress& progress) {
+  if (!(result.header().profile > 0)) {
+    throw UsageError(result.name() + ": has no profile", Remedy::kAskForProfile);
+  }
+  if (export_format_of(output) != ExportFormat::kCsv) {
+    throw UsageError(output.string() + ": a profile is exported as .csv only");
+  }
+  for (const std::size_t count : {labels.time.size(), labels.name.size()}) {
+    if (count != 0 && count != result.profile_rows()) {
+      throw std::logic_error("export_profile: labels of another number of poses");
+    }
+  }
+  refuse_overwriting(output, {result.name()});
+  PendingFile pending(output, overwrite);
+  {
+    const File file = File::create(pending.partial());
+    ProfileTable table(file, result, labels, chainage_start);
+    progress.begin("export", result.profile_rows(), "poses");
+    RowStream<ProfileRows> stream(result);
+    for (ProfileRows rows; stream.read(rows);) {
+      throw_if_stopped(progress);
+      table.write(rows);
+      progress.advance(rows.size());
+    }
+    table.finish();
+    progress.end();
+  }
+  pending.publish();
+}
+
+}  // namespace clearway

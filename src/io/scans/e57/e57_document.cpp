@@ -1,0 +1,398 @@
+#include "io/scans/e57/e57_document.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <span>
+
+#include "io/files/input_error.hpp"
+#include "io/paths/pose_input.hpp"
+
+namespace clearway {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kSpace = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(kSpace);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
+}
+
+/// Parses the whole text as a number; a leading + is allowed.
+template <typename Number>
+bool parse_whole(std::string_view text, Number& value) {
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (stop != end) return false;
+  if constexpr (std::is_floating_point_v<Number>) {
+    // A number too small for a double becomes 0; one too large is refused.
+    if (error == std::errc::result_out_of_range) {
+      value = std::strtod(std::string(text).c_str(), nullptr);
+      return std::isfinite(value);
+    }
+  }
+  return error == std::errc();
+}
+
+bool is_utf8_name(std::string_view encoding) {
+  constexpr std::string_view kName = "utf-8";
+  return std::equal(encoding.begin(), encoding.end(), kName.begin(), kName.end(),
+                    [](char a, char b) { return a == b || (a >= 'A' && a <= 'Z' && a + 32 == b); });
+}
+
+}  // namespace
+
+E57Xml::E57Xml(E57Container& file) : pages_(file.pages), start_(file.xml_start) {
+  if (file.xml_bytes > kMostBytes) {
+    refuse_byte(pages_.name(), 32,
+                "an XML section of " + std::to_string(file.xml_bytes) +
+                    " bytes; expected at most " + std::to_string(kMostBytes));
+  }
+  if (file.xml_bytes > pages_.size() - start_) {
+    refuse_byte(pages_.name(), 32,
+                "an XML section of " + std::to_string(file.xml_bytes) +
+                    " bytes; expected it to end before the file");
+  }
+  bytes_.resize(file.xml_bytes);
+  file.pages.read(start_, std::as_writable_bytes(std::span(bytes_)), "the XML section");
+  parse();
+}
+
+void E57Xml::parse() {
+  const std::uint64_t first_byte = pages_.physical(start_);
+  const auto markup = static_cast<std::uint64_t>(
+      std::count_if(bytes_.begin(), bytes_.end(), [](char c) { return c == '<' || c == '='; }));
+  if (markup > kMostMarkup) {
+    refuse_byte(pages_.name(), first_byte,
+                "the XML section has " + std::to_string(markup) +
+                    " tags and attributes; expected at most " + std::to_string(kMostMarkup));
+  }
+  const auto parsed = document_.load_buffer_inplace(bytes_.data(), bytes_.size(),
+                                                    pugi::parse_default | pugi::parse_declaration,
+                                                    pugi::encoding_utf8);
+  if (!parsed) {
+    const auto offset = static_cast<std::uint64_t>(std::max<std::ptrdiff_t>(parsed.offset, 0));
+    refuse_byte(pages_.name(), pages_.physical(start_ + offset),
+                std::string("the XML section is malformed (") + parsed.description() +
+                    "); expected well-formed XML in UTF-8");
+  }
+  check_declaration();
+  root_ = document_.document_element();
+  if (std::string_view(root_.name()) != "e57Root") {
+    refuse_byte(
+        pages_.name(), first_byte,
+        "the XML section holds the element " + excerpt(root_.name()) + "; expected e57Root");
+  }
+  if (type_of(root_) != "Structure") refuse_at(root_, "expected the type Structure");
+}
+
+void E57Xml::check_declaration() const {
+  const pugi::xml_node declaration = document_.first_child();
+  if (declaration.type() != pugi::node_declaration) return;
+  const pugi::xml_attribute encoding = declaration.attribute("encoding");
+  if (!encoding || is_utf8_name(encoding.value())) return;
+  refuse_byte(
+      pages_.name(), pages_.physical(start_),
+      "the XML section is in the encoding " + excerpt(encoding.value()) + "; expected UTF-8");
+}
+
+std::uint64_t E57Xml::byte_of(pugi::xml_node node) const {
+  const auto offset = static_cast<std::uint64_t>(std::max<std::ptrdiff_t>(node.offset_debug(), 0));
+  return pages_.physical(start_ + offset);
+}
+
+void E57Xml::refuse_at(pugi::xml_node node, const std::string& what) const {
+  refuse_byte(pages_.name(), byte_of(node), "XML element " + excerpt(node.name()) + ": " + what);
+}
+
+std::string_view E57Xml::type_of(pugi::xml_node node) const {
+  return attribute(node, "type").value_or("");
+}
+
+pugi::xml_node E57Xml::find(pugi::xml_node parent, const char* name, std::string_view type) const {
+  const pugi::xml_node node = parent.child(name);
+  if (!node) return node;
+  if (const pugi::xml_node second = node.next_sibling(name)) {
+    refuse_at(second, "stands twice; expected it once in its parent");
+  }
+  if (type_of(node) != type) {
+    refuse_at(node, "has the type " + excerpt(type_of(node)) + "; expected " + std::string(type));
+  }
+  return node;
+}
+
+pugi::xml_node E57Xml::get(pugi::xml_node parent, const char* name, std::string_view type) const {
+  const pugi::xml_node node = find(parent, name, type);
+  if (!node) refuse_at(parent, "has no " + std::string(name) + "; expected one");
+  return node;
+}
+
+double E57Xml::number(pugi::xml_node node) const {
+  const std::string value = text(node);
+  const std::string_view digits = trimmed(value);
+  double result = 0;
+  if (!digits.empty() && !parse_whole(digits, result)) {
+    refuse_at(node, "is " + excerpt(digits) + "; expected a number");
+  }
+  return result;
+}
+
+std::string E57Xml::text(pugi::xml_node node) const {
+  std::string all;
+  for (const pugi::xml_node part : node.children()) {
+    if (part.type() == pugi::node_pcdata || part.type() == pugi::node_cdata) all += part.value();
+  }
+  return all;
+}
+
+std::optional<std::string_view> E57Xml::attribute(pugi::xml_node node, const char* name) const {
+  const pugi::xml_attribute found = node.attribute(name);
+  if (!found) return std::nullopt;
+  for (pugi::xml_attribute next = found.next_attribute(); next; next = next.next_attribute()) {
+    if (std::string_view(next.name()) == name) {
+      refuse_at(node, "has the attribute " + std::string(name) + " twice; expected it once");
+    }
+  }
+  return found.value();
+}
+
+template <typename Number>
+std::optional<Number> E57Xml::number_attribute(pugi::xml_node node, const char* name) const {
+  const auto text = attribute(node, name);
+  if (!text) return std::nullopt;
+  Number value{};
+  if (!parse_whole(trimmed(*text), value)) {
+    refuse_at(node, "has " + std::string(name) + "=" + excerpt(*text) + "; expected a number" +
+                        (std::is_floating_point_v<Number> ? "" : " without fraction that fits"));
+  }
+  return value;
+}
+
+template std::optional<double> E57Xml::number_attribute(pugi::xml_node, const char*) const;
+template std::optional<std::int64_t> E57Xml::number_attribute(pugi::xml_node, const char*) const;
+template std::optional<std::uint64_t> E57Xml::number_attribute(pugi::xml_node, const char*) const;
+
+namespace {
+
+/// Names of the fields, in the order of E57Place.
+constexpr std::string_view kPlaceNames[] = {
+    "cartesianX",     "cartesianY",       "cartesianZ",         "cartesianInvalidState",
+    "sphericalRange", "sphericalAzimuth", "sphericalElevation", "sphericalInvalidState"};
+static_assert(std::size(kPlaceNames) == kE57Places);
+
+/// Greatest number of bytestreams; a data packet has no room for the lengths of more.
+constexpr std::size_t kMostStreams = (65536 - 6) / 2;
+
+E57Field integer_field(const E57Xml& xml, pugi::xml_node node, bool scaled) {
+  using Limits = std::numeric_limits<std::int64_t>;
+  E57Field field;
+  field.kind = E57Field::Kind::kInteger;
+  field.minimum = xml.number_attribute<std::int64_t>(node, "minimum").value_or(Limits::min());
+  const auto maximum = xml.number_attribute<std::int64_t>(node, "maximum").value_or(Limits::max());
+  if (maximum < field.minimum) {
+    xml.refuse_at(node, "goes from " + std::to_string(field.minimum) + " to " +
+                            std::to_string(maximum) + "; expected minimum <= maximum");
+  }
+  field.bits = static_cast<unsigned>(std::bit_width(static_cast<std::uint64_t>(maximum) -
+                                                    static_cast<std::uint64_t>(field.minimum)));
+  if (!scaled) return field;
+  field.scale = xml.number_attribute<double>(node, "scale").value_or(1);
+  field.offset = xml.number_attribute<double>(node, "offset").value_or(0);
+  if (!std::isfinite(field.scale) || field.scale == 0 || !std::isfinite(field.offset)) {
+    xml.refuse_at(node,
+                  "has a scale or an offset that is 0 or not finite; expected a scale "
+                  "other than 0");
+  }
+  return field;
+}
+
+E57Field float_field(const E57Xml& xml, pugi::xml_node node) {
+  const std::string_view precision = xml.attribute(node, "precision").value_or("double");
+  E57Field field;
+  if (precision == "single") {
+    field.kind = E57Field::Kind::kFloat32;
+    field.bits = 32;
+  } else if (precision == "double") {
+    field.kind = E57Field::Kind::kFloat64;
+    field.bits = 64;
+  } else {
+    xml.refuse_at(node, "has another precision; expected single or double");
+  }
+  return field;
+}
+
+E57Field field_of(const E57Xml& xml, pugi::xml_node node) {
+  const std::string_view type = xml.type_of(node);
+  if (type == "Float") return float_field(xml, node);
+  if (type == "Integer") return integer_field(xml, node, false);
+  if (type == "ScaledInteger") return integer_field(xml, node, true);
+  if (type == "String") return {};
+  xml.refuse_at(node,
+                "has a type that no point can have; expected Float, Integer, ScaledInteger or "
+                "String");
+}
+
+void note_place(const E57Xml& xml, pugi::xml_node node, E57Scan& scan) {
+  const auto* const found =
+      std::find(std::begin(kPlaceNames), std::end(kPlaceNames), std::string_view(node.name()));
+  if (found == std::end(kPlaceNames)) return;
+  std::uint32_t& place = scan.places[static_cast<std::size_t>(found - kPlaceNames)];
+  if (place != kNoE57Stream) xml.refuse_at(node, "stands twice; expected it once in a prototype");
+  if (scan.fields.back().kind == E57Field::Kind::kText) {
+    xml.refuse_at(node, "is a text; expected a number");
+  }
+  place = static_cast<std::uint32_t>(scan.fields.size() - 1);
+}
+
+bool is_branch(std::string_view type) { return type == "Structure" || type == "Vector"; }
+
+/// The next element in document order within `top` that is neither `node` nor inside it.
+pugi::xml_node next_behind(pugi::xml_node node, pugi::xml_node top) {
+  while (node != top && !node.next_sibling()) node = node.parent();
+  return node == top ? pugi::xml_node() : node.next_sibling();
+}
+
+/// Throws InputError where a scan has some but not all of three fields.
+void check_complete(const E57Xml& xml, pugi::xml_node prototype, const E57Scan& scan,
+                    E57Place first, E57Place second, E57Place third) {
+  const int found = int{scan.has(first)} + int{scan.has(second)} + int{scan.has(third)};
+  if (found == 0 || found == 3) return;
+  for (const E57Place place : {first, second, third}) {
+    if (scan.has(place)) continue;
+    xml.refuse_at(prototype, "has no " + std::string(kPlaceNames[place]) + " beside " +
+                                 std::string(kPlaceNames[first]) +
+                                 " or its like; expected all three coordinates");
+  }
+}
+
+/// Throws InputError for codecs other than bit packing, the only one that E57 1.0 defines and which
+/// needs no entry.
+void check_codecs(const E57Xml& xml, pugi::xml_node points) {
+  for (const pugi::xml_node codec : xml.find(points, "codecs", "Vector").children()) {
+    for (const pugi::xml_node part : codec.children()) {
+      const std::string_view name = part.name();
+      if (part.type() != pugi::node_element || name == "inputs" || name == "bitPackCodec") continue;
+      xml.refuse_at(part,
+                    "is a codec that is not read; expected bitPackCodec. Export the scan "
+                    "without compression, or as LAS or PLY");
+    }
+  }
+}
+
+/// Reads from the element `points` which bytestreams a scan has and which of them hold coordinates.
+/// Fields of extensions count as bytestreams and are not read.
+void read_e57_prototype(const E57Xml& xml, pugi::xml_node points, E57Scan& scan) {
+  const pugi::xml_node prototype = xml.get(points, "prototype", "Structure");
+  for (pugi::xml_node node = prototype.first_child(); node;) {
+    const bool is_element = node.type() == pugi::node_element;
+    if (is_element && is_branch(xml.type_of(node)) && node.first_child()) {
+      node = node.first_child();
+      continue;
+    }
+    if (is_element && !is_branch(xml.type_of(node))) {
+      if (scan.fields.size() == kMostStreams) {
+        xml.refuse_at(node, "is one field too many; expected at most " +
+                                std::to_string(kMostStreams) + " in a point");
+      }
+      scan.fields.push_back(field_of(xml, node));
+      if (node.parent() == prototype) note_place(xml, node, scan);
+    }
+    node = next_behind(node, prototype);
+  }
+  check_complete(xml, prototype, scan, kE57X, kE57Y, kE57Z);
+  check_complete(xml, prototype, scan, kE57Range, kE57Azimuth, kE57Elevation);
+  check_codecs(xml, points);
+}
+
+/// The numbers of a structure's children, all of which must exist.
+template <std::size_t count>
+std::array<double, count> numbers_of(const E57Xml& xml, pugi::xml_node structure,
+                                     const std::array<const char*, count>& names) {
+  std::array<double, count> numbers{};
+  for (std::size_t i = 0; i < count; ++i) {
+    numbers[i] = xml.number(xml.get(structure, names[i], "Float"));
+  }
+  return numbers;
+}
+
+std::optional<Pose> read_pose(const E57Xml& xml, pugi::xml_node scan) {
+  const pugi::xml_node pose = xml.find(scan, "pose", "Structure");
+  if (!pose) return std::nullopt;
+  std::array<double, 4> quaternion{0, 0, 0, 1};
+  std::array<double, 3> translation{};
+  if (const auto node = xml.find(pose, "rotation", "Structure")) {
+    quaternion = numbers_of<4>(xml, node, {"x", "y", "z", "w"});
+  }
+  if (const auto node = xml.find(pose, "translation", "Structure")) {
+    translation = numbers_of<3>(xml, node, {"x", "y", "z"});
+  }
+  Pose result;
+  const Objection objection = pose_of_quaternion(translation, quaternion, result);
+  if (!objection.text.empty()) xml.refuse_at(pose, objection.text);
+  return result;
+}
+
+/// Reads the declared bounds, which serve only for a warning, so that incomplete ones or those not
+/// of type Float count as absent.
+std::optional<Box> read_bounds(const E57Xml& xml, pugi::xml_node scan) {
+  const pugi::xml_node bounds = xml.find(scan, "cartesianBounds", "Structure");
+  constexpr const char* kNames[3][2] = {
+      {"xMinimum", "xMaximum"}, {"yMinimum", "yMaximum"}, {"zMinimum", "zMaximum"}};
+  Box box{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const pugi::xml_node least = bounds.child(kNames[axis][0]);
+    const pugi::xml_node greatest = bounds.child(kNames[axis][1]);
+    if (!least || !greatest || xml.type_of(least) != "Float" || xml.type_of(greatest) != "Float") {
+      return std::nullopt;
+    }
+    box.lo[axis] = xml.number(least);
+    box.hi[axis] = xml.number(greatest);
+  }
+  return box;
+}
+
+template <typename Number>
+Number required(const E57Xml& xml, pugi::xml_node node, const char* name) {
+  const auto value = xml.number_attribute<Number>(node, name);
+  if (!value) xml.refuse_at(node, "has no attribute " + std::string(name) + "; expected one");
+  return *value;
+}
+
+E57Scan read_scan(const E57Xml& xml, pugi::xml_node node, std::size_t number) {
+  E57Scan scan;
+  scan.number = number;
+  scan.places.fill(kNoE57Stream);
+  const pugi::xml_node points = xml.find(node, "points", "CompressedVector");
+  if (!points) return scan;
+  scan.records = required<std::uint64_t>(xml, points, "recordCount");
+  scan.file_offset = required<std::uint64_t>(xml, points, "fileOffset");
+  read_e57_prototype(xml, points, scan);
+  scan.pose = read_pose(xml, node);
+  scan.bounds = read_bounds(xml, node);
+  return scan;
+}
+
+}  // namespace
+
+E57Document read_e57_document(E57Container& file) {
+  const E57Xml xml(file);
+  E57Document document;
+  if (const auto node = xml.find(xml.root(), "coordinateMetadata", "String")) {
+    document.crs = xml.text(node);
+  }
+  for (const pugi::xml_node node : xml.find(xml.root(), "data3D", "Vector").children()) {
+    if (node.type() != pugi::node_element) continue;
+    if (std::string_view(node.name()) != "vectorChild" || xml.type_of(node) != "Structure") {
+      xml.refuse_at(node, "is no scan; expected vectorChild of type Structure");
+    }
+    document.scans.push_back(read_scan(xml, node, document.scans.size() + 1));
+  }
+  return document;
+}
+
+}  // namespace clearway

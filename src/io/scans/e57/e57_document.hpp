@@ -1,0 +1,139 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <pugixml.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "clearway/box.hpp"
+#include "clearway/pose.hpp"
+#include "io/scans/e57/e57_file.hpp"
+
+namespace clearway {
+
+/// The part of each record that one bytestream of a scan holds.
+struct E57Field {
+  enum class Kind { kInteger, kFloat32, kFloat64, kText };
+
+  Kind kind = Kind::kText;
+  unsigned bits = 8;         ///< bits of a record; for a text, the least number
+  std::int64_t minimum = 0;  ///< kInteger: value that the stored bits are added to
+  double scale = 1;          ///< kInteger: the value is integer * scale + offset
+  double offset = 0;
+
+  /// Bytes of so many records in the bytestream; at most 2^60, more than any file has.
+  std::uint64_t bytes_of(std::uint64_t records) const {
+    constexpr std::uint64_t kMost = std::uint64_t{1} << 60;
+    return bits > 0 && records > kMost / bits ? kMost : (records * bits + 7) / 8;
+  }
+};
+
+/// The fields from which a point's position is computed; indices into E57Scan::places.
+enum E57Place : std::uint8_t {
+  kE57X,
+  kE57Y,
+  kE57Z,
+  kE57CartesianState,
+  kE57Range,
+  kE57Azimuth,
+  kE57Elevation,
+  kE57SphericalState,
+  kE57Places
+};
+
+/// Stands in E57Scan::places for a field that the scan lacks.
+inline constexpr std::uint32_t kNoE57Stream = std::numeric_limits<std::uint32_t>::max();
+
+/// One scan as the XML section describes it, not yet checked against its binary section.
+struct E57Scan {
+  std::size_t number = 1;  ///< number of the scan in the file, from 1
+  std::uint64_t records = 0;
+  std::uint64_t file_offset = 0;                 ///< physical position of the binary section
+  std::vector<E57Field> fields;                  ///< one per bytestream, in their order
+  std::array<std::uint32_t, kE57Places> places;  ///< indices into fields
+  std::optional<Pose> pose;
+  std::optional<Box> bounds;  ///< declared bounds of the Cartesian coordinates
+
+  bool has(E57Place place) const { return places[place] != kNoE57Stream; }
+  bool is_cartesian() const { return has(kE57X); }
+  bool is_spherical() const { return has(kE57Range); }
+  /// Whether the scan's packets need no bytes, because every field has only one value.
+  bool takes_no_bytes() const {
+    for (const E57Field& field : fields) {
+      if (field.bits > 0) return false;
+    }
+    return true;
+  }
+  bool has_coordinates() const { return is_cartesian() || is_spherical(); }
+  std::string name() const { return "scan " + std::to_string(number); }
+};
+
+struct E57Document {
+  std::vector<E57Scan> scans;
+  std::string crs;  ///< content of e57Root/coordinateMetadata
+};
+
+struct E57Container;
+
+/// Parses the XML section. Throws InputError.
+E57Document read_e57_document(E57Container& file);
+
+/// The XML section of an E57 file. Its functions throw only InputError, with the byte in the file.
+/// pugixml skips a document type definition and expands no entity that one declares, so a small
+/// section cannot grow. It does not recurse, so deep nesting is harmless.
+class E57Xml {
+ public:
+  static constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 26;
+  /// Greatest number of tags and attributes together; pugixml keeps up to 64 bytes for each.
+  static constexpr std::uint64_t kMostMarkup = std::uint64_t{1} << 21;
+
+  explicit E57Xml(E57Container& file);
+
+  /// The element e57Root.
+  pugi::xml_node root() const { return root_; }
+
+  [[noreturn]] void refuse_at(pugi::xml_node node, const std::string& what) const;
+
+  /// The child of that name, or an empty node. Throws for a second child of the name and for
+  /// another E57 type.
+  pugi::xml_node find(pugi::xml_node parent, const char* name, std::string_view type) const;
+  /// The child of that name. Throws for a missing or second child of the name and for another E57
+  /// type.
+  pugi::xml_node get(pugi::xml_node parent, const char* name, std::string_view type) const;
+  std::string_view type_of(pugi::xml_node node) const;
+
+  /// The number in an element of type Float or Integer; 0 where the element is empty, as E57
+  /// defines.
+  double number(pugi::xml_node node) const;
+  std::string text(pugi::xml_node node) const;
+
+  /// An attribute as text or number; nullopt where it is missing.
+  std::optional<std::string_view> attribute(pugi::xml_node node, const char* name) const;
+  template <typename Number>
+  std::optional<Number> number_attribute(pugi::xml_node node, const char* name) const;
+
+ private:
+  void parse();
+  void check_declaration() const;
+  std::uint64_t byte_of(pugi::xml_node node) const;
+  [[noreturn]] void refuse_missing(pugi::xml_node parent, const char* name,
+                                   std::string_view type) const;
+
+  const E57Pages& pages_;
+  std::uint64_t start_;  ///< logical position of the section
+  std::vector<char> bytes_;
+  pugi::xml_document document_;
+  pugi::xml_node root_;
+};
+
+extern template std::optional<double> E57Xml::number_attribute(pugi::xml_node, const char*) const;
+extern template std::optional<std::int64_t> E57Xml::number_attribute(pugi::xml_node,
+                                                                     const char*) const;
+extern template std::optional<std::uint64_t> E57Xml::number_attribute(pugi::xml_node,
+                                                                      const char*) const;
+
+}  // namespace clearway

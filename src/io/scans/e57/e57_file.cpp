@@ -1,0 +1,223 @@
+#include "io/scans/e57/e57_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include "io/files/bytes.hpp"
+#include "io/files/input_error.hpp"
+
+#if defined(__x86_64__)
+#include <nmmintrin.h>
+#endif
+
+namespace clearway {
+namespace {
+
+constexpr std::uint32_t kReflectedPolynomial = 0x82F63B78;
+using Tables = std::array<std::array<std::uint32_t, 256>, 8>;
+
+/// tables[k][b]: what byte b adds to the remainder when k more bytes follow it.
+constexpr Tables make_tables() {
+  Tables tables{};
+  for (std::uint32_t b = 0; b < 256; ++b) {
+    std::uint32_t remainder = b;
+    for (int bit = 0; bit < 8; ++bit) {
+      remainder = (remainder >> 1) ^ ((remainder & 1) != 0 ? kReflectedPolynomial : 0);
+    }
+    tables[0][b] = remainder;
+  }
+  for (std::size_t k = 1; k < tables.size(); ++k) {
+    for (std::size_t b = 0; b < 256; ++b) {
+      const std::uint32_t before = tables[k - 1][b];
+      tables[k][b] = (before >> 8) ^ tables[0][before & 0xFF];
+    }
+  }
+  return tables;
+}
+
+constexpr Tables kTables = make_tables();
+
+#if defined(__x86_64__)
+__attribute__((target("sse4.2"))) std::uint32_t crc32c_by_instruction(
+    std::span<const std::byte> bytes) {
+  std::uint64_t remainder = 0xFFFFFFFF;
+  const std::byte* at = bytes.data();
+  std::size_t left = bytes.size();
+  for (; left >= 8; left -= 8, at += 8)
+    remainder = _mm_crc32_u64(remainder, load<std::uint64_t>(at));
+  auto narrow = static_cast<std::uint32_t>(remainder);
+  for (; left > 0; --left, ++at) narrow = _mm_crc32_u8(narrow, load<std::uint8_t>(at));
+  return ~narrow;
+}
+#endif
+
+}  // namespace
+
+std::uint32_t crc32c_by_table(std::span<const std::byte> bytes) {
+  std::uint32_t remainder = 0xFFFFFFFF;
+  const std::byte* at = bytes.data();
+  std::size_t left = bytes.size();
+  for (; left >= 8; left -= 8, at += 8) {
+    const std::uint64_t word = load<std::uint64_t>(at) ^ remainder;
+    remainder = 0;
+    for (std::size_t k = 0; k < 8; ++k) remainder ^= kTables[7 - k][(word >> (8 * k)) & 0xFF];
+  }
+  for (; left > 0; --left, ++at) {
+    remainder = (remainder >> 8) ^ kTables[0][(remainder ^ load<std::uint8_t>(at)) & 0xFF];
+  }
+  return ~remainder;
+}
+
+std::uint32_t crc32c(std::span<const std::byte> bytes) {
+#if defined(__x86_64__)
+  static const bool has_instruction = __builtin_cpu_supports("sse4.2") != 0;
+  if (has_instruction) return crc32c_by_instruction(bytes);
+#endif
+  return crc32c_by_table(bytes);
+}
+
+namespace {
+
+std::string hexadecimal(std::uint32_t value) {
+  char digits[16];
+  std::snprintf(digits, sizeof digits, "0x%08X", value);
+  return digits;
+}
+
+}  // namespace
+
+E57Pages::E57Pages(File file, std::size_t page_bytes)
+    : file_(std::move(file)),
+      page_(page_bytes),
+      content_(page_bytes - kChecksumBytes),
+      pages_(file_.size_bytes() / page_bytes),
+      window_(std::make_unique<std::byte[]>(kWindowBytes)) {}
+
+std::optional<std::uint64_t> E57Pages::logical(std::uint64_t physical) const {
+  if (physical >= pages_ * page_ || physical % page_ >= content_) return std::nullopt;
+  return physical / page_ * content_ + physical % page_;
+}
+
+void E57Pages::read(std::uint64_t at, std::span<std::byte> out, const char* what) {
+  if (at > size() || out.size() > size() - at) {
+    refuse_byte(name(), physical(at),
+                std::string(what) + " of " + std::to_string(out.size()) +
+                    " bytes; expected it to end before the file, which has " +
+                    std::to_string(pages_ * page_) + " bytes");
+  }
+  while (!out.empty()) {
+    const std::size_t start = at % content_;
+    const auto page = verified_page(at / content_).subspan(start);
+    const std::size_t count = std::min(page.size(), out.size());
+    std::memcpy(out.data(), page.data(), count);
+    out = out.subspan(count);
+    at += count;
+  }
+}
+
+std::span<const std::byte> E57Pages::verified_page(std::uint64_t page) {
+  if (page < first_ || page - first_ >= verified_.size()) {
+    const std::size_t count = std::min<std::uint64_t>(kWindowBytes / page_, pages_ - page);
+    file_.read_at(page * page_, {window_.get(), count * page_});
+    first_ = page;
+    verified_.assign(count, false);
+  }
+  const std::size_t index = page - first_;
+  const std::byte* bytes = window_.get() + index * page_;
+  if (!verified_[index]) {
+    const std::uint32_t computed = crc32c({bytes, content_});
+    const auto stored = load_swapped<std::uint32_t>(bytes + content_);
+    if (computed != stored) {
+      refuse_byte(name(), page * page_,
+                  "the page of " + std::to_string(page_) + " bytes has checksum " +
+                      hexadecimal(computed) + "; expected " + hexadecimal(stored) +
+                      " as at its end. The file is damaged: copy or export it again");
+    }
+    verified_[index] = true;
+  }
+  return {bytes, content_};
+}
+
+namespace {
+
+constexpr std::uint64_t kLeastPage = 128;
+constexpr std::uint64_t kLargestPage = 65536;
+static_assert(kLargestPage <= E57Pages::kWindowBytes);
+
+using Header = std::array<std::byte, kE57HeaderBytes>;
+
+Header read_header(const File& file) {
+  const std::uint64_t size = file.size_bytes();
+  if (size < kE57HeaderBytes) {
+    refuse(file.name(), "ends at byte " + std::to_string(size) + "; expected an E57 header of " +
+                            std::to_string(kE57HeaderBytes) + " bytes");
+  }
+  Header header;
+  file.read_at(0, header);
+  return header;
+}
+
+void check_kind(const std::string& name, const Header& header) {
+  constexpr std::string_view kSignature = "ASTM-E57";
+  if (std::memcmp(header.data(), kSignature.data(), kSignature.size()) != 0) {
+    refuse_byte(name, 0, "expected ASTM-E57, the first bytes of an E57 file");
+  }
+  const auto major = load<std::uint32_t>(header.data() + 8);
+  const auto minor = load<std::uint32_t>(header.data() + 12);
+  if (major != 1 || minor != 0) {
+    refuse_byte(name, 8,
+                "E57 version " + std::to_string(major) + "." + std::to_string(minor) +
+                    "; expected 1.0. Export the scan as E57 1.0, LAS or PLY");
+  }
+}
+
+std::size_t page_bytes_of(const std::string& name, const Header& header) {
+  const auto page = load<std::uint64_t>(header.data() + 40);
+  if (!std::has_single_bit(page) || page < kLeastPage || page > kLargestPage) {
+    refuse_byte(name, 40,
+                "pages of " + std::to_string(page) +
+                    " bytes; expected 1024, or another power of two from " +
+                    std::to_string(kLeastPage) + " to " + std::to_string(kLargestPage));
+  }
+  return page;
+}
+
+void check_size(const File& file, const Header& header, std::size_t page) {
+  const auto declared = load<std::uint64_t>(header.data() + 16);
+  const std::uint64_t size = file.size_bytes();
+  if (size != declared) {
+    refuse(file.name(), "has " + std::to_string(size) + " bytes; expected " +
+                            std::to_string(declared) +
+                            " as its header says. Copy or export the file again");
+  }
+  if (size % page != 0) {
+    refuse_byte(file.name(), 16,
+                "a file of " + std::to_string(size) + " bytes; expected whole pages of " +
+                    std::to_string(page) + " bytes");
+  }
+}
+
+}  // namespace
+
+E57Container open_e57(File file) {
+  Header header = read_header(file);
+  check_kind(file.name(), header);
+  const std::size_t page = page_bytes_of(file.name(), header);
+  check_size(file, header, page);
+  E57Pages pages(std::move(file), page);
+  pages.read(0, header, "the header");  // read again, verified by the page's checksum
+  const auto xml_offset = load<std::uint64_t>(header.data() + 24);
+  const auto xml_start = pages.logical(xml_offset);
+  if (!xml_start || *xml_start < kE57HeaderBytes) {
+    refuse_byte(pages.name(), 24,
+                "the XML section is at byte " + std::to_string(xml_offset) +
+                    "; expected a place behind the header, within the file and in no checksum");
+  }
+  return {std::move(pages), *xml_start, load<std::uint64_t>(header.data() + 32)};
+}
+
+}  // namespace clearway

@@ -1,0 +1,223 @@
+#include "io/scans/e57/e57_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clearway/progress.hpp"
+#include "core/util/format.hpp"
+#include "io/files/input_error.hpp"
+#include "io/scans/declared_box.hpp"
+#include "io/scans/e57/e57_file.hpp"
+#include "io/scans/e57/e57_scan_reader.hpp"
+#include "io/scans/scan_crs.hpp"
+
+namespace clearway {
+namespace {
+
+/// Collects remarks on the scans of a file. Memory does not grow with their number.
+class E57Remarks {
+ public:
+  /// Adds a scan that was read completely.
+  void add(const E57Scan& scan, const E57Findings& findings);
+  /// Adds a scan that has no coordinates and was not read.
+  void add_without_coordinates() { ++scans_, ++without_coordinates_; }
+
+  /// The remarks. file: the name with which each text begins.
+  std::vector<Message> messages(const std::string& file) const;
+
+ private:
+  std::uint64_t scans_ = 0, posed_ = 0, empty_ = 0, without_coordinates_ = 0;
+  std::uint64_t records_ = 0, absent_ = 0;
+  std::uint64_t beyond_bounds_ = 0;
+  std::string first_beyond_bounds_;
+};
+
+Message note(std::string text, std::vector<std::pair<std::string, double>> numbers) {
+  return {Message::Severity::kNote, {}, std::move(text), std::move(numbers)};
+}
+
+std::string scans(std::uint64_t count) {
+  return format_count(count) + (count == 1 ? " scan" : " scans");
+}
+
+void E57Remarks::add(const E57Scan& scan, const E57Findings& findings) {
+  ++scans_;
+  records_ += scan.records;
+  absent_ += findings.absent;
+  if (scan.records == 0) ++empty_;
+  if (scan.pose && scan.records > 0) ++posed_;
+  // By the standard, bounds are those of the points before the pose is applied; some writers give
+  // those after it.
+  if (!scan.bounds || !goes_far_beyond(*scan.bounds, findings.own) ||
+      (findings.posed && !goes_far_beyond(*scan.bounds, findings.posed))) {
+    return;
+  }
+  if (beyond_bounds_++ == 0) {
+    first_beyond_bounds_ = scan.name() + " declares " + declared_box_text(*scan.bounds) +
+                           " and has " + declared_box_text(*findings.own);
+  }
+}
+
+std::vector<Message> E57Remarks::messages(const std::string& file) const {
+  std::vector<Message> all;
+  const auto number = [](std::uint64_t value) { return static_cast<double>(value); };
+  if (scans_ > 1 || posed_ > 0) {
+    const std::string poses = posed_ == 0   ? "; none has a pose"
+                              : posed_ == 1 ? "; 1 pose is applied"
+                                            : "; " + format_count(posed_) + " poses are applied";
+    all.push_back(note(file + ": " + scans(scans_) + poses,
+                       {{"scans", number(scans_)}, {"poses", number(posed_)}}));
+  }
+  if (empty_ > 0) {
+    all.push_back(note(file + ": " + scans(empty_) + " without points, of " + format_count(scans_),
+                       {{"empty_scans", number(empty_)}, {"scans", number(scans_)}}));
+  }
+  if (without_coordinates_ > 0) {
+    all.push_back(note(
+        file + ": " + scans(without_coordinates_) + " without coordinates, of " +
+            format_count(scans_) + "; their records are not counted",
+        {{"scans_without_coordinates", number(without_coordinates_)}, {"scans", number(scans_)}}));
+  }
+  if (absent_ > 0) {
+    all.push_back(note(file + ": " + format_count(absent_) + " of " + format_count(records_) +
+                           " records have no valid point",
+                       {{"absent", number(absent_)}, {"records", number(records_)}}));
+  }
+  if (beyond_bounds_ > 0) {
+    all.push_back({Message::Severity::kWarning,
+                   "declared-bounds",
+                   file + ": " + scans(beyond_bounds_) +
+                       " with points far beyond the declared bounds (" + first_beyond_bounds_ +
+                       ", metres). Is the unit of length right?",
+                   {{"scans_beyond_bounds", number(beyond_bounds_)}}});
+  }
+  return all;
+}
+
+/// Throws InputError where scans share packets, with which a small file could hold any number of
+/// points.
+void refuse_shared_sections(const std::string& name, const std::vector<E57Scan>& scans,
+                            const std::vector<E57Extent>& extents) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    if (scans[i].records > 0) order.push_back(i);
+  }
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(extents[a].start, a) < std::pair(extents[b].start, b);
+  });
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    const std::size_t before = order[k - 1], behind = order[k];
+    if (extents[before].end <= extents[behind].start) continue;
+    refuse_byte(name, scans[behind].file_offset,
+                scans[behind].name() + " shares bytes with " + scans[before].name() +
+                    "; expected points of its own");
+  }
+}
+
+/// Throws InputError where scans whose points take no bytes have more of them than a batch, because
+/// a few bytes of XML could declare any number.
+void refuse_points_from_nothing(const std::string& name, const std::vector<E57Scan>& scans) {
+  std::uint64_t records = 0;
+  for (const E57Scan& scan : scans) {
+    if (!scan.takes_no_bytes()) continue;
+    if (scan.records > PointReader::kBatchPoints - records) {
+      refuse_byte(name, scan.file_offset,
+                  scan.name() + " has " + std::to_string(scan.records) +
+                      " records that take no byte; expected at most " +
+                      std::to_string(PointReader::kBatchPoints) + " of them in a file");
+    }
+    records += scan.records;
+  }
+}
+
+Message foot_warning(const std::string& name) {
+  return {Message::Severity::kWarning, "e57-unit",
+          name +
+              ": its coordinate reference system is in feet, but lengths in E57 are metres by the "
+              "standard. They are taken for feet: check them"};
+}
+
+class E57Reader final : public PointReader {
+ public:
+  explicit E57Reader(E57Container file) : pages_(std::move(file.pages)) {}
+
+  void open(E57Document document) {
+    scans_ = std::move(document.scans);
+    std::uint64_t points = 0;
+    for (const E57Scan& scan : scans_) {
+      extents_.push_back(find_e57_section(pages_, scan));
+      if (scan.has_coordinates()) points += scan.records;
+    }
+    refuse_shared_sections(pages_.name(), scans_, extents_);
+    refuse_points_from_nothing(pages_.name(), scans_);
+    info_.declared_points = points;
+    info_.crs_wkt = std::move(document.crs);
+    const CrsUnits units = units_of_wkt(info_.crs_wkt);
+    info_.unit = units.horizontal;
+    info_.unit_trouble = units.trouble;
+    if (info_.unit == LengthUnit::kUnknown) info_.unit = LengthUnit::kMetre;
+  }
+
+  const CloudInfo& info() const override { return info_; }
+
+  bool read(PointBatch& batch) override {
+    batch.quanta.clear();
+    batch.positions.clear();
+    batch.absent.clear();
+    for (; scan_ < scans_.size(); ++scan_, reader_.reset()) {
+      if (!scans_[scan_].has_coordinates()) {
+        note_unread(scans_[scan_]);
+        continue;
+      }
+      if (!reader_)
+        reader_ = std::make_unique<E57ScanReader>(pages_, scans_[scan_], extents_[scan_]);
+      if (reader_->read(batch)) return true;
+      remarks_.add(scans_[scan_], reader_->findings());
+    }
+    info_.remarks = remarks_.messages(pages_.name());
+    if (info_.unit == LengthUnit::kFoot || info_.unit == LengthUnit::kUsSurveyFoot) {
+      info_.remarks.push_back(foot_warning(pages_.name()));
+    }
+    return false;
+  }
+
+  void rewind() override {
+    scan_ = 0;
+    reader_.reset();
+    remarks_ = {};
+  }
+
+ private:
+  void note_unread(const E57Scan& scan) {
+    if (scan.records == 0) {
+      remarks_.add(scan, {});
+    } else {
+      remarks_.add_without_coordinates();
+    }
+  }
+
+  E57Pages pages_;
+  std::vector<E57Scan> scans_;
+  std::vector<E57Extent> extents_;
+  CloudInfo info_;
+  E57Remarks remarks_;
+  std::size_t scan_ = 0;
+  std::unique_ptr<E57ScanReader> reader_;  ///< reader of scans_[scan_]; null before its first point
+};
+
+}  // namespace
+
+std::unique_ptr<PointReader> read_e57(File file) {
+  E57Container container = open_e57(std::move(file));
+  E57Document document = read_e57_document(container);
+  auto reader = std::make_unique<E57Reader>(std::move(container));
+  reader->open(std::move(document));
+  return reader;
+}
+
+}  // namespace clearway

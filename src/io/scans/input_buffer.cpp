@@ -1,0 +1,120 @@
+#include "io/scans/input_buffer.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "clearway/error.hpp"
+#include "io/files/input_error.hpp"
+
+namespace clearway {
+
+InputBuffer::InputBuffer(File file, Access access)
+    : file_(std::move(file)), buffer_(std::make_unique<std::byte[]>(kCapacity)) {
+  if (access == Access::kSeek) size_ = file_.size_bytes();
+}
+
+/// Loads more bytes behind those that are not consumed yet. Returns false at the end of the file.
+bool InputBuffer::fill() {
+  if (begin_ > 0) {
+    std::memmove(buffer_.get(), buffer_.get() + begin_, end_ - begin_);
+    end_ -= begin_;
+    begin_ = 0;
+  }
+  std::span<std::byte> room(buffer_.get() + end_, kCapacity - end_);
+  if (size_) {
+    room = room.first(std::min<std::uint64_t>(room.size(), *size_ - loaded_));
+    file_.read_at(loaded_, room);
+  } else {
+    room = room.first(file_.read_some(room));
+  }
+  end_ += room.size();
+  loaded_ += room.size();
+  return !room.empty();
+}
+
+std::span<const std::byte> InputBuffer::take(std::size_t count) {
+  while (end_ - begin_ < count) {
+    if (!fill()) return {};
+  }
+  const std::byte* bytes = buffer_.get() + begin_;
+  begin_ += count;
+  return {bytes, count};
+}
+
+std::span<const std::byte> InputBuffer::take_some() {
+  if (begin_ == end_ && !fill()) return {};
+  return take(end_ - begin_);
+}
+
+std::span<const std::byte> InputBuffer::peek(std::size_t count) {
+  while (end_ - begin_ < count && fill()) continue;
+  return {buffer_.get() + begin_, std::min(count, end_ - begin_)};
+}
+
+bool InputBuffer::skip(std::uint64_t count) {
+  const std::size_t buffered = std::min<std::uint64_t>(count, end_ - begin_);
+  begin_ += buffered;
+  count -= buffered;
+  if (size_ && count > 0) {
+    const bool there = count <= *size_ - loaded_;
+    loaded_ += there ? count : *size_ - loaded_;
+    return there;
+  }
+  while (count > 0) {
+    if (!fill()) return false;
+    const std::size_t step = std::min<std::uint64_t>(count, end_ - begin_);
+    begin_ += step;
+    count -= step;
+  }
+  return true;
+}
+
+bool InputBuffer::next_line(std::string_view& line) {
+  std::size_t searched = 0;
+  const std::byte* found = nullptr;
+  for (;;) {
+    const std::size_t available = end_ - begin_;
+    const std::byte* text = buffer_.get() + begin_;
+    if (available > searched) {
+      found =
+          static_cast<const std::byte*>(std::memchr(text + searched, '\n', available - searched));
+    }
+    if (found || available > kLongestLine) break;
+    searched = available;
+    if (!fill()) break;
+  }
+  const char* text = reinterpret_cast<const char*>(buffer_.get() + begin_);
+  const std::size_t length =
+      found ? static_cast<std::size_t>(reinterpret_cast<const char*>(found) - text) : end_ - begin_;
+  if (!found && length == 0) return false;
+  ++line_;
+  if (length > kLongestLine) {
+    refuse_line(name(), line_, "is longer than 65536 bytes; expected lines of text");
+  }
+  line_terminated_ = found != nullptr;
+  begin_ += length + (found ? 1 : 0);
+  line = {text, length};
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return true;
+}
+
+void InputBuffer::skip_byte_order_mark() {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  const auto bytes = take(kMark.size());
+  if (!bytes.empty() && std::memcmp(bytes.data(), kMark.data(), kMark.size()) != 0) {
+    begin_ -= kMark.size();
+  }
+}
+
+void InputBuffer::return_to(const Mark& mark) {
+  if (!can_seek()) {
+    throw ResourceError(name() + ": cannot be read a second time, as it is not a regular file");
+  }
+  begin_ = end_ = 0;
+  loaded_ = mark.position;
+  line_ = mark.line;
+  line_terminated_ = true;
+}
+
+}  // namespace clearway

@@ -1,0 +1,289 @@
+#include "io/scans/las/las_header.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "io/files/bytes.hpp"
+#include "io/files/input_error.hpp"
+#include "io/scans/scan_crs.hpp"
+
+namespace clearway {
+namespace {
+
+void keep_quiet(void*, int, const char*) {}
+
+/// The unit, in metres, of a projected coordinate reference system with this EPSG code; nullopt
+/// where PROJ's database is not installed or lacks the code.
+std::optional<double> unit_of_epsg(std::uint16_t code) {
+  const ProjContext context = start_proj(keep_quiet, nullptr);
+  if (!context) return std::nullopt;
+  const ProjObject crs(proj_create_from_database(
+      context.get(), "EPSG", std::to_string(code).c_str(), PJ_CATEGORY_CRS, 0, nullptr));
+  if (!crs) return std::nullopt;
+  const double metres = unit_of_axis(context.get(), crs.get(), 0);
+  return metres != 0 ? std::optional(metres) : std::nullopt;
+}
+
+// Key of the model's type: 1 projected, 2 geographic, 3 geocentric.
+constexpr std::uint16_t kModelType = 1024;
+constexpr std::uint16_t kGeodeticSystem = 2048;
+constexpr std::uint16_t kGeodeticLinearUnit = 2052;
+constexpr std::uint16_t kProjectedSystem = 3072;
+constexpr std::uint16_t kProjectedLinearUnit = 3076;
+constexpr std::uint16_t kVerticalUnit = 4099;
+constexpr std::uint16_t kUserDefined = 32767;
+constexpr std::uint16_t kFirstUnit = 9000, kLastUnit = 9099;  // EPSG codes of units of length
+
+/// The value of a key that holds one short; 0 where it is missing.
+std::uint16_t value_of(std::span<const std::byte> directory, std::uint16_t wanted) {
+  if (directory.size() < 8) return 0;
+  const std::size_t declared = load<std::uint16_t>(directory.data() + 6);
+  const std::size_t keys = std::min(declared, directory.size() / 8 - 1);
+  for (std::size_t i = 1; i <= keys; ++i) {
+    const std::byte* entry = directory.data() + 8 * i;
+    const bool is_short = load<std::uint16_t>(entry + 2) == 0;
+    if (is_short && load<std::uint16_t>(entry) == wanted) return load<std::uint16_t>(entry + 6);
+  }
+  return 0;
+}
+
+/// The unit of a GeoTIFF key; code 0 names none.
+StatedUnit unit_of(std::uint16_t code) {
+  switch (code) {
+    case 0:
+      return {};
+    case 9001:
+      return {LengthUnit::kMetre, {}};
+    case 9002:
+      return {LengthUnit::kFoot, {}};
+    case 9003:
+      return {LengthUnit::kUsSurveyFoot, {}};
+    default:
+      break;
+  }
+  // Some files have the code of a projection here.
+  const bool is_unit = code >= kFirstUnit && code <= kLastUnit;
+  return {LengthUnit::kUnknown, is_unit ? "the GeoTIFF unit " + std::to_string(code) : ""};
+}
+
+/// How the code of the projection contradicts the unit that a key names; empty where it does not.
+std::string doubt_of(std::span<const std::byte> keys) {
+  const std::uint16_t code = value_of(keys, kProjectedSystem);
+  const StatedUnit named = unit_of(value_of(keys, kProjectedLinearUnit));
+  if (code == 0 || code == kUserDefined || value_of(keys, kModelType) == 2) return {};
+  if (named.unit == LengthUnit::kUnknown) return {};
+  const auto metres = unit_of_epsg(code);
+  if (!metres || unit_of_length(*metres).unit == named.unit) return {};
+  return "its GeoTIFF keys contradict each other: they name the unit " + to_string(named.unit) +
+         ", and EPSG:" + std::to_string(code) + ", whose unit is " + units_text(*metres) +
+         ". It is taken to be in the named unit";
+}
+
+StatedUnit plane_unit(std::span<const std::byte> keys) {
+  const std::uint16_t model = value_of(keys, kModelType);
+  const std::uint16_t unit = value_of(keys, kProjectedLinearUnit);
+  const std::uint16_t projection = value_of(keys, kProjectedSystem);
+  if (model == 2) return {LengthUnit::kDegrees, {}};
+  if (model == 3) return unit_of(value_of(keys, kGeodeticLinearUnit));
+  if (model == 0 && unit == 0 && projection == 0 && value_of(keys, kGeodeticSystem) != 0) {
+    return {LengthUnit::kDegrees, {}};
+  }
+  const bool has_unit = unit >= kFirstUnit && unit <= kLastUnit;
+  if (!has_unit && projection != 0 && projection != kUserDefined) {
+    if (const auto metres = unit_of_epsg(projection)) return unit_of_length(*metres);
+  }
+  return unit_of(unit);
+}
+
+}  // namespace
+
+CrsUnits units_of_geotiff(std::span<const std::byte> key_directory) {
+  CrsUnits units =
+      crs_units(plane_unit(key_directory), unit_of(value_of(key_directory, kVerticalUnit)));
+  if (units.doubt.empty()) units.doubt = doubt_of(key_directory);
+  return units;
+}
+
+std::uint16_t epsg_of_geotiff(std::span<const std::byte> key_directory) {
+  const bool geographic = value_of(key_directory, kModelType) >= 2;
+  const std::uint16_t projected = value_of(key_directory, kProjectedSystem);
+  const std::uint16_t code =
+      projected == 0 || geographic ? value_of(key_directory, kGeodeticSystem) : projected;
+  return code == kUserDefined ? 0 : code;
+}
+
+namespace {
+
+constexpr std::size_t kHeaderBytes10 = 227;  // size of the header of LAS 1.0 to 1.2
+constexpr std::size_t kHeaderBytes13 = 235;
+constexpr std::size_t kHeaderBytes14 = 375;
+constexpr std::uint16_t kSmallestRecord[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
+constexpr std::uint16_t kInternalWaveforms = 2;  // bit of the global encoding
+// Bits of byte 104 that hold the point format; LAZ sets one of the others.
+constexpr unsigned kFormatBits = 0x3F;
+
+std::span<const std::byte> take_header(InputBuffer& input, std::size_t bytes) {
+  const auto taken = input.take(bytes);
+  if (taken.empty())
+    refuse_cut_las(input, "a LAS header of at least " + std::to_string(bytes) + " bytes");
+  return taken;
+}
+
+/// Checks those fields of the first 227 bytes that decide how the rest is read.
+void check_kind(const InputBuffer& input, const std::byte* header) {
+  if (std::memcmp(header, "LASF", 4) != 0) {
+    refuse_byte(input.name(), 0, "expected the signature LASF of a LAS file");
+  }
+  const unsigned major = load<std::uint8_t>(header + 24);
+  const unsigned minor = load<std::uint8_t>(header + 25);
+  if (major != 1 || minor > 4) {
+    refuse_byte(input.name(), 24,
+                "version " + std::to_string(major) + "." + std::to_string(minor) +
+                    "; expected LAS 1.0 to 1.4");
+  }
+  const unsigned format = load<std::uint8_t>(header + 104) & kFormatBits;
+  if ((load<std::uint8_t>(header + 104) & ~kFormatBits) == 0xC0u) {
+    refuse_byte(input.name(), 104,
+                "the points are compressed as before LASzip 1.0; expected LAZ as LASzip writes it "
+                "since 2010. Compress them again");
+  }
+  if (format >= std::size(kSmallestRecord)) {
+    refuse_byte(input.name(), 104, "point format " + std::to_string(format) + "; expected 0 to 10");
+  }
+  const unsigned record = load<std::uint16_t>(header + 105);
+  if (record < kSmallestRecord[format]) {
+    refuse_byte(input.name(), 105,
+                "point records of " + std::to_string(record) + " bytes; expected at least " +
+                    std::to_string(kSmallestRecord[format]) + " for point format " +
+                    std::to_string(format));
+  }
+}
+
+Quantisation read_quantisation(const InputBuffer& input, const std::byte* header) {
+  Quantisation result;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    const unsigned scale_byte = 131 + 8 * axis;
+    const unsigned offset_byte = 155 + 8 * axis;
+    result.scale[axis] = load<double>(header + scale_byte);
+    result.offset[axis] = load<double>(header + offset_byte);
+    const std::string name(1, static_cast<char>('x' + axis));
+    if (!std::isfinite(result.scale[axis]) || result.scale[axis] <= 0) {
+      refuse_byte(input.name(), scale_byte,
+                  name + " scale is " + shown(result.scale[axis]) + "; expected a positive number");
+    }
+    if (!std::isfinite(result.offset[axis])) {
+      refuse_byte(input.name(), offset_byte,
+                  name + " offset is " + shown(result.offset[axis]) + "; expected a finite number");
+    }
+  }
+  return result;
+}
+
+/// Reads the bounds, which are stored as the greatest and the least of x, of y and of z.
+std::optional<Box> read_box(const std::byte* bytes) {
+  Box box;
+  for (int k = 0; k < 3; ++k) {
+    box.hi[k] = load<double>(bytes + 179 + 16 * k);
+    box.lo[k] = load<double>(bytes + 187 + 16 * k);
+    if (!std::isfinite(box.lo[k]) || !std::isfinite(box.hi[k])) return std::nullopt;
+  }
+  return box;
+}
+
+/// Reads the fields of version 1.4. rest: the header from byte 227 on.
+void read_version_14(const InputBuffer& input, std::span<const std::byte> rest,
+                     LasPublicHeader& header) {
+  const std::byte* bytes = rest.data() - kHeaderBytes10;
+  const auto points = load<std::uint64_t>(bytes + 247);
+  if (header.points != 0 && header.points != points) {
+    refuse_byte(input.name(), 247,
+                std::to_string(points) + " points declared, but " + std::to_string(header.points) +
+                    " at byte 107; expected equal counts, or 0 there");
+  }
+  header.points = points;
+  header.tail_offset = load<std::uint64_t>(bytes + 235);
+  header.tail_count = load<std::uint32_t>(bytes + 243);
+}
+
+void check_layout(const InputBuffer& input, const LasPublicHeader& header) {
+  if (header.points_offset < header.header_bytes) {
+    refuse_byte(input.name(), 96,
+                "points start at byte " + std::to_string(header.points_offset) +
+                    "; expected them behind the header of " + std::to_string(header.header_bytes) +
+                    " bytes");
+  }
+  if (header.compressed) return;  // the chunk table says where the points are
+  const std::uint64_t room = std::numeric_limits<std::int64_t>::max() - header.points_offset;
+  if (header.points > room / header.record_bytes) {
+    refuse(input.name(), "declares " + std::to_string(header.points) + " points of " +
+                             std::to_string(header.record_bytes) +
+                             " bytes; expected a count that a file can hold");
+  }
+  if (header.tail_count > 0 && header.tail_offset < header.points_end()) {
+    refuse(input.name(), "extended variable length records start at byte " +
+                             std::to_string(header.tail_offset) +
+                             "; expected them behind the points, which end at byte " +
+                             std::to_string(header.points_end()));
+  }
+  if (input.size() && *input.size() < header.points_end()) {
+    refuse(input.name(), "ends at byte " + std::to_string(*input.size()) + "; expected " +
+                             std::to_string(header.points_end()) + " bytes for " +
+                             std::to_string(header.points) + " points of " +
+                             std::to_string(header.record_bytes) + " bytes from byte " +
+                             std::to_string(header.points_offset));
+  }
+}
+
+}  // namespace
+
+void refuse_cut_las(const InputBuffer& input, const std::string& expected) {
+  refuse(input.name(),
+         "ends at byte " + std::to_string(input.end_position()) + "; expected " + expected);
+}
+
+std::uint64_t LasPublicHeader::points_end() const { return points_offset + points * record_bytes; }
+
+LasPublicHeader read_las_header(InputBuffer& input) {
+  LasPublicHeader header{};
+  const std::byte* bytes = take_header(input, kHeaderBytes10).data();
+  check_kind(input, bytes);
+  const unsigned minor = load<std::uint8_t>(bytes + 25);
+  header.encoding = load<std::uint16_t>(bytes + 6);
+  const bool internal_waveforms = (header.encoding & kInternalWaveforms) != 0;
+  header.header_bytes = load<std::uint16_t>(bytes + 94);
+  header.points_offset = load<std::uint32_t>(bytes + 96);
+  header.vlr_count = load<std::uint32_t>(bytes + 100);
+  header.record_bytes = load<std::uint16_t>(bytes + 105);
+  header.points = load<std::uint32_t>(bytes + 107);
+  header.point_format = load<std::uint8_t>(bytes + 104) & kFormatBits;
+  header.compressed = (load<std::uint8_t>(bytes + 104) & ~kFormatBits) != 0;
+  header.quantisation = read_quantisation(input, bytes);
+  header.box = read_box(bytes);
+
+  const std::size_t least = minor == 4 ? kHeaderBytes14 : kHeaderBytes10;
+  if (header.header_bytes < least) {
+    refuse_byte(input.name(), 94,
+                "header of " + std::to_string(header.header_bytes) + " bytes; expected at least " +
+                    std::to_string(least) + " for LAS 1." + std::to_string(minor));
+  }
+  if (minor == 4) {
+    read_version_14(input, take_header(input, kHeaderBytes14 - kHeaderBytes10), header);
+  } else if (minor == 3 && header.header_bytes >= kHeaderBytes13 && internal_waveforms &&
+             !header.compressed) {
+    // LAS 1.3 has at most one extended record, the waveforms. LAZ may state where LAS had them.
+    header.tail_offset = load<std::uint64_t>(take_header(input, 8).data());
+    header.tail_count = header.tail_offset == 0 ? 0 : 1;
+  }
+  check_layout(input, header);
+  if (!input.skip(header.header_bytes - input.position())) {
+    refuse_cut_las(input, "a header of " + std::to_string(header.header_bytes) + " bytes");
+  }
+  return header;
+}
+
+}  // namespace clearway

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "clearway/box.hpp"
+#include "core/geometry/quantisation.hpp"
+#include "io/scans/input_buffer.hpp"
+#include "io/scans/point_reader.hpp"
+#include "io/scans/scan_crs.hpp"
+
+namespace clearway {
+
+/// The position of the class in the records of a point format.
+struct LasClassField {
+  std::size_t byte;
+  std::uint8_t mask;
+
+  std::uint8_t of(const std::byte* record) const {
+    return static_cast<std::uint8_t>(std::to_integer<std::uint8_t>(record[byte]) & mask);
+  }
+};
+
+/// The position of the class in a point format. In formats 0 to 5 its byte also holds three flags.
+constexpr LasClassField las_class_field(unsigned point_format) {
+  return point_format < 6 ? LasClassField{15, 0x1F} : LasClassField{16, 0xFF};
+}
+
+}  // namespace clearway
+
+/// Extra bytes of LAS records: values that every record has behind those of its point format.
+/// Source: LAS 1.4 R15 (ASPRS), "Extra Bytes VLR".
+namespace clearway {
+
+/// Type codes of the specification.
+enum class LasExtraType : std::uint8_t { kUndocumented = 0, kUint32 = 5, kDouble = 10 };
+
+constexpr std::uint16_t kLasExtraBytes = 192;  ///< size of a field's description
+using LasExtraDescription = std::array<std::byte, kLasExtraBytes>;
+
+/// Describes a field of extra bytes. bytes: size of an undocumented one.
+inline LasExtraDescription las_extra_bytes(std::string_view name, LasExtraType type,
+                                           std::string_view description, std::uint8_t bytes = 0) {
+  constexpr std::size_t kType = 2, kOptions = 3, kName = 4, kText = 160, kTextBytes = 32;
+  LasExtraDescription out{};
+  out[kType] = static_cast<std::byte>(type);
+  out[kOptions] = static_cast<std::byte>(bytes);
+  std::memcpy(&out[kName], name.data(), std::min(name.size(), kTextBytes));
+  std::memcpy(&out[kText], description.data(), std::min(description.size(), kTextBytes));
+  return out;
+}
+
+/// Describes a field of type double in which the value `none` means that a point has no value.
+inline LasExtraDescription las_extra_bytes(std::string_view name, std::string_view description,
+                                           double none) {
+  constexpr std::size_t kOptions = 3, kNone = 40;
+  LasExtraDescription out = las_extra_bytes(name, LasExtraType::kDouble, description);
+  out[kOptions] = std::byte{1};
+  std::memcpy(&out[kNone], &none, sizeof none);
+  return out;
+}
+
+/// The units that a GeoTIFF key directory (LAS record 34735) names, or those of the projection
+/// whose code it gives, where PROJ's database is installed. A directory that is cut off is read as
+/// far as it goes. Source: OGC GeoTIFF 1.1, LAS 1.4 R15 section 3.3.
+CrsUnits units_of_geotiff(std::span<const std::byte> key_directory);
+
+/// The EPSG code of the coordinate reference system that the keys name; 0 where they name none or a
+/// user-defined one.
+std::uint16_t epsg_of_geotiff(std::span<const std::byte> key_directory);
+
+/// The part of a LAS file's public header block that reading coordinates needs.
+/// Source: ASPRS LAS 1.4 R15, section 2.4, and its predecessors 1.0 to 1.3.
+struct LasPublicHeader {
+  std::uint16_t header_bytes;
+  std::uint32_t points_offset;  ///< byte of the first point record
+  std::uint32_t vlr_count;
+  std::uint16_t record_bytes;  ///< bytes of a point record, whose first 12 are the coordinates
+  std::uint64_t points;
+  unsigned point_format;   ///< 0 to 10
+  bool compressed;         ///< whether the file is LAZ
+  std::uint16_t encoding;  ///< the bits of "global encoding"
+  Quantisation quantisation;
+  std::optional<Box> box;     ///< declared box of all points, where it holds finite numbers
+  std::uint64_t tail_offset;  ///< byte of the first extended variable length record
+  std::uint32_t tail_count;   ///< number of extended variable length records
+
+  std::uint64_t points_end() const;  ///< byte behind the last point record, if not compressed
+};
+
+/// Throws InputError for a file that ends before what it declares; the input has met its end.
+[[noreturn]] void refuse_cut_las(const InputBuffer& input, const std::string& expected);
+
+/// Reads the public header block and leaves the input behind it. Throws InputError for anything
+/// malformed, and where the file's size is known and too small for what is declared.
+LasPublicHeader read_las_header(InputBuffer& input);
+
+}  // namespace clearway

@@ -1,0 +1,241 @@
+#include "io/scans/las/las_reader.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "clearway/error.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "io/files/bytes.hpp"
+#include "io/files/input_error.hpp"
+#include "io/scans/las/las_header.hpp"
+#include "io/scans/las/las_records.hpp"
+#include "io/scans/laz/laz_reader.hpp"
+
+namespace clearway {
+namespace {
+
+/// Whether the stream begins as a LAZ file does.
+bool is_compressed(InputBuffer& stream) {
+  constexpr std::size_t kFormatByte = 104;
+  const auto head = stream.peek(kFormatByte + 1);
+  return head.size() > kFormatByte && std::memcmp(head.data(), "LASF", 4) == 0 &&
+         load<std::uint8_t>(head.data() + kFormatByte) >= 0x40;
+}
+
+/// Copies all bytes of the stream into a file without a name.
+InputBuffer spool_bytes(InputBuffer stream, const std::filesystem::path& folder) {
+  const File spooled = File::create_temporary(folder);
+  for (auto bytes = stream.take_some(); !bytes.empty(); bytes = stream.take_some()) {
+    spooled.write(bytes);
+  }
+  const int descriptor = ::dup(spooled.descriptor());
+  if (descriptor < 0) throw ResourceError(stream.name() + ": cannot be spooled: no descriptor");
+  return {File::adopt(descriptor, stream.name()), InputBuffer::Access::kSeek};
+}
+
+}  // namespace
+
+std::unique_ptr<PointReader> open_las_stream(File stream,
+                                             const std::filesystem::path& temporary_folder) {
+  InputBuffer input(std::move(stream), InputBuffer::Access::kStream);
+  if (is_compressed(input)) return read_las(spool_bytes(std::move(input), temporary_folder));
+  return read_las(std::move(input));
+}
+
+namespace {
+
+constexpr const char* kWhyMore =
+    "Its writer crashed, or wrote into a pipe and could not go back to the header";
+
+/// Reads uncompressed points.
+class LasReader final : public PointReader {
+ public:
+  LasReader(InputBuffer input, const LasPublicHeader& header, LasCrs crs)
+      : input_(std::move(input)), header_(header), crs_(std::move(crs)), points_(header.points) {
+    first_point_ = input_.mark();
+    if (input_.can_seek()) {
+      read_las_tail(input_, header_, crs_);
+      input_.return_to(first_point_);
+      tail_read_ = true;
+      refuse_surplus();
+    } else if (header_.tail_count > 0) {
+      points_ += surplus(header_.tail_offset);
+    }
+    info_.quantisation = header_.quantisation;
+    info_.declared_points = header_.points;
+    info_.declared_box = header_.box;
+    crs_.describe(info_);
+  }
+
+  const CloudInfo& info() const override { return info_; }
+  bool can_rewind() const override { return input_.can_seek(); }
+
+  bool read(PointBatch& batch) override {
+    batch.positions.clear();
+    batch.quanta.clear();
+    batch.classes.clear();
+    const std::size_t most = InputBuffer::kCapacity / header_.record_bytes;
+    while (batch.quanta.size() < kBatchPoints) {
+      const auto wanted =
+          std::min<std::uint64_t>({most, kBatchPoints - batch.quanta.size(), points_ - next_});
+      const auto bytes = wanted > 0 ? take_records(wanted) : take_more_records();
+      if (bytes.empty()) break;
+      append(bytes, batch);
+      next_ += wanted > 0 ? wanted : 1;
+    }
+    if (batch.quanta.empty()) finish();
+    return !batch.quanta.empty();
+  }
+
+  std::size_t pieces() const override {
+    return input_.can_seek() ? divide_up(header_.points, piece_points()) : 0;
+  }
+
+  std::uint64_t points_of_piece(std::size_t piece) const override {
+    return std::min(piece_points(), header_.points - piece * piece_points());
+  }
+
+  void read_piece(std::size_t piece, PointBatch& batch, PieceBytes* bytes) override {
+    PieceBytes read;
+    read.first = header_.points_offset + piece * piece_points() * header_.record_bytes;
+    read.count = points_of_piece(piece) * header_.record_bytes;
+    read.bytes = std::make_unique_for_overwrite<std::byte[]>(read.count);
+    input_.read_at(read.first, read.span());
+    batch.quanta.clear();
+    batch.classes.clear();
+    append(read.span(), batch);
+    if (bytes) *bytes = std::move(read);
+  }
+
+  void rewind() override {
+    input_.return_to(first_point_);
+    next_ = 0;
+  }
+
+ private:
+  static constexpr std::uint64_t kPieceBytes = std::uint64_t{2} << 20;
+
+  std::uint64_t piece_points() const {
+    return std::min<std::uint64_t>(kBatchPoints, kPieceBytes / header_.record_bytes);
+  }
+
+  /// Number of whole records between the last declared one and `end`.
+  std::uint64_t surplus(std::uint64_t end) const {
+    return (end - std::min(end, header_.points_end())) / header_.record_bytes;
+  }
+
+  void refuse_surplus() const {
+    const std::uint64_t end = header_.tail_count > 0 ? header_.tail_offset : *input_.size();
+    const std::uint64_t more = surplus(end);
+    if (more == 0) return;
+    refuse(input_.name(),
+           "declares " + std::to_string(header_.points) + " points, but holds " +
+               std::to_string(header_.points + more) + " records of " +
+               std::to_string(header_.record_bytes) + " bytes before byte " + std::to_string(end) +
+               "; expected as many as declared. " + kWhyMore +
+               ". As standard input all of them are read",
+           Remedy::kStandardInput);
+  }
+
+  std::span<const std::byte> take_records(std::size_t records) {
+    const auto bytes = input_.take(records * header_.record_bytes);
+    if (!bytes.empty()) return bytes;
+    const std::uint64_t end = input_.end_position();
+    refuse(input_.name(), "ends at byte " + std::to_string(end) + ", within point " +
+                              std::to_string((end - header_.points_offset) / header_.record_bytes) +
+                              " of " + std::to_string(points_) + "; expected " +
+                              std::to_string(header_.points_end()) + " bytes");
+  }
+
+  /// Takes records of a stream behind the last one that its header declares.
+  std::span<const std::byte> take_more_records() {
+    if (input_.can_seek() || header_.tail_count > 0) return {};
+    const std::size_t record = header_.record_bytes;
+    const auto bytes = input_.take(record);
+    if (!bytes.empty()) ++points_;
+    return bytes;
+  }
+
+  void append(std::span<const std::byte> bytes, PointBatch& out) const {
+    const std::size_t stride = header_.record_bytes;
+    const std::size_t records = bytes.size() / stride;
+    out.quanta.resize(out.quanta.size() + records);
+    out.classes.resize(out.quanta.size());
+    auto* point = &out.quanta[out.quanta.size() - records];
+    auto* of_point = &out.classes[out.classes.size() - records];
+    const LasClassField field = las_class_field(header_.point_format);
+    const std::byte* record = bytes.data();
+    const std::byte* const end = record + bytes.size();
+    for (; record != end; record += stride) {
+      std::memcpy(point++, record, sizeof *point);
+      *of_point++ = field.of(record);
+    }
+  }
+
+  void finish() {
+    if (tail_read_) return;
+    read_las_tail(input_, header_, crs_);
+    crs_.describe(info_);
+    tail_read_ = true;
+    if (points_ == header_.points) return;
+    info_.remarks.push_back({Message::Severity::kWarning,
+                             "las-count",
+                             input_.name() + ": its header declares " +
+                                 std::to_string(header_.points) + " points, but " +
+                                 std::to_string(points_) + " came before its end. " + kWhyMore +
+                                 ". All of them were read",
+                             {{"declared", static_cast<double>(header_.points)},
+                              {"read", static_cast<double>(points_)}}});
+  }
+
+  InputBuffer input_;
+  LasPublicHeader header_;
+  LasCrs crs_;
+  CloudInfo info_;
+  InputBuffer::Mark first_point_;
+  /// Number of points; in a stream it may grow beyond what the header declares.
+  std::uint64_t points_;
+  std::uint64_t next_ = 0;  ///< point to read next
+  bool tail_read_ = false;
+};
+
+std::unique_ptr<PointReader> read_compressed(InputBuffer input, const LasPublicHeader& header,
+                                             LasRecords& records) {
+  const std::string name = input.name();
+  if (records.laz.empty()) {
+    refuse_byte(name, 104,
+                "the points are compressed (LAZ); expected a record of user `laszip "
+                "encoded` that says how");
+  }
+  const laz::Scheme scheme =
+      laz::read_scheme(name, records.laz, header.point_format, header.record_bytes);
+  read_las_tail(input, header, records.crs);
+  CloudInfo info;
+  info.quantisation = header.quantisation;
+  info.declared_points = header.points;
+  info.declared_box = header.box;
+  records.crs.describe(info);
+  const std::uint64_t end = header.tail_count > 0 ? header.tail_offset : *input.size();
+  return read_laz_points(std::move(input), scheme, {header.points_offset, end, header.points},
+                         std::move(info));
+}
+
+}  // namespace
+
+std::unique_ptr<PointReader> read_las(InputBuffer input) {
+  const LasPublicHeader header = read_las_header(input);
+  LasRecords records;
+  read_las_vlrs(input, header, records);
+  if (header.compressed) return read_compressed(std::move(input), header, records);
+  if (!records.laz.empty()) {
+    refuse_byte(input.name(), 104,
+                "the points are not compressed, but a record of user `laszip encoded` says how; "
+                "expected bit 7 to be set in a LAZ file, or no such record");
+  }
+  return std::make_unique<LasReader>(std::move(input), header, std::move(records.crs));
+}
+
+}  // namespace clearway

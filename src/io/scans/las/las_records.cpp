@@ -1,0 +1,291 @@
+#include "io/scans/las/las_records.hpp"
+
+#include <limits>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "io/files/bytes.hpp"
+#include "io/files/input_error.hpp"
+#include "io/scans/las/las_header.hpp"
+
+namespace clearway {
+namespace {
+
+/// Reads a user id or another text of fixed length, padded with zeros.
+std::string_view padded_text(std::span<const std::byte> bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return text.substr(0, text.find('\0'));
+}
+
+/// Takes the CRS from a record. payload: the whole record behind its header.
+void note_record(std::string_view user, unsigned id, std::span<const std::byte> payload,
+                 LasCrs& crs) {
+  constexpr unsigned kWkt = 2112;
+  constexpr unsigned kGeoKeys = 34735;
+  if (user == "LASF_Projection" && id == kGeoKeys) {
+    crs.geotiff = units_of_geotiff(payload);
+    crs.geotiff_epsg = epsg_of_geotiff(payload);
+  }
+  if (id != kWkt) return;
+  std::string* wkt = user == "LASF_Projection" ? &crs.wkt
+                     : user == "liblas"        ? &crs.foreign_wkt
+                                               : nullptr;
+  if (wkt && wkt->empty()) *wkt = padded_text(payload);
+}
+
+/// Keeps the first record of each kind that copies of points need.
+void keep_record(const std::string& user, unsigned id, std::span<const std::byte> payload,
+                 LasRecords& records) {
+  constexpr unsigned kExtraBytes = 4, kGeoKeys = 34735, kGeoTexts = 34737;
+  if (user == "LASF_Spec" && id == kExtraBytes && records.extra_bytes.empty()) {
+    records.extra_bytes.assign(payload.begin(), payload.end());
+  }
+  if (user != "LASF_Projection" || id < kGeoKeys || id > kGeoTexts) return;
+  for (const LasRecord& kept : records.geotiff) {
+    if (kept.id == id) return;
+  }
+  records.geotiff.push_back(
+      {user, static_cast<std::uint16_t>(id), {payload.begin(), payload.end()}});
+}
+
+bool is_about_crs(std::string_view user, unsigned id) {
+  return (user == "LASF_Projection" || user == "liblas") && (id == 2112 || id == 34735);
+}
+
+}  // namespace
+
+void LasCrs::describe(CloudInfo& info) const {
+  info.crs_wkt = wkt.empty() ? foreign_wkt : wkt;
+  if (info.crs_wkt.empty()) info.crs_epsg = geotiff_epsg;
+  CrsUnits units = units_of_wkt(info.crs_wkt);
+  const bool keys_count = units.horizontal == LengthUnit::kUnknown && units.trouble.empty();
+  if (keys_count) {
+    units = geotiff;
+  } else if (geotiff.horizontal != LengthUnit::kUnknown && units.horizontal != geotiff.horizontal) {
+    units.doubt = "its well-known text names the unit " + to_string(units.horizontal) +
+                  ", its GeoTIFF keys " + to_string(geotiff.horizontal) +
+                  ". It is taken to be in that of the text";
+  }
+  info.unit = units.horizontal;
+  info.unit_doubt = units.doubt;
+  info.unit_trouble = units.trouble;
+}
+
+void read_las_vlrs(InputBuffer& input, const LasPublicHeader& header, LasRecords& records) {
+  constexpr std::size_t kVlrHeaderBytes = 54;
+  for (std::uint32_t i = 0; i < header.vlr_count; ++i) {
+    const std::uint64_t start = input.position();
+    const std::string which = "variable length record " + std::to_string(i + 1) + " of " +
+                              std::to_string(header.vlr_count);
+    const std::uint64_t room = header.points_offset - start;
+    if (room < kVlrHeaderBytes) {
+      refuse_byte(input.name(), start,
+                  which + " does not fit before the points at byte " +
+                      std::to_string(header.points_offset) + "; expected 54 bytes for its header");
+    }
+    const auto head = input.take(kVlrHeaderBytes);
+    if (head.empty()) refuse_cut_las(input, which);
+    const std::string user(padded_text(head.subspan(2, 16)));
+    const unsigned id = load<std::uint16_t>(head.data() + 18);
+    const std::size_t length = load<std::uint16_t>(head.data() + 20);
+    if (length > room - kVlrHeaderBytes) {
+      refuse_byte(input.name(), start,
+                  which + " has " + std::to_string(length) +
+                      " bytes; expected it to end before the " + "points at byte " +
+                      std::to_string(header.points_offset));
+    }
+    const auto payload = input.take(length);
+    if (payload.size() != length) refuse_cut_las(input, which);
+    if (user == "laszip encoded") records.laz.assign(payload.begin(), payload.end());
+    keep_record(user, id, payload, records);
+    note_record(user, id, payload, records.crs);
+  }
+  if (!input.skip(header.points_offset - input.position())) {
+    refuse_cut_las(input, "points from byte " + std::to_string(header.points_offset));
+  }
+}
+
+void read_las_tail(InputBuffer& input, const LasPublicHeader& header, LasCrs& crs) {
+  constexpr std::size_t kEvlrHeaderBytes = 60;
+  if (header.tail_count == 0) return;
+  if (!input.skip(header.tail_offset - input.position())) {
+    refuse_cut_las(
+        input, "extended variable length records from byte " + std::to_string(header.tail_offset));
+  }
+  for (std::uint32_t i = 0; i < header.tail_count; ++i) {
+    const std::uint64_t start = input.position();
+    const std::string which = "extended variable length record " + std::to_string(i + 1) + " of " +
+                              std::to_string(header.tail_count) + " from byte " +
+                              std::to_string(start);
+    const auto head = input.take(kEvlrHeaderBytes);
+    if (head.empty()) refuse_cut_las(input, which);
+    const std::string user(padded_text(head.subspan(2, 16)));
+    const unsigned id = load<std::uint16_t>(head.data() + 18);
+    const auto length = load<std::uint64_t>(head.data() + 20);
+    std::span<const std::byte> payload;
+    if (is_about_crs(user, id)) {
+      if (length > InputBuffer::kCapacity) {
+        refuse_byte(input.name(), start + 20,
+                    "a coordinate reference system of " + std::to_string(length) +
+                        " bytes; expected at most " + std::to_string(InputBuffer::kCapacity));
+      }
+      payload = input.take(length);
+      if (payload.size() != length)
+        refuse_cut_las(input, which + " with its " + std::to_string(length) + " bytes");
+      note_record(user, id, payload, crs);
+    } else if (!input.skip(length)) {
+      refuse_cut_las(input, which + " with its " + std::to_string(length) + " bytes");
+    }
+  }
+}
+
+}  // namespace clearway
+
+/// Source: LAS specification 1.4 R15 (ASPRS).
+namespace clearway {
+namespace {
+
+constexpr std::uint16_t kHeaderBytes = 375;
+constexpr std::uint32_t kVlrBytes = 54;
+constexpr std::size_t kId = 32, kUser = 16;
+constexpr std::uint16_t kGpsTimeBit = 1 << 0, kSyntheticReturnsBit = 1 << 3, kWktBit = 1 << 4;
+constexpr std::uint64_t kMostInVlr = std::numeric_limits<std::uint16_t>::max();
+
+template <typename Bytes>
+void put_table_header(ByteWriter& out, std::string_view user, std::uint16_t id, Bytes bytes,
+                      std::string_view description) {
+  out.put(std::uint16_t{0});
+  out.put_text(user, kUser);
+  out.put(id);
+  out.put(bytes);
+  out.put_text(description, kId);
+}
+
+void put_table(ByteWriter& out, std::string_view user, std::uint16_t id,
+               std::span<const std::byte> payload, std::string_view description) {
+  put_table_header(out, user, id, static_cast<std::uint16_t>(payload.size()), description);
+  out.put_bytes(payload);
+}
+
+/// The bytes of a text, including the zero byte that ends it.
+std::span<const std::byte> text_bytes(const std::string& text) {
+  return std::as_bytes(std::span(text.c_str(), text.size() + 1));
+}
+
+constexpr const char* kCrsUser = "LASF_Projection";
+constexpr std::uint16_t kWktId = 2112;
+constexpr const char* kWktText = "OGC coordinate system WKT";
+
+}  // namespace
+
+LasRecordWriter::LasRecordWriter(const File& file, LasRecordFormat format)
+    : file_(file),
+      format_(std::move(format)),
+      wkt_behind_(format_.crs_wkt.size() + 1 > kMostInVlr),
+      out_(file) {
+  if (!format_.crs_wkt.empty()) format_.geotiff.clear();
+  out_.put_text("", kHeaderBytes);
+  put_tables(out_);
+}
+
+std::uint32_t LasRecordWriter::tables_bytes() const {
+  std::size_t bytes = 0;
+  if (!format_.crs_wkt.empty() && !wkt_behind_) bytes += kVlrBytes + format_.crs_wkt.size() + 1;
+  for (const LasRecord& record : format_.geotiff) bytes += kVlrBytes + record.payload.size();
+  if (!format_.extra_bytes.empty()) bytes += kVlrBytes + format_.extra_bytes.size();
+  return static_cast<std::uint32_t>(bytes);
+}
+
+void LasRecordWriter::put_tables(ByteWriter& out) const {
+  if (!format_.crs_wkt.empty() && !wkt_behind_) {
+    put_table(out, kCrsUser, kWktId, text_bytes(format_.crs_wkt), kWktText);
+  }
+  for (const LasRecord& record : format_.geotiff) {
+    put_table(out, record.user, record.id, record.payload, "GeoTIFF");
+  }
+  if (!format_.extra_bytes.empty()) {
+    put_table(out, "LASF_Spec", 4, format_.extra_bytes, "extra bytes");
+  }
+}
+
+void LasRecordWriter::write(std::span<const std::byte> record) {
+  if (record.size() != format_.record_bytes) {
+    throw std::logic_error("LasRecordWriter: a record of another size");
+  }
+  QuantumBox at{};
+  for (unsigned k = 0; k < 3; ++k) {
+    at.lo[k] = at.hi[k] = load<std::int32_t>(record.data() + 4 * k);
+  }
+  bounds_ = points_ == 0 ? at : bounds_.united(at);
+  const unsigned number =
+      load<std::uint8_t>(record.data() + 14) & (format_.point_format < 6 ? 0x07u : 0x0fu);
+  if (number > 0) ++by_return_[number - 1];
+  ++points_;
+  out_.put_bytes(record);
+}
+
+bool LasRecordWriter::has_short_counts() const {
+  return format_.point_format < 6 && points_ <= std::numeric_limits<std::uint32_t>::max();
+}
+
+void LasRecordWriter::put_header(ByteWriter& out) const {
+  const bool wkt =
+      !format_.crs_wkt.empty() || (format_.point_format >= 6 && format_.geotiff.empty());
+  std::uint16_t kept = kGpsTimeBit | kSyntheticReturnsBit;
+  if (!format_.geotiff.empty()) kept |= kWktBit;
+  out.put_text("LASF", 4);
+  out.put(std::uint16_t{0});  // file source ID
+  out.put(static_cast<std::uint16_t>((format_.encoding & kept) | (wkt ? kWktBit : 0)));
+  out.put_text("", 16);  // project ID
+  out.put(std::uint8_t{1});
+  out.put(std::uint8_t{4});
+  out.put_text("EXTRACTION", kId);
+  out.put_text("Clearway", kId);
+  out.put(std::uint32_t{0});  // day and year of creation, so that equal contents give equal bytes
+  out.put(kHeaderBytes);
+  out.put(kHeaderBytes + tables_bytes());
+  const std::size_t tables = (format_.crs_wkt.empty() || wkt_behind_ ? 0 : 1) +
+                             format_.geotiff.size() + (format_.extra_bytes.empty() ? 0 : 1);
+  out.put(static_cast<std::uint32_t>(tables));
+  out.put(static_cast<std::uint8_t>(format_.point_format));
+  out.put(format_.record_bytes);
+  put_counts(out);
+}
+
+void LasRecordWriter::put_counts(ByteWriter& out) const {
+  const bool is_short = has_short_counts();
+  out.put(static_cast<std::uint32_t>(is_short ? points_ : 0));
+  for (unsigned i = 0; i < 5; ++i) {
+    out.put(static_cast<std::uint32_t>(is_short ? by_return_[i] : 0));
+  }
+  out.put(format_.quantisation.scale);
+  out.put(format_.quantisation.offset);
+  for (int k = 0; k < 3; ++k) {
+    out.put(points_ == 0 ? 0.0 : coordinate(format_.quantisation, k, bounds_.hi[k]));
+    out.put(points_ == 0 ? 0.0 : coordinate(format_.quantisation, k, bounds_.lo[k]));
+  }
+  const std::uint64_t points_end =
+      kHeaderBytes + tables_bytes() + points_ * std::uint64_t{format_.record_bytes};
+  out.put(std::uint64_t{0});  // start of waveform data
+  out.put(wkt_behind_ ? points_end : 0);
+  out.put(static_cast<std::uint32_t>(wkt_behind_ ? 1 : 0));
+  out.put(points_);
+  out.put(by_return_);
+}
+
+void LasRecordWriter::finish() {
+  if (wkt_behind_) {
+    const auto text = text_bytes(format_.crs_wkt);
+    put_table_header(out_, kCrsUser, kWktId, std::uint64_t{text.size()}, kWktText);
+    out_.put_bytes(text);
+  }
+  out_.flush();
+  file_.rewind();
+  ByteWriter header(file_);
+  put_header(header);
+  header.flush();
+}
+
+}  // namespace clearway

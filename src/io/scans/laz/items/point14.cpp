@@ -1,0 +1,67 @@
+#include "io/scans/laz/items/point14.hpp"
+
+#include "io/files/bytes.hpp"
+
+namespace clearway::laz {
+
+void Point14::begin(const std::byte* record, bool has_heights) {
+  has_heights_ = has_heights;
+  for (Channel& channel : channels_) channel.used = false;
+  const auto returns = load<std::uint8_t>(record + 14);
+  const auto flags = load<std::uint8_t>(record + 15);
+  Channel first;
+  first.position = load<Quanta>(record);
+  first.point_class = load<std::uint8_t>(record + 16);
+  first.return_number = returns & 15u;
+  first.number_of_returns = returns >> 4;
+  current_ = flags >> 4 & 3u;
+  start(channels_[current_], first);
+}
+
+/// Begins a channel with the last point of another one.
+void Point14::start(Channel& channel, const Channel& from) {
+  renew(channel.models);
+  class_models_[static_cast<std::size_t>(&channel - channels_.data())].renew();
+  channel.used = true;
+  channel.position = from.position;
+  channel.heights.fill(from.position[2]);
+  channel.point_class = from.point_class;
+  channel.number_of_returns = from.number_of_returns;
+  channel.return_number = from.return_number;
+  channel.time_changed = false;
+}
+
+ArithmeticDecoder Point14::next_channel(ArithmeticDecoder plane) {
+  const Channel& last = channels_[current_];
+  const unsigned next = (current_ + 1 + plane.symbol(last.models->channel)) % 4;
+  if (!channels_[next].used) start(channels_[next], last);
+  current_ = next;
+  return plane;
+}
+
+ArithmeticDecoder Point14::next_returns(ArithmeticDecoder plane, unsigned changed) {
+  Channel& channel = channels_[current_];
+  Models& models = *channel.models;
+  if ((changed & kReturnsChanged) != 0) {
+    channel.number_of_returns = plane.symbol(models.number_of_returns[channel.number_of_returns]);
+  }
+  const unsigned last = channel.return_number;
+  switch (changed & kReturnChange) {
+    case 1:
+      channel.return_number = (last + 1) % 16;
+      break;
+    case 2:
+      channel.return_number = (last + 15) % 16;
+      break;
+    case 3:
+      channel.return_number = (changed & kTimeChanged) != 0
+                                  ? plane.symbol(models.return_number[last])
+                                  : (last + 2 + plane.symbol(models.return_number_same_time)) % 16;
+      break;
+    default:
+      break;
+  }
+  return plane;
+}
+
+}  // namespace clearway::laz

@@ -1,0 +1,221 @@
+#include "io/scans/ply/ply_header.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include "io/files/input_error.hpp"
+#include "io/files/text_number.hpp"
+#include "io/scans/text/table_header.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr std::uint64_t kLongestHeader = std::uint64_t{1} << 20;  // bytes
+constexpr std::size_t kLargestElement = std::size_t{1} << 16;     // bytes
+
+std::optional<PlyType> type_named(std::string_view name) {
+  static constexpr std::pair<std::string_view, PlyType> kTypes[] = {
+      {"char", PlyType::kInt8},      {"int8", PlyType::kInt8},       {"uchar", PlyType::kUint8},
+      {"uint8", PlyType::kUint8},    {"short", PlyType::kInt16},     {"int16", PlyType::kInt16},
+      {"ushort", PlyType::kUint16},  {"uint16", PlyType::kUint16},   {"int", PlyType::kInt32},
+      {"int32", PlyType::kInt32},    {"uint", PlyType::kUint32},     {"uint32", PlyType::kUint32},
+      {"float", PlyType::kFloat32},  {"float32", PlyType::kFloat32}, {"double", PlyType::kFloat64},
+      {"float64", PlyType::kFloat64}};
+  for (const auto& [spelling, type] : kTypes) {
+    if (spelling == name) return type;
+  }
+  return std::nullopt;
+}
+
+class HeaderParser {
+ public:
+  explicit HeaderParser(InputBuffer& input) : input_(input) {}
+
+  PlyHeader parse() {
+    if (next() != std::vector<std::string_view>{"ply"}) fail("expected `ply`");
+    read_format();
+    for (;;) {
+      const auto words = next();
+      if (is_remark(words)) continue;
+      if (words[0] == "end_header" && words.size() == 1) break;
+      if (words[0] == "element") {
+        add_element(words);
+      } else if (words[0] == "property") {
+        add_property(words);
+      } else {
+        fail(excerpt(words[0]) + "; expected element, property, comment, obj_info or end_header");
+      }
+    }
+    check_elements();
+    find_vertices();
+    return std::move(header_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    refuse_line(input_.name(), input_.line(), what);
+  }
+
+  std::vector<std::string_view> next() {
+    std::string_view line;
+    if (input_.position() > kLongestHeader) fail("header longer than 1 MiB; expected end_header");
+    if (!input_.next_line(line) || !input_.line_terminated()) {
+      refuse(input_.name(), "ends at byte " + std::to_string(input_.position()) +
+                                " within the header; expected " +
+                                (input_.line() <= 1 ? "`ply`" : "`end_header`"));
+    }
+    std::vector<std::string_view> words;
+    split_fields(line, ' ', words);
+    return words;
+  }
+
+  /// Whether a line is a comment or remark, which describes no element. Takes the spacing from a
+  /// comment that gives it.
+  bool is_remark(const std::vector<std::string_view>& words) {
+    if (words.empty() || words[0] == "obj_info") return true;
+    if (words[0] != "comment") return false;
+    if (words.size() == 5 && words[1] == "clearway" && words[2] == "model" &&
+        words[3] == "spacing") {
+      const std::optional<double> metres = parse_whole_number(words[4]);
+      if (!metres || !(*metres > 0) || !std::isfinite(*metres)) {
+        fail("comment of a model spacing of " + excerpt(words[4]) + "; expected metres above 0");
+      }
+      header_.model_spacing = *metres;
+    }
+    return true;
+  }
+
+  void read_format() {
+    auto words = next();
+    while (is_remark(words)) words = next();
+    if (words.size() == 3 && words[0] == "format" && words[2] == "1.0") {
+      header_.format = words[1] == "binary_little_endian" ? PlyFormat::kLittleEndian
+                       : words[1] == "binary_big_endian"  ? PlyFormat::kBigEndian
+                                                          : PlyFormat::kAscii;
+      if (header_.format != PlyFormat::kAscii || words[1] == "ascii") return;
+    }
+    fail(
+        "expected `format ascii 1.0`, `format binary_little_endian 1.0` or "
+        "`format binary_big_endian 1.0`");
+  }
+
+  void add_element(const std::vector<std::string_view>& words) {
+    std::uint64_t count = 0;
+    bool valid = words.size() == 3;
+    if (valid) {
+      const char* const end = words[2].data() + words[2].size();
+      const auto [stop, error] = std::from_chars(words[2].data(), end, count);
+      valid = error == std::errc() && stop == end;
+    }
+    if (!valid) fail("expected `element NAME COUNT`");
+    header_.elements.push_back({std::string(words[1]), count, {}});
+  }
+
+  void add_property(const std::vector<std::string_view>& words) {
+    if (header_.elements.empty()) fail("a property before the first element");
+    const bool list = words.size() > 1 && words[1] == "list";
+    if (words.size() != (list ? 5u : 3u)) {
+      fail("expected `property TYPE NAME` or `property list TYPE TYPE NAME`");
+    }
+    const auto type = type_named(words[list ? 3 : 1]);
+    const auto count = list ? type_named(words[2]) : std::nullopt;
+    if (!type || (list && !count)) {
+      fail(
+          "unknown type; expected char, uchar, short, ushort, int, uint, float, double or int8 to "
+          "float64");
+    }
+    if (count == PlyType::kFloat32 || count == PlyType::kFloat64) {
+      fail("a list counted by " + std::string(words[2]) + "; expected an integer type");
+    }
+    header_.elements.back().properties.push_back({std::string(words.back()), *type, count});
+  }
+
+  void check_elements() const {
+    for (const PlyElement& element : header_.elements) {
+      if (element.properties.empty() && element.count > 0) {
+        fail("element " + excerpt(element.name) + " has no property; expected one at least");
+      }
+      if (element.least_bytes() > kLargestElement) {
+        fail("element " + excerpt(element.name) + " has " + std::to_string(element.least_bytes()) +
+             " bytes; expected at most " + std::to_string(kLargestElement));
+      }
+      if (element.count >
+          static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()) / kLargestElement) {
+        fail("element " + excerpt(element.name) + " counts " + std::to_string(element.count) +
+             "; expected a number that a file can hold");
+      }
+    }
+  }
+
+  void find_vertices() {
+    std::optional<std::size_t> vertex;
+    for (std::size_t i = 0; i < header_.elements.size(); ++i) {
+      if (header_.elements[i].name != "vertex") continue;
+      if (vertex) fail("two elements named vertex; expected one");
+      vertex = i;
+    }
+    if (!vertex) fail("no element named vertex; expected one with x, y and z");
+    header_.vertex = *vertex;
+    for (std::size_t axis = 0; axis < 3; ++axis) header_.coordinates[axis] = find_coordinate(axis);
+  }
+
+  std::size_t find_coordinate(std::size_t axis) const {
+    const std::string name(1, static_cast<char>('x' + axis));
+    std::optional<std::size_t> found;
+    const auto& properties = header_.vertices().properties;
+    for (std::size_t i = 0; i < properties.size(); ++i) {
+      if (properties[i].name != name) continue;
+      if (found || properties[i].list_count) {
+        fail("expected one property " + name + " of the element vertex, not a list");
+      }
+      found = i;
+    }
+    if (!found) fail("element vertex has no property " + name + "; expected x, y and z");
+    return *found;
+  }
+
+  InputBuffer& input_;
+  PlyHeader header_{};
+};
+
+}  // namespace
+
+std::size_t size_bytes(PlyType type) {
+  switch (type) {
+    case PlyType::kInt8:
+    case PlyType::kUint8:
+      return 1;
+    case PlyType::kInt16:
+    case PlyType::kUint16:
+      return 2;
+    case PlyType::kInt32:
+    case PlyType::kUint32:
+    case PlyType::kFloat32:
+      return 4;
+    case PlyType::kFloat64:
+      break;
+  }
+  return 8;
+}
+
+std::optional<std::size_t> PlyElement::fixed_bytes() const {
+  for (const PlyProperty& property : properties) {
+    if (property.list_count) return std::nullopt;
+  }
+  return least_bytes();
+}
+
+std::size_t PlyElement::least_bytes() const {
+  std::size_t bytes = 0;
+  for (const PlyProperty& property : properties) {
+    bytes += size_bytes(property.list_count.value_or(property.type));
+  }
+  return bytes;
+}
+
+PlyHeader read_ply_header(InputBuffer& input) { return HeaderParser(input).parse(); }
+
+}  // namespace clearway

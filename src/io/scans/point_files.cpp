@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <map>
+#include <system_error>
+#include <utility>
+
+#include "clearway/error.hpp"
+#include "io/files/input_error.hpp"
+#include "io/scans/point_formats.hpp"
+#include "io/scans/point_reader.hpp"
+#include "io/scans/threedtk/threedtk_reader.hpp"
+
+namespace clearway {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostNames = 5;  // at most so many file names in a message
+
+/// The files directly in a folder, in byte order of their names, without hidden ones.
+struct Folder {
+  std::vector<fs::path> scans, others;
+  std::size_t folders = 0;
+};
+
+bool in_byte_order(const fs::path& a, const fs::path& b) {
+  // std::string compares its bytes as unsigned, so this is byte order.
+  return a.filename().native() < b.filename().native();
+}
+
+Folder look_into(const fs::path& path) {
+  Folder found;
+  std::error_code error;
+  const fs::directory_iterator end;
+  for (fs::directory_iterator at(path, error); !error && at != end; at.increment(error)) {
+    std::error_code unknown;
+    if (at->path().filename().native().starts_with('.')) continue;
+    if (at->is_directory(unknown)) {
+      ++found.folders;
+    } else {
+      (is_surely_point_file(at->path()) ? found.scans : found.others).push_back(at->path());
+    }
+  }
+  if (error) throw ResourceError(path.string() + ": cannot list the folder: " + error.message());
+  std::sort(found.scans.begin(), found.scans.end(), in_byte_order);
+  std::sort(found.others.begin(), found.others.end(), in_byte_order);
+  return found;
+}
+
+/// The names in a message, as in "a.txt, b.csv and 7 more".
+std::string names_of(const std::vector<fs::path>& files) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(files.size(), kMostNames); ++i) {
+    text += (i > 0 ? ", " : "") + files[i].filename().string();
+  }
+  if (files.size() <= kMostNames) return text;
+  return text + " and " + std::to_string(files.size() - kMostNames) + " more";
+}
+
+std::string counted(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+/// Separates the files of poses that lie beside scans. Those of 3DTK's scans are read together with
+/// the scans; those of other scans would place them elsewhere. Returns the latter. Both kinds are
+/// removed from `others`.
+std::vector<fs::path> take_poses(Folder& folder) {
+  // By name without ending: whether the scan is read with its pose.
+  std::map<std::string, bool> placed;
+  for (const fs::path& scan : folder.scans) {
+    placed[scan.stem().native()] |= format_of_name(scan) == PointFormat::k3dtk;
+  }
+  std::vector<fs::path> unused;
+  std::erase_if(folder.others, [&](const fs::path& file) {
+    if (file.extension() != ".pose" && file.extension() != ".frames") return false;
+    const auto scan = placed.find(file.stem().native());
+    if (scan == placed.end()) return false;
+    if (!scan->second) unused.push_back(file);
+    return true;
+  });
+  return unused;
+}
+
+void remark_on(const fs::path& path, Folder folder, std::vector<Message>& remarks) {
+  const std::vector<fs::path> poses = take_poses(folder);
+  if (!poses.empty()) {
+    remarks.push_back({Message::Severity::kWarning,
+                       "poses-not-applied",
+                       path.string() + ": " + counted(poses.size(), "file") +
+                           " with the pose of a scan (" + names_of(poses) +
+                           "). Poses are applied to files with the ending 3d only, these scans "
+                           "stay as they are",
+                       {{"files", static_cast<double>(poses.size())}}});
+  }
+  if (folder.others.empty() && folder.folders == 0) return;
+  std::string what;
+  if (!folder.others.empty()) {
+    what = counted(folder.others.size(), "file") + " (" + names_of(folder.others) + ")";
+  }
+  if (folder.folders > 0) {
+    what += (what.empty() ? "" : " and ") + counted(folder.folders, "folder");
+  }
+  remarks.push_back({Message::Severity::kNote,
+                     "left-out",
+                     path.string() + ": left out " + what,
+                     {{"files", static_cast<double>(folder.others.size())},
+                      {"folders", static_cast<double>(folder.folders)}}});
+}
+
+std::vector<fs::path> files_of_folder(const fs::path& path, std::vector<Message>* remarks) {
+  Folder folder = look_into(path);
+  if (folder.scans.empty()) {
+    refuse(path.string(), "holds no point file; expected files with the ending " + sure_endings() +
+                              " (txt and csv files have to be named themselves)");
+  }
+  std::vector<fs::path> scans = folder.scans;
+  if (remarks) remark_on(path, std::move(folder), *remarks);
+  return scans;
+}
+
+}  // namespace
+
+std::vector<fs::path> list_point_files(const std::vector<fs::path>& inputs,
+                                       std::vector<Message>* remarks) {
+  std::vector<fs::path> files;
+  for (const fs::path& input : inputs) {
+    std::error_code error;
+    const fs::file_status status = fs::status(input, error);
+    if (!fs::exists(status)) {
+      throw ResourceError(input.string() + ": no such file or folder");
+    }
+    if (fs::is_directory(status)) {
+      const auto found = files_of_folder(input, remarks);
+      files.insert(files.end(), found.begin(), found.end());
+    } else {
+      files.push_back(input);
+    }
+  }
+  return files;
+}
+
+std::vector<fs::path> with_pose_files(std::vector<fs::path> files) {
+  std::vector<fs::path> poses;
+  for (const fs::path& file : files) {
+    if (format_of_name(file) != PointFormat::k3dtk) continue;
+    if (auto pose = threedtk_pose_file(file)) poses.push_back(std::move(*pose));
+  }
+  files.insert(files.end(), poses.begin(), poses.end());
+  return files;
+}
+
+}  // namespace clearway

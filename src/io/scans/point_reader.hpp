@@ -1,0 +1,132 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "clearway/box.hpp"
+#include "clearway/progress.hpp"
+#include "clearway/vec3.hpp"
+#include "core/geometry/quantisation.hpp"
+#include "io/files/file.hpp"
+#include "io/scans/length_unit.hpp"
+
+namespace clearway {
+
+/// What a point cloud file declares before its points.
+struct CloudInfo {
+  std::optional<Quantisation> quantisation;      ///< where points are stored as integers
+  std::optional<std::uint64_t> declared_points;  ///< where the format declares a count
+  /// Box of all points, where the format declares one. It is compared with the points and never
+  /// trusted.
+  std::optional<Box> declared_box;
+  /// Coordinate reference system as found in the file; empty where there is none.
+  std::string crs_wkt;
+  /// EPSG code in a file that names its CRS by a code alone; otherwise 0
+  std::uint16_t crs_epsg = 0;
+  LengthUnit unit = LengthUnit::kUnknown;  ///< unit of the horizontal coordinates
+  bool any_foot = false;     ///< whether the unit is "ft", which does not say which foot it is
+  std::string unit_trouble;  ///< why coordinates cannot be used as they are; empty where they can
+  std::string unit_doubt;    ///< what contradicts the unit; empty where nothing does
+  std::uint64_t faces = 0;   ///< number of faces in a mesh; they are not read
+  /// See Query::model_spacing; known where `clearway model` wrote the file.
+  double model_spacing = 0;
+  bool text_table = false;  ///< whether the file is a text table, whose columns can be chosen
+  /// Remarks on the whole file; complete once read() has returned false.
+  std::vector<Message> remarks;
+};
+
+/// Consecutive points of a file, in its order: integers where the file has a quantisation,
+/// otherwise positions. The other of the two vectors is empty.
+struct PointBatch {
+  std::vector<std::array<std::int32_t, 3>> quanta;
+  std::vector<Vec3> positions;
+  /// Indices into `positions`, ascending, of records without a point (a beam without a return).
+  /// Their positions are NaN. They keep their number in the file and are not errors.
+  std::vector<std::uint32_t> absent;
+  /// The class of each point, as ASPRS numbers them. Empty where the format has no classes.
+  std::vector<std::uint8_t> classes;
+
+  std::size_t size() const { return quanta.size() + positions.size(); }
+};
+
+/// The bytes of a file from which a piece of its points was read.
+struct PieceBytes {
+  std::uint64_t first = 0;  ///< position in the file
+  std::size_t count = 0;
+  std::unique_ptr<std::byte[]> bytes;
+
+  std::span<std::byte> span() const { return {bytes.get(), count}; }
+};
+
+/// Reads the points of one file, front to back, in constant memory. Non-finite positions are
+/// delivered as they are, and the caller counts them. Malformed input throws InputError with file,
+/// line or byte, and what was expected; nothing is skipped silently.
+class PointReader {
+ public:
+  static constexpr std::size_t kBatchPoints = 1 << 16;
+
+  virtual ~PointReader() = default;
+  virtual const CloudInfo& info() const = 0;
+  /// Fills `batch` with up to kBatchPoints points. At the end it returns false and an empty batch.
+  virtual bool read(PointBatch& batch) = 0;
+  /// Number of pieces of the file's points, which read_piece() reads in any order; 0 where only
+  /// read() works. All pieces in their order are all points, and their bytes are contiguous.
+  virtual std::size_t pieces() const { return 0; }
+  virtual std::uint64_t points_of_piece(std::size_t /*piece*/) const { return 0; }
+  /// Reads one piece. Several threads may call it at once, while nobody calls read(). bytes:
+  /// receives the bytes of the piece, or is null. Throws as read() does.
+  virtual void read_piece(std::size_t /*piece*/, PointBatch& /*batch*/, PieceBytes* /*bytes*/) {}
+  virtual bool can_rewind() const { return true; }
+  /// Goes back to the first point. Throws ResourceError where the input cannot seek.
+  virtual void rewind() = 0;
+  /// The line number of each of `points`, which are ascending numbers counted from 0; empty where
+  /// the format has no lines. Reads the file from its first point and leaves the reader at any
+  /// position.
+  virtual std::vector<std::uint64_t> lines_of(std::span<const std::uint64_t> /*points*/) {
+    return {};
+  }
+};
+
+/// How a text is read whose own lines do not tell its columns, or tell them wrongly.
+struct PointReadOptions {
+  /// The columns of x, y and z: numbers counted from 1, or names in the header. If empty, the text
+  /// decides, and one that looks like something else than points is refused. Ignored for other
+  /// formats.
+  std::vector<std::string> columns = {};
+  bool may_choose = false;  ///< whether messages advise the user to choose the columns
+};
+
+/// Opens a file. Its content decides the format, or the ending of its name where the content does
+/// not tell: LAS 1.0-1.4, LAZ, E57, PLY, PCD, PTX, PTS, XYZ text and scans of 3DTK. A path that is
+/// not a regular file is read as by open_las_stream(), with the system's folder for temporary
+/// files. Unknown formats throw InputError with advice.
+std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path,
+                                             const PointReadOptions& options = {});
+
+/// Reads LAS or LAZ from a stream that cannot seek, for example standard input. In LAS 1.4, a CRS
+/// that only a record behind the points holds appears in info() once read() has returned false.
+/// Points beyond the header's count are read too, with a warning among the remarks. LAZ is first
+/// copied into a nameless file in `temporary_folder`, and can be read again.
+std::unique_ptr<PointReader> open_las_stream(File stream,
+                                             const std::filesystem::path& temporary_folder);
+
+/// The point files of a list of inputs in the order in which their points are numbered: inputs as
+/// given, and the files of a folder in byte order of their names. Folders are not searched
+/// recursively; their hidden files are left out, and so are files whose ending does not belong to a
+/// point format alone, such as .md, .txt and .csv. remarks: receives what was left out of folders,
+/// or is null. Throws ResourceError for a missing input and InputError for a folder without any
+/// point file.
+std::vector<std::filesystem::path> list_point_files(
+    const std::vector<std::filesystem::path>& inputs, std::vector<Message>* remarks = nullptr);
+
+/// The files, followed by the files that hold their poses (3DTK): everything that a conversion
+/// reads.
+std::vector<std::filesystem::path> with_pose_files(std::vector<std::filesystem::path> files);
+
+}  // namespace clearway

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/scans/point_reader.hpp"
+
+namespace clearway {
+
+/// The line of a text table that names its columns.
+struct ColumnNames {
+  char separator = ' ';  ///< ',', ';' or ' ' for any blanks
+  /// Names in lower case, without quotes, bracketed units and blanks.
+  std::vector<std::string> names;
+  std::vector<std::string> units;  ///< units in brackets, lower case; empty where a column has none
+
+  /// The index of the only column whose name is one of `prefixes` followed by `suffix`; nullopt
+  /// where there is no such column or more than one.
+  std::optional<std::size_t> find(std::span<const std::string_view> prefixes,
+                                  std::string_view suffix) const;
+};
+
+/// Splits a header line. A comment mark (#, // or %) before the first name is dropped.
+ColumnNames parse_column_names(std::string_view line);
+
+/// Splits a line of data in the same way as its header: at every comma or semicolon, or at runs of
+/// blanks. fields: views of `line`, including blanks around them; the vector keeps its capacity.
+void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields);
+
+/// Splits a line of CSV (RFC 4180), where a separator within a field in double quotes does not
+/// count.
+void split_quoted_fields(std::string_view line, char separator,
+                         std::vector<std::string_view>& fields);
+
+/// Indices of the columns that hold x, y and z.
+using CoordinateColumns = std::array<std::size_t, 3>;
+
+/// A line that names the columns of a table of points.
+struct TableHeader {
+  char separator = ' ';            ///< ',', ';' or ' ' for any blanks
+  std::vector<std::string> names;  ///< names in lower case, without quotes, blanks and units
+  /// Unit of each name, given in brackets or behind `_`; lower case.
+  std::vector<std::string> units;
+};
+
+/// Splits a header line. A comment mark and a label that ends in a colon are dropped.
+TableHeader parse_table_header(std::string_view line);
+
+/// The lower-case form of a name, as TableHeader holds it.
+std::string table_name(std::string_view field);
+
+/// The index of the only column of that name; nullopt where there is no such column or more than
+/// one.
+std::optional<std::size_t> column_named(const TableHeader& header, std::string_view name);
+
+/// The columns of x, y and z, or of easting, northing and height, in any order. Nullopt where one
+/// is missing or named twice.
+std::optional<CoordinateColumns> coordinate_columns(const TableHeader& header);
+
+/// What kind of table the names indicate if not one of points, for a message; otherwise empty.
+std::string other_table(const TableHeader& header);
+
+/// The unit of the columns x, y and z as the header gives it.
+struct TableUnit {
+  LengthUnit unit = LengthUnit::kUnknown;
+  bool any_foot = false;  ///< see CloudInfo
+  std::string refused;    ///< the unit that is not read, or the two that differ; otherwise empty
+};
+TableUnit unit_of(const TableHeader& header, const CoordinateColumns& columns);
+
+}  // namespace clearway

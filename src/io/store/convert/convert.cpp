@@ -1,0 +1,472 @@
+#include "io/store/convert/convert.hpp"
+
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <fstream>
+#include <future>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "clearway/convert.hpp"
+#include "clearway/error.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "core/util/format.hpp"
+#include "core/util/messages.hpp"
+#include "core/util/progress.hpp"
+#include "core/util/stopwatch.hpp"
+#include "core/util/tsan_annotations.hpp"
+#include "io/files/file.hpp"
+#include "io/files/pending_file.hpp"
+#include "io/files/thread_limit.hpp"
+#include "io/scans/point_reader.hpp"
+#include "io/scans/scan_crs.hpp"
+#include "io/store/convert/count.hpp"
+#include "io/store/convert/distribute.hpp"
+#include "io/store/convert/environment_source.hpp"
+#include "io/store/convert/input_files.hpp"
+#include "io/store/convert/input_warnings.hpp"
+#include "io/store/convert/pack_unit.hpp"
+#include "io/store/convert/quantum_bounds.hpp"
+#include "io/store/convert/source_description.hpp"
+#include "io/store/convert/split_tree.hpp"
+#include "io/store/convert/stage_clocks.hpp"
+#include "io/store/store_metadata.hpp"
+#include "io/store/store_reader.hpp"
+#include "io/store/store_writer.hpp"
+#include "io/store/verify_store.hpp"
+
+namespace clearway {
+namespace {
+
+/// A unit before it is written: its first cells are packed already, the others are packed when they
+/// are written.
+struct UnitInFlight {
+  std::vector<PackedCell> packed;
+  std::optional<OrderedUnit> rest;
+};
+
+void write_unit(UnitInFlight& unit, StoreWriter& writer, StageClocks& clocks, Progress& progress) {
+  while (!unit.packed.empty()) {
+    for (const PackedCell& cell : unit.packed) {
+      throw_if_stopped(progress);
+      const auto running = clocks.measure(Stage::kWrite);
+      writer.append(cell);
+      progress.advance(cell.cell.count);
+    }
+    unit.packed.clear();
+    if (unit.rest) unit.packed = unit.rest->pack_next();
+  }
+}
+
+/// Partitions and packs the units, several at a time as memory allows, and writes their cells in
+/// order.
+void write_cells(Distribution& distribution, const SplitTree& tree, const Lattice& lattice,
+                 const StoreMetadata& metadata, std::size_t units_in_flight, StoreWriter& writer,
+                 StageClocks& clocks, Progress& progress) {
+  std::size_t largest = 0;
+  for (std::size_t unit = 0; unit < distribution.units(); ++unit) {
+    largest = std::max<std::size_t>(largest, distribution.points(unit));
+  }
+  UnitBuffers buffers(largest);
+  using Flying = std::shared_ptr<UnitInFlight>;
+  std::size_t next = 0;
+  const ParallelScope scope;
+  const SerialStage input, output;
+  const auto number_of_next = piece_of(scope, input, [&](tbb::flow_control& flow) {
+    throw_if_stopped(progress);
+    if (next == tree.units().size()) flow.stop();
+    return next++;
+  });
+  const auto order_and_pack = piece_of(scope, [&](std::size_t unit) {
+    auto flying = std::make_shared<UnitInFlight>();
+    flying->rest.emplace(distribution, unit, tree, lattice, metadata, buffers, clocks);
+    flying->packed = flying->rest->pack_next();
+    if (flying->rest->cells_left() == 0) flying->rest.reset();
+    return flying;
+  });
+  const auto write = piece_of(
+      scope, output, [&](const Flying& unit) { write_unit(*unit, writer, clocks, progress); });
+  progress.begin("partition", metadata.point_count, "points");
+  scope.begin();
+  tbb::parallel_pipeline(
+      units_in_flight,
+      tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, number_of_next) &
+          tbb::make_filter<std::size_t, Handed<Flying>>(tbb::filter_mode::parallel,
+                                                        order_and_pack) &
+          tbb::make_filter<Handed<Flying>, void>(tbb::filter_mode::serial_in_order, write));
+  progress.end();
+}
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+constexpr std::uint64_t kBaseBytes = 64 * kMiB;  // memory of batches, index and libraries
+// Memory per thread: a counting grid and its refinement.
+constexpr std::uint64_t kThreadBytes = 32 * kMiB;
+constexpr std::uint64_t kCellBytes = 160;           // index and tree nodes of a cell
+constexpr std::uint64_t kOutputBytesPerPoint = 11;  // an estimate for the disk check
+constexpr std::uint64_t kPaddingBytesPerPoint = 4;  // an estimate for the disk check
+constexpr std::uint32_t kLeastCellPoints = 64;
+
+void check_columns(const std::vector<std::string>& columns) {
+  if (columns.empty()) return;
+  const auto is_wrong = [](const std::string& column) {
+    return column.empty() || column.find_first_not_of('0') == std::string::npos;
+  };
+  if (columns.size() != 3 || std::any_of(columns.begin(), columns.end(), is_wrong) ||
+      columns[0] == columns[1] || columns[0] == columns[2] || columns[1] == columns[2]) {
+    throw UsageError("expected three different columns, of x, y and z: numbers from 1, or names");
+  }
+}
+
+void check_options(const ConversionOptions& options) {
+  if (options.memory_bytes < kLeastConversionMemory) {
+    throw ResourceError(format_size(options.memory_bytes) +
+                            " of memory is too little: a conversion needs at least " +
+                            format_size(kLeastConversionMemory),
+                        Remedy::kMoreMemory, static_cast<double>(kLeastConversionMemory));
+  }
+  if (options.cell_points < kLeastCellPoints || options.cell_points > kMostCellPoints) {
+    throw UsageError(std::to_string(options.cell_points) + " points a cell: expected " +
+                     std::to_string(kLeastCellPoints) + " to " + std::to_string(kMostCellPoints));
+  }
+  if (options.regular_size && !(*options.regular_size > 0)) {
+    throw UsageError("a regular layout: expected cubes of a positive length");
+  }
+  check_columns(options.columns);
+}
+
+/// The number of threads that the memory allows, as each has a counting grid of its own.
+int affordable_threads(const ConversionOptions& options) {
+  const int wanted =
+      options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
+  const std::uint64_t affordable = (options.memory_bytes - kBaseBytes) / kThreadBytes;
+  return static_cast<int>(std::min<std::uint64_t>(static_cast<std::uint64_t>(wanted), affordable));
+}
+
+Lattice lattice_for(const ConversionOptions& options, const Quantisation& quantisation) {
+  if (!options.regular_size) return {};
+  std::array<std::uint64_t, 3> cube{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double quanta = std::nearbyint(*options.regular_size / quantisation.scale[k]);
+    if (!(quanta >= Lattice::kLeastCubeQuanta && quanta <= 0x1p32)) {
+      throw UsageError("a regular layout: expected cubes of " +
+                       std::to_string(Lattice::kLeastCubeQuanta) + " to 2^32 times the scale");
+    }
+    cube[k] = static_cast<std::uint64_t>(quanta);
+  }
+  return Lattice(cube);
+}
+
+/// The amount of data that a conversion writes, in points.
+struct DiskNeed {
+  std::uint64_t points = 0;
+  /// Points including the padding of cells that are not full, which packs to less.
+  std::uint64_t padded = 0;
+  std::uint64_t spooled = 0;  ///< points that are written into temporary files
+};
+
+void check_disk(const std::filesystem::path& folder, const DiskNeed& need) {
+  const std::uint64_t needed = need.points * kOutputBytesPerPoint +
+                               (need.padded - need.points) * kPaddingBytesPerPoint +
+                               need.spooled * sizeof(DistributedPoint);
+  const std::uint64_t free = free_disk_bytes(folder);
+  if (needed <= free) return;
+  const bool mostly_padding = need.padded > 2 * need.points;
+  throw ResourceError(folder.string() + ": " + std::to_string(free / kMiB) +
+                          " MiB free, expected about " + std::to_string(needed / kMiB) +
+                          " MiB for " + (need.spooled > 0 ? "the temporary files and " : "") +
+                          "the store of " + std::to_string(need.points) + " points" +
+                          (mostly_padding ? "; most of it pads cells that are not full" : ""),
+                      mostly_padding ? Remedy::kFewerCellPoints : Remedy::kNone);
+}
+
+/// The memory limit of the process's control group, such as a container's; the greatest number
+/// where there is no limit.
+std::uint64_t group_memory_bytes() {
+  std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+  for (const char* file :
+       {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+    std::uint64_t bytes = 0;
+    if (std::ifstream(file) >> bytes) least = std::min(least, bytes);
+  }
+  return least;
+}
+
+/// The most bytes of points that may wait in memory: half of the machine's or the container's,
+/// because inputs and store need the rest.
+std::uint64_t most_waiting_bytes() {
+  const std::uint64_t of_machine = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+                                   static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  return std::min(of_machine, group_memory_bytes()) / 2;
+}
+
+class Conversion {
+ public:
+  Conversion(const ConversionOptions& options, int threads, Progress& progress)
+      : options_(options),
+        threads_(threads),
+        progress_(progress),
+        folder_(folder_of(options.output)),
+        output_(options.output, options.overwrite) {}
+
+  ConversionReport run() {
+    EnvironmentSource environment(options_.inputs, environment_options(), progress_);
+    refuse_overwriting(options_.output, environment.read_files());
+    if (environment.declared_points()) {
+      check_disk(folder_, {*environment.declared_points(), *environment.declared_points()});
+    }
+    SourceDescription others(environment.read_files(), environment.in_pieces(), progress_);
+    FileHashes hashes(environment.files(), environment.in_pieces());
+    const Lattice lattice = lattice_for(options_, environment.quantisation());
+    InputSurvey survey;
+    CountedEnvironment counted =
+        count_environment(environment, lattice, survey, hashes, threads_, clocks_, progress_);
+    fill_metadata(environment, counted, others.get(hashes.finish()));
+    if (environment.unit() == LengthUnit::kUnknown && counted.points > 0) {
+      log_.note(
+          "the inputs name no unit of length, so metres are assumed; --unit names another one");
+    }
+    report_.box = warn_of_inputs(environment, survey.boxes, report_.metadata, log_);
+    const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
+    const std::vector<TopNode> top = tree.top_nodes(options_.cell_points);
+    check_cells(top, tree.units().size());
+    report_.count_seconds = watch_.lap();
+
+    PlaceCounter places(survey.places.suspects());
+    progress_.begin("distribute", counted.points, "points");
+    Distribution distribution(tree, in_memory_ ? std::nullopt : std::optional(folder_),
+                              static_cast<std::size_t>(threads_));
+    distribute(environment, counted.hashes(), lattice, tree, places, distribution, threads_,
+               clocks_, progress_);
+    progress_.end();
+    environment.refuse_changed();  // so that the sources' hashes are those of what was converted
+    report_.largest_change = environment.largest_change();
+    report_.temporary_bytes = distribution.temporary_bytes();
+    warn_of_places(environment, places, counted.points, log_);
+    if (options_.strict) refuse_warnings(report_.warnings);
+    report_.metadata.warnings = kept_warnings(report_.warnings);
+    report_.distribute_seconds = watch_.lap();
+    write_store(distribution, tree, top, lattice);
+    return std::move(report_);
+  }
+
+ private:
+  EnvironmentOptions environment_options() const {
+    return {.scale = options_.scale,
+            .unit = options_.unit,
+            .ignore_crs = options_.ignore_crs,
+            .skip_unreadable = options_.skip_unreadable,
+            .columns = options_.columns,
+            .temporary_folder = folder_};
+  }
+
+  void fill_metadata(const EnvironmentSource& environment, const CountedEnvironment& counted,
+                     std::vector<SourceFile> sources) {
+    report_.points = counted.points;
+    report_.metadata = {.point_count = counted.points,
+                        .input_points = counted.input_points,
+                        .cell_points = options_.cell_points,
+                        .quantisation = environment.quantisation(),
+                        .layout = layout_name(options_.regular_size),
+                        .unit = environment.unit(),
+                        .crs_wkt = environment.crs_wkt(),
+                        .points_hash = counted.points_hash,
+                        .sources = std::move(sources),
+                        .source_points = {},
+                        .classes = counted.classes};
+    if (environment.files().size() > 1) {
+      report_.metadata.source_points = environment.points_of_files();
+      // Files of poses have 0 points.
+      report_.metadata.source_points.resize(report_.metadata.sources.size());
+    }
+    report_.absent_points = environment.absent_points();
+    report_.non_finite_points = environment.non_finite_points();
+    const Quantisation& quanta = environment.quantisation();
+    report_.scale = {quanta.scale[0], quanta.scale[1], quanta.scale[2]};
+    report_.offset = {quanta.offset[0], quanta.offset[1], quanta.offset[2]};
+  }
+
+  std::uint64_t of_unit() const { return unit_bytes(report_.metadata.classes.has_value()); }
+
+  /// Bytes of memory for units, besides the index of cells; at least one unit.
+  std::uint64_t bytes_for_units() const {
+    // The index of classes.
+    const std::uint64_t of_cell = kCellBytes + (report_.metadata.classes ? 20 : 0);
+    const std::uint64_t others = kBaseBytes + report_.cells * of_cell;
+    const std::uint64_t least = others + of_unit();
+    if (options_.memory_bytes < least) {
+      throw ResourceError(format_size(options_.memory_bytes) + " of memory is too little: " +
+                              std::to_string(report_.cells) + " cells need at least " +
+                              std::to_string(divide_up(least, kMiB)) + " MiB",
+                          Remedy::kMoreCellPoints);
+    }
+    return options_.memory_bytes - others;
+  }
+
+  /// Checks that memory and disk suffice for the cells, and decides whether all points wait in
+  /// memory. They do if that leaves enough for one unit per thread.
+  void check_cells(const std::vector<TopNode>& top, std::size_t units) {
+    const std::uint64_t points = report_.points;
+    report_.cells = top.empty() ? 0 : top[0].cell_count;
+    const std::uint64_t waiting = points * sizeof(DistributedPoint);
+    units_in_flight_ = std::min(units, static_cast<std::size_t>(threads_) + 1);
+    in_memory_ = bytes_for_units() >= waiting + units_in_flight_ * of_unit() &&
+                 waiting <= most_waiting_bytes();
+    units_in_flight_ = std::clamp<std::size_t>(bytes_for_units() / of_unit(), 1,
+                                               std::max<std::size_t>(1, units_in_flight_));
+    const std::uint64_t padded = std::max(points, report_.cells * options_.cell_points);
+    check_disk(folder_, {points, padded, in_memory_ ? 0 : points});
+    if (options_.regular_size && padded > 2 * points) {
+      log_.warn(
+          "padded-cells",
+          std::to_string(report_.cells) + " cells of " + std::to_string(options_.cell_points) +
+              " points for " + std::to_string(points) +
+              " points: the padding makes the store large; fewer points a cell fit the cubes");
+    }
+  }
+
+  void write_store(Distribution& distribution, const SplitTree& tree,
+                   const std::vector<TopNode>& top, const Lattice& lattice) {
+    StoreWriter writer(output_.partial(), report_.metadata, report_.cells);
+    write_cells(distribution, tree, lattice, report_.metadata, units_in_flight_, writer, clocks_,
+                progress_);
+    report_.partition_seconds = watch_.lap();
+    {
+      const auto running = clocks_.measure(Stage::kWrite);
+      writer.finish(top);
+    }
+    auto synced = std::async(std::launch::async | std::launch::deferred, [this] {
+      const auto running = clocks_.measure(Stage::kSync);
+      output_.sync();
+    });
+    {
+      const auto running = clocks_.measure(Stage::kConfirm);
+      writer.confirm();
+    }
+    synced.get();
+    output_.publish();
+    report_.output_bytes = std::filesystem::file_size(options_.output);
+    report_.confirm_seconds = watch_.lap();
+    report_.busy_seconds = clocks_.seconds();
+  }
+
+  const ConversionOptions& options_;
+  int threads_;
+  Progress& progress_;
+  std::filesystem::path folder_;
+  PendingFile output_;
+  ConversionReport report_;
+  std::size_t units_in_flight_ = 1;
+  bool in_memory_ = false;
+  MessageLog log_{options_.message, report_.warnings};
+  StageClocks clocks_;
+  Stopwatch watch_;
+};
+
+}  // namespace
+
+std::vector<Message> kept_warnings(const std::vector<Message>& warnings) {
+  constexpr std::size_t kMost = 64, kMostTextBytes = 1000;
+  std::vector<Message> kept;
+  // The warning "feet" is left out, because the store's unit says the same.
+  std::ranges::remove_copy(warnings, std::back_inserter(kept), "feet", &Message::code);
+  const std::size_t all = kept.size();
+  kept.resize(std::min(all, kMost));
+  for (Message& warning : kept) {
+    if (warning.text.size() <= kMostTextBytes) continue;
+    std::size_t end = kMostTextBytes;
+    while (end > 0 && (warning.text[end] & 0xc0) == 0x80) --end;  // do not cut within a character
+    warning.text = warning.text.substr(0, end) + " ...";
+  }
+  if (all > kMost) {
+    const std::size_t more = all - kMost + 1;
+    kept.back() = {Message::Severity::kWarning,
+                   "more-warnings",
+                   "the conversion gave " + format_count(more) +
+                       " more warnings, which the store does not keep; convert again to see them",
+                   {{"warnings", static_cast<double>(more)}}};
+  }
+  return kept;
+}
+
+ConversionReport convert_scans(const ConversionOptions& options, Progress& progress) {
+  check_options(options);
+  const int threads = affordable_threads(options);
+  return ThreadLimit(threads).run([&] { return Conversion(options, threads, progress).run(); });
+}
+
+namespace {
+
+/// The store at a path; nullopt where there is no store with a sound index.
+std::optional<StoreReader> store_at(const std::filesystem::path& path) {
+  if (!std::filesystem::is_regular_file(path)) return std::nullopt;
+  try {
+    return std::optional<StoreReader>(std::in_place, path);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+/// Whether a store in unit `found` agrees with the option `wanted`, which applies where inputs name
+/// no unit. An option "ft" agrees with either foot, since another input may have named which.
+bool has_wanted_unit(const FileUnit& wanted, LengthUnit found) {
+  return !wanted.is_known() || wanted.metres_in(metres_of(found)) == metres_of(found);
+}
+
+/// Whether a conversion with these options could have made this store, as far as its metadata
+/// tells.
+bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
+  const auto wanted = [&options](double scale) {
+    return !options.scale || scale == *options.scale;
+  };
+  return found.cell_points == options.cell_points &&
+         found.layout == layout_name(options.regular_size) &&
+         std::all_of(found.quantisation.scale, found.quantisation.scale + 3, wanted) &&
+         (!options.strict || found.point_count == found.input_points || !found.warnings.empty()) &&
+         has_wanted_unit(options.unit, found.unit) &&
+         (options.ignore_crs ||
+          (found.unit != LengthUnit::kDegrees && units_of_wkt(found.crs_wkt).trouble.empty()));
+}
+
+}  // namespace
+
+bool is_converted(const ConversionOptions& options, Progress& progress) {
+  // A store does not record the columns with which it was made.
+  if (options.inputs == std::vector<std::filesystem::path>{"-"} || !options.columns.empty()) {
+    return false;
+  }
+  const std::optional<StoreReader> store = store_at(options.output);
+  if (!store || !would_make(options, store->metadata())) return false;
+  std::vector<std::filesystem::path> files = list_point_files(options.inputs);
+  if (options.skip_unreadable) files = readable_files(files, {}, progress).files;
+  SourceDescription sources(with_pose_files(files), {}, progress);
+  if (sources.get() != store->metadata().sources) return false;
+  const std::vector<std::string> faults = verify_store(*store, progress, 1);
+  if (faults.empty()) return true;
+  throw UsageError(faults[0] + "; the store of these inputs is damaged",
+                   Remedy::kOverwriteNotResume);
+}
+
+ConvertReport convert(const std::vector<std::filesystem::path>& inputs,
+                      const std::filesystem::path& output, const ConvertOptions& options) {
+  const ConversionOptions conversion{options, inputs, output};
+  CallbackProgress progress(options.progress, options.stop);
+  if (options.resume && is_converted(conversion, progress)) {
+    ConvertReport report{.was_finished = true};
+    MessageLog log(options.message, report.warnings);
+    const StoreReader store(output);
+    for (const Message& warning : store.metadata().warnings) log.add(warning);
+    if (options.strict) refuse_warnings(report.warnings);
+    return report;
+  }
+  return convert_scans(conversion, progress);
+}
+
+}  // namespace clearway

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/util/progress.hpp"
+#include "io/files/file.hpp"
+#include "io/store/convert/count.hpp"
+#include "io/store/convert/environment_source.hpp"
+#include "io/store/convert/same_scans.hpp"
+#include "io/store/convert/split_tree.hpp"
+#include "io/store/convert/stage_clocks.hpp"
+
+namespace clearway {
+
+/// A point to be distributed to its unit, 20 bytes. As no input has as many as 2^56 points, the
+/// highest byte of the source index holds the point's class.
+struct DistributedPoint {
+  std::int32_t q[3];
+  std::uint32_t source[2];  ///< low half of the source index, and its high half with the class
+
+  static DistributedPoint of(const std::array<std::int32_t, 3>& q, std::uint64_t source,
+                             std::uint8_t point_class) {
+    const auto high = static_cast<std::uint32_t>(source >> 32);
+    return {{q[0], q[1], q[2]},
+            {static_cast<std::uint32_t>(source), high | std::uint32_t{point_class} << 24}};
+  }
+  std::uint64_t source_index() const {
+    return source[0] | std::uint64_t{source[1] & 0x00FFFFFFU} << 32;
+  }
+  std::uint8_t point_class() const { return static_cast<std::uint8_t>(source[1] >> 24); }
+};
+static_assert(sizeof(DistributedPoint) == 20);
+
+/// All points of a unit, in source order.
+struct UnitPoints {
+  std::unique_ptr<DistributedPoint[]> points;
+  std::size_t count = 0;
+
+  std::span<const DistributedPoint> span() const { return {points.get(), count}; }
+};
+
+/// The points of each unit of the tree, in memory or in nameless files.
+class Distribution {
+ public:
+  /// folder: where to create the files; nullopt keeps the points in memory. files: their number,
+  /// because each takes the bytes of one thread at a time. Throws ResourceError where the disk is
+  /// too small.
+  Distribution(const SplitTree& tree, const std::optional<std::filesystem::path>& folder,
+               std::size_t files);
+
+  std::size_t units() const { return counts_.size(); }
+  std::uint64_t points(std::size_t unit) const { return counts_[unit]; }
+  /// Size of the temporary files in bytes.
+  std::uint64_t temporary_bytes() const { return temporary_bytes_; }
+
+  /// Stores points of a unit from index `first` on. Several threads may store at different places
+  /// at once.
+  void put(std::size_t unit, std::uint64_t first, std::span<const DistributedPoint> points);
+  /// Takes the points of a unit, once all of them are stored. To be called once per unit; several
+  /// threads may call it at once.
+  UnitPoints take(std::size_t unit);
+
+ private:
+  struct Place {
+    std::size_t file;
+    std::uint64_t byte;
+  };
+
+  std::vector<std::uint64_t> counts_;
+  std::vector<UnitPoints> memory_;  // points by unit, where they are in memory
+  std::vector<File> files_;
+  std::vector<Place> places_;  // places of the units in the files
+  std::uint64_t temporary_bytes_ = 0;
+};
+
+/// Performs the distribution pass, which puts every point to those of its unit, in source order.
+/// Throws InputError when the input is not what was counted, ResourceError when the disk is full.
+/// places: counts the points at its places.
+void distribute(EnvironmentSource& environment, const CountedHashes& counted,
+                const Lattice& lattice, const SplitTree& tree, PlaceCounter& places,
+                Distribution& distribution, int threads, StageClocks& clocks, Progress& progress);
+
+}  // namespace clearway

@@ -1,0 +1,362 @@
+#include "io/store/convert/environment_source.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "clearway/error.hpp"
+#include "core/util/messages.hpp"
+#include "io/files/input_error.hpp"
+#include "io/store/convert/coordinate_range.hpp"
+#include "io/store/convert/read_points.hpp"
+#include "io/store/convert/spooled_reader.hpp"
+
+namespace clearway {
+namespace {
+
+const EnvironmentOptions& checked(const EnvironmentOptions& options) {
+  if (options.scale && !(*options.scale > 0 && std::isfinite(*options.scale))) {
+    throw UsageError("a scale of " + brief(*options.scale) + ": expected a positive length");
+  }
+  return options;
+}
+
+/// Calls `read`. Where one of several files is refused, the error says that it can be skipped.
+template <typename Read>
+auto reading_one_of(std::size_t files, Read read) {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    const Remedy remedy = error.remedy();
+    const bool can_be_skipped = remedy == Remedy::kNone || remedy == Remedy::kStandardInput ||
+                                remedy == Remedy::kSampleMesh;
+    if (files < 2 || !can_be_skipped) throw;
+    throw InputError(error.what(), Remedy::kSkipUnreadable);
+  }
+}
+
+}  // namespace
+
+EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& inputs,
+                                     const EnvironmentOptions& options, Progress& progress)
+    : options_(checked(options)),
+      how_to_read_{options.columns, true},
+      inputs_(inputs, options.skip_unreadable, how_to_read_, progress) {
+  open_inputs();
+  find_crs();
+  if (auto kept = common_quanta(files(), infos_, options_.scale)) {
+    quantisation_ = kept->quantisation;
+    shifts_ = std::move(kept->shifts);
+    return;
+  }
+  choose_offset_and_scale(progress);
+}
+
+EnvironmentSource::~EnvironmentSource() = default;
+
+void EnvironmentSource::open_inputs() {
+  if (inputs_.are_a_stream()) {
+    auto stream = open_las_stream(File::adopt(::dup(STDIN_FILENO), "standard input"),
+                                  options_.temporary_folder);
+    if (!stream->can_rewind()) stream = spool(std::move(stream), options_.temporary_folder);
+    stream_ = std::move(stream);
+  }
+  declared_points_ = 0;
+  for (std::size_t i = 0; i < files().size(); ++i) {
+    const CloudInfo& info = infos_.emplace_back(reader(i)->info());
+    in_pieces_.push_back(!stream_ && reader(i)->pieces() > 0);
+    if (declared_points_ && info.declared_points) {
+      *declared_points_ += *info.declared_points;
+    } else {
+      declared_points_.reset();
+    }
+  }
+  const auto is_text = [](const CloudInfo& info) { return info.text_table; };
+  if (!options_.columns.empty() && std::none_of(infos_.begin(), infos_.end(), is_text)) {
+    throw UsageError("columns are chosen, but no input is a text; expected one at least");
+  }
+}
+
+void EnvironmentSource::find_crs() {
+  crs_ = common_crs(files(), infos_, options_.unit, options_.ignore_crs);
+  for (std::size_t i = 0; i < files().size(); ++i) {
+    if (infos_[i].faces == 0) continue;
+    crs_.warnings.push_back({Message::Severity::kWarning, "mesh-faces",
+                             files()[i].string() + ": its " + std::to_string(infos_[i].faces) +
+                                 " faces are not read, its vertices are"});
+  }
+}
+
+std::vector<Message> EnvironmentSource::remarks() const {
+  std::vector<Message> all = crs_.warnings;
+  all.insert(all.end(), range_warnings_.begin(), range_warnings_.end());
+  const std::vector<Message> of_files = inputs_.remarks();
+  all.insert(all.end(), of_files.begin(), of_files.end());
+  if (!shifts_.empty()) {
+    const auto mixture = remark_on_mixture(files(), infos_, quantisation_);
+    if (mixture) all.push_back(*mixture);
+  }
+  std::vector<Message> own;
+  for (const CloudInfo& info : infos_) {
+    own.insert(own.end(), info.remarks.begin(), info.remarks.end());
+  }
+  shorten_notes(own);
+  all.insert(all.end(), own.begin(), own.end());
+  return all;
+}
+
+void EnvironmentSource::choose_offset_and_scale(Progress& progress) {
+  CoordinateRange range;
+  progress.begin("range", declared_points_.value_or(0), "points");
+  RecordBatch records;
+  while (next(records)) {
+    throw_if_stopped(progress);
+    if (records.reader) read_piece(records, nullptr);
+    const std::size_t count = records.points.size();
+    const std::uint64_t first = file_points_ - count;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 p = point_of(records.points, infos_[file_], i);
+      if (is_finite(p)) range.add(p, file_, first + i);
+    }
+    progress.advance(count);
+  }
+  progress.end();
+  rewind();
+  range_warnings_ = warn_of_lost_digits(range.samples());
+  quantisation_ = choose_scale(range, options_.scale, files(), how_to_read_);
+}
+
+const std::shared_ptr<PointReader>& EnvironmentSource::reader(std::size_t file) {
+  if (stream_) return stream_;
+  if (!current_ || open_file_ != file) {
+    current_ = reading_one_of(files().size(),
+                              [&] { return open_point_file(files()[file], how_to_read_); });
+    open_file_ = file;
+  }
+  return current_;
+}
+
+void EnvironmentSource::rewind() {
+  file_ = piece_ = 0;
+  file_points_ = next_source_ = 0;
+  input_points_ = non_finite_points_ = absent_points_ = 0;
+  largest_change_ = 0;
+  points_of_files_.clear();
+  if (stream_) stream_->rewind();
+  current_.reset();
+}
+
+bool EnvironmentSource::next(RecordBatch& records) {
+  for (; file_ < files().size(); ++file_, piece_ = 0, file_points_ = 0) {
+    const std::shared_ptr<PointReader>& from = reader(file_);
+    std::uint64_t count = 0;
+    if (piece_ < from->pieces()) {
+      records.reader = from;
+      records.piece = piece_++;
+      count = from->points_of_piece(records.piece);
+    } else if (from->pieces() == 0 &&
+               reading_one_of(files().size(), [&] { return from->read(records.points); })) {
+      records.reader.reset();
+      count = records.points.size();
+    } else {
+      infos_[file_].remarks = from->info().remarks;
+      points_of_files_.push_back(file_points_);
+      continue;
+    }
+    records.file = file_;
+    records.first_source = next_source_;
+    file_points_ += count;
+    next_source_ += count;
+    return true;
+  }
+  if (stream_ &&
+      (infos_[0].crs_wkt != stream_->info().crs_wkt || infos_[0].unit != stream_->info().unit)) {
+    infos_[0].crs_wkt = stream_->info().crs_wkt;  // the CRS may follow the points
+    infos_[0].unit = stream_->info().unit;
+    infos_[0].unit_trouble = stream_->info().unit_trouble;
+    find_crs();
+  }
+  return false;
+}
+
+void EnvironmentSource::read_piece(RecordBatch& records, PieceBytes* bytes) const {
+  reading_one_of(files().size(), [&] {
+    records.reader->read_piece(records.piece, records.points, bytes);
+    return true;
+  });
+}
+
+void EnvironmentSource::note(const QuantaBatch& batch) {
+  if (non_finite_points_ == 0) first_non_finite_ = batch.first_non_finite;
+  input_points_ += batch.records;
+  non_finite_points_ += batch.non_finite_points;
+  absent_points_ += batch.absent_points;
+  largest_change_ = std::max(largest_change_, batch.largest_change);
+}
+
+bool EnvironmentSource::read(QuantaBatch& batch) {
+  RecordBatch records;
+  batch.quanta.clear();
+  if (!next(records)) return false;
+  convert(records, batch, false);
+  note(batch);
+  return true;
+}
+
+EnvironmentSource::Place EnvironmentSource::place_of(std::uint64_t source) const {
+  Place place{0, source};
+  while (place.file + 1 < points_of_files_.size() && place.point >= points_of_files_[place.file]) {
+    place.point -= points_of_files_[place.file++];
+  }
+  return place;
+}
+
+std::optional<std::array<std::int32_t, 3>> EnvironmentSource::origin_of(std::size_t file) const {
+  const auto& own = infos_[file].quantisation;
+  std::array<std::int32_t, 3> out{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double origin = own ? own->offset[k] : 0;
+    const double quantum =
+        std::nearbyint((origin - quantisation_.offset[k]) / quantisation_.scale[k]);
+    if (!(quantum >= kLeastQuantum && quantum <= kGreatestQuantum)) return std::nullopt;
+    out[k] = static_cast<std::int32_t>(quantum);
+  }
+  return out;
+}
+
+}  // namespace clearway
+
+// Conversion of records to the store's integers.
+
+namespace clearway {
+
+void EnvironmentSource::convert(RecordBatch& records, QuantaBatch& batch, bool with_bytes) const {
+  if (records.reader) read_piece(records, with_bytes ? &batch.bytes : nullptr);
+  batch.file = records.file;
+  batch.first_source = records.first_source;
+  batch.records = records.points.size();
+  batch.quanta.clear();
+  batch.offsets.clear();
+  batch.classes.clear();
+  batch.non_finite_points = batch.absent_points = 0;
+  batch.largest_change = 0;
+  if (shifts_.empty() || !infos_[records.file].quantisation) {
+    append_rounded(records, batch);
+  } else {
+    append_kept(records, batch);
+  }
+  keep_classes(records, batch);
+  records.points = {};
+}
+
+/// Keeps the classes of the points that were not dropped.
+void EnvironmentSource::keep_classes(RecordBatch& records, QuantaBatch& out) {
+  std::vector<std::uint8_t>& classes = records.points.classes;
+  const auto is_set = [](std::uint8_t value) { return value != 0; };
+  if (std::none_of(classes.begin(), classes.end(), is_set)) return;
+  for (std::size_t i = 0; i < out.offsets.size(); ++i) classes[i] = classes[out.offsets[i]];
+  classes.resize(out.quanta.size());
+  out.classes = std::move(classes);
+}
+
+void EnvironmentSource::append_kept(RecordBatch& records, QuantaBatch& out) const {
+  out.quanta = std::move(records.points.quanta);
+  const std::size_t file = records.file;
+  const Quantisation& own = *infos_[file].quantisation;
+  if (own == quantisation_) return;
+  for (auto& q : out.quanta) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int axis = static_cast<int>(k);
+      const double before = coordinate(own, axis, q[k]);
+      const std::int64_t shifted = q[k] + shifts_[file][k];
+      if (shifted < std::numeric_limits<std::int32_t>::min() ||
+          shifted > std::numeric_limits<std::int32_t>::max()) {
+        throw InputError(files()[file].string() + ": too far from " + files()[0].string() +
+                             " for 32-bit integers of " + brief(own.scale[k]),
+                         Remedy::kScale);
+      }
+      q[k] = static_cast<std::int32_t>(shifted);
+      out.largest_change =
+          std::max(out.largest_change, std::abs(coordinate(quantisation_, axis, q[k]) - before));
+    }
+  }
+}
+
+void EnvironmentSource::append_rounded(const RecordBatch& records, QuantaBatch& out) const {
+  const PointBatch& batch = records.points;
+  auto absent = batch.absent.begin();
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    const Vec3 p = point_of(batch, infos_[records.file], i);
+    if (!is_finite(p)) {
+      if (absent != batch.absent.end() && *absent == i) {
+        ++out.absent_points;
+        ++absent;
+      } else {
+        if (out.non_finite_points++ == 0) out.first_non_finite = records.first_source + i;
+      }
+      if (out.offsets.empty()) {
+        for (std::uint32_t j = 0; j < out.quanta.size(); ++j) out.offsets.push_back(j);
+        out.offsets.reserve(batch.size());
+      }
+      continue;
+    }
+    std::array<std::int32_t, 3> q;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int axis = static_cast<int>(k);
+      const double quantum =
+          std::nearbyint((p[axis] - quantisation_.offset[k]) / quantisation_.scale[k]);
+      if (quantum < kLeastQuantum || quantum > kGreatestQuantum) {
+        refuse_beyond_quanta(records.file);
+      }
+      q[k] = static_cast<std::int32_t>(quantum);
+      out.largest_change =
+          std::max(out.largest_change, std::abs(coordinate(quantisation_, axis, q[k]) - p[axis]));
+    }
+    out.quanta.push_back(q);
+    // Points behind the first dropped one need an index of their own; without any dropped point,
+    // offsets stays empty.
+    if (out.quanta.size() <= i) out.offsets.push_back(static_cast<std::uint32_t>(i));
+  }
+}
+
+void EnvironmentSource::refuse_beyond_quanta(std::size_t file) const {
+  if (shifts_.empty()) refuse(files()[file].string(), "changed while it was read");
+  refuse(files()[file].string(),
+         "too far from the other files for 32-bit integers of " + brief(quantisation_.scale[0]),
+         Remedy::kScale);
+}
+
+bool EnvironmentPass::next(PassingBatch& batch) {
+  if (failed_) return false;
+  try {
+    throw_if_stopped(progress_);
+    const auto running = clocks_.measure(Stage::kRead);
+    return environment_.next(batch.records);
+  } catch (...) {
+    batch.error = std::current_exception();
+    failed_ = true;
+  }
+  return true;
+}
+
+void EnvironmentPass::read(PassingBatch& batch) const {
+  const auto running = clocks_.measure(Stage::kRead);
+  environment_.convert(batch.records, batch.quanta, files_ != nullptr);
+}
+
+void EnvironmentPass::hash_file(PassingBatch& batch) const {
+  if (files_ == nullptr || batch.error) return;
+  const auto running = clocks_.measure(Stage::kHash);
+  const PieceBytes bytes = std::exchange(batch.quanta.bytes, {});
+  if (bytes.count > 0) files_->add(batch.quanta.file, bytes);
+}
+
+void EnvironmentPass::note(const PassingBatch& batch) const {
+  if (batch.error) std::rethrow_exception(batch.error);
+  environment_.note(batch.quanta);
+}
+
+}  // namespace clearway

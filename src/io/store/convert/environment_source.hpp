@@ -1,0 +1,133 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/util/progress.hpp"
+#include "io/scans/point_reader.hpp"
+#include "io/store/convert/input_agreement.hpp"
+#include "io/store/convert/input_files.hpp"
+#include "io/store/convert/quanta_batch.hpp"
+
+namespace clearway {
+
+struct EnvironmentOptions {
+  std::optional<double> scale{};  ///< requested scale of all axes, in metres
+  FileUnit unit{};                ///< unit of inputs that name none
+  bool ignore_crs = false;        ///< whether to accept degrees and inputs of different units
+  bool skip_unreadable = false;   ///< whether to leave out files that cannot be read to their end
+  std::vector<std::string> columns{};  ///< columns of texts, see PointReadOptions
+  std::filesystem::path temporary_folder = ".";
+};
+
+/// All inputs of a conversion as one sequence of points in one quantisation
+/// (docs/design/conversion.md). Where inputs have integers, these are kept as read; files of the
+/// same scale are shifted by whole quanta. Other coordinates are rounded to the nearest quantum:
+/// that of files with integers if there are any, otherwise that of a chosen scale.
+class EnvironmentSource {
+ public:
+  /// inputs: files and folders, or "-" alone for LAS on standard input. Reads the headers; it also
+  /// reads all points once where files may be skipped, and once where a scale must be chosen.
+  /// Throws InputError, UsageError and Interrupted.
+  EnvironmentSource(const std::vector<std::filesystem::path>& inputs,
+                    const EnvironmentOptions& options, Progress& progress);
+  ~EnvironmentSource();
+
+  const Quantisation& quantisation() const { return quantisation_; }
+  const std::string& crs_wkt() const { return crs_.wkt; }
+  LengthUnit unit() const { return crs_.unit; }
+  /// The declarations of each of files().
+  std::span<const CloudInfo> infos() const { return infos_; }
+  const std::vector<std::filesystem::path>& files() const {
+    return inputs_.files();
+  }  ///< "-" for a stream
+  /// The files, and those with their poses.
+  const std::vector<std::filesystem::path>& read_files() const { return inputs_.read_files(); }
+  /// Number of points that the inputs declare, where all of them do.
+  std::optional<std::uint64_t> declared_points() const { return declared_points_; }
+  /// Notes and warnings on the inputs; complete once read() has returned false.
+  std::vector<Message> remarks() const;
+
+  /// For each file, whether its points are read in pieces.
+  const std::vector<bool>& in_pieces() const { return in_pieces_; }
+
+  /// Reads the next batch in input order; returns false at the end. It consists of three steps:
+  /// next(), convert(), note().
+  bool read(QuantaBatch& batch);
+  /// Takes the next records in input order; returns false at the end.
+  bool next(RecordBatch& records);
+  /// Converts records to the store's integers, after reading them where they are a piece. Several
+  /// threads may call it at once. with_bytes: whether the bytes of a piece are wanted too.
+  void convert(RecordBatch& records, QuantaBatch& batch, bool with_bytes) const;
+  /// Counts what was read. Called for all batches in input order.
+  void note(const QuantaBatch& batch);
+  void rewind();
+
+  /// The place of a record in the inputs; known once read() has returned false.
+  struct Place {
+    std::size_t file;
+    std::uint64_t point;  ///< number of the point in its file, from 0
+  };
+  Place place_of(std::uint64_t source) const;
+  /// The place in the store of zeros in a file: its integers 0, or the position (0, 0, 0). Nullopt
+  /// where the store cannot hold it.
+  std::optional<std::array<std::int32_t, 3>> origin_of(std::size_t file) const;
+
+  /// Throws InputError, which names the file, where a file has changed since before the reading
+  /// began.
+  void refuse_changed() const { inputs_.refuse_changed(); }
+
+  // The following count what has been read since the last rewind().
+  std::uint64_t input_points() const { return input_points_; }
+  std::uint64_t non_finite_points() const { return non_finite_points_; }
+  /// The source index of the first non-finite point.
+  std::uint64_t first_non_finite() const { return first_non_finite_; }
+  /// Number of source indices that each of files() takes; complete once read() has returned false.
+  const std::vector<std::uint64_t>& points_of_files() const { return points_of_files_; }
+  /// Number of records of the files that hold no point, by the rules of their format.
+  std::uint64_t absent_points() const { return absent_points_; }
+  /// Largest |stored - read| of any coordinate, metres.
+  double largest_change() const { return largest_change_; }
+
+ private:
+  void open_inputs();
+  void find_crs();
+  void choose_offset_and_scale(Progress& progress);
+  const std::shared_ptr<PointReader>& reader(std::size_t file);
+  void read_piece(RecordBatch& records, PieceBytes* bytes) const;
+  void append_kept(RecordBatch& records, QuantaBatch& out) const;
+  void append_rounded(const RecordBatch& records, QuantaBatch& out) const;
+  static void keep_classes(RecordBatch& records, QuantaBatch& out);
+  [[noreturn]] void refuse_beyond_quanta(std::size_t file) const;
+
+  EnvironmentOptions options_;
+  PointReadOptions how_to_read_;
+  InputFiles inputs_;
+  std::vector<CloudInfo> infos_;  // declarations of the files
+  std::vector<bool> in_pieces_;
+  Quantisation quantisation_{};
+  // Shifts of the files' integers in quanta; empty where all are rounded anew.
+  std::vector<std::array<std::int64_t, 3>> shifts_;
+  CommonCrs crs_;
+  std::vector<Message> range_warnings_;  // warnings on the coordinates as read
+  std::optional<std::uint64_t> declared_points_;
+
+  std::shared_ptr<PointReader> stream_;   // standard input, spooled
+  std::shared_ptr<PointReader> current_;  // the open file
+  std::size_t open_file_ = 0;
+  std::size_t file_ = 0;
+  std::size_t piece_ = 0;  // next piece of the open file
+  std::uint64_t file_points_ = 0;
+  std::uint64_t next_source_ = 0;
+  std::vector<std::uint64_t> points_of_files_;  // points of the files that were read to their end
+  std::uint64_t input_points_ = 0;
+  std::uint64_t non_finite_points_ = 0;
+  std::uint64_t first_non_finite_ = 0;
+  std::uint64_t absent_points_ = 0;
+  double largest_change_ = 0;
+};
+
+}  // namespace clearway

@@ -1,0 +1,221 @@
+#include "io/store/convert/file_boxes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "core/util/format.hpp"
+#include "io/scans/declared_box.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr double kFarSizes = 100;    // gap that counts as far, in sizes of the larger of two boxes
+constexpr double kFarLength = 1000;  // least gap that counts as far, in metres
+constexpr double kSizeRatio = 300;   // ratio between consecutive sizes in ascending order
+// Metres; a smaller input is not suspected to be in another unit.
+constexpr double kLargeLength = 3000;
+constexpr double kLeastLength = 0.1;         // metres; a smaller input has no size to compare
+constexpr std::size_t kMostCompared = 5000;  // number of files that are compared in pairs
+constexpr std::size_t kNamed = 3;
+
+Box box_of(const FileBox& box, const Quantisation& quantisation) {
+  return {position(quantisation, box.lo[0], box.lo[1], box.lo[2]),
+          position(quantisation, box.hi[0], box.hi[1], box.hi[2])};
+}
+
+std::string text_of(const Box& box) {
+  const auto corner = [](const Vec3& p) {
+    return "(" + format_number(std::round(p.x)) + ", " + format_number(std::round(p.y)) + ", " +
+           format_number(std::round(p.z)) + ")";
+  };
+  return corner(box.lo) + " to " + corner(box.hi);
+}
+
+/// The inputs that have points.
+class Inputs {
+ public:
+  Inputs(std::span<const FileBox> boxes, const Quantisation& quantisation,
+         std::span<const std::filesystem::path> files)
+      : files_(files) {
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      if (boxes[i].points == 0) continue;
+      numbers_.push_back(i);
+      boxes_.push_back(box_of(boxes[i], quantisation));
+      sizes_.push_back(length(boxes_.back().size()));
+    }
+  }
+
+  /// The warning where inputs form groups that are far from each other. Two are apart where their
+  /// gap is many times the size of the larger one. It names an input of the smallest group, and the
+  /// nearest of the others.
+  std::optional<Message> far_apart() const {
+    const std::vector<std::size_t> group = groups();
+    const std::size_t n = group.size();
+    std::vector<std::size_t> members(n);
+    for (const std::size_t g : group) ++members[g];
+    if (n == 0 || members[group[0]] == n) return std::nullopt;
+    std::size_t lone = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (members[group[i]] <= members[group[lone]]) lone = i;
+    }
+    std::optional<std::size_t> other;
+    double gap = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double to_i = boxes_[lone].distance(boxes_[i]);
+      if (group[i] == group[lone] || (other && to_i >= gap)) continue;
+      other = i;
+      gap = to_i;
+    }
+    return Message{Message::Severity::kWarning,
+                   "far-apart",
+                   name(lone) + " lies " + format_brief(gap) + " m from " + name(*other) +
+                       ", the nearest of the others: one may be in another frame or unit. Boxes: " +
+                       text_of(boxes_[lone]) + "; " + text_of(boxes_[*other]),
+                   {{"gap", gap}, {"files", static_cast<double>(members[group[lone]])}}};
+  }
+
+  /// The warning where consecutive sizes differ by a large factor.
+  std::optional<Message> other_size() const {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < sizes_.size(); ++i) {
+      if (sizes_[i] >= kLeastLength) order.push_back(i);
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [this](std::size_t a, std::size_t b) { return sizes_[a] < sizes_[b]; });
+    for (std::size_t i = 1; i < order.size(); ++i) {
+      const double small = sizes_[order[i - 1]], large = sizes_[order[i]];
+      if (large < kLargeLength || large < kSizeRatio * small) continue;
+      return Message{Message::Severity::kWarning,
+                     "other-size",
+                     name(order[i]) + " is " + format_brief(large / small) + " times as large as " +
+                         name(order[i - 1]) +
+                         ": one may be in another unit, such as millimetres. Boxes: " +
+                         text_of(boxes_[order[i]]) + "; " + text_of(boxes_[order[i - 1]]),
+                     {{"ratio", large / small}, {"files", static_cast<double>(order.size() - i)}}};
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::string name(std::size_t i) const { return files_[numbers_[i]].string(); }
+
+  /// The group of each of the first kMostCompared inputs, named by the number of one of its
+  /// members.
+  std::vector<std::size_t> groups() const {
+    std::vector<std::size_t> group(std::min(boxes_.size(), kMostCompared));
+    std::iota(group.begin(), group.end(), 0);
+    const auto root = [&group](std::size_t i) {
+      while (group[i] != i) i = group[i] = group[group[i]];
+      return i;
+    };
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const double near = std::max(kFarLength, kFarSizes * std::max(sizes_[i], sizes_[j]));
+        if (boxes_[i].distance(boxes_[j]) <= near) group[root(i)] = root(j);
+      }
+    }
+    for (std::size_t i = 0; i < group.size(); ++i) group[i] = root(i);
+    return group;
+  }
+
+  std::span<const std::filesystem::path> files_;
+  std::vector<std::size_t> numbers_;
+  std::vector<Box> boxes_;
+  std::vector<double> sizes_;
+};
+
+std::optional<Message> without_points(std::span<const FileBox> boxes,
+                                      std::span<const std::filesystem::path> files) {
+  std::size_t count = 0;
+  std::string names;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (boxes[i].points > 0) continue;
+    if (count++ < kNamed) names += (names.empty() ? "" : ", ") + files[i].string();
+  }
+  if (count == 0) return std::nullopt;
+  if (count > kNamed) names += " and " + std::to_string(count - kNamed) + " more";
+  return Message{Message::Severity::kWarning,
+                 "no-points",
+                 names + ": no point that can be stored" +
+                     (count == boxes.size() ? ", so nothing can collide with this store" : ""),
+                 {{"files", static_cast<double>(count)}}};
+}
+
+}  // namespace
+
+void FileBoxes::add(const QuantaBatch& batch) {
+  if (batch.quanta.empty()) return;
+  FileBox box{.points = batch.quanta.size()};
+  for (std::size_t k = 0; k < 3; ++k) box.lo[k] = box.hi[k] = batch.quanta[0][k];
+  for (const auto& q : batch.quanta) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.lo[k] = std::min(box.lo[k], q[k]);
+      box.hi[k] = std::max(box.hi[k], q[k]);
+    }
+  }
+  const std::lock_guard lock(mutex_);
+  if (boxes_.size() <= batch.file) boxes_.resize(batch.file + 1);
+  FileBox& all = boxes_[batch.file];
+  if (all.points == 0) {
+    all = box;
+    return;
+  }
+  all.points += box.points;
+  for (std::size_t k = 0; k < 3; ++k) {
+    all.lo[k] = std::min(all.lo[k], box.lo[k]);
+    all.hi[k] = std::max(all.hi[k], box.hi[k]);
+  }
+}
+
+std::vector<FileBox> FileBoxes::boxes(std::size_t files) const {
+  std::vector<FileBox> out = boxes_;
+  out.resize(files);
+  return out;
+}
+
+std::optional<Box> common_box(std::span<const FileBox> boxes, const Quantisation& quantisation) {
+  std::optional<Box> common;
+  for (const FileBox& one : boxes) {
+    if (one.points == 0) continue;
+    const Box box = box_of(one, quantisation);
+    common = common ? common->united(box) : box;
+  }
+  return common;
+}
+
+std::optional<Message> beyond_declared_boxes(std::span<const FileBox> boxes,
+                                             const Quantisation& quantisation,
+                                             std::span<const std::filesystem::path> files,
+                                             std::span<const CloudInfo> infos) {
+  std::size_t count = 0;
+  std::string first;
+  for (std::size_t i = 0; i < boxes.size() && i < infos.size(); ++i) {
+    if (boxes[i].points == 0 || !infos[i].declared_box) continue;
+    const Box found = box_of(boxes[i], quantisation);
+    if (!goes_far_beyond(*infos[i].declared_box, found)) continue;
+    if (count++ > 0) continue;
+    first = files[i].string() + ": points lie far beyond the bounds of its header. It declares " +
+            declared_box_text(*infos[i].declared_box) + " and has " + declared_box_text(found);
+  }
+  if (count == 0) return std::nullopt;
+  if (count > 1) first += ". " + format_count(count - 1) + " more files are alike";
+  return Message{Message::Severity::kWarning,
+                 "declared-bounds",
+                 first + ". Some records may be damaged or zero, or the header of another scan",
+                 {{"files", static_cast<double>(count)}}};
+}
+
+std::vector<Message> warnings_on_boxes(std::span<const FileBox> boxes,
+                                       const Quantisation& quantisation,
+                                       std::span<const std::filesystem::path> files) {
+  std::vector<Message> out;
+  const Inputs inputs(boxes, quantisation, files);
+  for (auto& found : {without_points(boxes, files), inputs.far_apart(), inputs.other_size()}) {
+    if (found) out.push_back(*found);
+  }
+  return out;
+}
+
+}  // namespace clearway

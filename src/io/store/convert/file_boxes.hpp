@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "clearway/box.hpp"
+#include "clearway/progress.hpp"
+#include "core/geometry/quantisation.hpp"
+#include "io/store/convert/quanta_batch.hpp"
+
+namespace clearway {
+
+/// Number and box of the points of an input, in the store's integers.
+struct FileBox {
+  std::uint64_t points = 0;
+  std::int32_t lo[3]{}, hi[3]{};  ///< defined where there is a point
+};
+
+/// The box of each input. add() may be called from several threads.
+class FileBoxes {
+ public:
+  void add(const QuantaBatch& batch);
+  /// The boxes of `files` inputs.
+  std::vector<FileBox> boxes(std::size_t files) const;
+
+ private:
+  std::vector<FileBox> boxes_;
+  std::mutex mutex_;
+};
+
+/// The box of all inputs in metres; nullopt where there is no point.
+std::optional<Box> common_box(std::span<const FileBox> boxes, const Quantisation& quantisation);
+
+/// The warning on inputs whose points go far beyond the box that their file declares; nullopt where
+/// there is no such input. infos: of each input.
+std::optional<Message> beyond_declared_boxes(std::span<const FileBox> boxes,
+                                             const Quantisation& quantisation,
+                                             std::span<const std::filesystem::path> files,
+                                             std::span<const CloudInfo> infos);
+
+/// Warnings on inputs that hold no point, lie far from all others, or are far larger than others.
+std::vector<Message> warnings_on_boxes(std::span<const FileBox> boxes,
+                                       const Quantisation& quantisation,
+                                       std::span<const std::filesystem::path> files);
+
+}  // namespace clearway

@@ -1,0 +1,130 @@
+#include "io/store/convert/input_warnings.hpp"
+
+#include "clearway/error.hpp"
+#include "core/util/format.hpp"
+#include "io/files/input_error.hpp"
+#include "io/store/convert/same_scans.hpp"
+
+namespace clearway {
+
+ReadableFiles readable_files(std::span<const std::filesystem::path> files,
+                             const PointReadOptions& how_to_read, Progress& progress) {
+  ReadableFiles out;
+  PointBatch batch;
+  progress.begin("check", 0, "points");
+  for (const std::filesystem::path& file : files) {
+    try {
+      const auto reader = open_point_file(file, how_to_read);
+      while (reader->read(batch)) {
+        throw_if_stopped(progress);
+        progress.advance(batch.size());
+      }
+      out.files.push_back(file);
+    } catch (const InputError& error) {
+      out.reasons.emplace_back(error.what());
+    }
+  }
+  progress.end();
+  if (out.files.empty() && !out.reasons.empty()) {
+    throw InputError("none of the " + format_count(files.size()) +
+                     " files can be read, expected one at least; the first: " + out.reasons[0]);
+  }
+  return out;
+}
+
+std::optional<Message> warning_on_skipped(std::span<const std::string> reasons) {
+  constexpr std::size_t kNamed = 10;
+  if (reasons.empty()) return std::nullopt;
+  std::string text = format_count(reasons.size()) +
+                     (reasons.size() == 1 ? " file is left out" : " files are left out");
+  for (std::size_t i = 0; i < reasons.size() && i < kNamed; ++i) text += "; " + reasons[i];
+  if (reasons.size() > kNamed) text += "; and " + std::to_string(reasons.size() - kNamed) + " more";
+  return Message{Message::Severity::kWarning,
+                 "skipped-files",
+                 text,
+                 {{"files", static_cast<double>(reasons.size())}}};
+}
+
+namespace {
+
+constexpr double kMostAbsent = 0.99;  // greatest share of absent records that is not reported
+
+/// A share as a percentage: "12.3 %".
+std::string percentage(double share) { return format_brief(100 * share) + " %"; }
+
+/// A point in words: "point 7 (counted from 0) of a.las".
+std::string name_of(const EnvironmentSource& environment, std::uint64_t source) {
+  const EnvironmentSource::Place place = environment.place_of(source);
+  return "point " + format_count(place.point) + " (counted from 0) of " +
+         environment.files()[place.file].string();
+}
+
+void warn_of_missing(const EnvironmentSource& environment, const StoreMetadata& metadata,
+                     MessageLog& log) {
+  const auto records = static_cast<double>(metadata.input_points);
+  const auto non_finite = static_cast<double>(environment.non_finite_points());
+  const auto absent = static_cast<double>(environment.absent_points());
+  if (non_finite > 0) {
+    log.warn("non-finite-points",
+             format_count(environment.non_finite_points()) + " points (" +
+                 percentage(non_finite / records) +
+                 ") with NaN or infinite coordinates are left out; the first is " +
+                 name_of(environment, environment.first_non_finite()),
+             {{"points", non_finite}, {"share", non_finite / records}});
+  }
+  if (absent > kMostAbsent * records && metadata.point_count > 0) {
+    log.warn("absent-points",
+             format_count(environment.absent_points()) + " of " +
+                 format_count(metadata.input_points) + " records (" + percentage(absent / records) +
+                 ") hold no point",
+             {{"records", absent}, {"share", absent / records}});
+  }
+}
+
+}  // namespace
+
+std::optional<Box> warn_of_inputs(const EnvironmentSource& environment, const FileBoxes& boxes,
+                                  const StoreMetadata& metadata, MessageLog& log) {
+  const auto& files = environment.files();
+  const std::vector<FileBox> of_files = boxes.boxes(files.size());
+  for (Message& remark : environment.remarks()) log.add(std::move(remark));
+  warn_of_missing(environment, metadata, log);
+  for (Message& warning : warnings_on_boxes(of_files, metadata.quantisation, files)) {
+    log.add(std::move(warning));
+  }
+  if (auto warning =
+          beyond_declared_boxes(of_files, metadata.quantisation, files, environment.infos())) {
+    log.add(std::move(*warning));
+  }
+  if (auto warning = warning_on_same_scans(files, metadata.sources, of_files)) {
+    log.add(std::move(*warning));
+  }
+  return common_box(of_files, metadata.quantisation);
+}
+
+void warn_of_places(const EnvironmentSource& environment, const PlaceCounter& places,
+                    std::uint64_t points, MessageLog& log) {
+  const std::vector<PlaceCounter::Place> crowded = places.crowded(points);
+  if (crowded.empty()) return;
+  const PlaceCounter::Place& most = crowded[0];
+  const double share = static_cast<double>(most.count) / static_cast<double>(points);
+  const Vec3 at = position(environment.quantisation(), most.at[0], most.at[1], most.at[2]);
+  const bool zeros = environment.origin_of(environment.place_of(most.first).file) == most.at;
+  std::string text = format_count(most.count) + " of " + format_count(points) + " points (" +
+                     percentage(share) + ") are at one place, " + brief(at.x) + " " + brief(at.y) +
+                     " " + brief(at.z) + ", from " + name_of(environment, most.first) + " to " +
+                     name_of(environment, most.last);
+  if (zeros) text += ". These are zeros in the file: a file copied by half reads so";
+  if (crowded.size() > 1) {
+    text += ". " + std::to_string(crowded.size() - 1) + " more such places hold fewer points";
+  }
+  log.warn("same-place", text,
+           {{"points", static_cast<double>(most.count)},
+            {"share", share},
+            {"x", at.x},
+            {"y", at.y},
+            {"z", at.z},
+            {"places", static_cast<double>(crowded.size())}});
+}
+
+}  // namespace clearway

@@ -1,0 +1,187 @@
+#include "io/store/convert/pack_unit.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <span>
+
+#include "core/cloud/packed_cloud.hpp"
+#include "core/util/tsan_annotations.hpp"
+#include "io/store/convert/quantum_bounds.hpp"
+#include "io/store/convert/select_split.hpp"
+
+namespace clearway {
+namespace {
+
+/// The points of a unit, both as loaded (in source order) and in k-d order.
+class Unit {
+ public:
+  Unit(Distribution& distribution, std::size_t unit, UnitBuffers& buffers, StageClocks& clocks)
+      : buffers_(buffers) {
+    const auto running = clocks.measure(Stage::kLoad);
+    loaded_ = distribution.take(unit);
+    points_ = buffers.take();
+    for (std::size_t i = 0; i < loaded_.count; ++i) {
+      const auto& q = loaded_.points[i].q;
+      points_[i] = {{q[0], q[1], q[2]}, static_cast<std::uint32_t>(i)};
+    }
+  }
+
+  ~Unit() { buffers_.give_back(std::move(points_)); }
+  Unit(const Unit&) = delete;
+  Unit& operator=(const Unit&) = delete;
+
+  std::uint64_t source(const BucketPoint& p) const {
+    return loaded_.points[p.index].source_index();
+  }
+  std::uint8_t point_class(const BucketPoint& p) const {
+    return loaded_.points[p.index].point_class();
+  }
+  std::span<BucketPoint> points() { return {points_.get(), loaded_.count}; }
+
+ private:
+  UnitBuffers& buffers_;
+  UnitPoints loaded_;
+  UnitBuffers::Buffer points_;
+};
+
+QuantumBox box_of(std::span<const BucketPoint> points) {
+  QuantumBounds bounds;
+  bounds.extend(points);
+  return {{bounds.lo[0], bounds.lo[1], bounds.lo[2]}, {bounds.hi[0], bounds.hi[1], bounds.hi[2]}};
+}
+
+void append_boxes(std::span<const BucketPoint> points, PackedCell& cell) {
+  std::vector<QuantumBox> boxes;
+  boxes.reserve(divide_up(points.size(), kBlockPoints));
+  for (std::size_t first = 0; first < points.size(); first += kBlockPoints) {
+    boxes.push_back(
+        box_of(points.subspan(first, std::min<std::size_t>(kBlockPoints, points.size() - first))));
+  }
+  QuantumBox all = boxes.front();
+  for (const QuantumBox& box : boxes) all = all.united(box);
+  cell.cell = {static_cast<std::uint32_t>(points.size()), all};
+  for (const QuantumBox& box : boxes) cell.blocks.push_back(encode_block_box(all, box));
+}
+
+/// Packs the classes of a cell as the store keeps them. The padding repeats the class of the last
+/// point.
+void pack_classes(const Unit& unit, std::span<const BucketPoint> points, std::uint32_t cell_points,
+                  PackedCell& cell) {
+  std::vector<std::uint8_t> classes(cell_points, unit.point_class(points.back()));
+  for (std::size_t i = 0; i < points.size(); ++i) classes[i] = unit.point_class(points[i]);
+  append_packed_chunk<std::uint8_t>(classes, cell.classes);
+}
+
+PackedCell pack_cell(const Unit& unit, std::span<const BucketPoint> points,
+                     std::uint32_t cell_points, bool has_classes) {
+  PackedCell cell;
+  append_boxes(points, cell);
+  std::vector<std::int32_t> values(cell_points);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i].q[axis];
+    std::fill(values.begin() + static_cast<std::ptrdiff_t>(points.size()), values.end(),
+              points.back().q[axis]);
+    append_packed_chunk<std::int32_t>(values, cell.chunks[axis]);
+  }
+  std::vector<std::uint64_t> sources(cell_points, unit.source(points.back()));
+  for (std::size_t i = 0; i < points.size(); ++i) sources[i] = unit.source(points[i]);
+  append_packed_chunk<std::uint64_t>(sources, cell.chunks[3]);
+  if (has_classes) pack_classes(unit, points, cell_points, cell);
+  hash_chunks(cell);
+  return cell;
+}
+
+/// The sizes of the buckets below a unit's node, whose points it divides by the planes of the tree.
+class UnitBuckets {
+ public:
+  UnitBuckets(Unit& unit, const SplitTree& tree, const Lattice& lattice)
+      : unit_(unit), tree_(tree), lattice_(lattice) {}
+
+  std::vector<std::span<BucketPoint>> part(std::uint32_t node) {
+    part(node, unit_.points());
+    return std::move(buckets_);
+  }
+
+ private:
+  void part(std::uint32_t node, std::span<BucketPoint> points) {
+    const SplitNode& split = tree_.nodes()[node];
+    if (split.right == 0) {
+      buckets_.push_back(points);
+      return;
+    }
+    const auto middle =
+        std::stable_partition(points.begin(), points.end(), [&](const BucketPoint& p) {
+          const LatticePoint at = lattice_({p.q[0], p.q[1], p.q[2]}, unit_.source(p));
+          return at[static_cast<std::size_t>(split.axis)] < split.plane;
+        });
+    const auto left = static_cast<std::size_t>(middle - points.begin());
+    part(node + 1, points.first(left));
+    part(split.right, points.subspan(left));
+  }
+
+  Unit& unit_;
+  const SplitTree& tree_;
+  const Lattice& lattice_;
+  std::vector<std::span<BucketPoint>> buckets_;
+};
+
+}  // namespace
+
+struct OrderedUnit::State {
+  StageClocks& clocks;
+  Unit unit;
+  std::uint32_t cell_points;
+  bool has_classes;
+  std::vector<std::span<const BucketPoint>> cells;
+  std::size_t next = 0;
+};
+
+OrderedUnit::OrderedUnit(Distribution& distribution, std::size_t unit, const SplitTree& tree,
+                         const Lattice& lattice, const StoreMetadata& metadata,
+                         UnitBuffers& buffers, StageClocks& clocks)
+    : state_(new State{clocks,
+                       {distribution, unit, buffers, clocks},
+                       metadata.cell_points,
+                       metadata.classes.has_value(),
+                       {}}) {
+  const std::uint32_t cell_points = metadata.cell_points;
+  Unit& loaded = state_->unit;
+  UnitBuffers::Buffer scratch = buffers.take();
+  for (const std::span<BucketPoint> bucket :
+       UnitBuckets(loaded, tree, lattice).part(tree.units()[unit])) {
+    const auto first = static_cast<std::size_t>(bucket.data() - loaded.points().data());
+    order_bucket(bucket, {scratch.get() + first, bucket.size()}, cell_points,
+                 metadata.quantisation.scale, clocks);
+    for (std::size_t at = 0; at < bucket.size(); at += cell_points) {
+      state_->cells.emplace_back(
+          bucket.subspan(at, std::min<std::size_t>(cell_points, bucket.size() - at)));
+    }
+  }
+  buffers.give_back(std::move(scratch));
+}
+
+OrderedUnit::~OrderedUnit() = default;
+
+std::size_t OrderedUnit::cells_left() const { return state_->cells.size() - state_->next; }
+
+std::vector<PackedCell> OrderedUnit::pack_next() {
+  State& state = *state_;
+  const std::size_t most = std::max<std::size_t>(1, kBucketPoints / state.cell_points);
+  const std::size_t first = state.next;
+  std::vector<PackedCell> packed(std::min(most, cells_left()));
+  {
+    const ParallelScope scope;
+    const auto pack = piece_of(scope, [&](std::size_t i) {
+      const auto running = state.clocks.measure(Stage::kPack);
+      packed[i] =
+          pack_cell(state.unit, state.cells[first + i], state.cell_points, state.has_classes);
+    });
+    scope.begin();
+    tbb::parallel_for(std::size_t{0}, packed.size(), pack);
+  }
+  state.next += packed.size();
+  return packed;
+}
+
+}  // namespace clearway

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "io/scans/point_reader.hpp"
+
+namespace clearway {
+
+/// Consecutive records of an input, before they become a QuantaBatch.
+struct RecordBatch {
+  std::size_t file = 0;
+  std::uint64_t first_source = 0;  ///< source index of the first record
+  /// Reads the records as `piece`; null where `points` holds them already.
+  std::shared_ptr<PointReader> reader;
+  std::size_t piece = 0;
+  PointBatch points;  ///< the records, where they have been read
+};
+
+/// Consecutive finite points of the environment in the store's integers.
+struct QuantaBatch {
+  std::size_t file = 0;            ///< number of the input that all points belong to
+  std::uint64_t first_source = 0;  ///< source index of the batch's first input point
+  std::vector<std::array<std::int32_t, 3>> quanta;
+  /// Source index of each point minus first_source; empty where that is its index in `quanta`.
+  std::vector<std::uint32_t> offsets;
+  std::vector<std::uint8_t> classes;  ///< classes of the points; empty where all have class 0
+
+  std::uint64_t records = 0;  ///< number of input points
+  std::uint64_t non_finite_points = 0;
+  /// Source index of the first non-finite point, where there is one.
+  std::uint64_t first_non_finite = 0;
+  std::uint64_t absent_points = 0;
+  double largest_change = 0;  ///< largest |stored - read| of any coordinate, metres
+  PieceBytes bytes;           ///< the bytes from which a piece was read, where requested
+
+  std::uint64_t source(std::size_t i) const {
+    return first_source + (offsets.empty() ? i : offsets[i]);
+  }
+};
+
+}  // namespace clearway

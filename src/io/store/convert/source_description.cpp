@@ -1,0 +1,61 @@
+#include "io/store/convert/source_description.hpp"
+
+#include <charconv>
+#include <cstddef>
+#include <span>
+#include <utility>
+
+#include "io/files/file.hpp"
+#include "io/files/xxh64.hpp"
+
+namespace clearway {
+
+SourceFile describe(const std::filesystem::path& path, const std::stop_token& stop,
+                    const Progress& progress) {
+  if (path == "-") return {"-", 0, 0};
+  const File file = File::open_for_reading(path);
+  std::vector<std::byte> buffer(std::size_t{1} << 20);
+  Xxh64Stream hash;
+  std::uint64_t bytes = 0;
+  while (const std::size_t got = file.read_some(buffer)) {
+    if (stop.stop_requested()) break;
+    throw_if_stopped(progress);
+    hash.update(std::span(buffer).first(got));
+    bytes += got;
+  }
+  return {path.filename().string(), bytes, hash.digest()};
+}
+
+SourceDescription::SourceDescription(std::vector<std::filesystem::path> files,
+                                     std::vector<bool> known, const Progress& progress)
+    : files_(std::move(files)), progress_(progress) {
+  known.resize(files_.size());
+  sources_ = std::async(std::launch::async, [this, known = std::move(known)] {
+    std::vector<std::optional<SourceFile>> sources(files_.size());
+    for (std::size_t i = 0; i < files_.size(); ++i) {
+      if (!known[i]) sources[i] = describe(files_[i], stop_.get_token(), progress_);
+    }
+    return sources;
+  });
+}
+
+std::vector<SourceFile> SourceDescription::get(std::vector<std::optional<SourceFile>> known) {
+  const std::vector<std::optional<SourceFile>> described = sources_.get();
+  known.resize(files_.size());
+  std::vector<SourceFile> sources;
+  for (std::size_t i = 0; i < files_.size(); ++i) {
+    const auto& found = described[i] ? described[i] : known[i];
+    // A file without any piece has not been described elsewhere.
+    sources.push_back(found ? *found : describe(files_[i], stop_.get_token(), progress_));
+  }
+  return sources;
+}
+
+std::string layout_name(const std::optional<double>& regular_size) {
+  if (!regular_size) return "adaptive";
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, *regular_size).ptr;
+  return "regular:" + std::string(text, end);
+}
+
+}  // namespace clearway

@@ -1,0 +1,407 @@
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/geometry/angle.hpp"
+#include "core/geometry/point_box.hpp"
+#include "core/geometry/predicate.hpp"
+#include "core/geometry/rigid.hpp"
+#include "core/trajectory/trajectory_doubts.hpp"
+#include "core/trajectory/trajectory_summary.hpp"
+#include "core/util/format.hpp"
+#include "search/checks/checks.hpp"
+#include "search/checks/facts/path_facts.hpp"
+#include "search/checks/question.hpp"
+
+namespace clearway {
+namespace {
+
+/// An upper bound of the way of any model point from one pose to the next, cheap because most steps
+/// are short. reach: greatest distance of the model from its origin.
+double coarse_bound(const Pose& a, const Pose& b, double reach) {
+  double turned = 0, moved = 0;
+  for (int k = 0; k < 9; ++k) {
+    const double d = b.rotation[k] - a.rotation[k];
+    turned += d * d;
+  }
+  for (int k = 0; k < 3; ++k) {
+    const double d = b.translation[k] - a.translation[k];
+    moved += d * d;
+  }
+  return std::sqrt(moved) + std::sqrt(turned) * reach;
+}
+
+/// Poses from which steps start, as users count them, in ascending order.
+using Steps = std::vector<std::uint32_t>;
+
+bool has(const Steps& steps, std::uint32_t pose) { return std::ranges::binary_search(steps, pose); }
+
+/// Runs of the question's poses that follow one another on the path, each as the first index and
+/// the one past the last. Between two runs the body has no pose, so there is no step.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> runs_of(const Question& question) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> runs;
+  const auto count = static_cast<std::uint32_t>(question.query.poses.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const bool follows = i > 0 && question.number_of(i) == question.number_of(i - 1) + 1;
+    if (!follows) runs.push_back({i, i});
+    runs.back().second = i + 1;
+  }
+  return runs;
+}
+
+std::span<const Pose> poses_of(const Question& question,
+                               std::pair<std::uint32_t, std::uint32_t> run) {
+  return std::span(question.query.poses).subspan(run.first, run.second - run.first);
+}
+
+/// The jumps of all runs; they name poses as users count them.
+std::vector<Jump> jumps_in(const Question& question) {
+  std::vector<Jump> jumps;
+  for (const auto& run : runs_of(question)) {
+    const auto steps = step_lengths(poses_of(question, run));
+    for (Jump jump : jumps_of(steps, question.query.radius)) {
+      jump.pose = question.number_of(run.first + static_cast<std::uint32_t>(jump.pose));
+      jumps.push_back(jump);
+    }
+  }
+  return jumps;
+}
+
+/// A step whose straight way can leave the true motion.
+struct Deviation {
+  /// Index in the question of the pose from which the step starts.
+  std::uint32_t pose;
+  double distance;
+};
+
+/// The deviations that are larger than `least`. Adds the number of all steps to `steps`.
+std::vector<Deviation> deviations_above(const Question& question, double least,
+                                        std::uint64_t& steps) {
+  const double reach = farthest_from_origin(question.query.model.vertices);
+  std::vector<Deviation> out;
+  for (const auto& run : runs_of(question)) {
+    const auto distances = chord_deviations(poses_of(question, run), reach);
+    steps += distances.size();
+    for (std::uint32_t i = 0; i < distances.size(); ++i) {
+      if (distances[i] > least) out.push_back({run.first + i, distances[i]});
+    }
+  }
+  return out;
+}
+
+/// Warns where the true motion from one pose to the next may leave the straight way that is
+/// searched by more than the radius, and notes where by more than a tenth of it. Returns the poses
+/// from which the steps that it warned of start.
+Steps check_straight_ways(const Question& question, const std::vector<Jump>& jumps,
+                          MessageLog& log) {
+  constexpr double kToBeNoted = 0.1;  // share of the radius
+  const double radius = question.query.radius;
+  std::uint64_t steps = 0;
+  std::vector<Deviation> found = deviations_above(question, kToBeNoted * radius, steps);
+  if (found.empty()) return {};
+  const Deviation worst = *std::ranges::max_element(found, {}, &Deviation::distance);
+  const bool warns = worst.distance > radius;
+  if (warns) std::erase_if(found, [&](const Deviation& d) { return !(d.distance > radius); });
+  const Pose& a = question.query.poses[worst.pose];
+  const Pose& b = question.query.poses[worst.pose + 1];
+  const double turned = turn_between(a, b) / kDegree;
+  const double moved = std::sqrt(squared_distance(a.position(), b.position()));
+  const std::uint32_t number = question.number_of(worst.pose);
+  std::string text =
+      "at " + format_count(found.size()) + " of " + counted(steps, "step") +
+      " the true motion can leave the straight way between two poses, which is "
+      "what is searched, by more than " +
+      (warns ? "" : "a tenth of ") + "the radius of " + length_text(radius, question.unit) +
+      ": by up to " + length_text(worst.distance, question.unit) + " after pose " +
+      std::to_string(number) + ", where the model goes on by " + length_text(moved, question.unit) +
+      " and turns by " + figure(turned) + " degrees";
+  const auto jump = std::ranges::find(jumps, std::size_t{number}, &Jump::pose);
+  if (warns && jump != jumps.end()) {
+    text += ". This step is " + figure(jump->length / jump->usual) +
+            " times as long as those around it, so poses may be missing there";
+  }
+  if (warns) text += ". What is beside the straight way can be missed";
+  log.add({warns ? Message::Severity::kWarning : Message::Severity::kNote,
+           "large-steps",
+           text,
+           {{"share", static_cast<double>(found.size()) / static_cast<double>(steps)},
+            {"largest", worst.distance},
+            {"pose", static_cast<double>(number)},
+            {"step", moved},
+            {"turn_degrees", turned}}});
+  Steps told;
+  for (const Deviation& d : found) {
+    if (warns) told.push_back(question.number_of(d.pose));
+  }
+  return told;
+}
+
+/// Warns where the model moves farther than the radius between two poses, of which only the poses
+/// are searched. known: steps that another warning is given for.
+void check_poses_alone(const Question& question, const Steps& known, MessageLog& log) {
+  const Query& query = question.query;
+  const Vec3 far = reach_of(question.model);
+  const double reach = std::sqrt(squared_length(far.x, far.y, far.z));
+  std::uint64_t large = 0;
+  double largest = 0;
+  std::uint64_t steps = 0;
+  std::uint32_t at = 0;
+  for (std::uint32_t i = 0; i + 1 < query.poses.size(); ++i) {
+    if (question.number_of(i + 1) != question.number_of(i) + 1) continue;  // no step
+    ++steps;
+    const Pose &a = query.poses[i], &b = query.poses[i + 1];
+    if (coarse_bound(a, b, reach) <= query.radius) continue;
+    const double step = displacement_bound(question.model, a, b);
+    if (!(step > query.radius) || has(known, question.number_of(i))) continue;
+    ++large;
+    if (step > largest) {
+      largest = step;
+      at = question.number_of(i);
+    }
+  }
+  if (large == 0) return;
+  log.warn("large-steps",
+           "at " + format_count(large) + " of " + format_count(steps) +
+               " steps the model moves farther than the radius of " +
+               length_text(query.radius, question.unit) + ", at most " +
+               length_text(largest, question.unit) + " after pose " + std::to_string(at) +
+               ". What lies between two poses can be missed",
+           {{"share", static_cast<double>(large) / static_cast<double>(steps)},
+            {"largest", largest},
+            {"pose", static_cast<double>(at)}});
+}
+
+Steps starts_of(const std::vector<Jump>& jumps) {
+  Steps steps;
+  for (const Jump& jump : jumps) steps.push_back(static_cast<std::uint32_t>(jump.pose));
+  return steps;
+}
+
+void warn_of_jumps(const Question& question, std::vector<Jump> jumps, const Steps& told,
+                   const std::string& prefix, MessageLog& log) {
+  std::erase_if(jumps,
+                [&](const Jump& jump) { return has(told, static_cast<std::uint32_t>(jump.pose)); });
+  if (jumps.empty()) return;
+  log.add(jump_warning(jumps, prefix, unit_name(question.unit),
+                       question.query.between_poses
+                           ? ". The model is searched on the straight way there"
+                           : ". Nothing is searched on the way there"));
+}
+
+Steps united_steps(const Steps& a, const Steps& b) {
+  Steps out;
+  std::ranges::set_union(a, b, std::back_inserter(out));
+  return out;
+}
+
+}  // namespace
+
+StepChecks::StepChecks(const Question& path) : path_jumps_(starts_of(jumps_in(path))) {}
+
+void StepChecks::check(const Question& question, MessageLog& log) {
+  const std::vector<Jump> jumps = jumps_in(question);
+  if (question.query.between_poses) {
+    told_ = united_steps(told_, check_straight_ways(question, jumps, log));
+  } else {
+    check_poses_alone(question, united_steps(path_jumps_, starts_of(jumps)), log);
+  }
+  warn_of_jumps(question, jumps, united_steps(told_, path_jumps_), "", log);
+}
+
+void StepChecks::check_path(const Question& path, MessageLog& log) const {
+  warn_of_jumps(path, jumps_in(path), told_, "the path: ", log);
+}
+
+namespace {
+
+// The least shares of the motion along one axis of the model. 0.9 means 18 degrees aside on
+// average.
+constexpr double kAlongAxis = 0.9;
+constexpr double kSurelyAlongAxis = 0.95;
+
+double greatest_share(const Vec3& shares) { return std::max({shares.x, shares.y, shares.z}); }
+
+struct Misreading {
+  Reading reading;
+  const char* sentence;
+};
+constexpr Misreading kMisreadings[] = {
+    {Reading::kTransposed,
+     "It moves along its axis when the rotations are transposed: they seem to be column-major, or "
+     "to turn the scan into the model's frame"},
+    {Reading::kScalarFirst,
+     "It moves along its axis when the quaternions are read as w x y z, not as x y z w"},
+    {Reading::kScalarLast,
+     "It moves along its axis when the quaternions are read as x y z w, not as w x y z"}};
+
+/// A sentence that says how the rotations may have been misread; nullptr where no reading makes the
+/// model move along an axis.
+const char* misreading(const Drive& drive) {
+  for (const Misreading& other : kMisreadings) {
+    const bool fits = greatest_share(drive.along_axes(other.reading)) > kSurelyAlongAxis &&
+                      drive.upright(other.reading) > kSurelyAlongAxis;
+    if (fits) return other.sentence;
+  }
+  return nullptr;
+}
+
+bool warn_of_rotations(const Drive& drive, MessageLog& log) {
+  const double share = greatest_share(drive.along_axes());
+  if (share >= kAlongAxis) return false;
+  constexpr double kTurns = 0.97;
+  const char* other = misreading(drive);
+  const bool still = drive.never_turns() && drive.straightness() < kTurns;
+  const std::string why =
+      other != nullptr ? other
+      : still ? "All rotations are the same although the path turns: do the poses lack their "
+                "rotations?"
+              : "Check order, sign and zero direction of the angles, and the frame that the poses "
+                "are of";
+  log.warn("rotations",
+           "the model does not move along one of its own axes: only " + share_text(share) +
+               " of the motion is along the likeliest. " + why,
+           {{"share", share}});
+  return true;
+}
+
+bool warn_of_tilt(const Drive& drive, MessageLog& log) {
+  const double upright = drive.upright();
+  constexpr double kTilted = 0.5;  // 60 degrees on average
+  if (upright >= kTilted) return false;
+  const char* other = misreading(drive);
+  log.warn("tilted",
+           std::string("the model's z axis ") +
+               (upright < -kTilted ? "points down" : "does not point up") +
+               " along the path: the poses seem to be of a frame with other axes, such as a "
+               "camera's, or with z down" +
+               (other != nullptr ? std::string(". ") + other : ""),
+           {{"mean_z", upright}});
+  return true;
+}
+
+/// Warns where the model leans steadily to one side. Roads bank by 4 degrees at most, and rails by
+/// 7 degrees in curves, towards the inside.
+void warn_of_lean(const Drive& drive, MessageLog& log) {
+  constexpr double kLeans = 4.5, kSteady = 1.5;  // degrees
+  constexpr double kCurve = 0.8;
+  std::vector<double> leans = drive.leans();
+  if (leans.empty()) return;
+  std::sort(leans.begin(), leans.end());
+  const auto at = [&](double share) {
+    return leans[static_cast<std::size_t>(share * static_cast<double>(leans.size() - 1))] / kDegree;
+  };
+  const double lean = at(0.5);
+  if (std::abs(lean) < kLeans || at(0.95) - lean > kSteady || lean - at(0.05) > kSteady) return;
+  const double right = drive.right_turns();
+  if ((lean > 0 ? right : 1 - right) >= kCurve) return;  // it leans into a curve
+  log.warn("leans",
+           "along the whole path the model leans to the " +
+               std::string(lean > 0 ? "right" : "left") + " by " + figure(std::abs(lean)) +
+               " degrees, also where it does not turn: are the poses of a scanner or an inertial "
+               "unit that is mounted askew? If the ground has this slope, this is all right",
+           {{"degrees", lean}});
+}
+
+void warn_of_flat_model(const Question& question, int axis, MessageLog& log) {
+  log.warn("flat-model",
+           "the model is flat: " + size_text(question.model, question.unit) +
+               ". It moves along its " + "xyz"[axis] +
+               " axis, along which it has no length. A vehicle needs more room in curves than its "
+               "profile. Give the whole vehicle",
+           {{"thickness", question.model.hi[axis] - question.model.lo[axis]}});
+}
+
+void warn_sideways(const Question& question, const Drive& drive, MessageLog& log) {
+  const Vec3 shares = drive.along_axes();
+  if (greatest_share(shares) < kAlongAxis) return;
+  const int axis = shares.x >= shares.y && shares.x >= shares.z ? 0 : shares.y >= shares.z ? 1 : 2;
+  const int longest = question.model.longest_axis();
+  constexpr double kLonger = 1.3;
+  const double side = question.model.hi[axis] - question.model.lo[axis];
+  const double other = question.model.hi[longest] - question.model.lo[longest];
+  constexpr double kFlatSide = 0.01;
+  if (side < kFlatSide * other) {
+    warn_of_flat_model(question, axis, log);
+    return;
+  }
+  const bool across = longest != 2 && other > kLonger * side;
+  if (axis != 2 && !across) return;
+  log.warn("sideways",
+           std::string("the model moves along its ") + "xyz"[axis] + " axis, but is " +
+               size_text(question.model, question.unit) +
+               (axis == 2 ? ": z is expected to point up. " : ": it drives sideways. ") +
+               "Turn the model, or the rotations of the poses",
+           {{"share", shares[axis]}});
+}
+
+/// Notes that the model moves backwards. This is no mistake where the vehicle reverses, or its
+/// front points along -x; otherwise its parts meet the scan on the wrong side.
+void tell_backwards(const Drive& drive, MessageLog& log) {
+  const double along = drive.forwards(0);
+  if (along > -kAlongAxis) return;
+  log.add(
+      {Message::Severity::kNote,
+       "drives-backwards",
+       "the model moves backwards, against its x axis: if it does not reverse, turn the poses or "
+       "the model by 180 degrees, because left and right are swapped",
+       {{"share", -along}}});
+}
+
+/// Whether the poses hardly turn the model. If so, it is no crane that slews on the spot.
+bool hardly_turns(const Question& question) {
+  constexpr double kThirtyDegrees = 0.866;
+  const Pose& first = question.query.poses.front();
+  return std::ranges::all_of(question.query.poses, [&](const Pose& pose) {
+    double trace = 0;
+    for (int k = 0; k < 9; ++k) trace += pose.rotation[k] * first.rotation[k];
+    return (trace / (scale_of(pose) * scale_of(first)) - 1) / 2 > kThirtyDegrees;
+  });
+}
+
+/// Whether the model moves as a vehicle does, although in steps that are much too small.
+bool is_small_drive(const Question& question, double across) {
+  constexpr double kPieces = 50;
+  if (!(across > 0)) return false;
+  const Drive drive(question.query, across / kPieces);
+  return drive.is_one() && greatest_share(drive.along_axes()) > kSurelyAlongAxis;
+}
+
+void warn_of_tiny_path(const Question& question, MessageLog& log) {
+  const auto& poses = question.query.poses;
+  constexpr std::size_t kMany = 10;
+  if (poses.size() < kMany) return;
+  const Vec3 first = poses.front().position();
+  Box path{first, first};
+  for (const Pose& pose : poses) {
+    const Vec3 p = pose.position();
+    path = path.united({p, p});
+  }
+  const double across = 2 * half_diagonal(path), longest = Sides(question.model).longest;
+  constexpr double kHuge = 200;  // metres: a longer model has the wrong unit itself
+  if (!(across < longest / 4) || longest > kHuge * question.metre) return;
+  if (!hardly_turns(question) && !is_small_drive(question, across)) return;
+  log.warn("tiny-path",
+           "all " + format_count(poses.size()) + " poses lie within " +
+               length_text(across, question.unit) + ", and the model is " +
+               length_text(longest, question.unit) +
+               " long: is the path in another unit, such as kilometres or degrees?",
+           {{"path", across}, {"model_longest", longest}});
+}
+
+}  // namespace
+
+void check_heading(const Question& question, MessageLog& log) {
+  warn_of_tiny_path(question, log);
+  const Drive drive(question);
+  if (!drive.is_one()) return;
+  if (warn_of_tilt(drive, log) || warn_of_rotations(drive, log)) return;
+  warn_of_lean(drive, log);
+  warn_sideways(question, drive, log);
+  tell_backwards(drive, log);
+}
+
+}  // namespace clearway

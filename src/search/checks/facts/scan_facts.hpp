@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <unordered_map>
+
+#include "clearway/pose.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "core/geometry/box.hpp"
+
+namespace clearway {
+
+/// The points of a scan in a box that moves with the model. Reads only the few blocks that lie
+/// there. Not thread-safe.
+class ScanPoints {
+ public:
+  using Chunks = std::array<PackedChunk<std::int32_t>, 3>;
+
+  explicit ScanPoints(const PackedCloud& cloud) : cloud_(cloud) {}
+
+  /// Hands every point in a box of the model's frame, in that frame, to `look` until that returns
+  /// false; the box includes its faces. Returns false where there are more blocks than are read for
+  /// one box. Throws InputError where a cell is damaged.
+  bool visit(const Box& region, const Pose& pose,
+             const std::function<bool(const Vec3&)>& look) const;
+
+  /// Whether at least `least` points are in the box; also true where too many blocks lie there.
+  bool has(const Box& region, const Pose& pose, std::uint64_t least) const;
+
+  /// A z coordinate of the model's frame below which the scan has no points, for a model that is
+  /// not tilted by more than 45 degrees.
+  double bottom_of_scan(const Box& body, const Pose& pose) const;
+
+ private:
+  const PackedCloud& cloud_;
+  /// Packed chunks of the cells read so far, by cell.
+  mutable std::unordered_map<std::uint32_t, Chunks> chunks_;
+};
+
+/// How high a box of the model's frame stands at a pose above the highest point below it, along the
+/// model's z axis; 0 where a point is in the box, and nothing where no point is below it. Throws
+/// InputError where a cell is damaged.
+std::optional<double> height_above_ground(const ScanPoints& points, const Box& body,
+                                          const Pose& pose);
+
+/// How near the scan comes to a box, by the boxes of its blocks of 64 points; no point is read. A
+/// block that is far longer than usual in the scan lies across a gap between scanned places, and
+/// does not count. Not thread-safe.
+class ScanProximity {
+ public:
+  /// The cloud has at least one point and outlives this object. longest_block: blocks with a
+  /// diagonal up to this length count in any case, in the environment's unit.
+  ScanProximity(const PackedCloud& cloud, double longest_block);
+
+  /// The median diagonal of the blocks, found from a sample where there are many.
+  double typical_block() const { return typical_block_; }
+
+  /// A block of the scan and its distance to the box that was asked about.
+  struct Nearest {
+    double distance = 0;
+    Box block{};
+    bool found = false;
+  };
+
+  /// The nearest block that is at most `most` away from the box; found is false where there is
+  /// none.
+  Nearest nearest(const Box& box, double most) const;
+
+  /// Whether there is a block at most `reach` away from the box. Fast where this held for a nearby
+  /// box just before.
+  bool within(const Box& box, double reach) const;
+
+ private:
+  Box cell_box(std::uint32_t cell) const;
+  Box block_box(std::uint32_t cell, std::uint32_t block) const;
+  void look_into(std::uint32_t cell, const Box& box, bool any, Nearest& best) const;
+  Nearest descend(const Box& box, double most, bool any) const;
+  double median_block() const;
+
+  const PackedCloud& cloud_;
+  double typical_block_ = 0;
+  double longest_block_ = 0;
+  mutable Nearest last_;
+};
+
+}  // namespace clearway

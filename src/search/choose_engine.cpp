@@ -1,0 +1,196 @@
+#include "search/choose_engine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/geometry/point_box.hpp"
+#include "core/trajectory/chainage.hpp"
+#include "core/util/format.hpp"
+#include "search/page_search.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr std::size_t kSampledPoses = 16;
+
+/// Counts the points of the blocks whose centre is in the model's box at a pose.
+class NearPoints {
+ public:
+  NearPoints(const PackedCloud& cloud, const Box& model, const Pose& pose)
+      : cloud_(cloud), model_(model), reach_(moved(model, pose)), pose_(pose) {
+    if (!cloud.tree().empty()) descend(0);
+  }
+
+  double count() const { return count_; }
+
+ private:
+  void descend(std::uint32_t index) {
+    const TreeNode& node = cloud_.tree()[index];
+    if (!reach_.meets(position_box(cloud_.quantisation(), node.box))) return;
+    if (node.right == 0) {
+      look_at(node.first_cell);
+      return;
+    }
+    descend(index + 1);
+    descend(node.right);
+  }
+
+  void look_at(std::uint32_t index) {
+    const Cell& cell = cloud_.cells()[index];
+    const auto blocks = static_cast<std::uint32_t>(divide_up(cell.count, kBlockPoints));
+    const std::size_t first = std::size_t{index} * cloud_.blocks_per_cell();
+    for (std::uint32_t block = 0; block < blocks; ++block) {
+      const QuantumBox box = decode_block_box(cell.box, cloud_.blocks()[first + block]);
+      const Vec3 middle = position_box(cloud_.quantisation(), box).centre();
+      if (!reach_.contains(middle) ||
+          !model_.contains(pose_.rotated_back(middle - pose_.position())))
+        continue;
+      count_ += std::min(kBlockPoints, cell.count - block * kBlockPoints);
+    }
+  }
+
+  const PackedCloud& cloud_;
+  const Box& model_;
+  const Box reach_;
+  const Pose& pose_;
+  double count_ = 0;
+};
+
+Workload workload_of_model(const PackedCloud& cloud, const QueryParameters& query,
+                           const Model& model, std::span<const Pose> poses) {
+  return workload_of(cloud, query, model.empty() ? Box{} : box_of(model.vertices),
+                     points_to_search(model.vertices.size(), model.triangles.size()), poses);
+}
+
+}  // namespace
+
+Workload workload_of(const PackedCloud& cloud, const Query& query) {
+  return workload_of_model(cloud, query, query.model, query.poses);
+}
+
+std::vector<Workload> workloads_of(const PackedCloud& cloud, const Query& query) {
+  if (query.bodies.empty()) return {workload_of(cloud, query)};
+  std::vector<Workload> out;
+  for (const Body& body : query.bodies) {
+    out.push_back(workload_of_model(cloud, query, body.model, body.poses));
+  }
+  return out;
+}
+
+Workload workload_of(const PackedCloud& cloud, const QueryParameters& query, const Box& model,
+                     std::uint64_t model_points, std::span<const Pose> poses) {
+  Workload work;
+  work.model_points = static_cast<double>(model_points);
+  work.poses = static_cast<double>(poses.size());
+  work.radius = std::max({query.radius, query.clearance, query.profile});
+  if (model_points == 0 || poses.empty()) return work;
+  double length = 2 * work.radius;
+  for (int k = 0; k < 3; ++k) {
+    length = std::max(length, model.hi[k] - model.lo[k] + 2 * work.radius);
+  }
+  const Box reach = model.grown(work.radius);
+  const std::size_t samples = std::min(kSampledPoses, poses.size());
+  double near_points = 0;  // at one pose, on average
+  for (std::size_t i = 0; i < samples; ++i) {
+    const std::size_t pose = (2 * i + 1) * poses.size() / (2 * samples);
+    near_points += NearPoints(cloud, reach, poses[pose]).count() / static_cast<double>(samples);
+  }
+  // A model that moves on by its length meets as many points again.
+  const double places = std::min(work.poses, 1 + path_length(poses) / length);
+  work.reached_points = std::min(static_cast<double>(cloud.point_count()), near_points * places);
+  return work;
+}
+
+namespace {
+
+// Measured by `clearway-bench choice`; docs/design/choice.md has the data and the fits.
+
+double sweep_seconds(const Workload& work, int threads) {
+  const double alone = 0.064 + 7.02e-7 * work.model_points + 3.0e-6 * work.poses;
+  const double search = 1.80e-5 * std::pow(work.reached_points, 0.3) *
+                        std::pow(std::log(work.poses + 2), 3.91) *
+                        std::pow(work.model_points, -0.135) * std::pow(work.poses, 0.0525);
+  return alone + search / threads;
+}
+
+/// Time of kdtree divided by that of sweep. This ratio follows from few quantities, while the two
+/// times follow from many that they have in common.
+double kdtree_ratio(const Workload& work) {
+  const double poses = std::log(work.poses), radius = std::log(work.radius);
+  return std::exp(-0.0158 + 0.0109 * poses * poses + 0.2487 * radius + 0.0441 * radius * radius);
+}
+
+}  // namespace
+
+EngineEstimate estimate_on_cpu(const Workload& work, int threads) {
+  if (work.model_points == 0 || work.poses == 0) return {};
+  const double sweep = sweep_seconds(work, threads);
+  return {sweep, sweep * kdtree_ratio(work)};
+}
+
+namespace {
+
+// Measured as docs/design/pipeline.md says ("Start and end of a GPU").
+
+/// Seconds that a GPU adds to a run: the part of its start and end beside which nothing else runs.
+constexpr double kStart = 0.5;
+/// How many cores of a CPU search as fast as a GPU does.
+constexpr double kCores = 350;
+/// By what factor a search on the CPU takes longer where it has distances beyond the radius.
+constexpr double kDistances = 6;
+/// How many environment points a core searches in a second.
+constexpr double kPointsPerCore = 13e6;
+
+}  // namespace
+
+DeviceEstimate estimate_devices(std::span<const Workload> work, const QueryParameters& query,
+                                Engine engine, int threads) {
+  const bool distances = query.clearance > 0 || query.profile > 0;
+  const bool may_be_kdtree = engine == Engine::kAuto && !distances && work.size() == 1;
+  double set = 0;
+  for (const Workload& one : work) {
+    const EngineEstimate on_cpu = estimate_on_cpu(one, threads);
+    set += may_be_kdtree ? std::min(on_cpu.sweep_seconds, on_cpu.kdtree_seconds)
+                         : on_cpu.sweep_seconds;
+  }
+  const double cpu = (distances ? kDistances : 1) * set;
+  return {cpu, kStart + cpu * threads / kCores};
+}
+
+std::uint64_t surely_many_points(int threads) {
+  return static_cast<std::uint64_t>(kStart * kPointsPerCore * std::max(threads, 1));
+}
+
+namespace {
+
+/// Whether engine kdtree can answer the query within the memory, and its time is known well enough
+/// to be compared.
+bool may_be_kdtree(const StoreReader& store, const Query& query, const SearchOptions& options) {
+  const bool asks_for_sweep = query.clearance > 0 || query.profile > 0 || query.tolerance > 0 ||
+                              query.between_poses || query.model.is_surface() ||
+                              !query.bodies.empty() || options.field_voxel > 0;
+  return !asks_for_sweep && kdtree_needed_bytes(store, query, options) <= options.memory_bytes;
+}
+
+}  // namespace
+
+void choose_engine(const StoreReader& store, const Query& query, Engine earlier, bool on_gpu,
+                   SearchOptions& options, SearchReport& report, const MessageLog& log) {
+  if (options.engine != Engine::kAuto) return;
+  options.engine = Engine::kSweep;
+  if (on_gpu || earlier == Engine::kSweep) return;
+  if (earlier == Engine::kKdtree && options.field_voxel == 0) {
+    options.engine = earlier;
+    return;
+  }
+  if (!may_be_kdtree(store, query, options)) return;
+  const EngineEstimate estimate = estimate_on_cpu(workload_of(store, query), options.threads);
+  if (estimate.kdtree_seconds < estimate.sweep_seconds) options.engine = Engine::kKdtree;
+  report.engine_estimate = estimate;
+  log.note("engine " + std::string(name_of(options.engine)) +
+           " is taken: by estimate sweep needs " + format_brief(estimate.sweep_seconds) +
+           " s and kdtree " + format_brief(estimate.kdtree_seconds) + " s");
+}
+
+}  // namespace clearway

@@ -1,0 +1,298 @@
+#include "search/ignored.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clearway/error.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "core/geometry/inside.hpp"
+#include "core/query/body_numbers.hpp"
+#include "core/query/ignored_points.hpp"
+#include "core/query/search_result.hpp"
+#include "core/util/format.hpp"
+#include "core/util/tsan_annotations.hpp"
+#include "io/scans/length_unit.hpp"
+#include "search/checks/question.hpp"
+#include "search/memory_budget.hpp"
+#include "search/threads.hpp"
+#include "stream/run_pages.hpp"
+
+namespace clearway {
+namespace {
+
+/// Where a smaller share of the points is left, most of the scan is ignored and not just a part of
+/// it.
+constexpr double kFewLeft = 0.01;
+
+/// Calls visit(cell, searched) for each cell in which `ignored` may leave out something, from
+/// several threads at once. searched: room for the words of the cell's mask.
+template <typename Visit>
+void for_each_touched(const StoreReader& store, const IgnoredPoints& ignored, const Visit& visit) {
+  const ParallelScope scope;
+  const auto look = piece_of(scope, [&](std::size_t cell) {
+    const auto index = static_cast<std::uint32_t>(cell);
+    if (!ignored.touches(index)) return;
+    std::vector<std::uint64_t> searched(store.blocks_per_cell());
+    visit(index, searched);
+  });
+  scope.begin();
+  tbb::parallel_for(std::size_t{0}, store.cells().size(), look);
+}
+
+QueryParameters only_classes(const QueryParameters& query) {
+  QueryParameters out;
+  out.ignore_classes = query.ignore_classes;
+  return out;
+}
+
+QueryParameters only_boxes(std::vector<Box> boxes) {
+  QueryParameters out;
+  out.ignore_boxes = std::move(boxes);
+  return out;
+}
+
+/// Counts the points that the boxes of `query` leave out and its classes do not.
+std::uint64_t count_in_boxes(const StoreReader& store, const QueryParameters& query) {
+  const IgnoredPoints all(store, query), classes(store, only_classes(query));
+  const IgnoredPoints boxes(store, only_boxes(query.ignore_boxes));
+  std::atomic<std::uint64_t> points = 0;
+  for_each_touched(store, boxes, [&](std::uint32_t cell, std::vector<std::uint64_t>& searched) {
+    const auto coordinates = [&] { return store.peek(cell); };
+    const std::uint64_t of_all = all.mask(cell, searched, coordinates);
+    points += of_all - (classes.any() ? classes.mask(cell, searched, coordinates) : 0);
+  });
+  return points;
+}
+
+/// The classes as a list of ranges, such as "2" or "2, 5-7".
+std::string list_of(const std::vector<std::uint32_t>& classes) {
+  std::string text;
+  for (const std::string& range : number_ranges(classes)) {
+    text += (text.empty() ? "" : ", ") + range;
+  }
+  return text;
+}
+
+void warn_of_classes(const StoreReader& store, const QueryParameters& query,
+                     const IgnoredPointCounts& counts, MessageLog& log) {
+  std::vector<std::uint32_t> absent, known;
+  for (std::size_t i = 0; i < counts.of_classes.size(); ++i) {
+    if (counts.of_classes[i] == 0) absent.push_back(query.ignore_classes[i]);
+  }
+  if (absent.empty()) return;
+  const auto& points = store.metadata().classes->points;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (points[i] > 0) known.push_back(i);
+  }
+  const bool one = absent.size() == 1;
+  log.warn("absent-class",
+           std::string("no point has ") + (one ? "class " : "one of the classes ") +
+               list_of(absent) + ": ignoring " + (one ? "it" : "them") +
+               " changes nothing. The environment has " +
+               (known.size() == 1 ? "class " : "classes ") + list_of(known),
+           {{"classes", static_cast<double>(absent.size())}});
+}
+
+void warn_of_boxes(const QueryParameters& query, const IgnoredPointCounts& counts,
+                   MessageLog& log) {
+  std::vector<Box> empty;
+  for (std::size_t i = 0; i < counts.in_boxes.size(); ++i) {
+    if (counts.in_boxes[i] == 0) empty.push_back(query.ignore_boxes[i]);
+  }
+  if (empty.empty()) return;
+  const bool one = empty.size() == 1;
+  log.warn("empty-box",
+           std::string("no point is in the ignored ") + (one ? "box " : "boxes ") +
+               boxes_text(empty) + ": ignoring " + (one ? "it" : "them") +
+               " changes nothing. Boxes are in the environment's coordinates and unit",
+           {{"boxes", static_cast<double>(empty.size())}});
+}
+
+}  // namespace
+
+IgnoredPointCounts count_ignored(const StoreReader& store, const QueryParameters& query,
+                                 int threads) {
+  IgnoredPointCounts counts;
+  const auto& classes = store.metadata().classes;
+  if (!query.ignore_classes.empty() && !classes) {
+    throw UsageError(store.name() +
+                     ": its points have no classes to ignore; expected a store of LAS or LAZ "
+                     "files with classes, converted by this release");
+  }
+  for (const std::uint8_t value : query.ignore_classes) {
+    counts.of_classes.push_back(classes->points[value]);
+    counts.points += classes->points[value];
+  }
+  if (query.ignore_boxes.empty()) return counts;
+  in_threads(threads, [&] {
+    for (const Box& box : query.ignore_boxes) {
+      counts.in_boxes.push_back(count_in_boxes(store, only_boxes({box})));
+    }
+    const bool one = query.ignore_boxes.size() == 1 && query.ignore_classes.empty();
+    counts.points += one ? counts.in_boxes[0] : count_in_boxes(store, query);
+  });
+  return counts;
+}
+
+void warn_of_ignored(const StoreReader& store, const QueryParameters& query,
+                     const IgnoredPointCounts& counts, MessageLog& log) {
+  warn_of_classes(store, query, counts, log);
+  warn_of_boxes(query, counts, log);
+  if (query.ignores_points() && counts.points > 0 && counts.points == store.point_count()) {
+    log.warn("all-ignored", "all points of the environment are ignored: nothing is searched");
+    return;
+  }
+  const std::uint64_t left = store.point_count() - counts.points;
+  if (query.ignores_points() &&
+      static_cast<double>(left) < kFewLeft * static_cast<double>(store.point_count())) {
+    log.warn(
+        "most-ignored",
+        format_count(counts.points) + " of " + format_count(store.point_count()) +
+            " points of the environment are ignored, so that only " + format_count(left) +
+            (left == 1 ? " is" : " are") + " searched. Ignore a class or a box that holds less",
+        {{"ignored", static_cast<double>(counts.points)}, {"left", static_cast<double>(left)}});
+  }
+}
+
+namespace {
+
+/// The height in metres above the model's lowest point from which on an ignored point is
+/// suspicious. Ground and rails are lower, and are ignored because the model stands on them; nobody
+/// wants to ignore what the model hits further up.
+constexpr double kHigh = 0.5;
+
+/// kHigh in the environment's unit. Where the unit is unknown, or is no length, metres are assumed.
+double high_in(LengthUnit unit) {
+  const double metres = metres_of(unit);
+  return metres > 0 ? kHigh / metres : kHigh;
+}
+
+/// Tells how high points are in the frame of the body that touches them.
+class Heights {
+ public:
+  Heights(const StoreReader& store, const Query& query)
+      : store_(store), query_(query), numbers_(query) {
+    bool any = false;
+    const auto lower_to = [&](const std::vector<Vec3>& model) {
+      for (const Vec3& p : model) {
+        if (!any || p.z < lowest_) lowest_ = p.z;
+        any = true;
+      }
+    };
+    lower_to(query.model.vertices);
+    for (const Body& body : query.bodies) lower_to(body.model.vertices);
+    limit_ = high_in(store.metadata().unit);
+  }
+
+  /// Whether a point is well above the model's lowest point at the pose at which it is first
+  /// touched. number: the number that BodyNumbers gives that pose and body.
+  bool is_high(const Vec3& e, std::uint32_t number) const {
+    const std::uint32_t pose = numbers_.pose_of(number);
+    const Pose* of = query_.bodies.empty() ? &query_.poses[pose]
+                                           : pose_at(query_.bodies[numbers_.body_of(number)], pose);
+    return of != nullptr && pulled_back(*of, e).z - lowest_ > limit_;
+  }
+
+  /// Counts the high points among the points of a cell that collide, which hits marks.
+  std::uint64_t count(std::uint32_t cell, std::span<const std::uint64_t> hits,
+                      std::span<const std::uint32_t> first_poses) const {
+    const auto q = store_.coordinates(cell);
+    std::uint64_t high = 0;
+    for (std::size_t block = 0; block < hits.size(); ++block) {
+      for (std::uint64_t open = hits[block]; open != 0; open &= open - 1) {
+        const auto i = block * kBlockPoints + static_cast<unsigned>(std::countr_zero(open));
+        const auto at = static_cast<std::uint32_t>(i);
+        const Vec3 e = position(store_.quantisation(), q[0][at], q[1][at], q[2][at]);
+        high += is_high(e, first_poses[i]) ? 1 : 0;
+      }
+    }
+    return high;
+  }
+
+ private:
+  const StoreReader& store_;
+  const Query& query_;
+  const BodyNumbers numbers_;
+  double lowest_ = 0, limit_ = 0;
+};
+
+}  // namespace
+
+Query query_of_ignored(const Query& query) {
+  Query out = query;
+  out.first_pose = true;
+  out.clearance = out.profile = out.tolerance = 0;
+  return out;
+}
+
+CollidingIgnored count_colliding_ignored(const StoreReader& store, const Query& query,
+                                         std::uint64_t memory_bytes, PageEngineKind& kind,
+                                         const ShardCells* only, Progress& progress) {
+  PageBudget budget(store, query, query, 0, memory_bytes, kind, only,
+                    IgnoredPoints::Search::kIgnored);
+  budget.find();
+  throw_if_stopped(progress);
+  PageEngines engines = kind.make(budget.layout());
+  const std::vector<PlannedPage> pages =
+      paginate(store, budget.cells(), budget.layout().page_bytes, budget.layout().cells, true);
+  std::vector<PageEngine*> lanes;
+  for (const auto& engine : engines) lanes.push_back(engine.get());
+  const Heights heights(store, query);
+  std::atomic<std::uint64_t> points = 0, high = 0;
+  const CollectPage count = [&](std::span<const PlannedCell> cells, const PageResult& found) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const auto hits = part_of_cell(found.hits, i, store.blocks_per_cell());
+      const std::uint32_t colliding = IgnoredPoints::count(hits);
+      if (colliding == 0) continue;
+      points += colliding;
+      high += heights.count(cells[i].cell, hits,
+                            part_of_cell(found.first_poses, i, store.cell_entries()));
+    }
+  };
+  StageTimes times;
+  run_pages(store, budget.cells(), pages, lanes,
+            {.stage = "ignored", .ignored = budget.ignored(), .threads = kind.needs().threads},
+            count, progress, times);
+  SearchReport taken;
+  const MessageCallback silent;
+  std::vector<Message> none;
+  kind.report_search({lanes.data(), lanes.size()}, taken, MessageLog(silent, none));
+  kind.end(std::move(engines)).clear();
+  return {points, high, budget.needed_bytes(), taken.peak_device_bytes};
+}
+
+void warn_of_colliding_ignored(const Answer& answer, bool model_is_cut, LengthUnit unit,
+                               MessageLog& log) {
+  if (!answer.ignored_colliding || answer.shard) return;
+  const std::uint64_t colliding = *answer.ignored_colliding;
+  const std::uint64_t high = answer.ignored_colliding_high.value_or(0);
+  const auto warn = [&](const char* code, std::string text, double points) {
+    log.warn(code, std::move(text), {{"colliding", points}});
+  };
+  const std::string of_ignored = " of the " + ignored_text(answer.parameters, answer.ignored);
+  if (colliding > answer.colliding_points && !model_is_cut) {
+    warn("ignored-collide",
+         format_count(colliding) + of_ignored + " would collide, but only " +
+             counted(answer.colliding_points, "searched point") +
+             (answer.colliding_points == 1 ? " does" : " do") +
+             ": the answer may be what was ignored. If they are the ground below the wheels, leave "
+             "the lowest part of the model out instead of the ground",
+         static_cast<double>(colliding));
+  }
+  if (high > 0) {
+    warn("ignored-high",
+         format_count(high) + of_ignored + " would collide more than " +
+             length_text(high_in(unit), unit) +
+             " above the model's lowest point, where no ground is: " +
+             "the model hits what was ignored. Ignore the ground alone",
+         static_cast<double>(high));
+  }
+}
+
+}  // namespace clearway

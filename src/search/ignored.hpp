@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "clearway/answer.hpp"
+#include "clearway/ignored.hpp"
+#include "clearway/query.hpp"
+#include "core/util/messages.hpp"
+#include "core/util/progress.hpp"
+#include "io/scans/length_unit.hpp"
+#include "io/store/store_reader.hpp"
+#include "search/kinds/page_engine_kind.hpp"
+#include "search/shard_cells.hpp"
+
+namespace clearway {
+
+/// Counts what the query leaves out of the whole store. query: one whose lists sort_ignored() has
+/// sorted. Reads the points of cells that a box cuts, and where classes are named also the classes
+/// of cells that a box touches. Throws UsageError where classes are named and the store has none,
+/// and InputError where a cell is damaged.
+IgnoredPointCounts count_ignored(const StoreReader& store, const QueryParameters& query,
+                                 int threads);
+
+/// Warns of classes and boxes that leave nothing out: "absent-class", "empty-box". Warns too where
+/// they leave out all points or nearly all: "all-ignored", "most-ignored".
+void warn_of_ignored(const StoreReader& store, const QueryParameters& query,
+                     const IgnoredPointCounts& counts, MessageLog& log);
+
+}  // namespace clearway
+
+/// Counts how many of the points that a query ignores would collide, by a second search of these
+/// points alone.
+namespace clearway {
+
+/// Counts of ignored points that would collide, and the memory in bytes that counting them took.
+struct CollidingIgnored {
+  /// Ignored points that would collide.
+  std::uint64_t points = 0;
+  /// Those of them that are first touched well above the model's lowest point.
+  std::uint64_t high = 0;
+  std::uint64_t needed_host_bytes = 0, peak_device_bytes = 0;
+};
+
+/// The query of the second search: exact, with first poses and without distances.
+Query query_of_ignored(const Query& query);
+
+/// Searches the ignored points of all cells, or of those of `only`. query: one made by
+/// query_of_ignored(). kind: the engine for that query. The numbers do not depend on the kind.
+/// Throws as search_pages() does.
+CollidingIgnored count_colliding_ignored(const StoreReader& store, const Query& query,
+                                         std::uint64_t memory_bytes, PageEngineKind& kind,
+                                         const ShardCells* only, Progress& progress);
+
+/// Warns where ignoring points may have made the answer: "ignored-collide" where more ignored
+/// points would collide than searched ones do, and "ignored-high" where some would collide well
+/// above the ground. Both are known only after the search, so strict calls do not refuse them.
+/// model_is_cut: the member of SearchOptions. unit: the environment's.
+void warn_of_colliding_ignored(const Answer& answer, bool model_is_cut, LengthUnit unit,
+                               MessageLog& log);
+
+}  // namespace clearway

@@ -1,0 +1,88 @@
+#include "clearway/merge.hpp"
+
+#include "clearway/error.hpp"
+#include "core/util/format.hpp"
+#include "core/util/messages.hpp"
+#include "core/util/progress.hpp"
+#include "io/files/pending_file.hpp"
+#include "io/result/answer.hpp"
+#include "io/result/check_results.hpp"
+#include "io/result/merge_parts.hpp"
+#include "search/ignored.hpp"
+#include "search/threads.hpp"
+
+namespace clearway {
+namespace {
+
+/// Whether the output exists and is intact. With a tolerance or in single precision always false,
+/// because the answer then does not follow from the question alone.
+bool is_merged(const PartSet& set, const std::filesystem::path& output, Progress& progress) {
+  if (!std::filesystem::exists(output)) return false;
+  if (set.header().tolerance > 0 || set.header().float_precision) return false;
+  if (!is_intact_result(output, set.header(), progress)) return false;
+  const ResultReader result(output);
+  return result.collisions() == set.collisions() && result.clearances() == set.clearances();
+}
+
+MergeReport report_of(const PartSet& set) {
+  MergeReport report;
+  static_cast<Answer&>(report) = set.answer();
+  report.length_unit = set.parts().front().header().part->length_unit;
+  report.parts = static_cast<std::uint32_t>(set.parts().size());
+  report.warnings = set.warnings();
+  return report;
+}
+
+/// Warns where ignored points may have made the answer. This can be judged only for all parts
+/// together.
+void warn_of_ignored(const PartSet& set, const MergeOptions& options, MergeReport& report) {
+  const ResultPart& part = *set.parts().front().header().part;
+  std::vector<Message> warnings;
+  MessageLog log(options.message, warnings);
+  warn_of_colliding_ignored(report, part.model_is_cut, length_unit_of(part.length_unit), log);
+  for (Message& warning : warnings) {
+    report.warnings.push_back({std::move(warning), report.parts});
+  }
+}
+
+/// Passes on the warnings of the parts, also where the result existed already. Throws where
+/// options.strict treats them as errors.
+void tell_warnings(const std::vector<PartWarning>& warnings, std::uint32_t parts,
+                   const MergeOptions& options) {
+  for (const PartWarning& warning : warnings) {
+    Message told = warning;
+    told.text += warning.parts == parts ? " (in all parts)"
+                                        : " (in " + std::to_string(warning.parts) + " of " +
+                                              counted(parts, "part") + ")";
+    if (options.message) options.message(told);
+  }
+  if (options.strict) refuse_warnings({warnings.begin(), warnings.end()});
+}
+
+}  // namespace
+
+MergeReport merge(const std::vector<std::filesystem::path>& parts,
+                  const std::filesystem::path& output, const MergeOptions& options) {
+  refuse_overwriting(output, parts);
+  PendingFile pending(output, options.overwrite || options.resume);
+  CallbackProgress progress(options.progress, options.stop);
+  return in_threads(options.threads, [&] {
+    const PartSet set(parts);
+    MergeReport report = report_of(set);
+    tell_warnings(report.warnings, report.parts, options);
+    report.was_finished = options.resume && is_merged(set, output, progress);
+    if (report.was_finished) {
+      static_cast<Answer&>(report) = answer_of(ResultReader(output));
+      add_doubts({report.warnings.begin(), report.warnings.end()}, report);
+      warn_of_ignored(set, options, report);
+      return report;
+    }
+    if (!options.overwrite) pending.refuse_existing();
+    merge_parts(set, pending.partial(), options.memory_bytes, progress, report);
+    pending.publish();
+    warn_of_ignored(set, options, report);
+    return report;
+  });
+}
+
+}  // namespace clearway

@@ -1,0 +1,303 @@
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/cloud/packed_cloud.hpp"
+#include "core/util/progress.hpp"
+#include "core/util/tsan_annotations.hpp"
+#include "io/files/input_error.hpp"
+#include "io/store/store_reader.hpp"
+
+namespace clearway {
+
+/// The cells that have entries of a set, and the number of these entries in all cells.
+struct SetCells {
+  std::vector<std::uint32_t> cells;
+  std::uint64_t entries = 0;
+};
+
+/// Calls visit(entry of bit 0, bits) for each word of a cell.
+template <typename Set, typename Visit>
+void for_each_word(const StoreReader& store, const Set& set, std::uint32_t cell, Visit visit) {
+  const std::uint64_t first = std::uint64_t{cell} * store.blocks_per_cell();
+  const std::uint64_t blocks = divide_up(store.cells()[cell].count, kBlockPoints);
+  for (std::uint64_t block = 0; block < blocks; ++block) {
+    visit((first + block) * kBlockPoints, set.word(first + block));
+  }
+}
+
+/// Calls visit(entry, index in the cell) for every entry of a cell that is in the set.
+template <typename Set, typename Visit>
+void for_each_entry(const StoreReader& store, const Set& set, std::uint32_t cell, Visit visit) {
+  const std::uint64_t first = std::uint64_t{cell} * store.cell_entries();
+  for_each_word(store, set, cell, [&](std::uint64_t entry, std::uint64_t bits) {
+    for (; bits != 0; bits &= bits - 1) {
+      const std::uint64_t at = entry + static_cast<unsigned>(std::countr_zero(bits));
+      visit(at, static_cast<std::uint32_t>(at - first));
+    }
+  });
+}
+
+template <typename Set>
+SetCells cells_of(const StoreReader& store, const Set& set) {
+  const auto cells = static_cast<std::uint32_t>(store.cells().size());
+  std::vector<std::uint32_t> counts(cells);
+  using Range = tbb::blocked_range<std::uint32_t>;
+  {
+    const ParallelScope scope;
+    const auto count = piece_of(scope, [&](const Range& range) {
+      for (std::uint32_t cell = range.begin(); cell != range.end(); ++cell) {
+        for_each_word(store, set, cell, [&](std::uint64_t, std::uint64_t bits) {
+          counts[cell] += static_cast<std::uint32_t>(std::popcount(bits));
+        });
+      }
+    });
+    scope.begin();
+    tbb::parallel_for(Range(0, cells, 16), count);
+  }
+  SetCells out;
+  for (std::uint32_t cell = 0; cell < cells; ++cell) {
+    if (counts[cell] == 0) continue;
+    out.cells.push_back(cell);
+    out.entries += counts[cell];
+  }
+  return out;
+}
+
+/// The source indices in parts of 2^16. Because no two points have the same one, a part has at most
+/// that many rows.
+class SourceParts {
+ public:
+  static constexpr unsigned kBits = 16;
+  static constexpr std::uint64_t kMostRows = std::uint64_t{1} << kBits;
+
+  explicit SourceParts(std::uint64_t sources) : parts_((sources + kMostRows - 1) >> kBits) {}
+  explicit SourceParts(const StoreReader& store) : SourceParts(store.metadata().input_points) {}
+
+  std::size_t count() const { return parts_; }
+  static std::size_t of(std::uint64_t source) { return source >> kBits; }
+
+ private:
+  std::size_t parts_;
+};
+
+/// One thread's view of a cell's entries in a set: those whose source indices are in some parts.
+class CellRows {
+ public:
+  struct Row {
+    std::uint64_t source;
+    std::uint64_t entry;
+  };
+
+  explicit CellRows(const SourceParts& parts) : counts_(parts.count()) {}
+
+  /// Memory of each thread, bytes.
+  static std::uint64_t most_bytes(const StoreReader& store) {
+    return SourceParts(store).count() * (sizeof(std::uint32_t) + sizeof(std::uint64_t)) +
+           std::uint64_t{store.cell_entries()} * (sizeof(Row) + sizeof(std::size_t));
+  }
+
+  /// Replaces the rows by those of a cell. Throws InputError for a damaged cell.
+  template <typename Set>
+  void take(const StoreReader& store, const Set& set, std::uint32_t cell, std::size_t first_part,
+            std::size_t end_part) {
+    for (const std::size_t part : parts_) counts_[part] = 0;
+    parts_.clear();
+    rows_.clear();
+    rows_.reserve(store.cell_entries());
+    const PackedChunk<std::uint64_t> sources = store.sources(cell);
+    if (SourceParts::of(sources.minimum()) >= end_part && end_part < counts_.size()) return;
+    for_each_entry(store, set, cell, [&](std::uint64_t entry, std::uint32_t i) {
+      const std::uint64_t source = sources[i];
+      const std::size_t part = SourceParts::of(source);
+      if (part < first_part || part >= end_part) {
+        if (part >= counts_.size()) refuse_source(store, cell, source);
+        return;
+      }
+      rows_.push_back({source, entry});
+      if (counts_[part]++ == 0) parts_.push_back(part);
+    });
+  }
+
+  const std::vector<Row>& rows() const { return rows_; }
+  /// The parts that have rows, in no particular order.
+  const std::vector<std::size_t>& parts() const { return parts_; }
+  std::uint32_t rows_of(std::size_t part) const { return counts_[part]; }
+
+ private:
+  [[noreturn]] static void refuse_source(const StoreReader& store, std::uint32_t cell,
+                                         std::uint64_t source) {
+    refuse(store.name(), "cell " + std::to_string(cell) + ": source index " +
+                             std::to_string(source) + ", expected one below " +
+                             std::to_string(store.metadata().input_points));
+  }
+
+  std::vector<std::uint32_t> counts_;
+  std::vector<std::size_t> parts_;
+  std::vector<Row> rows_;
+};
+
+/// Orders the rows of a part by source index. Each thread has its own PartOrder.
+template <typename Row>
+class PartOrder {
+ public:
+  /// without_copy: orders more slowly, but takes no memory.
+  explicit PartOrder(bool without_copy) : without_copy_(without_copy) {}
+
+  static std::uint64_t most_bytes() { return SourceParts::kMostRows * sizeof(Row); }
+
+  void order(std::span<Row> rows) {
+    if (without_copy_ || rows.size() < kFew || !by_rank(rows))
+      std::ranges::sort(rows, {}, &Row::source);
+  }
+
+ private:
+  /// Fewer rows are sorted faster than all words of the part's bits are visited.
+  static constexpr std::size_t kFew = 256;
+  static constexpr std::size_t kWords = SourceParts::kMostRows / 64;
+
+  /// Puts each row at the number of rows with a smaller source index. Returns false, with nothing
+  /// done, if two rows have the same one.
+  bool by_rank(std::span<Row> rows) {
+    std::array<std::uint64_t, kWords> bits{};
+    for (const Row& row : rows) {
+      std::uint64_t& word = bits[row.source / 64 % kWords];
+      const std::uint64_t bit = std::uint64_t{1} << (row.source % 64);
+      if ((word & bit) != 0) return false;
+      word |= bit;
+    }
+    std::array<std::uint32_t, kWords> before;
+    std::uint32_t rank = 0;
+    for (std::size_t word = 0; word < kWords; ++word) {
+      before[word] = rank;
+      rank += static_cast<std::uint32_t>(std::popcount(bits[word]));
+    }
+    copy_.assign(rows.begin(), rows.end());
+    for (const Row& row : copy_) {
+      const std::size_t word = row.source / 64 % kWords;
+      const std::uint64_t below = (std::uint64_t{1} << (row.source % 64)) - 1;
+      rows[before[word] + static_cast<std::uint32_t>(std::popcount(bits[word] & below))] = row;
+    }
+    return true;
+  }
+
+  bool without_copy_;
+  std::vector<Row> copy_;
+};
+
+/// Brings the entries of a set into the order of their source indices, for some parts of these at a
+/// time. Row: what is kept of an entry, with its `source`. All functions throw InputError for a
+/// damaged cell and Interrupted when the progress asks to stop.
+template <typename Row, typename Set>
+class GatherRows {
+ public:
+  GatherRows(const StoreReader& store, const Set& set, const SetCells& in, Progress& progress)
+      : store_(store),
+        set_(set),
+        in_(in),
+        progress_(progress),
+        parts_(store),
+        counts_(parts_.count()),
+        threads_([this] { return CellRows(parts_); }) {
+    for_each_cell(0, parts_.count(), [this](std::uint32_t, const CellRows& cell) {
+      for (const std::size_t part : cell.parts()) {
+        std::atomic_ref(counts_[part]).fetch_add(cell.rows_of(part), std::memory_order_relaxed);
+      }
+    });
+  }
+
+  /// Number of rows in each part.
+  const std::vector<std::uint64_t>& counts() const { return counts_; }
+
+  /// Fills `rows` with the rows of parts `first` to `end` - 1, in order. rows_of(cell): returns the
+  /// function that makes a row of (source, entry, index in the cell). rows: must have the length
+  /// that counts() gives. without_copy: see PartOrder.
+  template <typename RowsOf>
+  void gather(std::size_t first, std::size_t end, std::span<Row> rows, bool without_copy,
+              RowsOf rows_of) {
+    threads_.clear();                              // other threads than before may take part
+    std::vector<std::uint64_t> next(end - first);  // next free place of each part
+    for (std::size_t part = first, at = 0; part < end; at += counts_[part++]) {
+      next[part - first] = at;
+    }
+    scatter(first, end, next, rows, rows_of);
+    order(first, end, next, rows, without_copy);
+  }
+
+ private:
+  using Range = tbb::blocked_range<std::size_t>;
+
+  /// Calls visit(cell, rows) for each cell that has rows in parts `first` to `end` - 1. Takes a
+  /// std::function, because the thread sanitizer cannot handle types with names of thousands of
+  /// letters.
+  void for_each_cell(std::size_t first, std::size_t end,
+                     const std::function<void(std::uint32_t, const CellRows&)>& visit) {
+    const ParallelScope scope;
+    const auto cells = piece_of(scope, [&](const Range& range) {
+      CellRows& rows = threads_.local();
+      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        throw_if_stopped(progress_);
+        rows.take(store_, set_, in_.cells[i], first, end);
+        if (!rows.rows().empty()) visit(in_.cells[i], rows);
+      }
+    });
+    scope.begin();
+    tbb::parallel_for(Range(0, in_.cells.size()), cells);
+  }
+
+  template <typename RowsOf>
+  void scatter(std::size_t first, std::size_t end, std::vector<std::uint64_t>& next,
+               std::span<Row> rows, RowsOf rows_of) {
+    tbb::enumerable_thread_specific<std::vector<std::uint64_t>> places(end - first);
+    for_each_cell(first, end, [&](std::uint32_t cell, const CellRows& found) {
+      std::vector<std::uint64_t>& place = places.local();
+      for (const std::size_t part : found.parts()) {
+        place[part - first] = std::atomic_ref(next[part - first])
+                                  .fetch_add(found.rows_of(part), std::memory_order_relaxed);
+      }
+      const auto row_of = rows_of(cell);
+      const std::uint64_t entries = std::uint64_t{cell} * store_.cell_entries();
+      for (const CellRows::Row& row : found.rows()) {
+        rows[place[SourceParts::of(row.source) - first]++] =
+            row_of(row.source, row.entry, static_cast<std::uint32_t>(row.entry - entries));
+      }
+    });
+  }
+
+  /// Orders the rows of each part. ends: ends of the parts in `rows`.
+  void order(std::size_t first, std::size_t end, const std::vector<std::uint64_t>& ends,
+             std::span<Row> rows, bool without_copy) {
+    tbb::enumerable_thread_specific<PartOrder<Row>> orders(without_copy);
+    const ParallelScope scope;
+    const auto parts = piece_of(scope, [&](const Range& range) {
+      PartOrder<Row>& order = orders.local();
+      for (std::size_t part = range.begin(); part != range.end(); ++part) {
+        throw_if_stopped(progress_);
+        order.order(rows.subspan(ends[part - first] - counts_[part], counts_[part]));
+      }
+    });
+    scope.begin();
+    tbb::parallel_for(Range(first, end), parts);
+  }
+
+  const StoreReader& store_;
+  const Set& set_;
+  const SetCells& in_;
+  Progress& progress_;
+  const SourceParts parts_;
+  std::vector<std::uint64_t> counts_;
+  tbb::enumerable_thread_specific<CellRows> threads_;
+};
+
+}  // namespace clearway

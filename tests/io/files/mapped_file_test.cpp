@@ -1,0 +1,58 @@
+#include "io/files/mapped_file.hpp"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+
+#include "clearway/error.hpp"
+#include "support/result_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+
+TEST_CASE("a map shows the file's bytes") {
+  const ScratchFolder folder;
+  put_bytes(folder / "a", "abc");
+  put_bytes(folder / "empty", "");
+  const MappedFile map(folder / "a");
+  REQUIRE(map.bytes().size() == 3);
+  CHECK(map.bytes()[2] == std::byte{'c'});
+  CHECK(MappedFile(folder / "empty").bytes().empty());
+  CHECK_THROWS_AS(MappedFile(folder / "none"), ResourceError);
+  CHECK_THROWS_AS(MappedFile(folder / ""), ResourceError);
+}
+
+TEST_CASE("a file that shrinks under its map ends the program with its name") {
+  const ScratchFolder folder;
+  const auto path = folder / "shrinking";
+  put_bytes(path, std::string(100'000, 'x'));
+  int ends[2];
+  REQUIRE(::pipe(ends) == 0);
+  const pid_t child = ::fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    ::dup2(ends[1], STDERR_FILENO);
+    install_map_fault_handler(4);
+    const MappedFile map(path);
+    if (::truncate(path.c_str(), 10) != 0) ::_exit(99);
+    const volatile std::byte lost = map.bytes()[90'000];
+    ::_exit(lost == std::byte{0} ? 98 : 97);
+  }
+  ::close(ends[1]);
+  std::string message(1000, '\0');
+  message.resize(
+      static_cast<std::size_t>(std::max<ssize_t>(0, ::read(ends[0], message.data(), 1000))));
+  while (true) {  // the system writes the text in parts
+    char more[200];
+    const ssize_t got = ::read(ends[0], more, sizeof more);
+    if (got <= 0) break;
+    message.append(more, static_cast<std::size_t>(got));
+  }
+  ::close(ends[0]);
+  int status = 0;
+  REQUIRE(::waitpid(child, &status, 0) == child);
+  REQUIRE(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 4);
+  CHECK_THAT(message, Catch::Contains(path.string()) && Catch::Contains("shrank"));
+}

@@ -1,0 +1,127 @@
+#include "io/paths/text/text_trajectory.hpp"
+
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+#include "clearway/trajectory.hpp"
+#include "support/reader_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+constexpr std::size_t kPoses = 30'000;  // some 4 blocks of lines or more
+
+/// Line i of a trajectory: a row-major matrix without a rotation.
+std::string row_of(std::size_t i) {
+  const std::string n = std::to_string(i);
+  return "1 0 0 " + n + ".25 0 1 0 -" + n + ".5 0 0 1 " + n + "e-3";
+}
+
+Pose pose_of(std::size_t i) {
+  const auto n = static_cast<double>(i);
+  return {{1, 0, 0, 0, 1, 0, 0, 0, 1},
+          {n + 0.25, -(n + 0.5), std::stod(std::to_string(i) + "e-3")}};
+}
+
+std::string rows(std::size_t from, std::size_t to, const std::string& behind = "\n") {
+  std::string text;
+  for (std::size_t i = from; i < to; ++i) text += row_of(i) + behind;
+  return text;
+}
+
+std::vector<Pose> expected() {
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < kPoses; ++i) poses.push_back(pose_of(i));
+  return poses;
+}
+
+std::string refusal_of_text(const std::string& text) {
+  const ReaderScratch scratch;
+  try {
+    read_trajectory(scratch.write("path.txt", text));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("a long trajectory has its poses in the order of its lines") {
+  const ReaderScratch scratch;
+  const auto poses_of = [&](const std::string& text) {
+    return read_trajectory(scratch.write("path.txt", text));
+  };
+  CHECK((poses_of(rows(0, kPoses)) == expected()));
+  CHECK((poses_of("# one\n\n" + rows(0, 9, "\r\n") + "\n// more\n" + rows(9, 20'000, " \n") +
+                  "\n#\n" + rows(20'000, kPoses)) == expected()));
+  CHECK((poses_of(rows(0, kPoses - 1) + row_of(kPoses - 1)) == expected()));
+  CHECK((poses_of(rows(0, kPoses, " 0 0 0 1\n")) == expected()));
+}
+
+TEST_CASE("a long table keeps times and names with their poses") {
+  const ReaderScratch scratch;
+  std::string text = "name,time,x,y,z,qx,qy,qz,qw\n";
+  for (std::size_t i = 0; i < kPoses; ++i) {
+    text += "\"a, " + std::to_string(i) + "\"," + std::to_string(i) + ".5," + std::to_string(i) +
+            ",0,0,0,0,0,1\n";
+  }
+  PoseLabels labels;
+  const auto poses = read_trajectory(scratch.write("a.csv", text), {}, nullptr, &labels);
+  REQUIRE(poses.size() == kPoses);
+  REQUIRE(labels.name.size() == kPoses);
+  REQUIRE(labels.time.size() == kPoses);
+  std::size_t good = 0;
+  for (std::size_t i = 0; i < kPoses; ++i) {
+    const auto number = static_cast<double>(i);
+    const bool same = labels.name[i] == "a, " + std::to_string(i) &&
+                      labels.time[i] == number + 0.5 && poses[i].translation[0] == number;
+    good += same ? 1 : 0;
+  }
+  CHECK(good == kPoses);
+}
+
+TEST_CASE("a long table of angles is that of its short parts") {
+  const ReaderScratch scratch;
+  const std::string header = "x,y,z,roll_deg,pitch_deg,heading_deg\n";
+  const auto row = [](std::size_t i) {
+    const std::string n = std::to_string(i);
+    return n + ",1,2," + std::to_string(i % 7) + "," + std::to_string(i % 5) + "," +
+           std::to_string(i % 360) + "\n";
+  };
+  std::string text = header;
+  for (std::size_t i = 0; i < kPoses; ++i) text += row(i);
+  const auto poses = read_trajectory(scratch.write("a.csv", text));
+  REQUIRE(poses.size() == kPoses);
+  for (const std::size_t i : {std::size_t{0}, std::size_t{12'345}, kPoses - 1}) {
+    const auto one = read_trajectory(scratch.write("b.csv", header + row(i)));
+    CHECK(poses[i] == one.at(0));
+  }
+}
+
+TEST_CASE("a line in the middle of a long trajectory is refused by its number") {
+  CHECK_THAT(refusal_of_text("#\n" + rows(0, 25'000) + "1 0 0 x\n" + rows(0, 5'000)),
+             Contains("line 25002: ") && Contains("expected numbers only"));
+  CHECK_THAT(refusal_of_text(rows(0, 25'000) + rows(0, 1, " 0 0 0 1\n") + rows(0, 5'000)),
+             Contains("line 25001: 16 numbers; expected 12 as in the first line"));
+  // The first of several faulty lines is named.
+  CHECK_THAT(refusal_of_text(rows(0, 10'000) + "1 2\n" + rows(0, 9'000) + "nan\n"),
+             Contains("line 10001: 2 numbers"));
+  CHECK_THAT(refusal_of_text(rows(0, 25'000) + std::string(70'000, '1') + "\n"),
+             Contains("line 25001: is longer than 65536 bytes"));
+}
+
+TEST_CASE("a long trajectory that ends within a number is warned of by its last line") {
+  const ReaderScratch scratch;
+  std::vector<Message> remarks;
+  const auto poses = read_trajectory(
+      scratch.write("path.txt", rows(0, 25'000) + "1 0 0 1 0 1 0 2 0 0 1 3."), {}, &remarks);
+  CHECK(poses.size() == 25'001);
+  REQUIRE_FALSE(remarks.empty());
+  CHECK(remarks[0].code == "cut-text");
+  CHECK(remarks[0].numbers.at(0).second == 25'001);
+}

@@ -1,0 +1,39 @@
+#include <catch2/catch.hpp>
+
+#include "clearway/trajectory.hpp"
+#include "io/paths/trajectory_file.hpp"
+#include "support/result_fixture.hpp"
+#include "support/scenes.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+
+namespace {
+
+std::vector<Pose> written_and_read(const ScratchFolder& folder, const std::vector<Pose>& poses) {
+  const auto path = folder / "path.txt";
+  NoProgress progress;
+  write_trajectory(poses, File::create(path), progress);
+  return read_trajectory(path, {TrajectoryFormat::kMatrix, true});
+}
+
+}  // namespace
+
+TEST_CASE("a written trajectory reads back to the same numbers") {
+  const ScratchFolder folder;
+  Random random(41);
+  std::vector<Pose> poses{translation({5e-324, -1e300, 0.1}), translation({-0.0, 5e6 + 1e-9, 1})};
+  for (int i = 0; i < 500; ++i) {
+    poses.push_back(random_rotation(random, random_point(random, {{-5e6, -1, 0}, {5e6, 1, 1e-9}})));
+  }
+  CHECK(written_and_read(folder, poses) == poses);
+  CHECK(written_and_read(folder, {}).empty());
+}
+
+TEST_CASE("a pose is written as a row-major 4 x 4 matrix") {
+  const ScratchFolder folder;
+  NoProgress progress;
+  write_trajectory(std::vector<Pose>{{{1, 2, 3, 4, 5, 6, 7, 8, 9}, {0.1, 11, 12}}},
+                   File::create(folder / "path.txt"), progress);
+  CHECK(bytes_of(folder / "path.txt") == "1 2 3 0.1 4 5 6 11 7 8 9 12 0 0 0 1\n");
+}

@@ -1,0 +1,223 @@
+#include "io/result/export/export_result.hpp"
+
+#include <array>
+#include <bit>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <sstream>
+
+#include "clearway/error.hpp"
+#include "io/scans/requantize.hpp"
+#include "support/file_size_limit.hpp"
+#include "support/leaks_of_hdf5.hpp"
+#include "support/result_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+/// The value that starts at a byte of a file.
+template <typename Value>
+Value value_at(const std::string& bytes, std::size_t at) {
+  REQUIRE(at + sizeof(Value) <= bytes.size());
+  Value value;
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+struct Sample {
+  ResultHeader header;
+  Collisions rows;
+};
+
+Sample sample(bool first_pose, std::size_t count, const std::string& crs = "") {
+  Sample out{sample_header(first_pose), {}};
+  out.header.crs_wkt = crs;
+  out.rows = sample_rows(out.header, count);
+  return out;
+}
+
+/// The bytes of a sample's exported file.
+std::string exported(const Sample& sample, const std::string& name) {
+  const ScratchFolder folder;
+  write_result(folder / "out.h5", sample.header, sample.rows);
+  NoProgress progress;
+  export_result(ResultReader(folder / "out.h5"), folder / name, false, progress);
+  CHECK_FALSE(std::filesystem::exists(folder / (name + ".partial")));
+  return bytes_of(folder / name);
+}
+
+/// The words of each line of a text, separated by `separator`.
+std::vector<std::vector<std::string>> table(const std::string& text, char separator) {
+  std::vector<std::vector<std::string>> out;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    auto& words = out.emplace_back();
+    std::istringstream cells(line);
+    for (std::string word; std::getline(cells, word, separator);) words.push_back(word);
+  }
+  return out;
+}
+
+/// Whether a text reads back as the stored integer of a coordinate.
+bool same_quantum(const Sample& sample, int axis, const std::string& text, double coordinate) {
+  const Quantisation& quantisation = sample.header.quantisation;
+  const double steps = (std::stod(text) - quantisation.offset[axis]) / quantisation.scale[axis];
+  return quantum_at(quantisation, axis, coordinate).value() == std::nearbyint(steps);
+}
+
+constexpr std::size_t kMany = 65'600;  // more than a batch
+
+}  // namespace
+
+TEST_CASE("CSV holds every column in full") {
+  const bool first_pose = GENERATE(false, true);
+  const Sample s = sample(first_pose, GENERATE(0u, 3u, kMany));
+  const auto rows = table(exported(s, "out.csv"), ',');
+  REQUIRE(rows.size() == s.rows.size() + 1);
+  std::vector<std::string> header{"source", "x", "y", "z"};
+  if (first_pose) header.push_back("first_pose");
+  CHECK(rows[0] == header);
+  for (std::size_t i = 0; i < s.rows.size(); ++i) {
+    const auto& row = rows[i + 1];
+    REQUIRE(row.size() == header.size());
+    REQUIRE(std::stoull(row[0]) == s.rows.source[i]);
+    for (int k = 0; k < 3; ++k) {
+      REQUIRE(same_quantum(s, k, row[static_cast<std::size_t>(1 + k)], s.rows.xyz[i][k]));
+    }
+    if (first_pose) REQUIRE(std::stoul(row[4]) == s.rows.first_pose[i]);
+  }
+}
+
+TEST_CASE("XYZ holds the coordinates in full, and nothing else") {
+  const Sample s = sample(GENERATE(false, true), GENERATE(0u, kMany));
+  const auto rows = table(exported(s, "out.xyz"), ' ');
+  REQUIRE(rows.size() == s.rows.size());
+  for (std::size_t i = 0; i < s.rows.size(); ++i) {
+    REQUIRE(rows[i].size() == 3);
+    for (int k = 0; k < 3; ++k) {
+      REQUIRE(same_quantum(s, k, rows[i][static_cast<std::size_t>(k)], s.rows.xyz[i][k]));
+    }
+  }
+}
+
+TEST_CASE("PLY holds doubles and first poses") {
+  const bool first_pose = GENERATE(false, true);
+  const Sample s = sample(first_pose, GENERATE(0u, kMany));
+  const std::string bytes = exported(s, "out.PLY");
+  const std::string header = "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                             std::to_string(s.rows.size()) +
+                             "\nproperty double x\nproperty double y\nproperty double z\n" +
+                             (first_pose ? "property uint first_pose\n" : "") + "end_header\n";
+  REQUIRE(bytes.substr(0, header.size()) == header);
+  const std::size_t row_bytes = 24 + (first_pose ? 4 : 0);
+  REQUIRE(bytes.size() == header.size() + row_bytes * s.rows.size());
+  for (std::size_t i = 0; i < s.rows.size(); ++i) {
+    const std::size_t at = header.size() + row_bytes * i;
+    REQUIRE(value_at<Vec3>(bytes, at) == s.rows.xyz[i]);
+    if (first_pose) REQUIRE(value_at<std::uint32_t>(bytes, at + 24) == s.rows.first_pose[i]);
+  }
+}
+
+TEST_CASE("LAS holds the source's integers, scale, offset, CRS and first poses") {
+  const bool first_pose = GENERATE(false, true);
+  const std::string crs = GENERATE(std::string(), std::string("PROJCS[\"somewhere\"]"));
+  const Sample s = sample(first_pose, GENERATE(0u, kMany), crs);
+  const std::string bytes = exported(s, "out.las");
+  REQUIRE(bytes.substr(0, 4) == "LASF");
+  const bool version_14 = value_at<std::uint8_t>(bytes, 25) == 4;
+  CHECK(version_14 == (first_pose || !crs.empty()));
+  const auto points_at = value_at<std::uint32_t>(bytes, 96);
+  const auto row_bytes = value_at<std::uint16_t>(bytes, 105);
+  CHECK((version_14 ? value_at<std::uint64_t>(bytes, 247) : value_at<std::uint32_t>(bytes, 107)) ==
+        s.rows.size());
+  REQUIRE(bytes.size() == points_at + row_bytes * s.rows.size());
+  CHECK((bytes.find(crs) < points_at));
+  CHECK((bytes.find("first_pose") < points_at) == first_pose);
+
+  const auto read = value_at<Quantisation>(bytes, 131);
+  CHECK(read == s.header.quantisation);
+  Vec3 lo = s.rows.size() == 0 ? Vec3{} : s.rows.xyz[0], hi = lo;
+  for (std::size_t i = 0; i < s.rows.size(); ++i) {
+    const std::size_t at = points_at + row_bytes * i;
+    const auto q = value_at<std::array<std::int32_t, 3>>(bytes, at);
+    REQUIRE(position(read, q[0], q[1], q[2]) == s.rows.xyz[i]);
+    if (first_pose) {
+      REQUIRE(value_at<std::uint32_t>(bytes, at + row_bytes - 4) == s.rows.first_pose[i]);
+    }
+    for (int k = 0; k < 3; ++k) {
+      lo[k] = std::min(lo[k], s.rows.xyz[i][k]);
+      hi[k] = std::max(hi[k], s.rows.xyz[i][k]);
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    const std::size_t at = 179 + 16 * static_cast<std::size_t>(k);
+    CHECK(value_at<double>(bytes, at) == hi[k]);
+    CHECK(value_at<double>(bytes, at + 8) == lo[k]);
+  }
+}
+
+TEST_CASE("a coordinate that is no multiple of the scale is refused as LAS, with its source") {
+  Sample s = sample(false, 5);
+  s.rows.xyz[3].y += 0.00005;
+  const std::string place = "source " + std::to_string(s.rows.source[3]);
+  CHECK_THROWS_AS(exported(s, "out.las"), InputError);
+  CHECK_THROWS_WITH(exported(s, "out.las"), Contains("out.h5") && Contains(place));
+  CHECK_NOTHROW(exported(s, "out.csv"));
+}
+
+TEST_CASE("another ending is refused with the four that are known") {
+  const Sample s = sample(false, 1);
+  const std::string name = GENERATE("out", "out.laz", "out.h5", "las", "out.csv.gz");
+  CHECK_THROWS_AS(exported(s, name), UsageError);
+  CHECK_THROWS_WITH(exported(s, name), Contains(name) && Contains(".las") && Contains(".ply") &&
+                                           Contains(".xyz") && Contains(".csv"));
+}
+
+TEST_CASE("an existing output is kept unless asked otherwise") {
+  const ScratchFolder folder;
+  const Sample s = sample(false, 2);
+  write_result(folder / "out.h5", s.header, s.rows);
+  const ResultReader reader(folder / "out.h5");
+  NoProgress progress;
+  put_bytes(folder / "out.xyz", "mine");
+  CHECK_THROWS_AS(export_result(reader, folder / "out.xyz", false, progress), UsageError);
+  CHECK(bytes_of(folder / "out.xyz") == "mine");
+  export_result(reader, folder / "out.xyz", true, progress);
+  CHECK(table(bytes_of(folder / "out.xyz"), ' ').size() == 2);
+}
+
+TEST_CASE("a disk that fills up leaves nothing under the output's name") {
+  const ScratchFolder folder;
+  const Sample s = sample(true, kMany);
+  write_result(folder / "out.h5", s.header, s.rows);
+  const ResultReader reader(folder / "out.h5");
+  const std::string name = GENERATE("out.las", "out.ply", "out.xyz", "out.csv");
+  NoProgress progress;
+  {
+    const FileSizeLimit limit(1'000'000);
+    CHECK_THROWS_AS(export_result(reader, folder / name, false, progress), ResourceError);
+  }
+  CHECK_FALSE(std::filesystem::exists(folder / name));
+  CHECK_FALSE(std::filesystem::exists(folder / (name + ".partial")));
+}
+
+TEST_CASE("a result for which the disk has no room is not finished") {
+  const LeaksOfHdf5 ignored;
+  const ScratchFolder folder;
+  const bool first_pose = GENERATE(false, true);
+  const Sample s = sample(first_pose, GENERATE(1'000u, kMany, 3 * kMany));
+  const auto path = folder / "out.h5";
+  write_result(path, s.header, s.rows);
+  const auto size = std::filesystem::file_size(path);
+  for (const auto bytes : {size / 50, size / 2, size - 1}) {
+    const FileSizeLimit limit(bytes);
+    CHECK_THROWS_AS(write_result(path, s.header, s.rows), ResourceError);
+  }
+  write_result(path, s.header, s.rows);
+  CHECK(std::filesystem::file_size(path) == size);
+}

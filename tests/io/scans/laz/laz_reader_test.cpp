@@ -1,0 +1,118 @@
+// LAZ made by an encoder of the tests. Reading files of LASzip and laz-perf showed that the encoder
+// writes what others do (docs/design/laz.md).
+#include <tbb/task_arena.h>
+
+#include <catch2/catch.hpp>
+
+#include "io/files/thread_limit.hpp"
+#include "support/bytes/laz/laz_samples.hpp"
+#include "support/reader_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// Reads the file, the file again, and the bytes as a stream; each must give the points.
+void check_reads(const LazBytes& laz) {
+  ReaderScratch scratch;
+  const auto path = scratch.write("a.laz", laz.build());
+  const auto expected = positions_of(laz.points);
+  const auto reader = open_point_file(path);
+  CHECK(reader->info().declared_points == laz.points.size());
+  CHECK(*reader->info().quantisation == Quantisation{{0.001, 0.01, 0.1}, {100, -200, 0}});
+  const ReadCloud read = read_all(*reader);
+  CHECK(read.quanta == expected);
+  CHECK(read.classes == classes_of(laz));
+  reader->rewind();
+  const ReadCloud again = read_all(*reader);
+  CHECK(again.quanta == expected);
+  CHECK(again.classes == classes_of(laz));
+  const auto stream = open_las_stream(File::open_for_reading(path), scratch.folder());
+  CHECK(stream->can_rewind());
+  CHECK(read_all(*stream).quanta == expected);
+}
+
+}  // namespace
+
+TEST_CASE("LAZ holds the integers of its points, in every format and division into chunks") {
+  const unsigned format = GENERATE(from_range(std::begin(kLazFormats), std::end(kLazFormats)));
+  CAPTURE(format);
+  LazBytes laz = laz_bytes(format, 3000);
+  SECTION("equal chunks") { laz.chunks = {1000}; }
+  SECTION("the last chunk with fewer") { laz.chunks = {701}; }
+  SECTION("chunks of one point") {
+    laz.points.resize(7);
+    laz.chunks = {1};
+  }
+  SECTION("one chunk") { laz.chunks = {50000}; }
+  SECTION("chunks of any size") {
+    laz.variable = true;
+    laz.chunks = {1, 700, 2, 3, 1200, 1};
+  }
+  SECTION("the place of the table at the file's end") {
+    laz.chunks = {701};
+    laz.table = LazBytes::Table::kAtEnd;
+  }
+  SECTION("no table") {
+    laz.chunks = {701};
+    laz.table = LazBytes::Table::kNone;
+  }
+  SECTION("no chunks") {
+    if (format >= 6) return;
+    laz.chunked = false;
+  }
+  SECTION("no points") { laz.points.clear(); }
+  SECTION("one class in each chunk") {
+    laz.chunks = {500};
+    for (std::size_t i = 0; i < laz.points.size(); ++i) {
+      laz.points[i].classification = static_cast<std::uint8_t>(i / 500 + 1);
+    }
+  }
+  check_reads(laz);
+}
+
+TEST_CASE("chunks larger than a group's are read in pieces, by any number of threads") {
+  const unsigned format = GENERATE(1u, 6u);
+  const int threads = GENERATE(1, 3);
+  LazBytes laz = laz_bytes(format, 300000);
+  laz.variable = true;
+  laz.chunks = {100, 270000, 50, 20000};
+  const ThreadLimit limit(threads);
+  tbb::task_arena(threads).execute([&] { check_reads(laz); });
+}
+
+TEST_CASE("batches of LAZ have at most the usual size, and no fewer points than that") {
+  LazBytes laz = laz_bytes(0, 200000);
+  laz.chunks = {300};
+  ReaderScratch scratch;
+  const auto reader = open_point_file(scratch.write("a.laz", laz.build()));
+  PointBatch batch;
+  std::vector<std::size_t> sizes;
+  while (reader->read(batch)) sizes.push_back(batch.size());
+  CHECK(sizes == std::vector<std::size_t>{65536, 65536, 65536, 3392});
+}
+
+TEST_CASE("a CRS before and behind compressed points is read") {
+  LazBytes laz = laz_bytes(6, 20);
+  const std::string wkt = R"(PROJCS["a",GEOGCS["b"],UNIT["foot",0.3048]])";
+  SECTION("before") { laz.las.vlrs = {{"LASF_Projection", 2112, wkt}}; }
+  SECTION("behind") { laz.las.evlrs = {{"copc", 1000, "any"}, {"LASF_Projection", 2112, wkt}}; }
+  ReaderScratch scratch;
+  const auto path = scratch.write("a.laz", laz.build());
+  CHECK(open_point_file(path)->info().crs_wkt == wkt);
+  CHECK(open_point_file(path)->info().unit == LengthUnit::kFoot);
+  CHECK(read_all(path).quanta == positions_of(laz.points));
+}
+
+TEST_CASE("a file without a chunk table says so, one with it says nothing") {
+  LazBytes laz = laz_bytes(0, 20);
+  ReaderScratch scratch;
+  CHECK(read_all(scratch.write("a.laz", laz.build())).info.remarks.empty());
+  laz.table = LazBytes::Table::kNone;
+  const auto remarks = read_all(scratch.write("b.laz", laz.build())).info.remarks;
+  REQUIRE(remarks.size() == 1);
+  CHECK(remarks[0].severity == Message::Severity::kNote);
+  CHECK_THAT(remarks[0].text, Contains("b.laz") && Contains("20 points"));
+}

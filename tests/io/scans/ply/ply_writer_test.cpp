@@ -1,0 +1,58 @@
+#include "io/scans/ply/ply_writer.hpp"
+
+#include <catch2/catch.hpp>
+#include <stdexcept>
+
+#include "support/bytes/written_bytes.hpp"
+
+using namespace clearway;
+
+TEST_CASE("a double PLY holds header and coordinates bit for bit") {
+  const File file = test::nameless_file();
+  PlyWriter writer(file, {.points = 2, .comment = "a body"});
+  writer.write(std::vector<Vec3>{{0.1, -2, 1e300}});
+  writer.write(std::vector<Vec3>{{5, 6, 7}});
+  writer.finish();
+  const std::string header =
+      "ply\nformat binary_little_endian 1.0\ncomment a body\nelement vertex 2\nproperty double x\n"
+      "property double y\nproperty double z\nend_header\n";
+  const test::WrittenBytes bytes(file);
+  CHECK(bytes.text(0, header.size()) == header);
+  REQUIRE(bytes.size() == header.size() + 2 * 24);
+  CHECK(bytes.at<double>(header.size()) == 0.1);
+  CHECK(bytes.at<double>(header.size() + 8) == -2);
+  CHECK(bytes.at<double>(header.size() + 16) == 1e300);
+  CHECK(bytes.at<double>(header.size() + 24) == 5);
+  CHECK(bytes.at<double>(header.size() + 40) == 7);
+}
+
+TEST_CASE("a float PLY with first poses") {
+  const File file = test::nameless_file();
+  PlyWriter writer(
+      file, {.points = 1, .coordinates = PlyCoordinates::kFloat32, .fields = {{"first_pose"}}});
+  const std::vector<std::uint32_t> pose{4000000000u};
+  const FieldValues field = std::span<const std::uint32_t>(pose);
+  writer.write(std::vector<Vec3>{{0.1, -2, 3}}, std::span(&field, 1));
+  writer.finish();
+  const std::string header =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"
+      "property float y\nproperty float z\nproperty uint first_pose\nend_header\n";
+  const test::WrittenBytes bytes(file);
+  CHECK(bytes.text(0, header.size()) == header);
+  REQUIRE(bytes.size() == header.size() + 16);
+  CHECK(bytes.at<float>(header.size()) == 0.1F);
+  CHECK(bytes.at<float>(header.size() + 4) == -2);
+  CHECK(bytes.at<float>(header.size() + 8) == 3);
+  CHECK(bytes.at<std::uint32_t>(header.size() + 12) == 4000000000u);
+}
+
+TEST_CASE("a PLY with another number of points than promised is refused") {
+  const File file = test::nameless_file();
+  PlyWriter writer(file, {.points = 2});
+  writer.write(std::vector<Vec3>{{1, 2, 3}});
+  CHECK_THROWS_AS(writer.finish(), std::logic_error);
+  const std::vector<std::uint32_t> pose{0};
+  const FieldValues field = std::span<const std::uint32_t>(pose);
+  CHECK_THROWS_AS(writer.write(std::vector<Vec3>{{1, 2, 3}}, std::span(&field, 1)),
+                  std::logic_error);
+}

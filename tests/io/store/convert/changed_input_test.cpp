@@ -1,0 +1,133 @@
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <cstring>
+#include <functional>
+
+#include "io/files/xxh64.hpp"
+#include "io/store/convert/count.hpp"
+#include "io/store/convert/distribute.hpp"
+#include "support/clouds.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Calls a function when a stage of the conversion begins.
+class At final : public Progress {
+ public:
+  At(std::string stage, std::function<void()> act) : stage_(std::move(stage)), act_(act) {}
+
+  void begin(std::string_view stage, std::uint64_t, std::string_view) override {
+    if (stage == stage_) act_();
+  }
+  void advance(std::uint64_t) override {}
+  void end() override {}
+
+ private:
+  std::string stage_;
+  std::function<void()> act_;
+};
+
+/// Two scans, and a file of the second one's size with other points in the same place.
+struct Scans {
+  Scans() {
+    write_las(first, points);
+    write_las(second, points);
+    auto others = points;
+    std::swap(others.front(), others.back());
+    write_las(other, others);
+    // The file's time is set back, so that a change is seen however coarse the file system's clock
+    // is.
+    const auto past = fs::last_write_time(second) - std::chrono::hours(1);
+    fs::last_write_time(second, past);
+    options = conversion_of({first, second}, folder / "a.h5");
+  }
+
+  std::string refusal_of_change(const std::string& stage, const std::function<void()>& change) {
+    At progress(stage, change);
+    try {
+      convert_scans(options, progress);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return {};
+  }
+
+  ScratchFolder folder;
+  fs::path first = folder / "a.las", second = folder / "b.las", other = folder / "other.las";
+  std::vector<Quantum> points = cube_cloud(1000, -50, 50, 1);
+  ConversionOptions options;
+};
+
+}  // namespace
+
+TEST_CASE("an input that changes before its last pass is refused by name") {
+  Scans scans;
+  const std::string stage = GENERATE("count", "distribute");
+  std::function<void()> change;
+  SECTION("another file has its name") {
+    change = [&scans] { fs::rename(scans.other, scans.second); };
+  }
+  SECTION("other points are written to it") {
+    change = [&scans] { put_bytes(scans.second, bytes_of(scans.other)); };
+  }
+  SECTION("all but its points changes") {
+    change = [&scans] {
+      std::string bytes = bytes_of(scans.second);
+      bytes[58] ^= 1;  // a byte of the generating software's name
+      put_bytes(scans.second, bytes);
+    };
+  }
+  SECTION("its points are the same, their scale is not") {
+    change = [&scans] {
+      write_las(scans.second, scans.points, {{0.01, 0.01, 0.01}, {100, -200, 0}});
+    };
+  }
+  CHECK_THAT(scans.refusal_of_change(stage, change), Contains("b.las: changed"));
+  CHECK_FALSE(fs::exists(scans.options.output));
+  CHECK_FALSE(fs::exists(scans.folder / "a.h5.partial"));
+}
+
+TEST_CASE("points are distributed only where they are those that were counted") {
+  Scans scans;
+  NoProgress progress;
+  EnvironmentSource environment({scans.first, scans.second}, {}, progress);
+  const Lattice lattice;
+  InputSurvey survey;
+  PlaceCounter places({});
+  StageClocks clocks;
+  FileHashes hashes(environment.files(), {false, false});
+  CountedEnvironment counted =
+      count_environment(environment, lattice, survey, hashes, 1, clocks, progress);
+  const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
+  const auto distribute_again = [&] {
+    Distribution distribution(tree, scans.folder / "", 2);
+    distribute(environment, counted.hashes(), lattice, tree, places, distribution, 2, clocks,
+               progress);
+    return distribution.take(0).count;
+  };
+  CHECK(distribute_again() == 2000);
+  std::string classed = bytes_of(scans.second);
+  std::uint32_t points_offset = 0;
+  std::memcpy(&points_offset, classed.data() + 96, sizeof points_offset);
+  classed[points_offset + 15] = 2;
+  const std::string before = bytes_of(scans.second);
+  put_bytes(scans.second, classed);
+  CHECK_THROWS_AS(distribute_again(), InputError);
+  put_bytes(scans.second, before);
+  put_bytes(scans.second, bytes_of(scans.other));
+  CHECK_THROWS_AS(distribute_again(), InputError);
+}
+
+TEST_CASE("an input may change once its points are distributed") {
+  Scans scans;
+  const std::string before = bytes_of(scans.second);
+  CHECK(scans.refusal_of_change("partition", [&] { fs::rename(scans.other, scans.second); }) == "");
+  const StoreReader store(scans.options.output);
+  CHECK(points_by_source(store).back() == scans.points.back());
+  CHECK(store.metadata().sources[1].xxh64 == xxh64(std::as_bytes(std::span(before))));
+}

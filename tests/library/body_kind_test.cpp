@@ -1,0 +1,123 @@
+// Bodies searched by the kernels' bodies on the host, as two GPUs would, against the CPU's sweep.
+#include "search/kinds/body_kind.hpp"
+
+#include <catch2/catch.hpp>
+#include <optional>
+
+#include "library/vehicle_scene.hpp"
+#include "search/body_queries.hpp"
+#include "search/kinds/sweep_kind.hpp"
+#include "search/page_search.hpp"
+#include "support/engines/host_sweep.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+
+namespace {
+
+constexpr std::uint32_t kDevices = 2;
+
+PageEngineNeeds needs_of_devices() {
+  return {.most_slots = 3,
+          .page_cells = 4,
+          .page_bytes = std::uint64_t{1} << 16,
+          .threads = 4,
+          .waiting_threads = kDevices,
+          .devices = kDevices,
+          .on_gpu = true};
+}
+
+/// A kind of search like the one for CUDA, with engines that run the kernels' bodies on the host.
+template <typename Element>
+class HostKindOf final : public SweepKindOf<Element> {
+ public:
+  HostKindOf(const StoreReader& store, const Query& query, const SearchOptions& options)
+      : SweepKindOf<Element>(needs_of_devices(), store, query, options, 3) {
+    this->needs_.most_device_bytes = std::uint64_t{1} << 40;
+  }
+  std::uint64_t host_bytes(const SlotLayout&, std::uint64_t) const override { return 0; }
+  PageEngines make(const SlotLayout& layout) override {
+    PageEngines engines;
+    for (std::uint32_t device = 0; device < kDevices; ++device) {
+      engines.push_back(
+          std::make_unique<HostSweepOf<Element>>(this->store_, this->filter_->ref(), layout, 2000));
+    }
+    return engines;
+  }
+  void report_search(EngineList, SearchReport&, const MessageLog&) const override {}
+};
+
+std::unique_ptr<PageEngineKind> host_kind(const StoreReader& store, const Query& query,
+                                          const SearchOptions& options) {
+  std::vector<Query> queries = body_queries(query);
+  BodyKind::Kinds kinds;
+  for (const Query& body : queries) {
+    if (body.model.is_surface()) {
+      kinds.push_back(std::make_unique<HostKindOf<Triangle>>(store, body, options));
+    } else {
+      kinds.push_back(std::make_unique<HostKindOf<Vec3>>(store, body, options));
+    }
+  }
+  return std::make_unique<BodyKind>(store, query, std::move(queries), std::move(kinds));
+}
+
+SearchResult answer_of(const Vehicle& vehicle, const StoreReader& store, PageEngineKind& kind,
+                       const std::string& journal) {
+  std::optional<SearchJournal> opened;
+  NoProgress progress;
+  SearchReport report;
+  const MessageCallback silent;
+  const MessageLog log(silent, report.warnings);
+  return search_pages(
+             store, vehicle.query, std::uint64_t{1} << 30, kind, nullptr,
+             [&]() -> SearchJournal* {
+               return &opened.emplace(vehicle.folder / journal, JournalIdentity{}, nullptr, store,
+                                      vehicle.query, 1e9);
+             },
+             progress, report, log)
+      .result;
+}
+
+/// Checks that both searches give the same result. Returns how many points collide.
+std::uint64_t check_same(const Vehicle& vehicle) {
+  const StoreReader store(vehicle.folder / "scan.h5");
+  const SearchOptions options{.threads = 2};
+  const auto on_cpu = cpu_body_kind(store, vehicle.query, options);
+  const auto on_host = host_kind(store, vehicle.query, options);
+  const SearchResult expected = answer_of(vehicle, store, *on_cpu, "cpu");
+  const SearchResult found = answer_of(vehicle, store, *on_host, "host");
+  const bool first_pose = vehicle.query.first_pose, clearance = vehicle.query.clearance > 0;
+  for (std::uint64_t entry = 0; entry < store.entry_count(); ++entry) {
+    REQUIRE(found.hits.contains(entry) == expected.hits.contains(entry));
+    if (first_pose) REQUIRE(found.hits.first_pose(entry) == expected.hits.first_pose(entry));
+    if (clearance) REQUIRE(found.clearances.at(entry) == expected.clearances.at(entry));
+  }
+  for (std::uint64_t pose = 0; pose < expected.profile.poses(); ++pose) {
+    REQUIRE(found.profile.at(pose) == expected.profile.at(pose));
+  }
+  return found.hits.count();
+}
+
+}  // namespace
+
+TEST_CASE("bodies on devices find what they find on the CPU") {
+  Vehicle vehicle(91);
+  SECTION("sets") {}
+  SECTION("first poses") { vehicle.query.first_pose = true; }
+  SECTION("clearances and a profile") {
+    vehicle.query.first_pose = true;
+    vehicle.query.clearance = 0.1;
+    vehicle.query.profile = 0.2;
+  }
+  SECTION("a body that is a surface") {
+    vehicle.make_surface(1);
+    vehicle.query.clearance = 0.1;
+    vehicle.query.profile = 0.2;
+  }
+  SECTION("a body that is nowhere") {
+    vehicle.query.bodies[1].poses.clear();
+    vehicle.query.bodies[1].path_pose.clear();
+    vehicle.query.profile = 0.2;
+  }
+  CHECK(check_same(vehicle) > 20);
+}

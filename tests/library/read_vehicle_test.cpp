@@ -1,0 +1,139 @@
+// read_vehicle: a vehicle's file and those that it names.
+#include <catch2/catch.hpp>
+#include <numbers>
+
+#include "clearway/clearway.hpp"
+#include "io/paths/content_hash.hpp"
+#include "support/result_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+/// A folder with a path, a quarter of a circle of 20 m, and models of points, of a triangle and of
+/// a solid.
+struct Files {
+  Files() {
+    std::string own;
+    for (int i = 0; i <= 150; ++i) {
+      const double angle = std::numbers::pi / 300 * i, c = std::cos(angle), s = std::sin(angle);
+      path.push_back({{c, -s, 0, s, c, 0, 0, 0, 1}, {20 * s, 20 - 20 * c, 0}});
+      own += "1 0 0 " + std::to_string(i) + " 0 1 0 5 0 0 1 0\n";
+    }
+    put_bytes(folder / "own.txt", own);
+    put_bytes(folder / "line.xyz", "0 -100 100\n0 0 100\n0 100 100\n");
+    put_bytes(folder / "fin.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  }
+
+  std::vector<Body> read(const std::string& bodies, const VehicleOptions& options = {},
+                         std::vector<Message>* warnings = nullptr) const {
+    put_bytes(folder / "v.json", "{\"bodies\": [" + bodies + "]}");
+    return read_vehicle(folder / "v.json", path, options, warnings);
+  }
+
+  ScratchFolder folder;
+  std::vector<Pose> path;
+};
+
+}  // namespace
+
+TEST_CASE("a vehicle's file gives the bodies that follow gives") {
+  const Files files;
+  std::vector<Message> told, expected_told;
+  const auto bodies = files.read(
+      R"({"name": "body", "model": "line.xyz", "model_unit": "cm", "pivots": [5, "-500cm"]},
+         {"name": "bogie", "model": "fin.off", "at": 5},
+         {"name": "path", "model": "fin.off"},
+         {"name": "crane", "model": "fin.off", "trajectory": "own.txt"})",
+      {}, &told);
+  const std::vector<Vec3> line{{0, -1, 1}, {0, 0, 1}, {0, 1, 1}};
+  const Model fin = read_model(files.folder / "fin.off", {.as = ModelAs::kSurface});
+  std::vector<Body> expected{{.name = "body", .model = line, .poses = {}, .path_pose = {}},
+                             {.name = "bogie", .model = fin, .poses = {}, .path_pose = {}}};
+  expected[0] = follow(expected[0], files.path, BodyPivots{5, -5}, &expected_told);
+  expected[1] = follow(expected[1], files.path, BodyStation{5}, &expected_told);
+  REQUIRE(bodies.size() == 4);
+  for (std::size_t i = 0; i < 2; ++i) {
+    INFO(bodies[i].name);
+    CHECK(bodies[i].path_pose.size() < files.path.size());
+    CHECK(hash_of_bodies({{bodies[i]}}) == hash_of_bodies({{expected[i]}}));
+  }
+  CHECK(bodies[2].poses.size() == files.path.size());
+  CHECK(hash_of_trajectory(bodies[2].poses) == hash_of_trajectory(files.path));
+  CHECK(bodies[3].poses[7].translation[0] == 7);
+  CHECK(bodies[3].path_pose.back() == 150);
+  REQUIRE(told.size() >= expected_told.size());
+  CHECK_THAT(told.front().text, Contains("v.json") && Contains("body"));
+}
+
+TEST_CASE("options hold for all bodies, and threads change none") {
+  const Files files;
+  const std::string bodies = R"({"name": "a", "model": "line.xyz", "pivots": ["1m", -1]},
+                                {"name": "b", "model": "fin.off", "at": "-2m"})";
+  VehicleOptions options;
+  options.threads = 1;
+  const std::uint64_t hash = hash_of_bodies(files.read(bodies, options));
+  options.threads = 3;
+  CHECK(hash_of_bodies(files.read(bodies, options)) == hash);
+  options.model.environment_unit = 0.5;  // "1m" is two of these, -1 is one
+  CHECK(files.read(bodies, options)[1].path_pose.front() > files.read(bodies)[1].path_pose.front());
+  options.model = {.as = ModelAs::kPoints, .spacing = 0.1};
+  CHECK(files.read(bodies, options)[1].model.triangles.empty());
+  CHECK(files.read(bodies, options)[1].model.vertices.size() > 20);
+}
+
+TEST_CASE("errors name the file and the key") {
+  const Files files;
+  CHECK_THROWS_WITH(files.read(R"({"name": "a", "model": "line.xyz", "pivots": [1, "x"]})"),
+                    Contains("v.json: bodies[0].pivots[1]: is \"x\", expected a length"));
+  CHECK_THROWS_AS(files.read(R"({"name": "a", "model": "none.xyz"})"), ResourceError);
+  CHECK_THROWS_WITH(files.read(R"({"name": "a", "model": "none.xyz"})"),
+                    Contains("v.json: bodies[0].model: "));
+  put_bytes(files.folder / "own.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+  CHECK_THROWS_WITH(
+      files.read(R"({"name": "a", "model": "line.xyz", "trajectory": "own.txt"})"),
+      Contains("bodies[0].trajectory: ") && Contains("expected as many as the path: 151"));
+  VehicleOptions solid;
+  solid.model.as = ModelAs::kSolid;
+  CHECK_THROWS_WITH(files.read(R"({"name": "a", "model": "line.xyz"})", solid),
+                    Contains("bodies[0].model: "));
+  CHECK_THROWS_AS(read_vehicle(files.folder / "no.json", files.path), ResourceError);
+  CHECK_THROWS_AS(files.read(""), InputError);
+}
+
+TEST_CASE("a body whose station or pivots are far from the vehicle is warned of") {
+  ScratchFolder folder;
+  std::vector<Pose> path;
+  for (int i = 0; i <= 400; ++i) path.push_back({{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.5 * i, 0, 0}});
+  put_bytes(folder / "wagon.xyz", "-5 -1 0\n5 1 3\n");
+  put_bytes(folder / "bogie.xyz", "-1.5 -1 0\n1.5 1 1\n");
+  const auto codes = [&](const std::string& bodies) {
+    put_bytes(folder / "v.json", "{\"bodies\": [" + bodies + "]}");
+    std::vector<Message> told;
+    read_vehicle(folder / "v.json", path, {}, &told);
+    std::string text;
+    for (const Message& message : told) {
+      if (message.severity == Message::Severity::kWarning) text += message.code + " ";
+    }
+    return text;
+  };
+  const std::string wagon = R"({"name": "wagon", "model": "wagon.xyz", "pivots": [4, -4]})";
+  CHECK(codes(wagon).empty());
+  CHECK(codes(wagon + R"(, {"name": "front", "model": "bogie.xyz", "at": 4})").empty());
+  CHECK(codes(R"({"name": "front", "model": "bogie.xyz", "at": 10},
+                 {"name": "rear", "model": "bogie.xyz", "at": -10})")
+            .empty());
+  CHECK(codes(R"({"name": "wagon", "model": "wagon.xyz", "at": -50})") == "body-far ");
+  CHECK(codes(R"({"name": "wagon", "model": "wagon.xyz", "pivots": [-46, -54]})") == "body-far ");
+  CHECK(codes(wagon + R"(, {"name": "rear", "model": "bogie.xyz", "at": -48})") == "body-far ");
+  // Wagons in a row are one vehicle: none counts as far from the path.
+  CHECK(codes(wagon + R"(, {"name": "b", "model": "wagon.xyz", "at": -20},
+                           {"name": "c", "model": "wagon.xyz", "at": -40},
+                           {"name": "d", "model": "wagon.xyz", "at": -60})")
+            .empty());
+  // 150 of 200 m: most of the path is not searched, though it is only its end.
+  CHECK(codes(R"({"name": "wagon", "model": "wagon.xyz", "at": -150})") ==
+        "body-off-path body-far ");
+}
