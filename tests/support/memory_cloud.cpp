@@ -31,7 +31,7 @@ int longest_axis(const QuantumBox& box) {
   return longest;
 }
 
-/// Orders `points`, more than `unit` of them, so that each split of kd_order.hpp divides them.
+/// Orders `points`, more than `unit` of them, so that each split of the store divides them.
 template <typename Points>
 void sort_by_splits(Points points, std::uint64_t unit) {
   if (points.size() <= unit) return;

@@ -34,7 +34,7 @@ struct Cell {
 };
 
 /// A node of the explicit top of the store's k-d tree, in preorder: its left child follows it.
-/// A leaf (right == 0) is a bucket, whose cells follow the split rule of kd_order.hpp.
+/// A leaf (right == 0) is a bucket, whose cells follow the split rule above.
 struct TopNode {
   std::uint32_t first_cell;
   std::uint32_t cell_count;
@@ -205,7 +205,7 @@ class PackedCloud {
   virtual std::uint32_t cell_points() const = 0;
   virtual const Quantisation& quantisation() const = 0;
   virtual std::span<const Cell> cells() const = 0;
-  /// The tree over cells, in preorder, see cell_tree.hpp. Empty for an empty cloud.
+  /// The tree over cells, in preorder. Empty for an empty cloud.
   virtual std::span<const TreeNode> tree() const = 0;
   /// Block boxes of all cells, divide_up(cell_points, kBlockPoints) entries for each cell; entries
   /// of blocks past a cell's count are unused.

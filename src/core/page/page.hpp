@@ -17,7 +17,7 @@ namespace clearway {
 inline constexpr std::size_t kPageAlignment = 16;
 inline constexpr std::size_t kPagePadding = 16;
 
-/// The payload of one packed chunk (core/cloud/packed_chunk.hpp): value i is `minimum` plus the
+/// The payload of one packed chunk (core/cloud/packed_cloud.hpp): value i is `minimum` plus the
 /// `minbits` bits from bit i * minbits on, most significant first. With minbits 32 the payload is
 /// the little-endian values themselves.
 struct PageChunk {

@@ -53,7 +53,7 @@ void write_thinned_model(const std::filesystem::path& in, const std::filesystem:
 void write_body(const std::filesystem::path& in, const std::filesystem::path& out,
                 std::uint64_t triangles);
 
-/// Trajectories are written as io/trajectory/trajectory_writer.hpp does, which gives back every
+/// Trajectories are written as io/paths/trajectory_file.hpp does, which gives back every
 /// double. The variants accept poses that are not rigid.
 
 /// Writes poses 0, n, 2 n, ... and the last one. n > 0.

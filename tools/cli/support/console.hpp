@@ -49,7 +49,7 @@ namespace clearway::tool {
 void start_log();
 
 /// Shows progress with rate and time left on standard error where that is a terminal, and nothing
-/// elsewhere. Asks to stop when a signal did (cli/support/signals.hpp).
+/// elsewhere. Asks to stop when a signal did.
 class ConsoleProgress final : public Progress {
  public:
   ConsoleProgress();

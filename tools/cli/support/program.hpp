@@ -70,8 +70,8 @@ struct ProgramText {
 /// A function that adds the subcommands, whose callbacks set `exit_code` where success is not 0.
 using AddCommands = void (*)(CLI::App& program, int& exit_code);
 
-/// Parses the command line and runs the subcommand. Errors go to standard error. Returns an exit
-/// code of cli/support/exit_code.hpp.
+/// Parses the command line and runs the subcommand. Errors go to standard error. Returns an
+/// ExitCode.
 int run_program(const ProgramText& text, int argc, char** argv, AddCommands add_commands);
 
 }  // namespace clearway::tool
