@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -53,24 +55,59 @@ struct Query : QueryParameters {
   std::vector<Body> bodies = {};
 };
 
-/// Whether the query's model, or that of any body, has closed parts.
-inline bool has_solids(const Query& query) {
-  return query.model.is_solid() ||
-         std::ranges::any_of(query.bodies, [](const Body& body) { return body.model.is_solid(); });
+/// A rigid part of what a query moves: its model, or one of its bodies. What it refers to must
+/// outlive it.
+struct MovingBody {
+  std::string_view name;  ///< empty for the model of a query without bodies
+  const Model& model;
+  std::span<const Pose> poses;
+  /// For each of `poses` the index of the path's pose, ascending; empty if the poses are those of
+  /// the path.
+  std::span<const std::uint32_t> path_pose = {};
+
+  /// Its pose at a pose of the path; nullptr if it has none there.
+  const Pose* pose_at(std::uint32_t pose) const {
+    if (path_pose.empty()) return pose < poses.size() ? &poses[pose] : nullptr;
+    const auto at = std::ranges::lower_bound(path_pose, pose);
+    if (at == path_pose.end() || *at != pose) return nullptr;
+    return &poses[static_cast<std::size_t>(at - path_pose.begin())];
+  }
+};
+
+/// What moves along a path: the bodies, or the model as the only one if there are none.
+inline std::vector<MovingBody> moving_bodies(const Model& model, std::span<const Pose> path,
+                                             std::span<const Body> bodies) {
+  std::vector<MovingBody> out;
+  for (const Body& body : bodies) {
+    out.push_back({body.name, body.model, body.poses, body.path_pose});
+  }
+  if (out.empty()) out.push_back({{}, model, path});
+  return out;
 }
 
-/// How many solids the model, or all bodies together, have.
+inline std::vector<MovingBody> moving_bodies(const Query& query) {
+  return moving_bodies(query.model, query.poses, query.bodies);
+}
+
+/// Whether any body of the query has closed parts.
+inline bool has_solids(const Query& query) {
+  return std::ranges::any_of(moving_bodies(query),
+                             [](const MovingBody& body) { return body.model.is_solid(); });
+}
+
+/// How many solids all bodies of the query have together.
 inline std::uint64_t solid_count(const Query& query) {
-  std::uint64_t count = query.model.solid_count();
-  for (const Body& body : query.bodies) count += body.model.solid_count();
+  std::uint64_t count = 0;
+  for (const MovingBody& body : moving_bodies(query)) count += body.model.solid_count();
   return count;
 }
 
-/// Largest gap between the samples of a mesh, metres: Model::spacing, or the greatest of all
-/// bodies.
+/// Largest gap between the samples of a mesh, metres: the greatest Model::spacing of all bodies.
 inline double model_spacing(const Query& query) {
-  double spacing = query.model.spacing;
-  for (const Body& body : query.bodies) spacing = std::max(spacing, body.model.spacing);
+  double spacing = 0;
+  for (const MovingBody& body : moving_bodies(query)) {
+    spacing = std::max(spacing, body.model.spacing);
+  }
   return spacing;
 }
 

@@ -64,10 +64,6 @@ double squared_depth(const DrawnBody& body, const Vec3& place, const Pose& pose)
 
 }  // namespace
 
-const Pose* DrawnBody::pose_at(std::uint32_t pose) const {
-  return clearway::pose_at(poses, path_pose, pose);
-}
-
 double DrawnBody::distance_to(const Vec3& place, std::uint32_t pose) const {
   double least = std::numeric_limits<double>::infinity();
   const Pose* there = pose_at(pose);
@@ -89,12 +85,8 @@ double DrawnBody::distance_to(const Vec3& place, std::uint32_t pose) const {
 std::vector<DrawnBody> drawn_bodies(const Model& model, const std::vector<Pose>& poses,
                                     const ReportOptions& options) {
   std::vector<DrawnBody> bodies;
-  for (const Body& body : options.bodies) {
-    bodies.push_back(
-        {body.name, body.model, body.poses, body.path_pose, box_of(body.model.vertices)});
-  }
-  if (bodies.empty()) {
-    bodies.push_back({{}, model, poses, {}, box_of(model.vertices)});
+  for (const MovingBody& body : moving_bodies(model, poses, options.bodies)) {
+    bodies.push_back({body, box_of(body.model.vertices)});
   }
   return bodies;
 }

@@ -6,25 +6,18 @@
 #include <string>
 #include <vector>
 
-#include "clearway/body.hpp"
 #include "clearway/box.hpp"
+#include "clearway/query.hpp"
 #include "clearway/report.hpp"
 #include "report/page.hpp"
 
 namespace clearway {
 
-/// A rigid thing that the page draws: the model, or one body of a vehicle.
-struct DrawnBody {
-  std::string name;  ///< empty for the model
-  const Model& model;
-  std::span<const Pose> poses;
-  /// Indices of the path's poses as in Body; empty where the poses are those of the path.
-  std::span<const std::uint32_t> path_pose;
+/// A body that the page draws.
+struct DrawnBody : MovingBody {
   Box box{};  ///< box of the model's points
   std::size_t shown_points = 0;
 
-  /// The body's pose at a pose of the path; null where it has none there.
-  const Pose* pose_at(std::uint32_t pose) const;
   /// The least distance of the body's points or triangles to a place, at a pose of the path: below
   /// 0 inside its solids, where it is minus the depth, as in a search. Infinity where the body has
   /// no pose there.

@@ -269,8 +269,10 @@ void check_sizes(const Query& query) {
     throw InputError("the trajectory has " + std::to_string(query.poses.size()) +
                      " poses, expected fewer than " + std::to_string(kEnd));
   }
-  if (query.bodies.empty()) check_model_size("the model", query.model);
-  for (const Body& body : query.bodies) check_model_size("body " + body.name, body.model);
+  for (const MovingBody& body : moving_bodies(query)) {
+    const bool is_alone = query.bodies.empty();
+    check_model_size(is_alone ? "the model" : "body " + std::string(body.name), body.model);
+  }
 }
 
 }  // namespace clearway

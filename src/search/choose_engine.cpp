@@ -70,9 +70,8 @@ Workload workload_of(const PackedCloud& cloud, const Query& query) {
 }
 
 std::vector<Workload> workloads_of(const PackedCloud& cloud, const Query& query) {
-  if (query.bodies.empty()) return {workload_of(cloud, query)};
   std::vector<Workload> out;
-  for (const Body& body : query.bodies) {
+  for (const MovingBody& body : moving_bodies(query)) {
     out.push_back(workload_of_model(cloud, query, body.model, body.poses));
   }
   return out;

@@ -177,7 +177,7 @@ double high_in(LengthUnit unit) {
 class Heights {
  public:
   Heights(const StoreReader& store, const Query& query)
-      : store_(store), query_(query), numbers_(query) {
+      : store_(store), bodies_(moving_bodies(query)), numbers_(query) {
     bool any = false;
     const auto lower_to = [&](const std::vector<Vec3>& model) {
       for (const Vec3& p : model) {
@@ -185,8 +185,7 @@ class Heights {
         any = true;
       }
     };
-    lower_to(query.model.vertices);
-    for (const Body& body : query.bodies) lower_to(body.model.vertices);
+    for (const MovingBody& body : bodies_) lower_to(body.model.vertices);
     limit_ = high_in(store.metadata().unit);
   }
 
@@ -194,8 +193,7 @@ class Heights {
   /// touched. number: the number that BodyNumbers gives that pose and body.
   bool is_high(const Vec3& e, std::uint32_t number) const {
     const std::uint32_t pose = numbers_.pose_of(number);
-    const Pose* of = query_.bodies.empty() ? &query_.poses[pose]
-                                           : pose_at(query_.bodies[numbers_.body_of(number)], pose);
+    const Pose* of = bodies_[numbers_.body_of(number)].pose_at(pose);
     return of != nullptr && pulled_back(*of, e).z - lowest_ > limit_;
   }
 
@@ -217,7 +215,7 @@ class Heights {
 
  private:
   const StoreReader& store_;
-  const Query& query_;
+  std::vector<MovingBody> bodies_;
   const BodyNumbers numbers_;
   double lowest_ = 0, limit_ = 0;
 };

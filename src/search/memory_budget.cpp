@@ -195,9 +195,10 @@ std::uint64_t tree_building_bytes(const Query& query) {
     return of_solids +
            (model.is_surface() ? 240 * model.triangles.size() : 52 * model.vertices.size());
   };
-  if (query.bodies.empty()) return of_model(query.model) + 168 * query.poses.size();
   std::uint64_t bytes = 0;
-  for (const Body& body : query.bodies) bytes += of_model(body.model) + 168 * body.poses.size();
+  for (const MovingBody& body : moving_bodies(query)) {
+    bytes += of_model(body.model) + 168 * body.poses.size();
+  }
   return bytes;
 }
 

@@ -16,22 +16,21 @@ namespace clearway {
 namespace {
 
 std::uint64_t points_of(const Query& query) {
-  std::uint64_t points = query.model.vertices.size();
-  for (const Body& body : query.bodies) points += body.model.vertices.size();
+  std::uint64_t points = 0;
+  for (const MovingBody& body : moving_bodies(query)) points += body.model.vertices.size();
   return points;
 }
 
 std::uint64_t triangles_of(const Query& query) {
-  std::uint64_t triangles = query.model.triangles.size();
-  for (const Body& body : query.bodies) triangles += body.model.triangles.size();
+  std::uint64_t triangles = 0;
+  for (const MovingBody& body : moving_bodies(query)) triangles += body.model.triangles.size();
   return triangles;
 }
 
-/// The box around the model, or around the models of all bodies, each in its own frame.
+/// The box around the models of all bodies, each in its own frame.
 Box model_box(const Query& query) {
-  if (query.bodies.empty()) return query.model.empty() ? Box{} : box_of(query.model.vertices);
   std::optional<Box> all;
-  for (const Body& body : query.bodies) {
+  for (const MovingBody& body : moving_bodies(query)) {
     if (body.model.empty()) continue;
     const Box box = box_of(body.model.vertices);
     all = all ? all->united(box) : box;
@@ -82,15 +81,12 @@ ResultHeader result_header(const StoreReader& store, const Query& query,
 
 void report_sizes(const StoreReader& store, const Query& query, SearchReport& report) {
   report.environment_points = store.point_count();
-  report.model_points = query.model.vertices.size();
-  report.model_triangles = query.model.triangles.size();
+  report.model_points = points_of(query);
+  report.model_triangles = triangles_of(query);
   report.model_solids = solid_count(query);
   report.model_spacing = model_spacing(query);
   report.poses = query.poses.size();
-  report.searches = report.poses * query.model.element_count();
-  for (const Body& body : query.bodies) {
-    report.model_points += body.model.vertices.size();
-    report.model_triangles += body.model.triangles.size();
+  for (const MovingBody& body : moving_bodies(query)) {
     report.searches += body.poses.size() * body.model.element_count();
   }
   report.searched = searched_length(query.poses, query.bodies);
