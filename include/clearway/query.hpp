@@ -91,8 +91,8 @@ inline std::vector<MovingBody> moving_bodies(const Query& query) {
 
 /// Whether any body of the query has closed parts.
 inline bool has_solids(const Query& query) {
-  return std::ranges::any_of(moving_bodies(query),
-                             [](const MovingBody& body) { return body.model.is_solid(); });
+  return query.model.is_solid() ||
+         std::ranges::any_of(query.bodies, [](const Body& body) { return body.model.is_solid(); });
 }
 
 /// How many solids all bodies of the query have together.
