@@ -243,9 +243,6 @@ Id create_group(const Id& parent, const std::string& name) {
           H5Gclose, "create group " + name};
 }
 
-}  // namespace clearway::hdf5
-
-namespace clearway::hdf5 {
 namespace {
 
 constexpr std::size_t kLongestText = 1 << 20;  // longer than any CRS

@@ -43,9 +43,6 @@ std::uint32_t RunEstimate::shards(const RunOptions& run,
       std::clamp(std::ceil(needed / shard_seconds_), 1.0, double{Shard::kMost}));
 }
 
-}  // namespace clearway::tool
-
-namespace clearway::tool {
 namespace {
 
 /// A command of this program that is to run in a process of its own.

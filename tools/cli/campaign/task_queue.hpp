@@ -47,10 +47,6 @@ class RunEstimate {
   std::optional<Store> store_;  ///< the store of the last run that was estimated
 };
 
-}  // namespace clearway::tool
-
-namespace clearway::tool {
-
 /// Works through tasks, `jobs` at a time, each command in a process of its own. To be constructed
 /// once, while this process has one thread.
 class TaskQueue {

@@ -231,9 +231,6 @@ bool compare_conflicts(ConflictComparison& options, const std::filesystem::path&
   return found.holds();
 }
 
-}  // namespace clearway::tool
-
-namespace clearway::tool {
 namespace {
 
 using nlohmann::ordered_json;

@@ -32,10 +32,6 @@ void add_conflict_comparison(CLI::App& command, ConflictComparison& options,
 bool compare_conflicts(ConflictComparison& options, const std::filesystem::path& a,
                        const std::filesystem::path& b, std::uint64_t show, bool json);
 
-}  // namespace clearway::tool
-
-namespace clearway::tool {
-
 /// The listed conflict with this id; ids count from 1.
 inline const Conflict& conflict_at(const Conflicts& conflicts, std::uint32_t id) {
   return conflicts.listed[id - 1];

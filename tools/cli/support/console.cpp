@@ -39,9 +39,6 @@ void occupy_standard_descriptors() {
   }
 }
 
-}  // namespace clearway::tool
-
-namespace clearway::tool {
 namespace {
 
 std::atomic<bool> stop{false};
@@ -101,9 +98,6 @@ void run_stoppable(const std::filesystem::path& output, const std::string& advic
   }
 }
 
-}  // namespace clearway::tool
-
-namespace clearway::tool {
 namespace {
 
 constexpr auto kRedraw = std::chrono::milliseconds(100);

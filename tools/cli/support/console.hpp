@@ -21,10 +21,6 @@ void print(std::string_view text);
 /// fail, but messages are lost silently.
 void occupy_standard_descriptors();
 
-}  // namespace clearway::tool
-
-namespace clearway::tool {
-
 bool stop_requested();
 /// The flag that stop_requested() reads.
 const std::atomic<bool>& stop_flag();
@@ -40,10 +36,6 @@ inline constexpr unsigned kGraceSeconds = 4;
 
 /// The advice of commands that keep nothing of what they began.
 inline constexpr const char* kStartsAgain = "the same command starts it again";
-
-}  // namespace clearway::tool
-
-namespace clearway::tool {
 
 /// Sends the log to standard error: plain lines with a level.
 void start_log();

@@ -99,10 +99,6 @@ void group_common_options(CLI::App& program) {
   }
 }
 
-}  // namespace clearway::tool
-
-namespace clearway::tool {
-
 CLI::Validator positive_length() {
   const auto read = [](std::string& text) -> std::string {
     try {

@@ -151,9 +151,6 @@ std::string advice_on(const Message& message) {
   return "";
 }
 
-}  // namespace clearway::tool
-
-namespace clearway::tool {
 namespace {
 
 /// CLI11's message on an error; the one on a repeated option is reworded, because it says too

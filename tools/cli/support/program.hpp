@@ -42,10 +42,6 @@ inline int more_urgent(int a, int b) {
   return rank(a) < rank(b) ? b : a;
 }
 
-}  // namespace clearway::tool
-
-namespace clearway::tool {
-
 /// Advice on an error in terms of the command line, such as "; --force overwrites it". Empty where
 /// the error says all.
 std::string advice_on(const Error& error);

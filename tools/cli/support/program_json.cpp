@@ -16,10 +16,6 @@ std::string text_of_json(const nlohmann::ordered_json& object) {
   return object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace clearway::tool
-
-namespace clearway::tool {
-
 nlohmann::ordered_json sources_json(const StoreMetadata& store) {
   auto out = nlohmann::ordered_json::array();
   std::uint64_t first = 0;
@@ -40,10 +36,6 @@ nlohmann::ordered_json sources_json(const StoreMetadata& store) {
   }
   return out;
 }
-
-}  // namespace clearway::tool
-
-namespace clearway::tool {
 
 nlohmann::ordered_json warnings_json(const std::vector<Message>& warnings) {
   auto out = nlohmann::ordered_json::array();

@@ -19,17 +19,9 @@ nlohmann::ordered_json program_json(
 /// The text of one JSON object, in which bytes of names that are no UTF-8 are replaced.
 std::string text_of_json(const nlohmann::ordered_json& object);
 
-}  // namespace clearway::tool
-
-namespace clearway::tool {
-
 /// The files that a store was made of: "name", "bytes", "xxh64", and "first_source" and "points",
 /// which say which source indices are theirs and are null where the store does not tell.
 nlohmann::ordered_json sources_json(const StoreMetadata& store);
-
-}  // namespace clearway::tool
-
-namespace clearway::tool {
 
 /// The `warnings` of a command's JSON: an array of {"code", "message", "numbers": {name: value}}.
 /// A number that is not finite becomes null.

@@ -38,9 +38,6 @@ std::string attitude_text(const Pose& pose) {
                      tilt_text("nose", angles.pitch), tilt_text("right side", -angles.roll));
 }
 
-}  // namespace clearway::tool
-
-namespace clearway::tool {
 namespace {
 
 using nlohmann::ordered_json;
@@ -119,9 +116,6 @@ ordered_json json_of(const Description& what) {
   return out;
 }
 
-}  // namespace clearway::tool
-
-namespace clearway::tool {
 namespace {
 
 using Lines = std::vector<std::pair<const char*, std::string>>;

@@ -27,10 +27,6 @@ PoseAngles angles_of(const Pose& pose);
 /// degrees up".
 std::string attitude_text(const Pose& pose);
 
-}  // namespace clearway::tool
-
-namespace clearway::tool {
-
 /// The least cosine between an axis and a direction at which the axis is said to point there.
 inline constexpr double kClearAxis = 0.9;
 
