@@ -185,7 +185,8 @@ class PointClearance {
             return false;
           };
           if (one_place) return try_pose(0);
-          return curve.any_place(packet, i, node.count, [&] { return squared; }, try_pose);
+          return curve.any_place(
+              packet, i, node.count, [&] { return squared; }, try_pose);
         });
   }
 

@@ -25,8 +25,8 @@ class SweepBlock {
 
   /// The memory that the lanes share.
   struct Shared {
-    std::uint32_t open[kOpen];    ///< nodes to be looked at
-    std::uint32_t queue[kQueue];  ///< nodes at which points are to be searched
+    std::uint32_t open[kOpen];     ///< nodes to be looked at
+    std::uint32_t queue[kQueue];   ///< nodes at which points are to be searched
     std::uint32_t sorted[kQueue];  ///< the queue in the order of the poses, for clearances
     std::uint32_t joined;          ///< number of sorted nodes after joining them
   };

@@ -197,8 +197,7 @@ class TriangleCurve {
       // Vector from the triangle to the place of the chord that is nearest to where `from` starts.
       const float slope = FloatPacket::dot(from, curve.way) * curve.per_squared_way;
       const FloatVector across = beyond(from, FloatPacket::clamped(t - slope) - t, curve.way);
-      squared[i] = from_hull(packet, i, across, least_along(packet, i, curve, across),
-                             curve.slack);
+      squared[i] = from_hull(packet, i, across, least_along(packet, i, curve, across), curve.slack);
     }
   }
 

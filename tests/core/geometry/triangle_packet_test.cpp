@@ -77,8 +77,7 @@ TEST_CASE("floats are as far from a place as the predicate says, within their sl
                             static_cast<float>(seen.z)};
     const double size = std::abs(seen.x) + std::abs(seen.y) + std::abs(seen.z);
     const auto slack = static_cast<double>(packet.slack(static_cast<float>(size)));
-    const auto squared =
-        static_cast<double>(packet.nearest(FloatPacket::kMost - 1, place).squared);
+    const auto squared = static_cast<double>(packet.nearest(FloatPacket::kMost - 1, place).squared);
     const double distance = root_of(x, t);
     wrong += !(std::abs(std::sqrt(squared) - distance) <=
                slack + triangle_error(distance, longest_edge(t)) + rounding_of(x));

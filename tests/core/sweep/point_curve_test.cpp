@@ -236,8 +236,7 @@ TEST_CASE("a triangle's bound from a curve is below its distance from every plac
         }
         curve.from_places(packet, i, 85, 0.01F, from_place);
         for (int k = 0; k < 16; ++k) {
-          const double exact =
-              std::sqrt(squared_distance(place(0.85 + 0.01 * k), triangles[i]));
+          const double exact = std::sqrt(squared_distance(place(0.85 + 0.01 * k), triangles[i]));
           above += root(from_place[k]) > exact + 1e-9;
           off_pose += !(root(from_place[k]) > exact - 2e-3);
         }
@@ -278,8 +277,7 @@ TEST_CASE("bounds from curves hold for triangles and paths of every size") {
     curve.from_parts(packet, 0, 4, 1.0F / (kPoses - 1), of_parts);
     for (int k = 0; k < kPoses; ++k) {
       if (k % 16 == 0) {
-        curve.from_places(packet, 0, static_cast<std::uint32_t>(k), 1.0F / (kPoses - 1),
-                          of_places);
+        curve.from_places(packet, 0, static_cast<std::uint32_t>(k), 1.0F / (kPoses - 1), of_places);
       }
       const Vec3 x = ref.inverse_poses[k].apply(start);
       const double distance = std::sqrt(squared_distance(x, t));
