@@ -35,6 +35,9 @@ bool is_doubt(std::string_view code);
 /// The codes of the warnings that are doubts by is_doubt(), each once, in alphabetical order.
 std::vector<std::string> doubts_among(const std::vector<Message>& warnings);
 
+/// The codes of the warnings that are no doubts by is_doubt(), each once, in alphabetical order.
+std::vector<std::string> codes_beside_doubts(const std::vector<Message>& warnings);
+
 /// What the tables of a result say in short: their numbers of rows and the places that matter most.
 struct TableSummary {
   std::uint64_t colliding_points = 0;
@@ -74,6 +77,9 @@ struct Answer : TableSummary {
   bool float_precision = false;
   /// Codes of warnings that put the answer in doubt: see doubts_among()
   std::vector<std::string> doubts;
+  /// Codes of what else was warned of before the search: see codes_beside_doubts(). A file keeps
+  /// them only where nothing collides, so that no all-clear stands without them.
+  std::vector<std::string> warned_of;
   /// How much of the path the answer is about, because bodies on pivots have no pose at its ends.
   /// nullopt where it is not known: in files of one model, whose path was searched to its whole
   /// length, and in files of several bodies that an earlier release wrote.

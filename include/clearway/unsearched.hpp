@@ -15,10 +15,13 @@ namespace clearway {
 /// left the path. Nothing is known of these bodies there, so a result without collisions does not
 /// say that they are clear.
 struct UnsearchedStretch {
-  std::uint32_t first_pose = 0, last_pose = 0;  ///< poses of the path at its two ends
-  double chainage_from = 0, chainage_to = 0;    ///< metres along the positions of the path
-  std::vector<std::uint32_t> bodies;            ///< the bodies without a pose, ascending
-  bool has_answer = false;                      ///< whether other bodies were searched there
+  /// The first and the last pose of the path there at which one of `bodies` has none
+  std::uint32_t first_pose = 0, last_pose = 0;
+  /// Metres along the positions of the path. The stretch reaches to the poses that all of `bodies`
+  /// have again, because a body is searched only between two poses that it has.
+  double chainage_from = 0, chainage_to = 0;
+  std::vector<std::uint32_t> bodies;  ///< the bodies without a pose, ascending
+  bool has_answer = false;            ///< whether other bodies were searched there
 };
 
 /// The stretches on which not all of `bodies` are searched, in the order of the path. A body is

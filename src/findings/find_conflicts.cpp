@@ -161,6 +161,8 @@ class ConflictSearch {
   static constexpr std::uint64_t kMostPairs = 4'000'000, kMostPairsOfAll = 200'000'000;
   /// The most points of all conflicts from which shifts are found, of 24 bytes each.
   static constexpr std::uint64_t kMostPointsOfAll = 5'000'000;
+  /// The cosine of 45 degrees: the model moves along its forward axis up to this angle.
+  static constexpr double kAlong = 0.7071067811865476;
 
   ConflictSearch(const Result& result, const std::vector<Pose>& poses,
                  const ConflictOptions& options, Progress& progress)
@@ -394,11 +396,26 @@ class ConflictSearch {
     if (!std::isfinite(there.x) || !std::isfinite(there.y) || !std::isfinite(there.z)) return;
     conflict.lateral = there.y;
     conflict.height = there.z;
-    // Measured from the path's pose and not from the body's, whose own x axis may begin anywhere.
-    const double ahead = ahead_left_up(place, poses_[at], options_.forward, options_.up).x;
+    const double ahead = ahead_along_path(place, at);
     if (!std::isfinite(ahead)) return;
     conflict.obstacle_chainage = chainage_[at] + ahead + options_.chainage_start;
   }
+
+  /// How far a place lies ahead of a pose of the path, in the direction in which the path goes on.
+  /// Measured from the path's pose and not from the body's, whose own x axis may begin anywhere.
+  double ahead_along_path(const Vec3& place, std::uint32_t at) const {
+    const Pose& pose = poses_[at];
+    const double ahead = ahead_left_up(place, pose, options_.forward, options_.up).x;
+    const std::optional<Vec3> travel = travel_direction(poses_, at);
+    if (!travel) return ahead;
+    const double along = cosine(direction_ahead(pose, options_.forward), *travel);
+    if (along >= kAlong) return ahead;
+    if (along <= -kAlong) return -ahead;  // the vehicle goes backwards
+    return dot(place - pose.position(), *travel);
+  }
+
+  /// The cosine of the angle between a vector and a unit vector.
+  static double cosine(const Vec3& a, const Vec3& unit) { return dot(a, unit) / length(a); }
 
   /// The pose of the conflict's body at a pose of the path; null where the body has no pose there
   /// or is not known. Without bodies, the path's own pose.

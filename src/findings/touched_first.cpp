@@ -41,6 +41,13 @@ Vec3 direction_to_left(Axis forward, Axis up) {
   return cross(direction_of(up), direction_of(forward));
 }
 
+Vec3 direction_ahead(const Pose& pose, Axis forward) {
+  const Vec3 ahead = direction_of(forward);
+  const double* r = pose.rotation;
+  return {dot({r[0], r[1], r[2]}, ahead), dot({r[3], r[4], r[5]}, ahead),
+          dot({r[6], r[7], r[8]}, ahead)};
+}
+
 Vec3 ahead_left_up(const Vec3& place, const Pose& pose, Axis forward, Axis up) {
   const Vec3 there = in_model_frame(place, pose);
   const Vec3 ahead = direction_of(forward), above = direction_of(up);

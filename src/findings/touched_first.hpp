@@ -25,6 +25,9 @@ bool along_one_line(Axis a, Axis b);
 /// The unit vector to the left in the model's frame.
 Vec3 direction_to_left(Axis forward, Axis up);
 
+/// The model's forward axis at a pose; about of unit length, as the pose's rotation is.
+Vec3 direction_ahead(const Pose& pose, Axis forward);
+
 /// The vector from the position of a pose to a place, along the model's axes: ahead, to the left,
 /// up.
 Vec3 ahead_left_up(const Vec3& place, const Pose& pose, Axis forward, Axis up);

@@ -12,6 +12,9 @@ constexpr unsigned kThreads = kWarpsPerBlock * kWarpLanes;
 /// do, because latency is what there is to hide.
 constexpr unsigned kBlocksPerProcessor = 8;
 
+/// The same for clearances, whose searches would spill with so few registers.
+constexpr unsigned kClearanceBlocks = 4;
+
 __device__ void tally(unsigned long long* total, std::uint64_t of_lane) {
   const auto sum = __reduce_add_sync(0xffffffff, static_cast<unsigned>(of_lane));
   if (threadIdx.x % kWarpLanes == 0 && sum != 0) {
@@ -30,7 +33,7 @@ __device__ void tally(unsigned long long* tallies, const SweepStatistics& of_lan
 
 /// Searches the blocks of the page's cells, one by each warp.
 template <bool kClearance, typename Element>
-__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
+__global__ void __launch_bounds__(kThreads, kClearance ? kClearanceBlocks : kBlocksPerProcessor)
     search_blocks_kernel(const __grid_constant__ SweepPageOf<Element> job,
                          unsigned long long* tallies) {
   using Block = SweepBlock<CudaWarp, kClearance, Element>;

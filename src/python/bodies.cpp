@@ -121,7 +121,7 @@ messages: a list to which warnings are appended, as of poses where the body is o
 }
 
 constexpr const char* kReadVehicle =
-    R"(read_vehicle(file, poses, model_as='auto', *, spacing=0.0, unit=0.0, environment_unit=1.0, vertices_only=False, above=None, format='auto', allow_non_rigid=False, angle_unit='declared', angle_frame='declared', crs='', default_crs='', datum='', metres_per_unit=0.0, lever_arm=(0.0, 0.0, 0.0), messages=None)
+    R"(read_vehicle(file, poses, model_as='auto', *, spacing=0.0, unit=0.0, environment_unit=None, vertices_only=False, above=None, format='auto', allow_non_rigid=False, angle_unit='declared', angle_frame='declared', crs='', default_crs='', datum='', metres_per_unit=0.0, lever_arm=(0.0, 0.0, 0.0), messages=None)
 --
 
 Read the JSON file of a vehicle of several bodies, and the files that it names.
@@ -145,7 +145,7 @@ void add_read_vehicle(py::module_& module) {
   module.def(
       "read_vehicle",
       [](const py::object& file, const py::object& poses, const std::string& model_as,
-         double spacing, const UnitArgument& unit, const UnitArgument& environment_unit,
+         double spacing, const UnitArgument& unit, const EnvironmentUnitArgument& environment_unit,
          bool vertices_only, std::optional<double> above, const std::string& format,
          bool allow_non_rigid, const std::string& angle_unit, const std::string& angle_frame,
          const std::string& crs, const std::string& default_crs, const std::string& datum,
@@ -160,14 +160,17 @@ void add_read_vehicle(py::module_& module) {
         const auto path = std::make_shared<const std::vector<Pose>>(
             poses_of(poses_array(poses, "poses"), "poses"));
         std::vector<Body> read = read_noting(messages, [&, from = path_of(file)](auto* noted) {
-          return read_vehicle(from, *path, options, noted);
+          std::vector<Body> bodies = read_vehicle(from, *path, options, noted);
+          check_unit_is_given(environment_unit, file_unit(unit).is_known() ? unit : metres_per_unit,
+                              *noted);
+          return bodies;
         });
         std::vector<PlacedBody> placed;
         for (Body& body : read) placed.push_back({std::move(body), path});
         return placed;
       },
       "file"_a, "poses"_a, "model_as"_a = "auto", py::kw_only(), "spacing"_a = 0.0, "unit"_a = 0.0,
-      "environment_unit"_a = 1.0, "vertices_only"_a = false, "above"_a = py::none(),
+      "environment_unit"_a = py::none(), "vertices_only"_a = false, "above"_a = py::none(),
       "format"_a = "auto", "allow_non_rigid"_a = false, "angle_unit"_a = "declared",
       "angle_frame"_a = "declared", "crs"_a = "", "default_crs"_a = "", "datum"_a = "",
       "metres_per_unit"_a = 0.0, "lever_arm"_a = std::array<double, 3>{0, 0, 0},

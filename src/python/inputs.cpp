@@ -54,24 +54,26 @@ void add_read_trajectory(py::module_& module) {
       [](const py::object& path, const std::string& format, bool allow_non_rigid,
          const std::string& angle_unit, const std::string& angle_frame, const std::string& crs,
          const std::string& default_crs, const std::string& datum,
-         const UnitArgument& metres_per_unit, const UnitArgument& environment_unit,
+         const UnitArgument& metres_per_unit, const EnvironmentUnitArgument& environment_unit,
          const std::array<double, 3>& lever_arm, const py::object& messages, PoseLabels* labels) {
         const TrajectoryOptions options =
             trajectory_options(format, allow_non_rigid, angle_unit, angle_frame, crs, default_crs,
                                datum, metres_per_unit, environment_unit, lever_arm);
         PoseLabels found;
         const auto poses = read_noting(messages, [&, file = path_of(path)](auto* noted) {
-          return read_trajectory(file, options, noted, &found);
+          auto read = read_trajectory(file, options, noted, &found);
+          check_unit_is_given(environment_unit, metres_per_unit, *noted);
+          return read;
         });
         if (labels != nullptr) *labels = std::move(found);
         return to_array(poses);
       },
       "path"_a, py::kw_only(), "format"_a = "auto", "allow_non_rigid"_a = false,
       "angle_unit"_a = "declared", "angle_frame"_a = "declared", "crs"_a = "", "default_crs"_a = "",
-      "datum"_a = "", "metres_per_unit"_a = 0.0, "environment_unit"_a = 1.0,
+      "datum"_a = "", "metres_per_unit"_a = 0.0, "environment_unit"_a = py::none(),
       "lever_arm"_a = std::array<double, 3>{0, 0, 0}, "messages"_a = py::none(),
       "labels"_a = py::none(),
-      R"(read_trajectory(path, *, format='auto', allow_non_rigid=False, angle_unit='declared', angle_frame='declared', crs='', default_crs='', datum='', metres_per_unit=0.0, environment_unit=1.0, lever_arm=(0.0, 0.0, 0.0), messages=None, labels=None)
+      R"(read_trajectory(path, *, format='auto', allow_non_rigid=False, angle_unit='declared', angle_frame='declared', crs='', default_crs='', datum='', metres_per_unit=0.0, environment_unit=None, lever_arm=(0.0, 0.0, 0.0), messages=None, labels=None)
 --
 
 Read the poses of a trajectory. Returns an array of n x 4 x 4 float64.
@@ -93,8 +95,9 @@ datum: the geographic coordinate system of latitudes and longitudes; empty: WGS 
 metres_per_unit: the unit of positions: metres, or a name: 'mm', 'cm', 'm', 'in', 'ft' (the
     environment's foot, also METRES_PER_FOOT), 'ift' (the international foot) or 'us-ft' (the US
     survey foot); 0: metres, unless the file names a unit.
-environment_unit: the environment's unit, into which a known unit is converted: metres, a name, or
-    store.length_unit().
+environment_unit: the environment's unit, into which a known unit is converted:
+    store.metres_per_unit(), store.length_unit(), or a name. None: the metre; a file that names
+    another unit is refused then.
 lever_arm: where the positions of the file lie in the model's frame: x, y and z, metres.
 messages: a list to which notes and warnings are appended.
 labels: a PoseLabels, which gets the times and names that the file has.)");
@@ -215,7 +218,7 @@ TrajectoryOptions trajectory_options(const std::string& format, bool allow_non_r
                                      const std::string& angle_unit, const std::string& angle_frame,
                                      const std::string& crs, const std::string& default_crs,
                                      const std::string& datum, const UnitArgument& metres_per_unit,
-                                     const UnitArgument& environment_unit,
+                                     const EnvironmentUnitArgument& environment_unit,
                                      const std::array<double, 3>& lever_arm) {
   TrajectoryOptions options;
   options.format = value_of("format", kFormats, format);

@@ -13,7 +13,7 @@ TrajectoryOptions trajectory_options(const std::string& format, bool allow_non_r
                                      const std::string& angle_unit, const std::string& angle_frame,
                                      const std::string& crs, const std::string& default_crs,
                                      const std::string& datum, const UnitArgument& metres_per_unit,
-                                     const UnitArgument& environment_unit,
+                                     const EnvironmentUnitArgument& environment_unit,
                                      const std::array<double, 3>& lever_arm);
 
 }  // namespace clearway::python

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "clearway/body.hpp"
+#include "clearway/error.hpp"
 #include "python/values.hpp"
 
 namespace clearway::python {
@@ -107,17 +108,19 @@ void add_read_model_points(py::module_& module) {
   module.def(
       "read_model_points",
       [](const py::object& path, double spacing, const UnitArgument& unit,
-         const UnitArgument& environment_unit, bool vertices_only, std::optional<double> above,
-         const py::object& messages) {
+         const EnvironmentUnitArgument& environment_unit, bool vertices_only,
+         std::optional<double> above, const py::object& messages) {
         const ModelOptions options =
             model_options(ModelAs::kPoints, spacing, unit, environment_unit, vertices_only, above);
         return to_array(read_noting(messages, [&, file = path_of(path)](auto* noted) {
-          return read_model_points(file, options, noted);
+          auto read = read_model_points(file, options, noted);
+          check_unit_is_given(environment_unit, unit, *noted);
+          return read;
         }));
       },
-      "path"_a, py::kw_only(), "spacing"_a = 0.0, "unit"_a = 0.0, "environment_unit"_a = 1.0,
+      "path"_a, py::kw_only(), "spacing"_a = 0.0, "unit"_a = 0.0, "environment_unit"_a = py::none(),
       "vertices_only"_a = false, "above"_a = py::none(), "messages"_a = py::none(),
-      R"(read_model_points(path, *, spacing=0.0, unit=0.0, environment_unit=1.0, vertices_only=False, above=None, messages=None)
+      R"(read_model_points(path, *, spacing=0.0, unit=0.0, environment_unit=None, vertices_only=False, above=None, messages=None)
 --
 
 Read a model: points of a scan's format, or a mesh (STL, OBJ, PLY with faces, OFF).
@@ -131,8 +134,9 @@ spacing: how closely a mesh is sampled, metres: no place of its surface is farth
 unit: the unit of the file: metres, or a name: 'mm', 'cm', 'm', 'in', 'ft' (the environment's foot,
     also METRES_PER_FOOT), 'ift' (the international foot) or 'us-ft' (the US survey foot);
     0: as the file says, or else that of the environment.
-environment_unit: the environment's unit, into which a known unit is converted: metres, a name, or
-    store.length_unit().
+environment_unit: the environment's unit, into which a known unit is converted:
+    store.metres_per_unit(), store.length_unit(), or a name. None: the metre; a file that names
+    another unit is refused then.
 vertices_only: takes the vertices of a mesh alone, and not its surface.
 above: leaves out points whose z is below it, metres; for example wheels on the ground.
 messages: a list to which notes and warnings are appended.)");
@@ -142,19 +146,21 @@ void add_read_model(py::module_& module) {
   module.def(
       "read_model",
       [](const py::object& path, const std::string& model_as, double spacing,
-         const UnitArgument& unit, const UnitArgument& environment_unit, bool vertices_only,
-         std::optional<double> above, const py::object& messages) {
+         const UnitArgument& unit, const EnvironmentUnitArgument& environment_unit,
+         bool vertices_only, std::optional<double> above, const py::object& messages) {
         const ModelOptions options =
             model_options(value_of("model_as", kModelAs, model_as), spacing, unit, environment_unit,
                           vertices_only, above);
         return read_noting(messages, [&, file = path_of(path)](auto* noted) {
-          return read_model(file, options, noted);
+          Model read = read_model(file, options, noted);
+          check_unit_is_given(environment_unit, unit, *noted);
+          return read;
         });
       },
       "path"_a, "model_as"_a = "auto", py::kw_only(), "spacing"_a = 0.0, "unit"_a = 0.0,
-      "environment_unit"_a = 1.0, "vertices_only"_a = false, "above"_a = py::none(),
+      "environment_unit"_a = py::none(), "vertices_only"_a = false, "above"_a = py::none(),
       "messages"_a = py::none(),
-      R"(read_model(path, model_as='auto', *, spacing=0.0, unit=0.0, environment_unit=1.0, vertices_only=False, above=None, messages=None)
+      R"(read_model(path, model_as='auto', *, spacing=0.0, unit=0.0, environment_unit=None, vertices_only=False, above=None, messages=None)
 --
 
 Read a model, to be searched as it is. Returns a Model.
@@ -172,12 +178,25 @@ unit, environment_unit, messages: as read_model_points() takes them.)");
 
 }  // namespace
 
+namespace {
+
+void refuse_none(const py::handle& object) {
+  if (!object.is_none()) return;
+  throw UsageError(
+      "model: expected a Model or an array of points, n x 3, or () where bodies are given; found "
+      "None");
+}
+
+}  // namespace
+
 py::object model_object(const py::handle& object) {
+  refuse_none(object);
   if (py::isinstance<Model>(object)) return py::reinterpret_borrow<py::object>(object);
   return points_array(object, "model");
 }
 
 Model model_of(const py::object& object) {
+  refuse_none(object);
   if (py::isinstance<Model>(object)) return object.cast<Model>();
   Model model;
   model.vertices = points_of(points_array(object, "model"), "model");
@@ -185,7 +204,7 @@ Model model_of(const py::object& object) {
 }
 
 ModelOptions model_options(ModelAs as, double spacing, const UnitArgument& unit,
-                           const UnitArgument& environment_unit, bool vertices_only,
+                           const EnvironmentUnitArgument& environment_unit, bool vertices_only,
                            std::optional<double> above) {
   const EnvironmentUnit environment = environment_unit_of(environment_unit);
   return {.as = as,

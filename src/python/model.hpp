@@ -25,7 +25,7 @@ Model model_of(const py::object& object);
 
 /// The options for the values that Python has for them. Throws UsageError for an unknown unit.
 ModelOptions model_options(ModelAs as, double spacing, const UnitArgument& unit,
-                           const UnitArgument& environment_unit, bool vertices_only,
+                           const EnvironmentUnitArgument& environment_unit, bool vertices_only,
                            std::optional<double> above);
 
 /// The size of a model in words, such as "12 model points" or "12 model triangles".

@@ -56,8 +56,8 @@ gap, min_points, split, chainage_start, forward, up: as find_conflicts() takes t
 labels: the PoseLabels that read_trajectory() filled.
 warnings: messages of reading the inputs, which the page shows. What the search warned of is found
     again and shown in any case; it may be among them.
-bodies: the bodies of the search, where it was one of a vehicle; then model is (), and poses are
-    those of the path.
+bodies: the bodies of the search, where it was one of a vehicle; then model is () or None, and
+    poses are those of the path.
 overwrite: replaces an existing page.
 memory_bytes, threads, progress, stop: as search() takes them.)";
 
@@ -94,7 +94,8 @@ void add_write_report(py::module_& module) {
                               overwrite};
         Watch watch(std::move(progress), py::none(), std::move(stop));
         watch.attach(options.conflicts);
-        const Model moved = model_of(model);
+        const bool has_no_model = model.is_none() && !bodies.empty();
+        const Model moved = has_no_model ? Model() : model_of(model);
         const std::vector<Pose> path = poses_of(poses_array(poses, "poses"), "poses");
         options.bodies = bodies_on(bodies, path);
         return watch.run([&, to = path_of(output)] {

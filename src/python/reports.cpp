@@ -90,6 +90,9 @@ void add_answer(py::module_& module) {
           "Why the verdict is undecided: a list of 'question-in-doubt'; otherwise empty.")
       .def_readonly("doubts", &Answer::doubts,
                     "The codes of the warnings that put the question in doubt: a list of str.")
+      .def_readonly("warned_of", &Answer::warned_of,
+                    "The codes of the other warnings before the search: a list of str. A result "
+                    "keeps them where nothing collides.")
       .def_readonly("parameters", &Answer::parameters, "What was asked: QueryParameters.")
       .def_readonly("environment_points", &Answer::environment_points,
                     "How many points the environment has.")

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "clearway/error.hpp"
 #include "core/query/query_fields.hpp"
 #include "python/arrays.hpp"
 #include "python/model.hpp"
@@ -138,8 +139,11 @@ The other arguments are the properties of the same names.)")
                      "The bodies of a vehicle, a list of Body, in the place of a model; poses are "
                      "then those of the path.")
       .def("__repr__", [](const ArrayQuery& q) {
-        return py::str("<Query: {}, {} poses, radius {} m>")
-            .format(model_words(q.model), q.poses.shape(0), q.parameters.radius);
+        const bool has_radius = q.parameters.radius > 0;
+        const py::str radius = has_radius ? py::str("radius {} m").format(q.parameters.radius)
+                                          : py::str("no radius yet");
+        return py::str("<Query: {}, {} poses, {}>")
+            .format(model_words(q.model), q.poses.shape(0), radius);
       });
   for_each_field([&](const auto& field) { add_parameter(query, field); });
 }
@@ -155,6 +159,11 @@ void add_searches(py::module_& module) {
          bool strict, const py::object& input_warnings, bool model_is_cut, bool end_gpus,
          double journal_interval_seconds, py::object progress, py::object message,
          py::object stop) {
+        if (query.parameters.radius == 0) {
+          throw UsageError(
+              "radius: the query has none; give the distance to keep in metres, as in "
+              "Query(model, poses, radius=0.1) or query.radius = 0.1");
+        }
         SearchOptions options;
         options.engine = value_of("engine", kEngines, engine);
         options.device = value_of("device", kDevices, device);

@@ -1,7 +1,9 @@
 #include "python/values.hpp"
 
+#include <algorithm>
 #include <string>
 
+#include "clearway/error.hpp"
 #include "clearway/found_place.hpp"
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
@@ -135,10 +137,26 @@ FileUnit file_unit(const UnitArgument& unit) {
   return name != nullptr ? FileUnit::named(*name) : FileUnit(std::get<double>(unit));
 }
 
-EnvironmentUnit environment_unit_of(const UnitArgument& unit) {
-  if (unit == UnitArgument("unknown")) return {.is_assumed = true};
-  if (unit == UnitArgument("degree")) return {};
-  return {.metres = file_unit(unit).metres()};
+EnvironmentUnit environment_unit_of(const EnvironmentUnitArgument& unit) {
+  if (!unit || *unit == UnitArgument("unknown")) return {.is_assumed = true};
+  if (*unit == UnitArgument("degree")) return {};
+  return {.metres = file_unit(*unit).metres()};
+}
+
+void check_unit_is_given(const EnvironmentUnitArgument& environment_unit,
+                         const UnitArgument& of_file, std::vector<Message>& noted) {
+  if (environment_unit) return;
+  const auto is_assumed = [](const Message& message) { return message.code == "unit-assumed"; };
+  const auto found = std::ranges::find_if(noted, is_assumed);
+  if (found == noted.end()) return;
+  // "path.csv: its positions are in international feet and were converted ..."
+  const std::string what = found->text.substr(0, found->text.find(" and were converted"));
+  std::erase_if(noted, is_assumed);
+  if (file_unit(of_file).is_known()) return;
+  throw UsageError(what +
+                   ", and nothing says into which unit to convert them. Give "
+                   "environment_unit=store.metres_per_unit(), or environment_unit=1.0 for a store "
+                   "in metres");
 }
 
 void add_values(py::module_& module) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -41,12 +42,23 @@ using UnitArgument = std::variant<double, std::string>;
 /// The unit of a file. Throws UsageError where the name is not that of a unit.
 FileUnit file_unit(const UnitArgument& unit);
 
-/// The unit of an environment, which may be given as Store.length_unit() returns it.
+/// The argument environment_unit, which may be given as Store.length_unit() returns it. None: the
+/// caller has not said it.
+using EnvironmentUnitArgument = std::optional<UnitArgument>;
+
+/// The unit of an environment.
 struct EnvironmentUnit {
   double metres = 1;
-  bool is_assumed = false;  ///< whether the environment names no unit
+  bool is_assumed = false;  ///< whether the environment names no unit, or none was given
 };
-EnvironmentUnit environment_unit_of(const UnitArgument& unit);
+EnvironmentUnit environment_unit_of(const EnvironmentUnitArgument& unit);
+
+/// Throws UsageError where a file that was read names a unit that is not the metre, since nothing
+/// says into which unit it is to be converted, unless environment_unit was given. of_file: the
+/// argument that names the unit of the file, which overrides the file's own. noted: the messages of
+/// reading it, from which those about the assumed unit are taken.
+void check_unit_is_given(const EnvironmentUnitArgument& environment_unit,
+                         const UnitArgument& of_file, std::vector<Message>& noted);
 
 /// The warnings in words, for example "; 2 warnings: no-poses, steps"; empty where there are none.
 std::string warning_words(const std::vector<Message>& warnings);

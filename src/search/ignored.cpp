@@ -275,10 +275,12 @@ void warn_of_colliding_ignored(const Answer& answer, bool model_is_cut, LengthUn
   };
   const std::string of_ignored = " of the " + ignored_text(answer.parameters, answer.ignored);
   if (colliding > answer.colliding_points && !model_is_cut) {
+    const std::uint64_t others = answer.colliding_points;
+    const std::string searched = others == 0 ? "and no searched point does"
+                                             : "but only " + counted(others, "searched point") +
+                                                   (others == 1 ? " does" : " do");
     warn("ignored-collide",
-         format_count(colliding) + of_ignored + " would collide, but only " +
-             counted(answer.colliding_points, "searched point") +
-             (answer.colliding_points == 1 ? " does" : " do") +
+         format_count(colliding) + of_ignored + " would collide, " + searched +
              ": the answer may be what was ignored. If they are the ground below the wheels, leave "
              "the lowest part of the model out instead of the ground",
          static_cast<double>(colliding));

@@ -79,6 +79,7 @@ class Search {
     static_cast<Answer&>(report_) = answer_of(header_);
     report_sizes(store_, query_, report_);
     report_.doubts = doubts_among(report_.warnings);
+    report_.warned_of = codes_beside_doubts(report_.warnings);
     divide();
     if (journal_.already_done(store_, header_, progress_)) {
       report_finished(ResultReader(journal_.output(), Parts::kAccepted), report_);
@@ -103,7 +104,7 @@ class Search {
       if (told.severity == Message::Severity::kWarning) report_.warnings.push_back(told);
     }
     check_sizes(query_);
-    warn_of_query(store_, query_, log_);
+    warn_of_query(store_, query_, options_.input_warnings, log_);
     warn_of_ignored(store_, header_, header_.ignored, log_);
     if (options_.strict) refuse_warnings(report_.warnings);
   }
@@ -342,7 +343,7 @@ class Search {
   }
 
   ResultFindings findings() const {
-    ResultFindings found{.doubts = report_.doubts};
+    ResultFindings found{.doubts = report_.doubts, .warned_of = report_.warned_of};
     if (!query_.bodies.empty()) found.searched = report_.searched;
     if (query_.profile > 0) {
       found.without_bodies = poses_without_bodies(query_.poses.size(), query_.bodies);

@@ -55,6 +55,37 @@ TEST_CASE("lateral and height are of the nearest point where it is known") {
   CHECK(found_one.height == -1);
 }
 
+TEST_CASE("an obstacle has the station where it stands, whichever way the vehicle faces") {
+  const auto station = [](double turn, const std::vector<double>& ways, Axis forward) {
+    Found found;
+    found.poses.clear();
+    for (const double x : ways) {
+      found.poses.push_back(rotation({0, 0, 1}, turn * std::acos(-1) / 180, {x, 0, 0}));
+    }
+    found.quanta = {{2400, 300, 0}};
+    found.first_pose = {2};
+    ConflictOptions options;
+    options.min_points = 1;
+    options.forward = forward;
+    return *conflicts_of(found, options).listed.at(0).obstacle_chainage;
+  };
+  const std::vector<double> path{0, 1, 2, 3, 4}, to_turn{0, 1, 2, 1, 0}, standing{2, 2, 2.001, 2};
+  for (const double turn : {0., 90., 180., 270.}) {
+    for (const Axis forward : {Axis::kPlusX, Axis::kMinusX, Axis::kPlusY, Axis::kMinusY}) {
+      CAPTURE(turn, forward);
+      CHECK(station(turn, path, forward) == Approx(2.4).margin(1e-9));
+      CHECK(station(turn, to_turn, forward) == Approx(2.4).margin(1e-9));
+    }
+  }
+  // Up to 45 degrees the vehicle's own axis counts, and beyond that the direction of the path.
+  const double turned = 40 * std::acos(-1) / 180;
+  CHECK(station(40, path, Axis::kPlusX) ==
+        Approx(2 + 0.4 * std::cos(turned) + 0.3 * std::sin(turned)).margin(1e-9));
+  CHECK(station(50, path, Axis::kPlusX) == Approx(2.4).margin(1e-9));
+  // Where the path stands still, its jitter is no direction.
+  CHECK(station(180, standing, Axis::kPlusX) == Approx(0.001 - 0.399).margin(1e-9));
+}
+
 TEST_CASE("the side is seen from the model's box at the pose") {
   const auto side = [](const Vec3& at, const Pose& pose, const ConflictOptions& how = {}) {
     Found found;

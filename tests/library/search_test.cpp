@@ -95,12 +95,7 @@ TEST_CASE("a result's columns are those of its file") {
   CHECK(result.environment_points() == 40'000);
   CHECK(result.poses() == 200);
   CHECK(same_rows({result.source(), result.xyz(), result.first_pose()}, rows));
-  Clearances expected;
-  expected.source.resize(reader.clearances());
-  expected.xyz.resize(reader.clearances());
-  expected.distance.resize(reader.clearances());
-  expected.pose.resize(reader.clearances());
-  reader.read_clearances(0, expected.source, expected.xyz, expected.distance, expected.pose);
+  const Clearances expected = read_rows<Clearances>(reader);
   const Clearances clearances = result.clearance();
   CHECK(clearances.source.size() == report.clearance_points);
   CHECK(clearances.source == expected.source);

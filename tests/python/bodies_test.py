@@ -16,7 +16,7 @@ class BodyTest(SceneTest):
         self.assertEqual([(m.code, m.severity) for m in messages], [("body-off-path", "note")])
         last = len(self.poses) - 1
         [end] = clearway.unsearched_stretches(self.poses, [front])
-        self.assertEqual((end.first_pose, end.last_pose, end.bodies), (24, last, [0]))
+        self.assertEqual((end.first_pose, end.last_pose, end.bodies), (25, last, [0]))
         self.assertFalse(end.has_answer)
         whole = clearway.Body("own", self.model, self.poses)
         self.assertTrue(clearway.unsearched_stretches(self.poses, [front, whole])[0].has_answer)
@@ -80,7 +80,10 @@ class BodyTest(SceneTest):
             {"name": "own", "model": "model.xyz", "trajectory": "path.txt"},
             {"name": "fin", "model": "fin.off", "model_unit": "cm", "pivots": [0.5, -0.5]}])
         messages = []
-        front, own, fin = clearway.read_vehicle(file, self.poses, messages=messages)
+        with self.assertRaisesRegex(clearway.UsageError, r"units of 0.01 m.*environment_unit=1.0"):
+            clearway.read_vehicle(file, self.poses)
+        front, own, fin = clearway.read_vehicle(file, self.poses, environment_unit=1.0,
+                                                messages=messages)
         self.assertEqual([b.name for b in (front, own, fin)], ["front", "own", "fin"])
         self.assertIn("body-off-path", [m.code for m in messages])
         followed = clearway.follow("front", self.model, self.poses, at=1)
@@ -90,7 +93,8 @@ class BodyTest(SceneTest):
         np.testing.assert_array_equal(own.poses, self.poses)
         np.testing.assert_allclose(fin.model.vertices.max(axis=0), [1, 1, 0])
         self.assertEqual(len(fin.path_pose), 24)
-        sampled = clearway.read_vehicle(str(file), self.poses, "points", spacing=0.1)[2]
+        sampled = clearway.read_vehicle(str(file), self.poses, "points", spacing=0.1,
+                                        environment_unit=1)[2]
         self.assertGreater(len(sampled.model.vertices), 20)
         feet = clearway.read_vehicle(file, self.poses, environment_unit=clearway.METRES_PER_FOOT)
         self.assertEqual(len(feet[0].poses), 13)  # a metre is 3.28 of these units

@@ -21,6 +21,44 @@ class FindsWhatBruteForceFinds(SceneTest):
         far = poses_along_x(2, 0.1) + [[0, 0, 0, 50], [0] * 4, [0] * 4, [0] * 4]
         return clearway.Query(self.model, far, 0.1, first_pose=True, clearance=0.2)
 
+    def test_what_is_missing_or_misnamed_is_told(self):
+        with self.assertRaisesRegex(TypeError, "no argument 'force'; did you mean 'overwrite'"):
+            self.search(force=True)
+        query = clearway.Query(self.model, self.poses)
+        self.assertIn("no radius yet", repr(query))
+        with self.assertRaisesRegex(clearway.UsageError, "^radius: the query has none"):
+            self.search(query=query)
+        self.search()
+        page = self.folder / "none.html"
+        with self.assertRaisesRegex(clearway.UsageError, r"^model: expected .* \(\) where bodies"):
+            clearway.write_report(clearway.Result(self.folder / "out.h5"),
+                                  clearway.Store(self.folder / "site.h5"), None, self.poses, page)
+
+    def test_a_file_in_another_unit_needs_the_unit_of_the_environment(self):
+        path = self.folder / "feet.csv"
+        path.write_text("x [ft],y [ft],z [ft],qx,qy,qz,qw\n0,0,0,0,0,0,1\n10,0,0,0,0,0,1\n")
+        with self.assertRaisesRegex(clearway.UsageError, "feet.*store.metres_per_unit"):
+            clearway.read_trajectory(path)
+        self.assertAlmostEqual(
+            clearway.read_trajectory(path, environment_unit=1.0)[1, 0, 3], 3.048)
+        self.assertEqual(clearway.read_trajectory(
+            path, environment_unit=clearway.METRES_PER_FOOT)[1, 0, 3], 10)
+        notes = []
+        clearway.read_trajectory(path, metres_per_unit="ft", messages=notes)  # said by the caller
+        self.assertNotIn("unit-assumed", [m.code for m in notes])
+
+    def test_a_body_that_lacks_poses_is_told_of_once(self):
+        lacking = [i for i in range(len(self.poses)) if not 10 <= i < 15]
+        body = clearway.Body("wagon", self.model, self.poses[lacking], path_pose=lacking)
+        query = clearway.Query(poses=self.poses, radius=RADIUS, bodies=[body])
+        report = self.search(query=query)
+        told = [w for w in report.warnings if w.code == "body-off-path"]
+        self.assertEqual(len(told), 1)
+        self.assertIn("body wagon: 5 of", told[0].text)
+        self.assertIn("10-14", told[0].text)
+        report = self.search(query=query, input_warnings=told)
+        self.assertEqual([w.code for w in report.warnings].count("body-off-path"), 1)
+
     def test_every_engine(self):
         for engine in ("auto", "sweep", "kdtree", "grid"):
             with self.subTest(engine):

@@ -151,14 +151,14 @@ struct CompareOptions {
   ConflictComparison places;
 };
 
-bool run_compare(CompareOptions& options) {
+/// Returns the exit code.
+int run_compare(CompareOptions& options) {
   if (options.conflicts) {
-    bool none_new = false;
+    int code = kDone;
     run_stoppable(options.b, kStartsAgain, [&] {
-      none_new =
-          compare_conflicts(options.places, options.a, options.b, options.show, options.json);
+      code = compare_conflicts(options.places, options.a, options.b, options.show, options.json);
     });
-    return none_new;
+    return code;
   }
   const ResultReader a(options.a), b(options.b);
   warn_of_doubts(a);
@@ -166,7 +166,7 @@ bool run_compare(CompareOptions& options) {
   const Comparison comparison = compare_results(a, b, options.show);
   print(options.json ? comparison_json(comparison, a.name(), b.name())
                      : comparison_text(comparison, a.name(), b.name()));
-  return comparison.equal();
+  return comparison.equal() ? kDone : kDiffers;
 }
 
 }  // namespace
@@ -198,6 +198,7 @@ void add_compare(CLI::App& program, int& exit_code) {
       "too small to be listed, or answers another question. Conflicts are the same where their\n"
       "boxes overlap, grown by the gap. Each is matched once, the largest overlaps first. What\n"
       "is left is the same where each of its points is within the gap of points that A has.\n"
+      "Exit code 6, with --conflicts: B is undecided, as nothing could be found in it.\n"
       "Exit code 3: a file is not a result, or the results are about different environments.\n"
       "Example: clearway compare kdtree.h5 sweep.h5");
   command->callback([options, command, &exit_code] {
@@ -206,7 +207,7 @@ void add_compare(CLI::App& program, int& exit_code) {
     advising_to_run_again(*command,
                           {{options->a, places.trajectory},
                            {options->b, one_path ? places.trajectory : places.trajectory_b}},
-                          [&] { exit_code = run_compare(*options) ? 0 : 1; });
+                          [&] { exit_code = run_compare(*options); });
   });
 }
 

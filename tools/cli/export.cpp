@@ -120,6 +120,7 @@ void run_export(ExportOptions& options) {
   const Answer answer = counted_answer(result);
   out["verdict"] = name_of(answer.verdict());
   out["doubts"] = answer.doubts;
+  out["warned_of"] = answer.warned_of;
   out["ignored"] = ignored_json(answer);
   print(text_of_json(out));
 }

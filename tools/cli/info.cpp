@@ -107,6 +107,7 @@ ordered_json describe(const ResultReader& result) {
   const Answer answer = h.model_solids > 0 ? answer_of(result) : counted_answer(result);
   description["verdict"] = name_of(answer.verdict());
   if (!answer.doubts.empty()) description["doubts"] = answer.doubts;
+  if (!answer.warned_of.empty()) description["warned_of"] = answer.warned_of;
   if (h.model_solids > 0) {
     const auto inside = answer.points_inside();
     const auto depth = answer.greatest_depth();

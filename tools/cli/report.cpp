@@ -81,17 +81,29 @@ Query read_query_again(ReportCommand& options, const Result& result, const Store
   Query query({}, {}, result.parameters());
   query.poses = read_trajectory(options.trajectory, options.trajectory_options, &warnings,
                                 &options.report.labels);
+  const std::size_t of_path = warnings.size();
   read_model_again(options, result, query);
   note_left_out(options, warnings);
-  std::erase_if(warnings,
-                [](const Message& told) { return told.severity == Message::Severity::kNote; });
+  const std::span<const Message> told(warnings);
+  const bool all_named =
+      options.vehicle.empty() && options.lengths.all_have_units() &&
+      names_unit(options.trajectory_options.metres_per_unit, told.first(of_path)) &&
+      names_unit(options.model_options.unit, told.subspan(of_path));
+  std::erase_if(warnings, [](const Message& m) { return m.severity == Message::Severity::kNote; });
+  if (auto note = all_named ? note_on_feet(store) : std::nullopt) {
+    warnings.push_back(std::move(*note));
+  }
   return query;
 }
 
 void log_summary(const ReportCommand& options, const ReportSummary& summary, const Result& result) {
-  const std::string conflicts = result.parameters().first_pose
-                                    ? counted(summary.conflicts.listed.size(), "conflict")
-                                    : "conflicts are not known, as the result has no first poses";
+  const Conflicts& found = summary.conflicts;
+  std::string conflicts = "conflicts are not known, as the result has no first poses";
+  if (result.parameters().first_pose) conflicts = counted(found.listed.size(), "conflict");
+  if (found.small_groups > 0) {
+    conflicts += (found.listed.empty() ? " that is listed, but " : " and ") +
+                 counted(found.small_groups, "group") + " too small to be listed";
+  }
   spdlog::info("{}: {}, {}, {}, {}", options.output.string(), name_of(summary.verdict),
                counted(result.size(), "colliding point"), conflicts, format_size(summary.bytes));
   if (!result.parameters().first_pose) {

@@ -107,8 +107,15 @@ Query read_query(RunOptions& options, const Store& store, PoseLabels& labels) {
   const ModelOptions how = model_options_of(options);
   Query query({}, {}, options.query);
   if (options.vehicle.empty()) query.model = read_model(options.model, how, &warnings);
+  const std::size_t of_model = warnings.size();
   options.trajectory_options.default_crs = store.crs_wkt();
   query.poses = read_trajectory(options.trajectory, options.trajectory_options, &warnings, &labels);
+  const std::span<const Message> told(warnings);
+  if (options.vehicle.empty() && options.lengths.all_have_units() &&
+      names_unit(how.unit, told.first(of_model)) &&
+      names_unit(options.trajectory_options.metres_per_unit, told.subspan(of_model))) {
+    if (auto note = note_on_feet(store)) warnings.push_back(std::move(*note));
+  }
   if (!options.vehicle.empty()) {
     query.bodies =
         read_vehicle(options.vehicle, query.poses,

@@ -44,6 +44,11 @@ std::string place_text(const Answer& answer, const std::optional<FoundPlace>& pl
   return text;
 }
 
+/// A distance for people, in steps of a millionth: what is less is the rounding of coordinates.
+std::string distance_text(double distance) {
+  return format_brief(std::round(distance * 1e6) / 1e6);
+}
+
 std::string nearest_text(const Answer& answer, const PathWords& path, const std::string& unit) {
   const std::optional<FoundPlace>& nearest = answer.nearest();
   if (nearest && nearest->distance < 0) {
@@ -52,12 +57,12 @@ std::string nearest_text(const Answer& answer, const PathWords& path, const std:
       text = "; " + counted(inside, "point is", "points are") + " inside the model";
     }
     return text + fmt::format("; the greatest depth inside the model is {} {} at {}",
-                              format_brief(-nearest->distance), unit,
+                              distance_text(-nearest->distance), unit,
                               place_text(answer, nearest, path, unit));
   }
   if (nearest) {
-    return fmt::format("; the least distance is {} {} at {}", format_brief(nearest->distance), unit,
-                       place_text(answer, nearest, path, unit));
+    return fmt::format("; the least distance is {} {} at {}", distance_text(nearest->distance),
+                       unit, place_text(answer, nearest, path, unit));
   }
   const double asked = std::max(answer.parameters.profile, answer.parameters.clearance);
   return asked > 0 ? fmt::format("; none is within {} {}", asked, unit) : "";
@@ -67,6 +72,7 @@ std::string nearest_text(const Answer& answer, const PathWords& path, const std:
 /// collide"; empty where none is ignored.
 std::string ignored_clause(const Answer& answer) {
   if (!answer.parameters.ignores_points()) return "";
+  if (answer.ignored.points == 0) return "";
   std::string text = ", with " + ignored_text(answer.parameters, answer.ignored) + ", ";
   if (!answer.ignored_colliding)
     return text + "of which it is not known whether they would collide";
@@ -163,10 +169,16 @@ std::string verdict_text(const Answer& answer, const PathWords& path, const std:
   return text + caveat + ".";
 }
 
+std::string warned_text(const Answer& answer) {
+  if (answer.warned_of.empty()) return "";
+  return fmt::format(", but its run warned of {}", fmt::join(answer.warned_of, ", "));
+}
+
 std::string verdict_to_repeat(const ResultReader& result, const PathWords& path,
                               const std::string& unit) {
   if (result.collisions() > 0 && !result.header().ignores_points()) return "";
-  return verdict_text(answer_of(result), path, unit, "");
+  const Answer answer = answer_of(result);
+  return verdict_text(answer, path, unit, warned_text(answer));
 }
 
 void warn_of_doubts(const ResultReader& result) {

@@ -30,6 +30,10 @@ std::string caveat_of(std::size_t warnings);
 std::string verdict_text(const Answer& answer, const PathWords& path, const std::string& unit,
                          const std::string& caveat);
 
+/// A clause with the codes of what the run of a result warned of, as far as the result keeps them,
+/// such as ", but its run warned of leaves-scan"; empty where there are none.
+std::string warned_text(const Answer& answer);
+
 /// The verdict of an existing result, in one sentence; empty where points collide and none was
 /// ignored, because the other output says enough then. Reads all tables of the result.
 std::string verdict_to_repeat(const ResultReader& result, const PathWords& path,

@@ -343,6 +343,9 @@ class CampaignPage {
     if (!ignored_words(facts).empty()) {
       const auto points = facts["ignored"]["points"].get<std::uint64_t>();
       text += (text.empty() ? "" : ", ") + format_count(points) + " ignored";
+      if (const ordered_json& colliding = facts["ignored"]["colliding"]; !colliding.is_null()) {
+        text += ", of which " + format_count(colliding.get<std::uint64_t>()) + " would collide";
+      }
     }
     if (!is_exact(facts)) text += (text.empty() ? "" : ", ") + std::string("not exact");
     return text.empty() ? "" : "<small>" + text + "</small>";

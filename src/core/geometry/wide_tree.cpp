@@ -24,13 +24,9 @@ std::span<const Element> part_of(std::span<const Element> elements, std::uint32_
   return elements;
 }
 
-TrianglePacket packet_of(std::span<const Triangle> triangles, const Triangle* first) {
-  TrianglePacket packet{};
-  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-    packet.set(i, triangles[i], static_cast<std::uint32_t>(&triangles[i] - first));
-  }
-  packet.close(static_cast<std::uint32_t>(triangles.size()));
-  return packet;
+FloatPacket packet_of(std::span<const Triangle> triangles, const Triangle* first) {
+  return FloatPacket::of(triangles.data(), static_cast<std::uint32_t>(triangles.size()),
+                         static_cast<std::uint32_t>(triangles.data() - first));
 }
 
 PointPacket packet_of(std::span<const Vec3> points, const Vec3* /*first*/) {
@@ -70,6 +66,8 @@ Facing facing_of(std::span<const Triangle> triangles) {
 
 Facing facing_of(std::span<const Vec3> /*points*/) { return {}; }
 
+double sum_of(const Vec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
+
 /// Least share of the triangles' areas that their area vectors add up to if they share a direction.
 /// For others a slab says no more than the box.
 constexpr double kLeastShared = 0.5;
@@ -93,6 +91,25 @@ struct WideTreeOf<Element>::Part {
     box = box.united(next.box);
   }
 };
+
+FloatPacket FloatPacket::of(const Triangle* triangles, std::uint32_t used, std::uint32_t first) {
+  FloatPacket packet{};
+  packet.origin = box_of(std::span(triangles, used)).centre();
+  double size = 0, edge = 0;
+  for (std::uint32_t i = 0; i < used; ++i) {
+    const Triangle& t = triangles[i];
+    const Triangle seen{difference(t.a, packet.origin), difference(t.b, packet.origin),
+                        difference(t.c, packet.origin)};
+    packet.set(i, seen, first + i);
+    const Vec3 ab = difference(t.b, t.a), ac = difference(t.c, t.a), bc = difference(t.c, t.b);
+    size = std::max(size, sum_of(seen.a) + std::max(sum_of(ab), sum_of(ac)));
+    edge = std::max({edge, length(ab), length(ac), length(bc)});
+  }
+  packet.size = WideBoxes::above(size);
+  packet.edge = WideBoxes::above(edge);
+  packet.close(used);
+  return packet;
+}
 
 CLEARWAY_SIMD_CLONES
 void WideBoxes::to_slabs_in_vectors(const Node& node, const Slabs& slabs, const HullTarget& from,

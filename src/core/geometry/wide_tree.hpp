@@ -9,7 +9,8 @@
 namespace clearway {
 
 /// A bounding volume hierarchy over the parts of a ModelTreeOf with eight children for each node,
-/// so that one instruction tests eight boxes or elements. It is a third as deep as that tree.
+/// so that one instruction tests eight boxes or points, or 16 triangles. It is a third as deep as
+/// that tree.
 template <typename Element>
 class WideTreeOf {
  public:

@@ -7,12 +7,16 @@
 #include "core/geometry/box.hpp"
 #include "core/geometry/model_element.hpp"
 #include "core/geometry/triangle_packet.hpp"
+#include "core/util/device_bits.hpp"
+#include "core/util/lanes.hpp"
 
 namespace clearway {
 
 /// Up to eight points of a wide tree.
 struct PointPacket {
   static constexpr std::uint32_t kMost = 8;
+
+  using Real = double;  ///< the type of its distances
 
   double at[3][kMost];  ///< coordinates by axis; places behind `count` repeat the last point
   std::uint32_t count;
@@ -22,7 +26,7 @@ struct PointPacket {
 
 /// The packet type that holds several elements of a model.
 template <typename Element>
-using PacketOf = std::conditional_t<kIsTriangle<Element>, TrianglePacket, PointPacket>;
+using PacketOf = std::conditional_t<kIsTriangle<Element>, FloatPacket, PointPacket>;
 
 /// A set of places whose distances to elements are asked for: the triangle of three corners, and a
 /// box around it.
@@ -250,10 +254,18 @@ struct WideTreeRefOf : WideBoxes {
       if (next.squared > limit) continue;
       if (next.level == levels) {
         const Packet& packet = packets[next.index];
-        double squared[Packet::kMost];
+        typename Packet::Real squared[Packet::kMost];
         to_elements(packet, squared);
-        for (std::uint32_t i = 0; i < packet.count; ++i) {
-          if (!(squared[i] > within()) && visit(packet, i)) return true;
+        if constexpr (kIsTriangle<Element>) {
+          std::uint32_t near = lanes_within(squared, limit) & (0xffffffffU >> (32 - packet.count));
+          for (; near != 0; near &= near - 1) {
+            const std::uint32_t i = lowest_bit(near);
+            if (!(static_cast<double>(squared[i]) > within()) && visit(packet, i)) return true;
+          }
+        } else {
+          for (std::uint32_t i = 0; i < packet.count; ++i) {
+            if (!(squared[i] > within()) && visit(packet, i)) return true;
+          }
         }
         continue;
       }
@@ -262,8 +274,9 @@ struct WideTreeRefOf : WideBoxes {
       to_children(node, from, squared);
       const std::uint32_t width = children(next.level);
       const std::uint32_t begin = count;
-      for (std::uint32_t i = 0; i < width; ++i) {
-        if (squared[i] > limit) continue;
+      std::uint32_t near = lanes_within(squared, limit) & ((1U << width) - 1);
+      for (; near != 0; near &= near - 1) {
+        const std::uint32_t i = lowest_bit(near);
         std::uint32_t at = count++;
         for (; at > begin && open[at - 1].squared < squared[i]; --at) open[at] = open[at - 1];
         open[at] = {squared[i], next.index * kWidth + i, next.level + 1};

@@ -33,16 +33,28 @@ bool is_doubt(std::string_view code) {
   return std::ranges::find(kDoubts, code) != kDoubts.end();
 }
 
-std::vector<std::string> doubts_among(const std::vector<Message>& warnings) {
-  std::vector<std::string> doubts;
+namespace {
+
+/// The codes of the warnings for which is_doubt() is as given, each once, in alphabetical order.
+std::vector<std::string> codes_among(const std::vector<Message>& warnings, bool doubts) {
+  std::vector<std::string> codes;
   for (const Message& warning : warnings) {
-    if (warning.severity == Message::Severity::kWarning && is_doubt(warning.code)) {
-      doubts.push_back(warning.code);
-    }
+    const bool is_warning = warning.severity == Message::Severity::kWarning;
+    if (is_warning && is_doubt(warning.code) == doubts) codes.push_back(warning.code);
   }
-  std::ranges::sort(doubts);
-  doubts.erase(std::unique(doubts.begin(), doubts.end()), doubts.end());
-  return doubts;
+  std::ranges::sort(codes);
+  codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
+  return codes;
+}
+
+}  // namespace
+
+std::vector<std::string> doubts_among(const std::vector<Message>& warnings) {
+  return codes_among(warnings, true);
+}
+
+std::vector<std::string> codes_beside_doubts(const std::vector<Message>& warnings) {
+  return codes_among(warnings, false);
 }
 
 Verdict Answer::verdict() const {

@@ -90,10 +90,10 @@ typename HitRuns<Element>::Answer HitRuns<Element>::search(const Vec3& e, std::u
     };
     made().wide.ref().any_nearest_first(
         curve.hull(), [&] { return squared_ball; },
-        [&](const TrianglePacket& packet, double(&out)[TrianglePacket::kMost]) {
+        [&](const FloatPacket& packet, float(&out)[FloatPacket::kMost]) {
           curve.to_triangles(packet, out);
         },
-        [&](const TrianglePacket& packet, std::uint32_t i) {
+        [&](const FloatPacket& packet, std::uint32_t i) {
           is_near = true;
           const Triangle& t = sweep_.model.elements[packet.index[i]];
           if (smooth.is_one_place()) return visit_pose(node.first, t);

@@ -41,11 +41,13 @@ class PointClearance {
     }
   }
 
-  CLEARWAY_HD void offer(std::uint32_t pose, const Element& m) {
+  /// Takes the model's element at a pose for the best if it is. Returns whether it did.
+  CLEARWAY_HD bool offer(std::uint32_t pose, const Element& m) {
     const double squared = squared_distance(e_, transform(sweep_.motion.poses[pose], m));
-    if (!(squared < best_.squared || (squared == best_.squared && pose < best_.pose))) return;
+    if (!(squared < best_.squared || (squared == best_.squared && pose < best_.pose))) return false;
     near_ = m;
     set_best(squared, pose);
+    return true;
   }
 
   /// Searches every pose of some nodes, at most kMostNodes. It first looks once at each, with those
@@ -173,30 +175,18 @@ class PointClearance {
     double squared = squared_ball(least, error);
     sweep_.wide.any_nearest_first(
         curve.hull(), [&] { return squared; },
-        [&](const TrianglePacket& packet, double(&out)[TrianglePacket::kMost]) {
+        [&](const FloatPacket& packet, float(&out)[FloatPacket::kMost]) {
           curve.to_triangles(packet, out);
         },
-        [&](const TrianglePacket& packet, std::uint32_t i) {
-          if (one_place) {
-            offer(node.first, sweep_.model.elements[packet.index[i]]);
-          } else {
-            search_poses(node, packet, i, curve, least, error);
-          }
-          squared = squared_ball(least, error);
-          return false;
-        });
-  }
-
-  /// Tests one triangle against the poses of a smooth node, the likely nearest first.
-  CLEARWAY_HD void search_poses(const MotionNode& node, const TrianglePacket& packet,
-                                std::uint32_t i, const TriangleCurve& curve, double least,
-                                double error) {
-    const StoredElement<Element>& t = sweep_.model.elements[packet.index[i]];
-    curve.any_place(
-        packet, i, node.count, [&] { return squared_ball(least, error); },
-        [&](std::uint32_t k) {
-          offer(node.first + k, t);
-          return false;
+        [&](const FloatPacket& packet, std::uint32_t i) {
+          const StoredElement<Element>& t = sweep_.model.elements[packet.index[i]];
+          const auto try_pose = [&](std::uint32_t k) {
+            if (offer(node.first + k, t)) squared = squared_ball(least, error);
+            return false;
+          };
+          if (one_place) return try_pose(0);
+          return curve.any_place(
+              packet, i, node.count, [&] { return squared; }, try_pose);
         });
   }
 

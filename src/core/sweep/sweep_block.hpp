@@ -25,9 +25,10 @@ class SweepBlock {
 
   /// The memory that the lanes share.
   struct Shared {
-    std::uint32_t open[kOpen];    ///< nodes to be looked at
-    std::uint32_t queue[kQueue];  ///< nodes at which points are to be searched
-    std::uint32_t joined;         ///< number of queued nodes after joining them for clearances
+    std::uint32_t open[kOpen];     ///< nodes to be looked at
+    std::uint32_t queue[kQueue];   ///< nodes at which points are to be searched
+    std::uint32_t sorted[kQueue];  ///< the queue in the order of the poses, for clearances
+    std::uint32_t joined;          ///< number of sorted nodes after joining them
   };
 
   CLEARWAY_HD SweepBlock(const SweepPageOf<Element>& job, std::uint32_t block, Shared& shared,
@@ -159,13 +160,31 @@ class SweepBlock {
       SweepHits<Warp, Element>(job_, statistics_)
           .search_half(first + i, {shared_.queue, queued_}, false);
     }
+    sort_queue();
     Warp::each([&](std::uint32_t lane) {
-      if (lane == 0) shared_.joined = job_.sweep.motion.join_smooth(shared_.queue, queued_);
+      if (lane == 0) shared_.joined = job_.sweep.motion.join_smooth(shared_.sorted, queued_);
     });
     for (std::uint32_t i = 0; i < halves(); ++i) {
       SweepClearances<Warp, Element>(job_, first + i, statistics_)
-          .search({shared_.queue, shared_.joined});
+          .search({shared_.sorted, shared_.joined});
     }
+  }
+
+  /// Puts the queue in the order of the poses, which is that of the nodes' numbers because no node
+  /// holds another one. Nodes come to the queue with later halves first, and those that are not in
+  /// order are never joined.
+  CLEARWAY_HD void sort_queue() {
+    Warp::each([&](std::uint32_t lane) {
+      for (std::uint32_t i = lane; i < queued_; i += kWarpLanes) {
+        const std::uint32_t node = shared_.queue[i];
+        std::uint32_t before = 0;
+        for (std::uint32_t k = 0; k < queued_; ++k) {
+          const std::uint32_t other = shared_.queue[k];
+          before += other < node || (other == node && k < i) ? 1 : 0;
+        }
+        shared_.sorted[before] = node;
+      }
+    });
   }
 
   /// Puts the whole queue on the page's list, or nothing if there is no room. Returns whether there

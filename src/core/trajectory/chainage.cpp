@@ -11,6 +11,14 @@ double step_length(const Pose& from, const Pose& to) {
   return std::sqrt(squared_distance(to.position(), from.position()));
 }
 
+/// The way from one pose to another; none where they are too close for it to say where it leads.
+std::optional<Vec3> way(const Pose& from, const Pose& to) {
+  const Vec3 out = to.position() - from.position();
+  const double size = length(out);
+  if (!(size >= 0.1)) return std::nullopt;
+  return (1 / size) * out;
+}
+
 }  // namespace
 
 std::vector<double> chainage_of(std::span<const Pose> poses) {
@@ -25,6 +33,16 @@ double path_length(std::span<const Pose> poses) {
   double length = 0;
   for (std::size_t i = 1; i < poses.size(); ++i) length += step_length(poses[i - 1], poses[i]);
   return length;
+}
+
+std::optional<Vec3> travel_direction(std::span<const Pose> poses, std::size_t at) {
+  std::optional<Vec3> in, out;
+  std::size_t before = at, after = at;
+  while (!in && before > 0) in = way(poses[--before], poses[at]);
+  while (!out && after + 1 < poses.size()) out = way(poses[at], poses[++after]);
+  if (!in || !out) return in ? in : out;
+  if (dot(*in, *out) <= 0) return in;  // turns back
+  return way(poses[before], poses[after]);
 }
 
 }  // namespace clearway

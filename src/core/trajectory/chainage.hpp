@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "clearway/pose.hpp"
+#include "clearway/vec3.hpp"
 
 namespace clearway {
 
@@ -13,5 +16,11 @@ std::vector<double> chainage_of(std::span<const Pose> poses);
 
 /// The chainage of the last pose, metres; 0 where there are no poses.
 double path_length(std::span<const Pose> poses);
+
+/// The direction in which the path runs at a pose, a unit vector: that of the chord from the last
+/// pose before it to the first one after it, or to the pose itself where the path ends or turns
+/// back there. Poses within 0.1 m of it are passed over, because a vehicle that stands still
+/// jitters in any direction. None where no pose is farther away.
+std::optional<Vec3> travel_direction(std::span<const Pose> poses, std::size_t at);
 
 }  // namespace clearway

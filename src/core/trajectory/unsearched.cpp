@@ -54,12 +54,12 @@ std::vector<UnsearchedStretch> unsearched_stretches(std::span<const Pose> path,
       continue;
     }
     if (set != before) {
-      stretches.push_back({.first_pose = i,
+      stretches.push_back({.first_pose = missing[i].any() ? i : i + 1,
                            .chainage_from = chainage[i],
                            .bodies = members_of(set),
                            .has_answer = set.count() < bodies.size()});
     }
-    stretches.back().last_pose = i + 1;
+    stretches.back().last_pose = missing[i + 1].any() ? i + 1 : i;
     stretches.back().chainage_to = chainage[i + 1];
     before = set;
   }

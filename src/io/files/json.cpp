@@ -42,6 +42,34 @@ void check_nesting(std::string_view text) {
   }
 }
 
+/// What is wrong with a text, for people who wrote it. what: the library's description.
+std::string in_plain_words(const std::string& what) {
+  const auto has = [&](const char* part) { return what.find(part) != std::string::npos; };
+  const std::string place = what.substr(0, what.find(": ") + 2);  // "parse error at line 3, ...: "
+  std::string last;
+  if (const auto begin = what.find("; last read: "); begin != std::string::npos) {
+    last = what.substr(begin + 2, what.find("'; ", begin) - begin - 1);
+  }
+  if (has("ill-formed UTF-8") || !has("syntax error")) return what;
+  if (has("unexpected end of input")) {
+    return place + "the text ends too early; a bracket, a brace or a quote is not closed";
+  }
+  if (has("missing closing quote")) return place + "a text in quotes has no closing quote";
+  if (has("invalid literal")) {
+    return place + "a word that is not JSON; texts and names stand in double quotes (" + last + ")";
+  }
+  if (has("object key - unexpected '}'")) return place + "a comma too many, before '}'";
+  if (has("parsing value - unexpected ']'")) {
+    return place + "a comma too many or a value too few, before ']'";
+  }
+  if (has("parsing value - unexpected '}'")) return place + "a value is missing before '}'";
+  if (has("parsing object key")) return place + "a name in double quotes is expected here";
+  if (has("parsing object separator")) return place + "a colon is missing after the name";
+  if (has("parsing object - unexpected")) return place + "a comma or '}' is missing before this";
+  if (has("parsing array - unexpected")) return place + "a comma or ']' is missing before this";
+  return what;
+}
+
 /// Builds the value in linear time. The library's own builder compares each new key with all
 /// earlier ones, and with a callback also visits all earlier elements of a list at each new one.
 class ValueBuilder : public nlohmann::json_sax<ordered_json> {
@@ -74,6 +102,7 @@ class ValueBuilder : public nlohmann::json_sax<ordered_json> {
     std::string what = error.what();  // "[json.exception...] parse error at line 3, column 5: ..."
     const std::size_t begin = what.find("] ");
     if (begin != std::string::npos) what.erase(0, begin + 2);
+    what = in_plain_words(what);
     if (what.size() > kMostBytes) what = what.substr(0, kMostBytes) + " ...";
     throw JsonError("is no JSON: " + what);
   }

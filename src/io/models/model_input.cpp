@@ -255,6 +255,10 @@ void tell_bend(const ModelInput& input, double allowed, const std::string& of_wh
 std::string contents_of(const ModelInput& input) {
   const auto& [segments, points] = std::pair(input.remarks.segments, input.remarks.single_points);
   const std::uint64_t triangles = input.mesh.triangles.size() - segments - points;
+  if (triangles == 0 && segments > 0) {
+    return counted(segments, "line segment") +
+           (points > 0 ? " and " + counted(points, "single point") : "");
+  }
   std::string text = counted(triangles, "triangle");
   if (segments > 0) text += (points > 0 ? ", " : " and ") + counted(segments, "line segment");
   if (points > 0) text += " and " + counted(points, "single point");
@@ -268,8 +272,8 @@ Message loose_vertices_warning(const ModelInput& input, std::uint64_t vertices) 
       input.path.string() + ": " + counted(vertices, "vertex", "vertices") +
           (vertices == 1 ? " belongs" : " belong") +
           " to no face, line or point of the file, and " + (vertices == 1 ? "is" : "are") +
-          " not part of the model. If they stand for a thing, such as a mast, the answer leaves "
-          "it out: join them by lines in the program that made the file",
+          " not part of the model. If they are meant to show a part of the vehicle, such as a "
+          "mast, the search does not see it: join them by lines in the program that made the file",
       {{"vertices", static_cast<double>(vertices)}}};
 }
 

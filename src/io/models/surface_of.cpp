@@ -68,6 +68,7 @@ class HeightCut {
 void leave_out_below(const ModelInput& input, double above, TriangleMesh& mesh,
                      std::vector<Message>& messages) {
   const std::size_t all = mesh.triangles.size();
+  const bool has_lines = input.remarks.segments + input.remarks.single_points > 0;
   if (!std::isfinite(above)) {
     throw UsageError(input.path.string() + ": " + shown(above) +
                      " m as the lowest height of the model; expected a finite number");
@@ -75,15 +76,17 @@ void leave_out_below(const ModelInput& input, double above, TriangleMesh& mesh,
   HeightCut cut(mesh, above);
   mesh = cut.take();
   if (mesh.triangles.empty()) {
-    refuse(input.path.string(),
-           "all " + format_count(all) + " triangles of the model are below z = " +
-               format_number(above) + " m; expected one at least that is not left out");
+    refuse(input.path.string(), "all of the model (" + contents_of(input) +
+                                    ") is below z = " + format_number(above) +
+                                    " m; expected some of it above that height");
   }
   messages.push_back({Message::Severity::kNote,
                       "",
                       input.path.string() + ": " + format_count(cut.left_out()) + " of " +
-                          format_count(all) + " triangles are below z = " + format_number(above) +
-                          " m, and are left out; " + format_count(cut.cut()) + " are cut there",
+                          format_count(all) +
+                          (has_lines ? " triangles, lines and points" : " triangles") +
+                          " are below z = " + format_number(above) + " m, and are left out; " +
+                          format_count(cut.cut()) + " are cut there",
                       {{"left_out", static_cast<double>(cut.left_out())}, {"above", above}}});
 }
 

@@ -116,6 +116,7 @@ void add_doubts(const std::vector<Message>& warnings, Answer& answer) {
 
 void add_findings(const ResultFindings& findings, Answer& answer) {
   answer.doubts = findings.doubts;
+  answer.warned_of = findings.warned_of;
   answer.searched = findings.searched;
   if (!answer.parameters.ignores_points()) return;
   answer.ignored_colliding = findings.ignored_colliding;

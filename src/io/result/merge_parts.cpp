@@ -177,7 +177,7 @@ ResultFindings PartSet::findings() const {
     const auto& told = part.header().part->warnings;
     warnings.insert(warnings.end(), told.begin(), told.end());
   }
-  ResultFindings out{.doubts = doubts_among(warnings)};
+  ResultFindings out{.doubts = doubts_among(warnings), .warned_of = codes_beside_doubts(warnings)};
   for (const ResultReader& part : parts_) {
     if (!out.searched) out.searched = part.findings().searched;
     if (out.without_bodies.empty()) out.without_bodies = part.findings().without_bodies;

@@ -429,6 +429,9 @@ void write_result_findings(const hdf5::Id& file, const ResultFindings& findings)
   if (!findings.doubts.empty()) {
     hdf5::write_attribute(file, names::kDoubts, lines_of(findings.doubts));
   }
+  if (!findings.warned_of.empty()) {
+    hdf5::write_attribute(file, names::kWarnedOf, lines_of(findings.warned_of));
+  }
   if (findings.ignored_colliding) {
     hdf5::write_number(file, names::kIgnoredColliding, *findings.ignored_colliding);
   }
@@ -455,6 +458,9 @@ ResultFindings read_result_findings(const hdf5::Id& file, const std::string& nam
   ResultFindings findings;
   if (hdf5::has_attribute(file, names::kDoubts, name)) {
     findings.doubts = read_lines(file, name, names::kDoubts, "codes of warnings", kMostDoubts);
+  }
+  if (hdf5::has_attribute(file, names::kWarnedOf, name)) {
+    findings.warned_of = read_lines(file, name, names::kWarnedOf, "codes of warnings", kMostDoubts);
   }
   const auto read_count = [&](const char* attribute, std::uint64_t most) {
     std::optional<std::uint64_t> count;

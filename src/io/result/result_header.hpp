@@ -107,6 +107,8 @@ struct ResultFindings {
   /// Codes of warnings that put the question in doubt, as doubts_among() returns them. A file keeps
   /// them only where nothing collides, because only then do they change the verdict.
   std::vector<std::string> doubts = {};
+  /// Codes of the other warnings, as codes_beside_doubts() returns them, kept likewise.
+  std::vector<std::string> warned_of = {};
   /// See Answer. A file has both numbers where points are ignored, unless an earlier release wrote
   /// it.
   std::optional<std::uint64_t> ignored_colliding = {}, ignored_colliding_high = {};

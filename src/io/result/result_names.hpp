@@ -66,6 +66,7 @@ inline constexpr const char* kBoxPoints = "box_points";
 
 // Codes, one per line; only where nothing collides.
 inline constexpr const char* kDoubts = "doubts";
+inline constexpr const char* kWarnedOf = "warned_of";
 // Only where points are ignored.
 inline constexpr const char* kIgnoredColliding = "ignored_colliding";
 // Only where points are ignored.

@@ -191,6 +191,7 @@ namespace names = result_names;
 
 ResultFindings without_doubts(ResultFindings findings) {
   findings.doubts.clear();
+  findings.warned_of.clear();
   return findings;
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <system_error>
 #include <utility>
@@ -18,8 +19,7 @@ constexpr std::size_t kMostNames = 5;  // at most so many file names in a messag
 
 /// The files directly in a folder, in byte order of their names, without hidden ones.
 struct Folder {
-  std::vector<fs::path> scans, others;
-  std::size_t folders = 0;
+  std::vector<fs::path> scans, others, folders;
 };
 
 bool in_byte_order(const fs::path& a, const fs::path& b) {
@@ -35,7 +35,7 @@ Folder look_into(const fs::path& path) {
     std::error_code unknown;
     if (at->path().filename().native().starts_with('.')) continue;
     if (at->is_directory(unknown)) {
-      ++found.folders;
+      found.folders.push_back(at->path());
     } else {
       (is_surely_point_file(at->path()) ? found.scans : found.others).push_back(at->path());
     }
@@ -43,17 +43,47 @@ Folder look_into(const fs::path& path) {
   if (error) throw ResourceError(path.string() + ": cannot list the folder: " + error.message());
   std::sort(found.scans.begin(), found.scans.end(), in_byte_order);
   std::sort(found.others.begin(), found.others.end(), in_byte_order);
+  std::sort(found.folders.begin(), found.folders.end(), in_byte_order);
   return found;
 }
 
+/// Whether a folder, or a folder in it, holds a point file. Of very large trees only the beginning
+/// is looked at.
+bool holds_point_files(const fs::path& folder) {
+  constexpr int kMostEntries = 10'000, kMostDepth = 4;
+  std::error_code error;
+  int looked_at = 0;
+  fs::recursive_directory_iterator at(folder, error);
+  for (; !error && at != fs::recursive_directory_iterator() && looked_at < kMostEntries;
+       at.increment(error), ++looked_at) {
+    if (at.depth() >= kMostDepth) at.disable_recursion_pending();
+    std::error_code unknown;
+    if (at->is_regular_file(unknown) && is_surely_point_file(at->path())) return true;
+  }
+  return false;
+}
+
+/// Whether a file whose ending does not say so can be read as points: a text of coordinates, or a
+/// scan with another name.
+bool looks_like_points(const fs::path& file) {
+  std::error_code unknown;
+  if (!fs::is_regular_file(file, unknown)) return false;
+  try {
+    PointBatch batch;
+    return open_point_file(file)->read(batch) && batch.size() > 0;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 /// The names in a message, as in "a.txt, b.csv and 7 more".
-std::string names_of(const std::vector<fs::path>& files) {
+std::string names_of(const std::vector<fs::path>& files, std::size_t most = kMostNames) {
   std::string text;
-  for (std::size_t i = 0; i < std::min(files.size(), kMostNames); ++i) {
+  for (std::size_t i = 0; i < std::min(files.size(), most); ++i) {
     text += (i > 0 ? ", " : "") + files[i].filename().string();
   }
-  if (files.size() <= kMostNames) return text;
-  return text + " and " + std::to_string(files.size() - kMostNames) + " more";
+  if (files.size() <= most) return text;
+  return text + " and " + std::to_string(files.size() - most) + " more";
 }
 
 std::string counted(std::size_t count, const std::string& noun) {
@@ -80,6 +110,39 @@ std::vector<fs::path> take_poses(Folder& folder) {
   return unused;
 }
 
+/// Warns of folders and files that are left out although they have points, and removes them from
+/// `folder`.
+void warn_of_left_out(const fs::path& path, Folder& folder, std::vector<Message>& remarks) {
+  constexpr std::size_t kMost = 3;
+  const auto take = [](std::vector<fs::path>& from, auto has_points) {
+    const auto kept = std::stable_partition(from.begin(), from.end(), std::not_fn(has_points));
+    const std::vector<fs::path> taken(kept, from.end());
+    from.erase(kept, from.end());
+    return taken;
+  };
+  const std::vector<fs::path> folders = take(folder.folders, holds_point_files);
+  const std::vector<fs::path> files = take(folder.others, looks_like_points);
+  if (folders.empty() && files.empty()) return;
+  std::string what;
+  if (!folders.empty()) {
+    what = counted(folders.size(), "folder") +
+           (folders.size() == 1 ? " that holds point files (" : " that hold point files (") +
+           names_of(folders, kMost) + ")";
+  }
+  if (!files.empty()) {
+    what += (what.empty() ? "" : " and ") + counted(files.size(), "file") +
+            (files.size() == 1 ? " that looks like points (" : " that look like points (") +
+            names_of(files, kMost) + ")";
+  }
+  remarks.push_back({Message::Severity::kWarning,
+                     "left-out",
+                     path.string() + ": left out " + what +
+                         ". The environment lacks them; if they belong to it, name them as inputs "
+                         "too",
+                     {{"files", static_cast<double>(files.size())},
+                      {"folders", static_cast<double>(folders.size())}}});
+}
+
 void remark_on(const fs::path& path, Folder folder, std::vector<Message>& remarks) {
   const std::vector<fs::path> poses = take_poses(folder);
   if (!poses.empty()) {
@@ -91,19 +154,21 @@ void remark_on(const fs::path& path, Folder folder, std::vector<Message>& remark
                            "stay as they are",
                        {{"files", static_cast<double>(poses.size())}}});
   }
-  if (folder.others.empty() && folder.folders == 0) return;
+  warn_of_left_out(path, folder, remarks);
+  if (folder.others.empty() && folder.folders.empty()) return;
   std::string what;
   if (!folder.others.empty()) {
     what = counted(folder.others.size(), "file") + " (" + names_of(folder.others) + ")";
   }
-  if (folder.folders > 0) {
-    what += (what.empty() ? "" : " and ") + counted(folder.folders, "folder");
+  if (!folder.folders.empty()) {
+    what += (what.empty() ? "" : " and ") + counted(folder.folders.size(), "folder") + " (" +
+            names_of(folder.folders) + ")";
   }
   remarks.push_back({Message::Severity::kNote,
                      "left-out",
                      path.string() + ": left out " + what,
                      {{"files", static_cast<double>(folder.others.size())},
-                      {"folders", static_cast<double>(folder.folders)}}});
+                      {"folders", static_cast<double>(folder.folders.size())}}});
 }
 
 std::vector<fs::path> files_of_folder(const fs::path& path, std::vector<Message>* remarks) {

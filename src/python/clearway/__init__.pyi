@@ -186,6 +186,7 @@ class Answer:
     verdict: Final[Literal["clear", "conflict", "undecided", "unknown"]]
     reasons: Final[list[str]]
     doubts: Final[list[str]]
+    warned_of: Final[list[str]]
     parameters: Final[QueryParameters]
     environment_points: Final[int]
     model_points: Final[int]
@@ -336,12 +337,12 @@ class ReportSummary:
     facts: Final[str]
 
 def read_model_points(
-    path: _AnyPath, *, spacing: float = 0.0, unit: float | str = 0.0, environment_unit: float | str = 1.0,
+    path: _AnyPath, *, spacing: float = 0.0, unit: float | str = 0.0, environment_unit: float | str | None = None,
     vertices_only: bool = False, above: float | None = None, messages: list[Message] | None = None,
 ) -> _Doubles: ...
 def read_model(
     path: _AnyPath, model_as: Literal["auto", "points", "surface", "solid"] = "auto", *, spacing: float = 0.0,
-    unit: float | str = 0.0, environment_unit: float | str = 1.0, vertices_only: bool = False,
+    unit: float | str = 0.0, environment_unit: float | str | None = None, vertices_only: bool = False,
     above: float | None = None, messages: list[Message] | None = None,
 ) -> Model: ...
 def read_trajectory(
@@ -349,12 +350,12 @@ def read_trajectory(
     angle_unit: Literal["declared", "deg", "rad"] = "declared",
     angle_frame: Literal["declared", "ned", "enu"] = "declared", crs: str = "",
     default_crs: str = "", datum: str = "", metres_per_unit: float | str = 0.0,
-    environment_unit: float | str = 1.0, lever_arm: Sequence[float] = (0.0, 0.0, 0.0),
+    environment_unit: float | str | None = None, lever_arm: Sequence[float] = (0.0, 0.0, 0.0),
     messages: list[Message] | None = None, labels: PoseLabels | None = None,
 ) -> _Doubles: ...
 def read_vehicle(
     file: _AnyPath, poses: ArrayLike, model_as: Literal["auto", "points", "surface", "solid"] = "auto", *,
-    spacing: float = 0.0, unit: float | str = 0.0, environment_unit: float | str = 1.0,
+    spacing: float = 0.0, unit: float | str = 0.0, environment_unit: float | str | None = None,
     vertices_only: bool = False, above: float | None = None, format: str = "auto",
     allow_non_rigid: bool = False, angle_unit: Literal["declared", "deg", "rad"] = "declared",
     angle_frame: Literal["declared", "ned", "enu"] = "declared", crs: str = "",
@@ -392,7 +393,7 @@ def find_conflicts(
     bodies: Sequence[Body] = (), memory_bytes: int = 4294967296, threads: int = 0, progress: _Progress | None = None, stop: _Stop | None = None,
 ) -> Conflicts: ...
 def write_report(
-    result: Result, store: Store, model: ArrayLike | Model, poses: ArrayLike, output: _AnyPath, *,
+    result: Result, store: Store, model: ArrayLike | Model | None, poses: ArrayLike, output: _AnyPath, *,
     title: str = "", project: str = "", client: str = "", author: str = "", date: str = "",
     result_name: str = "", environment_name: str = "", model_name: str = "",
     trajectory_name: str = "", model_above: float | None = None, model_left_out: int = 0,

@@ -201,12 +201,17 @@ def _check_of(call, name):
     return _OF_CALL.get((call, name)) or _CHECKS.get(name, _anything)
 
 
+# What the command line calls an argument that is named otherwise here.
+_MEANT = {"force": "overwrite", "env": "store", "environment": "store", "trajectory": "poses",
+          "vehicle": "bodies", "memory": "memory_bytes", "device_memory": "device_memory_bytes"}
+
+
 def _refuse_unknown(call, signature, named):
     known = [n for n in signature.parameters if n != "self"]
     for name in named:
         if name in known:
             continue
-        near = difflib.get_close_matches(name, known, 1)
+        near = [_MEANT[name]] if _MEANT.get(name) in known else difflib.get_close_matches(name, known, 1)
         raise TypeError(f"{call}() has no argument '{name}'"
                         + (f"; did you mean '{near[0]}'?" if near else ""))
 

@@ -32,10 +32,17 @@ function goTo(conflict) {
   byId("conflicts").scrollIntoView();
 }
 
+/** The number of conflicts; where all groups are too small to be listed, that of these. */
+function conflictsTile({ count: listed, small_groups: small }) {
+  if (listed > 0 || small === 0) return tile(count(listed), listed === 1 ? "conflict" : "conflicts");
+  return tile(count(small), `${small === 1 ? "place" : "places"}, too small for the list`);
+}
+
 function conflictTiles() {
   const { facts } = page, worst = worstConflict(), tiles = [];
-  if (facts.conflicts) tiles.push(tile(count(facts.conflicts.count), "conflicts"));
-  tiles.push(tile(count(facts.colliding_points), "colliding points"));
+  if (facts.conflicts) tiles.push(conflictsTile(facts.conflicts));
+  const points = facts.colliding_points;
+  tiles.push(tile(count(points), points === 1 ? "colliding point" : "colliding points"));
   if (worst) {
     const inside = insidePoints();
     if (inside > 0) tiles.push(tile(count(inside), "of them inside the vehicle"));
@@ -124,7 +131,9 @@ function spacingSentence({ query: { radius }, inputs: { model: { spacing } } }) 
 function verdictSentences() {
   const { facts } = page, radius = shortLength(facts.query.radius), worst = worstConflict();
   if (facts.verdict === "clear") {
-    return [`Every point of the environment keeps at least ${radius} from the vehicle, ` +
+    const points = facts.ignored === null ? "point of the environment" : "searched point";
+    const vehicle = facts.inputs.model.spacing === null ? "the vehicle" : "the points of the model";
+    return [`Every ${points} keeps at least ${radius} from ${vehicle}, ` +
             (facts.unsearched.length > 0 ? "at all poses that it has."
                  : `at all ${plural(facts.inputs.trajectory.poses, "pose")}.`) +
             spacingSentence(facts), leastSentence()];

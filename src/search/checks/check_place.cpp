@@ -216,15 +216,18 @@ class Trial {
   std::string shift_text() const {
     std::string by;
     for (int k = 0; k < 3; ++k) {
-      by += (k == 0 ? "" : ", ") + figure(question_.environment.centre()[k] - path_.centre()[k]);
+      const double shift = question_.environment.centre()[k] - path_.centre()[k];
+      const bool is_noise = std::abs(shift) < 0.001 * question_.metre;
+      by += (k == 0 ? "" : ", ") + figure(is_noise ? 0 : shift);
     }
-    return by;
+    return by + " " + unit_name(question_.unit);
   }
 
   std::string shift() const {
     if (fits_by_shift()) {
       return "A shift of the path by about " + shift_text() +
-             " would bring it there. Is one of the two in local coordinates, or in another grid?";
+             " would bring it there. Perhaps one of the two is in local coordinates, or in another "
+             "grid";
     }
     return "Compare the frame and the unit of path and scan";
   }
@@ -353,11 +356,14 @@ bool stays_above_ground(const Question& question, const PathLooks& looks, Messag
   const Heights heights(high);
   const double usual = heights.at(0.5), spread = heights.spread();
   if (spread > std::max(kSteady * question.metre, usual / 4)) return false;
-  log.warn("floats",
-           "along the path the model stays " + length_text(usual, question.unit) +
-               " above the highest point below it, and touches no ground. Does it fly or hang? If "
-               "not, its heights have another zero: an antenna's, an ellipsoid's, or the model's",
-           {{"height", usual}, {"spread", spread}});
+  log.warn(
+      "floats",
+      "along the path the model stays " + length_text(usual, question.unit) +
+          " above the highest point below it, and touches no ground. Does it fly or hang? If "
+          "not, the heights of the path are not those of the wheels: they may be those of an "
+          "antenna, or count from the ellipsoid and not from the sea, or z = 0 of the model is "
+          "not where it stands",
+      {{"height", usual}, {"spread", spread}});
   return true;
 }
 

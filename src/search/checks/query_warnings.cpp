@@ -9,6 +9,7 @@
 
 #include "clearway/error.hpp"
 #include "core/trajectory/chainage.hpp"
+#include "core/trajectory/follow/follow_path.hpp"
 #include "io/models/sample_mesh.hpp"
 #include "search/checks/checks.hpp"
 #include "search/checks/question.hpp"
@@ -121,11 +122,12 @@ void tell_of_bodies(const std::vector<BodyMessages>& bodies, MessageLog& log) {
 
 namespace {
 
-void warn_of_unit(LengthUnit unit, MessageLog& log) {
+void warn_of_unit(LengthUnit unit, std::span<const Message> told, MessageLog& log) {
   if (unit == LengthUnit::kUnknown) {
     log.note("the environment names no unit of length, so metres are assumed");
   }
-  if (unit == LengthUnit::kFoot || unit == LengthUnit::kUsSurveyFoot) {
+  const bool is_told = std::ranges::find(told, "feet", &Message::code) != told.end();
+  if ((unit == LengthUnit::kFoot || unit == LengthUnit::kUsSurveyFoot) && !is_told) {
     log.warn(
         "feet",
         "the environment is in feet: lengths, model and trajectory without a unit of their own are "
@@ -219,9 +221,44 @@ void warn_of_body(const StoreReader& store, const Body& body, const Query& query
   check_heading(question, log);
 }
 
+/// The indices of the path's poses at which a body has none, ascending.
+std::vector<std::uint64_t> missing_poses(const Body& body, std::size_t path_poses) {
+  std::vector<std::uint64_t> missing;
+  auto next = body.path_pose.begin();
+  for (std::uint64_t i = 0; i < path_poses; ++i) {
+    if (next != body.path_pose.end() && *next == i) {
+      ++next;
+    } else {
+      missing.push_back(i);
+    }
+  }
+  return missing;
+}
+
+/// Whether reading the vehicle, or follow(), has told already which poses a body lacks.
+bool is_told(const Body& body, std::span<const Message> told) {
+  return std::ranges::any_of(told, [&](const Message& message) {
+    return (message.code == "body-off-path" || message.code == "body-undefined") &&
+           message.text.find("body " + body.name + ": ") != std::string::npos;
+  });
+}
+
+/// Tells which bodies are not searched on a part of the path.
+void tell_missing_poses(const Query& query, std::span<const Message> told, MessageLog& log) {
+  for (const Body& body : query.bodies) {
+    const std::vector<std::uint64_t> missing = missing_poses(body, query.poses.size());
+    if (missing.empty() || body.poses.empty() || is_told(body, told)) continue;
+    log.add(off_path_message("body " + body.name, missing, query.poses.size(),
+                             "so nothing is known of it there",
+                             "Give it those poses too, or look at the stretches that were not "
+                             "searched in the report"));
+  }
+}
+
 /// path: the vehicle's path, with a model of one point.
 void warn_of_bodies(const StoreReader& store, const Question& path, const Query& query,
-                    MessageLog& log) {
+                    std::span<const Message> before, MessageLog& log) {
+  tell_missing_poses(query, before, log);
   std::vector<BodyMessages> told;
   StepChecks steps(path);
   const std::vector<double> chainage = chainage_of(query.poses);
@@ -240,12 +277,12 @@ void warn_of_bodies(const StoreReader& store, const Question& path, const Query&
 
 /// query: with a model of points. asked: the query before its surface was sampled.
 void warn_of_points(const StoreReader& store, const Query& query, const Query& asked,
-                    ModelForm view, MessageLog& log) {
+                    ModelForm view, std::span<const Message> told, MessageLog& log) {
   const LengthUnit unit = store.metadata().unit;
   if (query.poses.empty()) {
     log.warn("no-poses", "the trajectory has no poses: nothing can collide");
   }
-  warn_of_unit(unit, log);
+  warn_of_unit(unit, told, log);
   if (store.point_count() == 0) {
     log.warn("no-points", "the environment has no points: nothing can collide");
     return;
@@ -258,7 +295,7 @@ void warn_of_points(const StoreReader& store, const Query& query, const Query& a
     const Query points({Vec3{}}, query.poses, query);
     const Question path(store, unit, points);
     warn_of_flat_scan(path, log);
-    warn_of_bodies(store, path, query, log);
+    warn_of_bodies(store, path, query, told, log);
     return;
   }
   const Question question(store, unit, query);
@@ -275,13 +312,14 @@ void warn_of_points(const StoreReader& store, const Query& query, const Query& a
 
 }  // namespace
 
-void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log) {
+void warn_of_query(const StoreReader& store, const Query& query, std::span<const Message> told,
+                   MessageLog& log) {
   for (Message& warning : store_warnings(store.metadata())) log.add(std::move(warning));
   if (!query.model.is_surface())
-    return warn_of_points(store, query, query, ModelForm::kPoints, log);
+    return warn_of_points(store, query, query, ModelForm::kPoints, told, log);
   ModelForm view{};
   const Query points = sampled(query, view);
-  warn_of_points(store, points, query, view, log);
+  warn_of_points(store, points, query, view, told, log);
 }
 
 }  // namespace clearway

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,9 @@ void tell_of_bodies(const std::vector<BodyMessages>& bodies, MessageLog& log);
 
 /// Warns where a query may answer something else than was meant, because of a path in another
 /// frame, a model in another unit, or steps that skip things. Reads the store's index, and the
-/// points below a few poses. The model is not empty. Deterministic.
-void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log);
+/// points below a few poses. The model is not empty. Deterministic. told: what reading the inputs
+/// has told already, such as which poses a body lacks; it is not told again.
+void warn_of_query(const StoreReader& store, const Query& query, std::span<const Message> told,
+                   MessageLog& log);
 
 }  // namespace clearway

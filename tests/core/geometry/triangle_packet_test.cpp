@@ -65,37 +65,35 @@ TEST_CASE("a packet has its last triangle in all lanes behind it") {
   }
 }
 
-TEST_CASE("the bound of a hull is below the distance of every place of it") {
-  Random random(6);
-  std::uint64_t above = 0, close = 0, clear = 0;
+TEST_CASE("floats are as far from a place as the predicate says, within their slack") {
+  Random random(8);
+  std::uint64_t wrong = 0, loose = 0;
   for (int i = 0; i < kPlaces; ++i) {
     const Triangle t = random_triangle(random);
     const Vec3 x = random_place_at(random, t);
-    const double far = longest_edge(t) * std::pow(10.0, uniform(random, -8, 2));
-    const Vec3 y = plus(x, far, random_direction(random));
-    const Vec3 way = difference(y, x);
-    const TrianglePacket packet = packet_of(t);
-    const TrianglePacket::Nearest near = packet.nearest(0, x);
-    // Every direction gives a bound; the direction of the shortest way gives a close one.
-    const bool shortest = below(random, 3) != 0;
-    const Vec3 across =
-        shortest ? near.way : plus({}, length_of(near.way), random_direction(random));
-    const double along = std::min(0.0, TrianglePacket::dot(across, way)) -
-                         4 * kUnitRoundoff * length_of(across) * length_of(way);
-    const double bound = std::sqrt(packet.from_hull(0, x, near.squared, across, along));
-    double least = root_of(x, t);
-    for (const double g : {0.01, 0.3, 0.7, 1.0, uniform(random, 0, 1)}) {
-      const Vec3 place = plus(x, g, way);
-      const double distance = root_of(place, t);
-      above += !(bound <= distance + twice_error(t, distance) + rounding_of(x) + rounding_of(way));
-      least = std::min(least, distance);
-    }
-    const bool is_clear =
-        shortest && TrianglePacket::dot(across, way) >= 0 && least > 0.01 * longest_edge(t);
-    clear += is_clear;
-    close += is_clear && bound > 0.98 * least;
+    const FloatPacket packet = FloatPacket::of(&t, 1, 7);
+    const Vec3 seen = difference(x, packet.origin);
+    const FloatVector place{static_cast<float>(seen.x), static_cast<float>(seen.y),
+                            static_cast<float>(seen.z)};
+    const double size = std::abs(seen.x) + std::abs(seen.y) + std::abs(seen.z);
+    const auto slack = static_cast<double>(packet.slack(static_cast<float>(size)));
+    const auto squared = static_cast<double>(packet.nearest(FloatPacket::kMost - 1, place).squared);
+    const double distance = root_of(x, t);
+    wrong += !(std::abs(std::sqrt(squared) - distance) <=
+               slack + triangle_error(distance, longest_edge(t)) + rounding_of(x));
+    loose += slack > 1e-4 * (size + longest_edge(t)) + 1e-16;
   }
-  CHECK(above == 0);
-  CHECK(clear > 1000);
-  CHECK(close == clear);
+  CHECK(wrong == 0);
+  CHECK(loose == 0);
+}
+
+TEST_CASE("floats that may overflow have no bound, and those that vanish have one") {
+  const auto slack = [](double size) {
+    const Triangle t{{0, 0, 0}, {size, 0, 0}, {0, size, 0}};
+    return FloatPacket::of(&t, 1, 0).slack(0);
+  };
+  CHECK(slack(1e16) == static_cast<float>(kInfinity));
+  CHECK(slack(1e200) == static_cast<float>(kInfinity));
+  CHECK(slack(1e14) < 1e11F);
+  CHECK(slack(1e-60) >= 1e-17F);
 }

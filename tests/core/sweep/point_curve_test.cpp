@@ -10,8 +10,10 @@
 #include "core/geometry/predicate.hpp"
 #include "core/sweep/triangle_curve.hpp"
 #include "core/trajectory/motion_curves.hpp"
+#include "support/random_triangles.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -58,6 +60,8 @@ Vec3 random_place(std::mt19937_64& random, double beyond) {
   }
   return place;
 }
+
+double root(float squared) { return std::sqrt(static_cast<double>(squared)); }
 
 std::vector<Pose> path(std::uint32_t count, const std::function<Pose(double)>& at) {
   std::vector<Pose> poses;
@@ -204,38 +208,37 @@ TEST_CASE("a triangle's bound from a curve is below its distance from every plac
         return Vec3{static_cast<double>(of.x), static_cast<double>(of.y),
                     static_cast<double>(of.z)};
       };
-      TrianglePacket packet;
-      Triangle triangles[TrianglePacket::kMost];
-      for (std::uint32_t i = 0; i < TrianglePacket::kMost; ++i) {
-        std::normal_distribution<double> beside(0, i < 4 ? 0.05 : 0.5);
+      Triangle triangles[FloatPacket::kMost];
+      for (std::uint32_t i = 0; i < FloatPacket::kMost; ++i) {
+        std::normal_distribution<double> beside(0, i < 8 ? 0.05 : 0.5);
         Vec3* const corners[3] = {&triangles[i].a, &triangles[i].b, &triangles[i].c};
         for (Vec3* corner : corners) {
           *corner = place(std::uniform_real_distribution<double>(-0.1, 1.1)(random));
           for (int k = 0; k < 3; ++k) (*corner)[k] += beside(random);
         }
-        packet.set(i, triangles[i], i);
       }
-      packet.close(TrianglePacket::kMost);
-      double squared[TrianglePacket::kMost], from_place[TriangleCurve::kMostPlaces];
+      const FloatPacket packet = FloatPacket::of(triangles, FloatPacket::kMost, 0);
+      float squared[FloatPacket::kMost], from_place[TriangleCurve::kMostPlaces];
       curve.to_triangles(packet, squared);
-      for (std::uint32_t i = 0; i < TrianglePacket::kMost; ++i) {
+      for (std::uint32_t i = 0; i < FloatPacket::kMost; ++i) {
         double least = kInfinity;
         for (int k = 0; k <= 100; ++k) {
           const double distance = std::sqrt(squared_distance(place(k / 100.0), triangles[i]));
-          above += std::sqrt(squared[i]) > distance + 1e-9;
+          above += root(squared[i]) > distance + 1e-9;
           least = std::min(least, distance);
         }
         clear += least > 0.05;
-        close += least > 0.05 && std::sqrt(squared[i]) > 0.8 * least;
-        curve.from_parts(packet, i, 13, 0.01, from_place);
+        close += least > 0.05 && root(squared[i]) > 0.8 * least;
+        curve.from_parts(packet, i, 13, 0.01F, from_place);
         for (int k = 0; k <= 100; ++k) {
           const double distance = std::sqrt(squared_distance(place(k / 100.0), triangles[i]));
-          above += std::sqrt(from_place[k / 13]) > distance + 1e-9;
+          above += root(from_place[k / 13]) > distance + 1e-9;
         }
-        curve.from_places(packet, i, 90, 0.01, from_place);
-        for (int k = 0; k < 8; ++k) {
-          const double exact = squared_distance(place(0.9 + 0.01 * k), triangles[i]);
-          off_pose += !(std::abs(std::sqrt(from_place[k]) - std::sqrt(exact)) < 1e-9);
+        curve.from_places(packet, i, 85, 0.01F, from_place);
+        for (int k = 0; k < 16; ++k) {
+          const double exact = std::sqrt(squared_distance(place(0.85 + 0.01 * k), triangles[i]));
+          above += root(from_place[k]) > exact + 1e-9;
+          off_pose += !(root(from_place[k]) > exact - 2e-3);
         }
       }
     }
@@ -244,4 +247,48 @@ TEST_CASE("a triangle's bound from a curve is below its distance from every plac
   CHECK(off_pose == 0);
   CHECK(clear > 1000);
   CHECK(close > clear / 2);
+}
+
+TEST_CASE("bounds from curves hold for triangles and paths of every size") {
+  Random random(9);
+  std::size_t above = 0, positive = 0;
+  for (int i = 0; i < 6'000; ++i) {
+    const Triangle t = random_triangle(random);
+    const double size = longest_edge(t) + 1e-12;
+    // The path's steps are far shorter or longer than the triangle, and a little bent.
+    const double far = size * std::pow(10.0, uniform(random, -3, 3));
+    const Vec3 way = plus({}, far, random_direction(random));
+    const Vec3 bend = plus({}, 0.1 * far * uniform(random, 0, 1), random_direction(random));
+    const Vec3 start = plus(random_place_at(random, t), -uniform(random, 0, 1), way);
+    std::vector<Pose> poses;
+    constexpr int kPoses = 41;
+    for (int k = 0; k < kPoses; ++k) {
+      const double s = k / (kPoses - 1.0);
+      const Vec3 at = plus(plus({}, -s, way), -s * (1 - s), bend);
+      poses.push_back({{1, 0, 0, 0, 1, 0, 0, 0, 1}, {at.x, at.y, at.z}});
+    }
+    const MotionTree motion(poses, Box{t.a, t.a});
+    const MotionTreeRef ref = motion.ref();
+    const TriangleCurve curve(ref, motion.nodes()[0], start);
+    const FloatPacket packet = FloatPacket::of(&t, 1, 0);
+    float of_run[FloatPacket::kMost], of_parts[TriangleCurve::kMostPlaces],
+        of_places[TriangleCurve::kMostPlaces];
+    curve.to_triangles(packet, of_run);
+    curve.from_parts(packet, 0, 4, 1.0F / (kPoses - 1), of_parts);
+    for (int k = 0; k < kPoses; ++k) {
+      if (k % 16 == 0) {
+        curve.from_places(packet, 0, static_cast<std::uint32_t>(k), 1.0F / (kPoses - 1), of_places);
+      }
+      const Vec3 x = ref.inverse_poses[k].apply(start);
+      const double distance = std::sqrt(squared_distance(x, t));
+      const double most = distance + 2 * triangle_error(distance, longest_edge(t)) +
+                          64 * kUnitRoundoff * (length_of(x) + far);
+      above += root(of_run[0]) > most;
+      above += root(of_parts[k / 4]) > most;
+      above += root(of_places[k % 16]) > most;
+      positive += of_run[0] > 0 && of_parts[k / 4] > 0 && of_places[k % 16] > 0;
+    }
+  }
+  CHECK(above == 0);
+  CHECK(positive > 50'000);
 }

@@ -38,6 +38,17 @@ TEST_CASE("JSON is read as the library reads it", "[json]") {
     CAPTURE(text);
     CHECK(complaint_about(text).starts_with("is no JSON: "));
   }
+  for (const auto& [text, words] :
+       {std::pair("{\"a\": 1,}", "a comma too many, before '}'"),
+        {"[1, 2,]", "a comma too many or a value too few, before ']'"},
+        {"{\"a\": 1 \"b\": 2}", "a comma or '}' is missing before this"},
+        {"{\"a\" 1}", "a colon is missing after the name"},
+        {"[1", "the text ends too early"},
+        {"{a: 1}", "texts and names stand in double quotes"}}) {
+    CAPTURE(text);
+    CHECK(complaint_about(text).find(words) != std::string::npos);
+    CHECK(complaint_about(text).find("expected") == std::string::npos);
+  }
   CHECK(complaint_about("[\n1, x]").find("line 2, column 4") != std::string::npos);
   CHECK(complaint_about("\"" + std::string(100'000, 'x')).size() < 400);
 }

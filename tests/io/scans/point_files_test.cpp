@@ -69,6 +69,29 @@ TEST_CASE("what is left out of a folder is said, poses of 3DTK scans are not lef
         std::vector<std::pair<std::string, double>>{{"files", 6}, {"folders", 1}});
 }
 
+TEST_CASE("what is left out of a folder although it has points is warned of, with its name") {
+  ReaderScratch scratch;
+  scratch.write("a.las", "");
+  const std::string points = "1.5 2.5 3.5\n1.6 2.5 3.5\n1.7 2.5 3.5\n";
+  for (const char* name : {"north.txt", "south.csv"}) scratch.write(name, points);
+  scratch.write("readme.txt", "scanned in May\n");
+  scratch.write("view.json", "{}");
+  for (const char* name : {"old/deep", "photos"}) {
+    std::filesystem::create_directories(scratch.folder() / name);
+  }
+  scratch.write("old/deep/b.laz", "");
+  std::vector<Message> remarks;
+  CHECK(list_point_files({scratch.folder()}, &remarks).size() == 1);
+  REQUIRE(remarks.size() == 2);
+  CHECK(remarks[0].severity == Message::Severity::kWarning);
+  CHECK(remarks[0].code == "left-out");
+  CHECK_THAT(remarks[0].text, Contains("left out 1 folder that holds point files (old) and 2 files "
+                                       "that look like points (north.txt, south.csv)"));
+  CHECK(remarks[1].severity == Message::Severity::kNote);
+  CHECK_THAT(remarks[1].text,
+             Contains("left out 2 files (readme.txt, view.json) and 1 folder (photos)"));
+}
+
 TEST_CASE("poses beside scans that are not placed by them are warned of") {
   ReaderScratch scratch;
   std::vector<Message> remarks;

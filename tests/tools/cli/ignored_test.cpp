@@ -149,8 +149,8 @@ TEST_CASE("what ignoring points hides is warned of, and what is sound is not") {
     return garden.run(arguments + "-o out.h5 --force", store);
   };
   const Outcome plant = warned(kPlant);
-  CHECK_THAT(plant.err, Contains("40 of the 40 points ignored (class 3) would collide, but only 0 "
-                                 "searched points do"));
+  CHECK_THAT(plant.err, Contains("40 of the 40 points ignored (class 3) would collide, and no "
+                                 "searched point does"));
   CHECK_THAT(plant.out, Contains("but see the"));
   CHECK_THAT(warned(kPlantBox).err, Contains("40 of the 40 points ignored (1 box)"));
   CHECK_THAT(warned("--ignore-class 6 ").err, !Contains("would collide"));
@@ -188,7 +188,7 @@ TEST_CASE("parts and journals are of what was ignored") {
   REQUIRE(garden.run(kPlant + "-o whole.h5").exit_code == 0);
   const Outcome merged = garden.program("merge p1.h5 p2.h5 -o m.h5");
   CHECK_THAT(merged.out, Contains("clear, with 40 points ignored (class 3), 40 of which would"));
-  CHECK_THAT(merged.err, Contains("would collide, but only 0 searched points do"));
+  CHECK_THAT(merged.err, Contains("would collide, and no searched point does"));
   CHECK(garden.bytes("m.h5") == garden.bytes("whole.h5"));
   const Outcome other = garden.program("merge p1.h5 q2.h5 -o n.h5");
   CHECK(other.exit_code == 3);

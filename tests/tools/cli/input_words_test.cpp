@@ -228,6 +228,8 @@ TEST_CASE("a mistyped word is named before what is then missing") {
            {"run --frobnicate", "unknown option --frobnicate (clearway run --help"},
            {"covnert a.las", "covnert: no such command; did you mean convert?"},
            {"trajectory resampel", "did you mean resample?"},
+           {"report --model-as solid",
+            "unknown option --model-as; leave it out, because the result"},
            {"run --engine swep", "swep not in"},
            {"--vesion", "did you mean --version?"}}) {
     const Outcome outcome = files.run(arguments);

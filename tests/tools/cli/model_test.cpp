@@ -377,7 +377,7 @@ TEST_CASE("the surface below a height is cut off") {
   CHECK(lowest == 0.5);
   CHECK(area == Approx(4 * 1.8 + 2 * 0.9 * (4 + 1.8)));
   check_refused(meshes.run("car.stl", "none.h5", "--model-unit mm --model-above 9"), 3,
-                "all 12 triangles of the model are below z = 9 m");
+                "all of the model (12 triangles) is below z = 9 m");
 }
 
 TEST_CASE("the vertices alone are the model when asked, in the unit of the file") {

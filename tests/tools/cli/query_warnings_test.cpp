@@ -81,7 +81,7 @@ TEST_CASE("a path in another unit or frame is warned of, with the remedy") {
       {[](const Vec3& p) {
          return Vec3{p.x, p.y, p.z + 12};
        },
-       "floats", "another zero"}};
+       "floats", "count from the ellipsoid"}};
   for (const Mistake& mistake : mistakes) {
     CAPTURE(mistake.code, mistake.remedy);
     Asked asked;

@@ -149,6 +149,26 @@ TEST_CASE("a scene in feet has the conflict that it has in metres, whoever names
   CHECK(has(codes_in(other), "two-feet"));
 }
 
+TEST_CASE("feet are no warning where every input names its unit") {
+  const StatePlane scene;
+  scene.write_scan("feet.csv", "us-ft", 1);
+  scene.convert("feet.csv");
+  scene.write_model("feet.xyz", 1);
+  scene.write_path("named.csv", "us-ft", 1);
+  scene.write_path("plain.csv", "", 1);
+  scene.write_path("metres.csv", "m", kMetresPerUsSurveyFoot);
+  const std::string plain = scene.model("feet.xyz"), named = plain + " --model-unit ft";
+  CHECK_FALSE(has(codes_in(scene.run("named.csv", named, "--radius 1ft")), "feet"));
+  const Outcome converted = scene.run("metres.csv", named, "--radius 0.3m");
+  CHECK_FALSE(has(codes_in(converted), "feet"));
+  CHECK_THAT(converted.err,
+             Contains("positions are in metres and were converted to US survey feet") &&
+                 !Contains("to give metres") && Contains("name their units"));
+  CHECK(has(codes_in(scene.run("named.csv", named, "--radius 1")), "feet"));
+  CHECK(has(codes_in(scene.run("named.csv", plain, "--radius 1ft")), "feet"));
+  CHECK(has(codes_in(scene.run("plain.csv", named, "--radius 1ft")), "feet"));
+}
+
 TEST_CASE("a scan in ft is in the foot of the others") {
   const StatePlane scene;
   scene.write_scan("a.csv", "ft", 1);

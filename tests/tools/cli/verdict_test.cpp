@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "tools/cli/support/program.hpp"
 
@@ -267,6 +268,30 @@ TEST_CASE("a question in doubt is undecided, and stays so for whoever reads the 
   CHECK(json::parse(merged.out)["verdict"] == "undecided");
   CHECK(bytes_of(street.folder / "m.h5") == bytes_of(street.folder / "far.h5"));
   CHECK(run(merge + " --fail-on-collision --resume").exit_code == 6);
+}
+
+TEST_CASE("an all-clear that was warned of is never repeated without the warnings") {
+  const Street street;
+  const json report = json::parse(street.run("--radius 0.1 --first-pose --json").out);
+  REQUIRE(report["verdict"] == "clear");
+  std::set<std::string> codes;
+  for (const json& warning : report["warnings"]) codes.insert(warning["code"]);
+  REQUIRE(!codes.empty());
+  CHECK(json::parse(street.program("info --json out.h5").out)["warned_of"] == json(codes));
+  const std::string clause = "but its run warned of " + *codes.begin();
+  const Outcome listed = street.program("conflicts out.h5 --trajectory path.csv");
+  CHECK_THAT(listed.out, Contains("is clear: ") && Contains(clause));
+  CHECK_THAT(street.program("export out.h5 -o p.csv").err, Contains(clause));
+  // A conflict needs no such caveat, and its file stays as it was.
+  REQUIRE(street.run("--radius 0.3 --force").exit_code == 0);
+  CHECK_FALSE(json::parse(street.program("info --json out.h5").out).contains("warned_of"));
+}
+
+TEST_CASE("a least distance is told without the rounding of its coordinates") {
+  const Street street;
+  put_bytes(street.folder / "car.xyz", "0 0.25000008507 0\n");
+  CHECK_THAT(street.run("--radius 0.1 --clearance 0.2").out,
+             Contains("the least distance is 0 m at"));
 }
 
 TEST_CASE("one colliding point is a conflict, however doubtful the question is") {

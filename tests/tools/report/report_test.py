@@ -220,6 +220,23 @@ class ReportTest(PageChecks, unittest.TestCase):
         page.run("[...document.querySelectorAll('#profile-tools button')]"
                  ".find((b) => b.textContent === 'Nearest pose').click()")
         self.assertEqual(page.run("page.poses.index[page.pose]"), 30)
+        self.assertIn("Every point of the environment keeps at least", text)
+        self.assertIn("Every searched point keeps at least 0.1 m from the vehicle",
+                      page.run("""(() => { const { ignored } = page.facts;
+            page.facts.ignored = { points: 5 };
+            const sentence = verdictSentences()[0];
+            page.facts.ignored = ignored;
+            return sentence; })()"""))
+        self.assertIn("from the points of the model", page.run("""(() => {
+            const { model } = page.facts.inputs, { spacing } = model;
+            model.spacing = 0.05;
+            const sentence = verdictSentences()[0];
+            model.spacing = spacing;
+            return sentence; })()"""))
+        for count, small, words in ((1, 0, "1conflict"), (2, 3, "2conflicts"), (0, 0, "0conflicts"),
+                                    (0, 1, "1place, too small for the list")):
+            tile = f"conflictsTile({{ count: {count}, small_groups: {small} }}).textContent"
+            self.assertEqual(page.run(tile), words)
         page.frames()
         self.assertGreater(page.run(f"({BLANK})('#view-canvas')"), 5)
         self.check_quiet(page)

@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
+#include <deque>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -16,10 +18,12 @@
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "cli/verdict.hpp"
 #include "core/util/format.hpp"
+#include "findings/conflict_rank.hpp"
 #include "findings/match_conflicts.hpp"
 #include "io/files/file.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/text_writer.hpp"
+#include "io/result/answer.hpp"
 #include "io/result/conflicts/markup_text.hpp"
 #include "io/result/result.hpp"
 #include "io/scans/scan_crs.hpp"
@@ -30,9 +34,10 @@ namespace {
 /// One of the two results that are compared.
 struct ComparedSide {
   ComparedSide(ConflictComparison& options, const std::filesystem::path& file,
-               const std::filesystem::path& trajectory, const std::filesystem::path& vehicle)
-      : result(file) {
-    check_kind_of_model(result, {}, vehicle);
+               const std::filesystem::path& trajectory, const std::filesystem::path& model,
+               const std::filesystem::path& vehicle)
+      : result(file), has_shifts(!model.empty() || !vehicle.empty()) {
+    check_kind_of_model(result, model, vehicle);
     warn_of_doubts(result.reader());
     const std::vector<Pose> poses = read_poses(trajectory, options.trajectory_options, result);
     std::vector<Body> bodies;
@@ -45,30 +50,88 @@ struct ComparedSide {
     }
     ConflictOptions find = options.find;
     find.bodies = bodies;
+    Model shape;
+    if (!model.empty()) {
+      shape = read_model_of(model, options.model_options, result);
+      find.model = &shape;
+    }
     conflicts = find_conflicts(result, poses, find, &conflict_of);
   }
 
   ComparedResult compared() {
-    return {result.reader().name(), result.parameters().radius,
-            symbol_of(units_of_wkt(result.reader().header().crs_wkt).horizontal),
-            std::move(conflicts)};
+    const ResultHeader& header = result.reader().header();
+    const Answer answer = counted_answer(result.reader());
+    ComparedResult out;
+    out.file = result.reader().name();
+    out.radius = header.radius;
+    out.unit = symbol_of(units_of_wkt(header.crs_wkt).horizontal);
+    out.conflicts = std::move(conflicts);
+    out.verdict = answer.verdict();
+    out.doubts = answer.doubts;
+    out.has_distances = header.clearance > 0;
+    out.has_solids = header.model_solids > 0;
+    out.has_shifts = has_shifts;
+    return out;
   }
   GroupedResult grouped() const { return {result, conflicts, conflict_of}; }
 
   Result result;
   Conflicts conflicts;
   std::vector<std::uint32_t> conflict_of;
+  bool has_shifts = false;
 };
 
-/// The pairs of the same conflict in which b comes nearer, or deeper, by more than `worse_by`.
-std::vector<std::pair<std::uint32_t, std::uint32_t>> worse_ones(const ComparedConflicts& found) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> out;
-  for (const auto& pair : found.match.same) {
-    const auto in_a = conflict_at(found.a.conflicts, pair.first).least_distance;
-    const auto in_b = conflict_at(found.b.conflicts, pair.second).least_distance;
-    if (in_b && (!in_a || *in_b < *in_a - found.worse_by)) out.push_back(pair);
+/// Whether a conflict is worse in b than in a.
+enum class Worse { kNo, kYes, kUnknown };
+
+/// Whether two conflicts have the same points, as far as their numbers and places tell.
+bool have_same_points(const Conflict& a, const Conflict& b) {
+  return a.points == b.points && a.box.lo == b.box.lo && a.box.hi == b.box.hi &&
+         a.centroid == b.centroid;
+}
+
+/// A conflict is worse where it comes nearer, or reaches deeper, by more than `worse_by`. How deep
+/// a point is behind a surface no distance tells, but the shift that frees it does.
+Worse worse(const ComparedConflicts& found, const Conflict& a, const Conflict& b) {
+  if (found.distances_known && b.least_distance) {
+    if (!a.least_distance || *b.least_distance < *a.least_distance - found.worse_by) {
+      return Worse::kYes;
+    }
+    const bool touches = *b.least_distance <= std::max(found.worse_by, kTouching);
+    if (!touches || found.b.has_solids) return Worse::kNo;
   }
-  return out;
+  if (found.questions.empty() && have_same_points(a, b)) return Worse::kNo;
+  if (!found.a.has_shifts || !found.b.has_shifts) return Worse::kUnknown;
+  const double before = ranked_shift(a, true), now = ranked_shift(b, true);
+  if (std::isinf(before) && std::isinf(now)) return Worse::kUnknown;
+  return now > before + found.worse_by ? Worse::kYes : Worse::kNo;
+}
+
+/// Sets which conflicts are worse, and of which it is not known.
+void find_worse(ComparedConflicts& found) {
+  for (const auto& pair : found.match.same) {
+    const Worse kind = worse(found, conflict_at(found.a.conflicts, pair.first),
+                             conflict_at(found.b.conflicts, pair.second));
+    if (kind == Worse::kYes) found.worse.push_back(pair);
+    if (kind == Worse::kUnknown) found.unknown_worse.push_back(pair);
+  }
+}
+
+/// Why a conflict is worse, such as "0.080 -> 0.030 m", or "to be freed by 0.100 -> 0.250 m".
+std::string worsening_text(const ComparedConflicts& found, const Conflict& a, const Conflict& b) {
+  const auto change = [&](std::optional<double> before, std::optional<double> now,
+                          const char* none) {
+    const auto text = [&](const auto& v) { return v ? fmt::format("{:.3f}", *v) : none; };
+    return text(before) + " -> " + text(now) + " " + found.a.unit;
+  };
+  const bool nearer = found.distances_known && b.least_distance &&
+                      (!a.least_distance || *b.least_distance < *a.least_distance - found.worse_by);
+  if (nearer) return change(a.least_distance, b.least_distance, "unknown");
+  const auto shift = [](const Conflict& c) {
+    const double least = ranked_shift(c, true);
+    return std::isinf(least) ? std::nullopt : std::optional(least);
+  };
+  return "freed by a shift of " + change(shift(a), shift(b), "more than 2");
 }
 
 std::string line_of(const Conflict& c) {
@@ -122,19 +185,25 @@ std::string text_of(const ComparedConflicts& found, std::uint64_t show) {
                              group.box.lo.x, group.box.lo.y, group.box.lo.z);
         });
   }
-  if (found.distances_known) {
-    text += list_text(
-        "worse by more than " + format_brief(found.worse_by) + " " + found.a.unit, found.worse,
-        show, [&](const auto& pair) {
-          const auto before = conflict_at(a, pair.first).least_distance;
-          std::string line = of_b(pair.second);
-          line.pop_back();
-          return line + fmt::format("  {} -> {:.3f} {}\n",
-                                    before ? fmt::format("{:.3f}", *before) : "unknown",
-                                    *conflict_at(b, pair.second).least_distance, found.a.unit);
-        });
+  const bool shifts_known = found.a.has_shifts && found.b.has_shifts;
+  if (found.distances_known || shifts_known) {
+    text += list_text("worse by more than " + format_brief(found.worse_by) + " " + found.a.unit,
+                      found.worse, show, [&](const auto& pair) {
+                        std::string line = of_b(pair.second);
+                        line.pop_back();
+                        return line + "  " +
+                               worsening_text(found, conflict_at(a, pair.first),
+                                              conflict_at(b, pair.second)) +
+                               "\n";
+                      });
   } else {
     text += "worse: not known, because the results have no clearances (run --clearance)\n";
+  }
+  if (!found.unknown_worse.empty() && found.distances_known) {
+    text +=
+        list_text(std::string("not known whether they are worse, because they touch a surface") +
+                      (shifts_known ? "" : " (--model or --vehicle finds it by shifts)"),
+                  found.unknown_worse, show, [&](const auto& pair) { return of_b(pair.second); });
   }
   text += list_text("gone, only in a", found.match.gone, show,
                     [&](std::uint32_t id) { return line_of(conflict_at(a, id)); });
@@ -155,12 +224,19 @@ void add_conflict_comparison(CLI::App& command, ConflictComparison& options,
                   "The trajectory of B, where it is another")
       ->type_name("FILE");
   command
+      .add_option("--model", options.model,
+                  "The model of A, and of B: for shifts, which tell how deep a surface is touched")
+      ->type_name("FILE");
+  command.add_option("--model-b", options.model_b, "The model of B, where it is another")
+      ->type_name("FILE");
+  command
       .add_option("--vehicle", options.vehicle,
-                  "The vehicle of several bodies of A, and of B: for sides")
+                  "The vehicle of several bodies of A, and of B: for sides and shifts")
       ->type_name("FILE");
   command.add_option("--vehicle-b", options.vehicle_b, "The vehicle of B, where it is another")
       ->type_name("FILE");
   add_conflict_options(command, options);
+  add_axis_options(command, options.find);
   {
     const GroupScope conflict_group(command, OptionGroup::kConflicts);
     options.lengths.add(
@@ -172,9 +248,11 @@ void add_conflict_comparison(CLI::App& command, ConflictComparison& options,
                      "Compare results of different questions; they differ otherwise (exit code 1)");
   }
   command
-      .add_option("-o,--output", options.output,
-                  "Write the comparison to a file: .csv, .json or .html")
-      ->type_name("FILE");
+      .add_option("-o,--output", options.outputs,
+                  "Write the comparison to a file: .csv, .json or .html; may be repeated")
+      ->type_name("FILE")
+      ->expected(1)
+      ->take_all();
   const GroupScope files(command, OptionGroup::kFiles);
   command.add_flag("--force", options.force, "Overwrite an existing output");
   for (CLI::Option* option : command.get_options()) {
@@ -182,8 +260,8 @@ void add_conflict_comparison(CLI::App& command, ConflictComparison& options,
   }
 }
 
-bool compare_conflicts(ConflictComparison& options, const std::filesystem::path& a,
-                       const std::filesystem::path& b, std::uint64_t show, bool json) {
+int compare_conflicts(ConflictComparison& options, const std::filesystem::path& a,
+                      const std::filesystem::path& b, std::uint64_t show, bool json) {
   if (options.trajectory.empty()) {
     throw UsageError("--conflicts needs --trajectory, the trajectory of the runs");
   }
@@ -192,12 +270,13 @@ bool compare_conflicts(ConflictComparison& options, const std::filesystem::path&
   };
   const std::filesystem::path path_b = or_a(options.trajectory_b, options.trajectory);
   const std::filesystem::path vehicle_b = or_a(options.vehicle_b, options.vehicle);
-  std::optional<PendingFile> output;
-  if (!options.output.empty()) {
-    check_comparison_ending(options.output);
-    refuse_overwriting(options.output,
-                       {a, b, options.trajectory, path_b, options.vehicle, vehicle_b});
-    output.emplace(options.output, options.force);
+  const std::filesystem::path model_b = or_a(options.model_b, options.model);
+  std::deque<PendingFile> outputs;
+  for (const std::filesystem::path& output : options.outputs) {
+    check_comparison_ending(output);
+    refuse_overwriting(output, {a, b, options.trajectory, path_b, options.model, model_b,
+                                options.vehicle, vehicle_b});
+    outputs.emplace_back(output, options.force);
   }
   const double unit = options.lengths.convert_for(a.string(), Result(a).reader().header().crs_wkt);
   options.trajectory_options.environment_unit = unit;
@@ -205,30 +284,29 @@ bool compare_conflicts(ConflictComparison& options, const std::filesystem::path&
   ConsoleProgress progress;
   options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
   options.find.stop = &stop_flag();
-  ComparedSide in_a(options, a, options.trajectory, options.vehicle);
-  ComparedSide in_b(options, b, path_b, vehicle_b);
+  ComparedSide in_a(options, a, options.trajectory, options.model, options.vehicle);
+  ComparedSide in_b(options, b, path_b, model_b, vehicle_b);
   ComparedConflicts found;
-  const ResultHeader &header_a = in_a.result.reader().header(),
-                     &header_b = in_b.result.reader().header();
-  found.questions = question_differences(header_a, header_b);
+  found.questions =
+      question_differences(in_a.result.reader().header(), in_b.result.reader().header());
   found.other_question_allowed = options.allow_other_question;
-  found.distances_known = header_a.clearance > 0 && header_b.clearance > 0;
   found.worse_by = options.worse_by;
   found.match = match_conflicts(in_a.conflicts, in_b.conflicts, options.find.gap);
   found.new_small = match_points(in_a.grouped(), in_b.grouped(), options.find.gap, found.match);
   found.a = in_a.compared();
   found.b = in_b.compared();
+  found.distances_known = found.a.has_distances && found.b.has_distances;
   if (found.a.unit != found.b.unit) {
     throw InputError(found.b.file + ": its coordinates are in " + found.b.unit + ", expected " +
                      found.a.unit + " as in " + found.a.file);
   }
-  if (found.distances_known) found.worse = worse_ones(found);
-  if (output) {
-    write_comparison(found, options.output, output->partial());
-    output->publish();
+  find_worse(found);
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    write_comparison(found, options.outputs[i], outputs[i].partial());
   }
+  for (PendingFile& output : outputs) output.publish();
   print(json ? json_of(found) : text_of(found, show));
-  return found.holds();
+  return found.exit_code();
 }
 
 namespace {
@@ -246,9 +324,13 @@ ordered_json json_of_conflict(const Conflict& c) {
                    {"chainage_to", c.chainage_to},
                    {"obstacle_chainage", nullptr},
                    {"least_distance", nullptr},
+                   {"shift_left", nullptr},
+                   {"shift_right", nullptr},
                    {"side", name_of(c.side)}};
   if (c.obstacle_chainage) out["obstacle_chainage"] = *c.obstacle_chainage;
   if (c.least_distance) out["least_distance"] = *c.least_distance;
+  if (c.shift_left) out["shift_left"] = *c.shift_left;
+  if (c.shift_right) out["shift_right"] = *c.shift_right;
   return out;
 }
 
@@ -300,12 +382,15 @@ std::vector<Row> rows_of(const ComparedConflicts& found) {
     rows.push_back({"new small group", nullptr, nullptr, &b.small[i]});
   }
   for (const auto& [in_a, in_b] : found.worse) {
-    rows.push_back({"worse", &conflict_at(a, in_a), &conflict_at(b, in_b)});
+    rows.push_back({"worse", &conflict_at(a, in_a), &conflict_at(b, in_b), nullptr,
+                    worsening_text(found, conflict_at(a, in_a), conflict_at(b, in_b))});
   }
   for (const std::uint32_t id : found.match.gone) rows.push_back({"gone", &conflict_at(a, id)});
   for (const auto& pair : found.match.same) {
     if (std::ranges::find(found.worse, pair) != found.worse.end()) continue;
-    rows.push_back({"same", &conflict_at(a, pair.first), &conflict_at(b, pair.second)});
+    const bool unknown = std::ranges::find(found.unknown_worse, pair) != found.unknown_worse.end();
+    rows.push_back({"same", &conflict_at(a, pair.first), &conflict_at(b, pair.second), nullptr,
+                    unknown ? "it is not known whether it is worse" : ""});
   }
   return rows;
 }
@@ -393,6 +478,18 @@ std::string html_of(const ComparedConflicts& found) {
 
 }  // namespace
 
+namespace {
+
+/// A clause for a result that could not find anything; empty for others.
+std::string undecided_text(const ComparedResult& side, const char* name) {
+  if (!side.undecided()) return "";
+  return fmt::format(
+      "; {} is undecided, because its run warned of {}, so nothing could be found there", name,
+      fmt::join(side.doubts, ", "));
+}
+
+}  // namespace
+
 std::string sentence_of(const ComparedConflicts& found) {
   std::string out;
   const auto add = [&out](std::size_t count, const char* one, const char* many) {
@@ -404,8 +501,14 @@ std::string sentence_of(const ComparedConflicts& found) {
   add(found.new_small.size(), "new group is too small to be listed",
       "new groups are too small to be listed");
   if (out.empty()) out = "no new conflicts";
+  if (const std::size_t unknown = found.unknown_worse.size(); unknown > 0) {
+    out += ", and " + counted(unknown, "conflict") + " of which it is not known whether " +
+           (unknown == 1 ? "it is worse" : "they are worse");
+  }
+  out += undecided_text(found.b, "b") + undecided_text(found.a, "a");
   if (found.questions.empty()) return out;
-  return out + ", but b answers another question than a" +
+  return out + (out.find(';') == std::string::npos ? ", but" : ";") +
+         " b answers another question than a" +
          (found.other_question_allowed ? ", which was allowed"
                                        : "; --allow-other-question compares them nevertheless");
 }
@@ -415,6 +518,8 @@ std::string json_of(const ComparedConflicts& found) {
     return ordered_json{{"file", of.file},
                         {"unit", of.unit},
                         {"radius", of.radius},
+                        {"verdict", name_of(of.verdict)},
+                        {"doubts", of.doubts},
                         {"conflicts", of.conflicts.listed.size()},
                         {"colliding_points", of.conflicts.colliding_points},
                         {"small_groups", of.conflicts.small_groups},
@@ -435,6 +540,7 @@ std::string json_of(const ComparedConflicts& found) {
                          {"new", json_of_list(found.b.conflicts, found.match.added)},
                          {"new_small", small},
                          {"worse", json_of_pairs(found, found.worse)},
+                         {"unknown_worse", json_of_pairs(found, found.unknown_worse)},
                          {"worse_by", found.worse_by},
                          {"distances_known", found.distances_known},
                          {"gone", json_of_list(found.a.conflicts, found.match.gone)},

@@ -131,6 +131,7 @@ CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name,
 void LengthOptions::set(double& length, const ParsedLength& parsed) {
   length = parsed.value;
   if (parsed.has_unit) with_unit_.emplace_back(&length, parsed);
+  if (!parsed.has_unit && parsed.value != 0) lacks_unit_ = true;
 }
 
 void LengthOptions::convert(double metres) const {
@@ -168,6 +169,21 @@ double LengthOptions::convert_for(const std::string& result, const std::string& 
   }
   convert(metres);
   return metres;
+}
+
+bool names_unit(const FileUnit& option, std::span<const Message> told) {
+  return option.is_known() || std::ranges::any_of(told, [](const Message& message) {
+           return message.code != "datum-accuracy" &&
+                  std::ranges::any_of(message.numbers,
+                                      [](const auto& number) { return number.first == "metres"; });
+         });
+}
+
+std::optional<Message> note_on_feet(const Store& store) {
+  if (!is_foot(store.metres_per_unit())) return std::nullopt;
+  return Message{Message::Severity::kNote, "feet",
+                 "the environment is in feet; the lengths, the model and the trajectory name their "
+                 "units, so nothing is assumed"};
 }
 
 void add_chainage_option(CLI::App& command, LengthOptions& lengths, double& start) {

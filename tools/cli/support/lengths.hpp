@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -78,11 +79,22 @@ class LengthOptions {
   /// warning.
   double convert_for(const std::string& result, const std::string& crs_wkt) const;
 
+  /// Whether every length that was given names its unit; 0 needs none.
+  bool all_have_units() const { return !lacks_unit_; }
+
  private:
   void set(double& length, const ParsedLength& parsed);
 
   std::vector<std::pair<double*, ParsedLength>> with_unit_;
+  bool lacks_unit_ = false;
 };
+
+/// Whether the unit of a file is known: by its option, or because reading it told of a unit.
+bool names_unit(const FileUnit& option, std::span<const Message> told);
+
+/// The note "feet" about a store in feet where all inputs name their units, so that nothing is
+/// assumed to be in feet and the search need not warn of it; none for other stores.
+std::optional<Message> note_on_feet(const Store& store);
 
 /// Adds --chainage-start.
 void add_chainage_option(CLI::App& command, LengthOptions& lengths, double& start);

@@ -93,8 +93,20 @@ class WordCheck {
       if (other->check_name(option)) return;
       for (const std::string& name : other->get_lnames()) known.push_back("--" + name);
     }
-    throw UsageError("unknown option " + option + did_you_mean(option, known) + " (" + name_ +
+    throw UsageError("unknown option " + option + advice_on_option(option, known) + " (" + name_ +
                      " --help explains them)");
+  }
+
+  /// What to do instead of an option that the command does not have.
+  std::string advice_on_option(const std::string& option,
+                               const std::vector<std::string>& known) const {
+    const std::string& command = command_->get_name();
+    const bool reads_result = command == "report" || command == "conflicts" || command == "compare";
+    if (option == "--model-as" && reads_result) {
+      return "; leave it out, because the result says what the run took the model for, and it is "
+             "taken for the same here";
+    }
+    return did_you_mean(option, known);
   }
 
   void enter(const std::string& word) {

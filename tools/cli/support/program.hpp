@@ -9,7 +9,7 @@
 namespace clearway::tool {
 
 /// The exit codes of the program. `run`, `merge`, `compare`, `verify` and `campaign run` set
-/// kDiffers themselves; `run`, `merge` and `campaign run` also set kUndecided.
+/// kDiffers themselves; `run`, `merge`, `compare` and `campaign run` also set kUndecided.
 enum ExitCode {
   kDone = 0,
   kDiffers = 1,

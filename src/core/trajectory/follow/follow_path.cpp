@@ -152,37 +152,50 @@ Message message(Message::Severity severity, const std::string& code, const std::
            {"last", static_cast<double>(poses.back())}}};
 }
 
+/// "body wagon: 6 of 21 poses of the path (poses 0-5, from 0): ".
+std::string share_text(const std::string& name, const std::vector<std::uint64_t>& poses,
+                       std::size_t count) {
+  return name + ": " + format_count(poses.size()) + " of " + counted(count, "pose") +
+         " of the path (" + listed(poses) + ", from 0): ";
+}
+
 }  // namespace
+
+Message off_path_message(const std::string& name, const std::vector<std::uint64_t>& missing,
+                         std::size_t path_poses, const std::string& why,
+                         const std::string& remedy) {
+  // A wagon on pivots leaves the ends of any path, and the verdict says how much of it was
+  // searched. A body that is missing on most of the path is different, because the answer is hardly
+  // about it.
+  const bool mostly = missing.size() > path_poses / 2;
+  const bool expected = !mostly && only_at_ends(missing, path_poses);
+  return message(expected ? Message::Severity::kNote : Message::Severity::kWarning, "body-off-path",
+                 share_text(name, missing, path_poses) + "the body has no pose there, " + why +
+                     ". " + (mostly ? "Most of the path is not searched for this body. " : "") +
+                     remedy,
+                 missing);
+}
 
 std::vector<Message> doubts_about(const FollowedPath& followed, const PathStations& path,
                                   const BodyMount& mount, const std::string& name) {
   std::vector<Message> doubts;
   const std::size_t count = path.poses().size();
-  const auto tell = [&](Message::Severity severity, const std::string& code,
-                        const std::vector<std::uint64_t>& poses, const std::string& what) {
-    if (poses.empty()) return;
-    const std::string share = name + ": " + format_count(poses.size()) + " of " +
-                              counted(count, "pose") + " of the path (" + listed(poses) +
-                              ", from 0): ";
-    doubts.push_back(message(severity, code, share + what, poses));
-  };
   const auto warn = [&](const std::string& code, const std::vector<std::uint64_t>& poses,
                         const std::string& what) {
-    tell(Message::Severity::kWarning, code, poses, what);
+    if (poses.empty()) return;
+    doubts.push_back(
+        message(Message::Severity::kWarning, code, share_text(name, poses, count) + what, poses));
   };
   const bool pivots = std::holds_alternative<BodyPivots>(mount);
-  // A wagon on pivots leaves the ends of any path, and the verdict says how much of it was
-  // searched. A body that is missing on most of the path is different, because the answer is hardly
-  // about it.
-  const bool mostly = followed.off_path.size() > count / 2;
-  const bool expected = !mostly && only_at_ends(followed.off_path, count);
-  tell(expected ? Message::Severity::kNote : Message::Severity::kWarning, "body-off-path",
-       followed.off_path,
-       std::string("the body has no pose there, as ") + (pivots ? "a pivot" : "its station") +
-           " is off the path, which is " + metres_text(path.length()) + " m long. " +
-           (mostly ? "Most of the path is not searched for this body. Check its stations, or make "
-                     "the path longer"
-                   : "Make the path longer to search there too"));
+  if (!followed.off_path.empty()) {
+    const bool mostly = followed.off_path.size() > count / 2;
+    doubts.push_back(off_path_message(name, followed.off_path, count,
+                                      std::string("as ") + (pivots ? "a pivot" : "its station") +
+                                          " is off the path, which is " +
+                                          metres_text(path.length()) + " m long",
+                                      mostly ? "Check its stations, or make the path longer"
+                                             : "Make the path longer to search there too"));
+  }
   warn("body-undefined", followed.undefined,
        "the body has no pose there. Its pivots are at one place, or one is above the other. The "
        "path turns back there, or stands on its end");

@@ -34,4 +34,11 @@ FollowedPath follow_path(const PathStations& path, const BodyMount& mount, int t
 std::vector<Message> doubts_about(const FollowedPath& followed, const PathStations& path,
                                   const BodyMount& mount, const std::string& name);
 
+/// The message "body-off-path" about the poses of the path that a body lacks, ascending and at
+/// least one: a note if these are the path's ends and at most half of it, else a warning. name: the
+/// body's, for the text. why, and what can be done: the rest of the sentence, such as "as a pivot
+/// is off the path", and a sentence without its full stop.
+Message off_path_message(const std::string& name, const std::vector<std::uint64_t>& missing,
+                         std::size_t path_poses, const std::string& why, const std::string& remedy);
+
 }  // namespace clearway

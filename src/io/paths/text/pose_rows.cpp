@@ -317,22 +317,22 @@ void PoseRows::finish(TrajectoryFile& out) {
   if (metres_ == 0) return;
   // Places on a map are in the map's unit already; the file's unit was that of heights.
   out.in_metres = metres_ != options_.environment_unit && !is_geographic();
-  if (metres_ == 1) return;
+  const bool is_metres = metres_ == 1;
+  if (is_metres && (options_.environment_unit == 1 || is_geographic())) return;
+  std::string what;
   if (is_geographic()) {
-    out.note("trajectory-unit",
-             name_ + ": heights were multiplied by " + brief(metres_) + " to give metres",
-             {{"metres", metres_}});
+    what = "heights were multiplied by " + brief(metres_) + " to give metres";
   } else if (metres_ == options_.environment_unit) {
     out.metres_per_unit = metres_;
-    out.note("trajectory-unit",
-             name_ + ": positions are in " + units_text(metres_) +
-                 ", as the environment is, and are taken as they are",
-             {{"metres", metres_}});
+    what = "positions are in " + units_text(metres_) +
+           ", as the environment is, and are taken as they are";
+  } else if (options_.environment_unit == 1) {
+    what = "positions were multiplied by " + brief(metres_) + " to give metres";
   } else {
-    out.note("trajectory-unit",
-             name_ + ": positions were multiplied by " + brief(metres_) + " to give metres",
-             {{"metres", metres_}});
+    what = "positions are in " + units_text(metres_) + " and were converted to " +
+           units_text(options_.environment_unit) + ", the unit of the environment";
   }
+  out.note("trajectory-unit", name_ + ": " + what, {{"metres", metres_}});
 }
 
 }  // namespace clearway

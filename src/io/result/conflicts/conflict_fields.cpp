@@ -158,6 +158,7 @@ std::string summary_json(const ConflictFile& file) {
   out.add("between_poses", header.between_poses ? "true" : "false");
   out.add("verdict", json_string(name_of(file.answer.verdict())));
   out.add("doubts", names_json(file.answer.doubts));
+  if (!file.answer.warned_of.empty()) out.add("warned_of", names_json(file.answer.warned_of));
   if (header.ignores_points()) {
     out.add_count("ignored_points", header.ignored.points);
     const auto& colliding = file.answer.ignored_colliding;

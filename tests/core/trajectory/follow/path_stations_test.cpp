@@ -1,8 +1,11 @@
+#include "core/trajectory/follow/path_stations.hpp"
+
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "clearway/error.hpp"
-#include "core/trajectory/follow/follow_path.hpp"
+#include "core/trajectory/follow/arc_length.hpp"
+#include "core/trajectory/pose_spline.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;

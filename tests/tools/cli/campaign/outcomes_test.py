@@ -153,7 +153,8 @@ def ignored_points_are_told(work):
     look, facts, page = told_alike(path, status(path)["outcomes"])
     expect(facts["runs"][0]["ignored"]["points"] == 20, f"{facts}")
     expect(look["list"][0]["ignored"]["points"] == 20, f"{look}")
-    expect("20 ignored" in page and "In 1 run points were left out of the search." in page,
+    colliding = facts["runs"][0]["ignored"]["colliding"]
+    expect(f"20 ignored, of which {colliding} would collide" in page and "In 1 run points were left out of the search." in page,
            "the page does not tell ignored points")
     expect("20 points ignored" in program("campaign", "status", path), "status")
 

@@ -452,3 +452,48 @@ TEST_CASE("conflicts of a few points are told by the headline and by every outpu
   const Outcome checked = run_program_at(CHECK_BCF, street.folder, street.path("c.bcf"));
   CHECK_THAT(checked.out, Contains("c.bcf: 1 topics") || Contains("c.bcf: 1 topic"));
 }
+
+TEST_CASE("compare --conflicts calls nothing good where b could not find anything") {
+  const Street street;
+  street.scan("site", 0.55);
+  street.scan("away", 500);
+  street.search("site", "a", "--clearance 0.2");
+  street.search("away", "off", "--clearance 0.2");
+  const Outcome undecided = street.compare("a", "off");
+  CHECK(undecided.exit_code == 6);
+  CHECK_THAT(undecided.out,
+             Contains("no new conflicts; b is undecided, because its run warned of out-of-reach"));
+  const json all = json::parse(street.compare("a", "off", "--json").out);
+  CHECK(all["holds"] == false);
+  CHECK(all["b"]["verdict"] == "undecided");
+  CHECK(all["b"]["doubts"] == json::array({"out-of-reach"}));
+  const Outcome before = street.compare("off", "a");
+  CHECK(before.exit_code == 1);
+  CHECK_THAT(before.out, Contains("; a is undecided, because its run warned of out-of-reach"));
+  CHECK_THAT(street.compare("a", "off", "-o " + street.path("u.html")).out, Contains("undecided"));
+  CHECK_THAT(street.bytes("u.html"), Contains("b is undecided"));
+}
+
+TEST_CASE("compare --conflicts does not call a deeper touch of a surface the same") {
+  const Street street;
+  street.scan("touch", 0.51);
+  street.scan("deep", 0.36);
+  street.search("touch", "a", "--clearance 0.2", "car.obj");
+  street.search("deep", "b", "--clearance 0.2", "car.obj");
+  const Outcome unknown = street.compare("a", "b");
+  CHECK(unknown.exit_code == 0);
+  CHECK_THAT(unknown.out, Contains("1 conflict of which it is not known whether it is worse"));
+  CHECK(json::parse(street.compare("a", "b", "--json").out)["unknown_worse"].size() == 1);
+  CHECK_THAT(street.compare("a", "a").out, !Contains("not known"));
+  const std::string model = "--model " + street.path("car.obj");
+  const Outcome deeper = street.compare("a", "b", model);
+  CHECK(deeper.exit_code == 1);
+  CHECK_THAT(deeper.out, Contains("1 conflict is worse") && Contains("freed by a shift of 0.0"));
+  CHECK(street.compare("b", "a", model).exit_code == 0);
+  CHECK(
+      street
+          .compare("a", "b", model + " -o " + street.path("c.csv") + " -o " + street.path("c.html"))
+          .exit_code == 1);
+  CHECK_THAT(street.bytes("c.csv"), Contains("\nworse,1,1,") && Contains("freed by a shift"));
+  CHECK_THAT(street.bytes("c.html"), Contains("freed by a shift"));
+}
