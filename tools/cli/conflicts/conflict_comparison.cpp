@@ -201,7 +201,8 @@ std::string text_of(const ComparedConflicts& found, std::uint64_t show) {
   }
   if (!found.unknown_worse.empty() && found.distances_known) {
     text +=
-        list_text(std::string("not known whether they are worse, because they touch a surface") +
+        list_text(std::string("not known whether they are worse, because nothing tells how deep "
+                              "they are inside the model") +
                       (shifts_known ? "" : " (--model or --vehicle finds it by shifts)"),
                   found.unknown_worse, show, [&](const auto& pair) { return of_b(pair.second); });
   }
