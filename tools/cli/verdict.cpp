@@ -44,9 +44,9 @@ std::string place_text(const Answer& answer, const std::optional<FoundPlace>& pl
   return text;
 }
 
-/// A distance for people, in steps of a millionth: what is less is the rounding of coordinates.
+/// A distance for people: what is less than a millionth is the rounding of coordinates.
 std::string distance_text(double distance) {
-  return format_brief(std::round(distance * 1e6) / 1e6);
+  return format_brief(std::abs(distance) < 1e-6 ? 0 : distance);
 }
 
 std::string nearest_text(const Answer& answer, const PathWords& path, const std::string& unit) {

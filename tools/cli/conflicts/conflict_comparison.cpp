@@ -69,6 +69,7 @@ struct ComparedSide {
     out.verdict = answer.verdict();
     out.doubts = answer.doubts;
     out.has_distances = header.clearance > 0;
+    out.has_surface = header.model_triangles > 0;
     out.has_solids = header.model_solids > 0;
     out.has_shifts = has_shifts;
     return out;
@@ -99,6 +100,9 @@ Worse worse(const ComparedConflicts& found, const Conflict& a, const Conflict& b
     }
     const bool touches = *b.least_distance <= std::max(found.worse_by, kTouching);
     if (!touches || found.b.has_solids) return Worse::kNo;
+    // Between points of a model nothing has a depth, unless shifts tell it.
+    const bool shifts_known = found.a.has_shifts && found.b.has_shifts;
+    if (!found.b.has_surface && !shifts_known) return Worse::kNo;
   }
   if (found.questions.empty() && have_same_points(a, b)) return Worse::kNo;
   if (!found.a.has_shifts || !found.b.has_shifts) return Worse::kUnknown;

@@ -48,6 +48,7 @@ struct ComparedResult {
   Verdict verdict = Verdict::kUnknown;
   std::vector<std::string> doubts;  ///< why the verdict is undecided; see Answer
   bool has_distances = false;       ///< whether the run had clearances
+  bool has_surface = false;         ///< whether the model has triangles
   bool has_solids = false;          ///< whether the depth inside the model is known
   bool has_shifts = false;          ///< whether the model was given, so that shifts are known
 
