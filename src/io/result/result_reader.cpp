@@ -154,6 +154,8 @@ class TableReader {
       using Dataset = typename std::decay_t<decltype(dataset)>::value_type;
       if (!column.is_in(header)) return;
       if (column.own_hash != nullptr) {
+        // A release before the column wrote neither it nor its hash.
+        if (!hdf5::has_attribute(file, column.own_hash, name)) return;
         own_hashes_.push_back(hdf5::read_number<std::uint64_t>(file, column.own_hash, name));
       }
       const std::string path = std::string(Table<Rows>::kGroup) + "/" + column.dataset;

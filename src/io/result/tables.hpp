@@ -201,11 +201,12 @@ void clear_rows(Rows& rows) {
   for_each_column<Rows>([&](const auto& column) { (rows.*column.values).clear(); });
 }
 
-/// Appends row `i` of `from`, in the columns that a result with this header has.
+/// Appends row `i` of `from`, in the columns that a result with this header has and `from` too.
 template <typename Rows>
 void append_row(const ResultHeader& header, const Rows& from, std::size_t i, Rows& to) {
   for_each_column<Rows>([&](const auto& column) {
-    if (column.is_in(header)) (to.*column.values).push_back((from.*column.values)[i]);
+    const auto& values = from.*column.values;
+    if (column.is_in(header) && !values.empty()) (to.*column.values).push_back(values[i]);
   });
 }
 

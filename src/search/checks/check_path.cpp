@@ -3,6 +3,7 @@
 #include <iterator>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -392,12 +393,23 @@ void warn_of_tiny_path(const Question& question, MessageLog& log) {
            {{"path", across}, {"model_longest", longest}});
 }
 
+/// Whether reading the trajectory has told already how its rotations are wrong. It knows more than
+/// the poses alone tell, such as whether they were angles or quaternions.
+bool is_diagnosed(std::span<const Message> told) {
+  constexpr std::string_view kDiagnoses[] = {"rotation-missing", "rotation-too-small",
+                                             "poses-inverse",    "turns-against-path",
+                                             "quaternion-order", "upside-down"};
+  return std::ranges::any_of(told, [&](const Message& message) {
+    return std::ranges::find(kDiagnoses, message.code) != std::end(kDiagnoses);
+  });
+}
+
 }  // namespace
 
-void check_heading(const Question& question, MessageLog& log) {
+void check_heading(const Question& question, std::span<const Message> told, MessageLog& log) {
   warn_of_tiny_path(question, log);
   const Drive drive(question);
-  if (!drive.is_one()) return;
+  if (!drive.is_one() || is_diagnosed(told)) return;
   if (warn_of_tilt(drive, log) || warn_of_rotations(drive, log)) return;
   warn_of_lean(drive, log);
   warn_sideways(question, drive, log);

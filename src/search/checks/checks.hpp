@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/util/messages.hpp"
@@ -64,7 +65,8 @@ class StepChecks {
 };
 
 /// Compares the motion with the model's own axes: "tilted", "rotations", "leans", "sideways",
-/// "flat-model", "drives-backwards", "tiny-path".
-void check_heading(const Question& question, MessageLog& log);
+/// "flat-model", "drives-backwards", "tiny-path". told: what reading the trajectory has told; where
+/// this names a mistake of the rotations, the same mistake is not told in other words.
+void check_heading(const Question& question, std::span<const Message> told, MessageLog& log);
 
 }  // namespace clearway

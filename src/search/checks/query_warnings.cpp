@@ -202,7 +202,8 @@ void check_what_is_around(const Question& question, const PathCover& cover, bool
 
 /// Checks one body by itself. Whether its warnings matter depends on the other bodies.
 void warn_of_body(const StoreReader& store, const Body& body, const Query& query,
-                  std::span<const double> chainage, StepChecks& steps, MessageLog& log) {
+                  std::span<const double> chainage, std::span<const Message> told,
+                  StepChecks& steps, MessageLog& log) {
   if (body.poses.empty()) {
     log.warn("no-poses", "has no poses: it cannot collide");
     return;
@@ -218,7 +219,7 @@ void warn_of_body(const StoreReader& store, const Body& body, const Query& query
   check_model_itself(question, own, form, log);
   check_radius(question, log);
   steps.check(question, log);
-  check_heading(question, log);
+  check_heading(question, told, log);
 }
 
 /// The indices of the path's poses at which a body has none, ascending.
@@ -269,7 +270,7 @@ void warn_of_bodies(const StoreReader& store, const Question& path, const Query&
     };
     std::vector<Message> unused;
     MessageLog own(keep, unused);
-    warn_of_body(store, body, query, chainage, steps, own);
+    warn_of_body(store, body, query, chainage, before, steps, own);
   }
   tell_of_bodies(told, log);
   steps.check_path(path, log);
@@ -307,7 +308,7 @@ void warn_of_points(const StoreReader& store, const Query& query, const Query& a
   check_model_itself(question, asked, view, log);
   check_radius(question, log);
   StepChecks().check(question, log);
-  check_heading(question, log);
+  check_heading(question, told, log);
 }
 
 }  // namespace

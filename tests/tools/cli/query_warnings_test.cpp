@@ -114,23 +114,32 @@ TEST_CASE("a path whose rotations were misread is warned of") {
     std::function<void(double*)> change;
     const char *code, *remedy;
   };
-  const std::vector<Mistake> mistakes{{transpose, "rotations", "rotations are transposed"},
-                                      {[](double* r) {
-                                         for (int k = 0; k < 9; ++k) r[k] = k % 4 == 0 ? 1 : 0;
-                                       },
-                                       "rotations", "lack their rotations"},
-                                      {[](double* r) {  // z down
-                                         for (const int k : {1, 2, 4, 5, 7, 8}) r[k] = -r[k];
-                                       },
-                                       "tilted", "points down"},
-                                      {[](double* r) {  // x right, y down, z forward
-                                         for (double* row = r; row != r + 9; row += 3) {
-                                           const double forward = row[0], left = row[1],
-                                                        up = row[2];
-                                           row[0] = -left, row[1] = -up, row[2] = forward;
-                                         }
-                                       },
-                                       "tilted", "a camera's"}};
+  const std::vector<Mistake> mistakes{
+      {transpose, "turns-against-path", "column by column"},
+      {[](double* r) {
+         for (int k = 0; k < 9; ++k) r[k] = k % 4 == 0 ? 1 : 0;
+       },
+       "rotation-missing", "rotations may be missing"},
+      {[](double* r) {  // z down
+         for (const int k : {1, 2, 4, 5, 7, 8}) r[k] = -r[k];
+       },
+       "upside-down", "points down"},
+      {[](double* r) {  // heads 35 degrees to the left
+         const double c = std::cos(35 * kDegree), s = std::sin(35 * kDegree);
+         for (double* row = r; row != r + 9; row += 3) {
+           const double forward = row[0], left = row[1];
+           row[0] = c * forward + s * left;
+           row[1] = c * left - s * forward;
+         }
+       },
+       "rotations", "zero direction of the angles"},
+      {[](double* r) {  // x right, y down, z forward
+         for (double* row = r; row != r + 9; row += 3) {
+           const double forward = row[0], left = row[1], up = row[2];
+           row[0] = -left, row[1] = -up, row[2] = forward;
+         }
+       },
+       "tilted", "a camera's"}};
   for (const Mistake& mistake : mistakes) {
     CAPTURE(mistake.remedy);
     Asked asked;
@@ -138,6 +147,13 @@ TEST_CASE("a path whose rotations were misread is warned of") {
     const Outcome outcome = asked.ask();
     CHECK_THAT(codes_of(outcome), Contains(mistake.code));
     CHECK_THAT(outcome.err, Contains(mistake.remedy));
+    // One mistake has one diagnosis: that of reading the trajectory, or that of the query.
+    int diagnoses = 0;
+    for (const char* code : {"rotation-missing", "rotation-too-small", "poses-inverse",
+                             "turns-against-path", "upside-down", "rotations", "tilted"}) {
+      diagnoses += codes_of(outcome).find(code) != std::string::npos;
+    }
+    CHECK(diagnoses == 1);
   }
 }
 
