@@ -180,24 +180,18 @@ class Report {
 
   void find_least() {
     chainage_ = chainage_of(poses_);
-    least_of_ = "clearance";
-    if (const auto& nearest = answer_.least_clearance) {
-      const bool has_place = std::isfinite(nearest->xyz.x);
-      least_ = {.distance = nearest->distance,
-                .pose = nearest->pose,
-                .source = nearest->source,
-                .xyz = has_place ? std::optional(nearest->xyz) : std::nullopt};
-      if (!answer_.bodies.empty()) least_->body = nearest->body;
-    } else {
-      const auto& on_profile = answer_.least_profile;
-      if (!on_profile) return;
-      least_ = {.distance = on_profile->distance,
-                .pose = on_profile->pose,
-                .source = on_profile->source,
-                .xyz = on_profile->xyz};
-      least_of_ = "profile";
-      if (is_vehicle()) find_nearest_body();
-    }
+    const bool has_clearance = answer_.least_clearance.has_value();
+    const auto& nearest = has_clearance ? answer_.least_clearance : answer_.least_profile;
+    if (!nearest) return;
+    least_of_ = has_clearance ? "clearance" : "profile";
+    // Clearances of results before version 3 have no coordinates.
+    const bool has_place = std::isfinite(nearest->xyz.x);
+    least_ = {.distance = nearest->distance,
+              .pose = nearest->pose,
+              .source = nearest->source,
+              .xyz = has_place ? std::optional(nearest->xyz) : std::nullopt};
+    if (!has_clearance && is_vehicle()) find_nearest_body();
+    if (has_clearance && !answer_.bodies.empty()) least_->body = nearest->body;
     place_least();
   }
 

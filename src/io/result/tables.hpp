@@ -68,22 +68,34 @@ void check_chainages(const RowsRead& read, const char* dataset, std::span<const 
 template <typename T>
 void check_with_rows(const RowsRead&, const char*, std::span<const T>) {}
 
+/// For columns that no result of their table lacks.
+inline bool in_every_result(const ResultHeader&) { return true; }
+
+/// The order of tables of points: kOrder is the column by which rows ascend, and may_follow() says
+/// whether a value may stand in the row after another.
+template <typename Rows>
+struct AscendingSources {
+  static constexpr auto kOrder = &Rows::source;
+  static constexpr const char* kOrderDataset = result_names::kSource;
+  static bool may_follow(std::uint64_t before, std::uint64_t after) { return after > before; }
+  static constexpr const char* kExpectedOrder = "an index above the row before";
+};
+
 /// The schema of the table with these rows.
 template <typename Rows>
 struct Table;
 
 template <>
-struct Table<Collisions> {
+struct Table<Collisions> : AscendingSources<Collisions> {
   using Rows = Collisions;
   static constexpr const char* kGroup = result_names::kGroup;
   static constexpr const char* kHash = result_names::kCollisionsHash;
   static bool is_in(const ResultHeader&) { return true; }
 
   static constexpr std::tuple kColumns{
-      Column<Rows, std::uint64_t>{result_names::kSource, &Rows::source,
-                                  [](const ResultHeader&) { return true; }, check_sources},
-      Column<Rows, Vec3>{result_names::kXyz, &Rows::xyz, [](const ResultHeader&) { return true; },
-                         check_points},
+      Column<Rows, std::uint64_t>{result_names::kSource, &Rows::source, in_every_result,
+                                  check_sources},
+      Column<Rows, Vec3>{result_names::kXyz, &Rows::xyz, in_every_result, check_points},
       Column<Rows, std::uint32_t>{result_names::kFirstPose, &Rows::first_pose,
                                   [](const ResultHeader& h) { return h.first_pose; }, check_poses,
                                   "first pose that touches"},
@@ -94,42 +106,30 @@ struct Table<Collisions> {
                                   [](const ResultHeader& h) { return h.last_pose; }, check_poses,
                                   nullptr, result_names::kLastPoseHash}};
 
-  /// The column by which rows ascend, and whether `after` may follow `before`.
-  static constexpr auto kOrder = &Rows::source;
-  static constexpr const char* kOrderDataset = result_names::kSource;
-  static bool may_follow(std::uint64_t before, std::uint64_t after) { return after > before; }
-  static constexpr const char* kExpectedOrder = "an index above the row before";
-
   /// Throws InputError where the columns of a row contradict each other.
   static void check(const RowsRead& read, const Rows& rows);
 };
 
 template <>
-struct Table<Clearances> {
+struct Table<Clearances> : AscendingSources<Clearances> {
   using Rows = Clearances;
   static constexpr const char* kGroup = result_names::kClearanceGroup;
   static constexpr const char* kHash = result_names::kClearanceHash;
   static bool is_in(const ResultHeader& header) { return header.clearance > 0; }
 
   static constexpr std::tuple kColumns{
-      Column<Rows, std::uint64_t>{result_names::kSource, &Rows::source,
-                                  [](const ResultHeader&) { return true; }, check_sources},
+      Column<Rows, std::uint64_t>{result_names::kSource, &Rows::source, in_every_result,
+                                  check_sources},
       Column<Rows, Vec3>{result_names::kXyz, &Rows::xyz,
                          [](const ResultHeader& h) { return h.has_clearance_xyz(); }, check_points},
-      Column<Rows, double>{result_names::kDistance, &Rows::distance,
-                           [](const ResultHeader&) { return true; }, check_clearances,
-                           "least distance to the model"},
-      Column<Rows, std::uint32_t>{result_names::kPose, &Rows::pose,
-                                  [](const ResultHeader&) { return true; }, check_poses,
+      Column<Rows, double>{result_names::kDistance, &Rows::distance, in_every_result,
+                           check_clearances, "least distance to the model"},
+      Column<Rows, std::uint32_t>{result_names::kPose, &Rows::pose, in_every_result, check_poses,
                                   "pose that has the distance"},
       Column<Rows, std::uint32_t>{result_names::kBody, &Rows::body,
                                   [](const ResultHeader& h) { return !h.bodies.empty(); },
                                   check_bodies, "body of that pose"}};
 
-  static constexpr auto kOrder = &Rows::source;
-  static constexpr const char* kOrderDataset = result_names::kSource;
-  static bool may_follow(std::uint64_t before, std::uint64_t after) { return after > before; }
-  static constexpr const char* kExpectedOrder = "an index above the row before";
   static void check(const RowsRead&, const Rows&) {}
 };
 
@@ -141,19 +141,18 @@ struct Table<ProfileRows> {
   static bool is_in(const ResultHeader& header) { return header.profile > 0; }
 
   static constexpr std::tuple kColumns{
-      Column<Rows, double>{result_names::kDistance, &Rows::distance,
-                           [](const ResultHeader&) { return true; }, check_with_rows<double>},
-      Column<Rows, std::uint64_t>{result_names::kSource, &Rows::source,
-                                  [](const ResultHeader&) { return true; },
+      Column<Rows, double>{result_names::kDistance, &Rows::distance, in_every_result,
+                           check_with_rows<double>},
+      Column<Rows, std::uint64_t>{result_names::kSource, &Rows::source, in_every_result,
                                   check_with_rows<std::uint64_t>},
-      Column<Rows, Vec3>{result_names::kXyz, &Rows::xyz, [](const ResultHeader&) { return true; },
-                         check_with_rows<Vec3>},
-      Column<Rows, double>{result_names::kChainage, &Rows::chainage,
-                           [](const ResultHeader&) { return true; }, check_chainages},
+      Column<Rows, Vec3>{result_names::kXyz, &Rows::xyz, in_every_result, check_with_rows<Vec3>},
+      Column<Rows, double>{result_names::kChainage, &Rows::chainage, in_every_result,
+                           check_chainages},
       Column<Rows, double>{result_names::kSquared, &Rows::squared,
                            [](const ResultHeader& h) { return h.part.has_value(); },
                            check_with_rows<double>}};
 
+  // The order, as in AscendingSources, but poses may stand at one place.
   static constexpr auto kOrder = &Rows::chainage;
   static constexpr const char* kOrderDataset = result_names::kChainage;
   static bool may_follow(double before, double after) { return after >= before; }

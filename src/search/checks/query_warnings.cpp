@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "clearway/unsearched.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
 #include "io/models/sample_mesh.hpp"
@@ -225,13 +226,8 @@ void warn_of_body(const StoreReader& store, const Body& body, const Query& query
 /// The indices of the path's poses at which a body has none, ascending.
 std::vector<std::uint64_t> missing_poses(const Body& body, std::size_t path_poses) {
   std::vector<std::uint64_t> missing;
-  auto next = body.path_pose.begin();
-  for (std::uint64_t i = 0; i < path_poses; ++i) {
-    if (next != body.path_pose.end() && *next == i) {
-      ++next;
-    } else {
-      missing.push_back(i);
-    }
+  for (const auto& [first, last] : poses_without_bodies(path_poses, {&body, 1})) {
+    for (std::uint64_t i = first; i <= last; ++i) missing.push_back(i);
   }
   return missing;
 }

@@ -105,6 +105,7 @@ std::vector<PointField> fields_of(const ResultHeader& header) {
 template <typename Rows>
 std::vector<FieldValues> values_of(const ResultHeader& header, const Rows& rows) {
   std::vector<FieldValues> out;
+  out.reserve(kColumnsOf<Rows>);
   for_each_column<Rows>([&](const auto& column) {
     using Value = typename std::decay_t<decltype(column)>::Value;
     if constexpr (std::is_constructible_v<FieldValues, std::span<const Value>>) {
