@@ -105,6 +105,7 @@ class Search {
     }
     check_sizes(query_);
     warn_of_query(store_, query_, options_.input_warnings, log_);
+    if (options_.float_precision) warn_of_floats(store_, query_, log_);
     warn_of_ignored(store_, header_, header_.ignored, log_);
     if (options_.strict) refuse_warnings(report_.warnings);
   }

@@ -29,4 +29,8 @@ void tell_of_bodies(const std::vector<BodyMessages>& bodies, MessageLog& log);
 void warn_of_query(const StoreReader& store, const Query& query, std::span<const Message> told,
                    MessageLog& log);
 
+/// Warns where single precision alone decides and its numbers are too far apart at these
+/// coordinates to tell distances such as the radius: "coarse-floats".
+void warn_of_floats(const StoreReader& store, const Query& query, MessageLog& log);
+
 }  // namespace clearway
