@@ -10,7 +10,7 @@ std::string shell_word(const std::string& text) {
   return word + "'";
 }
 
-/// Bytes that the program takes beside --memory: itself, its libraries, and buffers of the file
+/// Bytes that the program takes besides --memory: itself, its libraries, and buffers of the file
 /// system.
 constexpr std::uint64_t kProgramBytes = std::uint64_t{512} << 20;
 

@@ -165,7 +165,7 @@ class OutcomeCounts {
   std::array<std::size_t, kOutcomes.size()> counts_{};
 };
 
-/// What has to be said beside the verdict of a run that is done, for example "2 warnings
+/// What has to be said besides the verdict of a run that is done, for example "2 warnings
 /// (out-of-reach, scan-ends); 1,234 points ignored, of which 56 would collide; not exact". Empty
 /// where there is nothing to say.
 std::string caveats_of(const nlohmann::ordered_json& facts);

@@ -64,7 +64,7 @@ struct KdTreeStatistics {
   std::uint64_t ignored_points = 0;   ///< number of ignored points in the cells to search
 };
 
-/// Upper bound of the memory that run_kdtree() takes in addition to the cloud's own, bytes.
+/// Upper bound on the memory that run_kdtree() takes in addition to the cloud's own, bytes.
 std::uint64_t kdtree_memory_bytes(const PackedCloud& cloud, const Query& query, int threads);
 
 /// Finds every point of `cloud` that the query's model touches: for every pose and model point by a

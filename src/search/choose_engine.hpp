@@ -58,8 +58,8 @@ EngineEstimate estimate_on_cpu(const Workload& work, int threads);
 DeviceEstimate estimate_devices(std::span<const Workload> work, const QueryParameters& query,
                                 Engine engine, int threads);
 
-/// The number of environment points from which on a GPU is started before the query is known. With
-/// fewer points the CPU answers most queries before a GPU has started.
+/// The least number of environment points for which a GPU is started before the query is known.
+/// With fewer points the CPU answers most queries before a GPU has started.
 std::uint64_t surely_many_points(int threads);
 
 /// Where options.engine is kAuto, sets it to the engine that will be faster by estimate, of those

@@ -162,8 +162,8 @@ void warn_of_ignored(const StoreReader& store, const QueryParameters& query,
 
 namespace {
 
-/// The height in metres above the model's lowest point from which on an ignored point is
-/// suspicious. Ground and rails are lower, and are ignored because the model stands on them; nobody
+/// An ignored point at this height or more above the model's lowest point is suspicious, metres.
+/// Ground and rails are lower, and are ignored because the model stands on them; nobody
 /// wants to ignore what the model hits further up.
 constexpr double kHigh = 0.5;
 

@@ -8,8 +8,8 @@
 namespace clearway {
 namespace {
 
-/// Share of the radius beside which a curve's error and the spacing of its poses must be small,
-/// because points at a distance between the radius and the radius plus that error go to the
+/// Share of the radius compared with which a curve's error and the spacing of its poses must be
+/// small, because points at a distance between the radius and the radius plus that error go to the
 /// predicate.
 constexpr double kSpacingOfRadius = 0.5;
 

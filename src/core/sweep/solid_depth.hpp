@@ -135,7 +135,7 @@ class SolidDepth {
     return 2 * sweep_.motion.nodes[at].count - 1;
   }
 
-  /// Searches one pose and returns the square of the depth or an upper bound of it. below: as for
+  /// Searches one pose and returns the square of the depth or an upper bound on it. below: as for
   /// DepthAtPose::squared(), at most the square of the best.
   CLEARWAY_HD double offer(std::uint32_t pose, double below) {
     const double squared = at_pose_.squared(pose, below, near_);

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostNames = 5;  // at most so many file names in a message
+constexpr std::size_t kMostNames = 5;  // at most this many file names in a message
 
 /// The files directly in a folder, in byte order of their names, without hidden ones.
 struct Folder {

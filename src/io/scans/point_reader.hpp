@@ -110,7 +110,7 @@ std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path,
                                              const PointReadOptions& options = {});
 
 /// Reads LAS or LAZ from a stream that cannot seek, for example standard input. In LAS 1.4, a CRS
-/// that only a record behind the points holds appears in info() once read() has returned false.
+/// that only a record after the points holds appears in info() once read() has returned false.
 /// Points beyond the header's count are read too, with a warning among the remarks. LAZ is first
 /// copied into a nameless file in `temporary_folder`, and can be read again.
 std::unique_ptr<PointReader> open_las_stream(File stream,

@@ -21,7 +21,7 @@
 namespace clearway {
 namespace {
 
-/// An upper bound of the way of any model point from one pose to the next, cheap because most steps
+/// An upper bound on the way of any model point from one pose to the next, cheap because most steps
 /// are short. reach: greatest distance of the model from its origin.
 double coarse_bound(const Pose& a, const Pose& b, double reach) {
   double turned = 0, moved = 0;

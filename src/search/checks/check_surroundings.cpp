@@ -23,7 +23,7 @@ constexpr double kPartBeside = 0.05;
 /// Least lengths of a stretch along the path in metres. A scanner on a tripod leaves a shadow of up
 /// to 4 m, in which a slice of the model hardly moves, and streets open to side roads.
 constexpr double kLeastBelow = 3, kLeastBeside = 20;
-/// Metres above the usual height from which on the warning "floats" tells of a look.
+/// A look this many metres above the usual height or more counts for the warning "floats".
 constexpr double kFloats = 0.5;
 
 bool has_below(const Look& look) { return look.below; }

@@ -9,7 +9,7 @@ class App;
 
 namespace clearway::tool {
 
-/// The words of a command line behind the program's name, as the parser needs them. A value that
+/// The words of a command line after the program's name, as the parser needs them. A value that
 /// begins with a minus is joined to its option, as in --forward=-x, because alone it would be taken
 /// for an option; a length is joined to its unit, as in --radius 10 cm. Throws UsageError for the
 /// first word that is no command or option and names the likeliest one, so that a mistyped option

@@ -28,7 +28,7 @@ class PoseRows {
 
   /// Adds the pose of a line. Returns why the line is not a pose; without text where it is one.
   Objection add(std::string_view line);
-  /// An empty object for up to `lines` further lines of the file behind the first, to be filled and
+  /// An empty object for up to `lines` further lines of the file after the first, to be filled and
   /// appended.
   PoseRows for_lines(std::size_t lines) const;
   void append(std::vector<PoseRows> parts);

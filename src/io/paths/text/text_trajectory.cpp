@@ -67,7 +67,7 @@ class TextTrajectory {
     refuse_line(input_.name(), input_.line(), objection.text, objection.remedy);
   }
 
-  /// Reads all lines behind the first pose in parallel. Returns false, with nothing read, where one
+  /// Reads all lines after the first pose in parallel. Returns false, with nothing read, where one
   /// is refused or may be cut; reading them one after the other then finds its number.
   bool read_blocks() {
     const LineBlocks blocks(input_);

@@ -152,7 +152,7 @@ class PlySink final : public RowSink<Rows> {
   PlyWriter writer_;
 };
 
-/// Writes coordinates, and behind those of clearances the distance and its pose.
+/// Writes coordinates, and after those of clearances the distance and its pose.
 template <typename Rows>
 class XyzSink final : public RowSink<Rows> {
  public:

@@ -25,7 +25,7 @@ struct E57Field {
   double scale = 1;          ///< kInteger: the value is integer * scale + offset
   double offset = 0;
 
-  /// Bytes of so many records in the bytestream; at most 2^60, more than any file has.
+  /// Bytes of this many records in the bytestream; at most 2^60, more than any file has.
   std::uint64_t bytes_of(std::uint64_t records) const {
     constexpr std::uint64_t kMost = std::uint64_t{1} << 60;
     return bits > 0 && records > kMost / bits ? kMost : (records * bits + 7) / 8;

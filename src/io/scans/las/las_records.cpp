@@ -19,7 +19,7 @@ std::string_view padded_text(std::span<const std::byte> bytes) {
   return text.substr(0, text.find('\0'));
 }
 
-/// Takes the CRS from a record. payload: the whole record behind its header.
+/// Takes the CRS from a record. payload: the whole record after its header.
 void note_record(std::string_view user, unsigned id, std::span<const std::byte> payload,
                  LasCrs& crs) {
   constexpr unsigned kWkt = 2112;

@@ -81,7 +81,7 @@ bool parse_point(std::string_view line, Vec3& point);
 /// The value of a line that is nothing but a whole number from 0. line: without leading blanks.
 std::optional<std::uint64_t> count_in(std::string_view line);
 
-/// Upper bound of the number of points in the rest of the input, as each takes a line.
+/// Upper bound on the number of points in the rest of the input, as each takes a line.
 std::uint64_t most_points_in_rest(const InputBuffer& input);
 
 /// The line number of each of `points`, which are ascending numbers counted from 0. next_point:
@@ -144,7 +144,7 @@ class PointBlocks {
     };
   }
 
-  /// Reads on from the input's position and moves it behind what was read. Returns the number of
+  /// Reads on from the input's position and moves it past what was read. Returns the number of
   /// points; nullopt, with the input where it was, if nothing could be read. most: number of points
   /// that may follow.
   std::optional<std::uint64_t> read(InputBuffer& input, const ParseBlock& parse,

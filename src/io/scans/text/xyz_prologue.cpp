@@ -327,7 +327,7 @@ class PrologueReader {
     });
   }
 
-  /// Finds the separator of the lines behind a header, which may differ from the one between its
+  /// Finds the separator of the lines after a header, which may differ from the one between its
   /// names.
   void settle_separator(std::string_view line) {
     Vec3 point{};

@@ -35,11 +35,11 @@ class OpenEnd {
   std::uint64_t line_ = 0;  // number of the last line; 0 where it has a line break
 };
 
-/// Reads text with one point per line: x y z and anything behind them, separated by blanks, commas
+/// Reads text with one point per line: x y z and anything after them, separated by blanks, commas
 /// or semicolons (one kind within a line, so that decimal commas are refused). Blank lines and
 /// lines that start with # or // are comments. The first other line may be the number of points
-/// (PTS): exactly so many follow, perhaps followed by another such number with its points. A header
-/// line that names the columns tells where x, y and z are; so does a comment that fits the lines.
+/// (PTS): exactly that many follow, perhaps then another such number with its points. A header line
+/// that names the columns tells where x, y and z are; so does a comment that fits the lines.
 /// Text without names that looks like something else than points is refused, unless the options
 /// choose the columns. `remarks` come before the reader's own. The input must be able to seek.
 std::unique_ptr<PointReader> read_xyz(InputBuffer input, const PointReadOptions& options = {},

@@ -19,7 +19,8 @@ constexpr std::uint64_t kSurelyBelow = 10, kFewestBelow = 3;
 constexpr std::uint64_t kSurelyBeside = 3;
 constexpr double kPartOfGround = 1.0 / 32;
 // The following lengths are in metres.
-/// Added to the box along the path, so that scanned points may be expected in it.
+/// By how much a box beside the model is extended along the path, so that it is long enough for the
+/// scan to have points in it.
 constexpr double kBesideMargin = 1;
 /// How far the ground may reach above the model's lowest point.
 constexpr double kIntoModel = 0.3;
@@ -122,7 +123,8 @@ class Looking {
     return box;
   }
 
-  /// side: 1 for the left of a model whose longer side points forward, -1 for its right.
+  /// Whether the scan has points beside the model at a pose. side: 1 for the left of a model whose
+  /// longer side points forward, -1 for its right.
   bool is_beside(int side, const Pose& pose) const {
     return std::ranges::any_of(kBands, [&](const Band& band) {
       return points_.has(beside(side, band, pose), pose, kSurelyBeside);

@@ -40,7 +40,7 @@ class SymbolModel {
 
   /// A symbol not greater than the one at `place`, and rarely much less.
   unsigned guess(std::uint32_t place) const { return guess_[place >> slot_shift_]; }
-  /// Start of the symbol's range; for the symbol behind the last, a number beyond every place.
+  /// Start of the symbol's range; for the symbol after the last, a number beyond every place.
   std::uint32_t first(unsigned symbol) const { return first_[symbol]; }
   bool is_last(unsigned symbol) const { return symbol + 1 == symbols_; }
 
