@@ -46,8 +46,8 @@ struct TableSummary {
   /// Number of poses closer than the profile's distance asked for
   std::uint64_t profile_poses = 0;
   /// The point with the smallest first pose, the one with the least clearance, and the least
-  /// distance of the profile at its first pose, each where the query asks for it. If several points
-  /// are equal, the one with the smallest source index counts. Coordinates are NaN for files before
+  /// distance of the profile at its first pose, each where the query asks for it. Among equal
+  /// points, the one with the smallest source index is given. Coordinates are NaN for files before
   /// version 3, which lack them.
   std::optional<FoundPlace> first_place, least_clearance, least_profile;
 };

@@ -111,7 +111,7 @@ std::string variables(const SlurmJob& job) {
          "\nfolder=" + shell_word(job.folder.string()) + "\nname=" + shell_word(job.name) + "\n";
 }
 
-/// Escapes a text within quotes on a #SBATCH line, where a percent sign introduces a placeholder.
+/// Escapes a string within quotes on a #SBATCH line, where a percent sign introduces a placeholder.
 std::string sbatch_word(const std::string& text) {
   std::string word;
   for (const char c : text) {

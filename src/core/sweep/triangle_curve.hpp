@@ -48,8 +48,8 @@ class TriangleCurve {
 
   static constexpr std::uint32_t kMostPlaces = 16;  ///< number of places that are computed together
 
-  /// Lower bounds on the squared distances from a triangle to parts of the curve: part k has
-  /// `length` places from (k length) per_last on.
+  /// Lower bounds on the squared distances from triangle i to the parts of the curve: part k has
+  /// `length` places, the first of which is at t = k length per_last.
   CLEARWAY_HD void from_parts(const FloatPacket& packet, std::uint32_t i, std::uint32_t length,
                               float per_last, float (&squared)[kMostPlaces]) const {
 #ifdef __CUDA_ARCH__

@@ -74,8 +74,8 @@ struct ParsedLength {
   double number = 0;   ///< the number as written
   FileUnit unit = {};  ///< the unit as written
 
-  /// The length in a unit of this many metres. A length in "ft", which may be any foot, is taken to
-  /// be in that unit where the unit is a foot.
+  /// Converts the length to the unit that is `metres` metres long. If that unit is a foot, "ft",
+  /// which may be any foot, means that one.
   double in_units_of(double metres) const;
 };
 

@@ -93,7 +93,7 @@ class PointReader {
   }
 };
 
-/// How a text is read whose own lines do not tell its columns, or tell them wrongly.
+/// How to read a text file that does not name its columns, or names them wrongly.
 struct PointReadOptions {
   /// The columns of x, y and z: numbers counted from 1, or names in the header. If empty, the text
   /// decides, and one that looks like something else than points is refused. Ignored for other

@@ -31,7 +31,7 @@ FileDescription describe_hdf5(const std::filesystem::path& path) {
   return {FileKind::kOtherHdf5, "an HDF5 file, but no sound store or result"};
 }
 
-/// Whether four numbers are a unit quaternion within the precision of texts.
+/// Whether four numbers are a unit quaternion within the precision of printed numbers.
 bool is_quaternion(std::span<const double> q) {
   const double norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   return std::abs(norm - 1) < 1e-3;
@@ -57,7 +57,7 @@ bool names_poses(std::string_view line) {
   });
 }
 
-/// Describes a text by its first line of numbers and a header before it.
+/// Describes a text file by its first line of numbers and a header before it.
 FileDescription describe_text(std::string_view text) {
   std::array<double, 16> numbers{};
   while (!text.empty()) {

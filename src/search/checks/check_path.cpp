@@ -21,8 +21,8 @@
 namespace clearway {
 namespace {
 
-/// An upper bound on the way of any model point from one pose to the next, cheap because most steps
-/// are short. reach: greatest distance of the model from its origin.
+/// An upper bound on how far any model point moves from one pose to the next, cheap because most
+/// steps are short. reach: greatest distance of the model from its origin.
 double coarse_bound(const Pose& a, const Pose& b, double reach) {
   double turned = 0, moved = 0;
   for (int k = 0; k < 9; ++k) {

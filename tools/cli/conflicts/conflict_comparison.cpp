@@ -405,7 +405,7 @@ constexpr const char* kColumns[] = {
     "side",   "points_a", "points_b", "least_distance_a", "least_distance_b", "x",
     "y",      "z",        "note"};
 
-/// The texts of a row, one for each of kColumns. number: makes the text of a coordinate or length.
+/// The cells of a row, one for each of kColumns. number: formats a coordinate or length.
 template <typename Number>
 std::vector<std::string> cells_of(const Row& row, Number number) {
   const Conflict* const shown = row.b != nullptr ? row.b : row.a;

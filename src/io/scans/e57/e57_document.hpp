@@ -20,7 +20,7 @@ struct E57Field {
   enum class Kind { kInteger, kFloat32, kFloat64, kText };
 
   Kind kind = Kind::kText;
-  unsigned bits = 8;         ///< bits of a record; for a text, the least number
+  unsigned bits = 8;         ///< bits of a record; for a string, the least number
   std::int64_t minimum = 0;  ///< kInteger: value that the stored bits are added to
   double scale = 1;          ///< kInteger: the value is integer * scale + offset
   double offset = 0;

@@ -169,7 +169,7 @@ void put_table(ByteWriter& out, std::string_view user, std::uint16_t id,
   out.put_bytes(payload);
 }
 
-/// The bytes of a text, including the zero byte that ends it.
+/// The bytes of a string, including the zero byte that ends it.
 std::span<const std::byte> text_bytes(const std::string& text) {
   return std::as_bytes(std::span(text.c_str(), text.size() + 1));
 }

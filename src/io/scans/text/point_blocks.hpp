@@ -16,7 +16,7 @@
 
 namespace clearway {
 
-/// Divides the rest of a text into blocks of lines that can be read at the same time. A line
+/// Divides the rest of a text file into blocks of lines that can be read at the same time. A line
 /// belongs to the block in which it begins.
 class LineBlocks {
  public:
@@ -56,7 +56,7 @@ bool each_line(std::string_view block, Use use) {
 
 inline constexpr CoordinateColumns kFirstThree{0, 1, 2};
 
-/// Parses the lines of a text: the columns of x, y and z, and their separator.
+/// Parses lines of a text file, given the columns of x, y and z and their separator.
 class PointLine {
  public:
   PointLine() = default;
@@ -115,7 +115,7 @@ std::size_t count_fields(std::string_view line);
 /// otherwise empty.
 std::string decimal_commas_in(std::string_view line);
 
-/// Reads the points of a text ahead, several blocks of lines at the same time. It accepts only
+/// Reads the points of a text file ahead, several blocks of lines at the same time. It accepts only
 /// whole lines that certainly are points or hold nothing. Everything else stays in the input for a
 /// reader that goes line by line and can report what is wrong.
 class PointBlocks {

@@ -17,9 +17,9 @@
 namespace clearway {
 namespace {
 
-/// Recognises from the first lines of a text without column names that it is something else than
-/// points (docs/design/conversion.md, "Text that is no table of points"). A resemblance must hold
-/// on every line examined, so that points pass.
+/// Recognises from the first lines of a text file without column names that it holds something
+/// other than points (docs/design/conversion.md, "Text that is no table of points"). A resemblance
+/// must hold on every line examined, so that points pass.
 class LookAlike {
  public:
   static constexpr std::size_t kMostLines = 100;

@@ -13,9 +13,9 @@
 
 namespace clearway {
 
-/// Notices in one reading of a text with one point per line that its last line lacks a line break.
-/// Where the text declares its number of points, this is noted, and refused where values or digits
-/// are missing. Otherwise missing values cause a warning, because the text may be cut.
+/// Notices, while a text file with one point per line is read, that its last line lacks a line
+/// break. Where the file declares its number of points, this is noted, and refused where values or
+/// digits are missing. Otherwise missing values cause a warning, because the file may be cut.
 class OpenEnd {
  public:
   explicit OpenEnd(bool counted = true) : counted_(counted) {}

@@ -30,8 +30,8 @@ constexpr double kClosestApart = 0.5, kFarthestApart = 2;
 /// How far around a scanner on a tripod or a vehicle nothing is scanned, because it stands there.
 /// Below a model that is smaller than this, ground may be expected only at the model's edge.
 constexpr double kScannerShadow = 1;
-/// Width in metres of the narrowest column below a small model, which has to hold points of the
-/// ground.
+/// Least width in metres of the column below a model in which points of the ground are looked for;
+/// it is wider than a model that is smaller than this.
 constexpr double kNarrowest = 1;
 /// Diagonal of a block of 64 points of a surface in units of the scan's spacing: such a block is 8
 /// spacings wide and 8 spacings high.
@@ -110,7 +110,7 @@ class Looking {
   }
 
   /// The column below the slice, wider by one spacing of the scan and no more, because ground
-  /// beside the model tells nothing of the way that it takes. The column reaches out of the shadow
+  /// beside the model says nothing about what it runs over. The column reaches out of the shadow
   /// of a scanner.
   Box below(const Pose& pose) const {
     Box box = slice_;

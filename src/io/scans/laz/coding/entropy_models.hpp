@@ -151,9 +151,10 @@ class BitModel {
 
 /// The arithmetic decoder of LAZ, after A. Said, "Introduction to Arithmetic Coding - Theory and
 /// Practice", HP Laboratories HPL-2004-76. Its inner loop checks no bounds: the caller provides as
-/// many bytes as one point can take, which is kMostBytes... for each call, and kReadAhead more.
+/// many bytes as one point can take, which is the kMostBytes constant of each call, and kReadAhead
+/// more.
 ///
-/// It is a value to be copied, because a loop that works on its own copy keeps it in registers.
+/// Copy it into a local variable for a loop, so that the compiler keeps its state in registers.
 class ArithmeticDecoder {
  public:
   static constexpr std::size_t kStartBytes = 4;
