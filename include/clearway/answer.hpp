@@ -28,8 +28,8 @@ const char* name_of(Verdict verdict);  ///< "clear", "conflict", "undecided" or 
 const char* name_of(Reason reason);    ///< "question-in-doubt"
 
 /// Whether a warning with this code says that the search could not find anything, whatever stands
-/// in the way, so that an empty result is no answer: "out-of-reach", "no-points", "no-poses" and
-/// "all-ignored".
+/// in the way, so that an empty result is not an answer: "out-of-reach", "no-points", "no-poses"
+/// and "all-ignored".
 bool is_doubt(std::string_view code);
 
 /// The codes of the warnings that are doubts by is_doubt(), each once, in alphabetical order.

@@ -115,7 +115,7 @@ using TaskList = std::vector<std::size_t>;
 /// The numbers as sbatch --array takes them, for example "3,7-9".
 std::string task_list_text(const TaskList& tasks);
 
-/// The numbers in a list such as "3,7-9", each once; nullopt where the text is no such list.
+/// The numbers in a list such as "3,7-9", each once; nullopt where the text is not such a list.
 std::optional<TaskList> parse_task_list(const std::string& text);
 
 inline constexpr const char* kPlanName = "plan.json";

@@ -64,7 +64,7 @@ std::uint64_t surely_many_points(int threads);
 
 /// Where options.engine is kAuto, sets it to the engine that will be faster by estimate, of those
 /// that can answer the query within the memory. on_gpu: the search is on GPUs, which takes the
-/// sweep. earlier: the engine of the run that is resumed, which goes on with it; kAuto for none.
+/// sweep. earlier: the engine of the run that is resumed, which continues with it; kAuto for none.
 /// Where the estimates decided, the report gets them and the log the reason. options.threads is not
 /// 0.
 void choose_engine(const StoreReader& store, const Query& query, Engine earlier, bool on_gpu,

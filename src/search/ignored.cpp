@@ -167,7 +167,8 @@ namespace {
 /// wants to ignore what the model hits further up.
 constexpr double kHigh = 0.5;
 
-/// kHigh in the environment's unit. Where the unit is unknown, or is no length, metres are assumed.
+/// kHigh in the environment's unit. Where the unit is unknown, or is not a length, metres are
+/// assumed.
 double high_in(LengthUnit unit) {
   const double metres = metres_of(unit);
   return metres > 0 ? kHigh / metres : kHigh;
@@ -197,7 +198,8 @@ class Heights {
     return of != nullptr && pulled_back(*of, e).z - lowest_ > limit_;
   }
 
-  /// Counts the high points among the points of a cell that collide, which hits marks.
+  /// Counts the points of a cell that collide and are high. hits: a bit for each colliding point;
+  /// first_poses: their first poses.
   std::uint64_t count(std::uint32_t cell, std::span<const std::uint64_t> hits,
                       std::span<const std::uint32_t> first_poses) const {
     const auto q = store_.coordinates(cell);

@@ -122,7 +122,7 @@ class Search {
 
   const ShardCells* only() const { return shard_ ? &*shard_ : nullptr; }
 
-  /// Where a run is resumed, device kAuto goes on with the device of that run.
+  /// Where a run is resumed, device kAuto continues with the device of that run.
   void resolve_device() {
     const Device earlier = journal_.earlier_device();
     if (options_.device == Device::kAuto && options_.gpus.empty() && earlier != Device::kAuto) {

@@ -166,7 +166,8 @@ using TrianglePacket = TrianglePacketOf<double, 8>;
 /// ten-millionth of their size. A vector of the processor holds twice as many floats as doubles.
 struct FloatPacket : TrianglePacketOf<float, 16> {
   Vec3 origin;  ///< the place that all coordinates are relative to
-  /// Bound on the sum of the magnitudes of a corner's coordinates, plus that of an edge from it
+  /// Bound, for any corner and any edge from it, on the sum of the magnitudes of all their
+  /// coordinates
   float size;
   float edge;  ///< bound on the length of any edge
 
@@ -174,7 +175,7 @@ struct FloatPacket : TrianglePacketOf<float, 16> {
   /// tree.
   static FloatPacket of(const Triangle* triangles, std::uint32_t used, std::uint32_t first);
 
-  /// Bound, in metres, of the error of distances to these triangles that are computed in floats
+  /// Bound, in metres, on the error of distances to these triangles that are computed in floats
   /// from places of a curve. of_curve: sum of the magnitudes of the curve's coordinates, seen from
   /// the origin. Infinite if products of lengths may overflow (docs/design/numerics.md,
   /// "Triangles", floats).

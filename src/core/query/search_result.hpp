@@ -218,8 +218,8 @@ class ProfileSet {
 /// It asks for nothing else.
 Query backwards(const Query& query);
 
-/// The greatest pose that touches each colliding point. Between poses it is the start of the last
-/// way that touches it (docs/design/findings.md, "Last poses").
+/// The greatest index of a pose that touches each colliding point. Between poses it is the start of
+/// the last way that touches it (docs/design/findings.md, "Last poses").
 class LastPoses {
  public:
   /// answer: the hits of backwards(query).

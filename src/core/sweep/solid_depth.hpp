@@ -186,7 +186,7 @@ class SolidDepth {
   Vec3 e_;
   DepthAtPose<Element> at_pose_;
   std::uint32_t near_ = 0;  ///< triangle of the solids that was near e at the last pose
-  Clearance best_{0, 0};    ///< pose 0, so that a depth of 0 is no improvement
+  Clearance best_{0, 0};    ///< pose 0, so that a depth of 0 is not an improvement
 };
 
 }  // namespace clearway

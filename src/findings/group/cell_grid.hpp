@@ -15,7 +15,7 @@ namespace clearway {
 /// decided in integers where the scales of the three axes are equal, otherwise in double precision.
 class Neighbourhood {
  public:
-  /// gap: above 0, in the unit of the scale.
+  /// gap: the greatest distance between neighbours; above 0, in the unit of the scale.
   Neighbourhood(const Quantisation& quantisation, double gap);
 
   /// Whether two points with these differences are neighbours. Differences are from 0 to 2^32. What

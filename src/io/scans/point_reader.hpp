@@ -96,7 +96,7 @@ class PointReader {
 /// How to read a text file that does not name its columns, or names them wrongly.
 struct PointReadOptions {
   /// The columns of x, y and z: numbers counted from 1, or names in the header. If empty, the text
-  /// decides, and one that looks like something else than points is refused. Ignored for other
+  /// decides, and one that looks like something other than points is refused. Ignored for other
   /// formats.
   std::vector<std::string> columns = {};
   bool may_choose = false;  ///< whether messages advise the user to choose the columns

@@ -37,7 +37,7 @@ bool is_quaternion(std::span<const double> q) {
   return std::abs(norm - 1) < 1e-3;
 }
 
-/// The kind of pose in a line of numbers, by their number and size; empty where it is no pose.
+/// The kind of pose in a line of numbers, by their number and size; empty where it is not a pose.
 std::string pose_words(std::span<const double> numbers) {
   const std::string count = std::to_string(numbers.size());
   if (numbers.size() == 12 || numbers.size() == 16) {

@@ -137,7 +137,7 @@ class Trial {
   }
 
   /// Whether the change makes the path so much shorter than the model that it fits at any place,
-  /// which is no hint.
+  /// which is not a hint.
   bool fits_anywhere(Change change) const {
     const Vec3 lo = change(at_corner(path_.lo)).position();
     const Vec3 hi = change(at_corner(path_.hi)).position();

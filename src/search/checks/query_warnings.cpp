@@ -240,7 +240,7 @@ bool is_told(const Body& body, std::span<const Message> told) {
   });
 }
 
-/// Tells which bodies are not searched on a part of the path.
+/// Adds a message for each body that has no pose on part of the path, unless `told` has one.
 void tell_missing_poses(const Query& query, std::span<const Message> told, MessageLog& log) {
   for (const Body& body : query.bodies) {
     const std::vector<std::uint64_t> missing = missing_poses(body, query.poses.size());

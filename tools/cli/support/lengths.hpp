@@ -22,8 +22,8 @@ namespace clearway::tool {
 enum class LengthRange { kAboveZero, kFromZero, kAny };
 
 /// Reads a length such as "0.1" or "10cm". A decimal becomes the nearest double, and "10cm" the
-/// same as "0.1". Throws CLI::ValidationError naming the option where the text is no finite length
-/// of the range.
+/// same as "0.1". Throws CLI::ValidationError naming the option where the text is not a finite
+/// length of the range.
 ParsedLength parse_length(const std::string& option, const std::string& text,
                           LengthRange range = LengthRange::kAboveZero);
 

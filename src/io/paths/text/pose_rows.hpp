@@ -14,7 +14,7 @@
 
 namespace clearway {
 
-/// The objection that a line has another number of numbers than expected. count: nullopt for a line
+/// The objection that a line does not have as many numbers as expected. count: nullopt for a line
 /// that is not all numbers, one above `most` for more.
 Objection objection_to_count(std::string_view line, std::optional<std::size_t> count,
                              std::size_t most, const std::string& expected);

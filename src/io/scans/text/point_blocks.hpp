@@ -65,7 +65,7 @@ class PointLine {
       : columns_(columns), separator_(separator) {}
 
   const CoordinateColumns& columns() const { return columns_; }
-  /// Parses a line without leading blanks; returns false where it is anything else than a point.
+  /// Parses a line without leading blanks; returns false where it is anything other than a point.
   bool parse(std::string_view line, Vec3& point);
 
  private:

@@ -128,7 +128,7 @@ std::string crs_label(const ScanCrs& crs) {
   return crs.name == code ? code : crs.name + ", " + code;
 }
 
-/// Chooses the first well-known text that any input has. Warns of inputs in other systems than the
+/// Chooses the first well-known text that any input has. Warns of inputs in systems other than the
 /// first one's, and notes inputs without any.
 void choose_crs(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
                 CommonCrs& common) {

@@ -94,7 +94,7 @@ class Looking {
   std::uint64_t surely_below(const Box& ground, const Pose& pose) const {
     const double area = (ground.hi.x - ground.lo.x) * (ground.hi.y - ground.lo.y);
     const double part = kPartOfGround * area / (spacing(pose) * spacing(pose));
-    return part >= kSurelyBelow  // large also where all points are at one place
+    return part >= kSurelyBelow  // large also where all points are at the same place
                ? kSurelyBelow
                : std::max(kFewestBelow, static_cast<std::uint64_t>(part));
   }
