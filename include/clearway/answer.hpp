@@ -16,7 +16,7 @@
 namespace clearway {
 
 /// Whether the model passes. kUnknown is the verdict of a single part of a divided query that has
-/// no colliding point; merge() tells the verdict of all parts together.
+/// no colliding point; merge() gives the verdict of all parts together.
 enum class Verdict { kClear, kConflict, kUndecided, kUnknown };
 
 /// Why a verdict is kUndecided.

@@ -91,7 +91,8 @@ struct PlannedRun {
   const Argument& radius;
   const Entry& environment;
   Arguments arguments;  ///< the whole command line of the search
-  /// The other command lines, with their options for messages.
+  /// The command lines of `clearway conflicts` and `clearway report`: the command, and its options
+  /// with the keys of campaign.json that messages name.
   std::vector<std::pair<Command, Arguments>> outputs;
 };
 

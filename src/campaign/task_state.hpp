@@ -127,7 +127,7 @@ inline constexpr std::array kOutcomes{Outcome::kConflict, Outcome::kUndecided,
 struct OutcomeWords {
   /// The name in JSON, and as a class of the style sheet, for example "doubtful".
   const char* name;
-  /// A character that tells the outcome without colour.
+  /// A character that shows the outcome without colour.
   const char* sign;
   /// The word after a count, for example "clear with warnings".
   const char* word;

@@ -53,7 +53,7 @@ struct KdTreeOptions {
   int threads = 0;  ///< 0: as many as OpenMP offers
   /// Keeps what is found; poses that it holds already are not searched
   PoseJournal* journal = nullptr;
-  std::function<bool(std::uint32_t)> only = nullptr;  ///< tells the cells to search; null: all
+  std::function<bool(std::uint32_t)> only = nullptr;  ///< whether to search a cell; null: all
 };
 
 struct KdTreeStatistics {

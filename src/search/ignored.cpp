@@ -174,7 +174,8 @@ double high_in(LengthUnit unit) {
   return metres > 0 ? kHigh / metres : kHigh;
 }
 
-/// Tells how high points are in the frame of the body that touches them.
+/// Finds points that are high above the lowest model point, in the frame of the body that touches
+/// them.
 class Heights {
  public:
   Heights(const StoreReader& store, const Query& query)

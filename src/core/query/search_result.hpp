@@ -214,8 +214,8 @@ class ProfileSet {
   std::unique_ptr<std::mutex> mutex_;
 };
 
-/// The question with the poses in reverse order, whose first poses tell the last poses of `query`.
-/// It asks for nothing else.
+/// The query with its poses in reverse order, whose first poses give the last poses of `query`. It
+/// asks for nothing else.
 Query backwards(const Query& query);
 
 /// The greatest index of a pose that touches each colliding point. Between poses it is the start of

@@ -21,7 +21,7 @@ bool HitRuns<Element>::is_available() const {
          !(sweep_.resolved_from < sweep_.radius);
 }
 
-/// Counts twice the packets that are needed, because packets may be half empty.
+/// Counts twice as many packets as full ones would be, because packets may be half empty.
 template <typename Element>
 std::uint64_t HitRuns<Element>::most_bytes() const {
   if (!is_available()) return 0;

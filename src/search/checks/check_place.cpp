@@ -239,7 +239,7 @@ class Trial {
   Box path_;
 };
 
-/// A sentence that tells how model, path and environment would meet: in another unit, with axes
+/// A sentence that says how model, path and environment would meet: in another unit, with axes
 /// swapped, with the poses inverted, or after a shift. It is a guess for people; nothing is
 /// changed. Where no such change helps, it names what to compare.
 std::string likely_remedy(const Question& question, const PathCover& cover) {

@@ -69,7 +69,7 @@ void warn_one_side(const Question& question, const PathLooks& looks, MessageLog&
 }
 
 /// Looks for what a stretch of the path lacks and the rest has. What is missing below the model
-/// explains what is missing beside it. Heights, of which "floats" tells, explain it too.
+/// explains what is missing beside it. Heights, which "floats" reports, explain it too.
 class Stretches {
  public:
   Stretches(const Question& question, const PathLooks& looks)
@@ -142,7 +142,7 @@ class Stretches {
     return looks_.runs(std::max(least, kUnusuallyLong * usual), holds);
   }
 
-  /// Runs where nothing is on one side, and mostly something on the other.
+  /// Unusually long runs of looks with nothing on one side, but mostly something on the other.
   std::vector<LookRun> empty_sides(bool (*one)(const Look&), bool (*other)(const Look&)) const {
     std::vector<LookRun> runs =
         unusual_runs([&](const Look& look) { return is_on_ground(look) && !one(look); });

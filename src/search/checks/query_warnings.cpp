@@ -272,7 +272,8 @@ void warn_of_bodies(const StoreReader& store, const Question& path, const Query&
   steps.check_path(path, log);
 }
 
-/// query: with a model of points. asked: the query before its surface was sampled.
+/// Warns about a query without bodies. query: its model as points. asked: the query before its
+/// surface was sampled.
 void warn_of_points(const StoreReader& store, const Query& query, const Query& asked,
                     ModelForm view, std::span<const Message> told, MessageLog& log) {
   const LengthUnit unit = store.metadata().unit;

@@ -13,7 +13,7 @@
 namespace clearway {
 namespace {
 
-/// Reads a user id or another text of fixed length, padded with zeros.
+/// Reads a user id or another string of fixed length, padded with zeros.
 std::string_view padded_text(std::span<const std::byte> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   return text.substr(0, text.find('\0'));

@@ -88,9 +88,9 @@ class Looking {
     return cover_.scan().typical_block() / kSpacingsOfBlock / scale_of(pose);
   }
 
-  /// The number of points that are surely ground: a part of what a ground that fills the box would
-  /// have. The floor of a tunnel may be narrow, and around a scanner that stands still points are
-  /// scarce where others are dense.
+  /// The number of points in the box that are surely ground and not noise: a fraction of those that
+  /// ground on its whole area would have. The floor of a tunnel may be narrow, and around a scanner
+  /// that stands still points are scarce where others are dense.
   std::uint64_t surely_below(const Box& ground, const Pose& pose) const {
     const double area = (ground.hi.x - ground.lo.x) * (ground.hi.y - ground.lo.y);
     const double part = kPartOfGround * area / (spacing(pose) * spacing(pose));
