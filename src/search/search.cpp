@@ -123,7 +123,7 @@ class Search {
 
   const ShardCells* only() const { return shard_ ? &*shard_ : nullptr; }
 
-  /// Where a run is resumed, device kAuto goes on with the device of that run.
+  /// Where a run is resumed, device kAuto continues with the device of that run.
   void resolve_device() {
     const Device earlier = journal_.earlier_device();
     if (options_.device == Device::kAuto && options_.gpus.empty() && earlier != Device::kAuto) {
@@ -199,7 +199,7 @@ class Search {
               " s, a GPU with its start " + format_brief(cuda) + " s");
     return false;
 #else
-    return true;  // a device that is asked for in vain is refused later
+    return true;  // a device that is asked for but missing is refused later
 #endif
   }
 
@@ -296,8 +296,8 @@ class Search {
     return cpu_sweep_kind(store_, query, options);
   }
 
-  /// The GPUs, opened when the search needs them; they have been starting meanwhile. Throws NoGpu
-  /// where none can be used.
+  /// The GPUs, opened when the search first needs them; their start was begun earlier, in the
+  /// background. Throws NoGpu where none can be used.
   DeviceChoice open_gpus() {
     if (gpus_) return usable(*gpus_);
     const Stopwatch waiting;

@@ -243,7 +243,7 @@ bool is_told(const Body& body, std::span<const Message> told) {
   });
 }
 
-/// Tells which bodies are not searched on a part of the path.
+/// Adds a message for each body that has no pose on part of the path, unless `told` has one.
 void tell_missing_poses(const Query& query, std::span<const Message> told, MessageLog& log) {
   for (const Body& body : query.bodies) {
     const std::vector<std::uint64_t> missing = missing_poses(body, query.poses.size());
@@ -275,7 +275,8 @@ void warn_of_bodies(const StoreReader& store, const Question& path, const Query&
   steps.check_path(path, log);
 }
 
-/// query: with a model of points. asked: the query before its surface was sampled.
+/// Warns about a query without bodies. query: its model as points. asked: the query before its
+/// surface was sampled.
 void warn_of_points(const StoreReader& store, const Query& query, const Query& asked,
                     ModelForm view, std::span<const Message> told, MessageLog& log) {
   const LengthUnit unit = store.metadata().unit;

@@ -22,7 +22,7 @@ struct BodyMessages {
 /// vehicle where it holds for all of its bodies that the scan covers; otherwise it is not given.
 void tell_of_bodies(const std::vector<BodyMessages>& bodies, MessageLog& log);
 
-/// Warns where a query may answer something else than was meant, because of a path in another
+/// Warns where a query may answer something other than was meant, because of a path in another
 /// frame, a model in another unit, or steps that skip things. Reads the store's index, and the
 /// points below a few poses. The model is not empty. Deterministic. told: what reading the inputs
 /// has told already, such as which poses a body lacks; it is not told again.

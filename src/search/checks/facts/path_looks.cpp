@@ -19,7 +19,8 @@ constexpr std::uint64_t kSurelyBelow = 10, kFewestBelow = 3;
 constexpr std::uint64_t kSurelyBeside = 3;
 constexpr double kPartOfGround = 1.0 / 32;
 // The following lengths are in metres.
-/// Added to the box along the path, so that scanned points may be expected in it.
+/// By how much a box beside the model is extended along the path, so that it is long enough for the
+/// scan to have points in it.
 constexpr double kBesideMargin = 1;
 /// How far the ground may reach above the model's lowest point.
 constexpr double kIntoModel = 0.3;
@@ -29,8 +30,8 @@ constexpr double kClosestApart = 0.5, kFarthestApart = 2;
 /// How far around a scanner on a tripod or a vehicle nothing is scanned, because it stands there.
 /// Below a model that is smaller than this, ground may be expected only at the model's edge.
 constexpr double kScannerShadow = 1;
-/// Width in metres of the narrowest column below a small model, which has to hold points of the
-/// ground.
+/// Least width in metres of the column below a model in which points of the ground are looked for;
+/// it is wider than a model that is smaller than this.
 constexpr double kNarrowest = 1;
 /// Diagonal of a block of 64 points of a surface in units of the scan's spacing: such a block is 8
 /// spacings wide and 8 spacings high.
@@ -87,13 +88,13 @@ class Looking {
     return cover_.scan().typical_block() / kSpacingsOfBlock / scale_of(pose);
   }
 
-  /// The number of points that are surely ground: a part of what a ground that fills the box would
-  /// have. The floor of a tunnel may be narrow, and around a scanner that stands still points are
-  /// scarce where others are dense.
+  /// The number of points in the box that are surely ground and not noise: a fraction of those that
+  /// ground on its whole area would have. The floor of a tunnel may be narrow, and around a scanner
+  /// that stands still points are scarce where others are dense.
   std::uint64_t surely_below(const Box& ground, const Pose& pose) const {
     const double area = (ground.hi.x - ground.lo.x) * (ground.hi.y - ground.lo.y);
     const double part = kPartOfGround * area / (spacing(pose) * spacing(pose));
-    return part >= kSurelyBelow  // large also where all points are at one place
+    return part >= kSurelyBelow  // large also where all points are at the same place
                ? kSurelyBelow
                : std::max(kFewestBelow, static_cast<std::uint64_t>(part));
   }
@@ -109,7 +110,7 @@ class Looking {
   }
 
   /// The column below the slice, wider by one spacing of the scan and no more, because ground
-  /// beside the model tells nothing of the way that it takes. The column reaches out of the shadow
+  /// beside the model says nothing about what it runs over. The column reaches out of the shadow
   /// of a scanner.
   Box below(const Pose& pose) const {
     Box box = slice_;
@@ -122,7 +123,8 @@ class Looking {
     return box;
   }
 
-  /// side: 1 for the left of a model whose longer side points forward, -1 for its right.
+  /// Whether the scan has points beside the model at a pose. side: 1 for the left of a model whose
+  /// longer side points forward, -1 for its right.
   bool is_beside(int side, const Pose& pose) const {
     return std::ranges::any_of(kBands, [&](const Band& band) {
       return points_.has(beside(side, band, pose), pose, kSurelyBeside);
