@@ -104,7 +104,9 @@ class Search {
       if (told.severity == Message::Severity::kWarning) report_.warnings.push_back(told);
     }
     check_sizes(query_);
-    warn_of_query(store_, query_, options_.input_warnings, log_);
+    ThreadLimit(threads_or_all(options_.threads)).run([&] {
+      warn_of_query(store_, query_, options_.input_warnings, log_);
+    });
     if (options_.float_precision) warn_of_floats(store_, query_, log_);
     warn_of_ignored(store_, header_, header_.ignored, log_);
     if (options_.strict) refuse_warnings(report_.warnings);

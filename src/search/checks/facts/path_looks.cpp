@@ -1,5 +1,9 @@
 #include "search/checks/facts/path_looks.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -59,7 +63,8 @@ Box inner_body(const Box& model, double metre) {
   return body;
 }
 
-/// Looks around the model at single poses.
+/// Looks around the model at single poses. Each thread has one of its own, because the points that
+/// it reads are kept.
 class Looking {
  public:
   Looking(const Question& question, const PathCover& cover)
@@ -69,9 +74,9 @@ class Looking {
         slice_(body_slice(question.model)),
         inner_(inner_body(question.model, question.metre)) {}
 
+  /// look.covered is known already.
   void at(Look& look) const {
     const Pose& pose = question_.query.poses[look.pose];
-    look.covered = cover_.covers(moved(slice_, pose));
     look.height = height_above_ground(points_, inner_, pose);
     if (!look.covered) return;
     const Box ground = below(pose);
@@ -209,8 +214,20 @@ std::vector<Look> chosen_looks(const Question& question) {
 
 PathLooks::PathLooks(const Question& question, const PathCover& cover)
     : looks_(chosen_looks(question)), reach_(cover.reach()) {
-  const Looking looking(question, cover);
-  for (Look& look : looks_) looking.at(look);
+  const Box slice = body_slice(question.model);
+  for (Look& look : looks_) {
+    look.covered = cover.covers(moved(slice, question.query.poses[look.pose]));
+  }
+  // Looks that follow each other read the same cells, so a thread takes several of them.
+  constexpr std::size_t kLooksOfTask = 16;
+  const tbb::blocked_range<std::size_t> all(0, looks_.size(), kLooksOfTask);
+  tbb::parallel_for(
+      all,
+      [&](const tbb::blocked_range<std::size_t>& part) {
+        const Looking looking(question, cover);
+        for (std::size_t i = part.begin(); i < part.end(); ++i) looking.at(looks_[i]);
+      },
+      tbb::simple_partitioner());
 }
 
 double PathLooks::apart() const {

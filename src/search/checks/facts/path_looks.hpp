@@ -34,7 +34,7 @@ struct LookRun {
 /// points.
 class PathLooks {
  public:
-  /// Throws InputError where a cell is damaged.
+  /// Looks on the threads of the calling oneTBB arena. Throws InputError where a cell is damaged.
   PathLooks(const Question& question, const PathCover& cover);
 
   const std::vector<Look>& all() const { return looks_; }
