@@ -12,13 +12,13 @@ namespace {
 
 const Quantisation kTenthMillimetre{{1e-4, 1e-4, 1e-4}, {0, 0, 0}};
 const Box kRoom{{-4, -3, -1}, {5, 4, 2}};
-const Box kPart{{-0.6, -0.4, -0.3}, {0.7, 0.5, 0.2}};
+const Box kPartOfClearances{{-0.6, -0.4, -0.3}, {0.7, 0.5, 0.2}};
 
-struct Scene {
+struct SceneOfClearances {
   Random random{17};
   Quantisation quantisation = kTenthMillimetre;
   std::vector<Quantum> points = quantise(random_points(random, kRoom, 1000), quantisation);
-  std::vector<Vec3> model = random_points(random, kPart, 60);
+  std::vector<Vec3> model = random_points(random, kPartOfClearances, 60);
   std::vector<Pose> poses = smooth_path(random, kRoom, 60);
   double radius = 0.1;
 
@@ -33,7 +33,7 @@ struct Scene {
   }
 };
 
-void move_far_away(Scene& scene, const Vec3& offset) {
+void move_far_away(SceneOfClearances& scene, const Vec3& offset) {
   for (int k = 0; k < 3; ++k) scene.quantisation.offset[k] += offset[k];
   for (Pose& pose : scene.poses) {
     for (int k = 0; k < 3; ++k) pose.translation[k] += offset[k];
@@ -43,7 +43,7 @@ void move_far_away(Scene& scene, const Vec3& offset) {
 }  // namespace
 
 TEST_CASE("clearances of every size") {
-  Scene scene;
+  SceneOfClearances scene;
   SECTION("smaller than every distance") { CHECK(scene.check(1e-7) == 0); }
   SECTION("smaller than the radius") { CHECK(scene.check(0.07) > 0); }
   SECTION("the radius") { CHECK(scene.check(0.1) > 0); }
@@ -64,7 +64,7 @@ TEST_CASE("clearances of every size") {
 }
 
 TEST_CASE("clearances of few model points, poses and points") {
-  Scene scene;
+  SceneOfClearances scene;
   SECTION("one model point") { scene.model.resize(1); }
   SECTION("one pose") { scene.poses.resize(1); }
   SECTION("one point") { scene.points.resize(1); }
@@ -78,7 +78,7 @@ TEST_CASE("clearances of few model points, poses and points") {
 
 TEST_CASE("clearances along slow paths") {
   // Seen from the model, runs of many poses are nearly straight, so they are searched as one.
-  Scene scene;
+  SceneOfClearances scene;
   scene.points.resize(250);
   const double bend = GENERATE(0.0, 1e-9, 1e-3, 0.5, 4.0);
   scene.poses = slow_path(500, bend);
@@ -100,7 +100,7 @@ TEST_CASE("clearances along slow paths") {
 }
 
 TEST_CASE("clearances that several poses tie for") {
-  Scene scene;
+  SceneOfClearances scene;
   SECTION("repeated poses") {
     const auto once = scene.poses;
     scene.poses.clear();
@@ -121,7 +121,7 @@ TEST_CASE("clearances that several poses tie for") {
 TEST_CASE("clearances that mirror images tie for") {
   // Points in the plane x = 0 and poses at -x and x, all in exact numbers: d2 is equal and the
   // earlier pose wins.
-  Scene scene;
+  SceneOfClearances scene;
   scene.quantisation = {{0x1p-10, 0x1p-10, 0x1p-10}, {0, 0, 0}};
   scene.points.clear();
   for (std::int32_t i = 0; i < 900; ++i) scene.points.push_back({0, i % 30 * 64, i / 30 * 32});
@@ -137,7 +137,7 @@ TEST_CASE("clearances that mirror images tie for") {
 }
 
 TEST_CASE("clearances of duplicates") {
-  Scene scene;
+  SceneOfClearances scene;
   scene.points.resize(300);
   for (int i = 0; i < 300; ++i) scene.points.push_back(scene.points[i]);
   for (int i = 0; i < 60; ++i) scene.model.push_back(scene.model[i]);
@@ -145,7 +145,7 @@ TEST_CASE("clearances of duplicates") {
 }
 
 TEST_CASE("clearances far from the origin and of matrices that are not rigid") {
-  Scene scene;
+  SceneOfClearances scene;
   SECTION("UTM") { move_far_away(scene, {5e6, 2e6, 1e3}); }
   SECTION("six digits") {
     for (Pose& pose : scene.poses) pose = printed_with_six_digits(pose);
@@ -174,7 +174,7 @@ TEST_CASE("clearances where roundings decide the pose and the model point") {
     const double far = trial % 3 == 0 ? 0 : trial % 3 == 1 ? 1e3 : 5e6;
     const double ulp = std::max(far, 1.0) * 0x1p-52;
     const Vec3 centre{far, -0.7 * far, 0.3 * far};
-    Scene scene;
+    SceneOfClearances scene;
     scene.model.clear();
     for (int i = 0; i < 40; ++i) {
       const Vec3 d = random_direction(random);

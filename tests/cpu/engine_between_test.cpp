@@ -16,7 +16,7 @@ constexpr std::uint32_t kNever = HitSet::kNever;
 const Quantisation kBinary{{0x1p-20, 0x1p-20, 0x1p-20}, {0, 0, 0}};
 const Quantisation kMillimetre{{1e-3, 1e-3, 1e-3}, {0, 0, 0}};
 const std::vector<Vec3> kOnePoint{{0, 0, 0}};
-const Box kRoom{{-4, -3, -1}, {5, 4, 2}};
+const Box kRoomOfWays{{-4, -3, -1}, {5, 4, 2}};
 
 std::vector<std::uint32_t> first_poses(const std::vector<Vec3>& points,
                                        const std::vector<Vec3>& model,
@@ -30,10 +30,10 @@ std::uint64_t hits_of(const std::vector<std::uint32_t>& poses) {
 }
 
 /// A cloud in kRoom and a model.
-struct Scene {
+struct SceneOfWays {
   Random random{17};
   Quantisation quantisation = kMillimetre;
-  std::vector<Quantum> points = quantise(random_points(random, kRoom, 2000), quantisation);
+  std::vector<Quantum> points = quantise(random_points(random, kRoomOfWays, 2000), quantisation);
   std::vector<Vec3> model = random_points(random, {{-0.6, -0.4, -0.3}, {0.7, 0.5, 0.2}}, 40);
 
   /// Checks every engine between poses. Returns how many points collide there but at no pose.
@@ -47,7 +47,7 @@ struct Scene {
 }  // namespace
 
 TEST_CASE("one pose and repeated poses have the discrete answer between poses") {
-  const Scene scene;
+  const SceneOfWays scene;
   const auto poses = GENERATE(as<std::size_t>(), 0, 1, 2, 50);
   Random random(2);
   const std::vector<Pose> still(poses, random_rotation(random, {0.5, 0.3, 0.2}));
@@ -101,7 +101,7 @@ TEST_CASE("a stop counts from the way that leads to it") {
 }
 
 TEST_CASE("turning on the spot in large steps: chords") {
-  const Scene scene;
+  const SceneOfWays scene;
   const double step = GENERATE(0.5, 1.5707963267948966, 3.0, 3.141592653589793);
   std::vector<Pose> poses;
   for (int i = 0; i < 9; ++i) poses.push_back(rotation({0, 0, 1}, step * i, {0.5, 0.5, 0.3}));
@@ -109,10 +109,10 @@ TEST_CASE("turning on the spot in large steps: chords") {
 }
 
 TEST_CASE("jumps between poses") {
-  Scene scene;
+  SceneOfWays scene;
   const double far = GENERATE(10.0, 3e3, 1e7);
   const double utm = GENERATE(0.0, 5e6);
-  std::vector<Pose> poses = smooth_path(scene.random, kRoom, 12);
+  std::vector<Pose> poses = smooth_path(scene.random, kRoomOfWays, 12);
   for (std::size_t i = 0; i < poses.size(); i += 3) {
     poses[i] = random_rotation(scene.random, {far, -0.5 * far, 0});
   }
@@ -122,7 +122,7 @@ TEST_CASE("jumps between poses") {
 }
 
 TEST_CASE("steps of one unit in the last place") {
-  Scene scene;
+  SceneOfWays scene;
   std::vector<Pose> poses{translation({0.5, 0.3, 0.2})};
   for (int i = 0; i < 30; ++i) {
     poses.push_back(poses.back());
@@ -134,7 +134,7 @@ TEST_CASE("steps of one unit in the last place") {
 
 TEST_CASE("steps whose squared length underflows") {
   const double unit = GENERATE(1e-155, 1e-160, 1e-163, 1e-170);
-  Scene scene;
+  SceneOfWays scene;
   scene.quantisation = {{unit, unit, unit}, {0, 0, 0}};
   for (Quantum& q : scene.points) {
     for (int k = 0; k < 3; ++k) q[k] = static_cast<std::int32_t>(below(scene.random, 41)) - 20;

@@ -17,14 +17,14 @@ namespace {
 
 const Quantisation kMillimetre{{1e-3, 1e-3, 1e-3}, {500, -200, 0}};
 
-struct Scene {
+struct SceneOfGrid {
   Random random{9};
   std::vector<Quantum> points;
   std::vector<Vec3> model = random_points(random, {{-0.5, -0.4, -0.3}, {0.5, 0.4, 0.3}}, 300);
   std::vector<Pose> poses = smooth_path(random, {{498, -203, -1}, {505, -197, 2}}, 70);
   double radius = 0.15;
 
-  explicit Scene(std::size_t count = 5000) {
+  explicit SceneOfGrid(std::size_t count = 5000) {
     points = quantise(random_points(random, {{496, -205, -1}, {506, -195, 2}}, count), kMillimetre);
   }
 
@@ -54,7 +54,7 @@ struct Scene {
 }  // namespace
 
 TEST_CASE("grid cells from tiny to huge") {
-  const Scene scene;
+  const SceneOfGrid scene;
   for (double size = 1e-9; size < 1e9; size *= 10) {
     CAPTURE(size);
     CHECK(scene.wrong({.options = {.grid_cell = size}}, {1000, 0}) == 0);
@@ -62,7 +62,7 @@ TEST_CASE("grid cells from tiny to huge") {
 }
 
 TEST_CASE("a work list of one pair, and of few") {
-  const Scene scene;
+  const SceneOfGrid scene;
   for (const std::uint32_t work_list : {0, 1, 2, 31, 513}) {
     CAPTURE(work_list);
     CHECK(scene.wrong({.work_list = work_list}, {1000, 0}) == 0);
@@ -70,7 +70,7 @@ TEST_CASE("a work list of one pair, and of few") {
 }
 
 TEST_CASE("pages of one cell and of all, one slot and many") {
-  const Scene scene;
+  const SceneOfGrid scene;
   for (const std::uint32_t cells : {1, 2, 100}) {
     for (const std::uint32_t slots : {1, 5}) {
       CHECK(scene.wrong({.slots = slots, .cells_a_page = cells}, {256, 700}) == 0);
@@ -80,7 +80,7 @@ TEST_CASE("pages of one cell and of all, one slot and many") {
 
 TEST_CASE("a model of several tasks") {
   // The model has more parts than one task looks at, and the last one is short.
-  Scene scene(300);
+  SceneOfGrid scene(300);
   scene.model = random_points(scene.random, {{-1, -1, -0.3}, {1, 1, 0.3}},
                               kTaskParts * kPartGroups * kGroupPoints + 5000);
   scene.poses.resize(3);
@@ -91,7 +91,7 @@ TEST_CASE("a model of several tasks") {
 
 TEST_CASE("a sparse cell takes no more memory, and its clusters are searched in grid cells") {
   // Clusters of a metre over 100 km: a dense grid would have 1e18 cells.
-  Scene scene(0);
+  SceneOfGrid scene(0);
   const double distances[] = {0, 40'000, 100'000};
   for (const double far : distances) {
     for (const Vec3& p : random_points(scene.random, {{498, -203, -1}, {502, -199, 2}}, 2000)) {
@@ -106,7 +106,7 @@ TEST_CASE("a sparse cell takes no more memory, and its clusters are searched in 
 }
 
 TEST_CASE("most searches end at a bit, and few pairs need the predicate") {
-  const Scene scene;
+  const SceneOfGrid scene;
   GridStatistics statistics;
   scene.wrong({}, {1000, 0}, &statistics);
   CHECK(statistics.points_moved < 2 * 2 * scene.model.size() * scene.poses.size());
@@ -115,7 +115,7 @@ TEST_CASE("most searches end at a bit, and few pairs need the predicate") {
 }
 
 TEST_CASE("every pose of a page's nodes belongs to one task") {
-  const Scene scene(2000);
+  const SceneOfGrid scene(2000);
   const MemoryCloud cloud(scene.points, kMillimetre, {256, 0});
   const Query query = scene.query();
   const MotionTree motion(scene.poses, ModelGroups(scene.model).box());
@@ -137,7 +137,7 @@ TEST_CASE("every pose of a page's nodes belongs to one task") {
 }
 
 TEST_CASE("what the grid engine does not offer is refused") {
-  const Scene scene(100);
+  const SceneOfGrid scene(100);
   const MemoryCloud cloud(scene.points, kMillimetre);
   const MotionTree motion(scene.poses, ModelGroups(scene.model).box());
   Query query = scene.query();

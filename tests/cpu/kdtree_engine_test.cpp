@@ -25,7 +25,7 @@ struct CountedProgress final : Progress {
   int begun = 0, ended = 0;
 };
 
-struct Scene {
+struct SceneOfTree {
   Random random{1};
   Box room{{0, 0, 0}, {40, 20, 5}};
   Quantisation quantisation{{1e-3, 1e-3, 1e-3}, {0, 0, 0}};
@@ -38,7 +38,7 @@ struct Scene {
 }  // namespace
 
 TEST_CASE("memory beyond the packed points is less than a byte a point") {
-  const Scene scene;
+  const SceneOfTree scene;
   NoProgress progress;
   KdTreeStatistics statistics;
   run_kdtree(scene.cloud, scene.query, {2}, progress, &statistics);
@@ -48,7 +48,7 @@ TEST_CASE("memory beyond the packed points is less than a byte a point") {
 }
 
 TEST_CASE("searches are counted, and far parts dismissed") {
-  const Scene scene;
+  const SceneOfTree scene;
   NoProgress progress;
   KdTreeStatistics statistics;
   run_kdtree(scene.cloud, scene.query, {2}, progress, &statistics);
@@ -58,7 +58,7 @@ TEST_CASE("searches are counted, and far parts dismissed") {
 }
 
 TEST_CASE("progress counts every pose once") {
-  Scene scene;
+  SceneOfTree scene;
   CountedProgress progress;
   SECTION("many poses") {}
   SECTION("one pose, its model shared out") { scene.query.poses.resize(1); }
@@ -72,7 +72,7 @@ TEST_CASE("progress counts every pose once") {
 }
 
 TEST_CASE("a damaged cell ends the run with its error") {
-  Scene scene;
+  SceneOfTree scene;
   const std::vector<Pose> poses(500, translation({20, 10, 2}));
   scene.query.poses = poses;
   scene.query.radius = 0.3;

@@ -13,15 +13,15 @@ using namespace clearway::test;
 
 namespace {
 
-const Box kRoom{{-4, -3, -1}, {5, 4, 2}};
-const Box kPart{{-0.6, -0.4, -0.3}, {0.7, 0.5, 0.2}};
+const Box kRoomOfSurfaces{{-4, -3, -1}, {5, 4, 2}};
+const Box kPartOfSurfaces{{-0.6, -0.4, -0.3}, {0.7, 0.5, 0.2}};
 
 struct SurfaceScene : SceneChecks<SurfaceScene> {
   Random random{23};
   Quantisation quantisation{{1e-4, 1e-4, 1e-4}, {0, 0, 0}};
-  std::vector<Quantum> points = quantise(random_points(random, kRoom, 500), quantisation);
-  Surface surface = random_surface(random, kPart, 30);
-  std::vector<Pose> poses = smooth_path(random, kRoom, 25);
+  std::vector<Quantum> points = quantise(random_points(random, kRoomOfSurfaces, 500), quantisation);
+  Surface surface = random_surface(random, kPartOfSurfaces, 30);
+  std::vector<Pose> poses = smooth_path(random, kRoomOfSurfaces, 25);
   double radius = 0.2;
 
   Query query() const {
@@ -36,7 +36,7 @@ struct SurfaceScene : SceneChecks<SurfaceScene> {
 TEST_CASE("surfaces of every kind") {
   SurfaceScene scene;
   SECTION("of all shapes of triangles") {}
-  SECTION("a box of twelve large ones") { scene.surface = box_surface(kPart); }
+  SECTION("a box of twelve large ones") { scene.surface = box_surface(kPartOfSurfaces); }
   SECTION("one triangle") { scene.surface.triangles.resize(1); }
   SECTION("one that is a point") {
     scene.surface.triangles = {{2, 2, 2}};
@@ -140,7 +140,7 @@ TEST_CASE("clearances of surfaces along slow paths") {
   const double bend = GENERATE(0.0, 1e-3, 0.5);
   scene.poses = slow_path(300, bend);
   SECTION("as they are") {}
-  SECTION("of a box") { scene.surface = box_surface(kPart); }
+  SECTION("of a box") { scene.surface = box_surface(kPartOfSurfaces); }
   SECTION("with a stop") { scene.poses.insert(scene.poses.begin() + 200, 100, scene.poses[200]); }
   SECTION("to and fro") {
     const auto there = scene.poses;
@@ -153,7 +153,7 @@ TEST_CASE("clearances of surfaces along slow paths") {
 
 TEST_CASE("clearances and profiles of lines and single points") {
   SurfaceScene scene;
-  scene.surface = box_surface(kPart);
+  scene.surface = box_surface(kPartOfSurfaces);
   scene.surface.triangles = {{0, 7, 7}, {1, 1, 1}, {4, 4, 4}};
   SECTION("beside each other") {}
   SECTION("a mast alone") { scene.surface.triangles.resize(1); }

@@ -7,8 +7,8 @@ using namespace clearway::test;
 
 namespace {
 
-Conflicts conflicts_of(const Found& found, const ConflictOptions& options = {},
-                       std::vector<std::uint32_t>* conflict_of = nullptr) {
+Conflicts conflicts_with_sides(const Found& found, const ConflictOptions& options = {},
+                               std::vector<std::uint32_t>* conflict_of = nullptr) {
   const ScratchFolder folder;
   return find_conflicts(found.write(folder), found.poses, options, conflict_of);
 }
@@ -23,7 +23,7 @@ TEST_CASE("lateral and height are along the axes of the model at the pose") {
     found.quanta = {{0, 0, 0}};
     ConflictOptions options = how;
     options.min_points = 1;
-    return conflicts_of(found, options).listed.at(0);
+    return conflicts_with_sides(found, options).listed.at(0);
   };
   const Conflict left = at({101, 52.5, 0.75}, translation({100, 50, 0}));
   CHECK(left.lateral == 2.5);
@@ -50,7 +50,7 @@ TEST_CASE("lateral and height are of the nearest point where it is known") {
   found.clearances.xyz = found.rows().xyz;
   ConflictOptions options;
   options.min_points = 1;
-  const Conflict found_one = conflicts_of(found, options).listed.at(0);
+  const Conflict found_one = conflicts_with_sides(found, options).listed.at(0);
   CHECK(found_one.lateral == found.rows().xyz[1].y - 10);
   CHECK(found_one.height == -1);
 }
@@ -67,7 +67,7 @@ TEST_CASE("an obstacle has the station where it stands, whichever way the vehicl
     ConflictOptions options;
     options.min_points = 1;
     options.forward = forward;
-    return *conflicts_of(found, options).listed.at(0).obstacle_chainage;
+    return *conflicts_with_sides(found, options).listed.at(0).obstacle_chainage;
   };
   const std::vector<double> path{0, 1, 2, 3, 4}, to_turn{0, 1, 2, 1, 0}, standing{2, 2, 2.001, 2};
   for (const double turn : {0., 90., 180., 270.}) {
@@ -94,7 +94,7 @@ TEST_CASE("the side is seen from the model's box at the pose") {
     found.quanta = {{0, 0, 0}};
     ConflictOptions options = how;
     options.min_points = 1;
-    return conflicts_of(found, options).listed.at(0).side;
+    return conflicts_with_sides(found, options).listed.at(0).side;
   };
   const Pose ahead = translation({100, 50, 0});
   CHECK(side({100, 52, 0}, ahead) == Side::kLeft);

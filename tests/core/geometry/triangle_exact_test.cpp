@@ -16,18 +16,19 @@ using namespace clearway::test;
 namespace {
 
 using Exact = CGAL::Exact_rational;
-using Kernel = CGAL::Simple_cartesian<Exact>;
+using TriangleKernel = CGAL::Simple_cartesian<Exact>;
 
-Kernel::Point_3 exact(const Vec3& p) { return {p.x, p.y, p.z}; }
+TriangleKernel::Point_3 exact_point(const Vec3& p) { return {p.x, p.y, p.z}; }
 
 Exact squared_exact(const Vec3& e, const Triangle& t) {
-  const Kernel::Point_3 a = exact(t.a), b = exact(t.b), c = exact(t.c), p = exact(e);
+  const TriangleKernel::Point_3 a = exact_point(t.a), b = exact_point(t.b), c = exact_point(t.c),
+                                p = exact_point(e);
   if (!CGAL::collinear(a, b, c)) {
-    return CGAL::squared_distance(p, Kernel::Triangle_3(a, b, c));
+    return CGAL::squared_distance(p, TriangleKernel::Triangle_3(a, b, c));
   }
-  const auto edge = [&](const Kernel::Point_3& from, const Kernel::Point_3& to) {
+  const auto edge = [&](const TriangleKernel::Point_3& from, const TriangleKernel::Point_3& to) {
     return from == to ? CGAL::squared_distance(p, from)
-                      : CGAL::squared_distance(p, Kernel::Segment_3(from, to));
+                      : CGAL::squared_distance(p, TriangleKernel::Segment_3(from, to));
   };
   return std::min({edge(a, b), edge(b, c), edge(c, a)});
 }

@@ -10,7 +10,7 @@ using namespace clearway;
 
 namespace {
 
-const Box kModel{{-2, -1, 0}, {3, 1, 1.5}};
+const Box kBodyOfTree{{-2, -1, 0}, {3, 1, 1.5}};
 
 Pose turned(double angle, const Vec3& p) {
   return {{std::cos(angle), -std::sin(angle), 0, std::sin(angle), std::cos(angle), 0, 0, 0, 1},
@@ -22,7 +22,7 @@ double distance(const Vec3& a, const Vec3& b) { return std::sqrt(squared_distanc
 /// Checks that every node covers its poses, holds its mid and halves into its children, and that
 /// its delta bounds the motion of random model points, between poses up to the next pose.
 void check_tree(const std::vector<Pose>& poses, bool between_poses) {
-  const MotionTree tree(poses, kModel, between_poses);
+  const MotionTree tree(poses, kBodyOfTree, between_poses);
   REQUIRE(tree.nodes().size() == 2 * poses.size() - 1);
   CHECK(tree.nodes()[0].count == poses.size());
   std::mt19937_64 random(3);
@@ -80,7 +80,7 @@ TEST_CASE("a jump separates the motion tree's halves") {
   std::vector<Pose> poses;
   for (int i = 0; i < 10; ++i) poses.push_back(turned(0, {i * 0.1, 0, 0}));
   for (int i = 0; i < 90; ++i) poses.push_back(turned(0, {1000 + i * 0.1, 0, 0}));
-  const MotionTree tree(poses, kModel);
+  const MotionTree tree(poses, kBodyOfTree);
   CHECK(tree.nodes()[1].count == 10);
   CHECK(tree.nodes()[1].delta < 1);
   CHECK(tree.nodes()[tree.nodes()[0].later].delta < 10);
@@ -88,7 +88,7 @@ TEST_CASE("a jump separates the motion tree's halves") {
 
 TEST_CASE("pulling back uses the true inverse of a matrix that is not quite rigid") {
   const Pose pose{{1.0001, 1e-4, 0, -2e-4, 0.9999, 3e-4, 0, -1e-4, 1.0001}, {100, 200, 300}};
-  const MotionTree tree(std::span(&pose, 1), kModel);
+  const MotionTree tree(std::span(&pose, 1), kBodyOfTree);
   const Vec3 m{2.5, -0.5, 1.25};
   const Vec3 back = tree.pulled_back(0, transform(pose, m));
   CHECK(distance(back, m) < 1e-12);  // the transpose is off by 5e-4
@@ -103,7 +103,7 @@ TEST_CASE("singular values of a pull-back are bounds") {
     Pose pose{};
     for (double& r : pose.rotation) r = unit(random);
     for (int k = 0; k < 3; ++k) pose.rotation[4 * k] += 2;  // far from singular
-    const MotionTree tree(std::span(&pose, 1), kModel);
+    const MotionTree tree(std::span(&pose, 1), kBodyOfTree);
     const Vec3 v{unit(random), unit(random), unit(random)};
     const double before = distance(v, {0, 0, 0});
     const double after = distance(transform(pose, v), {0, 0, 0});

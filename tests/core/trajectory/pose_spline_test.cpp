@@ -13,7 +13,7 @@ using namespace clearway;
 
 namespace {
 
-const Box kModel{{-2, -1, 0}, {3, 1, 1.5}};
+const Box kBodyOfSpline{{-2, -1, 0}, {3, 1, 1.5}};
 constexpr double kPi = 3.14159265358979323846;
 
 struct Curve {
@@ -22,7 +22,7 @@ struct Curve {
   std::vector<double> motions() const {
     std::vector<double> out;
     for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
-      out.push_back(motion_bound(kModel, poses[i], poses[i + 1]));
+      out.push_back(motion_bound(kBodyOfSpline, poses[i], poses[i + 1]));
     }
     return out;
   }
@@ -97,7 +97,7 @@ double helix_error(int count) {
   for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
     for (int k = 0; k <= 20; ++k) {
       const Pose pose = curve.spline.between(i).at(k / 20.0);
-      error = std::max(error, motion_bound(kModel, pose, on_helix(pose.translation[2] / 2)));
+      error = std::max(error, motion_bound(kBodyOfSpline, pose, on_helix(pose.translation[2] / 2)));
     }
   }
   return error;

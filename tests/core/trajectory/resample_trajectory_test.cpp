@@ -13,11 +13,11 @@ using Catch::Contains;
 
 namespace {
 
-const Box kModel{{-2, -1, 0}, {3, 1, 1.5}};
-constexpr double kPi = 3.14159265358979323846;
+const Box kBodyToResample{{-2, -1, 0}, {3, 1, 1.5}};
+constexpr double kHalfTurn = 3.14159265358979323846;
 
 std::vector<Pose> resampled(const std::vector<Pose>& poses, double max_motion,
-                            const Box& model = kModel) {
+                            const Box& model = kBodyToResample) {
   NoProgress progress;
   return resample_trajectory(poses, model, max_motion, progress);
 }
@@ -35,11 +35,11 @@ void check_resampled(const std::vector<Pose>& poses, const std::vector<Pose>& ou
   }
   CHECK(kept);
   CHECK(at == out.end());
-  CHECK(largest_motion(kModel, out) <= max_motion);
+  CHECK(largest_motion(kBodyToResample, out) <= max_motion);
   Random random(5);
   bool bounded = true;
   for (std::size_t i = 1; i < out.size(); ++i) {
-    const Vec3 m = random_point(random, kModel);
+    const Vec3 m = random_point(random, kBodyToResample);
     const double d2 = squared_distance(transform(out[i - 1], m), transform(out[i], m));
     bounded &= std::sqrt(d2) <= max_motion;
   }
@@ -60,7 +60,7 @@ TEST_CASE("resampling bounds the motion and keeps the poses") {
     }
   };
   SECTION("a smooth path") { poses = smooth_path(random, {{0, 0, 0}, {50, 50, 5}}, 100); }
-  SECTION("wild turns") { add(60, 0.5, 0, kPi); }
+  SECTION("wild turns") { add(60, 0.5, 0, kHalfTurn); }
   SECTION("far from the origin") { add(60, 2, 5e6, 0.5); }
   SECTION("printed with six digits") {
     add(60, 1, 1e3, 1);
@@ -71,7 +71,8 @@ TEST_CASE("resampling bounds the motion and keeps the poses") {
     for (Pose& pose : poses) pose = stretched(pose, {uniform(random, 0.5, 2), 1, 1});
   }
   SECTION("half turns") {
-    for (int i = 0; i < 20; ++i) poses.push_back(rotation({0, 0, 1}, i * kPi, {i * 0.1, 0, 0}));
+    for (int i = 0; i < 20; ++i)
+      poses.push_back(rotation({0, 0, 1}, i * kHalfTurn, {i * 0.1, 0, 0}));
   }
   SECTION("stops, repeats and jumps") {
     add(5, 1, 0, 1);
@@ -96,10 +97,10 @@ TEST_CASE("resampling adds hardly more poses than the way needs") {
   const auto finest = resampled(poses, 0.001);
   double length = 0, shortest = 1;
   for (std::size_t i = 1; i < finest.size(); ++i) {
-    length += motion_bound(kModel, finest[i - 1], finest[i]);
+    length += motion_bound(kBodyToResample, finest[i - 1], finest[i]);
   }
   for (std::size_t i = 1; i < out.size(); ++i) {
-    shortest = std::min(shortest, motion_bound(kModel, out[i - 1], out[i]));
+    shortest = std::min(shortest, motion_bound(kBodyToResample, out[i - 1], out[i]));
   }
   CHECK(static_cast<double>(out.size()) <= 1.05 * length / 0.01 + 40);
   CHECK(shortest >= 0.009);
@@ -116,7 +117,7 @@ TEST_CASE("resampling is steady in steps on a straight jump between slow poses")
 TEST_CASE("what is dense enough already is left alone") {
   Random random(23);
   const auto poses = smooth_path(random, {{0, 0, 0}, {1, 1, 1}}, 1000);
-  const double motion = largest_motion(kModel, poses);
+  const double motion = largest_motion(kBodyToResample, poses);
   CHECK(resampled(poses, motion) == poses);
   const auto once = resampled(poses, motion / 3);
   CHECK(once.size() > 2 * poses.size());
@@ -138,9 +139,9 @@ TEST_CASE("resampling refuses what takes too many poses and says what does not")
   std::vector<Pose> poses;
   for (int i = 0; i < 10; ++i) poses.push_back(translation({i * 0.1, i < 7 ? 0.0 : 5000, 0}));
   NoProgress progress;
-  CHECK_THROWS_WITH(resample_trajectory(poses, kModel, 0.01, progress, 1000),
+  CHECK_THROWS_WITH(resample_trajectory(poses, kBodyToResample, 0.01, progress, 1000),
                     Contains("poses 6 and 7") && Contains("expected 5."));
-  const auto out = resample_trajectory(poses, kModel, 5.07, progress, 1000);
+  const auto out = resample_trajectory(poses, kBodyToResample, 5.07, progress, 1000);
   CHECK(out.size() <= 1000 + poses.size());
   CHECK_THROWS_AS(resampled(poses, 1e-5), UsageError);
 }
@@ -159,13 +160,14 @@ TEST_CASE("thinning and resampling stays near the poses that were dropped") {
   Random random(24);
   const auto poses = smooth_path(random, {{0, 0, 0}, {50, 50, 5}}, 5000);
   std::vector<Pose> kept;
-  for (const std::size_t i : thin_trajectory(poses, kModel, 0.5)) kept.push_back(poses[i]);
+  for (const std::size_t i : thin_trajectory(poses, kBodyToResample, 0.5)) kept.push_back(poses[i]);
   const auto out = resampled(kept, 0.01);
   check_resampled(kept, out, 0.01);
   double worst = 0;
   for (std::size_t i = 0; i < poses.size(); i += 50) {
     double nearest = 1e300;
-    for (const Pose& pose : out) nearest = std::min(nearest, motion_bound(kModel, pose, poses[i]));
+    for (const Pose& pose : out)
+      nearest = std::min(nearest, motion_bound(kBodyToResample, pose, poses[i]));
     // Behind the last kept pose only the bound of thinning holds.
     worst = std::max(worst, i + 100 < poses.size() ? nearest : 0);
   }

@@ -26,7 +26,7 @@ bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
 }
 
-std::optional<std::string> fault_of(const std::filesystem::path& path) {
+std::optional<std::string> fault_of_profile(const std::filesystem::path& path) {
   NoProgress progress;
   return verify_result(ResultReader(path), progress);
 }
@@ -51,7 +51,7 @@ TEST_CASE("a profile is read as it was written") {
   CHECK(same_bits(read.xyz, profile.xyz));
   CHECK(read.chainage == profile.chainage);
   CHECK(same_rows(read_rows(reader), rows));
-  CHECK_FALSE(fault_of(folder / "a.h5"));
+  CHECK_FALSE(fault_of_profile(folder / "a.h5"));
   write_result(folder / "b.h5", header, rows, 69'999, clearances, profile);
   CHECK(bytes_of(folder / "a.h5") == bytes_of(folder / "b.h5"));
 }
@@ -112,7 +112,7 @@ TEST_CASE("a profile that no run can have found is a fault") {
   SECTION("a chainage that is not a number") { rows.chainage[at] = none, expected = "/chainage"; }
   if (at + 4 - at % 5 >= rows.size() && expected == "/xyz" && !std::isnan(rows.xyz[at].z)) return;
   write_result(folder / "a.h5", header, {}, 1000, {}, rows);
-  const auto fault = fault_of(folder / "a.h5");
+  const auto fault = fault_of_profile(folder / "a.h5");
   REQUIRE(fault);
   CHECK_THAT(*fault, Contains("/profile" + expected) && Contains("row "));
 }
@@ -123,7 +123,7 @@ TEST_CASE("a path that does not begin at 0 is a fault") {
   ProfileRows rows = sample_profile(header);
   rows.chainage = {1, 1, 2};
   write_result(folder / "a.h5", header, {}, 1000, {}, rows);
-  CHECK_THAT(fault_of(folder / "a.h5").value_or(""), Contains("/profile/chainage, row 0"));
+  CHECK_THAT(fault_of_profile(folder / "a.h5").value_or(""), Contains("/profile/chainage, row 0"));
 }
 
 TEST_CASE("profiles are compared where both results have one of the same path") {

@@ -11,7 +11,7 @@ namespace {
 
 ReadCloud read_scan(const char* name) { return read_all(data_folder() / "formats" / name); }
 
-Vec3 position_of(const ReadCloud& cloud, std::size_t index) {
+Vec3 position_in_scan(const ReadCloud& cloud, std::size_t index) {
   if (cloud.quanta.empty()) return cloud.positions[index];
   const auto& q = cloud.quanta[index];
   return position(*cloud.info.quantisation, q[0], q[1], q[2]);
@@ -22,7 +22,8 @@ double largest_difference(const ReadCloud& a, const ReadCloud& b) {
   double largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
-      largest = std::max(largest, std::abs(position_of(a, i)[axis] - position_of(b, i)[axis]));
+      largest =
+          std::max(largest, std::abs(position_in_scan(a, i)[axis] - position_in_scan(b, i)[axis]));
     }
   }
   return largest;

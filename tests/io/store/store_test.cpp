@@ -45,8 +45,8 @@ struct Content {
 };
 
 /// A store of a few cells.
-struct SmallStore {
-  explicit SmallStore(std::size_t points = 300) {
+struct ReadStore {
+  explicit ReadStore(std::size_t points = 300) {
     write_las(folder / "a.las", cube_cloud(points, -4000, 4000, 3));
     convert_quietly(conversion_of({folder / "a.las"}, path));
   }
@@ -93,7 +93,7 @@ class Patch {
 
 TEST_CASE("a flipped byte of a store is refused or changes nothing") {
   const LeaksOfHdf5 leaks;
-  const SmallStore store;
+  const ReadStore store;
   const Content original(store.path);
   Patch patch(store.path);
   std::size_t refused = 0, harmless = 0, wrong = 0;
@@ -119,7 +119,7 @@ TEST_CASE("a flipped byte of a store is refused or changes nothing") {
 
 TEST_CASE("a store cut anywhere is refused") {
   const LeaksOfHdf5 leaks;
-  const SmallStore store;
+  const ReadStore store;
   const std::string bytes = bytes_of(store.path);
   for (std::size_t size = 0; size < bytes.size(); size += size < 100 ? 1 : 97) {
     put_bytes(store.folder / "cut.h5", bytes.substr(0, size));
@@ -131,7 +131,7 @@ TEST_CASE("a store cut anywhere is refused") {
 }
 
 TEST_CASE("a damaged chunk is named when its cell is read") {
-  const SmallStore small;
+  const ReadStore small;
   const Content original(small.path);
   std::uint64_t at;
   {
@@ -149,7 +149,7 @@ TEST_CASE("a damaged chunk is named when its cell is read") {
 }
 
 TEST_CASE("a store that another tool copied is refused with advice") {
-  const SmallStore store;
+  const ReadStore store;
   const auto copy = store.folder / "copy.h5";
   {
     const hdf5::Id from(H5Fopen(store.path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "from");
@@ -214,13 +214,13 @@ TEST_CASE("a missing store is no malformed one") {
 }
 
 TEST_CASE("the fingerprint tells stores apart, not names") {
-  const SmallStore a, same, other(301);
+  const ReadStore a, same, other(301);
   CHECK(StoreReader(a.path).fingerprint() == StoreReader(same.path).fingerprint());
   CHECK(StoreReader(a.path).fingerprint() != StoreReader(other.path).fingerprint());
 }
 
 TEST_CASE("a store knows which cells were touched") {
-  const SmallStore small;
+  const ReadStore small;
   const StoreReader store(small.path);
   CHECK(store.touched().cells == 0);
   store.coordinates(3);

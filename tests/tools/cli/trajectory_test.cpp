@@ -18,8 +18,8 @@ namespace {
 const Box kModel{{-1, -2, 0}, {3, 2, 1}};
 
 /// A folder with model.xyz, whose box is kModel, and path.txt.
-struct Files {
-  Files() {
+struct PathFiles {
+  PathFiles() {
     put_bytes(folder / "model.xyz", "-1 -2 0.5\n3 1 0\n0 2 1\n");
     Random random(51);
     for (int i = 0; i < 30; ++i) {
@@ -58,7 +58,7 @@ bool has_in_order(const std::vector<Pose>& all, const std::vector<Pose>& some) {
 }  // namespace
 
 TEST_CASE("trajectory resample bounds the motion of the poses as read back") {
-  const Files files;
+  const PathFiles files;
   const Outcome outcome = files.run("resample", "path.txt", "out.txt", "--max-motion 0.05 --json");
   REQUIRE(outcome.exit_code == 0);
   const auto out = files.read("out.txt");
@@ -73,7 +73,7 @@ TEST_CASE("trajectory resample bounds the motion of the poses as read back") {
 }
 
 TEST_CASE("trajectory thin keeps some of the poses, and what it wrote can be resampled") {
-  const Files files;
+  const PathFiles files;
   const Outcome outcome = files.run("thin", "path.txt", "thin.txt", "--max-motion 3 --json");
   REQUIRE(outcome.exit_code == 0);
   const auto kept = files.read("thin.txt");
@@ -89,7 +89,7 @@ TEST_CASE("trajectory thin keeps some of the poses, and what it wrote can be res
 }
 
 TEST_CASE("trajectory reads the formats that run reads") {
-  const Files files;
+  const PathFiles files;
   put_bytes(files.folder / "tum.txt", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 1 0\n");
   put_bytes(files.folder / "euroc.csv", "0,0,0,0,1,0,0,0\n1,1,0,0,0,0,0,1\n");
   REQUIRE(files.run("resample", "tum.txt", "a.txt", "--max-motion 0.1").exit_code == 0);
@@ -100,7 +100,7 @@ TEST_CASE("trajectory reads the formats that run reads") {
 }
 
 TEST_CASE("trajectory overwrites neither outputs nor inputs") {
-  const Files files;
+  const PathFiles files;
   const std::string what = GENERATE("resample", "thin");
   put_bytes(files.folder / "out.txt", "mine");
   const Outcome existing = files.run(what, "path.txt", "out.txt", "--max-motion 1");
@@ -118,7 +118,7 @@ TEST_CASE("trajectory overwrites neither outputs nor inputs") {
 }
 
 TEST_CASE("trajectory refuses what it cannot use and leaves no output") {
-  const Files files;
+  const PathFiles files;
   const std::string what = GENERATE("resample", "thin");
   for (const std::string bad : {"0", "-1", "nan", "inf", "far"}) {
     CHECK(files.run(what, "path.txt", "out.txt", "--max-motion " + bad).exit_code == 2);
@@ -136,7 +136,7 @@ TEST_CASE("trajectory refuses what it cannot use and leaves no output") {
 }
 
 TEST_CASE("trajectory resample refuses a jump that takes too many poses") {
-  const Files files;
+  const PathFiles files;
   put_bytes(files.folder / "jump.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 9e6 0 1 0 0 0 0 1 0\n");
   const Outcome outcome = files.run("resample", "jump.txt", "out.txt", "--max-motion 0.01");
   CHECK(outcome.exit_code == 2);
@@ -145,7 +145,7 @@ TEST_CASE("trajectory resample refuses a jump that takes too many poses") {
 }
 
 TEST_CASE("trajectory resample names poses that mirror the model by turns") {
-  const Files files;
+  const PathFiles files;
   put_bytes(files.folder / "mirror.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n-1 0 0 0 0 1 0 0 0 0 1 0\n");
   const Outcome outcome =
       files.run("resample", "mirror.txt", "out.txt", "--max-motion 0.1 --allow-non-rigid");
@@ -154,7 +154,7 @@ TEST_CASE("trajectory resample names poses that mirror the model by turns") {
 }
 
 TEST_CASE("resample, thin and follow warn of poses that are missing, as their output hides it") {
-  const Files files;
+  const PathFiles files;
   std::string gap, turn;
   for (int i = 0; i < 60; ++i) {
     gap += "1 0 0 " + std::to_string(i < 30 ? i * 0.5 : 10 + i * 0.5) + " 0 1 0 0 0 0 1 0\n";
@@ -183,7 +183,7 @@ TEST_CASE("resample, thin and follow warn of poses that are missing, as their ou
 }
 
 TEST_CASE("an empty trajectory stays one, with a warning") {
-  const Files files;
+  const PathFiles files;
   const std::string what = GENERATE("resample", "thin");
   put_bytes(files.folder / "empty.txt", "");
   const Outcome outcome = files.run(what, "empty.txt", "out.txt", "--max-motion 1 --json");
@@ -194,7 +194,7 @@ TEST_CASE("an empty trajectory stays one, with a warning") {
 }
 
 TEST_CASE("resample takes the meaning of ft from the store") {
-  const Files files;
+  const PathFiles files;
   put_bytes(files.folder / "scan.xyz", "0 0 0\n100 100 0\n");
   const auto at = [&](const char* name) { return quoted(files.folder / name); };
   REQUIRE(run_program(files.folder, "convert --unit us-ft " + at("scan.xyz") + " -o " + at("s.h5"))

@@ -29,8 +29,8 @@ std::string box_off(double half_width, bool is_open = false) {
 
 /// Ground, and a post at x = 5, 0.6 m beside a path along x. The truck is so wide that the post is
 /// up to 0.2 m inside it; the trailer passes the post.
-struct Yard {
-  Yard() {
+struct YardOfSolids {
+  YardOfSolids() {
     std::string scan, path;
     for (int i = 0; i < 100; ++i) {
       for (int k = -15; k <= 15; ++k) scan += at(i * 0.1, k * 0.1, 0);
@@ -92,7 +92,7 @@ std::set<std::string> codes_of(const Outcome& outcome) {
 }  // namespace
 
 TEST_CASE("a vehicle of solids tells what is inside and which body it is") {
-  const Yard yard;
+  const YardOfSolids yard;
   const Outcome run = yard.run_solid("--first-pose --clearance 0.3 --profile 0.3");
   INFO(run.err);
   REQUIRE(run.exit_code == 0);
@@ -126,7 +126,7 @@ TEST_CASE("a vehicle of solids tells what is inside and which body it is") {
 }
 
 TEST_CASE("the body of a profile's depth is the one that the point is inside of") {
-  const Yard yard;
+  const YardOfSolids yard;
   const Outcome run = yard.run_solid("--profile 0.3");
   REQUIRE(run.exit_code == 0);
   const json least = yard.report("--vehicle wagon.json")["least_distance"];
@@ -136,7 +136,7 @@ TEST_CASE("the body of a profile's depth is the one that the point is inside of"
 }
 
 TEST_CASE("bodies without an inside are refused by their key") {
-  const Yard yard;
+  const YardOfSolids yard;
   for (const char* model : {"open.off", "points.xyz"}) {
     yard.put_vehicle(model);
     const Outcome refused = yard.run_solid("");
@@ -148,10 +148,11 @@ TEST_CASE("bodies without an inside are refused by their key") {
 }
 
 TEST_CASE("what a solid contains is no reason to warn") {
-  const Yard yard;
+  const YardOfSolids yard;
   std::string things = bytes_of(yard.folder / "scan.xyz");
   for (int i = 0; i < 1000; ++i) {
-    things += Yard::at(2 + 0.02 * (i / 100 - 5), 0.02 * (i / 10 % 10 - 5), 0.7 + 0.02 * (i % 10));
+    things +=
+        YardOfSolids::at(2 + 0.02 * (i / 100 - 5), 0.02 * (i / 10 % 10 - 5), 0.7 + 0.02 * (i % 10));
   }
   put_bytes(yard.folder / "things.xyz", things);
   REQUIRE(yard.program("convert things.xyz -o things.h5").exit_code == 0);

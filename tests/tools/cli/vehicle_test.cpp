@@ -79,29 +79,29 @@ TEST_CASE("the middle of a wagon leaves the gauge where a rigid one does not") {
   const Outcome wagon =
       tunnel().run_vehicle(R"({"name": "middle", "model": "middle.xyz", "pivots": [10, "-10m"]})");
   REQUIRE(wagon.exit_code == 0);
-  const auto json = nlohmann::json::parse(wagon.out);
-  CHECK(json["colliding_points"] > 100);
-  CHECK(json["first_place"]["body"] == "middle");
-  CHECK(json["least_clearance"]["body"] == "middle");
-  CHECK(json["files"]["vehicle"] == (tunnel().folder / "wagon.json").string());
+  const auto report = nlohmann::json::parse(wagon.out);
+  CHECK(report["colliding_points"] > 100);
+  CHECK(report["first_place"]["body"] == "middle");
+  CHECK(report["least_clearance"]["body"] == "middle");
+  CHECK(report["files"]["vehicle"] == (tunnel().folder / "wagon.json").string());
   CHECK_THAT(wagon.err, Contains("is off the path"));
-  CHECK(json["warnings"].empty() == (wagon.err.find("warning: ") == std::string::npos));
+  CHECK(report["warnings"].empty() == (wagon.err.find("warning: ") == std::string::npos));
   CHECK(wagon.err.find("warning: " + (tunnel().folder / "wagon.json").string()) ==
         std::string::npos);
   // The verdict is about the part of the path on which the wagon has poses.
-  CHECK(json["path_length"].get<double>() - json["searched_length"].get<double>() ==
+  CHECK(report["path_length"].get<double>() - report["searched_length"].get<double>() ==
         Approx(20).margin(1));
-  CHECK(json["partly_searched_length"] == 0);
+  CHECK(report["partly_searched_length"] == 0);
   const auto kept = nlohmann::json::parse(
       run_program(tunnel().folder, "info --json " + tunnel().name("out.h5")).out);
   for (const char* key : {"path_length", "searched_length", "partly_searched_length"}) {
-    CHECK(kept[key] == json[key]);
+    CHECK(kept[key] == report[key]);
   }
   CHECK_THAT(wagon.err, Contains("; the vehicle was searched on ") && Contains(" of the path"));
   CHECK(alone["searched_length"] == alone["path_length"]);
   CHECK(rigid.err.find("was searched on") == std::string::npos);
   // The chord's middle lies up to 0.156 m inside, so somewhere it meets the points at 0.12 m.
-  CHECK(json["least_clearance"]["distance"] < 0.01);
+  CHECK(report["least_clearance"]["distance"] < 0.01);
 }
 
 TEST_CASE("each body of a vehicle has its own motion and its own name in the result") {

@@ -13,7 +13,7 @@ using test::Bytes;
 
 namespace {
 
-constexpr Sizes kSmall{100003, 5003, 701};
+constexpr Sizes kSmallScene{100003, 5003, 701};
 
 std::uint64_t hash_of(const Bytes& bytes) { return XXH64(bytes.data(), bytes.size(), 0); }
 
@@ -36,7 +36,7 @@ constexpr Frozen kFrozen[] = {
 TEST_CASE("the bytes of each scene are frozen") {
   for (const Frozen& frozen : kFrozen) {
     INFO(name_of(frozen.kind));
-    const auto made = make_scene(frozen.kind, kSmall, 7);
+    const auto made = make_scene(frozen.kind, kSmallScene, 7);
     CHECK(hash_of(test::environment_bytes(*made, 7, 2)) == frozen.environment);
     CHECK(hash_of(test::model_bytes(*made)) == frozen.model);
     CHECK(hash_of(test::trajectory_bytes(*made)) == frozen.trajectory);
@@ -46,12 +46,12 @@ TEST_CASE("the bytes of each scene are frozen") {
 TEST_CASE("a scene's bytes depend on the seed, not on threads or on the run") {
   for (const Kind kind : kAllKinds) {
     INFO(name_of(kind));
-    const auto made = make_scene(kind, kSmall, 3), again = make_scene(kind, kSmall, 3);
+    const auto made = make_scene(kind, kSmallScene, 3), again = make_scene(kind, kSmallScene, 3);
     const Bytes one = test::environment_bytes(*made, 3, 1);
     CHECK(one == test::environment_bytes(*again, 3, 5));
     CHECK(test::model_bytes(*made) == test::model_bytes(*again));
     CHECK(test::trajectory_bytes(*made) == test::trajectory_bytes(*again));
-    const auto other = make_scene(kind, kSmall, 4);
+    const auto other = make_scene(kind, kSmallScene, 4);
     CHECK(one != test::environment_bytes(*other, 4, 2));
     CHECK(test::model_bytes(*made) != test::model_bytes(*other));
   }
@@ -59,7 +59,7 @@ TEST_CASE("a scene's bytes depend on the seed, not on threads or on the run") {
 
 TEST_CASE("a scene has exactly the numbers asked for, within the header's bounds") {
   for (const Kind kind : kAllKinds) {
-    for (const Sizes& sizes : {kSmall, Sizes{1, 1, 1}, Sizes{17, 2, 2}, Sizes{65536, 3, 3}}) {
+    for (const Sizes& sizes : {kSmallScene, Sizes{1, 1, 1}, Sizes{17, 2, 2}, Sizes{65536, 3, 3}}) {
       INFO(name_of(kind) << " " << sizes.points);
       const auto made = make_scene(kind, sizes, 1);
       const Bytes las = test::environment_bytes(*made, 1, 2);
@@ -82,7 +82,7 @@ TEST_CASE("a scene has exactly the numbers asked for, within the header's bounds
 
 TEST_CASE("every pose is rigid as written") {
   for (const Kind kind : kAllKinds) {
-    const auto made = make_scene(kind, kSmall, 1);
+    const auto made = make_scene(kind, kSmallScene, 1);
     bool rigid = true;
     for (const Pose& pose : test::text_poses(test::trajectory_bytes(*made))) {
       const Stretch stretch = stretch_of(pose);
@@ -93,7 +93,7 @@ TEST_CASE("every pose is rigid as written") {
 }
 
 TEST_CASE("coordinates are spread over the quanta, not degenerate") {
-  const auto made = test::made_scene(Kind::kHall, kSmall);
+  const auto made = test::made_scene(Kind::kHall, kSmallScene);
   int floor_points = 0, exact = 0;
   for (const Vec3& p : made.environment) {
     if (std::abs(p.z) < 0.02) ++floor_points;

@@ -13,7 +13,7 @@ using Catch::Contains;
 
 namespace {
 
-double distance(const Pose& a, const Pose& b) {
+double distance_between(const Pose& a, const Pose& b) {
   return std::hypot(a.translation[0] - b.translation[0], a.translation[1] - b.translation[1],
                     a.translation[2] - b.translation[2]);
 }
@@ -21,12 +21,12 @@ double distance(const Pose& a, const Pose& b) {
 std::vector<double> distances_of(const std::vector<Pose>& poses) {
   std::vector<double> out;
   for (std::size_t i = 0; i + 1 < poses.size(); ++i)
-    out.push_back(distance(poses[i], poses[i + 1]));
+    out.push_back(distance_between(poses[i], poses[i + 1]));
   return out;
 }
 
 /// A random path with steps from a millimetre to ten metres, stops and turns on the spot.
-std::vector<Pose> random_walk(Random& random, std::size_t count) {
+std::vector<Pose> random_path(Random& random, std::size_t count) {
   std::vector<Pose> poses;
   Vec3 at{5e5, 4e6, 100};
   for (std::size_t i = 0; i < count; ++i) {
@@ -52,7 +52,7 @@ double polyline(const PoseSpline& spline, std::size_t way, double to, int pieces
     length += positions.velocity(to * (k + 0.5) / pieces).norm() * to / pieces;
   }
   // The velocities agree with the curve's positions.
-  const double by_positions = distance(curve.at(0.4999), curve.at(0.5001));
+  const double by_positions = distance_between(curve.at(0.4999), curve.at(0.5001));
   CHECK(positions.velocity(0.5).norm() * 2e-4 == Approx(by_positions).epsilon(1e-4).margin(4e-9));
   return length;
 }
@@ -61,7 +61,7 @@ double polyline(const PoseSpline& spline, std::size_t way, double to, int pieces
 
 TEST_CASE("arc length is the length of the curve of resampling") {
   Random random(61);
-  const auto poses = random_walk(random, 40);
+  const auto poses = random_path(random, 40);
   const auto motions = distances_of(poses);
   const PoseSpline spline(poses, motions);
   const PathStations stations(poses, 2);
@@ -78,7 +78,7 @@ TEST_CASE("arc length is the length of the curve of resampling") {
 
 TEST_CASE("arc length does not depend on where it is cut") {
   Random random(62);
-  const auto poses = random_walk(random, 60);
+  const auto poses = random_path(random, 60);
   const PoseSpline spline(poses, distances_of(poses));
   for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
     const PositionCurve curve = spline.positions(i);
@@ -89,7 +89,7 @@ TEST_CASE("arc length does not depend on where it is cut") {
 
 TEST_CASE("the parameter of a length is found to a tenth of a nanometre") {
   Random random(63);
-  const auto poses = random_walk(random, 60);
+  const auto poses = random_path(random, 60);
   const PoseSpline spline(poses, distances_of(poses));
   for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
     const PositionCurve curve = spline.positions(i);

@@ -38,8 +38,8 @@ Read read(const std::string& bytes, const TrajectoryOptions& options,
 }
 
 /// The message of the InputError with which the bytes are refused; fails for any other end.
-std::string refusal(const std::string& bytes, const TrajectoryOptions& options,
-                    const std::string& name = "path.sbet") {
+std::string refusal_of_sbet(const std::string& bytes, const TrajectoryOptions& options,
+                            const std::string& name = "path.sbet") {
   try {
     read(bytes, options, name);
   } catch (const InputError& error) {
@@ -129,7 +129,8 @@ TEST_CASE("SBET: attitude by wander angle and meridian convergence") {
 
 TEST_CASE("SBET: the CRS of the environment serves where none is named") {
   const std::string bytes = SbetRecord().bytes();
-  CHECK_THAT(refusal(bytes, {}), Contains("expected the projected coordinate reference system"));
+  CHECK_THAT(refusal_of_sbet(bytes, {}),
+             Contains("expected the projected coordinate reference system"));
   const std::string wkt =
       "PROJCS[\"local\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS "
       "84\",6378137,298.257223563]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]],"
@@ -142,9 +143,10 @@ TEST_CASE("SBET: the CRS of the environment serves where none is named") {
   CHECK(std::abs(found.poses.at(0).translation[1] - expected.northing) < 1e-5);
   CHECK_THAT(found.find("map-projection")->text, Contains("as the environment"));
   const std::string files = wkt + ",EXTENSION[\"PROJ4\",\"+proj=utm +nadgrids=/etc/passwd\"]]";
-  CHECK_THAT(refusal(bytes, {.default_crs = files}), Contains("not opened"));
-  CHECK_THAT(refusal(bytes, {.default_crs = "+proj=utm +zone=32"}), Contains("does not know"));
-  CHECK_THAT(refusal(bytes, {.default_crs = "GEOGCS[\"a\"]"}), Contains("environment"));
+  CHECK_THAT(refusal_of_sbet(bytes, {.default_crs = files}), Contains("not opened"));
+  CHECK_THAT(refusal_of_sbet(bytes, {.default_crs = "+proj=utm +zone=32"}),
+             Contains("does not know"));
+  CHECK_THAT(refusal_of_sbet(bytes, {.default_crs = "GEOGCS[\"a\"]"}), Contains("environment"));
 }
 
 TEST_CASE("a CRS that cannot be used is refused with what was expected") {
@@ -184,29 +186,30 @@ TEST_CASE("SBET: degrees, cut files and numbers that are none are refused") {
   const TrajectoryOptions utm32{.crs = "EPSG:32632"};
   SbetRecord record;
   record.latitude = 51.5;
-  CHECK_THAT(refusal(SbetRecord().bytes() + record.bytes(), utm32),
+  CHECK_THAT(refusal_of_sbet(SbetRecord().bytes() + record.bytes(), utm32),
              Contains("byte 136") && Contains("record 1") && Contains("radians, not degrees"));
   record = {};
   record.heading = 174.5;
-  CHECK_THAT(refusal(record.bytes(), utm32), Contains("heading") && Contains("not degrees"));
+  CHECK_THAT(refusal_of_sbet(record.bytes(), utm32),
+             Contains("heading") && Contains("not degrees"));
   record = {};
   record.pitch = std::numeric_limits<double>::quiet_NaN();
-  CHECK_THAT(refusal(record.bytes(), utm32), Contains("pitch nan"));
+  CHECK_THAT(refusal_of_sbet(record.bytes(), utm32), Contains("pitch nan"));
   record = {};
   record.altitude = std::numeric_limits<double>::infinity();
-  CHECK_THAT(refusal(record.bytes(), utm32), Contains("altitude inf"));
+  CHECK_THAT(refusal_of_sbet(record.bytes(), utm32), Contains("altitude inf"));
   record = {};
   record.latitude = record.longitude = 0;
-  CHECK_THAT(refusal(record.bytes(), utm32), Contains("are 0"));
+  CHECK_THAT(refusal_of_sbet(record.bytes(), utm32), Contains("are 0"));
   record = {};
   record.time = std::numeric_limits<double>::quiet_NaN();
-  CHECK_THAT(refusal(record.bytes(), utm32), Contains("time"));
+  CHECK_THAT(refusal_of_sbet(record.bytes(), utm32), Contains("time"));
   const std::string two = SbetRecord().bytes() + SbetRecord().bytes();
   CHECK(read("", utm32).poses.empty());
   for (std::size_t size = 1; size < two.size(); ++size) {
     INFO(size);
     if (size == 136) continue;
-    CHECK_THAT(refusal(two.substr(0, size), utm32),
+    CHECK_THAT(refusal_of_sbet(two.substr(0, size), utm32),
                Contains("behind the last whole record of 136"));
   }
 }
@@ -217,7 +220,7 @@ TEST_CASE("SBET is known by its ending, or by .out and its bytes") {
   CHECK(read(bytes, utm32, "path.out").poses.size() == 1);
   CHECK(read(bytes, utm32, "path.SBET").poses.size() == 1);
   CHECK(read("1 0 0 0 0 1 0 0 0 0 1 0\n", {}, "path.out").poses.size() == 1);
-  CHECK_THAT(refusal(bytes, utm32, "path.bin"), Contains("may be an SBET"));
+  CHECK_THAT(refusal_of_sbet(bytes, utm32, "path.bin"), Contains("may be an SBET"));
   TrajectoryOptions named = utm32;
   named.format = TrajectoryFormat::kSbet;
   CHECK(read(bytes, named, "path.bin").poses.size() == 1);

@@ -15,16 +15,16 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-std::vector<Pose> poses_of(const std::string& text, const TrajectoryOptions& options = {},
-                           std::vector<Message>* remarks = nullptr) {
+std::vector<Pose> poses_of_table(const std::string& text, const TrajectoryOptions& options = {},
+                                 std::vector<Message>* remarks = nullptr) {
   const ReaderScratch scratch;
   return read_trajectory(scratch.write("path.csv", text), options, remarks);
 }
 
-std::string refusal(const std::string& text, const TrajectoryOptions& options = {},
-                    Remedy remedy = Remedy::kNone) {
+std::string refusal_of_table(const std::string& text, const TrajectoryOptions& options = {},
+                             Remedy remedy = Remedy::kNone) {
   try {
-    poses_of(text, options);
+    poses_of_table(text, options);
   } catch (const InputError& error) {
     CHECK(error.remedy() == remedy);
     return error.what();
@@ -45,81 +45,88 @@ void check_navigation(const std::vector<Pose>& poses) {
 }  // namespace
 
 TEST_CASE("a table with roll, pitch and heading, its unit in the header") {
-  check_navigation(poses_of("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,3,-4,100\n"));
-  check_navigation(poses_of("x,y,z,Roll[deg],Pitch [Deg],Heading (degrees)\n1,2,3,3,-4,100\n"));
-  check_navigation(poses_of("x y z roll [deg] pitch [deg] heading [deg]\n1 2 3 3 -4 100\n"));
+  check_navigation(poses_of_table("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,3,-4,100\n"));
   check_navigation(
-      poses_of("# time;height;northing;easting;azimuth_deg;pitch_deg;roll_deg\n"
-               "7;3;2;1;100;-4;3\n"));
-  check_navigation(poses_of("// x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,3,-4,100\n"));
-  check_navigation(poses_of("Easting,Northing,Height,Roll,Pitch,Heading\n1,2,3,3,-4,100\n",
-                            {.angle_unit = AngleUnit::kDegrees}));
+      poses_of_table("x,y,z,Roll[deg],Pitch [Deg],Heading (degrees)\n1,2,3,3,-4,100\n"));
+  check_navigation(poses_of_table("x y z roll [deg] pitch [deg] heading [deg]\n1 2 3 3 -4 100\n"));
   check_navigation(
-      poses_of("x,y,z,roll_rad,pitch_rad,heading_rad\n"
-               "1,2,3,0.052359877559829886,-0.069813170079773182,"
-               "1.7453292519943295\n"));
+      poses_of_table("# time;height;northing;easting;azimuth_deg;pitch_deg;roll_deg\n"
+                     "7;3;2;1;100;-4;3\n"));
+  check_navigation(poses_of_table("// x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,3,-4,100\n"));
+  check_navigation(poses_of_table("Easting,Northing,Height,Roll,Pitch,Heading\n1,2,3,3,-4,100\n",
+                                  {.angle_unit = AngleUnit::kDegrees}));
+  check_navigation(
+      poses_of_table("x,y,z,roll_rad,pitch_rad,heading_rad\n"
+                     "1,2,3,0.052359877559829886,-0.069813170079773182,"
+                     "1.7453292519943295\n"));
 }
 
 TEST_CASE("each angle turns the way that its convention says") {
   // Angles are positive for right wing down, nose up, and clockwise from north.
   const std::string head = "x,y,z,roll_deg,pitch_deg,heading_deg\n";
-  const Pose rolled = poses_of(head + "0,0,0,10,0,0\n").at(0);
-  CHECK(rolled.rotation[7] > 0.1);                                   // y, which is left, goes up
-  CHECK(poses_of(head + "0,0,0,0,10,0\n").at(0).rotation[6] > 0.1);  // x goes up
-  const Pose north = poses_of(head + "0,0,0,0,0,0\n").at(0);
+  const Pose rolled = poses_of_table(head + "0,0,0,10,0,0\n").at(0);
+  CHECK(rolled.rotation[7] > 0.1);  // y, which is left, goes up
+  CHECK(poses_of_table(head + "0,0,0,0,10,0\n").at(0).rotation[6] > 0.1);  // x goes up
+  const Pose north = poses_of_table(head + "0,0,0,0,0,0\n").at(0);
   CHECK(north.rotation[3] == Approx(1));
-  const Pose east = poses_of(head + "0,0,0,0,0,90\n").at(0);
+  const Pose east = poses_of_table(head + "0,0,0,0,0,90\n").at(0);
   CHECK(east.rotation[0] == Approx(1));
 
   const std::string robot = "x,y,z,roll_deg,pitch_deg,yaw_deg\n1,2,3,5,6,70\n";
-  const Pose enu = poses_of(robot, {.angle_frame = AngleFrame::kEnu}).at(0);
+  const Pose enu = poses_of_table(robot, {.angle_frame = AngleFrame::kEnu}).at(0);
   const Rotation expected = about_z(70 * kDegree) * about_y(6 * kDegree) * about_x(5 * kDegree);
   CHECK(greatest_difference(expected, enu.rotation) < 1e-15);
   CHECK(enu.rotation[6] < 0);  // nose down
-  const Pose ned = poses_of(robot, {.angle_frame = AngleFrame::kNed}).at(0);
+  const Pose ned = poses_of_table(robot, {.angle_frame = AngleFrame::kNed}).at(0);
   CHECK(greatest_difference(navigation_rotation(5 * kDegree, 6 * kDegree, 70 * kDegree),
                             ned.rotation) < 1e-15);
 }
 
 TEST_CASE("angles whose unit or frame is not sure are refused") {
   const std::string head = "x,y,z,roll,pitch,heading\n";
-  CHECK_THAT(refusal(head + "1,2,3,0,0,1.5\n", {}, Remedy::kDeclareAngles),
+  CHECK_THAT(refusal_of_table(head + "1,2,3,0,0,1.5\n", {}, Remedy::kDeclareAngles),
              Contains("degrees or radians"));
-  CHECK_THAT(refusal(head + "1,2,3,0,0,60\n", {}, Remedy::kDeclareAngles), Contains("up to 60"));
+  CHECK_THAT(refusal_of_table(head + "1,2,3,0,0,60\n", {}, Remedy::kDeclareAngles),
+             Contains("up to 60"));
   std::vector<Message> remarks;
-  CHECK(poses_of(head + "1,2,3,0,0,359\n", {}, &remarks).at(0).rotation[3] > 0.99);
+  CHECK(poses_of_table(head + "1,2,3,0,0,359\n", {}, &remarks).at(0).rotation[3] > 0.99);
   CHECK(
       std::ranges::any_of(remarks, [](const Message& m) { return m.code == "angles-in-degrees"; }));
-  CHECK(poses_of(head + "1,2,3,7,0,3\n").at(0).rotation[7] > 0.1);  // a roll of 7 is no radians
-  CHECK_THAT(refusal(head + "1,2,3,0,0,359\n", {.angle_unit = AngleUnit::kRadians}),
+  CHECK(poses_of_table(head + "1,2,3,7,0,3\n").at(0).rotation[7] >
+        0.1);  // a roll of 7 is no radians
+  CHECK_THAT(refusal_of_table(head + "1,2,3,0,0,359\n", {.angle_unit = AngleUnit::kRadians}),
              Contains("look like degrees"));
-  CHECK_THAT(refusal("x,y,z,roll_rad,pitch_rad,heading_rad\n1,2,3,20,0,0\n"),
+  CHECK_THAT(refusal_of_table("x,y,z,roll_rad,pitch_rad,heading_rad\n1,2,3,20,0,0\n"),
              Contains("look like degrees"));
-  CHECK_THAT(refusal("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,0,0\n",
-                     {.angle_unit = AngleUnit::kRadians}),
+  CHECK_THAT(refusal_of_table("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,0,0\n",
+                              {.angle_unit = AngleUnit::kRadians}),
              Contains("declared to be radians"));
-  CHECK_THAT(refusal("x,y,z,roll_deg,pitch_rad,heading_deg\n1,2,3,0,0,0\n"),
+  CHECK_THAT(refusal_of_table("x,y,z,roll_deg,pitch_rad,heading_deg\n1,2,3,0,0,0\n"),
              Contains("degrees and in radians"));
-  CHECK_THAT(refusal("x,y,z,roll_deg,pitch,heading\n1,2,3,0,0,0\n"), Contains("all or none"));
-  CHECK_THAT(refusal("x,y,z,roll[gon],pitch[gon],heading[gon]\n1,2,3,0,0,0\n"), Contains("gon"));
-  CHECK_THAT(refusal("x,y,z,roll_deg,pitch_deg,yaw_deg\n1,2,3,0,0,0\n", {}, Remedy::kDeclareAngles),
+  CHECK_THAT(refusal_of_table("x,y,z,roll_deg,pitch,heading\n1,2,3,0,0,0\n"),
+             Contains("all or none"));
+  CHECK_THAT(refusal_of_table("x,y,z,roll[gon],pitch[gon],heading[gon]\n1,2,3,0,0,0\n"),
+             Contains("gon"));
+  CHECK_THAT(refusal_of_table("x,y,z,roll_deg,pitch_deg,yaw_deg\n1,2,3,0,0,0\n", {},
+                              Remedy::kDeclareAngles),
              Contains("ned") && Contains("enu"));
-  CHECK_THAT(refusal("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,0,0\n",
-                     {.angle_frame = AngleFrame::kEnu}),
+  CHECK_THAT(refusal_of_table("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,0,0\n",
+                              {.angle_frame = AngleFrame::kEnu}),
              Contains("column called yaw"));
-  CHECK_THAT(refusal("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,nan,0\n"),
+  CHECK_THAT(refusal_of_table("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,nan,0\n"),
              Contains("line 2") && Contains("finite"));
-  CHECK_THROWS_AS(poses_of("1 0 0 0 0 1 0 0 0 0 1 0\n", {.angle_unit = AngleUnit::kDegrees}),
+  CHECK_THROWS_AS(poses_of_table("1 0 0 0 0 1 0 0 0 0 1 0\n", {.angle_unit = AngleUnit::kDegrees}),
                   UsageError);
 }
 
 TEST_CASE("headers that make no pose say why") {
-  CHECK_THAT(refusal("x,y,z,omega,phi,kappa\n1,2,3,0,0,0\n"), Contains("omega"));
-  CHECK_THAT(refusal("x,y,z,roll,pitch,yaw,heading\n"), Contains("both heading and yaw"));
-  CHECK_THAT(refusal("lat,lon,easting,northing,height,roll,pitch,heading\n"), Contains("both"));
-  CHECK_THAT(refusal("lat,lon,height\n"), Contains("without angles"));
-  CHECK_THAT(refusal("x,y,z,roll,pitch\n"), Contains("no rotation"));
-  CHECK_THAT(refusal("lat,lon,height,qx,qy,qz,qw\n"), Contains("roll, pitch and heading"));
+  CHECK_THAT(refusal_of_table("x,y,z,omega,phi,kappa\n1,2,3,0,0,0\n"), Contains("omega"));
+  CHECK_THAT(refusal_of_table("x,y,z,roll,pitch,yaw,heading\n"), Contains("both heading and yaw"));
+  CHECK_THAT(refusal_of_table("lat,lon,easting,northing,height,roll,pitch,heading\n"),
+             Contains("both"));
+  CHECK_THAT(refusal_of_table("lat,lon,height\n"), Contains("without angles"));
+  CHECK_THAT(refusal_of_table("x,y,z,roll,pitch\n"), Contains("no rotation"));
+  CHECK_THAT(refusal_of_table("lat,lon,height,qx,qy,qz,qw\n"), Contains("roll, pitch and heading"));
 }
 
 TEST_CASE("latitude and longitude in a table") {
@@ -133,25 +140,27 @@ TEST_CASE("latitude and longitude in a table") {
     CHECK(poses[0].translation[2] == 12.5);
     CHECK(poses[0].rotation[0] == Approx(1));
   };
-  check(poses_of(head + "48,9,12.5,0,0,90\n", utm32));
+  check(poses_of_table(head + "48,9,12.5,0,0,90\n", utm32));
   check(
-      poses_of("lon_rad,lat_rad,alt_m,roll_deg,pitch_deg,heading_deg\n"
-               "0.15707963267948966,0.83775804095727813,12.5,0,0,90\n",
-               utm32));
+      poses_of_table("lon_rad,lat_rad,alt_m,roll_deg,pitch_deg,heading_deg\n"
+                     "0.15707963267948966,0.83775804095727813,12.5,0,0,90\n",
+                     utm32));
   // A yaw from true east turns with the map as a heading from true north does.
   TrajectoryOptions yaw = utm32;
   yaw.angle_frame = AngleFrame::kEnu;
-  const Pose a = poses_of("lat,lon,z,roll_deg,pitch_deg,yaw_deg\n48,11,0,2,-3,20\n", yaw).at(0);
-  const Pose b = poses_of(head + "48,11,0,2,3,70\n", utm32).at(0);
+  const Pose a =
+      poses_of_table("lat,lon,z,roll_deg,pitch_deg,yaw_deg\n48,11,0,2,-3,20\n", yaw).at(0);
+  const Pose b = poses_of_table(head + "48,11,0,2,3,70\n", utm32).at(0);
   for (int k = 0; k < 9; ++k) CHECK(a.rotation[k] == Approx(b.rotation[k]).margin(1e-12));
 
-  CHECK_THAT(refusal(head + "48,9,12.5,0,0,90\n", {}, Remedy::kNameCrs),
+  CHECK_THAT(refusal_of_table(head + "48,9,12.5,0,0,90\n", {}, Remedy::kNameCrs),
              Contains("coordinate reference system"));
-  CHECK_THAT(refusal(head + "1,0.5,12.5,0,0,90\n", utm32, Remedy::kDeclareAngles),
+  CHECK_THAT(refusal_of_table(head + "1,0.5,12.5,0,0,90\n", utm32, Remedy::kDeclareAngles),
              Contains("lat_deg"));
-  CHECK_THAT(refusal(head + "98,9,12.5,0,0,90\n", utm32), Contains("within 90 degrees"));
-  CHECK_THAT(refusal("lat_rad,lon_rad,z,roll_deg,pitch_deg,heading_deg\n48,9,12.5,0,0,90\n", utm32),
+  CHECK_THAT(refusal_of_table(head + "98,9,12.5,0,0,90\n", utm32), Contains("within 90 degrees"));
+  CHECK_THAT(refusal_of_table(
+                 "lat_rad,lon_rad,z,roll_deg,pitch_deg,heading_deg\n48,9,12.5,0,0,90\n", utm32),
              Contains("look like degrees"));
-  CHECK_THROWS_AS(poses_of("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,0,0\n", utm32),
+  CHECK_THROWS_AS(poses_of_table("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,0,0\n", utm32),
                   UsageError);
 }

@@ -34,7 +34,7 @@ struct Sample {
   Collisions rows;
 };
 
-Sample sample(bool first_pose, std::size_t count, const std::string& crs = "") {
+Sample sample_to_export(bool first_pose, std::size_t count, const std::string& crs = "") {
   Sample out{sample_header(first_pose), {}};
   out.header.crs_wkt = crs;
   out.rows = sample_rows(out.header, count);
@@ -42,9 +42,9 @@ Sample sample(bool first_pose, std::size_t count, const std::string& crs = "") {
 }
 
 /// The bytes of a sample's exported file.
-std::string exported(const Sample& sample, const std::string& name) {
+std::string exported(const Sample& sample_to_export, const std::string& name) {
   const ScratchFolder folder;
-  write_result(folder / "out.h5", sample.header, sample.rows);
+  write_result(folder / "out.h5", sample_to_export.header, sample_to_export.rows);
   NoProgress progress;
   export_result(ResultReader(folder / "out.h5"), folder / name, false, progress);
   CHECK_FALSE(std::filesystem::exists(folder / (name + ".partial")));
@@ -64,8 +64,9 @@ std::vector<std::vector<std::string>> table(const std::string& text, char separa
 }
 
 /// Whether a text reads back as the stored integer of a coordinate.
-bool same_quantum(const Sample& sample, int axis, const std::string& text, double coordinate) {
-  const Quantisation& quantisation = sample.header.quantisation;
+bool same_quantum(const Sample& sample_to_export, int axis, const std::string& text,
+                  double coordinate) {
+  const Quantisation& quantisation = sample_to_export.header.quantisation;
   const double steps = (std::stod(text) - quantisation.offset[axis]) / quantisation.scale[axis];
   return quantum_at(quantisation, axis, coordinate).value() == std::nearbyint(steps);
 }
@@ -76,7 +77,7 @@ constexpr std::size_t kMany = 65'600;  // more than a batch
 
 TEST_CASE("CSV holds every column in full") {
   const bool first_pose = GENERATE(false, true);
-  const Sample s = sample(first_pose, GENERATE(0u, 3u, kMany));
+  const Sample s = sample_to_export(first_pose, GENERATE(0u, 3u, kMany));
   const auto rows = table(exported(s, "out.csv"), ',');
   REQUIRE(rows.size() == s.rows.size() + 1);
   std::vector<std::string> header{"source", "x", "y", "z"};
@@ -94,7 +95,7 @@ TEST_CASE("CSV holds every column in full") {
 }
 
 TEST_CASE("XYZ holds the coordinates in full, and nothing else") {
-  const Sample s = sample(GENERATE(false, true), GENERATE(0u, kMany));
+  const Sample s = sample_to_export(GENERATE(false, true), GENERATE(0u, kMany));
   const auto rows = table(exported(s, "out.xyz"), ' ');
   REQUIRE(rows.size() == s.rows.size());
   for (std::size_t i = 0; i < s.rows.size(); ++i) {
@@ -107,7 +108,7 @@ TEST_CASE("XYZ holds the coordinates in full, and nothing else") {
 
 TEST_CASE("PLY holds doubles and first poses") {
   const bool first_pose = GENERATE(false, true);
-  const Sample s = sample(first_pose, GENERATE(0u, kMany));
+  const Sample s = sample_to_export(first_pose, GENERATE(0u, kMany));
   const std::string bytes = exported(s, "out.PLY");
   const std::string header = "ply\nformat binary_little_endian 1.0\nelement vertex " +
                              std::to_string(s.rows.size()) +
@@ -126,7 +127,7 @@ TEST_CASE("PLY holds doubles and first poses") {
 TEST_CASE("LAS holds the source's integers, scale, offset, CRS and first poses") {
   const bool first_pose = GENERATE(false, true);
   const std::string crs = GENERATE(std::string(), std::string("PROJCS[\"somewhere\"]"));
-  const Sample s = sample(first_pose, GENERATE(0u, kMany), crs);
+  const Sample s = sample_to_export(first_pose, GENERATE(0u, kMany), crs);
   const std::string bytes = exported(s, "out.las");
   REQUIRE(bytes.substr(0, 4) == "LASF");
   const bool version_14 = value_at<std::uint8_t>(bytes, 25) == 4;
@@ -162,7 +163,7 @@ TEST_CASE("LAS holds the source's integers, scale, offset, CRS and first poses")
 }
 
 TEST_CASE("a coordinate that is no multiple of the scale is refused as LAS, with its source") {
-  Sample s = sample(false, 5);
+  Sample s = sample_to_export(false, 5);
   s.rows.xyz[3].y += 0.00005;
   const std::string place = "source " + std::to_string(s.rows.source[3]);
   CHECK_THROWS_AS(exported(s, "out.las"), InputError);
@@ -171,7 +172,7 @@ TEST_CASE("a coordinate that is no multiple of the scale is refused as LAS, with
 }
 
 TEST_CASE("another ending is refused with the four that are known") {
-  const Sample s = sample(false, 1);
+  const Sample s = sample_to_export(false, 1);
   const std::string name = GENERATE("out", "out.laz", "out.h5", "las", "out.csv.gz");
   CHECK_THROWS_AS(exported(s, name), UsageError);
   CHECK_THROWS_WITH(exported(s, name), Contains(name) && Contains(".las") && Contains(".ply") &&
@@ -180,7 +181,7 @@ TEST_CASE("another ending is refused with the four that are known") {
 
 TEST_CASE("an existing output is kept unless asked otherwise") {
   const ScratchFolder folder;
-  const Sample s = sample(false, 2);
+  const Sample s = sample_to_export(false, 2);
   write_result(folder / "out.h5", s.header, s.rows);
   const ResultReader reader(folder / "out.h5");
   NoProgress progress;
@@ -193,7 +194,7 @@ TEST_CASE("an existing output is kept unless asked otherwise") {
 
 TEST_CASE("a disk that fills up leaves nothing under the output's name") {
   const ScratchFolder folder;
-  const Sample s = sample(true, kMany);
+  const Sample s = sample_to_export(true, kMany);
   write_result(folder / "out.h5", s.header, s.rows);
   const ResultReader reader(folder / "out.h5");
   const std::string name = GENERATE("out.las", "out.ply", "out.xyz", "out.csv");
@@ -210,7 +211,7 @@ TEST_CASE("a result for which the disk has no room is not finished") {
   const LeaksOfHdf5 ignored;
   const ScratchFolder folder;
   const bool first_pose = GENERATE(false, true);
-  const Sample s = sample(first_pose, GENERATE(1'000u, kMany, 3 * kMany));
+  const Sample s = sample_to_export(first_pose, GENERATE(1'000u, kMany, 3 * kMany));
   const auto path = folder / "out.h5";
   write_result(path, s.header, s.rows);
   const auto size = std::filesystem::file_size(path);

@@ -27,7 +27,7 @@ ReadScans collect(PointReader& reader) {
   return all;
 }
 
-ReadScans read(const E57Bytes& file) {
+ReadScans read_scans(const E57Bytes& file) {
   const ReaderScratch scratch;
   return collect(*open_point_file(scratch.write("a.e57", file.build())));
 }
@@ -53,7 +53,7 @@ TEST_CASE("each scan's pose turns and then shifts its points, in the order of th
   file.scans[0].xml = E57Bytes::pose({kHalf, "", "", kHalf}, {"400000", "5e6", "-1.5"});
   // A quarter turn about x: y to z, z to -y.
   file.scans[1].xml = E57Bytes::pose({kHalf, kHalf, "0", "0"}, {"0", "0", "0"});
-  const ReadScans all = read(file);
+  const ReadScans all = read_scans(file);
   REQUIRE(all.positions.size() == 4);
   check_near(all.positions[0], {399998, 5000001, 1.5});
   check_near(all.positions[1], {400000, 5000000, -0.5});
@@ -72,7 +72,7 @@ TEST_CASE("half of a pose is a pose, a quaternion is normalised") {
   file.scans[0].xml = "<pose type=\"Structure\">" + shift + "</pose>";
   file.scans[1].xml = "<pose type=\"Structure\"/>";
   file.scans[2].xml = E57Bytes::pose({"0.707", "0", "0", "0.707"}, {"0", "0", "0"});
-  const ReadScans all = read(file);
+  const ReadScans all = read_scans(file);
   CHECK(all.positions[0] == Vec3{5, 7, 9});
   CHECK(all.positions[1] == Vec3{1, 2, 3});
   check_near(all.positions[2], {-2, 1, 3});
@@ -87,7 +87,7 @@ TEST_CASE("spherical coordinates are range, azimuth from x to y, elevation from 
       E57Bytes::float64("sphericalAzimuth", {0, quarter, 0, -quarter, quarter / 2}),
       E57Bytes::float64("sphericalElevation", {0, 0, quarter, 0, -quarter / 2}),
       E57Bytes::integer("sphericalInvalidState", 0, 2, {0, 0, 0, 1, 0})};
-  const ReadScans all = read(file);
+  const ReadScans all = read_scans(file);
   REQUIRE(all.positions.size() == 5);
   check_near(all.positions[0], {2, 0, 0});
   check_near(all.positions[1], {0, 2, 0});
@@ -108,7 +108,7 @@ TEST_CASE("the Cartesian coordinates count where they are valid, then the spheri
   SECTION("with states, whatever numbers they are") {
     fields.push_back(E57Bytes::float32("cartesianInvalidState", {0, 1, 2, 2}));
     fields.push_back(E57Bytes::integer("sphericalInvalidState", -1, 2, {2, 0, 0, 1}));
-    const ReadScans all = read(file);
+    const ReadScans all = read_scans(file);
     CHECK(all.positions[0].x == 1);
     CHECK(all.positions[1].x == 9);
     CHECK(all.positions[2].x == 9);
@@ -119,7 +119,7 @@ TEST_CASE("the Cartesian coordinates count where they are valid, then the spheri
     CHECK(all.info.remarks[0].severity == Message::Severity::kNote);
   }
   SECTION("without states all are valid") {
-    const ReadScans all = read(file);
+    const ReadScans all = read_scans(file);
     CHECK(all.positions[3].x == 4);
     CHECK(all.absent.empty());
   }
@@ -164,7 +164,7 @@ TEST_CASE("scans without points or coordinates are stepped over, and said") {
   file.scans = {e57_scan({}, {}, {}), e57_scan({1}, {2}, {3})};
   file.scans.emplace_back();
   file.scans[2].fields = {E57Bytes::integer("colorRed", 0, 255, {1, 2, 3})};
-  const ReadScans all = read(file);
+  const ReadScans all = read_scans(file);
   CHECK(all.positions.size() == 1);
   CHECK(all.info.declared_points == 1);
   CHECK_THAT(all_texts(all.info), Contains("3 scans; none has a pose") &&
@@ -174,8 +174,8 @@ TEST_CASE("scans without points or coordinates are stepped over, and said") {
 
 TEST_CASE("a file without scans, and a scan without a binary section, hold no points") {
   E57Bytes file;
-  CHECK(read(file).positions.empty());
-  CHECK(read(file).info.declared_points == 0);
+  CHECK(read_scans(file).positions.empty());
+  CHECK(read_scans(file).info.declared_points == 0);
   file.scans = {e57_scan({}, {}, {})};
   E57Bytes::Content content = file.content();
   const std::string offset = "fileOffset=\"48\"";
@@ -187,18 +187,18 @@ TEST_CASE("a file without scans, and a scan without a binary section, hold no po
 TEST_CASE("the coordinate reference system is kept, and its unit, E57's own is the metre") {
   E57Bytes file;
   file.scans = {e57_scan({1}, {2}, {3})};
-  CHECK(read(file).info.unit == LengthUnit::kMetre);
-  CHECK(read(file).info.crs_wkt.empty());
+  CHECK(read_scans(file).info.unit == LengthUnit::kMetre);
+  CHECK(read_scans(file).info.crs_wkt.empty());
   const std::string wkt = R"(PROJCS["p",GEOGCS["g"],UNIT["US survey foot",0.3048006096012192]])";
   file.root_xml =
       "<coordinateMetadata type=\"String\"><![CDATA[" + wkt + "]]></coordinateMetadata>";
-  CHECK(read(file).info.unit == LengthUnit::kUsSurveyFoot);
-  CHECK(read(file).info.crs_wkt == wkt);
-  REQUIRE(read(file).info.remarks.size() == 1);
-  CHECK(read(file).info.remarks[0].code == "e57-unit");
+  CHECK(read_scans(file).info.unit == LengthUnit::kUsSurveyFoot);
+  CHECK(read_scans(file).info.crs_wkt == wkt);
+  REQUIRE(read_scans(file).info.remarks.size() == 1);
+  CHECK(read_scans(file).info.remarks[0].code == "e57-unit");
   file.root_xml = "<coordinateMetadata type=\"String\">a &lt; b</coordinateMetadata>";
-  CHECK(read(file).info.unit == LengthUnit::kMetre);
-  CHECK(read(file).info.crs_wkt == "a < b");
+  CHECK(read_scans(file).info.unit == LengthUnit::kMetre);
+  CHECK(read_scans(file).info.crs_wkt == "a < b");
 }
 
 TEST_CASE("points far beyond the declared bounds are warned of, in either frame") {
@@ -212,7 +212,7 @@ TEST_CASE("points far beyond the declared bounds are warned of, in either frame"
     }
     return xml + "</cartesianBounds>";
   };
-  const auto remarks = [&] { return read(file).info.remarks; };
+  const auto remarks = [&] { return read_scans(file).info.remarks; };
   file.scans[0].xml = bounds("0", "5");  // the points are in millimetres
   REQUIRE(remarks().size() == 1);
   CHECK(remarks()[0].severity == Message::Severity::kWarning);

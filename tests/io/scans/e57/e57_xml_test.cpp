@@ -11,13 +11,13 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-E57Bytes one_scan() {
+E57Bytes one_scan_of_xml() {
   E57Bytes file;
   file.scans = {e57_scan({1, 2}, {3, 4}, {5, 6})};
   return file;
 }
 
-std::string refusal(const E57Bytes& file) {
+std::string refusal_of_xml(const E57Bytes& file) {
   static const ReaderScratch scratch;
   return refusal_of(scratch.write("a.e57", file.build()));
 }
@@ -25,7 +25,7 @@ std::string refusal(const E57Bytes& file) {
 /// The message with which a file is refused whose XML section is that of one_scan() with `what`
 /// replaced.
 std::string refusal_with(const std::string& what, const std::string& with) {
-  E57Bytes::Content content = one_scan().content();
+  E57Bytes::Content content = one_scan_of_xml().content();
   const std::size_t at = content.bytes.find(what, content.xml);
   REQUIRE(at != std::string::npos);
   content.bytes.replace(at, what.size(), with);
@@ -36,7 +36,7 @@ std::string refusal_with(const std::string& what, const std::string& with) {
 
 /// The message with which a file with this XML section is refused.
 std::string refusal_of_xml(const std::string& xml) {
-  E57Bytes::Content content = one_scan().content();
+  E57Bytes::Content content = one_scan_of_xml().content();
   content.bytes.replace(content.xml, std::string::npos, xml);
   E57Bytes::put<std::uint64_t>(content.bytes, 32, xml.size());
   static const ReaderScratch scratch;
@@ -63,15 +63,15 @@ TEST_CASE("what is no XML, or no E57 root, is refused with its byte") {
 }
 
 TEST_CASE("XML in another encoding than UTF-8 is refused, a byte order mark is not") {
-  E57Bytes file = one_scan();
+  E57Bytes file = one_scan_of_xml();
   for (const char* name : {"ISO-8859-1", "UTF-16", "utf8"}) {
     file.declaration = "<?xml version=\"1.0\" encoding=\"" + std::string(name) + "\"?>";
-    CHECK_THAT(refusal(file), Contains(name) && Contains("expected UTF-8"));
+    CHECK_THAT(refusal_of_xml(file), Contains(name) && Contains("expected UTF-8"));
   }
   for (const char* declaration :
        {"", "<?xml version=\"1.0\"?>", "\xEF\xBB\xBF", "<?xml version='1.0' encoding='utf-8'?>"}) {
     file.declaration = declaration;
-    CHECK(refusal(file).empty());
+    CHECK(refusal_of_xml(file).empty());
   }
   std::string wide = "\xFF\xFE";
   for (const char c : std::string("<e57Root type=\"Structure\"/>")) wide += {c, '\0'};
@@ -79,7 +79,7 @@ TEST_CASE("XML in another encoding than UTF-8 is refused, a byte order mark is n
 }
 
 TEST_CASE("entities are not expanded, so a small section cannot grow") {
-  E57Bytes file = one_scan();
+  E57Bytes file = one_scan_of_xml();
   std::string bomb = "<?xml version=\"1.0\"?><!DOCTYPE bomb [<!ENTITY a \"aaaaaaaaaa\">";
   for (char c = 'b'; c <= 'z'; ++c) {
     bomb += std::string("<!ENTITY ") + c + " \"" +
@@ -93,16 +93,16 @@ TEST_CASE("entities are not expanded, so a small section cannot grow") {
 
 TEST_CASE("deep nesting and long lists are read or refused in time") {
   const auto begin = std::chrono::steady_clock::now();
-  E57Bytes file = one_scan();
+  E57Bytes file = one_scan_of_xml();
   file.root_xml = repeated("<a>", 200'000) + repeated("</a>", 200'000);
-  CHECK(refusal(file).empty());
+  CHECK(refusal_of_xml(file).empty());
   file.root_xml = repeated("<a>", 200'000);
-  CHECK_THAT(refusal(file), Contains("malformed"));
+  CHECK_THAT(refusal_of_xml(file), Contains("malformed"));
   file.root_xml = repeated("<a>", 2'200'000);
-  CHECK_THAT(refusal(file), Contains("tags and attributes; expected at most 2097152"));
+  CHECK_THAT(refusal_of_xml(file), Contains("tags and attributes; expected at most 2097152"));
   file.root_xml.clear();
   file.scans[0].xml = repeated("<b c=\"d\" e=\"f\"/>", 100'000);
-  CHECK(refusal(file).empty());
+  CHECK(refusal_of_xml(file).empty());
   CHECK_THAT(
       refusal_with("<prototype type=\"Structure\">",
                    "<prototype type=\"Structure\">" + repeated("<a type=\"Structure\">", 100'000) +
@@ -147,15 +147,16 @@ TEST_CASE("missing nodes and nodes of another type are refused by name") {
 }
 
 TEST_CASE("codecs other than bit packing are refused by name") {
-  E57Bytes file = one_scan();
+  E57Bytes file = one_scan_of_xml();
   const auto codec = [](const std::string& name) {
     return "<vectorChild type=\"Structure\"><inputs type=\"Vector\"/><" + name +
            " type=\"Structure\"/></vectorChild>";
   };
   file.scans[0].codecs = codec("bitPackCodec");
-  CHECK(refusal(file).empty());
+  CHECK(refusal_of_xml(file).empty());
   file.scans[0].codecs += codec("e57x:zipCodec");
-  CHECK_THAT(refusal(file), Contains("\"e57x:zipCodec\"") && Contains("expected bitPackCodec"));
+  CHECK_THAT(refusal_of_xml(file),
+             Contains("\"e57x:zipCodec\"") && Contains("expected bitPackCodec"));
 }
 
 TEST_CASE("limits, scales and poses that make no sense are refused") {
@@ -174,9 +175,9 @@ TEST_CASE("limits, scales and poses that make no sense are refused") {
                Contains("expected a number"));
   }
   const auto with_pose = [](const std::vector<std::string>& rotation, const std::string& x) {
-    E57Bytes file = one_scan();
+    E57Bytes file = one_scan_of_xml();
     file.scans[0].xml = E57Bytes::pose(rotation, {x, "0", "0"});
-    return refusal(file);
+    return refusal_of_xml(file);
   };
   CHECK_THAT(with_pose({"0", "0", "0", "0"}, "0"), Contains("norm 0") && Contains("pose"));
   CHECK_THAT(with_pose({"2", "0", "0", "0"}, "0"), Contains("norm 2"));

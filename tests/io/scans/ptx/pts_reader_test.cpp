@@ -28,24 +28,24 @@ std::string refusal_of_pts(const std::string& text) {
   return refusal;
 }
 
-const std::vector<Vec3> kTwo{{1, -2.5, 3e2}, {4, 5, 6}};
+const std::vector<Vec3> kTwoOfPts{{1, -2.5, 3e2}, {4, 5, 6}};
 
 }  // namespace
 
 TEST_CASE("a PTS file: its number of points, then lines with anything behind x y z") {
   const auto cloud = read_pts_text("2\n1 -2.5 3e2 -1613 52 70 64\n4 5 6 7 8 9 10\n");
-  CHECK(cloud.positions == kTwo);
+  CHECK(cloud.positions == kTwoOfPts);
   CHECK(cloud.info.declared_points == 2u);
   CHECK(cloud.info.remarks.empty());
   CHECK(read_pts_text("\xEF\xBB\xBF"
                       "2 \r\n1 -2.5 3e2\r\n\r\n4 5 6\r\n")
-            .positions == kTwo);
+            .positions == kTwoOfPts);
   CHECK(read_pts_text("0\n").positions.empty());
 }
 
 TEST_CASE("a PTS file of several scans has a number of points before each") {
   const auto cloud = read_pts_text("1\n1 -2.5 3e2 5\n1\n4 5 6 7\n");
-  CHECK(cloud.positions == kTwo);
+  CHECK(cloud.positions == kTwoOfPts);
   CHECK(cloud.info.declared_points == 2u);
   REQUIRE(cloud.info.remarks.size() == 1);
   CHECK(cloud.info.remarks[0].severity == Message::Severity::kNote);
@@ -54,8 +54,8 @@ TEST_CASE("a PTS file of several scans has a number of points before each") {
 }
 
 TEST_CASE("a text named pts without a count is read as XYZ") {
-  CHECK(read_pts_text("1 -2.5 3e2\n4 5 6\n").positions == kTwo);
-  CHECK(read_pts_text("z,y,x\n3e2,-2.5,1\n6,5,4\n").positions == kTwo);
+  CHECK(read_pts_text("1 -2.5 3e2\n4 5 6\n").positions == kTwoOfPts);
+  CHECK(read_pts_text("z,y,x\n3e2,-2.5,1\n6,5,4\n").positions == kTwoOfPts);
 }
 
 TEST_CASE("the columns of a PTS file can be chosen") {
@@ -64,7 +64,7 @@ TEST_CASE("the columns of a PTS file can be chosen") {
   const auto path = scratch.write("a.pts", "1\n9 1 -2.5 3e2\n1\n9 4 5 6\n");
   const auto reader = open_point_file(path, columns);
   CHECK(reader->info().text_table);
-  CHECK(read_all(*reader).positions == kTwo);
+  CHECK(read_all(*reader).positions == kTwoOfPts);
   const std::string numbered = "3\n1 5.5 6.5 7\n2 5.5 6.5 8\n3 5.5 6.5 9\n";
   CHECK_THAT(refusal_of_pts(numbered), Contains("the point's number"));
 }
