@@ -16,7 +16,7 @@
 namespace clearway {
 
 /// Whether the model passes. kUnknown is the verdict of a single part of a divided query that has
-/// no colliding point; merge() tells the verdict of all parts together.
+/// no colliding point; merge() gives the verdict of all parts together.
 enum class Verdict { kClear, kConflict, kUndecided, kUnknown };
 
 /// Why a verdict is kUndecided.
@@ -28,8 +28,8 @@ const char* name_of(Verdict verdict);  ///< "clear", "conflict", "undecided" or 
 const char* name_of(Reason reason);    ///< "question-in-doubt"
 
 /// Whether a warning with this code says that the search could not find anything, whatever stands
-/// in the way, so that an empty result is no answer: "out-of-reach", "no-points", "no-poses" and
-/// "all-ignored".
+/// in the way, so that an empty result is not an answer: "out-of-reach", "no-points", "no-poses"
+/// and "all-ignored".
 bool is_doubt(std::string_view code);
 
 /// The codes of the warnings that are doubts by is_doubt(), each once, in alphabetical order.
@@ -46,8 +46,8 @@ struct TableSummary {
   /// Number of poses closer than the profile's distance asked for
   std::uint64_t profile_poses = 0;
   /// The point with the smallest first pose, the one with the least clearance, and the least
-  /// distance of the profile at its first pose, each where the query asks for it. If several points
-  /// are equal, the one with the smallest source index counts. Coordinates are NaN for files before
+  /// distance of the profile at its first pose, each where the query asks for it. Among equal
+  /// points, the one with the smallest source index is given. Coordinates are NaN for files before
   /// version 3, which lack them.
   std::optional<FoundPlace> first_place, least_clearance, least_profile;
 };

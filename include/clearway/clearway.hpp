@@ -1,6 +1,6 @@
 #pragma once
 
-/// The whole public interface of Clearway, which tells which points of a scanned environment lie
+/// The whole public interface of Clearway, which finds the points of a scanned environment that lie
 /// within the search radius of a moving model. docs/guide/library.md walks through it.
 
 #include "clearway/answer.hpp"      // IWYU pragma: export

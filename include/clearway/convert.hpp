@@ -27,8 +27,8 @@ struct ConvertOptions {
   /// unit must name this one. None: the unit stays unknown and is treated as the metre.
   FileUnit unit = {};
   bool ignore_crs = false;  ///< takes coordinates in degrees, or in different units, as they are
-  /// Columns of x, y and z in texts: numbers counted from 1, or names of the header. Empty: as the
-  /// files declare them.
+  /// Columns of x, y and z in text files: numbers counted from 1, or names of the header. Empty: as
+  /// the files declare them.
   std::vector<std::string> columns = {};
   bool skip_unreadable = false;  ///< leaves out files that cannot be read, with a warning
   bool strict = false;           ///< refuses any warning: all are told, then no store is written

@@ -41,9 +41,9 @@ struct MergeReport : Answer {
 /// Merges all parts that searches with SearchOptions::shard wrote into one result. The parts may be
 /// in any order; the file has the bytes that one search of everything writes. Throws InputError,
 /// naming the files, for parts of different questions, stores or numbers of parts; for a part that
-/// is missing, given twice or damaged; for a file that is no part; and for parts that were computed
-/// in different ways, if the answer depends on it. UsageError for an output that exists or is a
-/// part; ResourceError for a full disk, too little memory, or more parts than files that the
+/// is missing, given twice or damaged; for a file that is not a part; and for parts that were
+/// computed in different ways, if the answer depends on it. UsageError for an output that exists or
+/// is a part; ResourceError for a full disk, too little memory, or more parts than files that the
 /// process may open (ulimit -n); Interrupted when asked to stop.
 MergeReport merge(const std::vector<std::filesystem::path>& parts,
                   const std::filesystem::path& output, const MergeOptions& options = {});

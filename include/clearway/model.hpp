@@ -38,7 +38,7 @@ struct Model {
   std::vector<std::uint32_t> solid_of;
   /// Largest gap between the samples of a mesh, in metres: no place of its surface is farther than
   /// this from a point of the model. The surface may therefore come closer than the radius, by as
-  /// much, to a point that does not collide, and the answer says so. 0: the model is no sampled
+  /// much, to a point that does not collide, and the answer says so. 0: the model is not a sampled
   /// mesh.
   double spacing = 0;
 

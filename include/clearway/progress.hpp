@@ -30,7 +30,7 @@ struct Message {
 };
 
 /// Callbacks that watch a call. They are never called from two threads at once, but may be called
-/// from other threads than the caller's; they must not throw.
+/// from threads other than the caller's; they must not throw.
 using ProgressCallback = std::function<void(const ProgressUpdate&)>;
 using MessageCallback = std::function<void(const Message&)>;
 

@@ -61,8 +61,8 @@ struct MovingBody {
   std::string_view name;  ///< empty for the model of a query without bodies
   const Model& model;
   std::span<const Pose> poses;
-  /// For each of `poses` the index of the path's pose, ascending; empty if the poses are those of
-  /// the path.
+  /// For each of `poses`, the index of the pose of the path that it belongs to, ascending; empty if
+  /// the poses are those of the path.
   std::span<const std::uint32_t> path_pose = {};
 
   /// Its pose at a pose of the path; nullptr if it has none there.

@@ -45,7 +45,8 @@ struct SearchOptions {
   /// part hold them too, and `strict` counts them. They must be given again to resume a search.
   std::vector<Message> input_warnings = {};
   /// Whether the model lacks its lowest part, as with ModelOptions::above. Such a model does not
-  /// stand on the ground, so ignored points that collide are not warned of for their number alone.
+  /// stand on the ground, so a large number of ignored points that collide is then no reason for a
+  /// warning.
   bool model_is_cut = false;
   /// From start_devices(); null: the search starts them
   std::shared_ptr<const DeviceStart> started = nullptr;
@@ -69,7 +70,8 @@ struct ToleranceReport {
 /// which at least one worker of that stage was busy.
 struct SearchSeconds {
   double total = 0;
-  double context = 0;  ///< seconds for starting the GPUs, beside all that comes before the engine
+  /// Seconds for starting the GPUs, in parallel with everything that comes before the engine
+  double context = 0;
   double context_wait = 0;  ///< seconds that the search waited for the GPUs to start
   double ignored = 0;       ///< seconds for counting the ignored points that would collide
   double thin = 0;          ///< seconds for choosing what a tolerance keeps

@@ -21,7 +21,7 @@ enum class TrajectoryFormat {
   kPoseWxyz,        ///< x y z qw qx qy qz
   kSbet,            ///< Applanix, 17 doubles a record
   kThreedtkPose,    ///< a .pose file, or a folder of them
-  kThreedtkFrames,  ///< a .frames file, whose last line counts, or a folder of them
+  kThreedtkFrames,  ///< a .frames file, whose last line is used, or a folder of them
 };
 
 /// The unit of angles that the file itself does not declare.

@@ -61,7 +61,8 @@ struct Vehicle : Entry {
   /// Whether the vehicle's file is a JSON file of several bodies rather than a model.
   bool has_bodies() const { return file.extension() == ".json"; }
 
-  /// Options for what the model is searched as, which only the search takes.
+  /// The option that says whether the model is searched as points, surface or solid; only the
+  /// search takes it.
   Arguments kind;
   /// Options for the model's axes, which only conflicts and reports take.
   Arguments axes;

@@ -91,7 +91,8 @@ struct PlannedRun {
   const Argument& radius;
   const Entry& environment;
   Arguments arguments;  ///< the whole command line of the search
-  /// The other command lines, with their options for messages.
+  /// The command lines of `clearway conflicts` and `clearway report`: the command, and its options
+  /// with the keys of campaign.json that messages name.
   std::vector<std::pair<Command, Arguments>> outputs;
 };
 
@@ -115,7 +116,7 @@ using TaskList = std::vector<std::size_t>;
 /// The numbers as sbatch --array takes them, for example "3,7-9".
 std::string task_list_text(const TaskList& tasks);
 
-/// The numbers in such a text, each once; nothing where it is no such text.
+/// The numbers in a list such as "3,7-9", each once; nullopt where the text is not such a list.
 std::optional<TaskList> parse_task_list(const std::string& text);
 
 inline constexpr const char* kPlanName = "plan.json";

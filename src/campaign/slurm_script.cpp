@@ -10,7 +10,7 @@ std::string shell_word(const std::string& text) {
   return word + "'";
 }
 
-/// Bytes that the program takes beside --memory: itself, its libraries, and buffers of the file
+/// Bytes that the program takes besides --memory: itself, its libraries, and buffers of the file
 /// system.
 constexpr std::uint64_t kProgramBytes = std::uint64_t{512} << 20;
 
@@ -111,7 +111,7 @@ std::string variables(const SlurmJob& job) {
          "\nfolder=" + shell_word(job.folder.string()) + "\nname=" + shell_word(job.name) + "\n";
 }
 
-/// Escapes a text within quotes on a #SBATCH line, where a percent sign introduces a placeholder.
+/// Escapes a string within quotes on a #SBATCH line, where a percent sign introduces a placeholder.
 std::string sbatch_word(const std::string& text) {
   std::string word;
   for (const char c : text) {

@@ -47,8 +47,8 @@ std::vector<std::pair<std::string, fs::path>> files_of_bodies(const fs::path& ve
   return files;
 }
 
-/// The words of the task's `clearway run`, which is the second command of a merge and the first of
-/// any other task; null where there is none.
+/// The task's `clearway run` command, which is the second command of a merge and the first of any
+/// other task; null where there is none.
 const Command* run_of_commands(const Task& task) {
   const auto run = std::ranges::find_if(
       task.commands, [](const Command& words) { return !words.empty() && words[0] == "run"; });

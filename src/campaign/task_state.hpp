@@ -127,7 +127,7 @@ inline constexpr std::array kOutcomes{Outcome::kConflict, Outcome::kUndecided,
 struct OutcomeWords {
   /// The name in JSON, and as a class of the style sheet, for example "doubtful".
   const char* name;
-  /// A character that tells the outcome without colour.
+  /// A character that shows the outcome without colour.
   const char* sign;
   /// The word after a count, for example "clear with warnings".
   const char* word;
@@ -165,7 +165,7 @@ class OutcomeCounts {
   std::array<std::size_t, kOutcomes.size()> counts_{};
 };
 
-/// What has to be said beside the verdict of a run that is done, for example "2 warnings
+/// What has to be said besides the verdict of a run that is done, for example "2 warnings
 /// (out-of-reach, scan-ends); 1,234 points ignored, of which 56 would collide; not exact". Empty
 /// where there is nothing to say.
 std::string caveats_of(const nlohmann::ordered_json& facts);

@@ -11,8 +11,9 @@
 namespace clearway {
 
 /// The first pose of every environment point (clearway/query.hpp), or HitSet::kNever. The oracle of
-/// all tests: every pair is put to the predicate, and nothing but the predicate is shared with the
-/// engines. O(|E| |M| |T|), on all cores. Motion between poses is only for models of points.
+/// all tests: it evaluates the predicate for every pair, and shares nothing but the predicate with
+/// the engines. O(|E| |M| |T|), on all cores. Supports motion between poses for models of points
+/// only.
 std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environment,
                                                    const Query& query);
 

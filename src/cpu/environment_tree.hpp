@@ -39,7 +39,7 @@ class EnvironmentTree {
   /// A box that holds every point of the node.
   Box box(const EnvironmentNode& node) const;
 
-  /// Upper bound of the number of points of the node.
+  /// Upper bound on the number of points of the node.
   std::uint64_t most_points(const EnvironmentNode& node) const {
     if (node.top == EnvironmentNode::kInCell) return std::uint64_t{node.block_count} * kBlockPoints;
     return std::uint64_t{cloud_.tree()[node.top].cell_count} * cloud_.cell_entries();

@@ -62,7 +62,7 @@ namespace {
 /// pose, so that nothing looks for them; afterwards they are removed from the answer.
 class IgnoredEntries {
  public:
-  /// only: tells the cells that are searched; null for all. All arguments must outlive this object.
+  /// only: says which cells are searched; null for all. All arguments must outlive this object.
   IgnoredEntries(const PackedCloud& cloud, const QueryParameters& query,
                  const std::function<bool(std::uint32_t)>& only, int threads)
       : cloud_(cloud), ignored_(cloud, query), only_(only), threads_(threads) {}

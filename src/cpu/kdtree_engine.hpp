@@ -53,7 +53,7 @@ struct KdTreeOptions {
   int threads = 0;  ///< 0: as many as OpenMP offers
   /// Keeps what is found; poses that it holds already are not searched
   PoseJournal* journal = nullptr;
-  std::function<bool(std::uint32_t)> only = nullptr;  ///< tells the cells to search; null: all
+  std::function<bool(std::uint32_t)> only = nullptr;  ///< whether to search a cell; null: all
 };
 
 struct KdTreeStatistics {
@@ -64,7 +64,7 @@ struct KdTreeStatistics {
   std::uint64_t ignored_points = 0;   ///< number of ignored points in the cells to search
 };
 
-/// Upper bound of the memory that run_kdtree() takes in addition to the cloud's own, bytes.
+/// Upper bound on the memory that run_kdtree() takes in addition to the cloud's own, bytes.
 std::uint64_t kdtree_memory_bytes(const PackedCloud& cloud, const Query& query, int threads);
 
 /// Finds every point of `cloud` that the query's model touches: for every pose and model point by a

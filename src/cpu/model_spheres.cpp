@@ -37,7 +37,7 @@ std::uint64_t grid_key(const Box& box, double edge, const Vec3& point) {
   return key;
 }
 
-/// An upper bound of the true length whose computed square is `squared` (docs/design/numerics.md,
+/// An upper bound on the true length whose computed square is `squared` (docs/design/numerics.md,
 /// "Spheres of the model").
 double length_above(double squared) {
   return std::sqrt(squared) * (1 + 16 * std::numeric_limits<double>::epsilon()) + 1e-150;

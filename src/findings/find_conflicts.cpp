@@ -401,8 +401,9 @@ class ConflictSearch {
     conflict.obstacle_chainage = chainage_[at] + ahead + options_.chainage_start;
   }
 
-  /// How far a place lies ahead of a pose of the path, in the direction in which the path goes on.
-  /// Measured from the path's pose and not from the body's, whose own x axis may begin anywhere.
+  /// How far a place lies ahead of a pose of the path, in the direction in which the path
+  /// continues. Measured from the path's pose and not from the body's, whose own x axis may begin
+  /// anywhere.
   double ahead_along_path(const Vec3& place, std::uint32_t at) const {
     const Pose& pose = poses_[at];
     const double ahead = ahead_left_up(place, pose, options_.forward, options_.up).x;

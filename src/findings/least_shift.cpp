@@ -72,8 +72,8 @@ int steps_between(const Pose& a, const Pose& b, double radius) {
 }
 
 /// A pose between a and b at which model points are that move on straight segments. Where the poses
-/// turn, its matrix is no rotation but one that also shrinks. Seen from it, places are farther away
-/// than they are, so a shift that is computed from it is never too long.
+/// turn, its matrix is not a rotation but one that also shrinks. Seen from it, places are farther
+/// away than they are, so a shift that is computed from it is never too long.
 Pose between(const Pose& a, const Pose& b, double part) {
   Pose out{};
   for (int k = 0; k < 9; ++k) {
@@ -176,7 +176,7 @@ void LeastShift::add_runs(std::size_t body, const Pose& pose, const Pose& of_pat
   Pose turn = pose;
   for (double& t : turn.translation) t = 0;
   Run run{shapes_[body].get(), pulled_back(turn, left), seen.size(), 0};
-  if (!(rounded_dot(run.left, run.left) > 0)) return;  // the matrix of the pose is no rotation
+  if (!(rounded_dot(run.left, run.left) > 0)) return;  // the matrix of the pose is not a rotation
   for (const Vec3& e : points) {
     const Vec3 x = pulled_back(pose, e);
     const PointWay from_right = run.way(PointWay{x, run.left}.at(-most), 1);

@@ -67,7 +67,7 @@ class CudaEvent {
   cudaEvent_t event_ = nullptr;
 };
 
-/// Tells when events of a device happened, on the host's clock. To be made on the current device;
+/// Finds the times of a device's events on the host's clock. To be made on the current device;
 /// synchronous.
 class DeviceClock {
  public:

@@ -66,7 +66,8 @@ class CudaPageSearch {
 
   virtual const CudaSlotSize& slot_size() const = 0;
 
-  /// Writes to `begin`, on the host, the data to be sent after the page.
+  /// Plans the search of a page: writes to `begin`, on the host, the data that is uploaded right
+  /// after the page.
   virtual CudaPagePlan plan(const PageRef& /*page*/, std::byte* /*begin*/) const { return {}; }
 
   /// Enqueues the search of a page on its stream: clears and fills the page's result. Not

@@ -33,7 +33,8 @@ class SweepWorkArrays {
   static constexpr std::uint64_t kWalks = 64;
   static constexpr std::uint64_t kItems = 16;
 
-  /// The longest lists come first: in this order none needs padding.
+  /// Adds the lists to `run`, for this many thread blocks, the longest first, because in that order
+  /// none needs padding.
   SweepWorkArrays(ArrayRun& run, std::uint64_t blocks)
       : entry_capacity_(kEntries * blocks),
         walks_(run.add<SweepWork::Item>(kWalks * blocks)),

@@ -61,7 +61,7 @@ struct ArrayQuery {
   std::vector<PlacedBody> bodies = {};
 };
 
-/// The query with copies of model and poses, so that Python may change its own meanwhile.
+/// The query with copies of model and poses, so that Python may change its own during the search.
 Query query_of(const ArrayQuery& query);
 
 }  // namespace clearway::python

@@ -27,7 +27,7 @@ struct KeptProgress {
 /// A long call of the library, watched from Python. The work is done on a thread of its own, and
 /// only the calling thread runs Python: every 50 ms it passes what is new to the callbacks, looks
 /// at the stop flag, and lets Python handle signals, so that Ctrl-C raises KeyboardInterrupt. An
-/// exception that is raised meanwhile stops the work; once the work has ended in order, the
+/// exception that is raised there stops the work; once the work has ended in order, the
 /// exception leaves run().
 class Watch {
  public:

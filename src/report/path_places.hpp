@@ -11,8 +11,8 @@
 
 namespace clearway {
 
-/// The centres of the bodies' boxes along the path, at places some way apart, to tell what is near
-/// the path. They are as accurate as a picture needs, not as a search does.
+/// The centres of the bodies' boxes along the path, at places some distance apart, to find what is
+/// near the path. They are as accurate as a picture needs, not as a search does.
 class PathPlaces {
  public:
   struct Place {

@@ -70,7 +70,7 @@ class JsonText {
   JsonText& field(std::string_view name, const Value& of) {
     return key(name).value(of);
   }
-  /// Appends a text that is JSON already.
+  /// Appends a string that is already JSON.
   JsonText& raw(std::string_view json) {
     separate();
     text_ += json;

@@ -132,7 +132,7 @@ namespace {
 
 // Measured as docs/design/pipeline.md says ("Start and end of a GPU").
 
-/// Seconds that a GPU adds to a run: the part of its start and end beside which nothing else runs.
+/// Seconds that a GPU adds to a run: the part of its start and end during which nothing else runs.
 constexpr double kStart = 0.5;
 /// How many cores of a CPU search as fast as a GPU does.
 constexpr double kCores = 350;

@@ -58,13 +58,13 @@ EngineEstimate estimate_on_cpu(const Workload& work, int threads);
 DeviceEstimate estimate_devices(std::span<const Workload> work, const QueryParameters& query,
                                 Engine engine, int threads);
 
-/// The number of environment points from which on a GPU is started before the query is known. With
-/// fewer points the CPU answers most queries before a GPU has started.
+/// The least number of environment points for which a GPU is started before the query is known.
+/// With fewer points the CPU answers most queries before a GPU has started.
 std::uint64_t surely_many_points(int threads);
 
 /// Where options.engine is kAuto, sets it to the engine that will be faster by estimate, of those
 /// that can answer the query within the memory. on_gpu: the search is on GPUs, which takes the
-/// sweep. earlier: the engine of the run that is resumed, which goes on with it; kAuto for none.
+/// sweep. earlier: the engine of the run that is resumed, which continues with it; kAuto for none.
 /// Where the estimates decided, the report gets them and the log the reason. options.threads is not
 /// 0.
 void choose_engine(const StoreReader& store, const Query& query, Engine earlier, bool on_gpu,

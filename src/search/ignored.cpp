@@ -162,18 +162,20 @@ void warn_of_ignored(const StoreReader& store, const QueryParameters& query,
 
 namespace {
 
-/// The height in metres above the model's lowest point from which on an ignored point is
-/// suspicious. Ground and rails are lower, and are ignored because the model stands on them; nobody
+/// An ignored point at this height or more above the model's lowest point is suspicious, metres.
+/// Ground and rails are lower, and are ignored because the model stands on them; nobody
 /// wants to ignore what the model hits further up.
 constexpr double kHigh = 0.5;
 
-/// kHigh in the environment's unit. Where the unit is unknown, or is no length, metres are assumed.
+/// kHigh in the environment's unit. Where the unit is unknown, or is not a length, metres are
+/// assumed.
 double high_in(LengthUnit unit) {
   const double metres = metres_of(unit);
   return metres > 0 ? kHigh / metres : kHigh;
 }
 
-/// Tells how high points are in the frame of the body that touches them.
+/// Finds points that are high above the lowest model point, in the frame of the body that touches
+/// them.
 class Heights {
  public:
   Heights(const StoreReader& store, const Query& query)
@@ -197,7 +199,8 @@ class Heights {
     return of != nullptr && pulled_back(*of, e).z - lowest_ > limit_;
   }
 
-  /// Counts the high points among the points of a cell that collide, which hits marks.
+  /// Counts the points of a cell that collide and are high. hits: a bit for each colliding point;
+  /// first_poses: their first poses.
   std::uint64_t count(std::uint32_t cell, std::span<const std::uint64_t> hits,
                       std::span<const std::uint32_t> first_poses) const {
     const auto q = store_.coordinates(cell);

@@ -71,7 +71,7 @@ class PageBudget {
 
 }  // namespace clearway
 
-/// The bytes that a run takes of the memory budget, beside the mapped store.
+/// The bytes that a run takes of the memory budget, besides the mapped store.
 namespace clearway {
 
 /// Bytes of the program itself: its libraries' data, stacks of threads, buffers of files.

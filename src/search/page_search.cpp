@@ -93,8 +93,8 @@ void report_stages(const StageTimes& stages, SearchSeconds& seconds) {
   seconds.search = stages.total;
 }
 
-/// Begins to take the engines down, and waits for that where memory is too scarce to write the
-/// result meanwhile.
+/// Begins to take the engines down, and waits until that is done where memory is too scarce to
+/// write the result at the same time.
 Found ended(const StoreReader& store, const PageEngineKind& kind, PageEngines engines, Found found,
             std::uint64_t pinned_bytes) {
   found.engine_end = kind.end(std::move(engines));

@@ -29,7 +29,7 @@ Found search_pages(const StoreReader& store, const Query& query, std::uint64_t m
                    const std::function<SearchJournal*()>& open_journal, Progress& progress,
                    SearchReport& report, const MessageLog& log);
 
-/// The most bytes that a search with engine kdtree takes, beside the mapped store. options.threads
+/// The most bytes that a search with engine kdtree takes, besides the mapped store. options.threads
 /// is not 0.
 std::uint64_t kdtree_needed_bytes(const StoreReader& store, const Query& query,
                                   const SearchOptions& options);

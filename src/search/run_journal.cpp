@@ -217,7 +217,7 @@ void RunJournal::refuse_other_part(const ResultHeader& header) const {
   try {
     found = words(ResultReader(output_, Parts::kAccepted).header().part);
   } catch (const Error&) {
-    return;  // the output does not exist, or is no result
+    return;  // the output does not exist, or is not a result
   }
   if (found == words(header.part)) return;
   throw UsageError(

@@ -104,7 +104,10 @@ class Search {
       if (told.severity == Message::Severity::kWarning) report_.warnings.push_back(told);
     }
     check_sizes(query_);
-    warn_of_query(store_, query_, options_.input_warnings, log_);
+    ThreadLimit(threads_or_all(options_.threads)).run([&] {
+      warn_of_query(store_, query_, options_.input_warnings, log_);
+    });
+    if (options_.float_precision) warn_of_floats(store_, query_, log_);
     warn_of_ignored(store_, header_, header_.ignored, log_);
     if (options_.strict) refuse_warnings(report_.warnings);
   }
@@ -122,7 +125,7 @@ class Search {
 
   const ShardCells* only() const { return shard_ ? &*shard_ : nullptr; }
 
-  /// Where a run is resumed, device kAuto goes on with the device of that run.
+  /// Where a run is resumed, device kAuto continues with the device of that run.
   void resolve_device() {
     const Device earlier = journal_.earlier_device();
     if (options_.device == Device::kAuto && options_.gpus.empty() && earlier != Device::kAuto) {
@@ -198,7 +201,7 @@ class Search {
               " s, a GPU with its start " + format_brief(cuda) + " s");
     return false;
 #else
-    return true;  // a device that is asked for in vain is refused later
+    return true;  // a device that is asked for but missing is refused later
 #endif
   }
 
@@ -295,8 +298,8 @@ class Search {
     return cpu_sweep_kind(store_, query, options);
   }
 
-  /// The GPUs, opened when the search needs them; they have been starting meanwhile. Throws NoGpu
-  /// where none can be used.
+  /// The GPUs, opened when the search first needs them; their start was begun earlier, in the
+  /// background. Throws NoGpu where none can be used.
   DeviceChoice open_gpus() {
     if (gpus_) return usable(*gpus_);
     const Stopwatch waiting;

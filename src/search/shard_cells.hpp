@@ -20,7 +20,7 @@ namespace clearway {
 std::vector<std::uint64_t> cell_work(const PackedCloud& cloud, const Query& query,
                                      const QueryTrees& trees, int threads);
 
-/// Bytes of memory that cell_work() takes beside the trees.
+/// Bytes of memory that cell_work() takes besides the trees.
 std::uint64_t cell_work_bytes(const PackedCloud& cloud, const Query& query);
 
 /// The part of each cell, from 0 to shards - 1. Cells are taken in the order of decreasing work,

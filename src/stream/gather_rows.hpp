@@ -108,7 +108,7 @@ class CellRows {
            std::uint64_t{store.cell_entries()} * (sizeof(Row) + sizeof(std::size_t));
   }
 
-  /// Replaces the rows by those of a cell. Throws InputError for a damaged cell.
+  /// Replaces the rows with those of a cell. Throws InputError for a damaged cell.
   template <typename Set>
   void take(const StoreReader& store, const Set& set, std::uint32_t cell, std::size_t first_part,
             std::size_t end_part) {

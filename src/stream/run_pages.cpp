@@ -210,7 +210,7 @@ struct PageInFlight {
   std::uint32_t slot;
 };
 
-/// The way of pages through one engine.
+/// Takes pages through one engine.
 class Lane {
  public:
   Lane(Pages& pages, PageEngine& engine)

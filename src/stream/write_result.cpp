@@ -133,7 +133,7 @@ void write_profile(const StoreReader& store, const ProfileSet& profile,
 /// Memory for chunks that the file's writer holds back, and for what the profile is written from.
 constexpr std::uint64_t kWriterBytes = std::uint64_t{12} << 20;
 
-/// Memory of kEncodedRows encoded rows.
+/// Bytes that a piece of kEncodedRows encoded rows takes in memory.
 constexpr std::uint64_t kPieceBytes = std::uint64_t{3} << 20;
 
 /// Least number of rows of a pass. With fewer, a part might not fit beside what is left of the part

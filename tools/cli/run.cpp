@@ -128,7 +128,7 @@ Query read_query(RunOptions& options, const Store& store, PoseLabels& labels) {
 constexpr const char* kHowToResume =
     "the same command with --resume, without --force, continues from the finished work";
 
-/// Times and memory that the program measures beside what the library reports.
+/// Times and memory that the program measures besides what the library reports.
 struct ProgramReport {
   double inputs_seconds = 0, total_seconds = 0;  ///< wall clock
   std::uint64_t peak_host_bytes = 0;

@@ -309,7 +309,7 @@ class CampaignPage {
     text_ += "</tbody>\n</table>\n</div>\n</section>\n";
   }
 
-  /// The unit behind a radius. A radius that is a plain number is in the unit of the environments.
+  /// The unit after a radius. A radius that is a plain number is in the unit of the environments.
   std::string unit_of(const std::string& radius) const {
     if (radius.find_first_not_of("0123456789.") != std::string::npos) return "";
     for (const Task& task : plan_.tasks) {

@@ -34,7 +34,7 @@ struct Cell {
 };
 
 /// A node of the explicit top of the store's k-d tree, in preorder: its left child follows it.
-/// A leaf (right == 0) is a bucket, whose cells follow the split rule above.
+/// A leaf (right == 0) is a bucket, whose cells follow the store's split rule.
 struct TopNode {
   std::uint32_t first_cell;
   std::uint32_t cell_count;
@@ -216,7 +216,7 @@ class PackedCloud {
   /// written.
   virtual std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const = 0;
 
-  /// coordinates() for a look that is no part of a search: it does not count as a touch.
+  /// coordinates() for a look that is not part of a search: it does not count as a touch.
   virtual std::array<PackedChunk<std::int32_t>, 3> peek(std::uint32_t cell) const {
     return coordinates(cell);
   }

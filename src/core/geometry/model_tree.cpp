@@ -25,7 +25,7 @@ double ModelTreeOf<Element>::median_leaf_diagonal() const {
     const bool leaf = 2 * node + 1 >= boxes_.size();
     const Box& box = boxes_[node];
     const double squared = leaf ? squared_distance(box.lo, box.hi) : 0;
-    // Unused nodes, and those whose elements are at one place, do not count.
+    // Unused nodes, and those whose elements are at the same place, do not count.
     if (squared > 0) diagonals.push_back(std::sqrt(squared));
   }
   if (diagonals.empty()) return 0;

@@ -33,9 +33,9 @@ class ModelTreeOf {
 
   Nearest nearest(const Vec3& x, std::uint32_t guess = 0) const { return ref().nearest(x, guess); }
 
-  /// Replaces `out` by the elements whose computed squared distance to the box is at most
-  /// `squared_radius`, which must be a number; for triangles it is that of their own boxes. Returns
-  /// false, with only some of the elements, if they are more than `most`.
+  /// Replaces `out` with the elements whose computed squared distance to the box is at most
+  /// `squared_radius`, which must not be NaN; for triangles, the distance to their boxes counts.
+  /// Returns false, with only some of the elements, if there are more than `most`.
   bool within(const Box& box, double squared_radius, std::size_t most,
               std::vector<Element>& out) const {
     out.clear();

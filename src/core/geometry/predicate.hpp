@@ -7,7 +7,7 @@
 /// The one predicate of Clearway. Every engine's answer for a pair of an environment point and a
 /// model point is decided here and nowhere else; everything faster is a filter that hands open
 /// pairs to it. IEEE double, round to nearest, in the order written, never fused: on the device
-/// by intrinsics, on the host by -ffp-contract=off on the interface of clearway_core.
+/// by intrinsics, on the host by -ffp-contract=off for all targets (cmake/options.cmake).
 namespace clearway {
 
 #ifdef __FAST_MATH__

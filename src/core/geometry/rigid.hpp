@@ -20,7 +20,7 @@ struct Stretch {
 /// The singular values and the determinant of a pose's rotation. Source: Eigen's JacobiSVD.
 Stretch stretch_of(const Pose& pose);
 
-/// An upper bound of the largest singular value of a pose's rotation, rounding included: within
+/// An upper bound on the largest singular value of a pose's rotation, rounding included: within
 /// 1e-4 of it for rigid poses and at most sqrt(3) times it for others. Far cheaper than stretch_of.
 double greatest_stretch_bound(const Pose& pose);
 
@@ -31,7 +31,7 @@ bool is_rigid(const Stretch& stretch);
 /// is convex and the eight corners suffice (docs/design/numerics.md, "Motion").
 double displacement_bound(const Box& model, const Pose& a, const Pose& b);
 
-/// An upper bound of the rounding error of each coordinate of transform(pose, m) for every m with
+/// An upper bound on the rounding error of each coordinate of transform(pose, m) for every m with
 /// |m_k| <= reach_k, where reach holds the largest coordinates of the model
 /// (docs/design/numerics.md).
 double transform_rounding(const Vec3& reach, const Pose& pose);

@@ -26,7 +26,7 @@ class SolidParts {
             lattice_};
   }
 
-  /// Bound of how far a place, and the triangles, are moved by rounding before the test whether the
+  /// Bound on how far a place, and the triangles, are moved by rounding before the test whether the
   /// place lies inside; metres in the model's frame (docs/design/numerics.md, "Solids").
   double rounding() const;
 

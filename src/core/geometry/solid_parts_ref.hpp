@@ -50,9 +50,9 @@ struct SolidPartsRef {
   }
 
  private:
-  /// The winding number of a solid around x. Triangles of boxes that are left out add nothing: all
-  /// their corners on the lattice are on one side of x, or not above it. Two steps are more than
-  /// the rounding to the lattice.
+  /// The winding number of a solid around x. A box is skipped where its triangles add nothing: once
+  /// rounded to the lattice, all their corners are on one side of x, or not above it. The margin of
+  /// two lattice steps is more than that rounding moves a corner.
   CLEARWAY_HD int winding(std::uint32_t solid, const Vec3& x,
                           const SolidLattice::Place& place) const {
     int sum = 0;

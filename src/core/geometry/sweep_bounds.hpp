@@ -19,7 +19,7 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 CLEARWAY_HD inline double greater_of(double a, double b) { return a < b ? b : a; }
 
-/// Upper bound of half the diagonal of a box.
+/// Upper bound on half the diagonal of a box.
 CLEARWAY_HD inline double half_diagonal(const Box& box) {
   const double x = box.hi.x - box.lo.x, y = box.hi.y - box.lo.y, z = box.hi.z - box.lo.z;
   return 0.5 * std::sqrt(squared_length(x, y, z)) * kRoundedUp;

@@ -28,7 +28,7 @@ CLEARWAY_HD inline Triangle transform(const Pose& pose, const Triangle& t) {
 
 namespace triangle_detail {
 
-/// The place a + g v, each operation rounded.
+/// The place a + g v, rounded after each operation.
 CLEARWAY_HD inline Vec3 along(const Vec3& a, double g, const Vec3& v) {
   return {rounded_sum(a.x, rounded_product(g, v.x)), rounded_sum(a.y, rounded_product(g, v.y)),
           rounded_sum(a.z, rounded_product(g, v.z))};

@@ -27,7 +27,7 @@ inline Box box_of(std::span<const Triangle> triangles) {
   return box;
 }
 
-/// Lower bound of the squared distance between a box and a triangle: that to the triangle's box.
+/// Lower bound on the squared distance between a box and a triangle: that to the triangle's box.
 inline double least_squared_distance(const Box& box, const Triangle& t) {
   return least_squared_distance(box, box_of(std::span<const Triangle>(&t, 1)));
 }

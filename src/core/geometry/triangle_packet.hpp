@@ -25,7 +25,7 @@ struct TrianglePacketOf {
 
   using Vector = std::conditional_t<std::is_same_v<Real, double>, Vec3, FloatVector>;
 
-  Real a[3][kMost];  ///< corner a by axis; places behind `count` repeat the last triangle
+  Real a[3][kMost];  ///< corner a by axis; places beyond `count` repeat the last triangle
   Real ab[3][kMost], ac[3][kMost];
   Real height[3][kMost];  ///< height over ab
   Real foot[kMost];       ///< foot of the height, as a share of ab
@@ -166,15 +166,16 @@ using TrianglePacket = TrianglePacketOf<double, 8>;
 /// ten-millionth of their size. A vector of the processor holds twice as many floats as doubles.
 struct FloatPacket : TrianglePacketOf<float, 16> {
   Vec3 origin;  ///< the place that all coordinates are relative to
-  /// Bound of the sum of the magnitudes of a corner's coordinates, plus that of an edge from it
+  /// Bound, for any corner and any edge from it, on the sum of the magnitudes of all their
+  /// coordinates
   float size;
-  float edge;  ///< bound of the length of any edge
+  float edge;  ///< bound on the length of any edge
 
   /// triangles: `used` of them, at least one. first: the index of the first of them in the model's
   /// tree.
   static FloatPacket of(const Triangle* triangles, std::uint32_t used, std::uint32_t first);
 
-  /// Bound, in metres, of the error of distances to these triangles that are computed in floats
+  /// Bound, in metres, on the error of distances to these triangles that are computed in floats
   /// from places of a curve. of_curve: sum of the magnitudes of the curve's coordinates, seen from
   /// the origin. Infinite if products of lengths may overflow (docs/design/numerics.md,
   /// "Triangles", floats).

@@ -18,7 +18,7 @@ struct PointPacket {
 
   using Real = double;  ///< the type of its distances
 
-  double at[3][kMost];  ///< coordinates by axis; places behind `count` repeat the last point
+  double at[3][kMost];  ///< coordinates by axis; places beyond `count` repeat the last point
   std::uint32_t count;
 
   CLEARWAY_HD Vec3 point(std::uint32_t i) const { return {at[0][i], at[1][i], at[2][i]}; }
@@ -71,7 +71,7 @@ struct WideBoxes {
   static constexpr float kLeastFloat = 0x1p-126F;  ///< the least float that keeps all its digits
   static constexpr float kMostFloat = 0x1.fffffep127F;
 
-  /// Bounds of a value as floats. Beyond the range of floats they may be infinite or NaN, which
+  /// Bounds on a value as floats. Beyond the range of floats they may be infinite or NaN, which
   /// makes a search visit.
   CLEARWAY_HD static float below(double value) { return -above(-value); }
   CLEARWAY_HD static float above(double value) {
@@ -119,7 +119,7 @@ struct WideBoxes {
 #endif
   }
 
-  /// Lower bounds of the squared distances to eight boxes: a difference, a square and two sums
+  /// Lower bounds on the squared distances to eight boxes: a difference, a square and two sums
   /// round by 2^-24 each, and by less than above() adds if a square is too small for that.
   CLEARWAY_IN_CLONE CLEARWAY_HD static void to_boxes_one_by_one(const Node& node,
                                                                 const Target& from,
@@ -136,7 +136,7 @@ struct WideBoxes {
   /// Does to_boxes_one_by_one() in vectors of the processor.
   static void to_boxes_in_vectors(const Node& node, const Target& from, float* squared);
 
-  /// Lower bounds of the squared distances to eight children, by boxes and slabs.
+  /// Lower bounds on the squared distances to eight children, by boxes and slabs.
   CLEARWAY_HD static void to_slabs(const Node& node, const Slabs& slabs, const HullTarget& from,
                                    float* squared) {
 #ifdef __CUDA_ARCH__
@@ -173,7 +173,7 @@ struct WideBoxes {
     return {one < other ? one : other, one < other ? other : one, one_size + other_size};
   }
 
-  /// Lower bound of the squared distance to a slab. The slab is looked at across the way: the part
+  /// Lower bound on the squared distance to a slab. The slab is looked at across the way: the part
   /// of its normal along the way is taken out, because a plane that is not quite parallel to the
   /// way meets its extension somewhere.
   CLEARWAY_IN_CLONE CLEARWAY_HD static float to_slab(const Node& node, const Slabs& slabs,

@@ -18,7 +18,7 @@ constexpr double kLargest = 1e15;
 /// Least length that floats tell apart, because the squares of shorter ones would not fit a float.
 constexpr double kLeast = 1e-12;
 
-/// Bound of the reach in grid cells, which limits how many of them a search looks up on an axis.
+/// Bound on the reach in grid cells, which limits how many of them a search looks up on an axis.
 constexpr double kStepsPerReach = 4;
 
 /// Greatest number of grid cells along an extent, so that a grid cell's number is an int.
@@ -56,7 +56,7 @@ GridCell make_grid_cell(const GridScene& scene, const QuantumBox& box, std::uint
     grid.extent[k] = static_cast<float>(side);
   }
   const double radius = view.search_radius;
-  // Bound of how far rebasing to floats moves two points relative to each other.
+  // Bound on how far rebasing to floats moves two points relative to each other.
   const double shift = 4 * kFloatRoundoff * (extent + 2 * radius);
   const double outer = (radius + std::sqrt(3.0) * shift) * (1 + 8 * kFloatRoundoff) + kLeast;
   const double inner = (radius - std::sqrt(3.0) * shift) * (1 - 8 * kFloatRoundoff);

@@ -94,7 +94,7 @@ void GridScene::choose_group_radius() {
   group_radius_ = (view_.search_radius + greatest.stretch * *at + greatest.spread) * (1 + 1e-12);
 }
 
-/// The distance beyond which a pair is no hit if floats decide (docs/design/numerics.md, "Floats
+/// The distance beyond which a pair is not a hit if floats decide (docs/design/numerics.md, "Floats
 /// alone").
 double GridScene::float_search_radius(const PackedCloud& cloud) const {
   double largest = 0;

@@ -60,8 +60,8 @@ struct GridCell {
   Vec3 origin;
   double group_radius;  ///< groups within this of a point find its bit in the group occupancy
   float extent[3];
-  float reach;          ///< bound of the difference of a hit's coordinates along any axis
-  float group_reach;    ///< bound of such a difference between a point and a group's centre
+  float reach;          ///< bound on the difference of a hit's coordinates along any axis
+  float group_reach;    ///< bound on such a difference between a point and a group's centre
   float outer_squared;  ///< pairs with a greater square are no hit
   float inner_squared;  ///< pairs with a smaller square are a hit
   float per_bucket, per_bit, per_group_bit;  ///< grid steps per metre
@@ -89,7 +89,7 @@ struct GridStatistics {
   std::uint64_t searches = 0;      ///< moved model points that the occupancy left
   std::uint64_t bucket_tests = 0;  ///< grid cells that were looked up
   std::uint64_t point_tests = 0;   ///< pairs that were tested in float
-  std::uint64_t exact_tests = 0;   ///< pairs that were put to the predicate
+  std::uint64_t exact_tests = 0;   ///< pairs for which the predicate was evaluated
 
   CLEARWAY_HD void add(const GridStatistics& other) {
     sphere_tests += other.sphere_tests;
@@ -115,7 +115,7 @@ struct GridPageView {
   std::uint64_t* group_occupancy;  ///< word_count for each cell, initially zero
   /// One bit for each point in grid order, set once it is hit; null with first poses
   std::uint64_t* done;
-  /// For each bucket, a bound of its points' first poses; null without first poses
+  /// For each bucket, a bound on its points' first poses; null without first poses
   std::uint32_t* latest;
   std::uint64_t* hits;         ///< blocks_per_cell for each cell, initially zero
   std::uint32_t* first_poses;  ///< slots for each cell, initially kNever; null if not asked for

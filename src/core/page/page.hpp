@@ -81,7 +81,7 @@ struct PageRef {
     return reinterpret_cast<const BlockBox*>(begin + shape.blocks_at()) +
            std::uint64_t{index} * shape.blocks_per_cell;
   }
-  /// The points of a block that are to be searched, as bits; bits behind the cell's last point are
+  /// The points of a block that are to be searched, as bits; bits after the cell's last point are
   /// 0.
   CLEARWAY_HD std::uint64_t searched(std::uint32_t index, std::uint32_t block) const {
     if (shape.masked) {

@@ -12,7 +12,7 @@
 
 namespace clearway {
 
-/// The parts of a page's result beside the colliding points.
+/// The parts of a page's result besides the colliding points.
 struct ResultParts {
   bool first_pose, clearance;
   bool profile = false;           ///< whether there are facts of a profile, as a device lists them

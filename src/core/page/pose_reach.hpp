@@ -17,7 +17,7 @@ class PoseReach {
 
   virtual const MotionTree& motion() const = 0;
 
-  /// Replaces `out` by those of `nodes` of the motion tree, and the nodes below them, that may
+  /// Replaces `out` with those of `nodes` of the motion tree, and the nodes below them, that may
   /// matter to a point of the box; they are as fine as the box is small, and in the order of the
   /// poses if `nodes` are. Thread safe.
   virtual void narrow(const Box& box, std::span<const std::uint32_t> nodes,

@@ -30,7 +30,7 @@ std::int64_t first_where(const Holds& holds) {
 }
 
 /// The ignored ones of 64 values of kBits bits each: bit i is set if value i is ignored. table: 1
-/// for each ignored value. Reads 8 bytes at a time, so up to 8 - kBits bytes behind the values.
+/// for each ignored value. Reads 8 bytes at a time, so up to 8 - kBits bytes beyond the values.
 template <unsigned kBits>
 std::uint64_t ignored_of_block(const std::byte* from, const ClassTable& table) {
   std::uint64_t ignored = 0;
@@ -168,7 +168,7 @@ void IgnoredPoints::leave_out_classes(std::uint32_t cell, std::span<std::uint64_
   const std::uint64_t bytes =
       clearway::packed_bytes<std::uint8_t>(classes.size(), minbits) - kPackedHeaderBytes;
   for (std::uint32_t block = 0; block < searched.size(); ++block) {
-    if (searched[block] == 0) break;  // behind the last point
+    if (searched[block] == 0) break;  // after the last point
     const std::uint64_t at = std::uint64_t{block} * 8 * minbits;
     if (at + 8 * minbits + 8 <= bytes) {
       searched[block] &= ~kOfBlock[minbits](classes.payload() + at, table);

@@ -19,7 +19,7 @@ struct QueryField {
   const char* option;  ///< option of `clearway run`
   const char* help;    ///< help text of that option
   const char* doc;     ///< documentation of the property in Python
-  /// The version of results from which on every result has it; 0: only results in which it is not
+  /// The first version of results in which every result has it; 0: only results in which it is not
   /// the default have it.
   std::uint32_t since = 0;
 

@@ -214,12 +214,12 @@ class ProfileSet {
   std::unique_ptr<std::mutex> mutex_;
 };
 
-/// The question with the poses in reverse order, whose first poses tell the last poses of `query`.
-/// It asks for nothing else.
+/// The query with its poses in reverse order, whose first poses give the last poses of `query`. It
+/// asks for nothing else.
 Query backwards(const Query& query);
 
-/// The greatest pose that touches each colliding point. Between poses it is the start of the last
-/// way that touches it (docs/design/findings.md, "Last poses").
+/// The greatest index of a pose that touches each colliding point. Between poses it is the start of
+/// the last way that touches it (docs/design/findings.md, "Last poses").
 class LastPoses {
  public:
   /// answer: the hits of backwards(query).

@@ -18,7 +18,7 @@ Clearance ClearanceSearchOf<Element>::nearest(const Vec3& e, std::span<const std
                                               SweepStatistics& statistics) {
   ++statistics.points_tested;
   if (nodes.empty()) return Clearance{};
-  // Pose 0, so that a distance equal to the limit is no improvement.
+  // Pose 0, so that a distance equal to the limit is not an improvement.
   PointClearance<Element> search(sweep_, e, {limit_, 0}, statistics);
   search.offer(guess_pose_, guess_);
   if (guess_is_inside_) search.offer_inside(guess_pose_);

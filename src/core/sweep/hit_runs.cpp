@@ -8,8 +8,8 @@
 namespace clearway {
 namespace {
 
-/// Share of the radius beside which a curve's error and the spacing of its poses must be small,
-/// because points at a distance between the radius and the radius plus that error go to the
+/// Share of the radius compared with which a curve's error and the spacing of its poses must be
+/// small, because points at a distance between the radius and the radius plus that error go to the
 /// predicate.
 constexpr double kSpacingOfRadius = 0.5;
 
@@ -21,7 +21,7 @@ bool HitRuns<Element>::is_available() const {
          !(sweep_.resolved_from < sweep_.radius);
 }
 
-/// Counts twice the packets that are needed, because packets may be half empty.
+/// Counts twice as many packets as full ones would be, because packets may be half empty.
 template <typename Element>
 std::uint64_t HitRuns<Element>::most_bytes() const {
   if (!is_available()) return 0;

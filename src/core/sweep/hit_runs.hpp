@@ -45,7 +45,7 @@ class HitRuns {
   /// Whether the poses of the node form one run.
   bool is_run(std::uint32_t node) const;
 
-  /// What a search tells of a point at the poses of a run.
+  /// What a search finds about a point at the poses of a run.
   enum class Answer {
     kNever,  ///< touched at none of the poses asked for
     kHit,

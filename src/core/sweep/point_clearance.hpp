@@ -89,7 +89,7 @@ class PointClearance {
     }
   }
 
-  /// Lower bound of the squared distance of the point, pulled back by the middle pose of the node.
+  /// Lower bound on the squared distance of the point, pulled back by the middle pose of the node.
   CLEARWAY_HD double look(std::uint32_t at) {
     ++statistics_.point_tests;
     const MotionNode& node = sweep_.motion.nodes[at];

@@ -50,7 +50,7 @@ class PointCurve {
 
   CLEARWAY_HD Box box() const { return MotionParabola::box(start_, way_, bend_); }
 
-  /// Lower bounds of the squared distances from the curve to the points of a packet, for points
+  /// Lower bounds on the squared distances from the curve to the points of a packet, for points
   /// within reach.
   CLEARWAY_HD void to_points(const PointPacket& packet,
                              double (&squared)[PointPacket::kMost]) const {

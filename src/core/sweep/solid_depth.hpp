@@ -135,7 +135,7 @@ class SolidDepth {
     return 2 * sweep_.motion.nodes[at].count - 1;
   }
 
-  /// Searches one pose and returns the square of the depth or an upper bound of it. below: as for
+  /// Searches one pose and returns the square of the depth or an upper bound on it. below: as for
   /// DepthAtPose::squared(), at most the square of the best.
   CLEARWAY_HD double offer(std::uint32_t pose, double below) {
     const double squared = at_pose_.squared(pose, below, near_);
@@ -186,7 +186,7 @@ class SolidDepth {
   Vec3 e_;
   DepthAtPose<Element> at_pose_;
   std::uint32_t near_ = 0;  ///< triangle of the solids that was near e at the last pose
-  Clearance best_{0, 0};    ///< pose 0, so that a depth of 0 is no improvement
+  Clearance best_{0, 0};    ///< pose 0, so that a depth of 0 is not an improvement
 };
 
 }  // namespace clearway

@@ -32,7 +32,7 @@ class SweepClearances {
       if (!job_.is_searched(block_, first_ + lane)) return false;
       ++statistics_[lane].points_tested;
       Clearance& answer = job_.clearances[block_ * kBlockPoints + first_ + lane];
-      // Pose 0, so that a distance equal to the limit is no improvement.
+      // Pose 0, so that a distance equal to the limit is not an improvement.
       const Clearance best = answer.squared < limit ? answer : Clearance{limit, 0};
       PointClearance<Element> search(job_.sweep, job_.point(cell_, begin + lane), best,
                                      statistics_[lane]);

@@ -23,12 +23,12 @@ double rounding_of(const Query& query, const MotionTree& motion, const ModelFiel
   return query.between_poses ? rounding + 8 * kUnitRoundoff * query.radius : rounding;
 }
 
-/// Bound of d x in squared spacings (measured): at a distance d from a surface, a curve that is
+/// Bound on d x in squared spacings (measured): at a distance d from a surface, a curve that is
 /// wrong by x leaves the model points of a strip of width sqrt(8 d x) open.
 constexpr double kOpenArea = 1;
 
-/// Share of the clearance beside which a curve must be straight, too, because a triangle may be
-/// longer than the clearance asked for.
+/// Share of the clearance compared with which a curve must be straight, too, because a triangle may
+/// be longer than the clearance asked for.
 constexpr double kSpacingOfClearance = 0.25;
 
 template <typename Element>

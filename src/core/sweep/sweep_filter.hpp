@@ -36,10 +36,10 @@ class SweepFilterOf final : public PoseReach {
     return curves_.allocated_bytes() + wide_.allocated_bytes() + runs_.most_bytes();
   }
 
-  /// Replaces `out` by those of `nodes` and the nodes below them that may touch a point of the box
-  /// or, with a clearance, be the nearest to one; they are as fine as the box is small, and in the
-  /// order of the poses if `nodes` are. Returns true, with only some of the nodes, if every point
-  /// of the box collides and nothing else is asked.
+  /// Replaces `out` with those of `nodes` and the nodes below them that may touch a point of the
+  /// box or, with a clearance, be the nearest to one; they are as fine as the box is small, and in
+  /// the order of the poses if `nodes` are. Returns true, with only some of the nodes, if every
+  /// point of the box collides and nothing else is asked.
   bool narrow(const Box& box, std::span<const std::uint32_t> nodes, std::vector<std::uint32_t>& out,
               SweepStatistics& statistics) const;
 

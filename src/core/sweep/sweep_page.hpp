@@ -45,7 +45,8 @@ struct SweepWork {
   struct Room {
     std::uint32_t first, count, capacity;
     CLEARWAY_HD bool fits() const { return first < capacity && count <= capacity - first; }
-    /// Number of places that must be written: all if they fit; otherwise those left, as unused.
+    /// How many of the places lie within the list and must be written: all if they fit; otherwise
+    /// those before its end, which the caller marks as unused.
     CLEARWAY_HD std::uint32_t written() const {
       return fits() ? count : first < capacity ? capacity - first : 0;
     }

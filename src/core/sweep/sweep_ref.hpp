@@ -80,7 +80,7 @@ struct SweepRefOf {
   double resolved_from;
   double clearance;  ///< metres; 0: not asked for
   double profile;    ///< metres; 0: not asked for
-  double open_area;  ///< square metres: bound of a chord's error times the distance
+  double open_area;  ///< square metres: bound on a chord's error times the distance
   double rounding;   ///< rounding of a test of one point at one pose, metres
   bool first_pose;
   bool between_poses;
@@ -93,7 +93,7 @@ struct SweepRefOf {
     return between_poses && node.count == 1 && node.first + 1 < motion.pose_count;
   }
 
-  /// Upper bound of the first pose if a model point hits at `pose`. Between poses that is also the
+  /// Upper bound on the first pose if a model point hits at `pose`. Between poses that is also the
   /// end of the way from the pose before, which then counts.
   CLEARWAY_HD std::uint32_t first_pose_of_hit(std::uint32_t pose) const {
     return between_poses && pose > 0 ? pose - 1 : pose;

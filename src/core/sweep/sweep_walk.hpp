@@ -21,7 +21,7 @@ struct SweepSubtrees {
 /// subtree of a range of n poses is a run of 2 n - 1 nodes.
 struct SweepWay {
   std::uint64_t open = 0;         ///< subtrees still to be entered, as bits
-  std::uint32_t at = 0, end = 0;  ///< the node to look at, and the first one behind the subtree
+  std::uint32_t at = 0, end = 0;  ///< the node to look at, and the first one after the subtree
   bool waits = false;  ///< whether the way waits for a search of the model at the single pose `at`
 
   CLEARWAY_HD bool is_inside() const { return at != end; }

@@ -50,7 +50,7 @@ class SweptStep {
   }
 
  private:
-  /// Bound of the distance of a point of the box from the box's centre, anywhere on the way.
+  /// Bound on the distance of a point of the box from the box's centre, anywhere on the way.
   CLEARWAY_HD double half_width(const Box& box) const { return stretch_ * half_diagonal(box); }
 
   CLEARWAY_HD bool near(const Vec3& e, double rho, const Box& box, double half_width) const {

@@ -36,7 +36,7 @@ class TriangleCurve {
             {start_, beyond(start_, 1, way_), beyond(beyond(start_, 0.5, way_), 0.5, bend_)}};
   }
 
-  /// Lower bounds of the squared distances from the curve to the triangles of a packet.
+  /// Lower bounds on the squared distances from the curve to the triangles of a packet.
   CLEARWAY_HD void to_triangles(const FloatPacket& packet,
                                 float (&squared)[FloatPacket::kMost]) const {
 #ifdef __CUDA_ARCH__
@@ -48,8 +48,8 @@ class TriangleCurve {
 
   static constexpr std::uint32_t kMostPlaces = 16;  ///< number of places that are computed together
 
-  /// Lower bounds of the squared distances from a triangle to parts of the curve: part k has
-  /// `length` places from (k length) per_last on.
+  /// Lower bounds on the squared distances from triangle i to the parts of the curve: part k has
+  /// `length` places, the first of which is at t = k length per_last.
   CLEARWAY_HD void from_parts(const FloatPacket& packet, std::uint32_t i, std::uint32_t length,
                               float per_last, float (&squared)[kMostPlaces]) const {
 #ifdef __CUDA_ARCH__
@@ -59,7 +59,7 @@ class TriangleCurve {
 #endif
   }
 
-  /// Lower bounds of the squares of the distances from a triangle to the places (first + k)
+  /// Lower bounds on the squares of the distances from a triangle to the places (first + k)
   /// per_last, which are close.
   CLEARWAY_HD void from_places(const FloatPacket& packet, std::uint32_t i, std::uint32_t first,
                                float per_last, float (&squared)[kMostPlaces]) const {
@@ -78,7 +78,7 @@ class TriangleCurve {
                              Within within, Visit visit) const {
     constexpr std::uint32_t kMost = kMostPlaces;
     const auto per_last = static_cast<float>(1.0 / (count - 1));
-    // Whole groups of places, so that none is computed in vain.
+    // Whole groups of places, so that no computed place goes unused.
     const std::uint32_t length = ((count - 1) / (kMost * kMost) + 1) * kMost;
     const std::uint32_t parts = (count - 1) / length + 1;
     if (parts == 1) return visit_places(packet, i, 0, count, per_last, within, visit);
@@ -107,7 +107,7 @@ class TriangleCurve {
   struct Seen {
     FloatVector start, way, bend;
     float per_squared_way;
-    float slack;  ///< bound of the error of distances, metres
+    float slack;  ///< bound on the error of distances, metres
 
     CLEARWAY_IN_CLONE CLEARWAY_HD FloatVector at(float t) const {
       const float rest = 1 - t;
@@ -167,7 +167,7 @@ class TriangleCurve {
     return any_lane(from_pose, used, within, [&](std::uint32_t k) { return visit(first + k); });
   }
 
-  /// Lower bound of the squared distance between triangle i and a hull, measured along `across`,
+  /// Lower bound on the squared distance between triangle i and a hull, measured along `across`,
   /// which may be any direction; the bound is close if that is the shortest way between both.
   /// above: the least product of `across` and any place of the hull as seen from corner a.
   CLEARWAY_IN_CLONE CLEARWAY_HD static float from_hull(const FloatPacket& packet, std::uint32_t i,
@@ -204,8 +204,8 @@ class TriangleCurve {
   /// Does to_all_triangles() in vectors of the processor.
   void to_triangles_in_vectors(const FloatPacket& packet, float* squared) const;
 
-  /// Computes from_parts(). A part from t - half to t + half lies within half |c'| along its
-  /// tangent at t and within half^2 |bend| beside that.
+  /// Computes from_parts(). A part from t - half to t + half lies within half |c'| of
+  /// that place along the tangent at t, and within half^2 |bend| of the tangent.
   CLEARWAY_IN_CLONE CLEARWAY_HD void from_all_parts(const FloatPacket& packet, std::uint32_t i,
                                                     std::uint32_t length, float per_last,
                                                     float* squared) const {
@@ -264,7 +264,8 @@ class TriangleCurve {
     return {from.x + share * way.x, from.y + share * way.y, from.z + share * way.z};
   }
 
-  /// The least product of v and any corner of the curve's hull as seen from corner a of triangle i.
+  /// The least dot product of v with any corner of the curve's hull, relative to corner a of
+  /// triangle i.
   CLEARWAY_IN_CLONE CLEARWAY_HD static float least_along(const FloatPacket& packet, std::uint32_t i,
                                                          const Seen& curve, const FloatVector& v) {
     const float way = FloatPacket::dot(v, curve.way), bend = FloatPacket::dot(v, curve.bend);

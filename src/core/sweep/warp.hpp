@@ -58,7 +58,7 @@ struct CudaWarp {
 #endif
   }
 
-  /// Reads a value, which other warps may change meanwhile, once for all lanes.
+  /// Reads a value once for all lanes, because other warps may change it at any time.
   template <typename Read>
   CLEARWAY_HD static double once([[maybe_unused]] Read read) {
 #ifdef __CUDA_ARCH__
@@ -68,7 +68,7 @@ struct CudaWarp {
 #endif
   }
 
-  /// Replaces every lane's value by the sum of the values of the lanes before it. Returns the sum
+  /// Replaces every lane's value with the sum of the values of the lanes before it. Returns the sum
   /// of all values.
   CLEARWAY_HD static std::uint32_t sum_before([[maybe_unused]] PerLane<std::uint32_t>& values) {
 #ifdef __CUDA_ARCH__

@@ -11,7 +11,7 @@ double step_length(const Pose& from, const Pose& to) {
   return std::sqrt(squared_distance(to.position(), from.position()));
 }
 
-/// The way from one pose to another; none where they are too close for it to say where it leads.
+/// The unit vector from one pose to another; none where they are too close for a direction.
 std::optional<Vec3> way(const Pose& from, const Pose& to) {
   const Vec3 out = to.position() - from.position();
   const double size = length(out);

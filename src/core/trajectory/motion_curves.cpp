@@ -10,8 +10,8 @@
 namespace clearway {
 namespace {
 
-/// Greatest motion of a curve as a share of the model's size. Curves that move it by more have
-/// boxes too wide for the distance to them to tell much (measured).
+/// Greatest motion of a curve as a share of the model's size. The boxes of longer curves are so
+/// wide that the distance to them says little (measured).
 constexpr double kMostMotion = 0.1;
 /// Greatest error of a useful curve as a share of the spacing of the model's points, and greatest
 /// gap between its poses, in units of about two such spacings.
@@ -41,7 +41,7 @@ Vec3 seen_by(const InversePose& other, const Pose& pose, const Vec3& y) {
                                  turned.z + (pose.translation[2] - other.translation[2])});
 }
 
-/// Bound of the distance between the curve at place t and any place that `pose` pulls back into the
+/// Bound on the distance between the curve at place t and any place that `pose` pulls back into the
 /// region. The difference is affine in the place.
 double distance_from_curve(const MotionTree& motion, const MotionParabola& curve, double t,
                            const Pose& pose, const Region& region) {

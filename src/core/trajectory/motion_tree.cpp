@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t kExactPoses = 8;
 constexpr int kLevels = 4;
 
-/// Bound of the determinant: between this and its reciprocal, nothing that matters to the bound of
+/// Bound on the determinant: between this and its reciprocal, nothing that matters to the bound on
 /// the inverse's rounding under- or overflows.
 constexpr double kLeastDeterminant = 1e-270;
 
@@ -117,8 +117,8 @@ double MotionTree::delta_of(std::uint32_t node, const Box& model) const {
   return between_poses_ ? delta * kRoundedUp : delta;
 }
 
-/// Bound of the distance from `mid` to any pose of the node, from the nodes `levels` below, whose
-/// delta is known.
+/// Upper bound on how far any model point moves from pose `mid` to any pose of the node, computed
+/// from the nodes `levels` below it, whose deltas are known.
 double MotionTree::delta_below(std::uint32_t node, std::uint32_t mid, int levels,
                                const Box& model) const {
   const MotionNode& n = nodes_[node];

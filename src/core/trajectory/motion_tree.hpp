@@ -54,8 +54,8 @@ class MotionTree {
   std::vector<MotionNode> nodes_;
   std::vector<InversePose> inverse_poses_;
   double condition_ = 1;  ///< greatest condition of all rotations
-  double greatest_ = 1;   ///< upper bound of 1 and of every pose's stretch
-  double magnitude_ = 0;  ///< bound of translations plus moved model points
+  double greatest_ = 1;   ///< upper bound on 1 and of every pose's stretch
+  double magnitude_ = 0;  ///< bound on translations plus moved model points
 };
 
 }  // namespace clearway

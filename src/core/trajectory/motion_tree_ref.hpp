@@ -26,8 +26,8 @@ struct MotionNode {
 struct InversePose {
   double inverse[9];      ///< row-major
   double translation[3];  ///< translation of the pose itself
-  double least;     ///< lower bound of the rotation's least singular value; 0 if none is proven
-  double greatest;  ///< upper bound of the rotation's greatest singular value
+  double least;     ///< lower bound on the rotation's least singular value; 0 if none is proven
+  double greatest;  ///< upper bound on the rotation's greatest singular value
 
   /// Pulls e back: returns x with transform(pose, x) = e, up to the rounding that
   /// docs/design/numerics.md ("Sweep") bounds.
@@ -45,8 +45,8 @@ struct MotionCurve {
   static constexpr float kEqual = -1;  ///< value of `error`: all poses are equal
   static constexpr float kNone = std::numeric_limits<float>::infinity();
 
-  float error;  ///< metres; bound of the distance from the parabola, for points that matter
-  float least;  ///< lower bound of the least singular value of any rotation
+  float error;  ///< metres; bound on the distance from the parabola, for points that matter
+  float least;  ///< lower bound on the least singular value of any rotation
 
   CLEARWAY_HD bool is_one_place() const { return error < 0; }
   CLEARWAY_HD bool is_smooth() const { return error < kNone; }

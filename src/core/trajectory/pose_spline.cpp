@@ -101,8 +101,8 @@ PoseSpline::Velocity PoseSpline::weighted(const Velocity& a, double weight_a, co
   return {weight_a * a.linear + weight_b * b.linear, weight_a * a.angular + weight_b * b.angular};
 }
 
-/// Limits a velocity to three times the slower of its neighbours, so that no way overshoots by more
-/// than its own length, and a straight one not at all.
+/// Limits a velocity to three times the slower of its neighbours, so that no step overshoots by
+/// more than its own length, and a straight one not at all.
 PoseSpline::Velocity PoseSpline::limited(const Velocity& velocity, const Velocity& before,
                                          const Velocity& after) {
   const auto limit = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {

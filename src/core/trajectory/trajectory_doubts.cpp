@@ -162,7 +162,7 @@ Message warning(const char* code, std::string text,
 }
 
 /// Largest angle by which the path turns, in radians: that between its first long chord and any
-/// other. Going back on the same line is no turn.
+/// other. Going back on the same line is not a turn.
 double turn_of_path(std::span<const Pose> poses, double length) {
   constexpr double kPieces = 20;
   const auto chords = chords_of(poses, length / kPieces);

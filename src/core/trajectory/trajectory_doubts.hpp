@@ -53,7 +53,7 @@ enum class RotationSource { kMatrices, kQuaternions, kAngles };
 /// Warnings of poses that are hardly meant so: rotations that are missing, in another unit or turn
 /// against the path; inverse poses; quaternions in another order. Silent if the path does not turn
 /// enough to tell. Steps between poses are judged by the functions above, once the
-/// radius is known. name: the file's name for the texts. docs/design/trajectory.md, "Doubts".
+/// radius is known. name: the file's name for the messages. docs/design/trajectory.md, "Doubts".
 std::vector<Message> doubts_about(std::span<const Pose> poses, RotationSource source,
                                   const std::string& name);
 

@@ -44,14 +44,14 @@ TrajectorySummary summarize_trajectory(std::span<const Pose> poses);
 /// The angle of the rotation from a to b, radians.
 double turn_between(const Pose& a, const Pose& b);
 
-/// A piece of the way as a straight line from a pose to a later one.
+/// A piece of the path, as a straight line from one pose to a later one.
 struct Chord {
   Vec3 direction;  ///< unit vector
   double length = 0;
   std::size_t middle;  ///< the pose halfway between the two
 };
 
-/// The way as consecutive chords of at least `least` metres.
+/// The path as consecutive chords of at least `least` metres.
 std::vector<Chord> chords_of(std::span<const Pose> poses, double least);
 
 }  // namespace clearway

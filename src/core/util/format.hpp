@@ -23,7 +23,7 @@ std::string format_number(double value);
 /// A number with four digits, for messages.
 std::string format_brief(double value);
 
-/// The runs of ascending numbers as texts, such as "3" and "7-9".
+/// The runs of ascending numbers as strings, such as "3" and "7-9".
 template <typename Number>
 std::vector<std::string> number_ranges(const std::vector<Number>& numbers) {
   std::vector<std::string> ranges;

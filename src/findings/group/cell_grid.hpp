@@ -15,7 +15,7 @@ namespace clearway {
 /// decided in integers where the scales of the three axes are equal, otherwise in double precision.
 class Neighbourhood {
  public:
-  /// gap: above 0, in the unit of the scale.
+  /// gap: the greatest distance between neighbours; above 0, in the unit of the scale.
   Neighbourhood(const Quantisation& quantisation, double gap);
 
   /// Whether two points with these differences are neighbours. Differences are from 0 to 2^32. What
@@ -47,7 +47,8 @@ class Neighbourhood {
  private:
   void choose_cell(double gap);
   bool within_wide(std::uint64_t dx, std::uint64_t dy, std::uint64_t dz) const;
-  /// The least difference of points in cells that are `cells` apart.
+  /// The least difference, in quanta along an axis, between points of two cells whose indices on
+  /// that axis differ by `cells`.
   std::uint64_t least(std::uint32_t cells, std::size_t axis) const {
     return cells == 0 ? 0 : (cells - 1) * cell_[axis] + 1;
   }

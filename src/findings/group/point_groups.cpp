@@ -108,7 +108,7 @@ void PointTree::build(std::uint32_t first, std::uint32_t last, const Neighbourho
   build(middle, last, neighbourhood);
 }
 
-/// The points of a leaf, where points that are all at one place count as one.
+/// The points of a leaf, where points that are all at the same place count as one.
 std::span<const GridPoint> PointTree::points(const Node& node) const {
   return points_.subspan(node.first, is_one_place(node.box) ? 1 : node.last - node.first);
 }

@@ -158,7 +158,7 @@ std::string read_text_attribute(const Id& object, const std::string& name, const
 template <typename Number>
 class Rows {
  public:
-  /// Creates a dataset of rows x columns (columns 0: one-dimensional) in the way of
+  /// Creates a dataset of rows x columns (columns 0: one-dimensional) laid out as by
   /// write_dataset().
   Rows(const Id& parent, const std::string& name, std::uint64_t rows, std::uint64_t columns);
   /// Opens an existing dataset. Throws InputError as read_dataset() does.

@@ -37,7 +37,7 @@ Id create_dataset(const Id& parent, const std::string& name, std::uint64_t rows,
           H5Dclose, "create dataset " + name};
 }
 
-/// Whether the dataset is stored in the way of checked_layout(): in this file, in small chunks with
+/// Whether the dataset is stored as checked_layout() says: in this file, in small chunks with
 /// a checksum and no other filter, so that its numbers take as many bytes in the file as in memory.
 bool has_checked_layout(const Id& dataset, std::uint64_t rows, int dimensions,
                         std::size_t number_bytes) {

@@ -20,7 +20,7 @@ namespace clearway {
 [[noreturn]] void refuse_line(const std::string& name, std::uint64_t line, const std::string& what,
                               Remedy remedy = Remedy::kNone);
 
-/// The start of a text from a file in double quotes, fit for a message: at most 40 characters,
+/// The start of a string from a file in double quotes, fit for a message: at most 40 characters,
 /// unprintable bytes as '?'.
 std::string excerpt(std::string_view text);
 

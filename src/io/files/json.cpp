@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Throws for a text that is nested too deeply, before anything is built from it.
+/// Throws for JSON that is nested too deeply, before anything is built from it.
 void check_nesting(std::string_view text) {
   std::size_t depth = 0, line = 1, line_begin = 0;
   bool in_string = false;
@@ -42,7 +42,8 @@ void check_nesting(std::string_view text) {
   }
 }
 
-/// What is wrong with a text, for people who wrote it. what: the library's description.
+/// What is wrong with a JSON file, worded for the people who wrote it. what: the library's own
+/// description.
 std::string in_plain_words(const std::string& what) {
   const auto has = [&](const char* part) { return what.find(part) != std::string::npos; };
   const std::string place = what.substr(0, what.find(": ") + 2);  // "parse error at line 3, ...: "

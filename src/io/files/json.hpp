@@ -20,7 +20,7 @@ class JsonError : public std::runtime_error {
 };
 
 /// Deepest nesting of lists and objects. Code that copies, writes or compares a value recurses once
-/// per level, so a text from outside must not choose the depth.
+/// per level, so a file from outside must not choose the depth.
 inline constexpr std::size_t kMostJsonNesting = 64;
 
 /// Parses a JSON text in linear time. Refuses one that is nested deeper than kMostJsonNesting, and

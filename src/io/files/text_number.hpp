@@ -22,7 +22,7 @@ inline const char* skip_blanks(const char* at, const char* end) {
 /// 0 or the nearest number; one that is too large is refused (false).
 bool parse_extreme_number(const char* begin, const char* end, double& value);
 
-/// Parses the number that starts at `at` (including nan, inf and a leading +) and moves `at` behind
+/// Parses the number that starts at `at` (including nan, inf and a leading +) and moves `at` past
 /// it. Returns false where there is none. The caller checks what follows.
 inline bool parse_number(const char*& at, const char* end, double& value) {
   const char* start = at;
@@ -74,8 +74,8 @@ struct ParsedLength {
   double number = 0;   ///< the number as written
   FileUnit unit = {};  ///< the unit as written
 
-  /// The length in a unit of so many metres. A length in "ft", which may be any foot, is taken to
-  /// be in that unit where the unit is a foot.
+  /// Converts the length to the unit that is `metres` metres long. If that unit is a foot, "ft",
+  /// which may be any foot, means that one.
   double in_units_of(double metres) const;
 };
 

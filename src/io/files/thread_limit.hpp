@@ -19,7 +19,7 @@ class ThreadLimit {
     allowed_ = static_cast<int>(std::min(wanted, tbb::global_control::active_value(kLimit)));
   }
 
-  /// Calls body() on these threads.
+  /// Calls body() in an arena of the threads provided, and returns what it returns.
   template <typename Body>
   auto run(const Body& body) const {
     return tbb::task_arena(allowed_).execute(body);

@@ -108,10 +108,10 @@ std::vector<Vec3> sample_mesh(const TriangleMesh& mesh, double spacing, const st
 /// metres. above: counts only places and vertices that are not below this height.
 double distance_to_vertices(const TriangleMesh& mesh, std::optional<double> above);
 
-/// A spacing that gives about so many samples besides the vertices, and is never refused.
+/// A spacing that gives about this many samples besides the vertices, and is never refused.
 double spacing_for(const TriangleMesh& mesh, double samples);
 
-/// About so many points on a mesh's surface besides its vertices, for drawing.
+/// About this many points on a mesh's surface besides its vertices, for drawing.
 inline std::vector<Vec3> drawn_points(const TriangleMesh& mesh, double samples) {
   return sample_mesh(mesh, spacing_for(mesh, samples), "the model");
 }

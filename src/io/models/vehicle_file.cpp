@@ -229,8 +229,9 @@ void warn_far(const std::filesystem::path& file, const MountedBody& one, const s
        {{"gap", gap}, {"length", longest}}});
 }
 
-/// Warns of bodies that are far from the others, as by mistyped stations and pivots. Such a body is
-/// moved along another way than it drives, and hardly anything near its path is searched.
+/// Warns of bodies that are far from the others, as with mistyped stations or pivots. Such a body
+/// is moved along a path that it does not drive, and hardly anything near its true path is
+/// searched.
 void warn_of_far_bodies(const std::filesystem::path& file, const std::vector<BodyEntry>& entries,
                         const std::vector<Body>& bodies, std::vector<Message>& warnings) {
   std::vector<MountedBody> apart;

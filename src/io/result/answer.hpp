@@ -25,7 +25,7 @@ void summarise(const Profile& rows, TableSummary& summary, std::uint64_t first_p
 void add_summary(const TableSummary& later, TableSummary& summary);
 
 /// The answer from the header, the findings and the numbers of rows. It lacks what only the rows
-/// tell: places, points inside the model and poses of the profile. Reads no table.
+/// show: places, points inside the model and poses of the profile. Reads no table.
 Answer counted_answer(const ResultReader& result);
 
 /// The answer that a result, or a part of one, holds. Reads all of its tables. The doubts are those

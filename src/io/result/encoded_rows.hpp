@@ -25,7 +25,7 @@ inline constexpr std::size_t kEncodedRows = 1 << 16;
 struct EncodedChunk {
   std::unique_ptr<std::byte[]> bytes;
   std::size_t size = 0;  ///< bytes of the chunk, including the checksum
-  /// Bytes taken by rows; behind them the last chunk of a dataset is filled with zeros.
+  /// Bytes taken by rows; after them the last chunk of a dataset is filled with zeros.
   std::size_t used_bytes = 0;
 
   std::span<const std::byte> stored() const { return {bytes.get(), size}; }

@@ -226,7 +226,7 @@ struct JournalWriter::State {
   std::uint64_t end;
   std::uint64_t synced = 0;
   bool named = false;  ///< whether the folder's entry is on the disk; guarded by sync_mutex
-  /// Whether a write failed; records behind one that is not whole are never read.
+  /// Whether a write failed; records after one that is not whole are never read.
   bool failed = false;
   SteadyClock::time_point last_sync = SteadyClock::now();
   double interval_seconds;

@@ -119,7 +119,7 @@ class JournalWriter {
   /// Creates a journal at a path where no file exists.
   static JournalWriter create(const std::filesystem::path& path, const JournalIdentity& identity,
                               double interval_seconds);
-  /// Continues a journal behind the records that were read, and cuts off a torn tail.
+  /// Continues a journal after the records that were read, and cuts off a torn tail.
   static JournalWriter resume(const std::filesystem::path& path, const JournalReader& read,
                               double interval_seconds);
   JournalWriter(JournalWriter&&) noexcept;

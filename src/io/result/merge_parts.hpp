@@ -27,7 +27,7 @@ class PartSet {
   std::uint64_t clearances() const;
   /// The findings of all parts together.
   ResultFindings findings() const;
-  /// The answer of all parts, without what only reading their rows tells: places, points inside the
+  /// The answer of all parts, without what only reading their rows shows: places, points inside the
   /// model and poses of the profile.
   Answer answer() const;
 

@@ -216,8 +216,8 @@ std::string lines_of(const std::vector<std::string>& texts) {
   return lines;
 }
 
-/// Reads an attribute of texts, one per line: at least one, at most `most`, and none of them empty.
-/// what: the texts' name in messages, as in "names".
+/// Reads an attribute that holds strings, one per line: at least one, at most `most`, and none of
+/// them empty. what: their name in messages, such as "names".
 std::vector<std::string> read_lines(const hdf5::Id& file, const std::string& name,
                                     const char* attribute, const char* what, std::size_t most) {
   const std::string lines = hdf5::read_text_attribute(file, attribute, name);

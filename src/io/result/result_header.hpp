@@ -39,9 +39,10 @@ struct ResultPart {
   }
 };
 
-/// The spacing of a model's points in metres (Query::model_spacing), which tells how far the answer
-/// may be from that of the surface. The question is about the points alone, so any two spacings
-/// compare equal; a result from before this attribute existed remains a result of its question.
+/// The spacing of a model's points in metres (Query::model_spacing), which shows how far the answer
+/// may be from that for the surface. It is not part of the question, which is about the points
+/// alone. So any two spacings compare equal, and a result without this attribute, from an earlier
+/// release, still answers the same question.
 struct ModelSpacing {
   double metres = 0;
   friend bool operator==(const ModelSpacing&, const ModelSpacing&) { return true; }

@@ -152,7 +152,7 @@ struct Table<ProfileRows> {
                            [](const ResultHeader& h) { return h.part.has_value(); },
                            check_with_rows<double>}};
 
-  // The order, as in AscendingSources, but poses may stand at one place.
+  // The order, as in AscendingSources, but several poses may be at the same place.
   static constexpr auto kOrder = &Rows::chainage;
   static constexpr const char* kOrderDataset = result_names::kChainage;
   static bool may_follow(double before, double after) { return after >= before; }

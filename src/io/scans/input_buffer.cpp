@@ -14,7 +14,7 @@ InputBuffer::InputBuffer(File file, Access access)
   if (access == Access::kSeek) size_ = file_.size_bytes();
 }
 
-/// Loads more bytes behind those that are not consumed yet. Returns false at the end of the file.
+/// Loads more bytes after those that are not consumed yet. Returns false at the end of the file.
 bool InputBuffer::fill() {
   if (begin_ > 0) {
     std::memmove(buffer_.get(), buffer_.get() + begin_, end_ - begin_);

@@ -32,7 +32,7 @@ class InputBuffer {
   InputBuffer(File file, Access access);
 
   const std::string& name() const { return file_.name(); }
-  /// The file, for readers that also read at other positions meanwhile.
+  /// The underlying file, for readers that also read at positions other than the buffer's.
   const File& file() const { return file_; }
   bool can_seek() const { return size_.has_value(); }
   /// Size of the file in bytes, where it is known in advance.
@@ -79,7 +79,7 @@ class InputBuffer {
   std::optional<std::uint64_t> size_;
   std::unique_ptr<std::byte[]> buffer_;
   std::size_t begin_ = 0;     ///< index of the first byte that is not consumed
-  std::size_t end_ = 0;       ///< index behind the last byte loaded
+  std::size_t end_ = 0;       ///< index after the last byte loaded
   std::uint64_t loaded_ = 0;  ///< position of end_ in the file
   std::uint64_t line_ = 0;
   bool line_terminated_ = true;

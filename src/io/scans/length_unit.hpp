@@ -50,7 +50,7 @@ const char* symbol_of(LengthUnit unit);
 const char* plural_of(LengthUnit unit);
 /// The length of a unit in metres; 0 for unknown and for degrees.
 double metres_of(LengthUnit unit);
-/// Whether a unit of so many metres is a foot of any country.
+/// Whether a unit of this many metres is a foot of any country.
 bool is_foot(double metres);
 /// Text of the warning "unit-assumed" about a file in units of `metres`. whose: for example
 /// "path.csv: its positions".

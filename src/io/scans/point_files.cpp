@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostNames = 5;  // at most so many file names in a message
+constexpr std::size_t kMostNames = 5;  // at most this many file names in a message
 
 /// The files directly in a folder, in byte order of their names, without hidden ones.
 struct Folder {
@@ -63,8 +63,8 @@ bool holds_point_files(const fs::path& folder) {
   return false;
 }
 
-/// Whether a file whose ending does not say so can be read as points: a text of coordinates, or a
-/// scan with another name.
+/// Whether a file whose ending does not say so can be read as points: a text file of coordinates,
+/// or a scan with another name.
 bool looks_like_points(const fs::path& file) {
   std::error_code unknown;
   if (!fs::is_regular_file(file, unknown)) return false;

@@ -93,10 +93,10 @@ class PointReader {
   }
 };
 
-/// How a text is read whose own lines do not tell its columns, or tell them wrongly.
+/// How to read a text file that does not name its columns, or names them wrongly.
 struct PointReadOptions {
   /// The columns of x, y and z: numbers counted from 1, or names in the header. If empty, the text
-  /// decides, and one that looks like something else than points is refused. Ignored for other
+  /// decides, and one that looks like something other than points is refused. Ignored for other
   /// formats.
   std::vector<std::string> columns = {};
   bool may_choose = false;  ///< whether messages advise the user to choose the columns
@@ -110,7 +110,7 @@ std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path,
                                              const PointReadOptions& options = {});
 
 /// Reads LAS or LAZ from a stream that cannot seek, for example standard input. In LAS 1.4, a CRS
-/// that only a record behind the points holds appears in info() once read() has returned false.
+/// that only a record after the points holds appears in info() once read() has returned false.
 /// Points beyond the header's count are read too, with a warning among the remarks. LAZ is first
 /// copied into a nameless file in `temporary_folder`, and can be read again.
 std::unique_ptr<PointReader> open_las_stream(File stream,

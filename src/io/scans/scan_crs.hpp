@@ -31,7 +31,7 @@ struct StatedUnit {
   std::string other;  ///< name of a unit that is not a LengthUnit; otherwise empty
 };
 
-/// The unit of so many metres.
+/// The unit of this many metres.
 StatedUnit unit_of_length(double metres);
 
 /// The units of length that a coordinate reference system states.

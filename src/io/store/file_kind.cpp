@@ -31,13 +31,13 @@ FileDescription describe_hdf5(const std::filesystem::path& path) {
   return {FileKind::kOtherHdf5, "an HDF5 file, but no sound store or result"};
 }
 
-/// Whether four numbers are a unit quaternion within the precision of texts.
+/// Whether four numbers are a unit quaternion within the precision of printed numbers.
 bool is_quaternion(std::span<const double> q) {
   const double norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   return std::abs(norm - 1) < 1e-3;
 }
 
-/// The kind of pose in a line of numbers, by their number and size; empty where it is no pose.
+/// The kind of pose in a line of numbers, by their number and size; empty where it is not a pose.
 std::string pose_words(std::span<const double> numbers) {
   const std::string count = std::to_string(numbers.size());
   if (numbers.size() == 12 || numbers.size() == 16) {
@@ -57,7 +57,7 @@ bool names_poses(std::string_view line) {
   });
 }
 
-/// Describes a text by its first line of numbers and a header before it.
+/// Describes a text file by its first line of numbers and a header before it.
 FileDescription describe_text(std::string_view text) {
   std::array<double, 16> numbers{};
   while (!text.empty()) {

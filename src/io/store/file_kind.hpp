@@ -15,8 +15,8 @@ enum class FileKind {
   kJournal,
   kPoints,      ///< a scan or a model, in a format recognised by its first bytes
   kMesh,        ///< a mesh, by the ending of its name
-  kTrajectory,  ///< a text of poses
-  kTextPoints,  ///< a text of numbers that are not poses
+  kTrajectory,  ///< a text file of poses
+  kTextPoints,  ///< a text file of numbers that are not poses
 };
 
 struct FileDescription {
@@ -24,13 +24,13 @@ struct FileDescription {
   std::string words;  ///< for messages, after "is": "a scan (LAS)", "a result"
 };
 
-/// Describes a file by its first bytes, or for a text its first lines, and by the ending of its
+/// Describes a file by its first bytes, or for text its first lines, and by the ending of its
 /// name. This tells what the file was meant to be, not whether it is intact. Throws ResourceError
 /// where there is no file of that name.
 FileDescription describe_file(const std::filesystem::path& path);
 
 /// The name of a point file's format, such as "LAS", "LAZ", "PLY" or "E57", by content or otherwise
-/// by the file's name; "text" for all texts.
+/// by the file's name; "text" for all text files.
 std::string point_format_name(const std::filesystem::path& path);
 
 }  // namespace clearway

@@ -127,7 +127,7 @@ CellIndex read_cells(const hdf5::Id& file, const std::string& name) {
 }
 
 /// Throws InputError where another tool rewrote the store. Copying moves the chunks, so HDF5 then
-/// knows the first and the last chunk of a dataset at other addresses than the index.
+/// knows the first and the last chunk of a dataset at addresses other than the index gives.
 void check_not_rewritten(const hdf5::Id& file, const CellIndex& index, const std::string& name) {
   if (index.count.empty()) return;
   const hdf5::Id group = hdf5::open_group(file, "points", name);

@@ -32,7 +32,7 @@ namespace {
 
 /// Speeds up the writing of a large file that someone else writes front to back. Space is reserved
 /// ahead of the writer, which makes each write cheaper, and written bytes are sent to the disk
-/// meanwhile, so that the last sync is short. Failures here are ignored; the writer and the sync
+/// early, so that the last sync is short. Failures here are ignored; the writer and the sync
 /// meet them.
 class GrowingFile {
  public:
@@ -43,7 +43,7 @@ class GrowingFile {
 
   /// Reports that all bytes before `end` are written.
   void written(std::uint64_t end);
-  /// Frees what was reserved behind the end of the file, which is complete now.
+  /// Frees what was reserved after the end of the file, which is complete now.
   void trim();
 
  private:
@@ -111,7 +111,7 @@ void GrowingFile::write_back(const std::stop_token& stop) {
 
 void GrowingFile::trim() {
   if (reserved_ == 0) return;
-  // Truncating the file to its own size frees the blocks behind it. Where this fails they stay
+  // Truncating the file to its own size frees the blocks after it. Where this fails they stay
   // reserved.
   if (::ftruncate(file_.descriptor(), static_cast<off_t>(file_.size_bytes())) != 0) return;
 }

@@ -21,8 +21,8 @@
 namespace clearway {
 namespace {
 
-/// An upper bound of the way of any model point from one pose to the next, cheap because most steps
-/// are short. reach: greatest distance of the model from its origin.
+/// An upper bound on how far any model point moves from one pose to the next, cheap because most
+/// steps are short. reach: greatest distance of the model from its origin.
 double coarse_bound(const Pose& a, const Pose& b, double reach) {
   double turned = 0, moved = 0;
   for (int k = 0; k < 9; ++k) {
@@ -339,7 +339,7 @@ void warn_sideways(const Question& question, const Drive& drive, MessageLog& log
            {{"share", shares[axis]}});
 }
 
-/// Notes that the model moves backwards. This is no mistake where the vehicle reverses, or its
+/// Notes that the model moves backwards. This is not a mistake where the vehicle reverses, or its
 /// front points along -x; otherwise its parts meet the scan on the wrong side.
 void tell_backwards(const Drive& drive, MessageLog& log) {
   const double along = drive.forwards(0);
@@ -352,7 +352,7 @@ void tell_backwards(const Drive& drive, MessageLog& log) {
        {{"share", -along}}});
 }
 
-/// Whether the poses hardly turn the model. If so, it is no crane that slews on the spot.
+/// Whether the poses hardly turn the model. If so, it is not a crane that slews on the spot.
 bool hardly_turns(const Question& question) {
   constexpr double kThirtyDegrees = 0.866;
   const Pose& first = question.query.poses.front();

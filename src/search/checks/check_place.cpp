@@ -137,7 +137,7 @@ class Trial {
   }
 
   /// Whether the change makes the path so much shorter than the model that it fits at any place,
-  /// which is no hint.
+  /// which is not a hint.
   bool fits_anywhere(Change change) const {
     const Vec3 lo = change(at_corner(path_.lo)).position();
     const Vec3 hi = change(at_corner(path_.hi)).position();
@@ -239,7 +239,7 @@ class Trial {
   Box path_;
 };
 
-/// A sentence that tells how model, path and environment would meet: in another unit, with axes
+/// A sentence that says how model, path and environment would meet: in another unit, with axes
 /// swapped, with the poses inverted, or after a shift. It is a guess for people; nothing is
 /// changed. Where no such change helps, it names what to compare.
 std::string likely_remedy(const Question& question, const PathCover& cover) {

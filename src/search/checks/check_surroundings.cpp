@@ -23,7 +23,7 @@ constexpr double kPartBeside = 0.05;
 /// Least lengths of a stretch along the path in metres. A scanner on a tripod leaves a shadow of up
 /// to 4 m, in which a slice of the model hardly moves, and streets open to side roads.
 constexpr double kLeastBelow = 3, kLeastBeside = 20;
-/// Metres above the usual height from which on the warning "floats" tells of a look.
+/// A look this many metres above the usual height or more counts for the warning "floats".
 constexpr double kFloats = 0.5;
 
 bool has_below(const Look& look) { return look.below; }
@@ -69,7 +69,7 @@ void warn_one_side(const Question& question, const PathLooks& looks, MessageLog&
 }
 
 /// Looks for what a stretch of the path lacks and the rest has. What is missing below the model
-/// explains what is missing beside it. Heights, of which "floats" tells, explain it too.
+/// explains what is missing beside it. Heights, which "floats" reports, explain it too.
 class Stretches {
  public:
   Stretches(const Question& question, const PathLooks& looks)
@@ -142,7 +142,7 @@ class Stretches {
     return looks_.runs(std::max(least, kUnusuallyLong * usual), holds);
   }
 
-  /// Runs where nothing is on one side, and mostly something on the other.
+  /// Unusually long runs of looks with nothing on one side, but mostly something on the other.
   std::vector<LookRun> empty_sides(bool (*one)(const Look&), bool (*other)(const Look&)) const {
     std::vector<LookRun> runs =
         unusual_runs([&](const Look& look) { return is_on_ground(look) && !one(look); });

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -9,6 +11,7 @@
 
 #include "clearway/error.hpp"
 #include "clearway/unsearched.hpp"
+#include "core/geometry/point_box.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
 #include "io/models/sample_mesh.hpp"
@@ -240,7 +243,7 @@ bool is_told(const Body& body, std::span<const Message> told) {
   });
 }
 
-/// Tells which bodies are not searched on a part of the path.
+/// Adds a message for each body that has no pose on part of the path, unless `told` has one.
 void tell_missing_poses(const Query& query, std::span<const Message> told, MessageLog& log) {
   for (const Body& body : query.bodies) {
     const std::vector<std::uint64_t> missing = missing_poses(body, query.poses.size());
@@ -272,7 +275,8 @@ void warn_of_bodies(const StoreReader& store, const Question& path, const Query&
   steps.check_path(path, log);
 }
 
-/// query: with a model of points. asked: the query before its surface was sampled.
+/// Warns about a query without bodies. query: its model as points. asked: the query before its
+/// surface was sampled.
 void warn_of_points(const StoreReader& store, const Query& query, const Query& asked,
                     ModelForm view, std::span<const Message> told, MessageLog& log) {
   const LengthUnit unit = store.metadata().unit;
@@ -317,6 +321,26 @@ void warn_of_query(const StoreReader& store, const Query& query, std::span<const
   ModelForm view{};
   const Query points = sampled(query, view);
   warn_of_points(store, points, query, view, told, log);
+}
+
+void warn_of_floats(const StoreReader& store, const Query& query, MessageLog& log) {
+  if (store.point_count() == 0) return;
+  const Box box = position_box(store.quantisation(), store.tree()[0].box);
+  float most = 0;
+  for (const double value : {box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z}) {
+    most = std::max(most, static_cast<float>(std::abs(value)));
+  }
+  const double step = std::nextafter(most, std::numeric_limits<float>::infinity()) - most;
+  constexpr double kFine = 0.1;  // steps of this share of the radius tell most points rightly
+  if (step <= kFine * query.radius) return;
+  const LengthUnit unit = store.metadata().unit;
+  log.warn("coarse-floats",
+           "numbers in single precision are " + length_text(step, unit) +
+               " apart at the coordinates of this environment, and the radius is " +
+               length_text(query.radius, unit) +
+               ", so single precision decides wrongly for many points and dismisses few of them "
+               "early, which can take very long. In double precision the answer is exact",
+           {{"step", step}});
 }
 
 }  // namespace clearway

@@ -22,11 +22,15 @@ struct BodyMessages {
 /// vehicle where it holds for all of its bodies that the scan covers; otherwise it is not given.
 void tell_of_bodies(const std::vector<BodyMessages>& bodies, MessageLog& log);
 
-/// Warns where a query may answer something else than was meant, because of a path in another
+/// Warns where a query may answer something other than was meant, because of a path in another
 /// frame, a model in another unit, or steps that skip things. Reads the store's index, and the
 /// points below a few poses. The model is not empty. Deterministic. told: what reading the inputs
 /// has told already, such as which poses a body lacks; it is not told again.
 void warn_of_query(const StoreReader& store, const Query& query, std::span<const Message> told,
                    MessageLog& log);
+
+/// Warns where single precision alone decides and its numbers are too far apart at these
+/// coordinates to tell distances such as the radius: "coarse-floats".
+void warn_of_floats(const StoreReader& store, const Query& query, MessageLog& log);
 
 }  // namespace clearway

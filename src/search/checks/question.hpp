@@ -55,11 +55,11 @@ double scale_of(const Pose& pose);
 
 }  // namespace clearway
 
-/// Lengths and boxes as the warnings name them.
+// How the warnings write lengths and boxes.
 namespace clearway {
 
-/// A number as the warnings show it, with three digits or more, and none after the decimal point
-/// from 1000 on: "0.0045", "12.3", "4516203".
+/// A number as the warnings show it, with at least three digits, and none after the decimal point
+/// for 1000 and above: "0.0045", "12.3", "4516203".
 std::string figure(double value);
 
 /// The symbol of a unit of length: "m" or "ft".

@@ -49,7 +49,7 @@ class BodyEngine final : public PageEngine {
 
   PageEngine& engine(std::size_t body) const { return *bodies_[body].engine; }
 
-  /// Bytes of memory for the answers of all slots, beside what the bodies' engines take.
+  /// Bytes of memory for the answers of all slots, besides what the bodies' engines take.
   /// most_poses: the most poses of the motion nodes of any cell, for all bodies together.
   static std::uint64_t answer_bytes(const PackedCloud& cloud, const Query& query,
                                     const SlotLayout& layout, std::uint64_t most_poses);

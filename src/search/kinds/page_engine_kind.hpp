@@ -25,7 +25,7 @@ using EngineList = std::span<const PageEngine* const>;
 using EngineEnd = std::vector<std::future<void>>;
 
 /// How many slots an engine on the CPU has besides those being searched, for pages that are read
-/// meanwhile.
+/// at the same time.
 inline constexpr std::uint32_t kSlotsAhead = 2;
 
 /// The resources that an engine that works on pages wants.
@@ -53,7 +53,7 @@ class PageEngineKind {
   /// Bytes that an index may take.
   struct IndexSize {
     std::uint64_t bytes = 0;
-    /// Bytes that building it takes beside the trees, more than it keeps afterwards; 0 where these
+    /// Bytes that building it takes besides the trees, more than it keeps afterwards; 0 where these
     /// are not counted.
     std::uint64_t while_built = 0;
   };

@@ -21,8 +21,8 @@ constexpr PageEngineKind::IndexSize size_of(std::uint64_t mebibytes) {
 /// every pose, and the field decides which of them need a search of the model.
 constexpr double kProfileFineness = 2;
 
-/// The number of poses from which on the field is as fine as pays for many poses
-/// (docs/design/sweep.md, "Fineness").
+/// The least number of poses for which the model field gets its full fineness, the one that pays
+/// for many poses (docs/design/sweep.md, "Fineness").
 constexpr double kPosesOfFullFineness = 1000;
 constexpr double kLeastFineness = 0.25;
 

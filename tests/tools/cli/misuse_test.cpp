@@ -247,6 +247,25 @@ TEST_CASE("the result of floats alone says so") {
   CHECK(json::parse(compared.out)["question_differences"][0]["what"] == "precision");
 }
 
+TEST_CASE("single precision that is coarser than the radius is warned of") {
+  const Site site;
+  const auto codes_of_search = [&](const char* far) {
+    const std::string x = far;
+    put_bytes(site.folder / "far.xyz", x + " 0 0\n" + x + " 1 0\n");
+    put_bytes(site.folder / "there.txt", "1 0 0 " + x + " 0 1 0 0 0 0 1 0\n");
+    REQUIRE(site.run("convert " + site.path("far.xyz") + " -o " + site.path("far.h5") + " --force")
+                .exit_code == 0);
+    const Outcome run = site.run(
+        "run --json --force --env " + site.path("far.h5") + " --model " + site.path("model.xyz") +
+        " --trajectory " + site.path("there.txt") +
+        " --radius 0.1 --engine grid --device cpu --precision float -o " + site.path("floats.h5"));
+    REQUIRE(run.exit_code == 0);
+    return nlohmann::json::parse(run.out)["warnings"].dump();
+  };
+  CHECK_THAT(codes_of_search("500"), !Contains("coarse-floats"));
+  CHECK_THAT(codes_of_search("500000"), Contains("coarse-floats"));  // steps of 0.031
+}
+
 TEST_CASE("a resumed conversion leaves the store of the same inputs alone, and no other") {
   const Site site;
   const std::string convert =

@@ -1,5 +1,5 @@
-// A surface beside points on it, ever closer: time, and which points the samples miss. The truth is
-// the surface's exact distances.
+// Compares a surface with points sampled on it ever more closely: time, and which points the
+// samples miss. The truth is the surface's exact distances.
 #include <cmath>
 
 #include "bench/experiments/bench.hpp"

@@ -1,4 +1,4 @@
-// Fig. 1: speed by the number of threads.
+// Fig. 1: speed against the number of threads.
 #include <tbb/info.h>
 
 #include "bench/experiments/bench.hpp"

@@ -26,7 +26,7 @@ struct Misclassified {
 };
 
 /// Compares two answers by source index alone: hashes, quantisation, model, trajectory and radius
-/// of `other` may differ from the truth's. Points that only `other` has, behind the truth's
+/// of `other` may differ from the truth's. Points that only `other` has, after the truth's
 /// (stretch_environment), do not count. Throws InputError where D <= r, where `other` has fewer
 /// environment points, and as ResultReader does.
 Misclassified misclassified(const ResultReader& truth, const ResultReader& other);

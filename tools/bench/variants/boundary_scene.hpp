@@ -6,8 +6,9 @@
 
 #include "bench/measure/record.hpp"
 
-/// A scene whose points lie at the decision boundary: a model of one point in the origin, a pose
-/// that leaves it there, and points on the x axis that are `radius` and a few ulps away, exactly.
+/// A scene whose points lie at the decision boundary: a model of one point at the origin, a pose
+/// that leaves it there, and points on the x axis whose distance is exactly `radius` plus or minus
+/// some ulps.
 namespace clearway::bench {
 
 /// The number of ulps of the radius by which each point lies beyond it: 0, and random numbers of
@@ -20,7 +21,7 @@ void write_boundary_scene(const std::filesystem::path& las, const std::filesyste
                           const std::filesystem::path& trajectory, double radius);
 
 /// How a result for the boundary scene decides: false hits and misses and, as element i of "points"
-/// and "wrong", how many points lie 2^i to 2^(i+1) - 1 ulps beside the boundary (0 counts among the
+/// and "wrong", how many points lie 2^i to 2^(i+1) - 1 ulps off the boundary (0 counts among the
 /// first), and how many of them are decided wrongly.
 Json decided_at_boundary(const std::filesystem::path& result);
 

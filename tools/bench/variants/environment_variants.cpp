@@ -131,7 +131,8 @@ void copy_sample(RawLas& las, std::uint64_t wanted, const scene::Random& random,
     const std::byte* record = las.take(count * record_bytes).data();
     std::byte* end = kept.data();
     for (const std::uint64_t last = i + count; i < last; ++i, record += record_bytes) {
-      // True for every point once all that are left are wanted, false once none is: u < 1.
+      // Once all points that are left are wanted, each is taken, because unit() is below 1; once
+      // none is wanted, none is taken.
       const bool take =
           random.unit(i) * static_cast<double>(points - i) < static_cast<double>(wanted);
       if (!take) continue;

@@ -29,7 +29,7 @@ void sample_environment(const std::filesystem::path& las_in, const std::filesyst
 inline constexpr std::uint64_t kStrayPoints = 8;
 inline constexpr double kGreatestStretch = 1000;
 
-/// Writes all points and, behind them, kStrayPoints at the corners of their bounding box, which is
+/// Writes all points and, after them, kStrayPoints at the corners of their bounding box, which is
 /// made `factor` (1 to kGreatestStretch) times as long on each axis about its centre. The scale of
 /// the stored integers is multiplied by the least power of ten with which the box of
 /// kGreatestStretch fits 32 bits, so it is the same for every factor. Returns that power: with 1
@@ -48,7 +48,7 @@ void write_thinned_model(const std::filesystem::path& in, const std::filesystem:
                          double voxel);
 
 /// Writes a closed body like a car's that fills the box of a model, |x/a|^4 + |y/b|^4 + |z/c|^4 =
-/// 1, as OFF. triangles: 2 n^2 for a whole n from 3 on; other numbers are rounded down to such a
+/// 1, as OFF. triangles: 2 n^2 for a whole n of 3 or more; other numbers are rounded down to such a
 /// number.
 void write_body(const std::filesystem::path& in, const std::filesystem::path& out,
                 std::uint64_t triangles);

@@ -69,8 +69,8 @@ void tell(const std::string& key, const std::vector<Message>& messages) {
 
 }  // namespace
 
-/// Calls `call`; its errors are thrown again with file and key in front, ResourceError and
-/// Interrupted as they are and all others as InputError.
+/// Calls `call`, and rethrows its errors with file and key before the message: ResourceError as a
+/// ResourceError, all others as InputError. Interrupted passes unchanged.
 template <typename Call>
 decltype(auto) QuestionReader::named(const std::string& key, const Call& call) const {
   const auto text = [&](const Error& error) {

@@ -91,7 +91,7 @@ TaskFolder::TaskFolder(const campaign::Task& task, const fs::path& campaign)
   cut_log(log());
 }
 
-/// Removes a result or journal that an earlier try made from other inputs than the planned ones;
+/// Removes a result or journal that an earlier try made from inputs other than the planned ones;
 /// the inputs may have been put back since, so nothing else tells. Whether a journal belongs to
 /// another store only a run can tell, so the journal of a try that failed for its inputs is removed
 /// too.

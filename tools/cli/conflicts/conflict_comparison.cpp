@@ -92,7 +92,7 @@ bool have_same_points(const Conflict& a, const Conflict& b) {
 }
 
 /// A conflict is worse where it comes nearer, or reaches deeper, by more than `worse_by`. How deep
-/// a point is behind a surface no distance tells, but the shift that frees it does.
+/// a point is behind a surface does not follow from distances, but from the shift that frees it.
 Worse worse(const ComparedConflicts& found, const Conflict& a, const Conflict& b) {
   if (found.distances_known && b.least_distance) {
     if (!a.least_distance || *b.least_distance < *a.least_distance - found.worse_by) {
@@ -100,7 +100,7 @@ Worse worse(const ComparedConflicts& found, const Conflict& a, const Conflict& b
     }
     const bool touches = *b.least_distance <= std::max(found.worse_by, kTouching);
     if (!touches || found.b.has_solids) return Worse::kNo;
-    // Between points of a model nothing has a depth, unless shifts tell it.
+    // With a model of points there is no depth, unless the shifts give it.
     const bool shifts_known = found.a.has_shifts && found.b.has_shifts;
     if (!found.b.has_surface && !shifts_known) return Worse::kNo;
   }
@@ -405,7 +405,7 @@ constexpr const char* kColumns[] = {
     "side",   "points_a", "points_b", "least_distance_a", "least_distance_b", "x",
     "y",      "z",        "note"};
 
-/// The texts of a row, one for each of kColumns. number: makes the text of a coordinate or length.
+/// The cells of a row, one for each of kColumns. number: formats a coordinate or length.
 template <typename Number>
 std::vector<std::string> cells_of(const Row& row, Number number) {
   const Conflict* const shown = row.b != nullptr ? row.b : row.a;

@@ -65,7 +65,7 @@ struct ComparedConflicts {
   ConflictMatch match;  ///< which conflicts are new, gone and the same, worse or not
   /// Ids of the same conflict in a and b where b's is worse.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> worse;
-  /// Ids of the same conflict in a and b of which nothing tells whether b's is worse, because the
+  /// Ids of the same conflict in a and b of which it is unknown whether b's is worse, because the
   /// depth of a point behind a surface is not known, and no model was given to find shifts with.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> unknown_worse;
   /// Indices into b.conflicts.small of the groups that a has nothing near.

@@ -18,7 +18,7 @@ class Option;
 
 namespace clearway::tool {
 
-/// The options that commands which find conflicts take beside the results.
+/// The options that commands which find conflicts take besides the results.
 struct ConflictCommand {
   ConflictOptions find;
   TrajectoryOptions trajectory_options;

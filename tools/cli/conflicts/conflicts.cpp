@@ -194,7 +194,7 @@ std::vector<Vec3> drawn(const Model& model) {
   return drawn_points({model.vertices, model.triangles}, kDrawnPlaces);
 }
 
-/// What the pictures of conflicts show beside them: the model, or the bodies of the vehicle.
+/// What the pictures of conflicts show besides them: the model, or the bodies of the vehicle.
 struct SeenFrom {
   Model model;
   std::vector<Body> bodies;

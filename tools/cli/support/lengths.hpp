@@ -22,8 +22,8 @@ namespace clearway::tool {
 enum class LengthRange { kAboveZero, kFromZero, kAny };
 
 /// Reads a length such as "0.1" or "10cm". A decimal becomes the nearest double, and "10cm" the
-/// same as "0.1". Throws CLI::ValidationError naming the option where the text is no finite length
-/// of the range.
+/// same as "0.1". Throws CLI::ValidationError naming the option where the text is not a finite
+/// length of the range.
 ParsedLength parse_length(const std::string& option, const std::string& text,
                           LengthRange range = LengthRange::kAboveZero);
 
@@ -31,7 +31,7 @@ ParsedLength parse_length(const std::string& option, const std::string& text,
 /// Degrees count as metres here; other code warns of them.
 std::string symbol_of_unit(const std::string& length_unit);
 
-/// Tells the options of models' and trajectories' readers the unit of the environment.
+/// Sets the environment's unit in the given options of model and trajectory readers.
 template <typename... Options>
 void set_environment_unit(const Store& store, Options&... options) {
   ((options.environment_unit = store.metres_per_unit()), ...);

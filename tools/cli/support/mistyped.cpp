@@ -57,7 +57,7 @@ class WordCheck {
     return "--" + option->get_lnames().front() + "=" + words[1] + (values > 1 ? words[2] : "");
   }
 
-  /// Checks one word. False where the words behind it are not to be checked.
+  /// Checks one word. False where the words after it are not to be checked.
   bool accepts(const std::string& word) {
     if (word == "--") return false;
     if (word.size() > 2 && word.starts_with("--")) {
@@ -74,7 +74,7 @@ class WordCheck {
  private:
   static unsigned char uchar(char c) { return static_cast<unsigned char>(c); }
 
-  /// The number of words behind an option that are to be joined to it.
+  /// The number of words after an option that are to be joined to it.
   std::size_t words_of_value(const CLI::Option& option, std::span<const std::string> words) const {
     if (option.get_items_expected_max() == 0 || words.empty()) return 0;
     const std::string& value = words[0];

@@ -46,7 +46,7 @@ constexpr std::array<std::pair<std::string_view, OptionGroup>, 15> kCommonOption
      {"--fail-on-collision", OptionGroup::kOutput},
      {"--help", OptionGroup::kOutput}}};
 
-/// The place of a group in a help text; CLI11's own group stands behind the first.
+/// The place of a group in a help text; CLI11's own group stands after the first.
 std::size_t place_of(const std::string& title) {
   if (title == kNoGroup) return 1;
   const auto at = std::ranges::find(kTitles, title);

@@ -45,7 +45,7 @@ class GroupScope {
 };
 
 /// Makes the help of the program, and of all commands that are added later, show the groups in
-/// their order, without empty groups. Options without a group come behind the inputs.
+/// their order, without empty groups. Options without a group come after the inputs.
 void show_groups_in_order(CLI::App& program);
 
 /// Puts the options that many commands have, such as --force and --json, into their groups, in

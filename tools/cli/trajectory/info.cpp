@@ -75,7 +75,7 @@ void warn_of_scan(const InfoOptions& options, Description& what) {
 }
 
 /// Warns of jumps and of steps above the radius. Each step is in one of the two warnings, because
-/// jumps need other remedies than steps that are all long.
+/// jumps need remedies different from those for steps that are all long.
 void warn_of_steps(const InfoOptions& options, const Box& model, Description& what) {
   const std::vector<Pose>& poses = what.file.poses;
   const double least = options.radius > 0 ? options.radius : kLeastJump / what.file.metres_per_unit;

@@ -31,7 +31,7 @@ constexpr double kSurfaceVoxels = 1 << 19;
 constexpr double kCheapNodes = 1 << 17;
 
 /// Greatest number of nodes up to which the coarse lattice is widened for a reach. Coarse bounds
-/// are close from kCloseSteps coarse steps on: at a distance d they miss at most 3/8 step^2 / d.
+/// are close at kCloseSteps coarse steps or more: at a distance d they miss at most 3/8 step^2 / d.
 constexpr double kMostWideNodes = 1 << 18;
 constexpr double kCloseSteps = 2;
 
@@ -232,8 +232,8 @@ std::uint32_t make_brick_of(const ModelField& field, std::size_t cell) {
   return field.made_brick(cell);
 }
 
-/// Bound of the error of a node's position and of the root of its square, metres
-/// (docs/design/numerics.md, "Model field").
+/// Upper bound, in metres, on the rounding error of a node's position plus that of the distance it
+/// holds, the root of its stored square (docs/design/numerics.md, "Model field").
 double ModelField::node_error() const {
   const Vec3 extent = model_.size();
   const double of_place = 8 * (length(model_.hi) + length(model_.lo) + margin_);

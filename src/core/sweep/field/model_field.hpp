@@ -26,7 +26,7 @@ struct ModelFieldOptions {
   const SolidParts* solids = nullptr;
 };
 
-/// Bounds of d_M, the distance from any position in the model's frame to the nearest point of the
+/// Bounds on d_M, the distance from any position in the model's frame to the nearest point of the
 /// model or of its surface.
 /// Lattice nodes hold exact squared distances, rounded down to float. There is a coarse lattice
 /// around the whole model, and bricks of a fine one (kBrick times finer), which also hold the

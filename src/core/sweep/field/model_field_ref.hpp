@@ -20,7 +20,7 @@ struct ModelFieldRef {
   /// Bit of a brick's number that is set while the brick is not made
   static constexpr std::uint32_t kToBeMade = 0x80000000;
   static constexpr std::uint32_t kNone = 0xffffffff;
-  /// Bound of the squared distance from a place of a voxel to its nearest node, in squared voxels.
+  /// Bound on the squared distance from a place of a voxel to its nearest node, in squared voxels.
   static constexpr double kNearNode = 0.76;
 
   struct Bounds {
@@ -86,7 +86,7 @@ CLEARWAY_HD inline void load_corners(const float* first, std::size_t row, std::s
   }
 }
 
-/// Lower bound of d_M^2 from an interpolated value. d_M^2(x) - |x|^2 is a minimum of linear
+/// Lower bound on d_M^2 from an interpolated value. d_M^2(x) - |x|^2 is a minimum of linear
 /// functions of x, hence concave, so the interpolation of d^2 exceeds d^2 by at most step^2 sum f
 /// (1 - f). The last term covers the rounding of this computation and the errors of the nodes.
 CLEARWAY_HD inline double concave_bound(double mean, const double (&f)[3], double step,

@@ -61,7 +61,7 @@ class HostProfileOf {
   /// pose.
   void search(const PageRef& page, const ProfileBests& bests, std::vector<ProfileFact>& found);
 
-  /// Replaces a fact's point by the one with the smallest source index among the points of its cell
+  /// Replaces a fact's point with the one of smallest source index among the points of its cell
   /// that have the same d2.
   void resolve(const PageRef& page, double limit, ProfileFact& fact);
 

@@ -92,7 +92,7 @@ class ProfileBlocks {
     if (reach < reach_) reach_ = reach;
   }
 
-  /// Whether anything within rho of a place with this bound of the field may matter.
+  /// Whether anything within rho of a place with this bound from the field may matter.
   CLEARWAY_HD bool matters(double rho, double squared_lower) const {
     return !farther(sweep_.motion.inverse_poses[pose_].least, squared_lower, reach_ + delta_ + rho);
   }

@@ -17,9 +17,9 @@ using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 enum State : std::uint8_t { kOffPath = 1, kUndefined = 2, kFolded = 4, kTurned = 8 };
 
-/// Cosine from which on two axes count as along each other: that of 60 degrees.
+/// Least cosine of the angle between two axes that count as parallel: that of 60 degrees.
 constexpr double kAlong = 0.5;
-/// Sine from which on an axis counts as across another: that of 30 degrees.
+/// Least sine of the angle between two axes that count as across each other: that of 30 degrees.
 constexpr double kAcross = 0.5;
 /// Least chord, as a share of the way between the pivots, whose direction means anything.
 constexpr double kLeastChord = 1e-6;

@@ -30,7 +30,7 @@ struct FollowedPath {
 FollowedPath follow_path(const PathStations& path, const BodyMount& mount, int threads);
 
 /// Warnings of what is missing or odd in a followed path; only a note if stations are off the path
-/// just at its ends, and on no more than half of it. name: the body's name for the texts.
+/// just at its ends, and on no more than half of it. name: the body's name for the messages.
 std::vector<Message> doubts_about(const FollowedPath& followed, const PathStations& path,
                                   const BodyMount& mount, const std::string& name);
 

@@ -98,7 +98,7 @@ Pose PathStations::pose_at(const Place& place) const {
 }
 
 Vec3 PathStations::direction_at(const Place& place) const {
-  // A stop has no direction of its own, so that of the next way counts, or else that of the last
+  // A stop has no direction of its own, so it takes that of the next way, or else that of the last
   // one.
   std::size_t way = place.way;
   while (way < lengths_.size() && !(lengths_[way] > 0)) ++way;

@@ -60,7 +60,7 @@ FileUnit unit_of_positions(std::span<const std::string> texts, const TrajectoryO
   return option_counts ? option : declared;
 }
 
-/// A time in seconds, whose unit only its size tells: ns, us, ms or s since 1970.
+/// A time in seconds, whose unit follows from its size alone: ns, us, ms or s since 1970.
 double seconds_of(double time) {
   constexpr double kNanoseconds = 1e17;
   constexpr double kMicroseconds = 1e14;

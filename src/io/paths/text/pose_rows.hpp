@@ -14,7 +14,7 @@
 
 namespace clearway {
 
-/// The objection that a line has another number of numbers than expected. count: nullopt for a line
+/// The objection that a line does not have as many numbers as expected. count: nullopt for a line
 /// that is not all numbers, one above `most` for more.
 Objection objection_to_count(std::string_view line, std::optional<std::size_t> count,
                              std::size_t most, const std::string& expected);
@@ -28,7 +28,7 @@ class PoseRows {
 
   /// Adds the pose of a line. Returns why the line is not a pose; without text where it is one.
   Objection add(std::string_view line);
-  /// An empty object for up to `lines` further lines of the file behind the first, to be filled and
+  /// An empty object for up to `lines` further lines of the file after the first, to be filled and
   /// appended.
   PoseRows for_lines(std::size_t lines) const;
   void append(std::vector<PoseRows> parts);

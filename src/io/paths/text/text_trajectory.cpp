@@ -67,7 +67,7 @@ class TextTrajectory {
     refuse_line(input_.name(), input_.line(), objection.text, objection.remedy);
   }
 
-  /// Reads all lines behind the first pose in parallel. Returns false, with nothing read, where one
+  /// Reads all lines after the first pose in parallel. Returns false, with nothing read, where one
   /// is refused or may be cut; reading them one after the other then finds its number.
   bool read_blocks() {
     const LineBlocks blocks(input_);
@@ -108,7 +108,7 @@ class TextTrajectory {
     if (auto columns = pose_columns(parse_column_names(line))) columns_ = std::move(columns);
   }
 
-  /// Whether the first line that is no comment names columns. Throws where these make no pose.
+  /// Whether the first line that is not a comment names columns. Throws where these make no pose.
   bool is_header(std::string_view line) {
     if (starts_with_number(line)) return false;
     if (format_ == TrajectoryFormat::kEuroc) return true;

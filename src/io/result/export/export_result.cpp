@@ -44,7 +44,7 @@ void for_each_block(std::size_t rows, Work work) {
   tbb::parallel_for(std::size_t{0}, (rows + kBlockRows - 1) / kBlockRows, run_block);
 }
 
-/// Appends rows to a file. Many threads make the texts by write_rows(text, first row, end).
+/// Appends rows to a file. Many threads format them with write_rows(text, first row, end).
 template <typename WriteRows>
 void write_blocks(const File& file, std::size_t rows, WriteRows write_rows) {
   std::vector<TextBuffer> blocks((rows + kBlockRows - 1) / kBlockRows);
@@ -152,7 +152,7 @@ class PlySink final : public RowSink<Rows> {
   PlyWriter writer_;
 };
 
-/// Writes coordinates, and behind those of clearances the distance and its pose.
+/// Writes coordinates, and after those of clearances the distance and its pose.
 template <typename Rows>
 class XyzSink final : public RowSink<Rows> {
  public:

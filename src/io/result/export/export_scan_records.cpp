@@ -28,7 +28,7 @@ std::size_t field_bytes(const std::byte* description) {
   constexpr std::size_t kScalar[] = {0, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
   const auto type = std::to_integer<unsigned>(description[2]);
   if (type == 0) return std::to_integer<std::size_t>(description[3]);
-  // Types of several values are deprecated.
+  // Types 11 to 30 have two or three values; LAS 1.4 calls them deprecated.
   const std::size_t values = type <= 10 ? 1 : type <= 20 ? 2 : 3;
   return type > 30 ? 0 : values * kScalar[(type - 1) % 10 + 1];
 }

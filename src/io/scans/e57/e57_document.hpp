@@ -20,12 +20,12 @@ struct E57Field {
   enum class Kind { kInteger, kFloat32, kFloat64, kText };
 
   Kind kind = Kind::kText;
-  unsigned bits = 8;         ///< bits of a record; for a text, the least number
+  unsigned bits = 8;         ///< bits of a record; for a string, the least number
   std::int64_t minimum = 0;  ///< kInteger: value that the stored bits are added to
   double scale = 1;          ///< kInteger: the value is integer * scale + offset
   double offset = 0;
 
-  /// Bytes of so many records in the bytestream; at most 2^60, more than any file has.
+  /// Bytes of this many records in the bytestream; at most 2^60, more than any file has.
   std::uint64_t bytes_of(std::uint64_t records) const {
     constexpr std::uint64_t kMost = std::uint64_t{1} << 60;
     return bits > 0 && records > kMost / bits ? kMost : (records * bits + 7) / 8;

@@ -36,7 +36,7 @@ class E57Pages {
   std::uint64_t physical(std::uint64_t logical) const {
     return logical / content_ * page_ + logical % content_;
   }
-  /// The logical position; nullopt behind the end of the file and within a checksum.
+  /// The logical position; nullopt after the end of the file and within a checksum.
   std::optional<std::uint64_t> logical(std::uint64_t physical) const;
 
   /// Copies the content from the logical position `at`. what: names the content in the message

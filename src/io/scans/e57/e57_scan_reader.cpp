@@ -273,7 +273,7 @@ void E57Cursor::decode(std::span<double> out) {
 }
 
 void E57Cursor::decode_integers(std::span<double> out) {
-  // The sum wraps as the two's complement of the value does, for every width.
+  // The unsigned sum wraps like two's complement, so it is right for every width of the integers.
   const auto minimum = static_cast<std::uint64_t>(field_.minimum);
   const double scale = field_.scale, offset = field_.offset;
   const auto value_of = [=](std::uint64_t stored) {

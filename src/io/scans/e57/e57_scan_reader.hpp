@@ -38,7 +38,7 @@ class E57Packets {
   E57Packets(E57Pages& pages, const E57Scan& scan, const E57Extent& extent);
 
   std::uint64_t first() const { return extent_.packets; }
-  /// Makes the first data packet at or behind `position`, where some packet must begin, the current
+  /// Makes the first data packet at or after `position`, where some packet must begin, the current
   /// one. Returns false at the end of the section.
   bool go_to(std::uint64_t position);
   /// The bytes of a bytestream in the current packet.
@@ -100,7 +100,7 @@ class E57Cursor {
   const E57Field& field_;
   std::size_t stream_;
   std::uint64_t next_packet_;
-  std::vector<std::byte> buffer_;  ///< zeros behind bytes_, so that whole words can be loaded
+  std::vector<std::byte> buffer_;  ///< zeros after bytes_, so that whole words can be loaded
   std::size_t bytes_ = 0;
   std::uint64_t bit_ = 0;  ///< first bit of the next record in buffer_
 };

@@ -275,7 +275,8 @@ LasPublicHeader read_las_header(InputBuffer& input) {
     read_version_14(input, take_header(input, kHeaderBytes14 - kHeaderBytes10), header);
   } else if (minor == 3 && header.header_bytes >= kHeaderBytes13 && internal_waveforms &&
              !header.compressed) {
-    // LAS 1.3 has at most one extended record, the waveforms. LAZ may state where LAS had them.
+    // LAS 1.3 has at most one extended record, the waveforms. In LAZ their position is not read,
+    // because it may be that in the LAS file from which the LAZ file was made.
     header.tail_offset = load<std::uint64_t>(take_header(input, 8).data());
     header.tail_count = header.tail_offset == 0 ? 0 : 1;
   }

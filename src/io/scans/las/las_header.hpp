@@ -35,7 +35,7 @@ constexpr LasClassField las_class_field(unsigned point_format) {
 
 }  // namespace clearway
 
-/// Extra bytes of LAS records: values that every record has behind those of its point format.
+/// Extra bytes of LAS records: values that every record has after those of its point format.
 /// Source: LAS 1.4 R15 (ASPRS), "Extra Bytes VLR".
 namespace clearway {
 
@@ -92,13 +92,13 @@ struct LasPublicHeader {
   std::uint64_t tail_offset;  ///< byte of the first extended variable length record
   std::uint32_t tail_count;   ///< number of extended variable length records
 
-  std::uint64_t points_end() const;  ///< byte behind the last point record, if not compressed
+  std::uint64_t points_end() const;  ///< byte after the last point record, if not compressed
 };
 
 /// Throws InputError for a file that ends before what it declares; the input has met its end.
 [[noreturn]] void refuse_cut_las(const InputBuffer& input, const std::string& expected);
 
-/// Reads the public header block and leaves the input behind it. Throws InputError for anything
+/// Reads the public header block and leaves the input after it. Throws InputError for anything
 /// malformed, and where the file's size is known and too small for what is declared.
 LasPublicHeader read_las_header(InputBuffer& input);
 

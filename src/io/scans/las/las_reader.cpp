@@ -150,7 +150,7 @@ class LasReader final : public PointReader {
                               std::to_string(header_.points_end()) + " bytes");
   }
 
-  /// Takes records of a stream behind the last one that its header declares.
+  /// Takes records of a stream after the last one that its header declares.
   std::span<const std::byte> take_more_records() {
     if (input_.can_seek() || header_.tail_count > 0) return {};
     const std::size_t record = header_.record_bytes;

@@ -11,7 +11,7 @@ namespace clearway {
 /// the header's declarations, including extended records, are checked against the file's size at
 /// once, and missing bytes as well as a whole surplus record are refused. In a stream, a missing
 /// byte is noticed when it is reached, and data beyond the declared points is read as points, with
-/// a warning. A stream's extended records are read behind the last point, so that a CRS that only
+/// a warning. A stream's extended records are read after the last point, so that a CRS that only
 /// they hold appears in info() once read() has returned false. LAZ needs an input that can seek.
 std::unique_ptr<PointReader> read_las(InputBuffer input);
 

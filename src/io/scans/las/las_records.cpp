@@ -13,13 +13,13 @@
 namespace clearway {
 namespace {
 
-/// Reads a user id or another text of fixed length, padded with zeros.
+/// Reads a user id or another string of fixed length, padded with zeros.
 std::string_view padded_text(std::span<const std::byte> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   return text.substr(0, text.find('\0'));
 }
 
-/// Takes the CRS from a record. payload: the whole record behind its header.
+/// Takes the CRS from a record. payload: the whole record after its header.
 void note_record(std::string_view user, unsigned id, std::span<const std::byte> payload,
                  LasCrs& crs) {
   constexpr unsigned kWkt = 2112;
@@ -169,7 +169,7 @@ void put_table(ByteWriter& out, std::string_view user, std::uint16_t id,
   out.put_bytes(payload);
 }
 
-/// The bytes of a text, including the zero byte that ends it.
+/// The bytes of a string, including the zero byte that ends it.
 std::span<const std::byte> text_bytes(const std::string& text) {
   return std::as_bytes(std::span(text.c_str(), text.size() + 1));
 }

@@ -46,7 +46,7 @@ struct LasRecords {
 /// Reads the variable length records and leaves the input at the first point record.
 void read_las_vlrs(InputBuffer& input, const LasPublicHeader& header, LasRecords& records);
 
-/// Reads the extended variable length records. The input must not be behind the first of them.
+/// Reads the extended variable length records. The input must not be after the first of them.
 /// Throws InputError where they do not end within the file.
 void read_las_tail(InputBuffer& input, const LasPublicHeader& header, LasCrs& crs);
 
@@ -56,7 +56,7 @@ struct LasRecordFormat {
   std::uint16_t record_bytes = 30;
   std::uint16_t encoding = 0;  ///< "global encoding" of the file that the records come from
   Quantisation quantisation{};
-  /// Descriptions of the extra bytes behind the format's own fields.
+  /// Descriptions of the extra bytes after the format's own fields.
   std::vector<std::byte> extra_bytes{};
   std::string crs_wkt{};  ///< CRS as well-known text; where empty, geotiff is used
   std::vector<LasRecord> geotiff{};

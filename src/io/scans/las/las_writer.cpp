@@ -23,7 +23,7 @@ constexpr const char* kWktDescription = "OGC coordinate system WKT";
 struct Layout {
   bool version_14;
   bool wkt_vlr;  ///< whether the CRS is a record before the points
-  /// Whether the CRS is a record behind the points, because it is too long for one before.
+  /// Whether the CRS is a record after the points, because it is too long for one before.
   bool wkt_evlr;
   std::uint64_t wkt_bytes;
   std::uint16_t record_bytes;

@@ -28,7 +28,7 @@ struct PointRoom {
 /// A chunk: points that are compressed independently of others.
 struct Chunk {
   std::uint64_t begin = 0;  ///< position in the file
-  /// Position behind the chunk, or where ends_there is false an upper bound of it.
+  /// Position after the chunk, or where ends_there is false an upper bound on it.
   std::uint64_t end = 0;
   std::uint64_t points = 0;
   bool ends_there = true;
@@ -43,7 +43,7 @@ class ChunkDecoder {
   virtual void begin(const InputBuffer& input, const Chunk& chunk) = 0;
   /// Decodes the next points of the chunk, of which there must be as many.
   virtual void decode(PointRoom points) = 0;
-  /// Called behind the chunk's last point. Returns the position where the chunk ends; throws where
+  /// Called after the chunk's last point. Returns the position where the chunk ends; throws where
   /// that is wrong.
   virtual std::uint64_t finish() = 0;
 };

@@ -38,7 +38,7 @@ std::optional<std::uint64_t> find_table(const InputBuffer& input, const PointByt
   // The table was not written, because the writer was interrupted.
   if (table == bytes.begin || table == 0) return std::nullopt;
   if (table == ~std::uint64_t{0}) {
-    // A writer that cannot go back puts the position behind the table, at the end of the file.
+    // A writer that cannot go back puts the position after the table, at the end of the file.
     const std::uint64_t size = *input.size();
     if (size < first_chunk + kHeadBytes + kPointerBytes) return std::nullopt;
     table = number_at<std::uint64_t>(input, size - kPointerBytes);

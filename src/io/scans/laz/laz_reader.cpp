@@ -140,7 +140,7 @@ class TabledReader final : public PointReader {
 
   InputBuffer input_;
   std::vector<Chunk> chunks_;
-  /// Index of the chunk behind each piece; empty where only read() works.
+  /// Index of the chunk after each piece; empty where only read() works.
   std::vector<std::size_t> piece_ends_;
   CloudInfo info_;
   Scheme scheme_;

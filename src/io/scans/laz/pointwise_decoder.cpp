@@ -34,7 +34,7 @@ class Item {
   std::optional<Version2> second_;
 };
 
-/// All items behind POINT10.
+/// All items after POINT10.
 class OtherItems {
  public:
   explicit OtherItems(const Scheme& scheme)

@@ -37,7 +37,7 @@ class LzfStream {
 
   const File* file_;
   std::uint64_t input_end_;       // end of the compressed bytes in the file
-  std::uint64_t input_position_;  // position in the file behind input_
+  std::uint64_t input_position_;  // position in the file after input_
   std::uint64_t promised_;
   std::uint64_t decoded_ = 0;
   std::vector<std::byte> input_;

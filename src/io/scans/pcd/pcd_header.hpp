@@ -38,7 +38,7 @@ struct PcdHeader {
   std::uint64_t point_bytes(bool with_padding) const;
 };
 
-/// Reads the header and leaves the input behind the line DATA. Throws InputError.
+/// Reads the header and leaves the input after the line DATA. Throws InputError.
 PcdHeader read_pcd_header(InputBuffer& input);
 
 /// Loads an element of a field as a double from its little-endian bytes.

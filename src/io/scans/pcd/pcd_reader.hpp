@@ -18,17 +18,17 @@ class PcdBodyReader : public PointReader {
   void rewind() override;
 
  protected:
-  /// input: stands behind the line DATA.
+  /// input: stands after the line DATA.
   PcdBodyReader(InputBuffer input, PcdHeader header);
 
   /// Reads the next points, in order; header_.points in all.
   virtual void read_points(std::span<Vec3> out) = 0;
   virtual void start_again() = 0;
-  /// Called with the input behind the last point. Throws InputError where the file does not end
+  /// Called with the input after the last point. Throws InputError where the file does not end
   /// there.
   virtual void check_end() = 0;
 
-  /// Throws InputError for anything behind binary data except what PCL leaves there: up to a page
+  /// Throws InputError for anything after binary data except what PCL leaves there: up to a page
   /// of zeros, or a line break.
   void check_only_padding();
 

@@ -49,7 +49,7 @@ struct PlyHeader {
   const PlyElement& vertices() const { return elements[vertex]; }
 };
 
-/// Reads the header and leaves the input behind it. Throws InputError with the line for anything
+/// Reads the header and leaves the input after it. Throws InputError with the line for anything
 /// malformed, and where there is no element vertex with x, y and z. Source: G. Turk, The PLY
 /// Polygon File Format, 1994, with the later names of types.
 PlyHeader read_ply_header(InputBuffer& input);

@@ -14,7 +14,7 @@
 namespace clearway {
 
 /// Base of the readers of both kinds of PLY file: skips the elements before the vertices and checks
-/// the end behind them. Elements behind the vertices are not read and not checked.
+/// the end after them. Elements after the vertices are not read and not checked.
 class PlyBodyReader : public PointReader {
  public:
   const CloudInfo& info() const override { return info_; }
@@ -38,13 +38,13 @@ class PlyBodyReader : public PointReader {
   /// Consumes every row of an element.
   virtual void skip_element(const PlyElement& element) = 0;
 
-  /// Moves the input from behind the header to the first vertex.
+  /// Moves the input from after the header to the first vertex.
   void begin() {
     for (std::size_t i = 0; i < header_.vertex; ++i) skip_element(header_.elements[i]);
     first_vertex_ = input_.mark();
   }
 
-  /// Whether the file should end with the vertices, because no element behind them has a row.
+  /// Whether the file should end with the vertices, because no element after them has a row.
   bool vertices_end_file() const {
     const auto behind = header_.elements.begin() + static_cast<std::ptrdiff_t>(header_.vertex) + 1;
     return std::all_of(behind, header_.elements.end(),
@@ -65,7 +65,7 @@ class PlyBodyReader : public PointReader {
 };
 
 /// Reads the vertices of a PLY file from its start. Elements before them are skipped; elements
-/// behind them are not read, and where there are none, the file must end with its last vertex.
+/// after them are not read, and where there are none, the file must end with its last vertex.
 /// Coordinates may have any scalar type; in an ASCII file they count as written, whatever their
 /// type. The input must be able to seek.
 std::unique_ptr<PointReader> read_ply(InputBuffer input);

@@ -15,7 +15,7 @@
 namespace clearway {
 namespace {
 
-/// Bytes read behind a block to find the end of its last line; a longer line takes a second read.
+/// Bytes read after a block to find the end of its last line; a longer line takes a second read.
 constexpr std::uint64_t kUsualLine = 1 << 10;
 
 }  // namespace

@@ -16,7 +16,7 @@
 
 namespace clearway {
 
-/// Divides the rest of a text into blocks of lines that can be read at the same time. A line
+/// Divides the rest of a text file into blocks of lines that can be read at the same time. A line
 /// belongs to the block in which it begins.
 class LineBlocks {
  public:
@@ -56,7 +56,7 @@ bool each_line(std::string_view block, Use use) {
 
 inline constexpr CoordinateColumns kFirstThree{0, 1, 2};
 
-/// Parses the lines of a text: the columns of x, y and z, and their separator.
+/// Parses lines of a text file, given the columns of x, y and z and their separator.
 class PointLine {
  public:
   PointLine() = default;
@@ -65,7 +65,7 @@ class PointLine {
       : columns_(columns), separator_(separator) {}
 
   const CoordinateColumns& columns() const { return columns_; }
-  /// Parses a line without leading blanks; returns false where it is anything else than a point.
+  /// Parses a line without leading blanks; returns false where it is anything other than a point.
   bool parse(std::string_view line, Vec3& point);
 
  private:
@@ -81,7 +81,7 @@ bool parse_point(std::string_view line, Vec3& point);
 /// The value of a line that is nothing but a whole number from 0. line: without leading blanks.
 std::optional<std::uint64_t> count_in(std::string_view line);
 
-/// Upper bound of the number of points in the rest of the input, as each takes a line.
+/// Upper bound on the number of points in the rest of the input, as each takes a line.
 std::uint64_t most_points_in_rest(const InputBuffer& input);
 
 /// The line number of each of `points`, which are ascending numbers counted from 0. next_point:
@@ -115,7 +115,7 @@ std::size_t count_fields(std::string_view line);
 /// otherwise empty.
 std::string decimal_commas_in(std::string_view line);
 
-/// Reads the points of a text ahead, several blocks of lines at the same time. It accepts only
+/// Reads the points of a text file ahead, several blocks of lines at the same time. It accepts only
 /// whole lines that certainly are points or hold nothing. Everything else stays in the input for a
 /// reader that goes line by line and can report what is wrong.
 class PointBlocks {
@@ -144,7 +144,7 @@ class PointBlocks {
     };
   }
 
-  /// Reads on from the input's position and moves it behind what was read. Returns the number of
+  /// Reads on from the input's position and moves it past what was read. Returns the number of
   /// points; nullopt, with the input where it was, if nothing could be read. most: number of points
   /// that may follow.
   std::optional<std::uint64_t> read(InputBuffer& input, const ParseBlock& parse,

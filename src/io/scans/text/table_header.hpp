@@ -44,7 +44,7 @@ using CoordinateColumns = std::array<std::size_t, 3>;
 struct TableHeader {
   char separator = ' ';            ///< ',', ';' or ' ' for any blanks
   std::vector<std::string> names;  ///< names in lower case, without quotes, blanks and units
-  /// Unit of each name, given in brackets or behind `_`; lower case.
+  /// Unit of each name, given in brackets or after `_`; lower case.
   std::vector<std::string> units;
 };
 

@@ -17,9 +17,9 @@
 namespace clearway {
 namespace {
 
-/// Recognises from the first lines of a text without column names that it is something else than
-/// points (docs/design/conversion.md, "Text that is no table of points"). A resemblance must hold
-/// on every line examined, so that points pass.
+/// Recognises from the first lines of a text file without column names that it holds something
+/// other than points (docs/design/conversion.md, "Text that is no table of points"). A resemblance
+/// must hold on every line examined, so that points pass.
 class LookAlike {
  public:
   static constexpr std::size_t kMostLines = 100;
@@ -289,7 +289,7 @@ class PrologueReader {
     return options_.columns[0] + ", " + options_.columns[1] + ", " + options_.columns[2];
   }
 
-  /// Reads a first line that is no point: the header that names the columns, or something to
+  /// Reads a first line that is not a point: the header that names the columns, or something to
   /// refuse.
   void read_header(std::string_view line) {
     TableHeader header = parse_table_header(line);
@@ -327,7 +327,7 @@ class PrologueReader {
     });
   }
 
-  /// Finds the separator of the lines behind a header, which may differ from the one between its
+  /// Finds the separator of the lines after a header, which may differ from the one between its
   /// names.
   void settle_separator(std::string_view line) {
     Vec3 point{};
@@ -404,7 +404,7 @@ class PrologueReader {
                              "; the first three are read as x, y and z");
   }
 
-  /// Throws InputError where the text looks like something else than points. line: the first line
+  /// Throws InputError where the text looks like something other than points. line: the first line
   /// of data, which was already read.
   void refuse_look_alike(std::string_view line) {
     const std::uint64_t number = input_.line();

@@ -10,7 +10,7 @@
 
 namespace clearway {
 
-/// What a text declares before its first point.
+/// What a text file of points declares before its first point.
 struct XyzPrologue {
   PointLine line;
   std::optional<std::uint64_t> declared_points;
@@ -20,8 +20,8 @@ struct XyzPrologue {
   std::vector<Message> remarks;
 };
 
-/// Reads everything before the first point and leaves the input there. Throws InputError for a text
-/// that is no table of points.
+/// Reads everything before the first point and leaves the input there. Throws InputError for a
+/// file that is not a table of points.
 XyzPrologue read_xyz_prologue(InputBuffer& input, const PointReadOptions& options);
 
 }  // namespace clearway

@@ -166,7 +166,7 @@ class XyzReader final : public PointReader {
     return false;
   }
 
-  /// Called behind all declared points: reads the number of further points.
+  /// Called after all declared points: reads the number of further points.
   void begin_count(std::string_view line) {
     const auto points = count_in(line);
     if (!points) {

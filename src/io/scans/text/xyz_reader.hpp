@@ -13,9 +13,9 @@
 
 namespace clearway {
 
-/// Notices in one reading of a text with one point per line that its last line lacks a line break.
-/// Where the text declares its number of points, this is noted, and refused where values or digits
-/// are missing. Otherwise missing values cause a warning, because the text may be cut.
+/// Notices, while a text file with one point per line is read, that its last line lacks a line
+/// break. Where the file declares its number of points, this is noted, and refused where values or
+/// digits are missing. Otherwise missing values cause a warning, because the file may be cut.
 class OpenEnd {
  public:
   explicit OpenEnd(bool counted = true) : counted_(counted) {}
@@ -35,12 +35,12 @@ class OpenEnd {
   std::uint64_t line_ = 0;  // number of the last line; 0 where it has a line break
 };
 
-/// Reads text with one point per line: x y z and anything behind them, separated by blanks, commas
+/// Reads text with one point per line: x y z and anything after them, separated by blanks, commas
 /// or semicolons (one kind within a line, so that decimal commas are refused). Blank lines and
 /// lines that start with # or // are comments. The first other line may be the number of points
-/// (PTS): exactly so many follow, perhaps followed by another such number with its points. A header
-/// line that names the columns tells where x, y and z are; so does a comment that fits the lines.
-/// Text without names that looks like something else than points is refused, unless the options
+/// (PTS): exactly that many follow, perhaps then another such number with its points. A header line
+/// that names the columns tells where x, y and z are; so does a comment that fits the lines.
+/// Text without names that looks like something other than points is refused, unless the options
 /// choose the columns. `remarks` come before the reader's own. The input must be able to seek.
 std::unique_ptr<PointReader> read_xyz(InputBuffer input, const PointReadOptions& options = {},
                                       std::vector<Message> remarks = {});

@@ -97,7 +97,7 @@ namespace {
 /// Steps in metres, from the coarsest. Whole centimetres are common in text and not suspicious.
 constexpr std::array<double, 14> kSteps{100,  10,    8,   4,      2,       1,        0.5,
                                         0.25, 0.125, 0.1, 0.0625, 0.03125, 0.015625, 0};
-// An axis with at most so many values, as in a flat scan, has lost nothing.
+// An axis with at most this many values, as in a flat scan, has lost nothing.
 constexpr std::size_t kFewValues = 8;
 constexpr std::size_t kFewSamples = 1000;
 

@@ -131,7 +131,7 @@ class Refinement {
   std::vector<Part> parts_;
 };
 
-/// Replaces the overfull bins of `bins` by finer ones, in one more pass over the input.
+/// Replaces the overfull bins of `bins` with finer ones, in one more pass over the input.
 void refine(const EnvironmentPass& pass, const Lattice& lattice, const SplitTree& tree,
             std::vector<Bin>& bins, Progress& progress) {
   tbb::enumerable_thread_specific<Refinement> counters(

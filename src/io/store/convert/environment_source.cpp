@@ -316,7 +316,7 @@ void EnvironmentSource::append_rounded(const RecordBatch& records, QuantaBatch& 
           std::max(out.largest_change, std::abs(coordinate(quantisation_, axis, q[k]) - p[axis]));
     }
     out.quanta.push_back(q);
-    // Points behind the first dropped one need an index of their own; without any dropped point,
+    // Points after the first dropped one need an index of their own; without any dropped point,
     // offsets stays empty.
     if (out.quanta.size() <= i) out.offsets.push_back(static_cast<std::uint32_t>(i));
   }

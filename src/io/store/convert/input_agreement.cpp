@@ -128,7 +128,7 @@ std::string crs_label(const ScanCrs& crs) {
   return crs.name == code ? code : crs.name + ", " + code;
 }
 
-/// Chooses the first well-known text that any input has. Warns of inputs in other systems than the
+/// Chooses the first well-known text that any input has. Warns of inputs in systems other than the
 /// first one's, and notes inputs without any.
 void choose_crs(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
                 CommonCrs& common) {
@@ -172,7 +172,7 @@ CommonCrs common_crs(std::span<const std::filesystem::path> files,
     if (infos[i].unit_doubt.empty()) continue;
     warn(common, "units-contradict", files[i].string() + ": " + infos[i].unit_doubt);
   }
-  // A "ft" in a text means the foot of another input that says which one it uses.
+  // A "ft" in a text file means the foot of another input that says which one it uses.
   const auto says_which = [](const CloudInfo& info) { return has_unit(info) && !info.any_foot; };
   auto known = std::find_if(infos.begin(), infos.end(), has_unit);
   if (known != infos.end() && known->any_foot) {

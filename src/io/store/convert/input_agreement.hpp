@@ -41,8 +41,8 @@ std::optional<CommonQuanta> common_quanta(std::span<const std::filesystem::path>
                                           std::span<const CloudInfo> infos,
                                           std::optional<double> scale);
 
-/// The remark on inputs of floating-point numbers beside others of integers; nullopt where all are
-/// alike.
+/// The remark that some inputs have floating-point coordinates and others integers; nullopt where
+/// all are alike.
 std::optional<Message> remark_on_mixture(std::span<const std::filesystem::path> files,
                                          std::span<const CloudInfo> infos,
                                          const Quantisation& quantisation);

@@ -32,7 +32,7 @@ inline FileState state_of(const std::filesystem::path& path) {
 }
 
 /// Describes the files that a pass reads in pieces by name, size and hash, from the bytes of the
-/// pieces. Only the bytes before, between and behind the pieces are read for it.
+/// pieces. Only the bytes before, between and after the pieces are read for it.
 class FileHashes {
  public:
   /// wanted: which of the files to describe; pieces of others are ignored.

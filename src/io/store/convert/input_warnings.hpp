@@ -38,7 +38,7 @@ std::optional<Message> warning_on_skipped(std::span<const std::string> reasons);
 std::optional<Box> warn_of_inputs(const EnvironmentSource& environment, const FileBoxes& boxes,
                                   const StoreMetadata& metadata, MessageLog& log);
 
-/// Warns where many of the `points` points are at one and the same place.
+/// Warns where many of the `points` points are at the same place.
 void warn_of_places(const EnvironmentSource& environment, const PlaceCounter& places,
                     std::uint64_t points, MessageLog& log);
 

@@ -16,10 +16,10 @@
 
 namespace clearway {
 
-/// Share of the points above which a warning is due where they are at one place, provided that they
-/// are at least kSamePlacePoints.
+/// Share of the points above which a warning is due where they are at the same place, provided that
+/// they are at least kSamePlacePoints.
 inline constexpr double kSamePlaceShare = 0.01;
-/// Least number of points at one place for a warning.
+/// Least number of points at the same place for a warning.
 inline constexpr std::uint64_t kSamePlacePoints = 10;
 
 /// A place in the store's integers.

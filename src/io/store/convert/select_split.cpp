@@ -124,7 +124,7 @@ int longest_side(const QuantumBounds& b, const double* scale) {
   return longest;
 }
 
-/// Copies the points left of a split to the front of `to` and the others behind them. Each side
+/// Copies the points left of a split to the front of `to` and the others after them. Each side
 /// keeps the order of the points, which come in source order, so that ties are broken by source
 /// index.
 class Parting {

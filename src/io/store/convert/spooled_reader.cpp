@@ -30,7 +30,7 @@ class SpooledReader final : public PointReader {
 
   bool read_stream(PointBatch& batch) {
     if (!stream_->read(batch)) {
-      info_ = stream_->info();  // a CRS behind the points is known now
+      info_ = stream_->info();  // a CRS after the points is known now
       stream_.reset();
       next_ = spooled_;
       return false;

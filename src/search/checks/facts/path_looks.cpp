@@ -1,5 +1,9 @@
 #include "search/checks/facts/path_looks.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -19,7 +23,8 @@ constexpr std::uint64_t kSurelyBelow = 10, kFewestBelow = 3;
 constexpr std::uint64_t kSurelyBeside = 3;
 constexpr double kPartOfGround = 1.0 / 32;
 // The following lengths are in metres.
-/// Added to the box along the path, so that scanned points may be expected in it.
+/// By how much a box beside the model is extended along the path, so that it is long enough for the
+/// scan to have points in it.
 constexpr double kBesideMargin = 1;
 /// How far the ground may reach above the model's lowest point.
 constexpr double kIntoModel = 0.3;
@@ -29,8 +34,8 @@ constexpr double kClosestApart = 0.5, kFarthestApart = 2;
 /// How far around a scanner on a tripod or a vehicle nothing is scanned, because it stands there.
 /// Below a model that is smaller than this, ground may be expected only at the model's edge.
 constexpr double kScannerShadow = 1;
-/// Width in metres of the narrowest column below a small model, which has to hold points of the
-/// ground.
+/// Least width in metres of the column below a model in which points of the ground are looked for;
+/// it is wider than a model that is smaller than this.
 constexpr double kNarrowest = 1;
 /// Diagonal of a block of 64 points of a surface in units of the scan's spacing: such a block is 8
 /// spacings wide and 8 spacings high.
@@ -58,7 +63,8 @@ Box inner_body(const Box& model, double metre) {
   return body;
 }
 
-/// Looks around the model at single poses.
+/// Looks around the model at single poses. Each thread has one of its own, because the points that
+/// it reads are kept.
 class Looking {
  public:
   Looking(const Question& question, const PathCover& cover)
@@ -68,9 +74,9 @@ class Looking {
         slice_(body_slice(question.model)),
         inner_(inner_body(question.model, question.metre)) {}
 
+  /// look.covered is known already.
   void at(Look& look) const {
     const Pose& pose = question_.query.poses[look.pose];
-    look.covered = cover_.covers(moved(slice_, pose));
     look.height = height_above_ground(points_, inner_, pose);
     if (!look.covered) return;
     const Box ground = below(pose);
@@ -87,13 +93,13 @@ class Looking {
     return cover_.scan().typical_block() / kSpacingsOfBlock / scale_of(pose);
   }
 
-  /// The number of points that are surely ground: a part of what a ground that fills the box would
-  /// have. The floor of a tunnel may be narrow, and around a scanner that stands still points are
-  /// scarce where others are dense.
+  /// The number of points in the box that are surely ground and not noise: a fraction of those that
+  /// ground on its whole area would have. The floor of a tunnel may be narrow, and around a scanner
+  /// that stands still points are scarce where others are dense.
   std::uint64_t surely_below(const Box& ground, const Pose& pose) const {
     const double area = (ground.hi.x - ground.lo.x) * (ground.hi.y - ground.lo.y);
     const double part = kPartOfGround * area / (spacing(pose) * spacing(pose));
-    return part >= kSurelyBelow  // large also where all points are at one place
+    return part >= kSurelyBelow  // large also where all points are at the same place
                ? kSurelyBelow
                : std::max(kFewestBelow, static_cast<std::uint64_t>(part));
   }
@@ -109,7 +115,7 @@ class Looking {
   }
 
   /// The column below the slice, wider by one spacing of the scan and no more, because ground
-  /// beside the model tells nothing of the way that it takes. The column reaches out of the shadow
+  /// beside the model says nothing about what it runs over. The column reaches out of the shadow
   /// of a scanner.
   Box below(const Pose& pose) const {
     Box box = slice_;
@@ -122,7 +128,8 @@ class Looking {
     return box;
   }
 
-  /// side: 1 for the left of a model whose longer side points forward, -1 for its right.
+  /// Whether the scan has points beside the model at a pose. side: 1 for the left of a model whose
+  /// longer side points forward, -1 for its right.
   bool is_beside(int side, const Pose& pose) const {
     return std::ranges::any_of(kBands, [&](const Band& band) {
       return points_.has(beside(side, band, pose), pose, kSurelyBeside);
@@ -207,8 +214,20 @@ std::vector<Look> chosen_looks(const Question& question) {
 
 PathLooks::PathLooks(const Question& question, const PathCover& cover)
     : looks_(chosen_looks(question)), reach_(cover.reach()) {
-  const Looking looking(question, cover);
-  for (Look& look : looks_) looking.at(look);
+  const Box slice = body_slice(question.model);
+  for (Look& look : looks_) {
+    look.covered = cover.covers(moved(slice, question.query.poses[look.pose]));
+  }
+  // Looks that follow each other read the same cells, so a thread takes several of them.
+  constexpr std::size_t kLooksOfTask = 16;
+  const tbb::blocked_range<std::size_t> all(0, looks_.size(), kLooksOfTask);
+  tbb::parallel_for(
+      all,
+      [&](const tbb::blocked_range<std::size_t>& part) {
+        const Looking looking(question, cover);
+        for (std::size_t i = part.begin(); i < part.end(); ++i) looking.at(looks_[i]);
+      },
+      tbb::simple_partitioner());
 }
 
 double PathLooks::apart() const {

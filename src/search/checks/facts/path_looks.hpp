@@ -34,7 +34,7 @@ struct LookRun {
 /// points.
 class PathLooks {
  public:
-  /// Throws InputError where a cell is damaged.
+  /// Looks on the threads of the calling oneTBB arena. Throws InputError where a cell is damaged.
   PathLooks(const Question& question, const PathCover& cover);
 
   const std::vector<Look>& all() const { return looks_; }
@@ -54,7 +54,7 @@ class PathLooks {
 
   /// Runs of covered looks for all of which `holds`. A run has at least three looks and a length of
   /// at least `least`. Beside looks that the scan does not cover it has to be longer by the scan's
-  /// reach, so that the rim of a gap, of which another warning tells, is not told twice.
+  /// reach, so that the rim of a gap, about which there is another warning, is not reported twice.
   std::vector<LookRun> runs(double least, const std::function<bool(const Look&)>& holds) const;
   double length(const LookRun& run) const {
     return looks_[run.last].along - looks_[run.first].along;

@@ -154,7 +154,7 @@ constexpr std::size_t kMostSmallTopics = 10;
 constexpr double kLeastDistance = 6;  // least distance from camera to conflict, metres
 // Least distance from camera to conflict, in diagonals of the conflict.
 constexpr double kSizesAway = 1.6;
-// Number of poses beside the nearest one that are drawn as a line.
+// Number of poses before and after the nearest one through which the path is drawn as a line.
 constexpr std::size_t kPathPoses = 2000;
 
 Vec3 unit(const Vec3& v, const Vec3& otherwise) {

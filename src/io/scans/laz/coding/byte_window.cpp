@@ -16,7 +16,7 @@ const std::byte* ByteWindow::open(const InputBuffer& input, std::uint64_t begin,
   return buffer_.data();
 }
 
-/// Loads the next piece behind the first `kept` bytes of the buffer.
+/// Loads the next piece after the first `kept` bytes of the buffer.
 void ByteWindow::load(std::size_t kept) {
   const auto padding = static_cast<std::size_t>(most_);
   const std::size_t more = std::min<std::uint64_t>(std::max(kPiece, padding), end_ - next_);

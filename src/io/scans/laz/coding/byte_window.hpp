@@ -28,7 +28,7 @@ class ByteWindow {
                         std::ptrdiff_t most);
 
   /// The address of the byte at `cursor`, from which `most` bytes may be read. Throws DamagedChunk
-  /// where the cursor is behind the end of the run.
+  /// where the cursor is after the end of the run.
   const std::byte* ahead(const std::byte* cursor) {
     if (loaded_ - cursor >= most_) return cursor;
     return refill(cursor);
@@ -48,11 +48,11 @@ class ByteWindow {
   void load(std::size_t kept);
 
   const InputBuffer* input_ = nullptr;
-  std::uint64_t next_ = 0;  ///< position of the byte behind the loaded ones
+  std::uint64_t next_ = 0;  ///< position of the byte after the loaded ones
   std::uint64_t end_ = 0;
   std::ptrdiff_t most_ = 0;
   std::vector<std::byte> buffer_;
-  const std::byte* loaded_ = nullptr;  ///< address behind the last byte loaded
+  const std::byte* loaded_ = nullptr;  ///< address after the last byte loaded
 };
 
 }  // namespace clearway::laz

@@ -40,7 +40,7 @@ class SymbolModel {
 
   /// A symbol not greater than the one at `place`, and rarely much less.
   unsigned guess(std::uint32_t place) const { return guess_[place >> slot_shift_]; }
-  /// Start of the symbol's range; for the symbol behind the last, a number beyond every place.
+  /// Start of the symbol's range; for the symbol after the last, a number beyond every place.
   std::uint32_t first(unsigned symbol) const { return first_[symbol]; }
   bool is_last(unsigned symbol) const { return symbol + 1 == symbols_; }
 
@@ -151,9 +151,10 @@ class BitModel {
 
 /// The arithmetic decoder of LAZ, after A. Said, "Introduction to Arithmetic Coding - Theory and
 /// Practice", HP Laboratories HPL-2004-76. Its inner loop checks no bounds: the caller provides as
-/// many bytes as one point can take, which is kMostBytes... for each call, and kReadAhead more.
+/// many bytes as one point can take, which is the kMostBytes constant of each call, and kReadAhead
+/// more.
 ///
-/// It is a value to be copied, because a loop that works on its own copy keeps it in registers.
+/// Copy it into a local variable for a loop, so that the compiler keeps its state in registers.
 class ArithmeticDecoder {
  public:
   static constexpr std::size_t kStartBytes = 4;

@@ -56,7 +56,7 @@ constexpr ReturnTable<16> kReturnMap14 = return_table<16>(
     "5334444444444555"
     "5334444444444455");
 
-/// The depth of a return, up to 7: the number of returns behind it, or for wrong numbers by how
+/// The depth of a return, up to 7: the number of returns after it, or for wrong numbers by how
 /// much the return number exceeds the number of returns.
 constexpr unsigned return_level(unsigned returns, unsigned number) {
   const unsigned level = returns < number ? number - returns : returns - number;
