@@ -105,7 +105,7 @@ struct Conflict {
   /// Position of nearest_source; none for results before version 3
   std::optional<Vec3> nearest_point = {};
   /// The side of the model or body on which the points lie that it touches at the first pose
-  /// (docs/design/findings.md, "Sides").
+  /// (docs/design/findings.md, "Stations and sides").
   Side side = Side::kUnknown;
   /// Place of the point that obstacle_chainage belongs to, in metres from the pose's position: to
   /// the left along the model's own axis, and up. The model's box is not needed. None if the pose's
