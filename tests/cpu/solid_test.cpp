@@ -11,7 +11,7 @@ using namespace clearway::test;
 namespace {
 
 const Box kRoom{{-4, -3, -1}, {5, 4, 2}};
-const Box kPart{{-0.6, -0.4, -0.3}, {0.7, 0.5, 0.2}};
+const Box kPartOfSolids{{-0.6, -0.4, -0.3}, {0.7, 0.5, 0.2}};
 
 struct SolidScene : SceneChecks<SolidScene> {
   Random random{29};
@@ -21,7 +21,7 @@ struct SolidScene : SceneChecks<SolidScene> {
   std::vector<Pose> poses = smooth_path(random, kRoom, 40);
   double radius = 0.1;
 
-  SolidScene() { bodies.add(box_surface(kPart)); }
+  SolidScene() { bodies.add(box_surface(kPartOfSolids)); }
 
   Query query() const { return bodies.query(poses, radius); }
 };
@@ -37,22 +37,22 @@ TEST_CASE("solids of every kind") {
   SECTION("a box") {}
   SECTION("turned inwards") {
     scene.bodies = {};
-    scene.bodies.add(turned_inwards(box_surface(kPart)));
+    scene.bodies.add(turned_inwards(box_surface(kPartOfSolids)));
   }
   SECTION("a torus") {
     scene.bodies = {};
     scene.bodies.add(torus(0.4, 9, 5));
   }
   SECTION("overlapping ones") {
-    scene.bodies.add(moved_by(box_surface(kPart), {0.5, 0.3, 0.1}));
+    scene.bodies.add(moved_by(box_surface(kPartOfSolids), {0.5, 0.3, 0.1}));
     scene.bodies.add(moved_by(unit_sphere(1), {-0.6, 0, 0.2}));
   }
   SECTION("with a cavity") {
     scene.bodies.add(turned_inwards(box_surface({{-0.3, -0.2, -0.2}, {0.5, 0.4, 0.1}})));
   }
   SECTION("beside and within open ones") {
-    scene.bodies.add(random_surface(scene.random, kPart, 20), false);
-    Surface open = moved_by(box_surface(kPart), {0, 1, 0});
+    scene.bodies.add(random_surface(scene.random, kPartOfSolids, 20), false);
+    Surface open = moved_by(box_surface(kPartOfSolids), {0, 1, 0});
     open.triangles.pop_back();
     scene.bodies.add(open, false);
   }
@@ -75,7 +75,7 @@ TEST_CASE("solids of every kind") {
   SECTION("a radius larger than the scene") { scene.radius = 30; }
   SECTION("a radius below all sizes") {
     scene.bodies = {};
-    scene.bodies.add(mapped(box_surface(kPart), [](const Vec3& v) { return plus({}, 0.1, v); }));
+    scene.bodies.add(mapped(box_surface(kPartOfSolids), [](const Vec3& v) { return plus({}, 0.1, v); }));
     scene.radius = 1e-3;
   }
   scene.check();
