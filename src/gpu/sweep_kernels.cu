@@ -12,8 +12,9 @@ constexpr unsigned kThreads = kWarpsPerBlock * kWarpLanes;
 /// do, because latency is what there is to hide.
 constexpr unsigned kBlocksPerProcessor = 8;
 
-/// Number of thread blocks that run on a processor at a time in a search for clearances, which needs
-/// more registers than a search for collisions: with more blocks it would spill them to memory.
+/// Number of thread blocks that run on a processor at a time in a search for clearances, which
+/// needs more registers than a search for collisions: with more blocks it would spill them to
+/// memory.
 constexpr unsigned kClearanceBlocks = 4;
 
 __device__ void tally(unsigned long long* total, std::uint64_t of_lane) {

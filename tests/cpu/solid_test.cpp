@@ -75,7 +75,8 @@ TEST_CASE("solids of every kind") {
   SECTION("a radius larger than the scene") { scene.radius = 30; }
   SECTION("a radius below all sizes") {
     scene.bodies = {};
-    scene.bodies.add(mapped(box_surface(kPartOfSolids), [](const Vec3& v) { return plus({}, 0.1, v); }));
+    scene.bodies.add(
+        mapped(box_surface(kPartOfSolids), [](const Vec3& v) { return plus({}, 0.1, v); }));
     scene.radius = 1e-3;
   }
   scene.check();
