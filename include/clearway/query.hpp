@@ -37,6 +37,14 @@ struct QueryParameters {
   /// search.
   std::vector<Box> ignore_boxes = {};
 
+  /// Whether to find which places that the model sweeps no beam of the scanner passed through. Only
+  /// for an environment that knows where its scanner stood.
+  bool seen = false;
+  /// Side of the cubes in which seen space is judged, metres; 0: 0.2 m.
+  double seen_cube = 0;
+  /// Groups of fewer unseen cubes than this are counted, but make no verdict undecided.
+  std::uint32_t seen_min = 8;
+
   bool ignores_points() const { return !ignore_classes.empty() || !ignore_boxes.empty(); }
   friend bool operator==(const QueryParameters&, const QueryParameters&) = default;
 };

@@ -114,6 +114,7 @@ std::vector<OptionKey> query_keys() {
     keys.push_back({field.name, field.option,
                     std::is_same_v<Value, bool>               ? ValueKind::kFlag
                     : std::is_same_v<Value, double>           ? ValueKind::kLength
+                    : std::is_same_v<Value, std::uint32_t>    ? ValueKind::kCount
                     : std::is_same_v<Value, std::vector<Box>> ? ValueKind::kLists
                                                               : ValueKind::kList});
   };

@@ -48,7 +48,9 @@ void ask_for_part(const Shard& shard, const std::string& store, nlohmann::ordere
 
 nlohmann::ordered_json question_of(const ResultHeader& header) {
   nlohmann::ordered_json question;
-  for_each_value_field([&](const auto& field) { question[field.name] = field.of(header); });
+  for_each_value_field([&](const auto& field) {
+    if (field.is_told(header)) question[field.name] = field.of(header);
+  });
   question.update({{"single_precision", header.float_precision},
                    {"environment_points", header.environment_points},
                    {"environment_hash", hash_text(header.environment_hash)},

@@ -207,7 +207,14 @@ void write_ignored_points(JsonText& json, const ResultHeader& header, const Answ
 void write_query(JsonText& json, const ReportFacts& facts) {
   const ResultHeader& header = facts.result.reader().header();
   json.key("query").begin('{');
-  for_each_value_field([&](const auto& field) { json.field(field.name, field.of(header)); });
+  for_each_value_field([&](const auto& field) {
+    if (!field.is_told(header)) return;
+    if constexpr (std::is_same_v<std::decay_t<decltype(field.of(header))>, std::uint32_t>) {
+      json.field(field.name, std::uint64_t{field.of(header)});
+    } else {
+      json.field(field.name, field.of(header));
+    }
+  });
   json.field("exact", header.tolerance == 0 && !header.float_precision).end('}');
   write_ignored_points(json, header, facts.answer);
 }

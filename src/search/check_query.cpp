@@ -109,6 +109,23 @@ void check_tolerance(const QueryParameters& query, Engine engine) {
   }
 }
 
+/// Throws UsageError where seen space is asked for in part, or cannot be known.
+void check_seen(const QueryParameters& query, const SearchOptions& options) {
+  const QueryParameters usual;
+  if (!query.seen && (query.seen_cube != usual.seen_cube || query.seen_min != usual.seen_min)) {
+    throw UsageError("a cube or a least group of seen space: expected seen space to be asked for",
+                     Remedy::kNone);
+  }
+  if (!query.seen) return;
+  if (query.tolerance > 0) {
+    throw UsageError("a tolerance and seen space cannot be combined");
+  }
+  if (options.float_precision) {
+    throw UsageError("single precision and seen space cannot be combined");
+  }
+  if (query.seen_min == 0) throw UsageError("the least group of unseen cubes has at least 1 cube");
+}
+
 void check_numbers(const QueryParameters& query, const SearchOptions& options) {
   const auto check = [](const char* name, double value, bool may_be_zero) {
     if (std::isfinite(value) && (value > 0 || (may_be_zero && value == 0))) return;
@@ -201,6 +218,7 @@ void check_query(const QueryParameters& query, const SearchOptions& options) {
   check_ignored(query);
   const Engine engine = chosen_engine(options);
   if (query.tolerance > 0) check_tolerance(query, engine);
+  check_seen(query, options);
   if (query.clearance > 0 && query.between_poses) {
     throw UsageError(
         "clearances and motion between poses cannot be combined: clearances are at poses");

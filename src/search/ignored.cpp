@@ -235,7 +235,7 @@ Query query_of_ignored(const Query& query) {
 CollidingIgnored count_colliding_ignored(const StoreReader& store, const Query& query,
                                          std::uint64_t memory_bytes, PageEngineKind& kind,
                                          const ShardCells* only, Progress& progress) {
-  PageBudget budget(store, query, query, 0, memory_bytes, kind, only,
+  PageBudget budget(store, query, query, 0, memory_bytes, kind, only, std::nullopt,
                     IgnoredPoints::Search::kIgnored);
   budget.find();
   throw_if_stopped(progress);

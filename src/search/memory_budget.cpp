@@ -39,21 +39,22 @@ std::uint64_t PageEngineKind::most_poses(const MotionTree& motion,
   return most;
 }
 
-PageBudget::PageBudget(const StoreReader& store, const Query& asked, const Query& searched,
+PageBudget::PageBudget(const PackedCloud& cloud, const Query& asked, const Query& searched,
                        std::uint64_t thinned_bytes, std::uint64_t memory_bytes,
-                       PageEngineKind& kind, const ShardCells* only, IgnoredPoints::Search search)
-    : store_(store),
+                       PageEngineKind& kind, const ShardCells* only,
+                       std::optional<std::uint64_t> write_bytes, IgnoredPoints::Search search)
+    : cloud_(cloud),
       asked_(asked),
       memory_bytes_(memory_bytes),
       kind_(kind),
       only_(only),
-      keeps_answer_(search == IgnoredPoints::Search::kOthers),
-      ignored_(store, asked, search),
+      least_write_bytes_(write_bytes),
+      ignored_(cloud, asked, search),
       masked_(asked.ignores_points()),
       trees_(kind.whose_trees(searched), kind.needs().threads - kind.needs().waiting_threads),
       building_bytes_(tree_building_bytes(asked)),
-      kept_bytes_(program_bytes(kind.needs().threads) + input_bytes(store, asked) + thinned_bytes +
-                  (keeps_answer_ ? search_result_bytes(store, asked) : 0)) {}
+      kept_bytes_(program_bytes(kind.needs().threads) + input_bytes(cloud, asked) + thinned_bytes +
+                  (write_bytes ? search_result_bytes(cloud, asked) : 0)) {}
 
 void PageBudget::find() {
   const std::vector<PageEngineKind::IndexSize> sizes = kind_.index_sizes();
@@ -68,11 +69,11 @@ void PageBudget::find() {
 /// Bytes that are kept from here to the end of the run. Each page in flight has at most one record
 /// of the journal at a time.
 std::uint64_t PageBudget::kept_bytes(const SlotLayout& layout) const {
-  if (!keeps_answer_) return kept_bytes_;
+  if (!least_write_bytes_) return kept_bytes_;
   const std::uint64_t pages = std::uint64_t{kind_.needs().devices} * layout.slots;
   const auto threads = static_cast<std::uint64_t>(kind_.needs().threads);
   return kept_bytes_ +
-         SearchJournal::most_bytes(store_, asked_, static_cast<int>(std::min(pages, threads)));
+         SearchJournal::most_bytes(cloud_, asked_, static_cast<int>(std::min(pages, threads)));
 }
 
 /// Bytes that the search starts with: trees, index and plan.
@@ -98,7 +99,7 @@ bool PageBudget::fits_with(const PageEngineKind::IndexSize& size, bool any_layou
   const Stopwatch clock;
   const PoseReach& reach = kind_.build_index(trees_, size.bytes);
   const double indexed = clock.seconds();
-  cells_ = kind_.plan_cells(store_, reach);
+  cells_ = kind_.plan_cells(cloud_, reach);
   std::erase_if(cells_, [&](const PlannedCell& cell) {
     return (only_ != nullptr && !only_->contains(cell.cell)) || ignored_.skips(cell.cell);
   });
@@ -108,7 +109,7 @@ bool PageBudget::fits_with(const PageEngineKind::IndexSize& size, bool any_layou
   const std::uint64_t planned = planned_bytes();
   const std::uint64_t most_poses = kind_.most_poses(trees_.motion, cells_);
   for (const SlotLayout& layout :
-       layouts(kind_.needs(), smallest_page_bytes(store_, cells_, masked_))) {
+       layouts(kind_.needs(), smallest_page_bytes(cloud_, cells_, masked_))) {
     if (fits(layout, planned, building, most_poses)) {
       fits(as_needed(layout), planned, building, most_poses);
       return true;
@@ -120,7 +121,7 @@ bool PageBudget::fits_with(const PageEngineKind::IndexSize& size, bool any_layou
 
 /// The layout reduced to what the plan's pages fill; the pages stay the same.
 SlotLayout PageBudget::as_needed(const SlotLayout& layout) const {
-  const auto pages = paginate(store_, cells_, layout.page_bytes, layout.cells, masked_);
+  const auto pages = paginate(cloud_, cells_, layout.page_bytes, layout.cells, masked_);
   SlotLayout needed{.slots = 1, .page_bytes = 0, .cells = 1};
   for (const PlannedPage& page : pages) {
     needed.page_bytes = std::max(needed.page_bytes, page.shape.bytes());
@@ -137,7 +138,7 @@ bool PageBudget::fits(const SlotLayout& layout, std::uint64_t planned, std::uint
   const std::uint64_t searching = planned + kind_.host_bytes(layout, most_poses);
   const std::uint64_t kept = kept_bytes(layout);
   layout_ = layout;
-  needed_bytes_ = kept + std::max(searching, keeps_answer_ ? least_write_bytes(store_) : 0);
+  needed_bytes_ = kept + std::max(searching, least_write_bytes_.value_or(0));
   const std::uint64_t budget = std::max(needed_bytes_, kept + building);
   const std::uint64_t on_device = kind_.device_bytes(layout);
   const bool device_fits = on_device <= kind_.needs().most_device_bytes;
@@ -163,9 +164,9 @@ std::uint64_t bytes_of(const Model& model) {
 
 }  // namespace
 
-std::uint64_t input_bytes(const StoreReader& store, const Query& query) {
+std::uint64_t input_bytes(const PackedCloud& cloud, const Query& query) {
   std::uint64_t bytes =
-      store.allocated_bytes() + bytes_of(query.model) + query.poses.size() * sizeof(Pose);
+      cloud.allocated_bytes() + bytes_of(query.model) + query.poses.size() * sizeof(Pose);
   for (const Body& body : query.bodies) {
     // The search has a copy of model and poses.
     bytes +=
@@ -174,18 +175,18 @@ std::uint64_t input_bytes(const StoreReader& store, const Query& query) {
   return bytes;
 }
 
-std::uint64_t search_result_bytes(const StoreReader& store, const Query& query) {
+std::uint64_t search_result_bytes(const PackedCloud& cloud, const Query& query) {
   const std::uint64_t a_slot = (query.first_pose ? sizeof(std::uint32_t) : 0) +
                                (query.clearance > 0 ? sizeof(double) + sizeof(std::uint32_t) : 0);
   const std::uint64_t a_pose = query.profile > 0 ? sizeof(ProfilePoint) + sizeof(double) : 0;
-  return store.entry_count() / 8 + a_slot * store.entry_count() + a_pose * query.poses.size() +
-         last_pose_bytes(store, query);
+  return cloud.entry_count() / 8 + a_slot * cloud.entry_count() + a_pose * query.poses.size() +
+         last_pose_bytes(cloud, query);
 }
 
-std::uint64_t last_pose_bytes(const StoreReader& store, const Query& query) {
+std::uint64_t last_pose_bytes(const PackedCloud& cloud, const Query& query) {
   if (!query.first_pose) return 0;
-  const std::uint64_t inputs = input_bytes(store, query) - store.allocated_bytes();
-  return store.entry_count() / 8 + store.entry_count() * sizeof(std::uint32_t) + inputs;
+  const std::uint64_t inputs = input_bytes(cloud, query) - cloud.allocated_bytes();
+  return cloud.entry_count() / 8 + cloud.entry_count() * sizeof(std::uint32_t) + inputs;
 }
 
 std::uint64_t tree_building_bytes(const Query& query) {

@@ -9,7 +9,7 @@
 #include "clearway/query.hpp"
 #include "core/page/page_engine.hpp"
 #include "core/query/ignored_points.hpp"
-#include "io/store/store_reader.hpp"
+#include "core/cloud/packed_cloud.hpp"
 #include "search/kinds/page_engine_kind.hpp"
 #include "search/shard_cells.hpp"
 
@@ -21,12 +21,14 @@ namespace clearway {
 class PageBudget {
  public:
   /// asked: the query as the caller put it. searched: what a tolerance leaves of it, in
-  /// thinned_bytes bytes. only: the cells to plan, null for all. search: which points are searched;
-  /// ignored points are only counted, so that no answer, journal or result takes memory. All
-  /// references outlive it.
-  PageBudget(const StoreReader& store, const Query& asked, const Query& searched,
+  /// thinned_bytes bytes. only: the cells to plan, null for all. write_bytes: the least memory with
+  /// which the answer is written; nullopt where the caller takes the answer page by page, so that
+  /// no answer, journal or result takes memory. search: which points are searched. All references
+  /// outlive it.
+  PageBudget(const PackedCloud& cloud, const Query& asked, const Query& searched,
              std::uint64_t thinned_bytes, std::uint64_t memory_bytes, PageEngineKind& kind,
-             const ShardCells* only, IgnoredPoints::Search search = IgnoredPoints::Search::kOthers);
+             const ShardCells* only, std::optional<std::uint64_t> write_bytes,
+             IgnoredPoints::Search search = IgnoredPoints::Search::kOthers);
 
   /// Throws ResourceError naming the smallest budget that works.
   void find();
@@ -49,12 +51,12 @@ class PageBudget {
   bool fits(const SlotLayout& layout, std::uint64_t planned, std::uint64_t building,
             std::uint64_t most_poses);
 
-  const StoreReader& store_;
+  const PackedCloud& cloud_;
   const Query& asked_;
   const std::uint64_t memory_bytes_;
   PageEngineKind& kind_;
   const ShardCells* only_;
-  const bool keeps_answer_;
+  const std::optional<std::uint64_t> least_write_bytes_;
   const IgnoredPoints ignored_;
   const bool masked_;  ///< whether pages have masks
   const QueryTrees trees_;
@@ -77,16 +79,16 @@ namespace clearway {
 /// Bytes of the program itself: its libraries' data, stacks of threads, buffers of files.
 std::uint64_t program_bytes(int threads);
 
-/// Bytes of the store's index, of models and of poses.
-std::uint64_t input_bytes(const StoreReader& store, const Query& query);
+/// Bytes of the cloud's index, of models and of poses.
+std::uint64_t input_bytes(const PackedCloud& cloud, const Query& query);
 
 /// Bytes of a search's result: hits, first and last poses and clearances of all points, nearest
 /// points and chainage of all poses.
-std::uint64_t search_result_bytes(const StoreReader& store, const Query& query);
+std::uint64_t search_result_bytes(const PackedCloud& cloud, const Query& query);
 
 /// Bytes that a search for last poses keeps besides the result of the first search: the other hits,
 /// and a copy of the inputs; 0 where no first poses are asked for.
-std::uint64_t last_pose_bytes(const StoreReader& store, const Query& query);
+std::uint64_t last_pose_bytes(const PackedCloud& cloud, const Query& query);
 
 /// Bytes that are taken while the trees over model and poses are built. To choose what a tolerance
 /// keeps takes less.

@@ -115,7 +115,7 @@ Found search_pages(const StoreReader& store, const Query& query, std::uint64_t m
   const SearchedQuery searched(query, report, log);
   throw_if_stopped(progress);
   PageBudget budget(store, query, searched.get(), searched.allocated_bytes(), memory_bytes, kind,
-                    only);
+                    only, least_write_bytes(store));
   budget.find();
   report_plan(budget, kind, report, log);
 

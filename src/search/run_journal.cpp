@@ -19,6 +19,7 @@ constexpr const char* kReplaces = "overwrites";
 std::string yes_or_no(bool value) { return value ? "yes" : "no"; }
 std::string text_of(bool value) { return yes_or_no(value); }
 std::string text_of(double value) { return format_number(value); }
+std::string text_of(std::uint32_t value) { return std::to_string(value); }
 
 /// Whether first poses are asked for, and between poses with "closed way" for ways that include
 /// their ends. Journals of version 0.1.0 have "yes" there, because their ways did not include them.

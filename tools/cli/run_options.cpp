@@ -25,6 +25,13 @@ CLI::Option* add_field(CLI::App& command, const QueryField<bool>& field, RunOpti
   return command.add_flag(field.option, options.query.*field.member, field.help);
 }
 
+CLI::Option* add_field(CLI::App& command, const QueryField<std::uint32_t>& field,
+                       RunOptions& options) {
+  return command.add_option(field.option, options.query.*field.member, field.help)
+      ->type_name("N")
+      ->check(CLI::Range(1U, 1000000000U));
+}
+
 CLI::Option* add_field(CLI::App& command, const QueryField<std::vector<std::uint8_t>>& field,
                        RunOptions& options) {
   return command

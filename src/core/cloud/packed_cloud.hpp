@@ -241,6 +241,9 @@ class PackedCloud {
   /// Throws InputError if the cell is damaged.
   virtual PackedChunk<std::uint8_t> classes(std::uint32_t /*cell*/) const { return {}; }
 
+  /// Bytes of memory that cells, tree and blocks occupy.
+  virtual std::uint64_t allocated_bytes() const { return 0; }
+
   std::uint32_t blocks_per_cell() const {
     return static_cast<std::uint32_t>(divide_up(cell_points(), kBlockPoints));
   }

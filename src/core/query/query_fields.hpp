@@ -10,7 +10,7 @@ namespace clearway {
 
 /// A parameter of a query, with all texts and names for the places that list parameters: the
 /// command line, campaigns, results and their comparison, journals, pages and Python. Value: bool,
-/// double (a length in metres), or a list.
+/// double (a length in metres), a count, or a list.
 template <typename Value>
 struct QueryField {
   Value QueryParameters::*member;
@@ -33,6 +33,14 @@ struct QueryField {
     }
   }
   bool is_default(const QueryParameters& query) const { return of(query) == of(QueryParameters{}); }
+  /// Whether lists of a query's parameters name it: those of the first releases always, and later
+  /// ones where they are not the default.
+  bool is_told(const QueryParameters& query) const {
+    if constexpr (std::is_same_v<Value, double>) {
+      if (member == &QueryParameters::tolerance) return true;
+    }
+    return since > 0 || !is_default(query);
+  }
 };
 
 /// Calls visit(field) for each parameter that is one value, in the order in which results keep
@@ -73,6 +81,19 @@ void for_each_value_field(Visit visit) {
       "0.001; engine sweep only",
       "Points whose distance differs from the radius by no more than this may be answered wrongly, "
       "which saves time; metres; 0: the answer is exact."});
+  visit(QueryField<bool>{
+      &Q::seen, "seen", "seen space", "--seen",
+      "Also find which places that the model sweeps no beam of the scanner passed through; the "
+      "store has to know where the scanner stood",
+      "Whether to find which places that the model sweeps no beam of the scanner passed through."});
+  visit(QueryField<double>{
+      &Q::seen_cube, "seen_cube", "cube of seen space", "--seen-cube",
+      "Side of the cubes in which seen space is judged, for example 0.1 (default: 0.2 m)",
+      "Side of the cubes in which seen space is judged; metres; 0: 0.2 m."});
+  visit(QueryField<std::uint32_t>{
+      &Q::seen_min, "seen_min", "least group of unseen cubes", "--seen-min",
+      "Groups of fewer unseen cubes than this are counted, but not listed (default: 8)",
+      "Groups of fewer unseen cubes than this are counted, but not listed."});
 }
 
 /// Calls visit(field) for each parameter that is a list, of points that are left out of the search.

@@ -99,6 +99,10 @@ std::string field_text(const QueryField<bool>& field, const ResultHeader& header
   return old ? "asked for, as version 0.1.0 defined them" : "asked for";
 }
 
+std::string field_text(const QueryField<std::uint32_t>& field, const ResultHeader& header) {
+  return std::to_string(field.of(header));
+}
+
 std::string bodies_text(const ResultHeader& header) {
   std::string text;
   for (const std::string& body : header.bodies) text += (text.empty() ? "" : ", ") + body;

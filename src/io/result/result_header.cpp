@@ -200,6 +200,16 @@ void write_field(const hdf5::Id& file, const QueryField<bool>& field,
   hdf5::write_number(file, field.name, static_cast<std::uint8_t>(field.of(query)));
 }
 
+void write_field(const hdf5::Id& file, const QueryField<std::uint32_t>& field,
+                 const QueryParameters& query) {
+  hdf5::write_number(file, field.name, field.of(query));
+}
+
+void read_field(const hdf5::Id& file, const QueryField<std::uint32_t>& field,
+                const std::string& name, QueryParameters& query) {
+  query.*field.member = hdf5::read_number<std::uint32_t>(file, field.name, name);
+}
+
 void read_field(const hdf5::Id& file, const QueryField<double>& field, const std::string& name,
                 QueryParameters& query) {
   query.*field.member = hdf5::read_number<double>(file, field.name, name);

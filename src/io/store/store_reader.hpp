@@ -79,7 +79,7 @@ class StoreReader final : public PackedCloud {
   Touched touched() const;
 
   /// Bytes of memory that the index occupies.
-  std::uint64_t allocated_bytes() const;
+  std::uint64_t allocated_bytes() const override;
 
  private:
   std::span<const std::byte> checked_chunk(std::uint32_t cell, int dataset) const;

@@ -127,6 +127,9 @@ class Query:
     clearance: float
     profile: float
     tolerance: float
+    seen: bool
+    seen_cube: float
+    seen_min: int
     ignore_classes: list[int]
     ignore_boxes: list[Box]
     allow_non_rigid: bool
@@ -145,6 +148,9 @@ class QueryParameters:
     clearance: Final[float]
     profile: Final[float]
     tolerance: Final[float]
+    seen: Final[bool]
+    seen_cube: Final[float]
+    seen_min: Final[int]
     ignore_classes: Final[list[int]]
     ignore_boxes: Final[list[Box]]
 class IgnoredPointCounts:

@@ -235,19 +235,19 @@ PageEngineNeeds needs_of_bodies(PageEngineNeeds needs, std::size_t bodies) {
 
 /// make: makes the engine kind of one body from that body's query.
 template <typename Make>
-std::unique_ptr<PageEngineKind> body_kind(const StoreReader& store, const Query& query, Make make) {
+std::unique_ptr<PageEngineKind> body_kind(const PackedCloud& cloud, const Query& query, Make make) {
   std::vector<Query> queries = body_queries(query);
   BodyKind::Kinds kinds;
   for (const Query& body : queries) kinds.push_back(make(body));
-  return std::make_unique<BodyKind>(store, query, std::move(queries), std::move(kinds));
+  return std::make_unique<BodyKind>(cloud, query, std::move(queries), std::move(kinds));
 }
 
 }  // namespace
 
-BodyKind::BodyKind(const StoreReader& store, const Query& query, std::vector<Query> queries,
+BodyKind::BodyKind(const PackedCloud& cloud, const Query& query, std::vector<Query> queries,
                    Kinds kinds)
     : PageEngineKind(needs_of_bodies(kinds.front()->needs(), kinds.size())),
-      store_(store),
+      cloud_(cloud),
       query_(query),
       queries_(std::move(queries)),
       kinds_(std::move(kinds)) {
@@ -336,7 +336,7 @@ std::uint64_t BodyKind::index_bytes() const {
 
 std::uint64_t BodyKind::host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const {
   std::uint64_t bytes =
-      needs_.devices * BodyEngine::answer_bytes(store_, query_, layout, most_poses);
+      needs_.devices * BodyEngine::answer_bytes(cloud_, query_, layout, most_poses);
   for (const auto& kind : kinds_) bytes += kind->host_bytes(layout, most_poses);
   return bytes;
 }
@@ -366,7 +366,7 @@ PageEngines BodyKind::make(const SlotLayout& layout) {
   }
   PageEngines engines;
   for (auto& bodies : of_device) {
-    engines.push_back(std::make_unique<BodyEngine>(store_, query_, std::move(bodies), layout));
+    engines.push_back(std::make_unique<BodyEngine>(cloud_, query_, std::move(bodies), layout));
   }
   return engines;
 }
@@ -385,17 +385,17 @@ void BodyKind::report_search(EngineList engines, SearchReport& report,
   }
 }
 
-std::unique_ptr<PageEngineKind> cpu_body_kind(const StoreReader& store, const Query& query,
+std::unique_ptr<PageEngineKind> cpu_body_kind(const PackedCloud& cloud, const Query& query,
                                               const SearchOptions& options) {
-  return body_kind(store, query,
-                   [&](const Query& body) { return cpu_sweep_kind(store, body, options); });
+  return body_kind(cloud, query,
+                   [&](const Query& body) { return cpu_sweep_kind(cloud, body, options); });
 }
 
 #ifdef CLEARWAY_CUDA
-std::unique_ptr<PageEngineKind> cuda_body_kind(const StoreReader& store, const Query& query,
+std::unique_ptr<PageEngineKind> cuda_body_kind(const PackedCloud& cloud, const Query& query,
                                                const SearchOptions& options, const OpenGpus& open) {
-  return body_kind(store, query,
-                   [&](const Query& body) { return cuda_kind(store, body, options, open); });
+  return body_kind(cloud, query,
+                   [&](const Query& body) { return cuda_kind(cloud, body, options, open); });
 }
 #endif
 

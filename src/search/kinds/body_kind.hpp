@@ -16,7 +16,7 @@ class BodyKind final : public PageEngineKind {
 
   /// query: the query with all bodies. queries, kinds: the query and the engine kind of each body
   /// by itself, all on the same devices. What is referred to outlives this object.
-  BodyKind(const StoreReader& store, const Query& query, std::vector<Query> queries, Kinds kinds);
+  BodyKind(const PackedCloud& cloud, const Query& query, std::vector<Query> queries, Kinds kinds);
 
   /// The query of the first body, because build_index() gets that body's trees.
   const Query& whose_trees(const Query&) const override { return queries_.front(); }
@@ -39,7 +39,7 @@ class BodyKind final : public PageEngineKind {
   }
 
  private:
-  const StoreReader& store_;
+  const PackedCloud& cloud_;
   const Query& query_;
   const std::vector<Query> queries_;
   const Kinds kinds_;
@@ -52,12 +52,12 @@ class BodyKind final : public PageEngineKind {
 
 /// The sweep of a query with bodies on the CPU. options.threads is not 0. All references outlive
 /// it.
-std::unique_ptr<PageEngineKind> cpu_body_kind(const StoreReader& store, const Query& query,
+std::unique_ptr<PageEngineKind> cpu_body_kind(const PackedCloud& cloud, const Query& query,
                                               const SearchOptions& options);
 
 /// The CUDA engines of a query with bodies, made as by cuda_kind(). `open` is called for every
 /// body, and always chooses the same GPUs.
-std::unique_ptr<PageEngineKind> cuda_body_kind(const StoreReader& store, const Query& query,
+std::unique_ptr<PageEngineKind> cuda_body_kind(const PackedCloud& cloud, const Query& query,
                                                const SearchOptions& options, const OpenGpus& open);
 
 }  // namespace clearway

@@ -26,19 +26,19 @@ constexpr std::uint32_t kPageCells = 16;
 constexpr double kFieldFineness = 3;
 
 /// Bytes of a full page of typical cells: their x, y and z, boxes and nodes.
-std::uint64_t usual_page_bytes(const StoreReader& store) {
-  const std::uint64_t a_cell = 6 * std::uint64_t{store.cell_points()} + 4096;
+std::uint64_t usual_page_bytes(const PackedCloud& cloud) {
+  const std::uint64_t a_cell = 6 * std::uint64_t{cloud.cell_points()} + 4096;
   return kPageCells * a_cell;
 }
 
 /// waiting: the number of threads that wait for each device.
-PageEngineNeeds needs_of(const StoreReader& store, const SearchOptions& options,
+PageEngineNeeds needs_of(const PackedCloud& cloud, const SearchOptions& options,
                          std::uint32_t waiting) {
   const std::size_t gpus = std::max<std::size_t>(options.gpus.size(), 1);
   const auto wanted = static_cast<std::uint32_t>(options.threads) + kPagesOnDevice;
   return {.most_slots = waiting > 1 ? kMostSlots : std::min(kMostSlots, wanted),
           .page_cells = kPageCells,
-          .page_bytes = usual_page_bytes(store),
+          .page_bytes = usual_page_bytes(cloud),
           .threads = options.threads + static_cast<int>(gpus * waiting),
           .waiting_threads = static_cast<int>(gpus * waiting),
           .devices = static_cast<std::uint32_t>(gpus),
@@ -109,25 +109,25 @@ Statistics report_of(EngineList engines, SearchReport& report) {
 template <typename Element>
 class CudaSweepKindOf final : public SweepKindOf<Element> {
  public:
-  CudaSweepKindOf(const StoreReader& store, const Query& query, const SearchOptions& options,
+  CudaSweepKindOf(const PackedCloud& cloud, const Query& query, const SearchOptions& options,
                   OpenGpus open)
-      : SweepKindOf<Element>(needs_of(store, options, 1), store, query, options, kFieldFineness),
+      : SweepKindOf<Element>(needs_of(cloud, options, 1), cloud, query, options, kFieldFineness),
         gpus_(std::move(open), options.end_gpus) {}
 
   void resolve_devices() override { gpus_.resolve(this->needs_); }
 
   std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const override {
     return gpus_.size() *
-           (layout.slots * cuda_sweep_pinned_bytes(filter_->ref(), store_, layout) +
-            SweepEngineOf<Element>::profile_bytes(store_, query_, layout, most_poses));
+           (layout.slots * cuda_sweep_pinned_bytes(filter_->ref(), cloud_, layout) +
+            SweepEngineOf<Element>::profile_bytes(cloud_, query_, layout, most_poses));
   }
   std::uint64_t device_bytes(const SlotLayout& layout) const override {
     const SweepRefOf<Element>& sweep = filter_->ref();
-    return cuda_sweep_bytes(sweep) + layout.slots * cuda_sweep_slot_bytes(sweep, store_, layout);
+    return cuda_sweep_bytes(sweep) + layout.slots * cuda_sweep_slot_bytes(sweep, cloud_, layout);
   }
   PageEngines make(const SlotLayout& layout) override {
     return gpus_.engines([&](int gpu) -> std::unique_ptr<PageEngine> {
-      return std::make_unique<CudaSweepEngineOf<Element>>(gpu, filter_->ref(), store_, layout);
+      return std::make_unique<CudaSweepEngineOf<Element>>(gpu, filter_->ref(), cloud_, layout);
     });
   }
   EngineEnd end(PageEngines engines) const override { return gpus_.end(std::move(engines)); }
@@ -138,7 +138,7 @@ class CudaSweepKindOf final : public SweepKindOf<Element> {
   }
 
  private:
-  using SweepKindOf<Element>::store_;
+  using SweepKindOf<Element>::cloud_;
   using SweepKindOf<Element>::query_;
   using SweepKindOf<Element>::filter_;
 
@@ -147,9 +147,9 @@ class CudaSweepKindOf final : public SweepKindOf<Element> {
 
 class CudaGridKind final : public GridKind {
  public:
-  CudaGridKind(const StoreReader& store, const Query& query, const SearchOptions& options,
+  CudaGridKind(const PackedCloud& cloud, const Query& query, const SearchOptions& options,
                OpenGpus open)
-      : GridKind(needs_of(store, options, kMostSlots), store, query, options),
+      : GridKind(needs_of(cloud, options, kMostSlots), cloud, query, options),
         gpus_(std::move(open), options.end_gpus) {}
 
   void resolve_devices() override { gpus_.resolve(needs_); }
@@ -177,18 +177,18 @@ class CudaGridKind final : public GridKind {
 
 }  // namespace
 
-std::unique_ptr<PageEngineKind> cuda_kind(const StoreReader& store, const Query& query,
+std::unique_ptr<PageEngineKind> cuda_kind(const PackedCloud& cloud, const Query& query,
                                           const SearchOptions& options, OpenGpus open) {
   if (chosen_engine(options) == Engine::kGrid) {
-    return std::make_unique<CudaGridKind>(store, query, options, std::move(open));
+    return std::make_unique<CudaGridKind>(cloud, query, options, std::move(open));
   }
   if (query.model.is_solid()) {
-    return std::make_unique<CudaSweepKindOf<SolidTriangle>>(store, query, options, std::move(open));
+    return std::make_unique<CudaSweepKindOf<SolidTriangle>>(cloud, query, options, std::move(open));
   }
   if (query.model.is_surface()) {
-    return std::make_unique<CudaSweepKindOf<Triangle>>(store, query, options, std::move(open));
+    return std::make_unique<CudaSweepKindOf<Triangle>>(cloud, query, options, std::move(open));
   }
-  return std::make_unique<CudaSweepKindOf<Vec3>>(store, query, options, std::move(open));
+  return std::make_unique<CudaSweepKindOf<Vec3>>(cloud, query, options, std::move(open));
 }
 
 }  // namespace clearway

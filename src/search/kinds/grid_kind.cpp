@@ -6,8 +6,8 @@
 namespace clearway {
 
 const PoseReach& GridKind::build_index(const QueryTrees& trees, std::uint64_t) {
-  scene_.emplace(query_, trees.motion, store_, scene_options_);
-  return reach_.emplace(query_, trees.motion, trees.model, store_);
+  scene_.emplace(query_, trees.motion, cloud_, scene_options_);
+  return reach_.emplace(query_, trees.motion, trees.model, cloud_);
 }
 
 void GridKind::report_statistics(const GridStatistics& s, const MessageLog& log) const {
@@ -17,10 +17,10 @@ void GridKind::report_statistics(const GridStatistics& s, const MessageLog& log)
            " in float, " + format_count(s.exact_tests) + " exact");
 }
 
-CpuGridKind::CpuGridKind(const StoreReader& store, const Query& query, const SearchOptions& options)
+CpuGridKind::CpuGridKind(const PackedCloud& cloud, const Query& query, const SearchOptions& options)
     : GridKind({.most_slots = static_cast<std::uint32_t>(options.threads) + kSlotsAhead,
                 .threads = options.threads},
-               store, query, options) {}
+               cloud, query, options) {}
 
 std::uint64_t CpuGridKind::host_bytes(const SlotLayout& layout, std::uint64_t) const {
   return layout.slots * GridCpuEngine::slot_bytes(*scene_, layout);

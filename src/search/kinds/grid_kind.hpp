@@ -4,7 +4,7 @@
 
 #include "core/grid/grid_reach.hpp"
 #include "core/grid/grid_scene.hpp"
-#include "io/store/store_reader.hpp"
+#include "core/cloud/packed_cloud.hpp"
 #include "search/kinds/page_engine_kind.hpp"
 
 namespace clearway {
@@ -13,10 +13,10 @@ namespace clearway {
 class GridKind : public PageEngineKind {
  public:
   /// options.threads is not 0. All references outlive it.
-  GridKind(PageEngineNeeds needs, const StoreReader& store, const Query& query,
+  GridKind(PageEngineNeeds needs, const PackedCloud& cloud, const Query& query,
            const SearchOptions& options)
       : PageEngineKind(std::move(needs)),
-        store_(store),
+        cloud_(cloud),
         query_(query),
         scene_options_{options.grid_cell,
                        options.float_precision ? GridPrecision::kFloat : GridPrecision::kExact} {}
@@ -30,7 +30,7 @@ class GridKind : public PageEngineKind {
  protected:
   void report_statistics(const GridStatistics& statistics, const MessageLog& log) const;
 
-  const StoreReader& store_;
+  const PackedCloud& cloud_;
   const Query& query_;
   std::optional<GridScene> scene_;
 
@@ -41,7 +41,7 @@ class GridKind : public PageEngineKind {
 
 class CpuGridKind final : public GridKind {
  public:
-  CpuGridKind(const StoreReader& store, const Query& query, const SearchOptions& options);
+  CpuGridKind(const PackedCloud& cloud, const Query& query, const SearchOptions& options);
 
   std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const override;
   PageEngines make(const SlotLayout& layout) override;

@@ -52,7 +52,7 @@ const PoseReach& SweepKindOf<Element>::build_index(const QueryTrees& trees,
                                    .by_need = !this->needs().on_gpu,
                                    .solids = trees.solids_of<Element>()},
                  options_.threads);
-  return filter_.emplace(query_, trees.motion, model, *field_, store_, options_.threads);
+  return filter_.emplace(query_, trees.motion, model, *field_, cloud_, options_.threads);
 }
 
 /// The fineness of the field, which is coarser for few poses, because they need few exact tests. It
@@ -85,27 +85,27 @@ void SweepKindOf<Element>::report_statistics(const SweepStatistics& s, SearchRep
 }
 
 template <typename Element>
-CpuSweepKindOf<Element>::CpuSweepKindOf(const StoreReader& store, const Query& query,
+CpuSweepKindOf<Element>::CpuSweepKindOf(const PackedCloud& cloud, const Query& query,
                                         const SearchOptions& options)
     : SweepKindOf<Element>({.most_slots = static_cast<std::uint32_t>(options.threads) + kSlotsAhead,
                             .threads = options.threads},
-                           store, query, options,
+                           cloud, query, options,
                            query.profile > 0 && !kIsTriangle<Element> ? kProfileFineness : 1) {}
 
 template <typename Element>
 std::uint64_t CpuSweepKindOf<Element>::host_bytes(const SlotLayout& layout,
                                                   std::uint64_t most_poses) const {
   const auto threads = static_cast<std::uint32_t>(options_.threads);
-  return layout.slots * PagePool::slot_bytes(store_, query_, layout) +
+  return layout.slots * PagePool::slot_bytes(cloud_, query_, layout) +
          std::min(layout.slots, threads) *
-             CellSearchOf<Element>::most_bytes(store_, query_, most_poses) +
-         SweepEngineOf<Element>::profile_bytes(store_, query_, layout, most_poses);
+             CellSearchOf<Element>::most_bytes(cloud_, query_, most_poses) +
+         SweepEngineOf<Element>::profile_bytes(cloud_, query_, layout, most_poses);
 }
 
 template <typename Element>
 PageEngines CpuSweepKindOf<Element>::make(const SlotLayout& layout) {
   PageEngines engines;
-  engines.push_back(std::make_unique<SweepEngineOf<Element>>(store_, *filter_, layout));
+  engines.push_back(std::make_unique<SweepEngineOf<Element>>(cloud_, *filter_, layout));
   return engines;
 }
 
@@ -120,14 +120,14 @@ template class SweepKindOf<Vec3>;
 template class SweepKindOf<Triangle>;
 template class SweepKindOf<SolidTriangle>;
 
-std::unique_ptr<PageEngineKind> cpu_sweep_kind(const StoreReader& store, const Query& query,
+std::unique_ptr<PageEngineKind> cpu_sweep_kind(const PackedCloud& cloud, const Query& query,
                                                const SearchOptions& options) {
   if (query.model.is_solid()) {
-    return std::make_unique<CpuSweepKindOf<SolidTriangle>>(store, query, options);
+    return std::make_unique<CpuSweepKindOf<SolidTriangle>>(cloud, query, options);
   }
   if (query.model.is_surface())
-    return std::make_unique<CpuSweepKindOf<Triangle>>(store, query, options);
-  return std::make_unique<CpuSweepKindOf<Vec3>>(store, query, options);
+    return std::make_unique<CpuSweepKindOf<Triangle>>(cloud, query, options);
+  return std::make_unique<CpuSweepKindOf<Vec3>>(cloud, query, options);
 }
 
 template class CpuSweepKindOf<Vec3>;

@@ -4,7 +4,7 @@
 
 #include "core/sweep/field/model_field.hpp"
 #include "core/sweep/sweep_filter.hpp"
-#include "io/store/store_reader.hpp"
+#include "core/cloud/packed_cloud.hpp"
 #include "search/kinds/page_engine_kind.hpp"
 
 namespace clearway {
@@ -16,10 +16,10 @@ class SweepKindOf : public PageEngineKind {
  public:
   /// options.threads is not 0. fineness: the field's (core/sweep/field/model_field.hpp). All
   /// references outlive it.
-  SweepKindOf(PageEngineNeeds needs, const StoreReader& store, const Query& query,
+  SweepKindOf(PageEngineNeeds needs, const PackedCloud& cloud, const Query& query,
               const SearchOptions& options, double fineness)
       : PageEngineKind(std::move(needs)),
-        store_(store),
+        cloud_(cloud),
         query_(query),
         options_(options),
         fineness_(fineness) {}
@@ -35,7 +35,7 @@ class SweepKindOf : public PageEngineKind {
                                 const MessageLog& log);
 
  protected:
-  const StoreReader& store_;
+  const PackedCloud& cloud_;
   const Query& query_;
   const SearchOptions& options_;
   std::optional<ModelField> field_;
@@ -50,7 +50,7 @@ class SweepKindOf : public PageEngineKind {
 template <typename Element>
 class CpuSweepKindOf : public SweepKindOf<Element> {
  public:
-  CpuSweepKindOf(const StoreReader& store, const Query& query, const SearchOptions& options);
+  CpuSweepKindOf(const PackedCloud& cloud, const Query& query, const SearchOptions& options);
 
   std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const override;
   PageEngines make(const SlotLayout& layout) override;
@@ -58,13 +58,13 @@ class CpuSweepKindOf : public SweepKindOf<Element> {
                      const MessageLog& log) const override;
 
  private:
-  using SweepKindOf<Element>::store_;
+  using SweepKindOf<Element>::cloud_;
   using SweepKindOf<Element>::query_;
   using SweepKindOf<Element>::options_;
   using SweepKindOf<Element>::filter_;
 };
 
-std::unique_ptr<PageEngineKind> cpu_sweep_kind(const StoreReader& store, const Query& query,
+std::unique_ptr<PageEngineKind> cpu_sweep_kind(const PackedCloud& cloud, const Query& query,
                                                const SearchOptions& options);
 
 extern template class SweepKindOf<Vec3>;
