@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
 
 #include "clearway/error.hpp"
 #include "core/query/query_fields.hpp"
@@ -48,7 +49,17 @@ void ask_for_part(const Shard& shard, const std::string& store, nlohmann::ordere
 
 nlohmann::ordered_json question_of(const ResultHeader& header) {
   nlohmann::ordered_json question;
-  for_each_value_field([&](const auto& field) { question[field.name] = field.of(header); });
+  for_each_value_field([&](const auto& field) {
+    using Value = std::decay_t<decltype(field.of(header))>;
+    if constexpr (std::is_same_v<Value, std::optional<double>>) {
+      if (field.of(header)) question[field.name] = *field.of(header);
+    } else if constexpr (std::is_same_v<Value, double>) {
+      // Without a budget, states of earlier releases stay valid.
+      if (!belongs_to_budget(field) || header.has_budget()) question[field.name] = field.of(header);
+    } else {
+      question[field.name] = field.of(header);
+    }
+  });
   question.update({{"single_precision", header.float_precision},
                    {"environment_points", header.environment_points},
                    {"environment_hash", hash_text(header.environment_hash)},

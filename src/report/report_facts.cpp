@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -207,7 +208,18 @@ void write_ignored_points(JsonText& json, const ResultHeader& header, const Answ
 void write_query(JsonText& json, const ReportFacts& facts) {
   const ResultHeader& header = facts.result.reader().header();
   json.key("query").begin('{');
-  for_each_value_field([&](const auto& field) { json.field(field.name, field.of(header)); });
+  for_each_value_field([&](const auto& field) {
+    using Value = std::decay_t<decltype(field.of(header))>;
+    if constexpr (std::is_same_v<Value, std::optional<double>>) {
+      if (field.of(header)) json.field(field.name, *field.of(header));
+    } else if constexpr (std::is_same_v<Value, double>) {
+      if (!belongs_to_budget(field) || header.has_budget()) {
+        json.field(field.name, field.of(header));
+      }
+    } else {
+      json.field(field.name, field.of(header));
+    }
+  });
   json.field("exact", header.tolerance == 0 && !header.float_precision).end('}');
   write_ignored_points(json, header, facts.answer);
 }
