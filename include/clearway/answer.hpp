@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "clearway/error_budget.hpp"
 #include "clearway/found_place.hpp"
 #include "clearway/ignored.hpp"
 #include "clearway/progress.hpp"
@@ -19,13 +20,17 @@ namespace clearway {
 /// no colliding point; merge() gives the verdict of all parts together.
 enum class Verdict { kClear, kConflict, kUndecided, kUnknown };
 
-/// Why a verdict is kUndecided.
+/// Why a verdict is kUndecided, in the order in which reasons are listed.
 enum class Reason {
+  kNear,  ///< a point is closer than the margin plus the error budget's U_clear
+  kFew,   ///< points are certainly too close, but too few of them hang together
+  /// Points are near, but the errors are so large that no surface could be a certain conflict
+  kErrorsExceedMargin,
   kQuestionInDoubt  ///< a warning says that the search could not find anything: see is_doubt()
 };
 
 const char* name_of(Verdict verdict);  ///< "clear", "conflict", "undecided" or "unknown"
-const char* name_of(Reason reason);    ///< "question-in-doubt"
+const char* name_of(Reason reason);    ///< "near", "few", "errors-exceed-margin" and so on
 
 /// Whether a warning with this code says that the search could not find anything, whatever stands
 /// in the way, so that an empty result is not an answer: "out-of-reach", "no-points", "no-poses"
@@ -38,9 +43,17 @@ std::vector<std::string> doubts_among(const std::vector<Message>& warnings);
 /// The codes of the warnings that are no doubts by is_doubt(), each once, in alphabetical order.
 std::vector<std::string> codes_beside_doubts(const std::vector<Message>& warnings);
 
+/// What an error budget says of the colliding points.
+struct CertainPoints {
+  std::uint64_t points = 0;  ///< number of points that are certainly too close
+  bool has_group = false;    ///< whether ten or more of them hang together by the query's gap
+};
+
 /// What the tables of a result say in short: their numbers of rows and the places that matter most.
 struct TableSummary {
   std::uint64_t colliding_points = 0;
+  /// Number of points that do not collide but are closer than the margin plus the error budget
+  std::uint64_t near_points = 0;
   std::uint64_t clearance_points = 0;  ///< number of points closer than the clearance asked for
   std::uint64_t inside_points = 0;     ///< number of clearance_points inside a solid of the model
   /// Number of poses closer than the profile's distance asked for
@@ -85,9 +98,16 @@ struct Answer : TableSummary {
   /// length, and in files of several bodies that an earlier release wrote.
   std::optional<SearchedLength> searched;
 
-  /// The verdict. A single colliding point is a conflict, however doubtful the question is.
+  /// The error budget; nullopt if none was given, and the verdict is about the scanned points.
+  std::optional<ErrorBudget> budget;
+  CertainPoints certain;  ///< what the budget says of the colliding points
+
+  /// The verdict. Without an error budget a single colliding point is a conflict, however doubtful
+  /// the question is. With one, a group of points that are certainly too close is.
   Verdict verdict() const;
   std::vector<Reason> reasons() const;  ///< why the verdict is kUndecided; empty for other verdicts
+  /// Whether any point is closer than what a clear passage has to keep free.
+  bool is_near() const { return colliding_points + near_points > 0; }
   /// The place of the least distance that is known; nullopt if no distance is.
   const std::optional<FoundPlace>& nearest() const;
   /// How many points are inside the model; nullopt without solids or clearances.

@@ -117,6 +117,10 @@ struct Conflict {
   /// touches the point with the smallest source index of the first pose. None if the result is not
   /// a vehicle's.
   std::optional<std::uint32_t> body = {};
+  /// Whether the conflict is certain, because ten or more of its points that the error budget says
+  /// are certainly too close hang together by the gap of the search; otherwise it is possible. None
+  /// without a budget.
+  std::optional<bool> certain = {};
 };
 
 /// A group of too few points to be listed as a conflict.
@@ -131,6 +135,9 @@ struct SmallGroup {
 struct Conflicts {
   std::vector<Conflict> listed;  ///< in the order of their ids
   std::uint64_t colliding_points = 0;
+  /// Number of points that are grouped too because they may be too close in truth; 0 without an
+  /// error budget
+  std::uint64_t near_points = 0;
   std::uint64_t groups = 0;  ///< number of groups before cutting, small ones included
   /// Numbers of the groups that are not listed, and of their points
   std::uint64_t small_groups = 0, small_points = 0;

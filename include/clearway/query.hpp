@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -45,6 +46,24 @@ struct QueryParameters {
   /// Groups of fewer unseen cubes than this are counted, but make no verdict undecided.
   std::uint32_t seen_min = 8;
 
+  // The error budget, by which a verdict says how sure it is. It applies where any of the five
+  // errors is given, be it 0.
+  /// Standard deviation per axis of single points of the scan, metres
+  std::optional<double> error_scan = {};
+  /// Standard deviation per axis of where whole scans lie, metres
+  std::optional<double> error_registration = {};
+  std::optional<double> error_pose = {};   ///< standard deviation per axis of each pose, metres
+  std::optional<double> error_angle = {};  ///< standard deviation per axis of each pose, radians
+  /// Metres: no place of the true vehicle is farther than this from its model.
+  std::optional<double> error_model = {};
+  double sigmas = 3;  ///< how many standard deviations a budget counts
+  /// Metres: points at most this far apart hang together when a budget decides about a conflict.
+  double gap = 0.3;
+
+  /// Whether any error is given, so that the verdict is decided with a budget.
+  bool has_budget() const {
+    return error_scan || error_registration || error_pose || error_angle || error_model;
+  }
   bool ignores_points() const { return !ignore_classes.empty() || !ignore_boxes.empty(); }
   friend bool operator==(const QueryParameters&, const QueryParameters&) = default;
 };

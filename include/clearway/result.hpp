@@ -32,6 +32,24 @@ struct Collisions {
   /// that does. Empty if there are no first poses, and for files of older releases.
   std::vector<std::uint32_t> last_pose = {};
 
+  /// 1 for each point that the error budget says is certainly too close, otherwise 0; empty without
+  /// a budget.
+  std::vector<std::uint8_t> certain = {};
+
+  std::size_t size() const { return source.size(); }
+};
+
+/// Environment points that do not collide, but may in truth, because they are closer to the model
+/// than the margin plus the error budget; one row per point, ascending by source index.
+struct Nearby {
+  std::vector<std::uint64_t> source;  ///< index of the point in the order of the scans
+  std::vector<Vec3> xyz;
+  /// The first pose that comes so close to each point; empty unless the query asked for first poses
+  std::vector<std::uint32_t> first_pose = {};
+  /// Index of the body that comes so close at that pose; empty unless there are bodies and first
+  /// poses.
+  std::vector<std::uint32_t> body = {};
+
   std::size_t size() const { return source.size(); }
 };
 
@@ -89,6 +107,7 @@ class Result {
   std::vector<std::uint32_t> first_body() const;
   /// Names of the bodies of a query that has several; otherwise empty.
   const std::vector<std::string>& bodies() const;
+  Nearby near() const;           ///< empty unless the query has an error budget
   Clearances clearance() const;  ///< empty unless the query asked for clearances
   Profile profile() const;       ///< empty unless the query asked for a profile
   /// Largest gap between the samples of the mesh, metres, the greatest of all bodies; 0 if no model

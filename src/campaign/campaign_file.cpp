@@ -105,6 +105,16 @@ const std::vector<OptionKey> kTrajectoryKeys{
     {"lever_arm", "--lever-arm", ValueKind::kList}};
 const std::vector<OptionKey> kChainageKeys{
     {"chainage_start", "--chainage-start", ValueKind::kLength}};
+template <typename Value>
+constexpr bool is_length =
+    std::is_same_v<Value, double> || std::is_same_v<Value, std::optional<double>>;
+
+/// Whether the value is a number that is no length, such as a number of standard deviations.
+template <typename Value>
+bool is_number(const QueryField<Value>& field) {
+  return is_length<Value> && field.unit == QueryField<Value>::Unit::kNone;
+}
+
 /// All parameters of a query except the radius, which may differ from run to run.
 std::vector<OptionKey> query_keys() {
   std::vector<OptionKey> keys;
@@ -113,7 +123,8 @@ std::vector<OptionKey> query_keys() {
     if (field.is_required()) return;
     keys.push_back({field.name, field.option,
                     std::is_same_v<Value, bool>               ? ValueKind::kFlag
-                    : std::is_same_v<Value, double>           ? ValueKind::kLength
+                    : is_number(field)                        ? ValueKind::kNumber
+                    : is_length<Value>                        ? ValueKind::kLength
                     : std::is_same_v<Value, std::uint32_t>    ? ValueKind::kCount
                     : std::is_same_v<Value, std::vector<Box>> ? ValueKind::kLists
                                                               : ValueKind::kList});

@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
 
 #include "clearway/error.hpp"
 #include "core/query/query_fields.hpp"
@@ -49,7 +50,12 @@ void ask_for_part(const Shard& shard, const std::string& store, nlohmann::ordere
 nlohmann::ordered_json question_of(const ResultHeader& header) {
   nlohmann::ordered_json question;
   for_each_value_field([&](const auto& field) {
-    if (field.is_told(header)) question[field.name] = field.of(header);
+    if (!field.is_told(header)) return;
+    if constexpr (std::is_same_v<std::decay_t<decltype(field.of(header))>, std::optional<double>>) {
+      question[field.name] = *field.of(header);
+    } else {
+      question[field.name] = field.of(header);
+    }
   });
   question.update({{"single_precision", header.float_precision},
                    {"environment_points", header.environment_points},

@@ -2,7 +2,9 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <atomic>
+#include <string>
 
 #include "io/files/input_error.hpp"
 #include "io/result/result.hpp"
@@ -32,6 +34,50 @@ std::size_t requantize_rows(const Quantisation& quantisation, const std::vector<
   return bad.load();
 }
 
+/// Reads the near points, whose last pose is taken for their first one, because no search looks for
+/// it.
+CollidingPoints read_near_points(const ResultReader& result, Progress& progress) {
+  CollidingPoints out;
+  RowStream<Nearby> stream(result);
+  for (Nearby rows; stream.read(rows);) {
+    throw_if_stopped(progress);
+    std::vector<QuantumPoint> quanta(rows.size());
+    const std::size_t bad = requantize_rows(result.header().quantisation, rows.xyz, quanta.data());
+    if (bad != kAll) {
+      refuse(result.name(), "/near/xyz, source " + std::to_string(rows.source[bad]) +
+                                ": expected a whole multiple of the scale above the offset");
+    }
+    out.quanta.insert(out.quanta.end(), quanta.begin(), quanta.end());
+    out.source.insert(out.source.end(), rows.source.begin(), rows.source.end());
+    out.first_pose.insert(out.first_pose.end(), rows.first_pose.begin(), rows.first_pose.end());
+    for (const std::uint32_t body : rows.body) out.body.push_back(static_cast<std::uint8_t>(body));
+    progress.advance(rows.size());
+  }
+  out.last_pose = out.first_pose;
+  out.kind.resize(out.source.size(), CollidingPoints::kNear);
+  return out;
+}
+
+/// All points of both, ascending by source.
+CollidingPoints merged(const CollidingPoints& a, const CollidingPoints& b) {
+  CollidingPoints out;
+  const auto take = [&out](const CollidingPoints& from, std::size_t i) {
+    out.quanta.push_back(from.quanta[i]);
+    out.source.push_back(from.source[i]);
+    out.first_pose.push_back(from.first_pose[i]);
+    out.last_pose.push_back(from.last_pose[i]);
+    if (!from.body.empty()) out.body.push_back(from.body[i]);
+    out.kind.push_back(from.kind[i]);
+  };
+  std::size_t i = 0, k = 0;
+  while (i < a.source.size() || k < b.source.size()) {
+    const bool first = k == b.source.size() || (i < a.source.size() && a.source[i] < b.source[k]);
+    if (first) take(a, i++);
+    if (!first) take(b, k++);
+  }
+  return out;
+}
+
 }  // namespace
 
 CollidingPoints read_colliding_points(const ResultReader& result, Progress& progress) {
@@ -41,7 +87,7 @@ CollidingPoints read_colliding_points(const ResultReader& result, Progress& prog
   out.first_pose.reserve(result.collisions());
   out.last_pose.reserve(result.collisions());
   if (result.header().has_first_bodies()) out.body.reserve(result.collisions());
-  progress.begin("read", result.collisions(), "points");
+  progress.begin("read", result.collisions() + result.near(), "points");
   RowStream<Collisions> stream(result);
   for (Collisions rows; stream.read(rows);) {
     throw_if_stopped(progress);
@@ -57,8 +103,12 @@ CollidingPoints read_colliding_points(const ResultReader& result, Progress& prog
         result.header().last_pose ? rows.last_pose : rows.first_pose;
     out.last_pose.insert(out.last_pose.end(), last.begin(), last.end());
     for (const std::uint32_t body : rows.body) out.body.push_back(static_cast<std::uint8_t>(body));
+    for (const std::uint8_t certain : rows.certain) {
+      out.kind.push_back(certain != 0 ? CollidingPoints::kCertain : CollidingPoints::kColliding);
+    }
     progress.advance(rows.size());
   }
+  if (result.near() > 0) out = merged(out, read_near_points(result, progress));
   progress.end();
   return out;
 }

@@ -12,7 +12,7 @@ namespace clearway {
 /// The rows of a result that conflicts are made of.
 struct CollidingPoints {
   static constexpr std::uint64_t kBytesOfPoint =
-      sizeof(QuantumPoint) + sizeof(std::uint64_t) + 2 * sizeof(std::uint32_t) + 1;
+      sizeof(QuantumPoint) + sizeof(std::uint64_t) + 2 * sizeof(std::uint32_t) + 2;
 
   std::vector<QuantumPoint> quanta;
   std::vector<std::uint64_t> source;  ///< ascending
@@ -21,10 +21,13 @@ struct CollidingPoints {
   std::vector<std::uint32_t> last_pose;
   /// The body that collides at the first pose; empty for a result without bodies.
   std::vector<std::uint8_t> body;
+  /// With an error budget, what it says of each point; otherwise empty.
+  enum Kind : std::uint8_t { kNear, kColliding, kCertain };
+  std::vector<std::uint8_t> kind;
 };
 
-/// Reads all colliding points of a result. Throws InputError as RowStream does, and for
-/// coordinates that are not those of stored integers.
+/// Reads all colliding points of a result, and with an error budget the near ones too. Throws
+/// InputError as RowStream does, and for coordinates that are not those of stored integers.
 CollidingPoints read_colliding_points(const ResultReader& result, Progress& progress);
 
 }  // namespace clearway

@@ -15,6 +15,7 @@
 #include "clearway/vec3.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/query/body_numbers.hpp"
+#include "core/query/error_budget.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "core/util/progress.hpp"
@@ -171,24 +172,72 @@ class ConflictSearch {
         options_(options),
         boxes_(boxes_of(result, options)),
         progress_(progress),
-        memory_(options.memory_bytes, reader_.collisions(), poses.size()),
+        memory_(options.memory_bytes, reader_.collisions() + reader_.near(), poses.size()),
         chainage_(chainage_of(poses)) {}
 
   Conflicts run(std::vector<std::uint32_t>* conflict_of) {
     out_.path_length = chainage_.empty() ? 0 : chainage_.back();
     out_.colliding_points = reader_.collisions();
+    out_.near_points = reader_.near();
     out_.has_last_poses = reader_.header().last_pose;
     if (conflict_of != nullptr) conflict_of->clear();
-    if (out_.colliding_points == 0) return std::move(out_);
+    if (out_.colliding_points + out_.near_points == 0) return std::move(out_);
     memory_.check_points();
     points_ = read_colliding_points(reader_, progress_);
+    const std::vector<std::uint32_t> certain = rows_of_certain_groups();
     group();
     std::vector<std::uint32_t> part_of_row = list();
+    classify(certain, part_of_row);
+    keep_colliding(part_of_row);
     if (conflict_of != nullptr) *conflict_of = std::move(part_of_row);
     return std::move(out_);
   }
 
  private:
+  /// The rows of the points that are certainly too close and of which ten or more hang together by
+  /// the gap of the search, in no particular order.
+  std::vector<std::uint32_t> rows_of_certain_groups() {
+    std::vector<QuantumPoint> quanta;
+    std::vector<std::uint32_t> row_of, out;
+    for (std::size_t row = 0; row < points_.kind.size(); ++row) {
+      if (points_.kind[row] != CollidingPoints::kCertain) continue;
+      quanta.push_back(points_.quanta[row]);
+      row_of.push_back(static_cast<std::uint32_t>(row));
+    }
+    if (quanta.size() < kLeastCertainGroup) return out;
+    const ResultHeader& header = reader_.header();
+    const Neighbourhood neighbourhood(header.quantisation, header.gap);
+    CellGrid grid(quanta, neighbourhood, [](std::uint64_t) {});
+    UnionFind sets(grid.cells());
+    join_cells(grid, neighbourhood, sets, progress_);
+    const PointGroups groups = number_groups(grid, sets, kLeastCertainGroup);
+    for (std::uint32_t cell = 0; cell < grid.cells(); ++cell) {
+      if (PointGroups::is_small(groups.of_cell[cell])) continue;
+      for (const GridPoint& point : grid.points(cell)) out.push_back(row_of[point.row]);
+    }
+    return out;
+  }
+
+  /// Says of each conflict whether it is certain. certain: rows_of_certain_groups().
+  void classify(std::span<const std::uint32_t> certain,
+                std::span<const std::uint32_t> conflict_of_row) {
+    if (!reader_.header().budget) return;
+    for (Conflict& conflict : out_.listed) conflict.certain = false;
+    for (const std::uint32_t row : certain) {
+      if (const std::uint32_t id = conflict_of_row[row]) out_.listed[id - 1].certain = true;
+    }
+  }
+
+  /// Removes the rows of near points, so that the rest are those of /collisions.
+  void keep_colliding(std::vector<std::uint32_t>& of_row) const {
+    if (points_.kind.empty()) return;
+    std::size_t kept = 0;
+    for (std::size_t row = 0; row < of_row.size(); ++row) {
+      if (points_.kind[row] != CollidingPoints::kNear) of_row[kept++] = of_row[row];
+    }
+    of_row.resize(kept);
+  }
+
   void group() {
     const Neighbourhood neighbourhood(reader_.header().quantisation, options_.gap);
     grid_.emplace(points_.quanta, neighbourhood,
@@ -474,6 +523,7 @@ class ConflictSearch {
     for (Collisions rows; stream.read(rows);) {
       throw_if_stopped(progress_);
       for (std::size_t i = 0; i < rows.size(); ++i, ++row) {
+        while (points_.source[row] != rows.source[i]) ++row;  // near points need no shift
         const std::uint32_t id = conflict_of_row[row];
         if (id == 0 || met[id - 1]++ % every[id - 1] != 0) continue;
         out[id - 1].push_back(rows.xyz[i]);

@@ -93,9 +93,13 @@ ArrayQuery make_query(const py::object& model, const py::object& poses,
                       std::optional<double> radius, bool first_pose, bool between_poses,
                       double clearance, double profile, double tolerance,
                       std::vector<std::uint8_t> ignore_classes, std::vector<Box> ignore_boxes,
-                      bool allow_non_rigid, std::vector<PlacedBody> bodies) {
+                      bool allow_non_rigid, std::vector<PlacedBody> bodies,
+                      std::optional<double> error_scan, std::optional<double> error_registration,
+                      std::optional<double> error_pose, std::optional<double> error_angle,
+                      std::optional<double> error_model, double sigmas, double gap) {
   return {{radius.value_or(0), first_pose, between_poses, clearance, profile, tolerance,
-           std::move(ignore_classes), std::move(ignore_boxes)},
+           std::move(ignore_classes), std::move(ignore_boxes), error_scan, error_registration,
+           error_pose, error_angle, error_model, sigmas, gap},
           model_object(model),
           poses_array(poses, "poses"),
           allow_non_rigid,
@@ -114,7 +118,10 @@ void add_query(py::module_& module) {
           py::kw_only(), "first_pose"_a = false, "between_poses"_a = false, "clearance"_a = 0.0,
           "profile"_a = 0.0, "tolerance"_a = 0.0, "ignore_classes"_a = nothing,
           "ignore_boxes"_a = nothing, "allow_non_rigid"_a = false, "bodies"_a = nothing,
-          R"(__init__(self, model=(), poses=(), radius=None, *, first_pose=False, between_poses=False, clearance=0.0, profile=0.0, tolerance=0.0, ignore_classes=(), ignore_boxes=(), allow_non_rigid=False, bodies=())
+          "error_scan"_a = py::none(), "error_registration"_a = py::none(),
+          "error_pose"_a = py::none(), "error_angle"_a = py::none(), "error_model"_a = py::none(),
+          "sigmas"_a = 3.0, "gap"_a = 0.3,
+          R"(__init__(self, model=(), poses=(), radius=None, *, first_pose=False, between_poses=False, clearance=0.0, profile=0.0, tolerance=0.0, ignore_classes=(), ignore_boxes=(), allow_non_rigid=False, bodies=(), error_scan=None, error_registration=None, error_pose=None, error_angle=None, error_model=None, sigmas=3.0, gap=0.3)
 --
 
 Ask which points the model comes closer to than the radius, on its way along the poses.

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -208,8 +209,11 @@ void write_query(JsonText& json, const ReportFacts& facts) {
   const ResultHeader& header = facts.result.reader().header();
   json.key("query").begin('{');
   for_each_value_field([&](const auto& field) {
+    using Value = std::decay_t<decltype(field.of(header))>;
     if (!field.is_told(header)) return;
-    if constexpr (std::is_same_v<std::decay_t<decltype(field.of(header))>, std::uint32_t>) {
+    if constexpr (std::is_same_v<Value, std::optional<double>>) {
+      json.field(field.name, *field.of(header));
+    } else if constexpr (std::is_same_v<Value, std::uint32_t>) {
       json.field(field.name, std::uint64_t{field.of(header)});
     } else {
       json.field(field.name, field.of(header));

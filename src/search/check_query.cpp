@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 #include <string>
+#include <type_traits>
 
 #include "clearway/error.hpp"
 #include "core/geometry/inside.hpp"
@@ -126,6 +128,41 @@ void check_seen(const QueryParameters& query, const SearchOptions& options) {
   if (query.seen_min == 0) throw UsageError("the least group of unseen cubes has at least 1 cube");
 }
 
+/// Refuses errors that are no errors, and what an error budget cannot be combined with.
+void check_budget(const QueryParameters& query, const SearchOptions& options) {
+  for_each_value_field([&](const auto& field) {
+    using Field = std::decay_t<decltype(field)>;
+    if constexpr (std::is_same_v<Field, QueryField<std::optional<double>>>) {
+      const std::optional<double>& error = field.of(query);
+      if (!error || (std::isfinite(*error) && *error >= 0)) return;
+      throw UsageError(std::string("the ") + field.topic + " is " + std::to_string(*error) +
+                       ", expected a finite number, 0 or above");
+    } else if constexpr (std::is_same_v<Field, QueryField<double>>) {
+      if (!belongs_to_budget(field) || query.has_budget() || field.is_default(query)) return;
+      throw UsageError(std::string("the ") + field.topic +
+                       " is of an error budget, and no error is given: expected an error of the "
+                       "scan, the registration, the poses, the angles or the model");
+    }
+  });
+  if (!query.has_budget()) return;
+  if (!(query.sigmas >= 0) || !std::isfinite(query.sigmas)) {
+    throw UsageError("the number of standard deviations has to be finite, 0 or above");
+  }
+  if (!(query.gap > 0) || !std::isfinite(query.gap)) {
+    throw UsageError("the gap has to be a finite number of metres above 0");
+  }
+  if (query.tolerance > 0) {
+    throw UsageError(
+        "a tolerance and an error budget cannot be combined: a verdict that says how sure it is "
+        "needs exact sets");
+  }
+  if (options.float_precision) {
+    throw UsageError(
+        "float precision and an error budget cannot be combined: a verdict that says how sure it "
+        "is needs exact sets");
+  }
+}
+
 void check_numbers(const QueryParameters& query, const SearchOptions& options) {
   const auto check = [](const char* name, double value, bool may_be_zero) {
     if (std::isfinite(value) && (value > 0 || (may_be_zero && value == 0))) return;
@@ -134,9 +171,10 @@ void check_numbers(const QueryParameters& query, const SearchOptions& options) {
   for_each_value_field([&](const auto& field) {
     if constexpr (std::is_same_v<decltype(field), const QueryField<double>&>) {
       const std::string topic = std::string("the ") + field.topic;
-      check(topic.c_str(), field.of(query), !field.is_required());
+      if (!belongs_to_budget(field)) check(topic.c_str(), field.of(query), !field.is_required());
     }
   });
+  check_budget(query, options);
   check("the field's voxel", options.field_voxel, true);
   check("the grid cell", options.grid_cell, true);
   if (options.threads < 0) throw UsageError("the number of threads cannot be negative");

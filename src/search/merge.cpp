@@ -4,6 +4,7 @@
 #include "core/util/format.hpp"
 #include "core/util/messages.hpp"
 #include "core/util/progress.hpp"
+#include "findings/certain_points.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/check_results.hpp"
@@ -21,7 +22,8 @@ bool is_merged(const PartSet& set, const std::filesystem::path& output, Progress
   if (set.header().tolerance > 0 || set.header().float_precision) return false;
   if (!is_intact_result(output, set.header(), progress)) return false;
   const ResultReader result(output);
-  return result.collisions() == set.collisions() && result.clearances() == set.clearances();
+  return result.collisions() == set.collisions() && result.clearances() == set.clearances() &&
+         result.near() == set.near();
 }
 
 MergeReport report_of(const PartSet& set) {
@@ -78,7 +80,12 @@ MergeReport merge(const std::vector<std::filesystem::path>& parts,
       return report;
     }
     if (!options.overwrite) pending.refuse_existing();
-    merge_parts(set, pending.partial(), options.memory_bytes, progress, report);
+    ResultFindings findings = set.findings();
+    if (set.header().budget) {
+      report.certain = certain_points_in(set.parts(), progress);
+      findings.certain = report.certain;
+    }
+    merge_parts(set, pending.partial(), options.memory_bytes, findings, progress, report);
     pending.publish();
     warn_of_ignored(set, options, report);
     return report;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/geometry/point_box.hpp"
+#include "core/query/error_budget.hpp"
 #include "core/query/ignored_points.hpp"
 #include "io/paths/content_hash.hpp"
 #include "io/result/answer.hpp"
@@ -75,6 +76,7 @@ ResultHeader result_header(const StoreReader& store, const Query& query,
       names_of(query),
       {model_spacing(query)}};
   header.last_pose = header.first_pose;
+  header.budget = error_budget_of(query, metadata.quantisation);
   header.version = header.written_version();
   return header;
 }

@@ -1,6 +1,7 @@
 #include "search/run_journal.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "clearway/error.hpp"
 #include "core/query/ignored_points.hpp"
@@ -20,6 +21,9 @@ std::string yes_or_no(bool value) { return value ? "yes" : "no"; }
 std::string text_of(bool value) { return yes_or_no(value); }
 std::string text_of(double value) { return format_number(value); }
 std::string text_of(std::uint32_t value) { return std::to_string(value); }
+std::string text_of(const std::optional<double>& value) {
+  return value ? format_number(*value) : "none";
+}
 
 /// Whether first poses are asked for, and between poses with "closed way" for ways that include
 /// their ends. Journals of version 0.1.0 have "yes" there, because their ways did not include them.

@@ -10,6 +10,7 @@
 #include "core/util/format.hpp"
 #include "core/util/progress.hpp"
 #include "core/util/stopwatch.hpp"
+#include "findings/certain_points.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/result/answer.hpp"
 #include "search/check_query.hpp"
@@ -70,7 +71,8 @@ class Search {
       pending_.refuse_existing();
     }
     end_gpus_ = options_.end_gpus;
-    if (query_.first_pose) options_.end_gpus = false;  // the GPUs are needed for a second search
+    // The GPUs are needed for further searches.
+    if (query_.first_pose || query_.has_budget()) options_.end_gpus = false;
     if (!options_.started) options_.started = start_devices(options_, &store);
   }
 
@@ -87,6 +89,7 @@ class Search {
       resolve_device();
       Found found = find();
       if (query_.first_pose) find_last_poses(found);
+      if (header_.budget) judge(found);
       publish(found);
       const Stopwatch ending;
       found.engine_end.clear();
@@ -230,35 +233,120 @@ class Search {
         progress_, report_, log_);
   }
 
-  /// Searches the cells that have colliding points once more, with the poses in reverse order. No
-  /// journal keeps this search, so a run that is resumed begins it again.
+  /// The cells that have entries of a set.
+  template <typename Set>
+  ShardCells cells_with(const Set& set) const {
+    SetCells with;
+    in_threads(options_.threads, [&] { with = cells_of(store_, set); });
+    std::vector<bool> in(store_.cells().size());
+    for (const std::uint32_t cell : with.cells) in[cell] = true;
+    return ShardCells(std::move(in));
+  }
+
+  /// Searches the cells that have colliding points once more, with the poses in reverse order.
   void find_last_poses(Found& found) {
     found.engine_end.clear();
+    options_.end_gpus = end_gpus_ && !header_.budget;
+    const ShardCells cells = cells_with(found.result.hits);
+    if (found.result.hits.count() == 0) return;
+    Found other = search_further(found, backwards(query_), &cells, "last poses");
+    found.result.last_poses.emplace(query_, std::move(other.result.hits));
+  }
+
+  /// Finds out what the error budget says: which further points are near, which colliding points
+  /// are certainly too close, and whether enough of these hang together.
+  void judge(Found& found) {
+    const ErrorBudget& budget = *header_.budget;
+    find_certain(found, budget.certain_radius(query_.radius));
+    find_near(found, budget.near_radius(query_.radius));
+    in_threads(options_.threads, [&] {
+      const HitSet& certain = *found.result.certain;
+      CertainGroup group(store_.quantisation(), query_.gap, progress_);
+      for (const std::uint32_t cell : cells_of(store_, certain).cells) {
+        const auto q = store_.coordinates(cell);
+        for_each_entry(store_, certain, cell, [&](std::uint64_t, std::uint32_t i) {
+          group.add({q[0][i], q[1][i], q[2][i]});
+        });
+      }
+      report_.certain = group.found();
+    });
+  }
+
+  /// The query without what a further search for points alone does not need.
+  Query plain_query(double radius, bool first_pose) const {
+    Query query = query_;
+    query.radius = radius;
+    query.first_pose = first_pose;
+    query.clearance = query.profile = query.tolerance = 0;
+    return query;
+  }
+
+  /// Finds the points that do not collide but are closer than `radius`.
+  void find_near(Found& found, double radius) {
+    const HitSet& hits = found.result.hits;
     options_.end_gpus = end_gpus_;
-    SetCells with_hits;
-    in_threads(options_.threads, [&] { with_hits = cells_of(store_, found.result.hits); });
-    if (with_hits.cells.empty()) return;
-    std::vector<bool> hit(store_.cells().size());
-    for (const std::uint32_t cell : with_hits.cells) hit[cell] = true;
-    const ShardCells cells(std::move(hit));
-    backwards_ = backwards(query_);
-    backwards_options_ = options_;
+    if (!(radius > query_.radius)) {
+      found.result.near.emplace(store_.entry_count(), query_.first_pose);
+      return;
+    }
+    Found other =
+        search_further(found, plain_query(radius, query_.first_pose), only(), "near points");
+    HitSet& near = found.result.near.emplace(std::move(other.result.hits));
+    for (std::uint64_t word = 0; word < store_.entry_count() / 64; ++word) {
+      if (const std::uint64_t both = near.word(word) & hits.word(word)) near.forget(word, both);
+    }
+  }
+
+  /// Finds the colliding points that are closer than `radius`, which is at most that of the query.
+  /// Below 0 these are the points that are deeper than -radius inside a solid, and for a model
+  /// without solids there is none.
+  void find_certain(Found& found, double radius) {
+    const HitSet& hits = found.result.hits;
+    HitSet& certain = found.result.certain.emplace(store_.entry_count(), false);
+    if (hits.count() == 0) return;
+    const ShardCells cells = cells_with(hits);
+    if (!(radius < query_.radius)) {
+      for (std::uint64_t word = 0; word < store_.entry_count() / 64; ++word) {
+        if (const std::uint64_t bits = hits.word(word)) certain.mark_word(word, bits);
+      }
+    } else if (radius > 0) {
+      Found other = search_further(found, plain_query(radius, false), &cells, "certain points");
+      certain = std::move(other.result.hits);
+    } else if (has_solids(query_)) {
+      Query signed_query = plain_query(query_.radius, false);
+      signed_query.clearance = query_.radius;
+      const Found other = search_further(found, std::move(signed_query), &cells, "certain points");
+      const double deeper = -(radius * radius);
+      for (std::uint64_t entry = 0; entry < store_.entry_count(); ++entry) {
+        if (hits.contains(entry) && other.result.clearances.at(entry).squared < deeper) {
+          certain.mark(entry);
+        }
+      }
+    }
+  }
+
+  /// Searches all cells, or those of `cells`, for another query after the first search, as stage
+  /// `name`. No journal keeps this search, so a run that is resumed begins it again. Leaves in
+  /// `found` the end of the engines and the memory that is left to write with.
+  Found search_further(Found& found, Query query, const ShardCells* cells, const char* name) {
+    found.engine_end.clear();
+    further_ = std::move(query);
+    further_options_ = options_;
     // What the first search took is enough, except for rounding in the plan.
-    backwards_options_.memory_bytes += options_.memory_bytes / 16;
+    further_options_.memory_bytes += options_.memory_bytes / 16;
     SearchReport report;
     const MessageCallback silent;
     const MessageLog log(silent, report.warnings);
-    StageOf progress(progress_, "last poses");
+    StageOf progress(progress_, name);
     const auto search_on = [&](Device device) {
       return search_pages(
-          store_, backwards_, backwards_options_.memory_bytes,
-          *kind_on(device, backwards_, backwards_options_), &cells,
+          store_, further_, further_options_.memory_bytes,
+          *kind_on(device, further_, further_options_), cells,
           []() -> SearchJournal* { return nullptr; }, progress, report, log);
     };
     Found other = [&] {
       if (report_.engine == Engine::kKdtree) {
-        return search_kdtree(store_, backwards_, &cells, backwards_options_, nullptr, progress,
-                             report);
+        return search_kdtree(store_, further_, cells, further_options_, nullptr, progress, report);
       }
       try {
         return search_on(report_.device);
@@ -267,10 +355,10 @@ class Search {
       }
       return search_on(Device::kCpu);
     }();
-    found.result.last_poses.emplace(query_, std::move(other.result.hits));
     found.engine_end = std::move(other.engine_end);
     found.write_bytes = std::min(found.write_bytes, other.write_bytes);
     add_seconds(report.seconds, report_.seconds);
+    return other;
   }
 
   static void add_seconds(const SearchSeconds& more, SearchSeconds& seconds) {
@@ -351,6 +439,7 @@ class Search {
     if (query_.profile > 0) {
       found.without_bodies = poses_without_bodies(query_.poses.size(), query_.bodies);
     }
+    if (header_.budget) found.certain = report_.certain;
     if (!query_.ignores_points()) return found;
     found.ignored_colliding = report_.ignored_colliding;
     found.ignored_colliding_high = report_.ignored_colliding_high;
@@ -382,9 +471,9 @@ class Search {
   std::optional<ShardCells> shard_;
   CollidingIgnored ignored_;
   std::optional<DeviceChoice> gpus_;  ///< set once they are open
-  /// The query for last poses; it and its options outlive the engines.
-  Query backwards_;
-  SearchOptions backwards_options_;
+  /// The query of a further search; it and its options outlive the engines.
+  Query further_;
+  SearchOptions further_options_;
   /// Whether the caller asked to end the GPUs.
   bool end_gpus_ = false;
   SearchJournal* open_ = nullptr;

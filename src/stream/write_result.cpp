@@ -63,6 +63,34 @@ std::shared_ptr<WritePiece<Collisions>> encode_rows(const ResultWriter& writer,
     if (meaning.header.last_pose) {
       set_column(columns.last_pose, strip, [](const auto& row) { return row.last_pose; });
     }
+    if (meaning.header.budget) {
+      set_column(columns.certain, strip, [](const auto& row) { return row.certain; });
+    }
+    out->rows.add(columns);
+    summarise(columns, out->summary);
+  });
+  out->rows.seal();
+  return out;
+}
+
+std::shared_ptr<WritePiece<Nearby>> encode_rows(const ResultWriter& writer,
+                                                const RowMeaning& meaning,
+                                                std::span<const NearRow> rows) {
+  const Quantisation& quantisation = meaning.quantisation;
+  const BodyNumbers numbers = meaning.numbers;
+  auto out = std::make_shared<WritePiece<Nearby>>(writer.new_rows<Nearby>());
+  Nearby columns;
+  for_each_strip(rows, [&](std::span<const NearRow> strip) {
+    set_column(columns.source, strip, [](const auto& row) { return row.source; });
+    set_column(columns.xyz, strip, [&](const auto& row) { return xyz_of(quantisation, row.q); });
+    if (meaning.header.first_pose) {
+      set_column(columns.first_pose, strip,
+                 [&](const auto& row) { return numbers.pose_of(row.first_pose); });
+    }
+    if (meaning.header.has_first_bodies()) {
+      set_column(columns.body, strip,
+                 [&](const auto& row) { return numbers.body_of(row.first_pose); });
+    }
     out->rows.add(columns);
     summarise(columns, out->summary);
   });
@@ -230,13 +258,15 @@ class ResultWriting {
     const HitSet& hits = answer_.hits;
     const bool first_pose = hits.has_first_pose();
     const LastPoses* last_poses = answer_.last_poses ? &*answer_.last_poses : nullptr;
+    const HitSet* certain = answer_.certain ? &*answer_.certain : nullptr;
     const auto rows_of = [&](std::uint32_t cell) {
       return [&, q = store_.coordinates(cell)](std::uint64_t source, std::uint64_t entry,
                                                std::uint32_t i) {
         const std::uint32_t touched = first_pose ? hits.first_pose(entry) : 0;
         const std::uint32_t last =
             last_poses ? last_poses->at(entry, meaning_.numbers.pose_of(touched)) : 0;
-        return CollisionRow{source, {q[0][i], q[1][i], q[2][i]}, touched, last};
+        const bool is_certain = certain != nullptr && certain->contains(entry);
+        return CollisionRow{source, {q[0][i], q[1][i], q[2][i]}, touched, last, is_certain};
       };
     };
     const auto encode_rows = [&](std::span<const CollisionRow> rows) {
@@ -246,6 +276,27 @@ class ResultWriting {
     write_set<CollisionRow>(
         store_, hits, in, plan, progress_, rows_of, [&](std::span<const CollisionRow> rows) {
           write_rows<Collisions>(writer_, rows, plan.pieces, progress_, encode_rows, keep);
+        });
+  }
+
+  void write_near(const SetCells& in, TableSummary& summary) {
+    const WritePlan plan = plan_of<NearRow>(store_, memory_bytes_);
+    const HitSet& near = *answer_.near;
+    const bool first_pose = near.has_first_pose();
+    const auto rows_of = [&](std::uint32_t cell) {
+      return [&, q = store_.coordinates(cell)](std::uint64_t source, std::uint64_t entry,
+                                               std::uint32_t i) {
+        return NearRow{
+            source, {q[0][i], q[1][i], q[2][i]}, first_pose ? near.first_pose(entry) : 0};
+      };
+    };
+    const auto encode_rows = [&](std::span<const NearRow> rows) {
+      return clearway::encode_rows(writer_, meaning_, rows);
+    };
+    const auto keep = [&](const auto& piece) { add_summary(piece.summary, summary); };
+    write_set<NearRow>(
+        store_, near, in, plan, progress_, rows_of, [&](std::span<const NearRow> rows) {
+          write_rows<Nearby>(writer_, rows, plan.pieces, progress_, encode_rows, keep);
         });
   }
 
@@ -287,8 +338,9 @@ TableSummary write_tables(const StoreReader& store, const SearchResult& answer,
   const SetCells collisions = cells_of(store, answer.hits);
   const SetCells clearances =
       header.clearance > 0 ? cells_of(store, answer.clearances) : SetCells();
-  ResultWriter writer(path, header, collisions.entries, clearances.entries);
-  progress.begin("write", collisions.entries + clearances.entries, "points");
+  const SetCells near = answer.near ? cells_of(store, *answer.near) : SetCells();
+  ResultWriter writer(path, header, collisions.entries, clearances.entries, near.entries);
+  progress.begin("write", collisions.entries + clearances.entries + near.entries, "points");
   ResultWriting writing(store, answer, header, memory_bytes, writer, progress);
   writing.write_collisions(collisions, summary);
   writing.write_clearances(clearances, summary);
@@ -296,6 +348,7 @@ TableSummary write_tables(const StoreReader& store, const SearchResult& answer,
     write_profile(store, answer.profile, chainage, header.part.has_value(), writer, progress,
                   summary);
   }
+  if (answer.near) writing.write_near(near, summary);
   writer.finish(findings);
   progress.end();
   return summary;

@@ -69,6 +69,13 @@ struct CollisionRow {
   std::int32_t q[3];
   std::uint32_t first_pose;  ///< encoded as BodyNumbers does
   std::uint32_t last_pose;
+  std::uint8_t certain = 0;  ///< whether the error budget says that it is certainly too close
+};
+
+struct NearRow {
+  std::uint64_t source;
+  std::int32_t q[3];
+  std::uint32_t first_pose;  ///< encoded as BodyNumbers does
 };
 
 struct ClearanceRow {
@@ -89,17 +96,20 @@ struct RowMeaning {
 std::shared_ptr<WritePiece<Collisions>> encode_rows(const ResultWriter& writer,
                                                     const RowMeaning& meaning,
                                                     std::span<const CollisionRow> rows);
+std::shared_ptr<WritePiece<Nearby>> encode_rows(const ResultWriter& writer,
+                                                const RowMeaning& meaning,
+                                                std::span<const NearRow> rows);
 std::shared_ptr<WritePiece<Clearances>> encode_rows(const ResultWriter& writer,
                                                     const RowMeaning& meaning,
                                                     std::span<const ClearanceRow> rows);
 
 /// Writes a result file at `path`, and returns what its tables say in short: the colliding points,
 /// and the clearances if the header asks for them, ascending by source index; then the profile if
-/// the header asks for it. chainage: that of every pose, metres, for a profile. Takes at most
-/// `memory_bytes`, but no less than least_write_bytes(): if the rows exceed them, it makes several
-/// passes over the cells that have any, each for the next range of source indices. threads: 0 for
-/// all cores. Throws InputError for a damaged cell, ResourceError for a full disk, Interrupted when
-/// the progress asks to stop.
+/// the header asks for it, and the near points if there is an error budget. chainage: that of every
+/// pose, metres, for a profile. Takes at most `memory_bytes`, but no less than least_write_bytes():
+/// if the rows exceed them, it makes several passes over the cells that have any, each for the next
+/// range of source indices. threads: 0 for all cores. Throws InputError for a damaged cell,
+/// ResourceError for a full disk, Interrupted when the progress asks to stop.
 TableSummary write_result(const StoreReader& store, const SearchResult& answer,
                           const ResultHeader& header, const std::filesystem::path& path,
                           std::uint64_t memory_bytes, Progress& progress,

@@ -11,6 +11,7 @@
 #include "cli/ignored/ignored_options.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/program_json.hpp"
+#include "cli/verdict.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/util/format.hpp"
 #include "io/files/file.hpp"
@@ -106,6 +107,15 @@ ordered_json describe(const ResultReader& result) {
   if (!h.bodies.empty()) description["bodies"] = h.bodies;
   const Answer answer = h.model_solids > 0 ? answer_of(result) : counted_answer(result);
   description["verdict"] = name_of(answer.verdict());
+  if (answer.budget) {
+    description["reasons"] = ordered_json::array();
+    for (const Reason reason : answer.reasons()) description["reasons"].push_back(name_of(reason));
+    description["margins"] = margins_json(answer);
+    description["budget"] = budget_json(*answer.budget);
+    description["near_points"] = answer.near_points;
+    description["certain_points"] = answer.certain.points;
+    description["gap"] = h.gap;
+  }
   if (!answer.doubts.empty()) description["doubts"] = answer.doubts;
   if (!answer.warned_of.empty()) description["warned_of"] = answer.warned_of;
   if (h.model_solids > 0) {

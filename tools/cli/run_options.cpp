@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +11,7 @@
 #include "cli/ignored/ignored_options.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/query/query_fields.hpp"
 #include "io/files/text_number.hpp"
 #include "io/models/model_input.hpp"
@@ -18,7 +21,45 @@ namespace clearway::tool {
 namespace {
 
 CLI::Option* add_field(CLI::App& command, const QueryField<double>& field, RunOptions& options) {
+  if (field.unit == QueryField<double>::Unit::kNone) {
+    return command.add_option(field.option, options.query.*field.member, field.help)
+        ->type_name("NUMBER");
+  }
   return options.lengths.add(command, field.option, options.query.*field.member, field.help);
+}
+
+/// Reads an angle such as "0.002", in radians, or "0.1deg". Throws CLI::ValidationError naming the
+/// option.
+double parse_angle(const std::string& option, const std::string& text) {
+  const bool degrees = text.ends_with("deg");
+  const std::string number = degrees ? text.substr(0, text.size() - 3) : text;
+  const char* at = number.data();
+  const char* const end = at + number.size();
+  double value = 0;
+  if (!number.empty() && parse_number(at, end, value) && at == end && std::isfinite(value) &&
+      value >= 0) {
+    return degrees ? value * kDegree : value;
+  }
+  throw CLI::ValidationError(
+      option, text +
+                  ": expected an angle in radians, 0 or more, for example 0.002, or in degrees, "
+                  "for example 0.1deg");
+}
+
+CLI::Option* add_field(CLI::App& command, const QueryField<std::optional<double>>& field,
+                       RunOptions& options) {
+  std::optional<double>& value = options.query.*field.member;
+  if (field.unit == QueryField<std::optional<double>>::Unit::kMetres) {
+    return options.lengths.add(command, field.option, value, field.help, LengthRange::kFromZero);
+  }
+  return command
+      .add_option_function<std::string>(
+          field.option,
+          [&value, option = std::string(field.option)](const std::string& text) {
+            value = parse_angle(option, text);
+          },
+          field.help)
+      ->type_name("ANGLE");
 }
 
 CLI::Option* add_field(CLI::App& command, const QueryField<bool>& field, RunOptions& options) {

@@ -80,8 +80,49 @@ std::string ignored_clause(const Answer& answer) {
   return text + format_count(*answer.ignored_colliding) + " of which would collide";
 }
 
+/// The verdict of a query with an error budget, with what it rests on.
+std::string finding_with_budget(const Answer& answer, const PathWords& path,
+                                const std::string& unit) {
+  const ErrorBudget& budget = *answer.budget;
+  const double margin = answer.parameters.radius;
+  const std::string within = fmt::format("{} {} (the margin of {} {} and {} {} of errors)",
+                                         format_brief(budget.near_radius(margin)), unit, margin,
+                                         unit, format_brief(budget.clear()), unit);
+  const std::string ignored = ignored_clause(answer);
+  const std::string points = counted(answer.colliding_points, "point is", "points are") +
+                             " closer than the margin and " + format_count(answer.near_points) +
+                             " more closer than " + within;
+  std::string text;
+  switch (answer.verdict()) {
+    case Verdict::kClear:
+      return "clear" + ignored + ": no " + (ignored.empty() ? "environment" : "other") +
+             " point is closer than " + within + " to the model on its way";
+    case Verdict::kUnknown:
+      return "of this part " + points + ignored;
+    case Verdict::kUndecided: {
+      std::vector<std::string> reasons;
+      for (const Reason reason : answer.reasons()) reasons.emplace_back(name_of(reason));
+      text = fmt::format("undecided ({})", fmt::join(reasons, ", ")) + ignored + ": " + points;
+      break;
+    }
+    case Verdict::kConflict:
+      text = "conflict" + ignored + ": " +
+             counted(answer.certain.points, "point is", "points are") +
+             " certainly too close, even with " + format_brief(budget.conflict()) + " " + unit +
+             " of errors; " + points;
+      break;
+  }
+  if (answer.first_place) {
+    text += std::string("; first ") +
+            (answer.parameters.between_poses ? "on the way from " : "at ") +
+            place_text(answer, answer.first_place, path, unit);
+  }
+  return text;
+}
+
 /// The verdict with the finding behind it.
 std::string finding_text(const Answer& answer, const PathWords& path, const std::string& unit) {
+  if (answer.budget) return finding_with_budget(answer, path, unit);
   const std::string limit = fmt::format("{} {}", answer.parameters.radius, unit);
   const std::string ignored = ignored_clause(answer);
   const std::string none = std::string("no ") + (ignored.empty() ? "environment" : "other") +
@@ -140,6 +181,21 @@ std::string searched_text(const Answer& answer, const std::string& unit) {
 
 }  // namespace
 
+ordered_json margins_json(const Answer& answer) {
+  if (!answer.budget) return nullptr;
+  return {{"clear", answer.budget->clear()}, {"conflict", answer.budget->conflict()}};
+}
+
+ordered_json budget_json(const ErrorBudget& budget) {
+  return {{"scan", budget.scan},       {"registration", budget.registration},
+          {"pose", budget.pose},       {"angle", budget.angle},
+          {"lever", budget.lever},     {"model", budget.model},
+          {"sigmas", budget.sigmas},   {"step", budget.step},
+          {"motion", budget.motion},   {"chord", budget.chord},
+          {"spacing", budget.spacing}, {"hard", budget.hard()},
+          {"way", budget.way()}};
+}
+
 std::string found_text(std::uint64_t colliding_points, std::uint64_t environment_points) {
   return fmt::format("{} of {} {}", format_count(colliding_points),
                      counted(environment_points, "environment point"),
@@ -176,7 +232,8 @@ std::string warned_text(const Answer& answer) {
 
 std::string verdict_to_repeat(const ResultReader& result, const PathWords& path,
                               const std::string& unit) {
-  if (result.collisions() > 0 && !result.header().ignores_points()) return "";
+  const ResultHeader& header = result.header();
+  if (result.collisions() > 0 && !header.ignores_points() && !header.budget) return "";
   const Answer answer = answer_of(result);
   return verdict_text(answer, path, unit, warned_text(answer));
 }
@@ -184,6 +241,12 @@ std::string verdict_to_repeat(const ResultReader& result, const PathWords& path,
 void warn_of_doubts(const ResultReader& result) {
   const Answer answer = counted_answer(result);
   if (answer.verdict() != Verdict::kUndecided) return;
+  if (answer.doubts.empty()) {
+    std::vector<std::string> reasons;
+    for (const Reason reason : answer.reasons()) reasons.emplace_back(name_of(reason));
+    spdlog::warn("{}: its verdict is undecided ({})", result.name(), fmt::join(reasons, ", "));
+    return;
+  }
   spdlog::warn(
       "{}: its verdict is undecided, because the run warned of {}: nothing collides, but nothing "
       "could be found either",
@@ -194,7 +257,7 @@ void add_answer(const Answer& answer, const PathWords& path, ordered_json& out) 
   out["verdict"] = name_of(answer.verdict());
   out["reasons"] = ordered_json::array();
   for (const Reason reason : answer.reasons()) out["reasons"].push_back(name_of(reason));
-  out["margins"] = nullptr;
+  out["margins"] = margins_json(answer);
   out["seen"] = nullptr;
   out["model_spacing"] = nullptr;
   if (answer.model_spacing > 0) out["model_spacing"] = answer.model_spacing;

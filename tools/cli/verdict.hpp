@@ -43,6 +43,12 @@ std::string verdict_to_repeat(const ResultReader& result, const PathWords& path,
 /// all-clear. For commands that do not word the verdict.
 void warn_of_doubts(const ResultReader& result);
 
+/// The two margins of an error budget, metres; null without a budget.
+nlohmann::ordered_json margins_json(const Answer& answer);
+
+/// All numbers of an error budget, as they are named in ErrorBudget.
+nlohmann::ordered_json budget_json(const ErrorBudget& budget);
+
 /// Adds an answer to a report: the keys verdict, reasons, margins, seen, path_length and its parts,
 /// shard, ignored, points_inside, greatest_depth, least_clearance, least_profile and first_place.
 void add_answer(const Answer& answer, const PathWords& path, nlohmann::ordered_json& out);

@@ -21,6 +21,12 @@ const char* name_of(Verdict verdict) {
 
 const char* name_of(Reason reason) {
   switch (reason) {
+    case Reason::kNear:
+      return "near";
+    case Reason::kFew:
+      return "few";
+    case Reason::kErrorsExceedMargin:
+      return "errors-exceed-margin";
     case Reason::kQuestionInDoubt:
       break;
   }
@@ -58,14 +64,24 @@ std::vector<std::string> codes_beside_doubts(const std::vector<Message>& warning
 }
 
 Verdict Answer::verdict() const {
-  if (colliding_points > 0) return Verdict::kConflict;
+  if (budget ? certain.has_group : colliding_points > 0) return Verdict::kConflict;
   if (shard) return Verdict::kUnknown;
-  return doubts.empty() ? Verdict::kClear : Verdict::kUndecided;
+  const bool open = budget && is_near();
+  return doubts.empty() && !open ? Verdict::kClear : Verdict::kUndecided;
 }
 
 std::vector<Reason> Answer::reasons() const {
   if (verdict() != Verdict::kUndecided) return {};
-  return {Reason::kQuestionInDoubt};
+  std::vector<Reason> all;
+  if (budget && is_near()) {
+    all.push_back(Reason::kNear);
+    if (certain.points > 0) all.push_back(Reason::kFew);
+    if (parameters.radius <= budget->conflict() && model_solids == 0) {
+      all.push_back(Reason::kErrorsExceedMargin);
+    }
+  }
+  if (!doubts.empty()) all.push_back(Reason::kQuestionInDoubt);
+  return all;
 }
 
 const std::optional<FoundPlace>& Answer::nearest() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <type_traits>
 #include <vector>
 
@@ -10,7 +11,8 @@ namespace clearway {
 
 /// A parameter of a query, with all texts and names for the places that list parameters: the
 /// command line, campaigns, results and their comparison, journals, pages and Python. Value: bool,
-/// double (a length in metres), a count, or a list.
+/// double (a length in metres unless `unit` says otherwise), one that need not be given, a count, or
+/// a list.
 template <typename Value>
 struct QueryField {
   Value QueryParameters::*member;
@@ -22,6 +24,8 @@ struct QueryField {
   /// The first version of results in which every result has it; 0: only results in which it is not
   /// the default have it.
   std::uint32_t since = 0;
+  /// What a number counts.
+  enum class Unit { kMetres, kRadians, kNone } unit = Unit::kMetres;
 
   const Value& of(const QueryParameters& query) const { return query.*member; }
   /// Whether every question has to give it, which has no default.
@@ -33,11 +37,21 @@ struct QueryField {
     }
   }
   bool is_default(const QueryParameters& query) const { return of(query) == of(QueryParameters{}); }
+  /// Whether only a query with an error budget may change it from its default.
+  bool belongs_to_budget() const {
+    if constexpr (std::is_same_v<Value, double>) {
+      return member == &QueryParameters::sigmas || member == &QueryParameters::gap;
+    } else {
+      return false;
+    }
+  }
   /// Whether lists of a query's parameters name it: those of the first releases always, and later
   /// ones where they are not the default.
   bool is_told(const QueryParameters& query) const {
     if constexpr (std::is_same_v<Value, double>) {
       if (member == &QueryParameters::tolerance) return true;
+      // With a budget, the answer depends on these also where they are the default.
+      if (belongs_to_budget()) return query.has_budget();
     }
     return since > 0 || !is_default(query);
   }
@@ -94,7 +108,46 @@ void for_each_value_field(Visit visit) {
       &Q::seen_min, "seen_min", "least group of unseen cubes", "--seen-min",
       "Groups of fewer unseen cubes than this are counted, but not listed (default: 8)",
       "Groups of fewer unseen cubes than this are counted, but not listed."});
+  using OptionalField = QueryField<std::optional<double>>;
+  visit(OptionalField{
+      &Q::error_scan, "error_scan", "error of the scan", "--error-scan",
+      "Standard deviation of single scanned points on each axis, for example 5mm",
+      "Standard deviation of single scanned points on each axis, metres; None: not given."});
+  visit(OptionalField{
+      &Q::error_registration, "error_registration", "error of the registration",
+      "--error-registration",
+      "Standard deviation of where whole scans lie on each axis, for example 1cm",
+      "Standard deviation of where whole scans lie on each axis, metres; None: not given."});
+  visit(OptionalField{
+      &Q::error_pose, "error_pose", "error of the poses", "--error-pose",
+      "Standard deviation of the vehicle's position on each axis, for example 2cm",
+      "Standard deviation of the vehicle's position on each axis, metres; None: not given."});
+  visit(OptionalField{
+      &Q::error_angle, "error_angle", "error of the angles", "--error-angle",
+      "Standard deviation of the vehicle's rotation about each axis, radians, or with deg, "
+      "for example 0.1deg",
+      "Standard deviation of the vehicle's rotation about each axis, radians; None: not "
+      "given.",
+      0, OptionalField::Unit::kRadians});
+  visit(OptionalField{
+      &Q::error_model, "error_model", "error of the model", "--error-model",
+      "No place of the true vehicle is farther than this from its model, for example 1cm",
+      "No place of the true vehicle is farther than this from its model, metres; None: not "
+      "given."});
+  visit(QueryField<double>{&Q::sigmas, "sigmas", "number of standard deviations", "--sigmas",
+                           "How many standard deviations the error budget counts (default: 3)",
+                           "How many standard deviations the error budget counts.", 0,
+                           QueryField<double>::Unit::kNone});
+  visit(QueryField<double>{
+      &Q::gap, "gap", "gap", "--gap",
+      "Points at most this far apart hang together when the error budget decides about a conflict "
+      "(default: 0.3)",
+      "Points at most this far apart hang together when the error budget decides about a conflict; "
+      "metres."});
 }
+
+/// The parameters that only a query with an error budget may change from their defaults.
+inline bool belongs_to_budget(const QueryField<double>& field) { return field.belongs_to_budget(); }
 
 /// Calls visit(field) for each parameter that is a list, of points that are left out of the search.
 template <typename Visit>

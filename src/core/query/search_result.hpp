@@ -252,6 +252,9 @@ struct SearchResult {
   std::uint64_t ignored_points = 0;
   /// Set after a search for them, if first poses were asked for
   std::optional<LastPoses> last_poses = {};
+  /// With an error budget: the points that do not collide but are closer than the margin plus it,
+  /// and the colliding points that are certainly too close
+  std::optional<HitSet> near = {}, certain = {};
 };
 
 }  // namespace clearway

@@ -49,6 +49,8 @@ void summarise(const Collisions& rows, TableSummary& summary) {
              summary.first_place, is_earlier);
 }
 
+void summarise(const Nearby& rows, TableSummary& summary) { summary.near_points += rows.size(); }
+
 void summarise(const Clearances& rows, TableSummary& summary) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   summary.clearance_points += rows.size();
@@ -75,6 +77,7 @@ void summarise(const Profile& rows, TableSummary& summary, std::uint64_t first_p
 
 void add_summary(const TableSummary& later, TableSummary& summary) {
   summary.colliding_points += later.colliding_points;
+  summary.near_points += later.near_points;
   summary.clearance_points += later.clearance_points;
   summary.inside_points += later.inside_points;
   summary.profile_poses += later.profile_poses;
@@ -100,6 +103,7 @@ Answer answer_of(const ResultHeader& header) {
     answer.ignored_colliding.reset();
     answer.ignored_colliding_high.reset();
   }
+  answer.budget = header.budget;
   answer.bodies = header.bodies;
   if (header.part) answer.shard = header.part->shard;
   answer.float_precision = header.float_precision;
@@ -118,6 +122,7 @@ void add_findings(const ResultFindings& findings, Answer& answer) {
   answer.doubts = findings.doubts;
   answer.warned_of = findings.warned_of;
   answer.searched = findings.searched;
+  answer.certain = findings.certain.value_or(CertainPoints{});
   if (!answer.parameters.ignores_points()) return;
   answer.ignored_colliding = findings.ignored_colliding;
   answer.ignored_colliding_high = findings.ignored_colliding_high;
@@ -129,6 +134,7 @@ Answer counted_answer(const ResultReader& result) {
   add_doubts(doubts_by_counts(result.header()), answer);
   if (result.header().part) add_doubts(result.header().part->warnings, answer);
   answer.colliding_points = result.collisions();
+  answer.near_points = result.near();
   answer.clearance_points = result.clearances();
   return answer;
 }
@@ -141,6 +147,7 @@ Answer answer_of(const ResultReader& result) {
   } else {
     summary.colliding_points = result.collisions();  // no row says more
   }
+  summary.near_points = result.near();
   summarise_table<Clearances>(result, summary);
   std::uint64_t pose = 0;
   RowStream<ProfileRows> stream(result);

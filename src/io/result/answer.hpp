@@ -18,6 +18,7 @@ void add_findings(const ResultFindings& findings, Answer& answer);
 /// Adds what rows say to the summary of those before them, which have smaller sources or, in a
 /// profile, smaller poses: `first_pose` is that of the first row.
 void summarise(const Collisions& rows, TableSummary& summary);
+void summarise(const Nearby& rows, TableSummary& summary);
 void summarise(const Clearances& rows, TableSummary& summary);
 void summarise(const Profile& rows, TableSummary& summary, std::uint64_t first_pose = 0);
 

@@ -86,8 +86,15 @@ std::string field_text(const QueryField<double>& field, const ResultHeader& head
     if (!(header.tolerance > 0)) return "none: exact";
     return shown(header.tolerance) + " m, engine " + header.engine;
   }
+  if (field.unit == QueryField<double>::Unit::kNone) return shown(field.of(header));
   if (field.member == &QueryParameters::radius) return shown(header.radius) + " m";
   return field.of(header) > 0 ? shown(field.of(header)) + " m" : "not asked for";
+}
+
+std::string field_text(const QueryField<std::optional<double>>& field, const ResultHeader& header) {
+  const bool radians = field.unit == QueryField<std::optional<double>>::Unit::kRadians;
+  const std::optional<double>& value = field.of(header);
+  return value ? shown(*value) + (radians ? " rad" : " m") : "not given";
 }
 
 std::string field_text(const QueryField<bool>& field, const ResultHeader& header) {

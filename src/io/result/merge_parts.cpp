@@ -165,6 +165,12 @@ std::uint64_t PartSet::collisions() const {
   return rows;
 }
 
+std::uint64_t PartSet::near() const {
+  std::uint64_t rows = 0;
+  for (const ResultReader& part : parts_) rows += part.near();
+  return rows;
+}
+
 std::uint64_t PartSet::clearances() const {
   std::uint64_t rows = 0;
   for (const ResultReader& part : parts_) rows += part.clearances();
@@ -201,6 +207,7 @@ Answer PartSet::answer() const {
   Answer answer = answer_of(header_);
   add_findings(findings(), answer);
   answer.colliding_points = collisions();
+  answer.near_points = near();
   answer.clearance_points = clearances();
   return answer;
 }
@@ -241,9 +248,9 @@ std::uint64_t needed_bytes(const PartSet& set, std::size_t batch_rows) {
   std::uint64_t bytes = kFixedBytes + 4 * batch_rows * row_bytes<ProfileRows>();
   const std::uint64_t point_bytes = std::max(row_bytes<Collisions>(), row_bytes<Clearances>());
   for (const ResultReader& part : set.parts()) {
-    const std::uint64_t rows = std::max(part.collisions(), part.clearances());
+    const std::uint64_t rows = std::max({part.collisions(), part.clearances(), part.near()});
     bytes += kFileBytes + cached_bytes<Collisions>(part) + cached_bytes<Clearances>(part) +
-             cached_bytes<ProfileRows>(part) +
+             cached_bytes<ProfileRows>(part) + cached_bytes<Nearby>(part) +
              std::min<std::uint64_t>(batch_rows, rows) * point_bytes;
   }
   return bytes;
@@ -295,20 +302,22 @@ void for_each_row(const PartSet& set, std::deque<Cursor>& cursors, Visit visit) 
 class PartMerge {
  public:
   PartMerge(const PartSet& set, const std::filesystem::path& path, std::size_t batch_rows,
-            Progress& progress, TableSummary& summary)
+            const ResultFindings& findings, Progress& progress, TableSummary& summary)
       : set_(set),
+        findings_(findings),
         batch_rows_(batch_rows),
         progress_(progress),
         summary_(summary),
-        writer_(path, set.header(), set.collisions(), set.clearances()) {}
+        writer_(path, set.header(), set.collisions(), set.clearances(), set.near()) {}
 
   void run() {
     summary_ = {};
-    progress_.begin("merge", set_.collisions() + set_.clearances(), "points");
+    progress_.begin("merge", set_.collisions() + set_.clearances() + set_.near(), "points");
     merge_points<Collisions>();
     if (Table<Clearances>::is_in(set_.header())) merge_points<Clearances>();
     if (Table<ProfileRows>::is_in(set_.header())) merge_profile();
-    writer_.finish(set_.findings());
+    if (Table<Nearby>::is_in(set_.header())) merge_points<Nearby>();
+    writer_.finish(findings_);
     progress_.end();
   }
 
@@ -371,6 +380,7 @@ class PartMerge {
   }
 
   const PartSet& set_;
+  const ResultFindings& findings_;
   const std::size_t batch_rows_;
   Progress& progress_;
   TableSummary& summary_;
@@ -380,8 +390,8 @@ class PartMerge {
 }  // namespace
 
 void merge_parts(const PartSet& set, const std::filesystem::path& path, std::uint64_t memory_bytes,
-                 Progress& progress, TableSummary& summary) {
-  PartMerge(set, path, batch_rows_of(set, memory_bytes), progress, summary).run();
+                 const ResultFindings& findings, Progress& progress, TableSummary& summary) {
+  PartMerge(set, path, batch_rows_of(set, memory_bytes), findings, progress, summary).run();
 }
 
 }  // namespace clearway

@@ -25,7 +25,9 @@ class PartSet {
   std::vector<PartWarning> warnings() const;
   std::uint64_t collisions() const;
   std::uint64_t clearances() const;
-  /// The findings of all parts together.
+  std::uint64_t near() const;
+  /// The findings of all parts together, except which points are certainly too close, which
+  /// certain_points_in() finds.
   ResultFindings findings() const;
   /// The answer of all parts, without what only reading their rows shows: places, points inside the
   /// model and poses of the profile.
@@ -37,10 +39,11 @@ class PartSet {
 };
 
 /// Writes the result of all parts to `path`, with a few rows of each part in memory, and sets
-/// `summary` to what its tables say in short. Every row is read once and checked
-/// against its part's hash. Throws InputError for damaged parts and for a point that is in two of
-/// them, ResourceError for a full disk or too little memory, and Interrupted.
+/// `summary` to what its tables say in short. findings: those of the whole result. Every row is
+/// read once and checked against its part's hash. Throws InputError for damaged parts and for a
+/// point that is in two of them, ResourceError for a full disk or too little memory, and
+/// Interrupted.
 void merge_parts(const PartSet& set, const std::filesystem::path& path, std::uint64_t memory_bytes,
-                 Progress& progress, TableSummary& summary);
+                 const ResultFindings& findings, Progress& progress, TableSummary& summary);
 
 }  // namespace clearway

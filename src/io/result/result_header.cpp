@@ -7,6 +7,7 @@
 
 #include "clearway/body.hpp"
 #include "clearway/error.hpp"
+#include "core/query/error_budget.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/query/query_fields.hpp"
 #include "io/files/hdf5.hpp"
@@ -210,6 +211,11 @@ void read_field(const hdf5::Id& file, const QueryField<std::uint32_t>& field,
   query.*field.member = hdf5::read_number<std::uint32_t>(file, field.name, name);
 }
 
+void write_field(const hdf5::Id& file, const QueryField<std::optional<double>>& field,
+                 const QueryParameters& query) {
+  hdf5::write_number(file, field.name, *field.of(query));
+}
+
 void read_field(const hdf5::Id& file, const QueryField<double>& field, const std::string& name,
                 QueryParameters& query) {
   query.*field.member = hdf5::read_number<double>(file, field.name, name);
@@ -218,6 +224,11 @@ void read_field(const hdf5::Id& file, const QueryField<double>& field, const std
 void read_field(const hdf5::Id& file, const QueryField<bool>& field, const std::string& name,
                 QueryParameters& query) {
   query.*field.member = hdf5::read_number<std::uint8_t>(file, field.name, name) != 0;
+}
+
+void read_field(const hdf5::Id& file, const QueryField<std::optional<double>>& field,
+                const std::string& name, QueryParameters& query) {
+  query.*field.member = hdf5::read_number<double>(file, field.name, name);
 }
 
 std::string lines_of(const std::vector<std::string>& texts) {
@@ -324,7 +335,36 @@ void write_part(const hdf5::Id& file, const ResultHeader& header) {
   if (part.model_is_cut) hdf5::write_number(file, names::kModelIsCut, std::uint8_t{1});
 }
 
-/// Reads what only version 4 has: bodies, ignored points, or both.
+/// Calls visit(attribute, number) for what a budget has besides the parameters of the query.
+template <typename Budget, typename Visit>
+void for_each_derived(Budget& budget, Visit visit) {
+  visit(names::kBudgetStep, budget.step);
+  visit(names::kBudgetLever, budget.lever);
+  visit(names::kBudgetMotion, budget.motion);
+  visit(names::kBudgetChord, budget.chord);
+  visit(names::kBudgetSpacing, budget.spacing);
+}
+
+/// Reads the error budget, which only version 5 has.
+void read_budget(const hdf5::Id& file, const std::string& name, ResultHeader& header) {
+  header.budget = given_errors(header);
+  if (!header.budget) return;
+  if (header.version < 5) {
+    refuse(name, "has an error budget, which version " + std::to_string(header.version) +
+                     " does not have");
+  }
+  for_each_derived(*header.budget, [&](const char* attribute, double& number) {
+    number = hdf5::read_number<double>(file, attribute, name);
+  });
+  const ErrorBudget& b = *header.budget;
+  for (const double number : {b.scan, b.registration, b.pose, b.angle, b.model, b.sigmas, b.step,
+                              b.lever, b.motion, b.chord, b.spacing}) {
+    if (std::isfinite(number) && number >= 0) continue;
+    refuse(name, "the error budget has the number " + shown(number) + ", expected 0 or above");
+  }
+}
+
+/// Reads what versions before 4 do not have: bodies, ignored points, or both.
 void read_more(const hdf5::Id& file, const std::string& name, ResultHeader& header) {
   const bool bodies = hdf5::has_attribute(file, names::kBodies, name);
   if (header.version < 4) {
@@ -332,7 +372,8 @@ void read_more(const hdf5::Id& file, const std::string& name, ResultHeader& head
     refuse(name, "has bodies, which version " + std::to_string(header.version) + " does not have");
   }
   if (bodies) header.bodies = read_lines(file, name, names::kBodies, "names", kMostBodies);
-  if (!bodies || hdf5::has_attribute(file, names::kIgnoredPoints, name)) {
+  const bool ignores = header.version == 4 && !bodies;
+  if (ignores || hdf5::has_attribute(file, names::kIgnoredPoints, name)) {
     read_ignored(file, name, header);
   }
 }
@@ -378,6 +419,11 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   }
   if (header.model_spacing.metres > 0) {
     hdf5::write_number(file, names::kModelSpacing, header.model_spacing.metres);
+  }
+  if (header.budget) {
+    for_each_derived(*header.budget, [&](const char* attribute, const double& number) {
+      hdf5::write_number(file, attribute, number);
+    });
   }
   if (header.ignores_points()) write_ignored(file, header);
   if (!header.bodies.empty()) {
@@ -427,6 +473,7 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
     read_model_box(file, name, header.model_box);
     check_profile(header, name);
   }
+  read_budget(file, name, header);
   read_more(file, name, header);
   if (is_part) {
     if (header.version < 3) refuse(name, "is a part of version 2, which has none");
@@ -447,6 +494,11 @@ void write_result_findings(const hdf5::Id& file, const ResultFindings& findings)
   }
   if (findings.ignored_colliding_high) {
     hdf5::write_number(file, names::kIgnoredHigh, *findings.ignored_colliding_high);
+  }
+  if (findings.certain) {
+    hdf5::write_number(file, names::kCertainPoints, findings.certain->points);
+    hdf5::write_number(file, names::kCertainGroup,
+                       static_cast<std::uint8_t>(findings.certain->has_group));
   }
   if (findings.searched) {
     hdf5::write_number(file, names::kPathLength, findings.searched->path);
@@ -485,6 +537,11 @@ ResultFindings read_result_findings(const hdf5::Id& file, const std::string& nam
   findings.ignored_colliding = read_count(names::kIgnoredColliding, header.ignored.points);
   findings.ignored_colliding_high =
       read_count(names::kIgnoredHigh, findings.ignored_colliding.value_or(0));
+  if (header.budget) {
+    findings.certain =
+        CertainPoints{hdf5::read_number<std::uint64_t>(file, names::kCertainPoints, name),
+                      hdf5::read_number<std::uint8_t>(file, names::kCertainGroup, name) != 0};
+  }
   findings.searched = read_searched(file, name);
   findings.without_bodies = read_runs(file, name, header);
   return findings;

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "clearway/answer.hpp"
 #include "clearway/box.hpp"
+#include "clearway/error_budget.hpp"
 #include "clearway/ignored.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/query.hpp"
@@ -84,14 +86,20 @@ struct ResultHeader : QueryParameters {
   /// Whether each colliding point also has a last pose. It does in the result of a search with
   /// first poses, except in those of older releases.
   bool last_pose = false;
+  /// The error budget, if the query has one. It decides where /near ends.
+  std::optional<ErrorBudget> budget = {};
   /// Version of the file. Version 2 has no model box, no profile and no coordinates of clearances.
-  /// Version 4 ignores points, has bodies, or both.
+  /// Version 4 ignores points, has bodies, or both. Version 5 has an error budget, and may have
+  /// what version 4 has.
   std::uint32_t version = 3;
 
   bool has_poses_of_ways() const { return first_pose && between_poses; }
   bool has_first_bodies() const { return first_pose && !bodies.empty(); }
   /// The version under which a result with these contents is written.
-  std::uint32_t written_version() const { return ignores_points() || !bodies.empty() ? 4 : 3; }
+  std::uint32_t written_version() const {
+    if (budget) return 5;
+    return ignores_points() || !bodies.empty() ? 4 : 3;
+  }
   /// Whether the answer is exact. If a tolerance or single precision decided, it depends on how it
   /// was computed.
   bool is_exact() const { return tolerance == 0 && !float_precision; }
@@ -113,6 +121,8 @@ struct ResultFindings {
   /// See Answer. A file has both numbers where points are ignored, unless an earlier release wrote
   /// it.
   std::optional<std::uint64_t> ignored_colliding = {}, ignored_colliding_high = {};
+  /// See Answer. A file has it where there is an error budget.
+  std::optional<CertainPoints> certain = {};
   /// See Answer. A file has it where there are several bodies, unless an earlier release wrote it.
   std::optional<SearchedLength> searched = {};
   /// Runs of poses at which no body has a pose, as poses_without_bodies() gives them. Kept where

@@ -9,7 +9,7 @@ inline constexpr const char* kFormat = "clearway result";
 // Differs, so that no reader takes a part for a result.
 inline constexpr const char* kPartFormat = "clearway part";
 inline constexpr std::uint32_t kVersion = 3;
-inline constexpr std::uint32_t kNewestVersion = 4;  // see ResultHeader::version
+inline constexpr std::uint32_t kNewestVersion = 5;  // see ResultHeader::version
 inline constexpr std::uint32_t kOldestVersion = 2;
 
 inline constexpr const char* kGroup = "collisions";
@@ -25,6 +25,8 @@ inline constexpr const char* kDistance = "distance";
 inline constexpr const char* kPose = "pose";
 
 inline constexpr const char* kProfileGroup = "profile";  // exists where kProfile is above 0
+inline constexpr const char* kNearGroup = "near";        // only with an error budget
+inline constexpr const char* kCertain = "certain";       // likewise, in kGroup
 inline constexpr const char* kChainage = "chainage";
 inline constexpr const char* kSquared = "squared";  // only in parts
 
@@ -80,6 +82,17 @@ inline constexpr const char* kRunsWithoutBodies = "runs_without_bodies";
 inline constexpr const char* kPosesWithoutBodies = "poses_without_bodies";
 inline constexpr const char* kModelIsCut = "model_is_cut";  // only in parts whose model is cut
 
+// Only in version 5, besides the parameters of the query, as are the attributes up to
+// kCertainGroup.
+inline constexpr const char* kBudgetStep = "budget_step";
+inline constexpr const char* kBudgetLever = "budget_lever";
+inline constexpr const char* kBudgetMotion = "budget_motion";
+inline constexpr const char* kBudgetChord = "budget_chord";
+inline constexpr const char* kBudgetSpacing = "budget_spacing";
+inline constexpr const char* kCertainPoints = "certain_points";
+inline constexpr const char* kCertainGroup = "certain_group";
+
+inline constexpr const char* kNearHash = "near_hash";
 inline constexpr const char* kCollisionsHash = "collisions_hash";
 // A hash of its own, so that older readers still accept the file.
 inline constexpr const char* kLastPoseHash = "last_pose_hash";

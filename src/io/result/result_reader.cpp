@@ -290,7 +290,8 @@ struct ResultReader::State {
         findings(read_result_findings(file, name, header)),
         tables(TableReader<Collisions>(file, name, header),
                TableReader<Clearances>(file, name, header),
-               TableReader<ProfileRows>(file, name, header)) {
+               TableReader<ProfileRows>(file, name, header),
+               TableReader<Nearby>(file, name, header)) {
     if (header.profile > 0 && table<ProfileRows>().rows() != header.poses) {
       throw InputError(name + ": /profile has " + std::to_string(table<ProfileRows>().rows()) +
                        " rows, expected one for each of " + std::to_string(header.poses) +
@@ -307,7 +308,9 @@ struct ResultReader::State {
   hdf5::Id file;
   ResultHeader header;
   ResultFindings findings;
-  std::tuple<TableReader<Collisions>, TableReader<Clearances>, TableReader<ProfileRows>> tables;
+  std::tuple<TableReader<Collisions>, TableReader<Clearances>, TableReader<ProfileRows>,
+             TableReader<Nearby>>
+      tables;
 };
 
 ResultReader::ResultReader(const std::filesystem::path& path, Parts parts) {
@@ -362,6 +365,7 @@ std::vector<Value> ResultReader::column(std::vector<Value> Rows::*values) const 
 template std::uint64_t ResultReader::rows<Collisions>() const;
 template std::uint64_t ResultReader::rows<Clearances>() const;
 template std::uint64_t ResultReader::rows<ProfileRows>() const;
+template std::uint64_t ResultReader::rows<Nearby>() const;
 template std::uint64_t ResultReader::recorded_hash<Collisions>() const;
 template void ResultReader::read(std::uint64_t, std::size_t, Collisions&,
                                  RowHashes<Collisions>*) const;
@@ -369,6 +373,8 @@ template void ResultReader::read(std::uint64_t, std::size_t, Clearances&,
                                  RowHashes<Clearances>*) const;
 template void ResultReader::read(std::uint64_t, std::size_t, ProfileRows&,
                                  RowHashes<ProfileRows>*) const;
+template void ResultReader::read(std::uint64_t, std::size_t, Nearby&, RowHashes<Nearby>*) const;
+template void ResultReader::check_hashes<Nearby>(const RowHashes<Nearby>&) const;
 template void ResultReader::check_hashes<Collisions>(const RowHashes<Collisions>&) const;
 template void ResultReader::check_hashes<Clearances>(const RowHashes<Clearances>&) const;
 template void ResultReader::check_hashes<ProfileRows>(const RowHashes<ProfileRows>&) const;
@@ -406,6 +412,12 @@ std::vector<std::uint32_t> Result::last_pose() const {
 }
 std::vector<std::uint32_t> Result::first_body() const { return reader_->column(&Collisions::body); }
 const std::vector<std::string>& Result::bodies() const { return reader_->header().bodies; }
+
+Nearby Result::near() const {
+  Nearby out;
+  reader_->read(0, reader_->rows<Nearby>(), out);
+  return out;
+}
 
 Clearances Result::clearance() const {
   Clearances out;

@@ -199,7 +199,7 @@ ResultFindings without_doubts(ResultFindings findings) {
 
 struct ResultWriter::State {
   State(const std::filesystem::path& path, const ResultHeader& result, std::uint64_t collisions,
-        std::uint64_t clearances)
+        std::uint64_t clearances, std::uint64_t near)
       : name(path.string()),
         header(result),
         is_empty(collisions == 0),
@@ -208,6 +208,7 @@ struct ResultWriter::State {
     begin<Collisions>(collisions);
     begin<Clearances>(clearances);
     begin<ProfileRows>(header.poses);
+    begin<Nearby>(near);
     write_result_header(file, header);
     std::uint64_t bytes = 0;
     each([&](auto& table) { bytes += table.bytes(); });
@@ -269,14 +270,14 @@ struct ResultWriter::State {
   File output;               ///< a second handle of the same file
   std::uint64_t synced = 0;  ///< bytes of the file that are on their way to the disk
   std::tuple<std::optional<TableWriter<Collisions>>, std::optional<TableWriter<Clearances>>,
-             std::optional<TableWriter<ProfileRows>>>
+             std::optional<TableWriter<ProfileRows>>, std::optional<TableWriter<Nearby>>>
       tables;
 };
 
 ResultWriter::ResultWriter(const std::filesystem::path& path, const ResultHeader& header,
-                           std::uint64_t collisions, std::uint64_t clearances)
+                           std::uint64_t collisions, std::uint64_t clearances, std::uint64_t near)
     : state_(hdf5::naming(path.string(), [&] {
-        return std::make_unique<State>(path, header, collisions, clearances);
+        return std::make_unique<State>(path, header, collisions, clearances, near);
       })) {}
 
 ResultWriter::~ResultWriter() {
@@ -314,7 +315,8 @@ void ResultWriter::finish(const ResultFindings& findings) {
   s.each([&](auto& table) { s.complete(table); });
   hdf5::naming(s.name, [&] {
     s.each([&](auto& table) { table.write_hashes(s.file); });
-    write_result_findings(s.file, s.is_empty ? findings : without_doubts(findings));
+    const bool may_doubt = findings.certain ? !findings.certain->has_group : s.is_empty;
+    write_result_findings(s.file, may_doubt ? findings : without_doubts(findings));
     hdf5::write_number(s.file, "complete", std::uint8_t{1});
     s.each([](auto& table) { table.write_held(); });
     hdf5::check(H5Fflush(s.file.get(), H5F_SCOPE_LOCAL), "write the result");
@@ -327,11 +329,15 @@ void ResultWriter::finish(const ResultFindings& findings) {
 template void ResultWriter::append(const Collisions&);
 template void ResultWriter::append(const Clearances&);
 template void ResultWriter::append(const ProfileRows&);
+template void ResultWriter::append(const Nearby&);
 template EncodedRows<Collisions> ResultWriter::new_rows() const;
 template EncodedRows<Clearances> ResultWriter::new_rows() const;
+template EncodedRows<Nearby> ResultWriter::new_rows() const;
 template void ResultWriter::hash(const EncodedRows<Collisions>&);
 template void ResultWriter::hash(const EncodedRows<Clearances>&);
+template void ResultWriter::hash(const EncodedRows<Nearby>&);
 template void ResultWriter::write(EncodedRows<Collisions>&);
 template void ResultWriter::write(EncodedRows<Clearances>&);
+template void ResultWriter::write(EncodedRows<Nearby>&);
 
 }  // namespace clearway

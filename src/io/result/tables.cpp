@@ -56,6 +56,12 @@ void check_bodies(const RowsRead& read, const char* dataset, std::span<const std
   }
 }
 
+void check_flags(const RowsRead& read, const char* dataset, std::span<const std::uint8_t> flags) {
+  for (std::size_t i = 0; i < flags.size(); ++i) {
+    if (flags[i] > 1) read.refuse_row(dataset, i, "0 or 1");
+  }
+}
+
 void check_clearances(const RowsRead& read, const char* dataset, std::span<const double> distance) {
   for (std::size_t i = 0; i < distance.size(); ++i) {
     if (!(is_distance(read.header, distance[i]) && distance[i] <= read.header.clearance)) {

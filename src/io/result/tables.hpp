@@ -62,6 +62,7 @@ void check_sources(const RowsRead& read, const char* dataset, std::span<const st
 void check_points(const RowsRead& read, const char* dataset, std::span<const Vec3>);
 void check_poses(const RowsRead& read, const char* dataset, std::span<const std::uint32_t>);
 void check_bodies(const RowsRead& read, const char* dataset, std::span<const std::uint32_t>);
+void check_flags(const RowsRead& read, const char* dataset, std::span<const std::uint8_t>);
 void check_clearances(const RowsRead& read, const char* dataset, std::span<const double>);
 void check_chainages(const RowsRead& read, const char* dataset, std::span<const double>);
 /// For values that only the check of whole rows can judge.
@@ -104,10 +105,34 @@ struct Table<Collisions> : AscendingSources<Collisions> {
                                   check_bodies, "body of that pose"},
       Column<Rows, std::uint32_t>{result_names::kLastPose, &Rows::last_pose,
                                   [](const ResultHeader& h) { return h.last_pose; }, check_poses,
-                                  nullptr, result_names::kLastPoseHash}};
+                                  nullptr, result_names::kLastPoseHash},
+      Column<Rows, std::uint8_t>{result_names::kCertain, &Rows::certain,
+                                 [](const ResultHeader& h) { return h.budget.has_value(); },
+                                 check_flags}};
 
   /// Throws InputError where the columns of a row contradict each other.
   static void check(const RowsRead& read, const Rows& rows);
+};
+
+template <>
+struct Table<Nearby> : AscendingSources<Nearby> {
+  using Rows = Nearby;
+  static constexpr const char* kGroup = result_names::kNearGroup;
+  static constexpr const char* kHash = result_names::kNearHash;
+  static bool is_in(const ResultHeader& header) { return header.budget.has_value(); }
+
+  static constexpr std::tuple kColumns{
+      Column<Rows, std::uint64_t>{result_names::kSource, &Rows::source, in_every_result,
+                                  check_sources},
+      Column<Rows, Vec3>{result_names::kXyz, &Rows::xyz, in_every_result, check_points},
+      Column<Rows, std::uint32_t>{result_names::kFirstPose, &Rows::first_pose,
+                                  [](const ResultHeader& h) { return h.first_pose; }, check_poses,
+                                  "first pose that is near"},
+      Column<Rows, std::uint32_t>{result_names::kBody, &Rows::body,
+                                  [](const ResultHeader& h) { return h.has_first_bodies(); },
+                                  check_bodies, "body of that pose"}};
+
+  static void check(const RowsRead&, const Rows&) {}
 };
 
 template <>

@@ -134,12 +134,22 @@ class Query:
     ignore_boxes: list[Box]
     allow_non_rigid: bool
     bodies: list[Body]
+    error_scan: float | None
+    error_registration: float | None
+    error_pose: float | None
+    error_angle: float | None
+    error_model: float | None
+    sigmas: float
+    gap: float
     def __init__(
         self, model: ArrayLike | Model = ..., poses: ArrayLike = ..., radius: float | None = None, *,
         first_pose: bool = False, between_poses: bool = False, clearance: float = 0.0,
         profile: float = 0.0, tolerance: float = 0.0, ignore_classes: Sequence[int] = ...,
         ignore_boxes: Sequence[Box] = ..., allow_non_rigid: bool = False,
-        bodies: Sequence[Body] = ...,
+        bodies: Sequence[Body] = ..., error_scan: float | None = None,
+        error_registration: float | None = None, error_pose: float | None = None,
+        error_angle: float | None = None, error_model: float | None = None, sigmas: float = 3.0,
+        gap: float = 0.3,
     ) -> None: ...
 class QueryParameters:
     radius: Final[float]
@@ -153,6 +163,13 @@ class QueryParameters:
     seen_min: Final[int]
     ignore_classes: Final[list[int]]
     ignore_boxes: Final[list[Box]]
+    error_scan: Final[float | None]
+    error_registration: Final[float | None]
+    error_pose: Final[float | None]
+    error_angle: Final[float | None]
+    error_model: Final[float | None]
+    sigmas: Final[float]
+    gap: Final[float]
 class IgnoredPointCounts:
     points: Final[int]
     of_classes: Final[list[int]]

@@ -85,6 +85,7 @@ std::string row_text(const Conflict& c, bool distances, bool depths, bool shifts
   if (shifts)
     row += length_cell(rounded_up(c.shift_left), 14, 3) +
            length_cell(rounded_up(c.shift_right), 15, 3);
+  if (c.certain) row += fmt::format("  {:>8}", *c.certain ? "certain" : "possible");
   return row + fmt::format("  {:.3f} {:.3f} {:.3f}\n", c.centroid.x, c.centroid.y, c.centroid.z);
 }
 
@@ -106,15 +107,18 @@ std::string small_text(const ConflictFile& file) {
 
 std::string totals_text(const ConflictFile& file) {
   const Conflicts& c = file.conflicts;
-  if (c.colliding_points == 0) return "no conflicts, because no point collides\n";
+  const std::uint64_t points = c.colliding_points + c.near_points;
+  if (points == 0) return "no conflicts, because no point collides\n";
   const std::string path =
       " along " + format_brief(c.path_length) + " " + symbol_of(file.unit()) + " of path\n";
   if (c.listed.empty()) {
-    return counted(c.small_points, "point") + (c.small_points == 1 ? " collides" : " collide") +
-           path + "no conflict is listed, for every group is small: " + small_text(file);
+    const bool near = c.near_points > 0;
+    const char* does = near ? " may collide" : c.small_points == 1 ? " collides" : " collide";
+    return counted(c.small_points, "point") + does + path +
+           "no conflict is listed, for every group is small: " + small_text(file);
   }
-  return counted(c.listed.size(), "conflict") + " of " +
-         counted(c.colliding_points - c.small_points, "point") + path + small_text(file);
+  return counted(c.listed.size(), "conflict") + " of " + counted(points - c.small_points, "point") +
+         path + small_text(file);
 }
 
 /// A table of the worst conflicts, ordered by least distance where that is known and otherwise
@@ -142,6 +146,7 @@ std::string conflict_text(const ConflictFile& file, std::size_t most) {
     text += fmt::format("  {:>14}  {:>15}", fmt::format("shift left ({})", unit),
                         fmt::format("shift right ({})", unit));
   }
+  if (rows.front().certain) text += fmt::format("  {:>8}", "class");
   text += "  centroid\n";
   for (const Conflict& conflict : rows) text += row_text(conflict, distances, depths, shifts);
   if (!conflicts.has_last_poses) {

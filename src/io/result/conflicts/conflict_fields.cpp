@@ -50,6 +50,10 @@ std::vector<ConflictField> fields_of(const Conflict& c, const ResultHeader& head
                                     {"obstacle_chainage", value_of<double>(c.obstacle_chainage)},
                                     {"shift_left", value_of<double>(c.shift_left)},
                                     {"shift_right", value_of<double>(c.shift_right)}};
+  if (header.budget) {
+    const bool certain = c.certain.value_or(false);
+    fields.push_back({"class", std::string_view(certain ? "certain" : "possible")});
+  }
   if (c.body) {
     fields.push_back({"body", std::uint64_t{*c.body}});
     fields.push_back({"body_name", std::string_view(header.bodies.at(*c.body))});
@@ -157,6 +161,15 @@ std::string summary_json(const ConflictFile& file) {
   out.add_length("clearance", header.clearance);
   out.add("between_poses", header.between_poses ? "true" : "false");
   out.add("verdict", json_string(name_of(file.answer.verdict())));
+  if (header.budget) {
+    std::vector<std::string> reasons;
+    for (const Reason reason : file.answer.reasons()) reasons.emplace_back(name_of(reason));
+    out.add("reasons", names_json(reasons));
+    out.add("margins", "{\"clear\": " + json_number(header.budget->clear()) +
+                           ", \"conflict\": " + json_number(header.budget->conflict()) + "}");
+    out.add_count("near_points", file.answer.near_points);
+    out.add_count("certain_points", file.answer.certain.points);
+  }
   out.add("doubts", names_json(file.answer.doubts));
   if (!file.answer.warned_of.empty()) out.add("warned_of", names_json(file.answer.warned_of));
   if (header.ignores_points()) {
