@@ -11,6 +11,7 @@
 #include "clearway/ignored.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/query.hpp"
+#include "clearway/seen.hpp"
 #include "clearway/shard.hpp"
 #include "clearway/unsearched.hpp"
 
@@ -26,6 +27,7 @@ enum class Reason {
   kFew,   ///< points are certainly too close, but too few of them hang together
   /// Points are near, but the errors are so large that no surface could be a certain conflict
   kErrorsExceedMargin,
+  kNotScanned,  ///< the model passes through places that no beam of the scanner reached
   kQuestionInDoubt  ///< a warning says that the search could not find anything: see is_doubt()
 };
 
@@ -101,11 +103,18 @@ struct Answer : TableSummary {
   /// The error budget; nullopt if none was given, and the verdict is about the scanned points.
   std::optional<ErrorBudget> budget;
   CertainPoints certain;  ///< what the budget says of the colliding points
+  /// What is known of the space that the model sweeps; nullopt if that was not asked for.
+  std::optional<SeenSummary> seen;
 
   /// The verdict. Without an error budget a single colliding point is a conflict, however doubtful
   /// the question is. With one, a group of points that are certainly too close is.
   Verdict verdict() const;
   std::vector<Reason> reasons() const;  ///< why the verdict is kUndecided; empty for other verdicts
+  /// Whether the model passes through places that no beam reached, in groups that are listed.
+  bool is_not_scanned() const { return seen && seen->listed_groups > 0; }
+  /// Whether a warning puts the question in doubt. A path out of reach of every point does not,
+  /// where all that the model sweeps was seen to be free.
+  bool is_in_doubt() const;
   /// Whether any point is closer than what a clear passage has to keep free.
   bool is_near() const { return colliding_points + near_points > 0; }
   /// The place of the least distance that is known; nullopt if no distance is.

@@ -11,6 +11,7 @@
 #include "clearway/box.hpp"
 #include "clearway/ignored.hpp"
 #include "clearway/query.hpp"
+#include "clearway/seen.hpp"
 #include "clearway/vec3.hpp"
 
 namespace clearway {
@@ -107,6 +108,7 @@ class Result {
   std::vector<std::uint32_t> first_body() const;
   /// Names of the bodies of a query that has several; otherwise empty.
   const std::vector<std::string>& bodies() const;
+  UnseenCubes unseen() const;    ///< empty unless the query asked for seen space
   Nearby near() const;           ///< empty unless the query has an error budget
   Clearances clearance() const;  ///< empty unless the query asked for clearances
   Profile profile() const;       ///< empty unless the query asked for a profile

@@ -25,6 +25,7 @@
 #include "search/page_search.hpp"
 #include "search/result_header.hpp"
 #include "search/run_journal.hpp"
+#include "search/seen_space.hpp"
 #include "search/shard_cells.hpp"
 #include "search/threads.hpp"
 #include "stream/gather_rows.hpp"
@@ -72,7 +73,7 @@ class Search {
     }
     end_gpus_ = options_.end_gpus;
     // The GPUs are needed for further searches.
-    if (query_.first_pose || query_.has_budget()) options_.end_gpus = false;
+    if (query_.first_pose || query_.has_budget() || query_.seen) options_.end_gpus = false;
     if (!options_.started) options_.started = start_devices(options_, &store);
   }
 
@@ -90,6 +91,7 @@ class Search {
       Found found = find();
       if (query_.first_pose) find_last_poses(found);
       if (header_.budget) judge(found);
+      if (query_.seen) find_unseen(found);
       publish(found);
       const Stopwatch ending;
       found.engine_end.clear();
@@ -325,6 +327,28 @@ class Search {
     }
   }
 
+  /// Finds out which places that the model sweeps no beam of the scanner passed through. A shard
+  /// follows the beams of its own cells; the groups of what none of them saw are made by the merge.
+  void find_unseen(Found& found) {
+    found.engine_end.clear();
+    further_options_ = options_;
+    further_options_.engine = Engine::kSweep;
+    const bool gpu = report_.device == Device::kCuda && report_.engine != Engine::kKdtree;
+    const SeenSearch how{
+        .radius = header_.budget ? header_.budget->near_radius(query_.radius) : query_.radius,
+        .memory_bytes = options_.memory_bytes,
+        .threads = options_.threads,
+        .only = only(),
+        .kind = [&](const PackedCloud& cloud, const Query& query) {
+          return kind_for(gpu ? Device::kCuda : Device::kCpu, cloud, query, further_options_);
+        }};
+    SeenSpace space = find_seen_space(store_, query_, how, progress_);
+    if (!options_.shard) group_unseen(query_, query_.poses, space.unseen, space.summary);
+    report_.seen = space.summary;
+    if (!options_.shard) warn_of_seen_space(space, query_, log_);
+    found.result.unseen = std::move(space.unseen);
+  }
+
   /// Searches all cells, or those of `cells`, for another query after the first search, as stage
   /// `name`. No journal keeps this search, so a run that is resumed begins it again. Leaves in
   /// `found` the end of the engines and the memory that is left to write with.
@@ -369,21 +393,26 @@ class Search {
     }
   }
 
-  /// Makes the engine kind for a device. query and options outlive the kind.
-  std::unique_ptr<PageEngineKind> kind_on([[maybe_unused]] Device device, const Query& query,
+  /// Makes the engine kind for a device. cloud, query and options outlive the kind.
+  std::unique_ptr<PageEngineKind> kind_on(Device device, const Query& query,
                                           const SearchOptions& options) {
+    return kind_for(device, store_, query, options);
+  }
+  std::unique_ptr<PageEngineKind> kind_for([[maybe_unused]] Device device,
+                                           const PackedCloud& cloud, const Query& query,
+                                           const SearchOptions& options) {
 #ifdef CLEARWAY_CUDA
     if (device == Device::kCuda) {
       const OpenGpus open = [this] { return open_gpus(); };
-      if (!query.bodies.empty()) return cuda_body_kind(store_, query, options, open);
-      return cuda_kind(store_, query, options, open);
+      if (!query.bodies.empty()) return cuda_body_kind(cloud, query, options, open);
+      return cuda_kind(cloud, query, options, open);
     }
 #endif
-    if (!query.bodies.empty()) return cpu_body_kind(store_, query, options);
+    if (!query.bodies.empty()) return cpu_body_kind(cloud, query, options);
     if (options.engine == Engine::kGrid) {
-      return std::make_unique<CpuGridKind>(store_, query, options);
+      return std::make_unique<CpuGridKind>(cloud, query, options);
     }
-    return cpu_sweep_kind(store_, query, options);
+    return cpu_sweep_kind(cloud, query, options);
   }
 
   /// The GPUs, opened when the search first needs them; their start was begun earlier, in the
@@ -440,6 +469,7 @@ class Search {
       found.without_bodies = poses_without_bodies(query_.poses.size(), query_.bodies);
     }
     if (header_.budget) found.certain = report_.certain;
+    found.seen = report_.seen;
     if (!query_.ignores_points()) return found;
     found.ignored_colliding = report_.ignored_colliding;
     found.ignored_colliding_high = report_.ignored_colliding_high;

@@ -339,7 +339,8 @@ TableSummary write_tables(const StoreReader& store, const SearchResult& answer,
   const SetCells clearances =
       header.clearance > 0 ? cells_of(store, answer.clearances) : SetCells();
   const SetCells near = answer.near ? cells_of(store, *answer.near) : SetCells();
-  ResultWriter writer(path, header, collisions.entries, clearances.entries, near.entries);
+  ResultWriter writer(path, header, collisions.entries, clearances.entries, near.entries,
+                      answer.unseen ? answer.unseen->size() : 0);
   progress.begin("write", collisions.entries + clearances.entries + near.entries, "points");
   ResultWriting writing(store, answer, header, memory_bytes, writer, progress);
   writing.write_collisions(collisions, summary);
@@ -349,6 +350,7 @@ TableSummary write_tables(const StoreReader& store, const SearchResult& answer,
                   summary);
   }
   if (answer.near) writing.write_near(near, summary);
+  if (answer.unseen) writer.append(*answer.unseen);
   writer.finish(findings);
   progress.end();
   return summary;

@@ -80,6 +80,28 @@ std::string ignored_clause(const Answer& answer) {
   return text + format_count(*answer.ignored_colliding) + " of which would collide";
 }
 
+/// A clause about seen space, such as "; not scanned on 3.2 of 68 m"; empty where it was not asked
+/// for, and for a shard, whose beams are only some.
+std::string seen_clause(const Answer& answer, const PathWords& path, const std::string& unit) {
+  if (!answer.seen || answer.shard) return "";
+  const SeenSummary& seen = *answer.seen;
+  const double length = path.chainage.empty() ? 0 : path.chainage.back();
+  if (seen.listed_groups > 0) {
+    return fmt::format("; not scanned on {:.1f} of {:.1f} {}: no beam passed through {} of {} cubes "
+                       "that the model sweeps, in {}",
+                       seen.not_scanned_length, length, unit, format_count(seen.unseen),
+                       format_count(seen.swept), counted(seen.listed_groups, "place"));
+  }
+  if (seen.unseen > 0) {
+    return fmt::format("; a beam passed through all but {} of the {} cubes that the model sweeps, "
+                       "which are in {} of fewer than {} cubes",
+                       format_count(seen.unseen), format_count(seen.swept),
+                       counted(seen.groups, "group"), answer.parameters.seen_min);
+  }
+  return "; a beam passed through each of the " + format_count(seen.swept) +
+         " cubes that the model sweeps";
+}
+
 /// The verdict of a query with an error budget, with what it rests on.
 std::string finding_with_budget(const Answer& answer, const PathWords& path,
                                 const std::string& unit) {
@@ -131,8 +153,11 @@ std::string finding_text(const Answer& answer, const PathWords& path, const std:
     case Verdict::kClear:
       return "clear" + ignored + ": " + none;
     case Verdict::kUndecided:
-      return "undecided, because the question is in doubt (" +
-             fmt::format("{}", fmt::join(answer.doubts, ", ")) + ")" + ignored + ": " + none;
+      if (!answer.is_in_doubt()) return "undecided (not-scanned)" + ignored + ": " + none;
+      return std::string("undecided, because ") +
+             (answer.is_not_scanned() ? "places were not scanned and " : "") +
+             "the question is in doubt (" + fmt::format("{}", fmt::join(answer.doubts, ", ")) +
+             ")" + ignored + ": " + none;
     case Verdict::kUnknown:
       return "no point of this part is closer than " + limit + " to the model on its way" + ignored;
     case Verdict::kConflict:
@@ -186,6 +211,18 @@ ordered_json margins_json(const Answer& answer) {
   return {{"clear", answer.budget->clear()}, {"conflict", answer.budget->conflict()}};
 }
 
+ordered_json seen_json(const Answer& answer) {
+  if (!answer.seen) return nullptr;
+  const SeenSummary& seen = *answer.seen;
+  return {{"cube", seen.cube},
+          {"swept", seen.swept},
+          {"seen", seen.seen},
+          {"unseen", seen.unseen},
+          {"groups", seen.groups},
+          {"listed_groups", seen.listed_groups},
+          {"not_scanned_length", seen.not_scanned_length}};
+}
+
 ordered_json budget_json(const ErrorBudget& budget) {
   return {{"scan", budget.scan},       {"registration", budget.registration},
           {"pose", budget.pose},       {"angle", budget.angle},
@@ -211,7 +248,8 @@ std::string caveat_of(std::size_t warnings) {
 std::string verdict_text(const Answer& answer, const PathWords& path, const std::string& unit,
                          const std::string& caveat) {
   std::string text = answer.shard ? in_words(*answer.shard) + ": " : "";
-  text += finding_text(answer, path, unit) + nearest_text(answer, path, unit);
+  text += finding_text(answer, path, unit) + seen_clause(answer, path, unit) +
+          nearest_text(answer, path, unit);
   if (answer.verdict() != Verdict::kConflict) {
     text += spacing_text(answer.model_spacing, answer.parameters.radius, unit);
   }
@@ -258,7 +296,7 @@ void add_answer(const Answer& answer, const PathWords& path, ordered_json& out) 
   out["reasons"] = ordered_json::array();
   for (const Reason reason : answer.reasons()) out["reasons"].push_back(name_of(reason));
   out["margins"] = margins_json(answer);
-  out["seen"] = nullptr;
+  out["seen"] = seen_json(answer);
   out["model_spacing"] = nullptr;
   if (answer.model_spacing > 0) out["model_spacing"] = answer.model_spacing;
   out["ignored"] = ignored_json(answer);

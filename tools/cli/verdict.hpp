@@ -45,6 +45,8 @@ void warn_of_doubts(const ResultReader& result);
 
 /// The two margins of an error budget, metres; null without a budget.
 nlohmann::ordered_json margins_json(const Answer& answer);
+/// What is known of seen space; null where it was not asked for.
+nlohmann::ordered_json seen_json(const Answer& answer);
 
 /// All numbers of an error budget, as they are named in ErrorBudget.
 nlohmann::ordered_json budget_json(const ErrorBudget& budget);

@@ -27,6 +27,8 @@ const char* name_of(Reason reason) {
       return "few";
     case Reason::kErrorsExceedMargin:
       return "errors-exceed-margin";
+    case Reason::kNotScanned:
+      return "not-scanned";
     case Reason::kQuestionInDoubt:
       break;
   }
@@ -63,11 +65,18 @@ std::vector<std::string> codes_beside_doubts(const std::vector<Message>& warning
   return codes_among(warnings, false);
 }
 
+bool Answer::is_in_doubt() const {
+  const bool all_seen = seen && seen->swept > 0 && seen->unseen == 0;
+  return std::ranges::any_of(doubts, [&](const std::string& code) {
+    return !(all_seen && code == "out-of-reach");
+  });
+}
+
 Verdict Answer::verdict() const {
   if (budget ? certain.has_group : colliding_points > 0) return Verdict::kConflict;
   if (shard) return Verdict::kUnknown;
-  const bool open = budget && is_near();
-  return doubts.empty() && !open ? Verdict::kClear : Verdict::kUndecided;
+  const bool open = (budget && is_near()) || is_not_scanned();
+  return !is_in_doubt() && !open ? Verdict::kClear : Verdict::kUndecided;
 }
 
 std::vector<Reason> Answer::reasons() const {
@@ -80,7 +89,8 @@ std::vector<Reason> Answer::reasons() const {
       all.push_back(Reason::kErrorsExceedMargin);
     }
   }
-  if (!doubts.empty()) all.push_back(Reason::kQuestionInDoubt);
+  if (is_not_scanned()) all.push_back(Reason::kNotScanned);
+  if (is_in_doubt()) all.push_back(Reason::kQuestionInDoubt);
   return all;
 }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "clearway/query.hpp"
+#include "clearway/seen.hpp"
 #include "core/query/body_numbers.hpp"
 #include "core/util/zeroed_array.hpp"
 
@@ -250,6 +251,8 @@ struct SearchResult {
   ProfileSet profile = {};  ///< no poses unless asked for
   /// Number of ignored points in the cells that were searched, without those of a journal.
   std::uint64_t ignored_points = 0;
+  /// Set after a search for seen space, if that was asked for
+  std::optional<UnseenCubes> unseen = {};
   /// Set after a search for them, if first poses were asked for
   std::optional<LastPoses> last_poses = {};
   /// With an error budget: the points that do not collide but are closer than the margin plus it,

@@ -123,6 +123,7 @@ void add_findings(const ResultFindings& findings, Answer& answer) {
   answer.warned_of = findings.warned_of;
   answer.searched = findings.searched;
   answer.certain = findings.certain.value_or(CertainPoints{});
+  answer.seen = findings.seen;
   if (!answer.parameters.ignores_points()) return;
   answer.ignored_colliding = findings.ignored_colliding;
   answer.ignored_colliding_high = findings.ignored_colliding_high;

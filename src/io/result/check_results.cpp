@@ -47,6 +47,9 @@ std::optional<std::string> verify_result(const ResultReader& result, Progress& p
     check_table<Collisions>(result, progress);
     check_table<Clearances>(result, progress);
     check_table<ProfileRows>(result, progress);
+    check_table<Nearby>(result, progress);
+    RowStream<UnseenCubes> unseen(result);
+    for (UnseenCubes rows; unseen.read(rows);) progress.advance(rows.size());
   } catch (const InputError& error) {
     fault = error.what();
   }

@@ -482,6 +482,40 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
   return header;
 }
 
+namespace {
+
+void write_seen(const hdf5::Id& file, const SeenSummary& seen) {
+  hdf5::write_number(file, names::kCubeSide, seen.cube);
+  hdf5::write_number(file, names::kSweptCubes, seen.swept);
+  hdf5::write_number(file, names::kUnseenCubes, seen.unseen);
+  hdf5::write_number(file, names::kUnseenGroups, seen.groups);
+  hdf5::write_number(file, names::kListedGroups, seen.listed_groups);
+  hdf5::write_number(file, names::kListedCubes, seen.listed_cubes);
+  hdf5::write_number(file, names::kNotScanned, seen.not_scanned_length);
+}
+
+SeenSummary read_seen(const hdf5::Id& file, const std::string& name) {
+  const auto count = [&](const char* attribute) {
+    return hdf5::read_number<std::uint64_t>(file, attribute, name);
+  };
+  SeenSummary seen;
+  seen.cube = hdf5::read_number<double>(file, names::kCubeSide, name);
+  seen.swept = count(names::kSweptCubes);
+  seen.unseen = count(names::kUnseenCubes);
+  seen.groups = count(names::kUnseenGroups);
+  seen.listed_groups = count(names::kListedGroups);
+  seen.listed_cubes = count(names::kListedCubes);
+  seen.not_scanned_length = hdf5::read_number<double>(file, names::kNotScanned, name);
+  if (seen.unseen > seen.swept || seen.groups > seen.unseen || seen.listed_groups > seen.groups ||
+      seen.listed_cubes > seen.unseen || !(seen.cube > 0) || !(seen.not_scanned_length >= 0)) {
+    refuse(name, "the numbers of swept and unseen cubes contradict each other");
+  }
+  seen.seen = seen.swept - seen.unseen;
+  return seen;
+}
+
+}  // namespace
+
 void write_result_findings(const hdf5::Id& file, const ResultFindings& findings) {
   if (!findings.doubts.empty()) {
     hdf5::write_attribute(file, names::kDoubts, lines_of(findings.doubts));
@@ -495,6 +529,7 @@ void write_result_findings(const hdf5::Id& file, const ResultFindings& findings)
   if (findings.ignored_colliding_high) {
     hdf5::write_number(file, names::kIgnoredHigh, *findings.ignored_colliding_high);
   }
+  if (findings.seen) write_seen(file, *findings.seen);
   if (findings.certain) {
     hdf5::write_number(file, names::kCertainPoints, findings.certain->points);
     hdf5::write_number(file, names::kCertainGroup,
@@ -537,6 +572,7 @@ ResultFindings read_result_findings(const hdf5::Id& file, const std::string& nam
   findings.ignored_colliding = read_count(names::kIgnoredColliding, header.ignored.points);
   findings.ignored_colliding_high =
       read_count(names::kIgnoredHigh, findings.ignored_colliding.value_or(0));
+  if (header.seen) findings.seen = read_seen(file, name);
   if (header.budget) {
     findings.certain =
         CertainPoints{hdf5::read_number<std::uint64_t>(file, names::kCertainPoints, name),

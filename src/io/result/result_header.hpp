@@ -89,15 +89,15 @@ struct ResultHeader : QueryParameters {
   /// The error budget, if the query has one. It decides where /near ends.
   std::optional<ErrorBudget> budget = {};
   /// Version of the file. Version 2 has no model box, no profile and no coordinates of clearances.
-  /// Version 4 ignores points, has bodies, or both. Version 5 has an error budget, and may have
-  /// what version 4 has.
+  /// Version 4 ignores points, has bodies, or both. Version 5 has an error budget, seen space or
+  /// both, and may have what version 4 has.
   std::uint32_t version = 3;
 
   bool has_poses_of_ways() const { return first_pose && between_poses; }
   bool has_first_bodies() const { return first_pose && !bodies.empty(); }
   /// The version under which a result with these contents is written.
   std::uint32_t written_version() const {
-    if (budget) return 5;
+    if (budget || seen) return 5;
     return ignores_points() || !bodies.empty() ? 4 : 3;
   }
   /// Whether the answer is exact. If a tolerance or single precision decided, it depends on how it
@@ -123,6 +123,8 @@ struct ResultFindings {
   std::optional<std::uint64_t> ignored_colliding = {}, ignored_colliding_high = {};
   /// See Answer. A file has it where there is an error budget.
   std::optional<CertainPoints> certain = {};
+  /// See Answer. A file has it where seen space is asked for.
+  std::optional<SeenSummary> seen = {};
   /// See Answer. A file has it where there are several bodies, unless an earlier release wrote it.
   std::optional<SearchedLength> searched = {};
   /// Runs of poses at which no body has a pose, as poses_without_bodies() gives them. Kept where

@@ -30,6 +30,19 @@ inline constexpr const char* kCertain = "certain";       // likewise, in kGroup
 inline constexpr const char* kChainage = "chainage";
 inline constexpr const char* kSquared = "squared";  // only in parts
 
+inline constexpr const char* kUnseenGroup = "unseen";  // exists where seen space is asked for
+inline constexpr const char* kUnseenHash = "unseen_hash";
+inline constexpr const char* kCube = "cube";
+inline constexpr const char* kGroupOfCube = "group";
+// Attributes with what is known of seen space.
+inline constexpr const char* kCubeSide = "unseen_cube_side";
+inline constexpr const char* kSweptCubes = "swept_cubes";
+inline constexpr const char* kUnseenCubes = "unseen_cubes";
+inline constexpr const char* kUnseenGroups = "unseen_groups";
+inline constexpr const char* kListedGroups = "unseen_listed_groups";
+inline constexpr const char* kListedCubes = "unseen_listed_cubes";
+inline constexpr const char* kNotScanned = "not_scanned_length";
+
 inline constexpr const char* kProfile = "profile";
 inline constexpr const char* kModelBox = "model_box";
 // Written together with kEngine, only where there is a tolerance.

@@ -124,20 +124,10 @@ void check_range(std::uint64_t first, std::size_t count, std::uint64_t rows) {
   }
 }
 
-/// The values as a dataset holds them: points as a sequence of x, y, z.
-template <typename Value>
-auto numbers_of(std::span<Value> values) {
-  if constexpr (std::is_same_v<Value, Vec3>) {
-    return as_numbers(values);
-  } else {
-    return values;
-  }
-}
-
 /// A dataset that is read, or nothing where the result does not have the column.
 template <typename Value>
 using OptionalRead =
-    std::optional<hdf5::Rows<std::conditional_t<std::is_same_v<Value, Vec3>, double, Value>>>;
+    std::optional<hdf5::Rows<typename StoredValue<Value>::Number>>;
 
 /// The datasets of a table, which are read together.
 template <typename Rows>
@@ -159,7 +149,7 @@ class TableReader {
         own_hashes_.push_back(hdf5::read_number<std::uint64_t>(file, column.own_hash, name));
       }
       const std::string path = std::string(Table<Rows>::kGroup) + "/" + column.dataset;
-      dataset.emplace(Dataset::open(file, path, std::is_same_v<Value, Vec3> ? 3 : 0, name));
+      dataset.emplace(Dataset::open(file, path, StoredValue<Value>::kNumbers, name));
       if (!rows_) rows_ = dataset->rows();
       if (dataset->rows() == *rows_) return;
       throw InputError(name + ": the datasets of /" + Table<Rows>::kGroup +
@@ -291,7 +281,8 @@ struct ResultReader::State {
         tables(TableReader<Collisions>(file, name, header),
                TableReader<Clearances>(file, name, header),
                TableReader<ProfileRows>(file, name, header),
-               TableReader<Nearby>(file, name, header)) {
+               TableReader<Nearby>(file, name, header),
+               TableReader<UnseenCubes>(file, name, header)) {
     if (header.profile > 0 && table<ProfileRows>().rows() != header.poses) {
       throw InputError(name + ": /profile has " + std::to_string(table<ProfileRows>().rows()) +
                        " rows, expected one for each of " + std::to_string(header.poses) +
@@ -309,7 +300,7 @@ struct ResultReader::State {
   ResultHeader header;
   ResultFindings findings;
   std::tuple<TableReader<Collisions>, TableReader<Clearances>, TableReader<ProfileRows>,
-             TableReader<Nearby>>
+             TableReader<Nearby>, TableReader<UnseenCubes>>
       tables;
 };
 
@@ -366,6 +357,7 @@ template std::uint64_t ResultReader::rows<Collisions>() const;
 template std::uint64_t ResultReader::rows<Clearances>() const;
 template std::uint64_t ResultReader::rows<ProfileRows>() const;
 template std::uint64_t ResultReader::rows<Nearby>() const;
+template std::uint64_t ResultReader::rows<UnseenCubes>() const;
 template std::uint64_t ResultReader::recorded_hash<Collisions>() const;
 template void ResultReader::read(std::uint64_t, std::size_t, Collisions&,
                                  RowHashes<Collisions>*) const;
@@ -375,6 +367,9 @@ template void ResultReader::read(std::uint64_t, std::size_t, ProfileRows&,
                                  RowHashes<ProfileRows>*) const;
 template void ResultReader::read(std::uint64_t, std::size_t, Nearby&, RowHashes<Nearby>*) const;
 template void ResultReader::check_hashes<Nearby>(const RowHashes<Nearby>&) const;
+template void ResultReader::read(std::uint64_t, std::size_t, UnseenCubes&,
+                                 RowHashes<UnseenCubes>*) const;
+template void ResultReader::check_hashes<UnseenCubes>(const RowHashes<UnseenCubes>&) const;
 template void ResultReader::check_hashes<Collisions>(const RowHashes<Collisions>&) const;
 template void ResultReader::check_hashes<Clearances>(const RowHashes<Clearances>&) const;
 template void ResultReader::check_hashes<ProfileRows>(const RowHashes<ProfileRows>&) const;
@@ -412,6 +407,12 @@ std::vector<std::uint32_t> Result::last_pose() const {
 }
 std::vector<std::uint32_t> Result::first_body() const { return reader_->column(&Collisions::body); }
 const std::vector<std::string>& Result::bodies() const { return reader_->header().bodies; }
+
+UnseenCubes Result::unseen() const {
+  UnseenCubes out;
+  reader_->read(0, reader_->rows<UnseenCubes>(), out);
+  return out;
+}
 
 Nearby Result::near() const {
   Nearby out;

@@ -12,6 +12,7 @@
 #include "io/files/file.hpp"
 #include "io/files/hdf5.hpp"
 #include "io/files/xxh64.hpp"
+#include "io/result/as_numbers.hpp"
 #include "io/result/result.hpp"
 
 namespace clearway {
@@ -22,7 +23,7 @@ template <typename Value>
 class ResultColumn {
  public:
   ResultColumn(const hdf5::Id& group, const char* name, std::uint64_t rows)
-      : dataset_(group, name, rows, kIsPoints ? 3 : 0) {}
+      : dataset_(group, name, rows, StoredValue<Value>::kNumbers) {}
 
   void hash(const EncodedColumn<Value>& values) {
     for (const EncodedChunk& chunk : values.chunks()) hash_.update(chunk.values());
@@ -44,8 +45,7 @@ class ResultColumn {
   std::uint64_t digest() const { return hash_.digest(); }
 
  private:
-  static constexpr bool kIsPoints = std::is_same_v<Value, Vec3>;
-  using Number = std::conditional_t<kIsPoints, double, Value>;
+  using Number = typename StoredValue<Value>::Number;
 
   /// Bytes of a column that are held back before they are written. A chunk gets its place in the
   /// file when it is written, so it is written when HDF5's own cache, of one MiB per dataset, would
@@ -199,7 +199,7 @@ ResultFindings without_doubts(ResultFindings findings) {
 
 struct ResultWriter::State {
   State(const std::filesystem::path& path, const ResultHeader& result, std::uint64_t collisions,
-        std::uint64_t clearances, std::uint64_t near)
+        std::uint64_t clearances, std::uint64_t near, std::uint64_t unseen)
       : name(path.string()),
         header(result),
         is_empty(collisions == 0),
@@ -209,6 +209,7 @@ struct ResultWriter::State {
     begin<Clearances>(clearances);
     begin<ProfileRows>(header.poses);
     begin<Nearby>(near);
+    begin<UnseenCubes>(unseen);
     write_result_header(file, header);
     std::uint64_t bytes = 0;
     each([&](auto& table) { bytes += table.bytes(); });
@@ -270,14 +271,15 @@ struct ResultWriter::State {
   File output;               ///< a second handle of the same file
   std::uint64_t synced = 0;  ///< bytes of the file that are on their way to the disk
   std::tuple<std::optional<TableWriter<Collisions>>, std::optional<TableWriter<Clearances>>,
-             std::optional<TableWriter<ProfileRows>>, std::optional<TableWriter<Nearby>>>
+             std::optional<TableWriter<ProfileRows>>, std::optional<TableWriter<Nearby>>,
+             std::optional<TableWriter<UnseenCubes>>>
       tables;
 };
 
 ResultWriter::ResultWriter(const std::filesystem::path& path, const ResultHeader& header,
-                           std::uint64_t collisions, std::uint64_t clearances, std::uint64_t near)
+                           std::uint64_t collisions, std::uint64_t clearances, std::uint64_t near, std::uint64_t unseen)
     : state_(hdf5::naming(path.string(), [&] {
-        return std::make_unique<State>(path, header, collisions, clearances, near);
+        return std::make_unique<State>(path, header, collisions, clearances, near, unseen);
       })) {}
 
 ResultWriter::~ResultWriter() {
@@ -330,6 +332,7 @@ template void ResultWriter::append(const Collisions&);
 template void ResultWriter::append(const Clearances&);
 template void ResultWriter::append(const ProfileRows&);
 template void ResultWriter::append(const Nearby&);
+template void ResultWriter::append(const UnseenCubes&);
 template EncodedRows<Collisions> ResultWriter::new_rows() const;
 template EncodedRows<Clearances> ResultWriter::new_rows() const;
 template EncodedRows<Nearby> ResultWriter::new_rows() const;

@@ -108,4 +108,20 @@ void Table<ProfileRows>::check(const RowsRead& read, const ProfileRows& rows) {
   }
 }
 
+void check_groups(const RowsRead& read, const char* dataset,
+                  std::span<const std::uint32_t> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if ((values[i] == 0) == read.header.part.has_value()) continue;
+    read.refuse_row(dataset, i, read.header.part ? "0 in a part" : "a group from 1 on");
+  }
+}
+
+void Table<UnseenCubes>::check(const RowsRead& read, const Rows& rows) {
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (!may_follow(rows.cube[i - 1], rows.cube[i])) {
+      read.refuse_row(kOrderDataset, i, kExpectedOrder);
+    }
+  }
+}
+
 }  // namespace clearway

@@ -64,6 +64,8 @@ void check_poses(const RowsRead& read, const char* dataset, std::span<const std:
 void check_bodies(const RowsRead& read, const char* dataset, std::span<const std::uint32_t>);
 void check_flags(const RowsRead& read, const char* dataset, std::span<const std::uint8_t>);
 void check_clearances(const RowsRead& read, const char* dataset, std::span<const double>);
+/// Groups of unseen cubes: from 1 on, and 0 in parts.
+void check_groups(const RowsRead& read, const char* dataset, std::span<const std::uint32_t>);
 void check_chainages(const RowsRead& read, const char* dataset, std::span<const double>);
 /// For values that only the check of whole rows can judge.
 template <typename T>
@@ -185,6 +187,32 @@ struct Table<ProfileRows> {
 
   /// Throws InputError unless distance, source and point of each pose agree. A pose without a point
   /// has infinity, Profile::kNoPoint and NaN.
+  static void check(const RowsRead& read, const Rows& rows);
+};
+
+template <>
+struct Table<UnseenCubes> {
+  using Rows = UnseenCubes;
+  static constexpr const char* kGroup = result_names::kUnseenGroup;
+  static constexpr const char* kHash = result_names::kUnseenHash;
+  static bool is_in(const ResultHeader& header) { return header.seen; }
+
+  static constexpr std::tuple kColumns{
+      Column<Rows, std::array<std::int32_t, 3>>{result_names::kCube, &Rows::cube, in_every_result,
+                                                check_with_rows<std::array<std::int32_t, 3>>},
+      Column<Rows, std::uint32_t>{result_names::kFirstPose, &Rows::first_pose, in_every_result,
+                                  check_poses},
+      Column<Rows, std::uint32_t>{result_names::kGroupOfCube, &Rows::group, in_every_result,
+                                  check_groups}};
+
+  static constexpr auto kOrder = &Rows::cube;
+  static constexpr const char* kOrderDataset = result_names::kCube;
+  static bool may_follow(const std::array<std::int32_t, 3>& before,
+                         const std::array<std::int32_t, 3>& after) {
+    return before < after;
+  }
+  static constexpr const char* kExpectedOrder = "a cube after the one of the row before";
+  /// Throws InputError for cubes that do not ascend.
   static void check(const RowsRead& read, const Rows& rows);
 };
 
