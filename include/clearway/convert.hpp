@@ -30,6 +30,10 @@ struct ConvertOptions {
   /// Columns of x, y and z in text files: numbers counted from 1, or names of the header. Empty: as
   /// the files declare them.
   std::vector<std::string> columns = {};
+  /// A CSV file with the header first,x,y,z, in the unit of the environment: from source index
+  /// `first` on, the scanner stood at x, y, z. It replaces what the scans say of their origins.
+  /// Empty: the origins are those of the scans, where they have any.
+  std::filesystem::path origins = {};
   bool skip_unreadable = false;  ///< leaves out files that cannot be read, with a warning
   bool strict = false;           ///< refuses any warning: all are told, then no store is written
   bool overwrite = false;        ///< replaces an existing store
@@ -53,6 +57,10 @@ struct ConvertReport {
   std::uint64_t non_finite_points = 0;
   /// Number of records without a point, such as beams without a return
   std::uint64_t absent_points = 0;
+  /// Number of distinct places from which points were seen; 0 if that is known for no point
+  std::uint64_t origins = 0;
+  /// Number of stored points for which it is not known from where they were seen
+  std::uint64_t points_without_origin = 0;
   Vec3 scale{}, offset{};  ///< scale and offset of the stored integers, metres
   /// Box around the stored points; none if there are no points
   std::optional<Box> box = std::nullopt;

@@ -28,6 +28,8 @@ class Store {
   Box box() const;  ///< box around all points; zeros if there are no points
   /// How many points each class has, 256 numbers; empty if the points have no classes.
   std::vector<std::uint64_t> class_points() const;
+  /// Whether any point has an origin, the place of the scanner that saw it.
+  bool has_origins() const;
   /// Coordinate reference system as the scans gave it, or empty
   const std::string& crs_wkt() const;
   /// The unit of the coordinates: "metre", "foot", "us-survey-foot", "degree" or "unknown".

@@ -78,6 +78,7 @@ nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertArgumen
   out["offset"] = metadata.quantisation.offset;
   out["box"] = box_json(store);
   out["sources"] = sources_json(metadata);
+  if (metadata.origins) out["origins"] = origins_json(*metadata.origins);
   out["largest_change"] = nullptr;
   out["temporary_bytes"] = nullptr;
   out["output_bytes"] = std::filesystem::file_size(options.output);
@@ -191,6 +192,12 @@ void add_convert(CLI::App& program) {
       ->type_name("X,Y,Z")
       ->delimiter(',')
       ->allow_extra_args(false);
+  command
+      ->add_option("--origins", conversion.origins,
+                   "Where the scanners stood: CSV with the header first,x,y,z, from source index "
+                   "`first` on (default: what the scans say)")
+      ->group(title_of(OptionGroup::kInputs))
+      ->type_name("FILE");
   command
       ->add_flag("--skip-unreadable", conversion.skip_unreadable,
                  "Leave out files that cannot be read, and list them; reads all once more")

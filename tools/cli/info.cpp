@@ -56,24 +56,26 @@ ordered_json describe(const StoreReader& store) {
   const StoreMetadata& m = store.metadata();
   std::uint64_t packed = 0;
   for (const std::uint32_t bytes : store.index().bytes) packed += bytes;
-  return {{"kind", "store"},
-          {"version", kStoreVersion},
-          {"points", m.point_count},
-          {"non_finite_points", m.input_points - m.point_count},
-          {"layout", m.layout},
-          {"cells", store.cells().size()},
-          {"cell_points", m.cell_points},
-          {"packed_bytes", packed},
-          {"scale", m.quantisation.scale},
-          {"offset", m.quantisation.offset},
-          {"bounds", bounds_of(store)},
-          {"length_unit", to_string(m.unit)},
-          {"crs_wkt", m.crs_wkt},
-          {"classes", classes_json(m)},
-          {"points_hash", hash_text(m.points_hash)},
-          {"fingerprint", hash_text(store.fingerprint())},
-          {"sources", sources_json(m)},
-          {"warnings", warnings_json(store_warnings(m))}};
+  ordered_json description{{"kind", "store"},
+                           {"version", kStoreVersion},
+                           {"points", m.point_count},
+                           {"non_finite_points", m.input_points - m.point_count},
+                           {"layout", m.layout},
+                           {"cells", store.cells().size()},
+                           {"cell_points", m.cell_points},
+                           {"packed_bytes", packed},
+                           {"scale", m.quantisation.scale},
+                           {"offset", m.quantisation.offset},
+                           {"bounds", bounds_of(store)},
+                           {"length_unit", to_string(m.unit)},
+                           {"crs_wkt", m.crs_wkt},
+                           {"classes", classes_json(m)},
+                           {"points_hash", hash_text(m.points_hash)},
+                           {"fingerprint", hash_text(store.fingerprint())},
+                           {"sources", sources_json(m)},
+                           {"warnings", warnings_json(store_warnings(m))}};
+  if (m.origins) description["origins"] = origins_json(*m.origins);
+  return description;
 }
 
 ordered_json describe(const ResultReader& result) {
@@ -268,6 +270,14 @@ std::string text_of(const ordered_json& description) {
         const auto name = one["name"].get<std::string>();
         text += fmt::format("{:<{}}  {}{}: {}\n", "class", width, one["class"].get<unsigned>(),
                             name.empty() ? "" : " (" + name + ")",
+                            counted(one["points"].get<std::uint64_t>(), "point"));
+      }
+    } else if (key == "origins") {
+      text += fmt::format("{:<{}}  {} distinct; {} without\n", key, width,
+                          format_count(value["distinct"].get<std::uint64_t>()),
+                          counted(value["points_without"].get<std::uint64_t>(), "point"));
+      for (const auto& one : value["rest_on"]) {
+        text += fmt::format("{:<{}}  {}: {}\n", "origins", width, one["what"].get<std::string>(),
                             counted(one["points"].get<std::uint64_t>(), "point"));
       }
     } else if (key == "warnings" && value.is_array()) {

@@ -279,9 +279,11 @@ void append_packed_chunk(std::span<const Value> values, std::vector<std::byte>& 
 }
 
 template class PackedChunk<std::int32_t>;
+template class PackedChunk<std::uint32_t>;
 template class PackedChunk<std::uint64_t>;
 template class PackedChunk<std::uint8_t>;
 template void append_packed_chunk(std::span<const std::int32_t>, std::vector<std::byte>&);
+template void append_packed_chunk(std::span<const std::uint32_t>, std::vector<std::byte>&);
 template void append_packed_chunk(std::span<const std::uint64_t>, std::vector<std::byte>&);
 template void append_packed_chunk(std::span<const std::uint8_t>, std::vector<std::byte>&);
 

@@ -60,7 +60,7 @@ std::vector<TreeNode> build_cell_tree(std::span<const TopNode> top, std::span<co
 /// The bytes of one chunk of a store's point datasets, as HDF5's scale-offset filter writes them
 /// for integers with an undefined fill value (docs/design/store-format.md, "Packed chunks"): a
 /// 21-byte header (minbits, 8, minimum, zeros), then value - minimum in `minbits` bits each, most
-/// significant bit first. Value: std::int32_t, std::uint64_t or std::uint8_t.
+/// significant bit first. Value: std::int32_t, std::uint32_t, std::uint64_t or std::uint8_t.
 namespace clearway {
 
 inline constexpr std::size_t kPackedHeaderBytes = 21;
@@ -191,6 +191,7 @@ inline void PackedChunk<Value>::decode(std::uint32_t first, std::span<Value> out
 }
 
 extern template class PackedChunk<std::int32_t>;
+extern template class PackedChunk<std::uint32_t>;
 extern template class PackedChunk<std::uint64_t>;
 extern template class PackedChunk<std::uint8_t>;
 

@@ -109,6 +109,8 @@ template <> inline hid_t file_type<std::uint32_t>() { return H5T_STD_U32LE; }
 template <> inline hid_t memory_type<std::uint32_t>() { return H5T_NATIVE_UINT32; }
 template <> inline hid_t file_type<std::uint64_t>() { return H5T_STD_U64LE; }
 template <> inline hid_t memory_type<std::uint64_t>() { return H5T_NATIVE_UINT64; }
+template <> inline hid_t file_type<std::int64_t>() { return H5T_STD_I64LE; }
+template <> inline hid_t memory_type<std::int64_t>() { return H5T_NATIVE_INT64; }
 template <> inline hid_t file_type<double>() { return H5T_IEEE_F64LE; }
 template <> inline hid_t memory_type<double>() { return H5T_NATIVE_DOUBLE; }
 // clang-format on

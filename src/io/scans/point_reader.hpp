@@ -18,6 +18,13 @@
 
 namespace clearway {
 
+/// The place of the scanner that saw the records of a file from number `first` on; nullopt where
+/// the file does not tell it for them.
+struct OriginRun {
+  std::uint64_t first = 0;
+  std::optional<Vec3> origin;
+};
+
 /// What a point cloud file declares before its points.
 struct CloudInfo {
   std::optional<Quantisation> quantisation;      ///< where points are stored as integers
@@ -37,6 +44,11 @@ struct CloudInfo {
   /// See Query::model_spacing; known where `clearway model` wrote the file.
   double model_spacing = 0;
   bool text_table = false;  ///< whether the file is a text table, whose columns can be chosen
+  /// Where the scanners stood, the first run from record 0 on, in ascending order; complete once
+  /// read() has returned false. Empty where the file tells it for no record.
+  std::vector<OriginRun> origins;
+  /// What `origins` rest on, such as "poses of E57".
+  std::string origins_rest_on;
   /// Remarks on the whole file; complete once read() has returned false.
   std::vector<Message> remarks;
 };

@@ -56,6 +56,28 @@ struct StoreClasses {
   friend bool operator==(const StoreClasses&, const StoreClasses&) = default;
 };
 
+/// What the origins of some points rest on, such as "poses of E57", and the number of these points.
+struct OriginBasis {
+  std::string what;
+  std::uint64_t points = 0;
+  friend bool operator==(const OriginBasis&, const OriginBasis&) = default;
+};
+
+/// The places of the scanners from which the points of a store were seen.
+struct StoreOrigins {
+  /// The distinct origins, ascending lexicographically, in the integers of the store: an origin o
+  /// is llround((o - offset) / scale), which may lie beyond 32 bits.
+  std::vector<std::array<std::int64_t, 3>> quanta;
+  std::uint64_t points_without = 0;  ///< number of points whose input has no origin
+  /// XXH64 of the origins and of the ranges of source indices that each of them has.
+  std::uint64_t hash = 0;
+  std::vector<OriginBasis> rest_on = {};
+  /// XXH64 of what was given beside the scans (a file of origins, or a path); 0 where the scans
+  /// have their origins themselves.
+  std::uint64_t given_hash = 0;
+  friend bool operator==(const StoreOrigins&, const StoreOrigins&) = default;
+};
+
 /// The description of a store (docs/design/store-format.md), without its cells.
 struct StoreMetadata {
   std::uint64_t point_count = 0;
@@ -72,6 +94,7 @@ struct StoreMetadata {
   /// stores of 0.1.0.
   std::vector<std::uint64_t> source_points = {};
   std::optional<StoreClasses> classes = {};  ///< only where some point has a class above 0
+  std::optional<StoreOrigins> origins = {};  ///< only where some point has an origin
   std::vector<Message> warnings = {};        ///< warnings of the conversion, for users of the store
 
   /// Number of points of a source file, by its index in `sources`; nullopt where it is not known.

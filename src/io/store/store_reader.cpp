@@ -217,14 +217,19 @@ StoreIndex read_index(const hdf5::Id& file, std::uint64_t file_bytes, const std:
   const std::uint64_t blocks_per_cell = divide_up(index.metadata.cell_points, kBlockPoints);
   index.blocks = read_blocks(file, index.cells.count.size() * blocks_per_cell, name, hashes);
   index.top = read_tree(file, name, hashes);
-  if (has_class_index(file)) {
-    index.classes = read_class_index(file, name, index.cells.count.size(), index.metadata);
+  const std::uint64_t cells = index.cells.count.size();
+  if (has_column(file, kClassColumn)) {
+    index.classes = read_classes(file, name, cells, index.metadata);
+  }
+  if (has_column(file, kOriginColumn)) {
+    index.origins = read_origins(file, name, cells, index.metadata);
   }
   if (hashes.digest() != hdf5::read_number<std::uint64_t>(file, "index_hash", name)) {
     refuse(name, "its index of cells is damaged (its hash is not the one recorded)");
   }
   check_cells(index, file_bytes, name);
-  index.classes.check(file_bytes, name);
+  index.classes.check(kClassColumn, file_bytes, name);
+  index.origins.check(kOriginColumn, file_bytes, name);
   return index;
 }
 
@@ -262,7 +267,8 @@ StoreReader::StoreReader(const std::filesystem::path& path)
       checked_(cells_.size()),
       read_(cells_.size()),
       sources_checked_(cells_.size()),
-      classes_checked_(index_.classes.address.size()) {}
+      classes_checked_(index_.classes.address.size()),
+      origins_checked_(index_.origins.address.size()) {}
 
 std::span<const std::byte> StoreReader::checked_chunk(std::uint32_t cell, int dataset) const {
   const std::size_t i = 4 * std::size_t{cell} + static_cast<std::size_t>(dataset);
@@ -334,16 +340,29 @@ std::uint64_t StoreReader::source_of(std::uint32_t cell, std::uint32_t index) co
   return chunk<std::uint64_t>(cell, kPointDatasets[3], bytes)[index];
 }
 
-PackedChunk<std::uint8_t> StoreReader::classes(std::uint32_t cell) const {
-  const ClassIndex& index = index_.classes;
+/// The packed values of a cell in a column, checked against their hash at the first call for it.
+/// checked: notes per cell that this was done.
+template <typename Number>
+PackedChunk<Number> StoreReader::column_chunk(const PointColumn& column, const ColumnIndex& index,
+                                              std::vector<std::uint8_t>& checked,
+                                              std::uint32_t cell) const {
   const auto bytes = map_.bytes().subspan(index.address[cell], index.bytes[cell]);
-  const std::atomic_ref checked(classes_checked_[cell]);
-  if (checked.load(std::memory_order_acquire) == 0) {
-    if (xxh64(bytes) != index.xxh64[cell])
-      refuse_damaged(cell, kClassOfPoints, index.address[cell]);
-    checked.store(1, std::memory_order_release);
+  const std::atomic_ref done(checked[cell]);
+  if (done.load(std::memory_order_acquire) == 0) {
+    if (xxh64(bytes) != index.xxh64[cell]) {
+      refuse_damaged(cell, column.dataset, index.address[cell]);
+    }
+    done.store(1, std::memory_order_release);
   }
-  return chunk<std::uint8_t>(cell, kClassOfPoints, bytes);
+  return chunk<Number>(cell, column.dataset, bytes);
+}
+
+PackedChunk<std::uint8_t> StoreReader::classes(std::uint32_t cell) const {
+  return column_chunk<std::uint8_t>(kClassColumn, index_.classes, classes_checked_, cell);
+}
+
+PackedChunk<std::uint32_t> StoreReader::origins(std::uint32_t cell) const {
+  return column_chunk<std::uint32_t>(kOriginColumn, index_.origins, origins_checked_, cell);
 }
 
 std::uint64_t StoreReader::packed_bytes(std::uint32_t cell) const {
@@ -387,6 +406,10 @@ std::uint64_t StoreReader::fingerprint() const {
   add(metadata().quantisation.offset);
   add(metadata().crs_wkt);
   if (has_classes()) add(index_.classes.xxh64);
+  if (has_origins()) {
+    add(index_.origins.xxh64);
+    add(metadata().origins->quanta);
+  }
   return hash.digest();
 }
 
@@ -405,8 +428,9 @@ std::uint64_t StoreReader::allocated_bytes() const {
   return bytes(index_.cells.count) + bytes(index_.cells.box) + bytes(index_.cells.address) +
          bytes(index_.cells.bytes) + bytes(index_.cells.xxh64) + bytes(index_.top) + bytes(cells_) +
          bytes(tree_) + bytes(index_.blocks) + bytes(checked_) + bytes(read_) +
-         bytes(sources_checked_) + bytes(index_.classes.address) + bytes(index_.classes.bytes) +
-         bytes(index_.classes.xxh64) + bytes(classes_checked_);
+         bytes(sources_checked_) + index_.classes.allocated_bytes() + bytes(classes_checked_) +
+         index_.origins.allocated_bytes() + bytes(origins_checked_) +
+         (has_origins() ? bytes(metadata().origins->quanta) : 0);
 }
 
 Store::Store(const std::filesystem::path& path)
@@ -429,6 +453,7 @@ std::vector<std::uint64_t> Store::class_points() const {
   return {classes->points.begin(), classes->points.end()};
 }
 
+bool Store::has_origins() const { return reader_->has_origins(); }
 const std::string& Store::crs_wkt() const { return reader_->metadata().crs_wkt; }
 std::string Store::length_unit() const { return to_string(reader_->metadata().unit); }
 

@@ -9,7 +9,7 @@
 
 #include "core/cloud/packed_cloud.hpp"
 #include "io/files/mapped_file.hpp"
-#include "io/store/class_index.hpp"
+#include "io/store/point_columns.hpp"
 #include "io/store/store_metadata.hpp"
 
 namespace clearway {
@@ -18,7 +18,8 @@ namespace clearway {
 struct StoreIndex {
   StoreMetadata metadata;
   CellIndex cells;
-  ClassIndex classes;  ///< empty where the store has none
+  ColumnIndex classes;  ///< empty where the store has none
+  ColumnIndex origins;  ///< empty where the store has none
   std::vector<TopNode> top;
   std::vector<BlockBox> blocks;  ///< the same number of block boxes for every cell
 };
@@ -51,6 +52,13 @@ class StoreReader final : public PackedCloud {
   /// has_classes().
   PackedChunk<std::uint8_t> classes(std::uint32_t cell) const override;
   bool has_classes() const override { return metadata().classes.has_value(); }
+
+  /// Whether any point has an origin, the place of the scanner that saw it.
+  bool has_origins() const { return metadata().origins.has_value(); }
+  /// The packed numbers of the origins of a cell, checked against their hash at the first call for
+  /// it: for each point 1 + the index of its origin in metadata().origins->quanta, or 0 where it
+  /// has none. Only where has_origins().
+  PackedChunk<std::uint32_t> origins(std::uint32_t cell) const;
 
   // PackedCloud
   std::uint64_t point_count() const override { return metadata().point_count; }
@@ -87,6 +95,9 @@ class StoreReader final : public PackedCloud {
   template <typename Number>
   PackedChunk<Number> chunk(std::uint32_t cell, const char* dataset,
                             std::span<const std::byte> bytes) const;
+  template <typename Number>
+  PackedChunk<Number> column_chunk(const PointColumn& column, const ColumnIndex& index,
+                                   std::vector<std::uint8_t>& checked, std::uint32_t cell) const;
   [[noreturn]] void refuse_damaged(std::uint32_t cell, const char* dataset,
                                    std::uint64_t byte) const;
 
@@ -102,6 +113,8 @@ class StoreReader final : public PackedCloud {
   mutable std::vector<std::uint8_t> sources_checked_;
   /// Per cell: 1 once the hash of its classes in the map was found right; empty without classes.
   mutable std::vector<std::uint8_t> classes_checked_;
+  /// Per cell: 1 once the hash of its origins in the map was found right; empty without origins.
+  mutable std::vector<std::uint8_t> origins_checked_;
 };
 
 }  // namespace clearway

@@ -24,7 +24,7 @@
 #include "io/files/hdf5.hpp"
 #include "io/files/kept_warnings.hpp"
 #include "io/files/xxh64.hpp"
-#include "io/store/class_index.hpp"
+#include "io/store/point_columns.hpp"
 #include "io/store/store_metadata.hpp"
 
 namespace clearway {
@@ -183,6 +183,16 @@ void reserve(CellIndex& index, std::uint64_t cells) {
   index.xxh64.reserve(4 * cells);
 }
 
+/// A column of points that this store has.
+struct Column {
+  PointColumn of;
+  hdf5::Id dataset;
+  ColumnIndex index;
+  const PackedColumn PackedCell::*packed;  ///< the part of a packed cell that it writes
+
+  const PackedColumn& of_cell(const PackedCell& cell) const { return cell.*packed; }
+};
+
 }  // namespace
 
 struct StoreWriter::State {
@@ -191,9 +201,8 @@ struct StoreWriter::State {
   std::uint64_t promised_cells;
   hdf5::Id file;
   std::array<hdf5::Id, 4> points;
-  hdf5::Id classes;  ///< not open where the store has no classes
   CellIndex index;
-  ClassIndex class_index;
+  std::vector<Column> columns;
   File blocks;  ///< spools the rows of /blocks/box, which are too many to keep in memory
   std::uint64_t block_rows = 0;
   std::optional<GrowingFile> growth;
@@ -244,10 +253,33 @@ struct StoreWriter::State {
     return address;
   }
 
-  void write_classes(const PackedCell& packed, std::uint64_t cell) {
-    class_index.address.push_back(write_chunk(classes, cell, packed.classes));
-    class_index.bytes.push_back(static_cast<std::uint32_t>(packed.classes.size()));
-    class_index.xxh64.push_back(packed.classes_xxh64);
+  template <typename Number>
+  void add_column(const PointColumn& of, PackedColumn PackedCell::*packed) {
+    const hdf5::Id group = hdf5::create_group(file, of.group);
+    columns.push_back(
+        {of,
+         create_packed<Number>(group, of.dataset, promised_cells, metadata.cell_points),
+         {},
+         packed});
+    columns.back().index.reserve(promised_cells);
+  }
+
+  void write_to(Column& column, const PackedCell& packed, std::uint64_t cell) {
+    const PackedColumn& values = column.of_cell(packed);
+    column.index.address.push_back(write_chunk(column.dataset, cell, values.bytes));
+    column.index.bytes.push_back(static_cast<std::uint32_t>(values.bytes.size()));
+    column.index.xxh64.push_back(values.xxh64);
+  }
+
+  void write_columns() {
+    for (Column& column : columns) {
+      if (column.of.group == kClassColumn.group) {
+        write_classes(file, *metadata.classes, column.index);
+      } else {
+        write_origins(file, *metadata.origins, column.index);
+      }
+      column.dataset.close(path.string() + ": cannot write");
+    }
   }
 
   struct WrittenChunk {
@@ -258,14 +290,16 @@ struct StoreWriter::State {
   };
 
   /// The written chunks by number: x, y, z and source of each cell, and after all of these the
-  /// classes of each cell.
+  /// chunks of one column after the other.
   WrittenChunk written(std::size_t chunk) const {
     const std::size_t points_end = index.bytes.size();
     if (chunk < points_end) {
       return {chunk / 4, index.address[chunk], index.bytes[chunk], index.xxh64[chunk]};
     }
-    const std::size_t cell = chunk - points_end;
-    return {cell, class_index.address[cell], class_index.bytes[cell], class_index.xxh64[cell]};
+    const std::size_t cells = points_end / 4;
+    const std::size_t cell = (chunk - points_end) % cells;
+    const ColumnIndex& of = columns[(chunk - points_end) / cells].index;
+    return {cell, of.address[cell], of.bytes[cell], of.xxh64[cell]};
   }
 
   void confirm_address(const File& reread, const WrittenChunk& chunk) const {
@@ -284,13 +318,15 @@ struct StoreWriter::State {
     const auto confirm =
         piece_of(scope, [&](std::size_t chunk) { confirm_address(reread, written(chunk)); });
     scope.begin();
-    tbb::parallel_for(std::size_t{0}, index.bytes.size() + class_index.bytes.size(), confirm);
+    tbb::parallel_for(std::size_t{0}, index.bytes.size() / 4 * (4 + columns.size()), confirm);
   }
 };
 
 void hash_chunks(PackedCell& packed) {
   for (std::size_t i = 0; i < packed.chunks.size(); ++i) packed.xxh64[i] = xxh64(packed.chunks[i]);
-  if (!packed.classes.empty()) packed.classes_xxh64 = xxh64(packed.classes);
+  for (PackedColumn* column : {&packed.classes, &packed.origins}) {
+    if (!column->bytes.empty()) column->xxh64 = xxh64(column->bytes);
+  }
 }
 
 StoreWriter::StoreWriter(const std::filesystem::path& path, const StoreMetadata& metadata,
@@ -300,9 +336,8 @@ StoreWriter::StoreWriter(const std::filesystem::path& path, const StoreMetadata&
                        .promised_cells = cells,
                        .file = {},
                        .points = {},
-                       .classes = {},
                        .index = {},
-                       .class_index = {},
+                       .columns = {},
                        .blocks = File::create_temporary(folder_of(path)),
                        .growth = {},
                        .hashes = {}}) {
@@ -322,11 +357,12 @@ void StoreWriter::create(std::uint64_t cells) {
   }
   state_->points[3] =
       create_packed<std::uint64_t>(group, kPointDatasets[3], cells, metadata.cell_points);
-  if (!metadata.classes) return;
-  state_->class_index.reserve(cells);
-  const hdf5::Id classes = hdf5::create_group(state_->file, kClasses);
-  state_->classes =
-      create_packed<std::uint8_t>(classes, kClassOfPoints, cells, metadata.cell_points);
+  if (metadata.classes) {
+    state_->add_column<std::uint8_t>(kClassColumn, &PackedCell::classes);
+  }
+  if (metadata.origins) {
+    state_->add_column<std::uint32_t>(kOriginColumn, &PackedCell::origins);
+  }
 }
 
 StoreWriter::~StoreWriter() {
@@ -347,7 +383,7 @@ void StoreWriter::append(const PackedCell& packed) {
     index.bytes.push_back(static_cast<std::uint32_t>(chunk.size()));
     index.xxh64.push_back(packed.xxh64[static_cast<std::size_t>(i)]);
   }
-  if (state.metadata.classes) state.write_classes(packed, cell);
+  for (Column& column : state.columns) state.write_to(column, packed, cell);
   index.count.push_back(packed.cell.count);
   index.box.insert(index.box.end(), packed.cell.box.lo, packed.cell.box.lo + 3);
   index.box.insert(index.box.end(), packed.cell.box.hi, packed.cell.box.hi + 3);
@@ -382,10 +418,7 @@ void StoreWriter::write_index(const std::vector<TopNode>& tree) {
     hdf5::write_dataset<std::uint32_t>(group, "nodes", nodes, 3);
     state.hashes.add(nodes);
   }
-  if (state.metadata.classes) {
-    write_class_index(state.file, *state.metadata.classes, state.class_index);
-    state.classes.close(state.path.string() + ": cannot write");
-  }
+  state.write_columns();
   hdf5::write_number(state.file, "index_hash", state.hashes.digest());
   hdf5::write_number(state.file, "complete", std::uint32_t{1});
   for (hdf5::Id& dataset : state.points) dataset.close(state.path.string() + ": cannot write");

@@ -12,6 +12,13 @@
 
 namespace clearway {
 
+/// The packed values of a cell in a column of points that only some stores have; empty where the
+/// store does not have the column.
+struct PackedColumn {
+  std::vector<std::byte> bytes;
+  std::uint64_t xxh64 = 0;
+};
+
 /// One packed cell, which the writer puts into the file as it is.
 struct PackedCell {
   Cell cell;
@@ -19,8 +26,7 @@ struct PackedCell {
   /// Packed x, y, z and source, each of cell_points values.
   std::array<std::vector<std::byte>, 4> chunks;
   std::array<std::uint64_t, 4> xxh64{};  ///< hashes of the chunks, see hash_chunks()
-  std::vector<std::byte> classes;        ///< packed classes; empty where the store has none
-  std::uint64_t classes_xxh64 = 0;
+  PackedColumn classes = {}, origins = {};
 };
 
 /// Fills in the hashes of the chunks. Called by the threads that pack, because the writer has only

@@ -50,13 +50,19 @@ class Verification {
     check_boxes(cell);
     check_order(cell);
     if (store_.has_classes()) check_classes(cell);
+    if (store_.has_origins()) check_origins(cell);
   }
 
-  /// Called after all cells. Throws InputError where the numbers of points per class are not those
-  /// that the store states.
-  void check_class_counts() const {
+  /// Called after all cells. Throws InputError where the numbers of points per class, or of points
+  /// without an origin, are not those that the store states.
+  void check_counts() const {
     if (store_.has_classes() && class_points_ != store_.metadata().classes->points) {
       throw InputError(store_.name() + ": its classes have other numbers of points than it says");
+    }
+    if (store_.has_origins() && without_origin_ != store_.metadata().origins->points_without) {
+      throw InputError(store_.name() + ": " + std::to_string(without_origin_) +
+                       " of its points have no origin, expected " +
+                       std::to_string(store_.metadata().origins->points_without));
     }
   }
 
@@ -119,10 +125,28 @@ class Verification {
     }
   }
 
+  void check_origins(std::uint32_t cell) {
+    const std::uint32_t count = store_.cells()[cell].count;
+    const std::size_t known = store_.metadata().origins->quanta.size();
+    origins_.resize(store_.cell_points());
+    store_.origins(cell).decode(0, origins_);
+    for (std::uint32_t i = 0; i < store_.cell_points(); ++i) {
+      if (origins_[i] > known) {
+        fail(cell, "origin " + std::to_string(origins_[i]) + " of " + std::to_string(known));
+      }
+      if (i < count) without_origin_ += origins_[i] == 0;
+      if (i >= count && origins_[i] != origins_[count - 1]) {
+        fail(cell, "the padding of its origins is not that of its last point");
+      }
+    }
+  }
+
   const StoreReader& store_;
   SeenSources seen_;
   std::vector<std::uint8_t> classes_;
   std::array<std::uint64_t, 256> class_points_{};
+  std::vector<std::uint32_t> origins_;
+  std::uint64_t without_origin_ = 0;
   std::array<std::vector<std::int32_t>, 3> values_;
   std::vector<std::uint64_t> sources_;
 };
@@ -144,7 +168,7 @@ std::vector<std::string> verify_store(const StoreReader& store, Progress& progre
   }
   if (faults.empty()) {
     try {
-      verification.check_class_counts();
+      verification.check_counts();
     } catch (const InputError& fault) {
       faults.emplace_back(fault.what());
     }

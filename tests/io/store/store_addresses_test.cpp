@@ -9,7 +9,7 @@ using namespace clearway;
 namespace {
 
 PackedCell one_point() {
-  PackedCell packed{.cell = {1, {{7, 8, 9}, {7, 8, 9}}}, .blocks = {}, .chunks = {}, .classes = {}};
+  PackedCell packed{.cell = {1, {{7, 8, 9}, {7, 8, 9}}}, .blocks = {}, .chunks = {}};
   packed.blocks.push_back(encode_block_box(packed.cell.box, packed.cell.box));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::vector<std::int32_t> values(64, static_cast<std::int32_t>(7 + axis));

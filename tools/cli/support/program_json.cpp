@@ -37,6 +37,17 @@ nlohmann::ordered_json sources_json(const StoreMetadata& store) {
   return out;
 }
 
+nlohmann::ordered_json origins_json(const StoreOrigins& origins) {
+  auto rest_on = nlohmann::ordered_json::array();
+  for (const OriginBasis& basis : origins.rest_on) {
+    rest_on.push_back({{"what", basis.what}, {"points", basis.points}});
+  }
+  return {{"distinct", origins.quanta.size()},
+          {"points_without", origins.points_without},
+          {"rest_on", rest_on},
+          {"hash", hash_text(origins.hash)}};
+}
+
 nlohmann::ordered_json warnings_json(const std::vector<Message>& warnings) {
   auto out = nlohmann::ordered_json::array();
   for (const Message& warning : warnings) {

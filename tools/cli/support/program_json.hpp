@@ -22,6 +22,8 @@ std::string text_of_json(const nlohmann::ordered_json& object);
 /// The files that a store was made of: "name", "bytes", "xxh64", and "first_source" and "points",
 /// which say which source indices are theirs and are null where the store does not tell.
 nlohmann::ordered_json sources_json(const StoreMetadata& store);
+/// The origins of a store: how many are distinct, what they rest on, and how many points have none.
+nlohmann::ordered_json origins_json(const StoreOrigins& origins);
 
 /// The `warnings` of a command's JSON: an array of {"code", "message", "numbers": {name: value}}.
 /// A number that is not finite becomes null.

@@ -33,6 +33,7 @@
 #include "io/store/convert/environment_source.hpp"
 #include "io/store/convert/input_files.hpp"
 #include "io/store/convert/input_warnings.hpp"
+#include "io/store/convert/origin_table.hpp"
 #include "io/store/convert/pack_unit.hpp"
 #include "io/store/convert/quantum_bounds.hpp"
 #include "io/store/convert/source_description.hpp"
@@ -69,8 +70,9 @@ void write_unit(UnitInFlight& unit, StoreWriter& writer, StageClocks& clocks, Pr
 /// Partitions and packs the units, several at a time as memory allows, and writes their cells in
 /// order.
 void write_cells(Distribution& distribution, const SplitTree& tree, const Lattice& lattice,
-                 const StoreMetadata& metadata, std::size_t units_in_flight, StoreWriter& writer,
-                 StageClocks& clocks, Progress& progress) {
+                 const StoreMetadata& metadata, const OriginTable* origins,
+                 std::size_t units_in_flight, StoreWriter& writer, StageClocks& clocks,
+                 Progress& progress) {
   std::size_t largest = 0;
   for (std::size_t unit = 0; unit < distribution.units(); ++unit) {
     largest = std::max<std::size_t>(largest, distribution.points(unit));
@@ -87,7 +89,7 @@ void write_cells(Distribution& distribution, const SplitTree& tree, const Lattic
   });
   const auto order_and_pack = piece_of(scope, [&](std::size_t unit) {
     auto flying = std::make_shared<UnitInFlight>();
-    flying->rest.emplace(distribution, unit, tree, lattice, metadata, buffers, clocks);
+    flying->rest.emplace(distribution, unit, tree, lattice, metadata, origins, buffers, clocks);
     flying->packed = flying->rest->pack_next();
     if (flying->rest->cells_left() == 0) flying->rest.reset();
     return flying;
@@ -110,6 +112,7 @@ constexpr std::uint64_t kBaseBytes = 64 * kMiB;  // memory of batches, index and
 // Memory per thread: a counting grid and its refinement.
 constexpr std::uint64_t kThreadBytes = 32 * kMiB;
 constexpr std::uint64_t kCellBytes = 160;           // index and tree nodes of a cell
+constexpr std::uint64_t kColumnCellBytes = 20;      // index of classes or origins, of a cell
 constexpr std::uint64_t kOutputBytesPerPoint = 11;  // an estimate for the disk check
 constexpr std::uint64_t kPaddingBytesPerPoint = 4;  // an estimate for the disk check
 constexpr std::uint32_t kLeastCellPoints = 64;
@@ -219,9 +222,12 @@ class Conversion {
   ConversionReport run() {
     EnvironmentSource environment(options_.inputs, environment_options(), progress_);
     refuse_overwriting(options_.output, environment.read_files());
+    if (!options_.origins.empty()) refuse_overwriting(options_.output, {options_.origins});
     if (environment.declared_points()) {
       check_disk(folder_, {*environment.declared_points(), *environment.declared_points()});
     }
+    OriginTable origins(environment.quantisation(), options_.memory_bytes / 4);
+    if (!options_.origins.empty()) add_origins_of_file(options_.origins, origins);
     SourceDescription others(environment.read_files(), environment.in_pieces(), progress_);
     FileHashes hashes(environment.files(), environment.in_pieces());
     const Lattice lattice = lattice_for(options_, environment.quantisation());
@@ -234,6 +240,7 @@ class Conversion {
           "the inputs name no unit of length, so metres are assumed; --unit names another one");
     }
     report_.box = warn_of_inputs(environment, survey.boxes, report_.metadata, log_);
+    collect_origins(environment, counted.input_points, origins);
     const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
     const std::vector<TopNode> top = tree.top_nodes(options_.cell_points);
     check_cells(top, tree.units().size());
@@ -244,12 +251,13 @@ class Conversion {
     Distribution distribution(tree, in_memory_ ? std::nullopt : std::optional(folder_),
                               static_cast<std::size_t>(threads_));
     distribute(environment, counted.hashes(), lattice, tree, places, distribution, threads_,
-               clocks_, progress_);
+               clocks_, progress_, origins_);
     progress_.end();
     environment.refuse_changed();  // so that the sources' hashes are those of what was converted
     report_.largest_change = environment.largest_change();
     report_.temporary_bytes = distribution.temporary_bytes();
     warn_of_places(environment, places, counted.points, log_);
+    record_origins();
     if (options_.strict) refuse_warnings(report_.warnings);
     report_.metadata.warnings = kept_warnings(report_.warnings);
     report_.distribute_seconds = watch_.lap();
@@ -293,18 +301,49 @@ class Conversion {
     report_.offset = {quanta.offset[0], quanta.offset[1], quanta.offset[2]};
   }
 
-  std::uint64_t of_unit() const { return unit_bytes(report_.metadata.classes.has_value()); }
+  /// Collects the origins of all points, now that the inputs have been read once.
+  void collect_origins(const EnvironmentSource& environment, std::uint64_t input_points,
+                       OriginTable& origins) {
+    if (options_.origins.empty()) {
+      add_origins_of_inputs(environment, origins);
+    } else {
+      refuse_origins_beyond(options_.origins, input_points);
+    }
+    origins.finish();
+    if (origins.any()) origins_ = &origins;
+  }
+
+  /// Describes the origins in the store and warns of them, once all points were counted.
+  void record_origins() {
+    StoreMetadata& metadata = report_.metadata;
+    report_.points_without_origin = report_.points;
+    if (origins_ != nullptr) metadata.origins = origins_->origins(report_.points);
+    if (!metadata.origins) {
+      origins_ = nullptr;
+      return;
+    }
+    report_.origins = metadata.origins->quanta.size();
+    report_.points_without_origin = metadata.origins->points_without;
+    const double metres = metres_of(metadata.unit);
+    origins_->warn(*metadata.origins, report_.points, report_.box, metres > 0 ? metres : 1, log_);
+  }
+
+  std::uint64_t of_unit() const {
+    return unit_bytes(report_.metadata.classes.has_value(), origins_ != nullptr);
+  }
 
   /// Bytes of memory for units, besides the index of cells; at least one unit.
   std::uint64_t bytes_for_units() const {
-    // The index of classes.
-    const std::uint64_t of_cell = kCellBytes + (report_.metadata.classes ? 20 : 0);
-    const std::uint64_t others = kBaseBytes + report_.cells * of_cell;
+    const std::uint64_t of_cell = kCellBytes + (report_.metadata.classes ? kColumnCellBytes : 0) +
+                                  (origins_ != nullptr ? kColumnCellBytes : 0);
+    const std::uint64_t of_origins = origins_ != nullptr ? origins_->allocated_bytes() : 0;
+    const std::uint64_t others = kBaseBytes + report_.cells * of_cell + of_origins;
     const std::uint64_t least = others + of_unit();
     if (options_.memory_bytes < least) {
-      throw ResourceError(format_size(options_.memory_bytes) + " of memory is too little: " +
-                              std::to_string(report_.cells) + " cells need at least " +
-                              std::to_string(divide_up(least, kMiB)) + " MiB",
+      throw ResourceError(format_size(options_.memory_bytes) +
+                              " of memory is too little: " + std::to_string(report_.cells) +
+                              " cells " + (of_origins > 0 ? "and their origins " : "") +
+                              "need at least " + std::to_string(divide_up(least, kMiB)) + " MiB",
                           Remedy::kMoreCellPoints);
     }
     return options_.memory_bytes - others;
@@ -335,8 +374,8 @@ class Conversion {
   void write_store(Distribution& distribution, const SplitTree& tree,
                    const std::vector<TopNode>& top, const Lattice& lattice) {
     StoreWriter writer(output_.partial(), report_.metadata, report_.cells);
-    write_cells(distribution, tree, lattice, report_.metadata, units_in_flight_, writer, clocks_,
-                progress_);
+    write_cells(distribution, tree, lattice, report_.metadata, origins_, units_in_flight_, writer,
+                clocks_, progress_);
     report_.partition_seconds = watch_.lap();
     {
       const auto running = clocks_.measure(Stage::kWrite);
@@ -363,6 +402,7 @@ class Conversion {
   std::filesystem::path folder_;
   PendingFile output_;
   ConversionReport report_;
+  OriginTable* origins_ = nullptr;  ///< null where no point has an origin
   std::size_t units_in_flight_ = 1;
   bool in_memory_ = false;
   MessageLog log_{options_.message, report_.warnings};
@@ -420,6 +460,12 @@ bool has_wanted_unit(const FileUnit& wanted, LengthUnit found) {
   return !wanted.is_known() || wanted.metres_in(metres_of(found)) == metres_of(found);
 }
 
+/// Whether a store has the origins that these options give it beside the scans.
+bool has_wanted_origins(const ConversionOptions& options, const StoreMetadata& found) {
+  const std::uint64_t given = found.origins ? found.origins->given_hash : 0;
+  return given == (options.origins.empty() ? 0 : given_origins_hash(options.origins));
+}
+
 /// Whether a conversion with these options could have made this store, as far as its metadata
 /// tells.
 bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
@@ -430,7 +476,7 @@ bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
          found.layout == layout_name(options.regular_size) &&
          std::all_of(found.quantisation.scale, found.quantisation.scale + 3, wanted) &&
          (!options.strict || found.point_count == found.input_points || !found.warnings.empty()) &&
-         has_wanted_unit(options.unit, found.unit) &&
+         has_wanted_unit(options.unit, found.unit) && has_wanted_origins(options, found) &&
          (options.ignore_crs ||
           (found.unit != LengthUnit::kDegrees && units_of_wkt(found.crs_wkt).trouble.empty()));
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "io/store/convert/origin_table.hpp"
 #include "io/store/convert/points_hash.hpp"
 #include "io/store/convert/read_points.hpp"
 
@@ -136,7 +137,8 @@ class Places {
 
 void distribute(EnvironmentSource& environment, const CountedHashes& counted,
                 const Lattice& lattice, const SplitTree& tree, PlaceCounter& places,
-                Distribution& distribution, int threads, StageClocks& clocks, Progress& progress) {
+                Distribution& distribution, int threads, StageClocks& clocks, Progress& progress,
+                OriginTable* origins) {
   const Grouper group(lattice, tree);
   PointsHash hash(environment.quantisation());
   ClassesHash classes;
@@ -155,6 +157,7 @@ void distribute(EnvironmentSource& environment, const CountedHashes& counted,
         classes.add(batch);
         has_classes |= !batch.classes.empty();
         order.assign(grouped);
+        if (origins) origins->count(batch);
       },
       [&](const GroupedBatch& grouped) {
         const auto running = clocks.measure(Stage::kDistribute);

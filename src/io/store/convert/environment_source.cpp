@@ -163,6 +163,7 @@ bool EnvironmentSource::next(RecordBatch& records) {
       count = records.points.size();
     } else {
       infos_[file_].remarks = from->info().remarks;
+      infos_[file_].origins = from->info().origins;
       points_of_files_.push_back(file_points_);
       continue;
     }

@@ -16,7 +16,8 @@ namespace {
 /// The points of a unit, both as loaded (in source order) and in k-d order.
 class Unit {
  public:
-  Unit(Distribution& distribution, std::size_t unit, UnitBuffers& buffers, StageClocks& clocks)
+  Unit(Distribution& distribution, std::size_t unit, const OriginTable* origins,
+       UnitBuffers& buffers, StageClocks& clocks)
       : buffers_(buffers) {
     const auto running = clocks.measure(Stage::kLoad);
     loaded_ = distribution.take(unit);
@@ -25,6 +26,7 @@ class Unit {
       const auto& q = loaded_.points[i].q;
       points_[i] = {{q[0], q[1], q[2]}, static_cast<std::uint32_t>(i)};
     }
+    if (origins != nullptr) origins_ = origins->numbers_of(loaded_.span());
   }
 
   ~Unit() { buffers_.give_back(std::move(points_)); }
@@ -37,12 +39,15 @@ class Unit {
   std::uint8_t point_class(const BucketPoint& p) const {
     return loaded_.points[p.index].point_class();
   }
+  bool has_origins() const { return !origins_.empty(); }
+  std::uint32_t origin(const BucketPoint& p) const { return origins_[p.index]; }
   std::span<BucketPoint> points() { return {points_.get(), loaded_.count}; }
 
  private:
   UnitBuffers& buffers_;
   UnitPoints loaded_;
   UnitBuffers::Buffer points_;
+  std::vector<std::uint32_t> origins_;  // number of each loaded point's origin; empty without any
 };
 
 QuantumBox box_of(std::span<const BucketPoint> points) {
@@ -64,30 +69,34 @@ void append_boxes(std::span<const BucketPoint> points, PackedCell& cell) {
   for (const QuantumBox& box : boxes) cell.blocks.push_back(encode_block_box(all, box));
 }
 
-/// Packs the classes of a cell as the store keeps them. The padding repeats the class of the last
+/// Packs a value of each point as the store keeps them. The padding repeats the value of the last
 /// point.
-void pack_classes(const Unit& unit, std::span<const BucketPoint> points, std::uint32_t cell_points,
-                  PackedCell& cell) {
-  std::vector<std::uint8_t> classes(cell_points, unit.point_class(points.back()));
-  for (std::size_t i = 0; i < points.size(); ++i) classes[i] = unit.point_class(points[i]);
-  append_packed_chunk<std::uint8_t>(classes, cell.classes);
+template <typename ValueOf>
+void pack_values(std::span<const BucketPoint> points, std::uint32_t cell_points, ValueOf value_of,
+                 std::vector<std::byte>& out) {
+  using Value = decltype(value_of(points.back()));
+  std::vector<Value> values(cell_points, value_of(points.back()));
+  for (std::size_t i = 0; i < points.size(); ++i) values[i] = value_of(points[i]);
+  append_packed_chunk<Value>(values, out);
 }
 
 PackedCell pack_cell(const Unit& unit, std::span<const BucketPoint> points,
                      std::uint32_t cell_points, bool has_classes) {
   PackedCell cell;
   append_boxes(points, cell);
-  std::vector<std::int32_t> values(cell_points);
+  const auto pack = [&](auto value_of, std::vector<std::byte>& out) {
+    pack_values(points, cell_points, value_of, out);
+  };
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i].q[axis];
-    std::fill(values.begin() + static_cast<std::ptrdiff_t>(points.size()), values.end(),
-              points.back().q[axis]);
-    append_packed_chunk<std::int32_t>(values, cell.chunks[axis]);
+    pack([axis](const BucketPoint& p) { return p.q[axis]; }, cell.chunks[axis]);
   }
-  std::vector<std::uint64_t> sources(cell_points, unit.source(points.back()));
-  for (std::size_t i = 0; i < points.size(); ++i) sources[i] = unit.source(points[i]);
-  append_packed_chunk<std::uint64_t>(sources, cell.chunks[3]);
-  if (has_classes) pack_classes(unit, points, cell_points, cell);
+  pack([&](const BucketPoint& p) { return unit.source(p); }, cell.chunks[3]);
+  if (has_classes) {
+    pack([&](const BucketPoint& p) { return unit.point_class(p); }, cell.classes.bytes);
+  }
+  if (unit.has_origins()) {
+    pack([&](const BucketPoint& p) { return unit.origin(p); }, cell.origins.bytes);
+  }
   hash_chunks(cell);
   return cell;
 }
@@ -139,9 +148,9 @@ struct OrderedUnit::State {
 
 OrderedUnit::OrderedUnit(Distribution& distribution, std::size_t unit, const SplitTree& tree,
                          const Lattice& lattice, const StoreMetadata& metadata,
-                         UnitBuffers& buffers, StageClocks& clocks)
+                         const OriginTable* origins, UnitBuffers& buffers, StageClocks& clocks)
     : state_(new State{clocks,
-                       {distribution, unit, buffers, clocks},
+                       {distribution, unit, origins, buffers, clocks},
                        metadata.cell_points,
                        metadata.classes.has_value(),
                        {}}) {

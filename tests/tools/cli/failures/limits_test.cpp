@@ -140,8 +140,7 @@ void write_line(const std::filesystem::path& path, std::uint32_t points,
   metadata.layout = "adaptive";
   PackedCell packed{.cell = {points, {{0, 0, 0}, {static_cast<std::int32_t>(points) - 1, 0, 0}}},
                     .blocks = {},
-                    .chunks = {},
-                    .classes = {}};
+                    .chunks = {}};
   packed.blocks.push_back(encode_block_box(packed.cell.box, packed.cell.box));
   std::vector<std::int32_t> along(64), zero(64);
   std::vector<std::uint64_t> sources(64);

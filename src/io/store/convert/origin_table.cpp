@@ -1,0 +1,313 @@
+#include "io/store/convert/origin_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include "clearway/error.hpp"
+#include "core/util/format.hpp"
+#include "io/files/input_error.hpp"
+#include "io/files/mapped_file.hpp"
+#include "io/files/text_number.hpp"
+#include "io/files/xxh64.hpp"
+#include "io/scans/input_buffer.hpp"
+#include "io/scans/text/table_header.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr double kMostQuantum = 0x1p62;
+constexpr double kFarMetres = 1000;  // distance from all points above which a warning is due
+
+double percentage(std::uint64_t part, std::uint64_t all) {
+  return 100 * static_cast<double>(part) / static_cast<double>(all);
+}
+
+std::string text_of(const Vec3& p) { return brief(p.x) + " " + brief(p.y) + " " + brief(p.z); }
+
+double distance(const Box& box, const Vec3& p) {
+  double squares = 0;
+  for (int k = 0; k < 3; ++k) {
+    squares += std::pow(std::max({box.lo[k] - p[k], 0.0, p[k] - box.hi[k]}), 2);
+  }
+  return std::sqrt(squares);
+}
+
+}  // namespace
+
+void OriginTable::rest_on(const std::string& what, std::uint64_t given_hash) {
+  given_hash_ = given_hash;
+  bases_.push_back({what, 0});
+}
+
+void OriginTable::add(std::uint64_t first, const std::optional<Vec3>& origin,
+                      const std::string& name) {
+  std::uint32_t number = 0;
+  if (origin) {
+    Quanta q{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double at = (*origin)[static_cast<int>(k)];
+      const double quantum = (at - quantisation_.offset[k]) / quantisation_.scale[k];
+      if (!(std::abs(quantum) <= kMostQuantum)) {
+        refuse(name, "an origin at " + text_of(*origin) + ", which is too far away for steps of " +
+                         brief(quantisation_.scale[k]));
+      }
+      q[k] = std::llround(quantum);
+    }
+    if (quanta_.empty() || quanta_.back() != q) quanta_.push_back(q);
+    number = static_cast<std::uint32_t>(quanta_.size());
+    ++with_origin_;
+    all_zero_ = all_zero_ && origin->x == 0 && origin->y == 0 && origin->z == 0;
+  }
+  const auto basis = static_cast<std::uint32_t>(bases_.empty() ? 0 : bases_.size() - 1);
+  if (!runs_.empty() && runs_.back().number == number && runs_.back().basis == basis) return;
+  runs_.push_back({first, number, basis});
+  const std::uint64_t bytes = runs_.size() * sizeof(Run) + 3 * quanta_.size() * sizeof(Quanta);
+  if (bytes > most_bytes_ || quanta_.size() >= std::numeric_limits<std::uint32_t>::max()) {
+    throw ResourceError(name + ": " + format_count(runs_.size()) + " changes of the origin take " +
+                            format_size(bytes) + ", and there may be more; origins may take " +
+                            format_size(most_bytes_) + ", a quarter of the memory",
+                        Remedy::kMoreMemory);
+  }
+}
+
+void OriginTable::finish() {
+  const std::vector<Quanta> given = quanta_;
+  std::sort(quanta_.begin(), quanta_.end());
+  quanta_.erase(std::unique(quanta_.begin(), quanta_.end()), quanta_.end());
+  quanta_.shrink_to_fit();
+  for (Run& run : runs_) {
+    if (run.number == 0) continue;
+    const auto at = std::lower_bound(quanta_.begin(), quanta_.end(), given[run.number - 1]);
+    run.number = static_cast<std::uint32_t>(1 + (at - quanta_.begin()));
+  }
+}
+
+std::uint64_t OriginTable::allocated_bytes() const {
+  return runs_.capacity() * sizeof(Run) + quanta_.capacity() * sizeof(Quanta);
+}
+
+std::uint64_t OriginTable::end_of(std::size_t run) const {
+  return run + 1 < runs_.size() ? runs_[run + 1].first : std::numeric_limits<std::uint64_t>::max();
+}
+
+/// The run of a source index that is not before run `from`.
+std::size_t OriginTable::run_of(std::uint64_t source, std::size_t from) const {
+  if (source < end_of(from)) return from;
+  const auto after =
+      std::upper_bound(runs_.begin() + static_cast<std::ptrdiff_t>(from), runs_.end(), source,
+                       [](std::uint64_t wanted, const Run& run) { return wanted < run.first; });
+  return static_cast<std::size_t>(after - runs_.begin()) - 1;
+}
+
+void OriginTable::count(const QuantaBatch& batch) {
+  const std::size_t points = batch.quanta.size();
+  for (std::size_t i = 0; i < points;) {
+    counted_run_ = run_of(batch.source(i), counted_run_);
+    const std::uint64_t rest = end_of(counted_run_) - batch.first_source;
+    std::size_t end = static_cast<std::size_t>(std::min<std::uint64_t>(rest, points));
+    if (!batch.offsets.empty()) {
+      end = static_cast<std::size_t>(
+          std::lower_bound(batch.offsets.begin(), batch.offsets.end(), rest) -
+          batch.offsets.begin());
+    }
+    const Run& run = runs_[counted_run_];
+    if (run.number > 0) bases_[run.basis].points += end - i;
+    i = end;
+  }
+}
+
+std::vector<std::uint32_t> OriginTable::numbers_of(std::span<const DistributedPoint> points) const {
+  std::vector<std::uint32_t> numbers(points.size());
+  std::size_t run = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    run = run_of(points[i].source_index(), run);
+    numbers[i] = runs_[run].number;
+  }
+  return numbers;
+}
+
+std::optional<StoreOrigins> OriginTable::origins(std::uint64_t points) const {
+  StoreOrigins out{.quanta = quanta_, .points_without = points, .given_hash = given_hash_};
+  for (const OriginBasis& basis : bases_) {
+    if (basis.points == 0) continue;
+    out.points_without -= basis.points;
+    const auto same = std::find_if(out.rest_on.begin(), out.rest_on.end(),
+                                   [&](const OriginBasis& b) { return b.what == basis.what; });
+    if (same == out.rest_on.end()) {
+      out.rest_on.push_back(basis);
+    } else {
+      same->points += basis.points;
+    }
+  }
+  if (out.rest_on.empty()) return std::nullopt;
+  Xxh64Stream hash;
+  hash.update(std::as_bytes(std::span(quanta_)));
+  std::uint32_t before = std::numeric_limits<std::uint32_t>::max();
+  for (const Run& run : runs_) {
+    if (run.number == before) continue;
+    before = run.number;
+    const std::array<std::uint64_t, 2> numbers{run.first, run.number};
+    hash.update(std::as_bytes(std::span(numbers)));
+  }
+  out.hash = hash.digest();
+  return out;
+}
+
+void OriginTable::warn(const StoreOrigins& origins, std::uint64_t points,
+                       const std::optional<Box>& box, double metres, MessageLog& log) const {
+  if (origins.points_without > 0) {
+    const double share = percentage(origins.points_without, points);
+    log.warn("points-without-origin",
+             format_count(origins.points_without) + " of " + format_count(points) + " points (" +
+                 format_brief(share) +
+                 " %) have no origin, so it is not known where the space before them was seen from",
+             {{"points", static_cast<double>(origins.points_without)}, {"share", share / 100}});
+  }
+  const Vec3 zero{0, 0, 0};
+  if (all_zero_ && (given_hash_ != 0 || with_origin_ > 1 || (box && distance(*box, zero) > 0))) {
+    log.warn("origins-at-zero",
+             "all origins are at 0 0 0. That is right for a scan in its scanner's own coordinates, "
+             "and wrong for scans that were moved or merged without their positions");
+  }
+  if (box && metres > 0) warn_of_far(origins, *box, metres, log);
+}
+
+void OriginTable::warn_of_far(const StoreOrigins& origins, const Box& box, double metres,
+                              MessageLog& log) const {
+  std::uint64_t far = 0;
+  double farthest = 0;
+  Vec3 at{};
+  for (const Quanta& q : origins.quanta) {
+    Vec3 origin{};
+    for (int k = 0; k < 3; ++k) {
+      origin[k] = static_cast<double>(q[static_cast<std::size_t>(k)]) * quantisation_.scale[k] +
+                  quantisation_.offset[k];
+    }
+    const double away = metres * distance(box, origin);
+    if (away > kFarMetres) ++far;
+    if (away > farthest) at = origin;
+    farthest = std::max(farthest, away);
+  }
+  if (far == 0) return;
+  log.warn("origins-far",
+           format_count(far) + " of " + counted(origins.quanta.size(), "origin") +
+               (far == 1 ? " is" : " are") +
+               " more than 1 km away from all points; the farthest, " + text_of(at) + ", by " +
+               format_brief(farthest / 1000) + " km. Are they in the coordinates of the scans?",
+           {{"origins", static_cast<double>(far)}, {"metres", farthest}});
+}
+
+void add_origins_of_inputs(const EnvironmentSource& environment, OriginTable& table) {
+  std::uint64_t first = 0;
+  for (std::size_t file = 0; file < environment.files().size(); ++file) {
+    const CloudInfo& info = environment.infos()[file];
+    const std::uint64_t points = environment.points_of_files()[file];
+    if (points == 0) continue;
+    const std::string name = environment.files()[file].string();
+    if (info.origins.empty()) table.add(first, std::nullopt, name);
+    if (!info.origins.empty()) table.rest_on(info.origins_rest_on);
+    for (const OriginRun& run : info.origins) {
+      if (run.first < points) table.add(first + run.first, run.origin, name);
+    }
+    first += points;
+  }
+  if (first == 0) table.add(0, std::nullopt, "");
+}
+
+}  // namespace clearway
+
+// Files of origins.
+
+namespace clearway {
+namespace {
+
+constexpr const char* kHeader = "first,x,y,z";
+
+std::string_view trimmed(std::string_view field) {
+  while (!field.empty() && is_blank(field.front())) field.remove_prefix(1);
+  while (!field.empty() && is_blank(field.back())) field.remove_suffix(1);
+  return field;
+}
+
+/// A row of a file of origins.
+struct OriginRow {
+  std::uint64_t line;
+  std::uint64_t first;
+  Vec3 origin;
+};
+
+/// Calls `use` for each row of a file of origins, whose form is checked.
+template <typename Use>
+void for_each_origin(const std::filesystem::path& path, Use use) {
+  InputBuffer input(File::open_regular(path), InputBuffer::Access::kSeek);
+  input.skip_byte_order_mark();
+  std::vector<std::string_view> fields;
+  const auto fail = [&](const std::string& what) { refuse_line(input.name(), input.line(), what); };
+  std::string_view line;
+  if (!input.next_line(line)) {
+    refuse(input.name(), std::string("is empty; expected the line ") + kHeader + " first");
+  }
+  split_fields(line, ',', fields);
+  std::string header;
+  for (const std::string_view field : fields) {
+    header += (header.empty() ? "" : ",") + std::string(trimmed(field));
+  }
+  if (header != kHeader) fail(excerpt(line) + "; expected the header " + kHeader);
+  std::optional<std::uint64_t> before;
+  while (input.next_line(line)) {
+    if (trimmed(line).empty()) continue;
+    split_fields(line, ',', fields);
+    if (fields.size() != 4) fail(excerpt(line) + "; expected four numbers, " + kHeader);
+    OriginRow row{input.line(), 0, {}};
+    const auto first = parse_count(trimmed(fields[0]));
+    if (!first) fail(excerpt(fields[0]) + "; expected a source index, a whole number from 0");
+    row.first = *first;
+    for (int k = 0; k < 3; ++k) {
+      const auto number = parse_whole_number(fields[static_cast<std::size_t>(1 + k)]);
+      if (!number || !std::isfinite(*number)) {
+        fail(excerpt(fields[static_cast<std::size_t>(1 + k)]) + "; expected a finite coordinate");
+      }
+      row.origin[k] = *number;
+    }
+    if (!before && row.first != 0) {
+      fail("starts at source index " + std::to_string(row.first) + "; expected 0");
+    }
+    if (before && row.first <= *before) {
+      fail("source index " + std::to_string(row.first) + " after " + std::to_string(*before) +
+           "; expected ascending ones");
+    }
+    if (!input.line_terminated()) {
+      fail("ends without a line break, so that its last number may be cut off; expected one");
+    }
+    before = row.first;
+    use(input.name(), row);
+  }
+  if (!before) refuse(input.name(), "holds no origin; expected one at least");
+}
+
+}  // namespace
+
+std::uint64_t given_origins_hash(const std::filesystem::path& path) {
+  File::open_regular(path);  // refuses what cannot be mapped, such as a pipe
+  return xxh64(MappedFile(path).bytes());
+}
+
+void add_origins_of_file(const std::filesystem::path& path, OriginTable& table) {
+  table.rest_on("a file of origins", given_origins_hash(path));
+  for_each_origin(path, [&](const std::string& name, const OriginRow& row) {
+    table.add(row.first, row.origin, name);
+  });
+}
+
+void refuse_origins_beyond(const std::filesystem::path& path, std::uint64_t input_points) {
+  for_each_origin(path, [&](const std::string& name, const OriginRow& row) {
+    if (row.first == 0 || row.first < input_points) return;
+    refuse_line(name, row.line,
+                "starts at source index " + std::to_string(row.first) + ", but the inputs have " +
+                    std::to_string(input_points) + " points; is it the file of other scans?");
+  });
+}
+
+}  // namespace clearway
