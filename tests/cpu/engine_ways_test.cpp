@@ -12,17 +12,17 @@ using namespace clearway::test;
 
 namespace {
 
-constexpr std::uint32_t kNever = HitSet::kNever;
+constexpr std::uint32_t kNeverOnWay = HitSet::kNeverOnWay;
 
 /// The first pose of a point e by the definition of version 0.1.0: the least pose that touches e,
 /// or from which a segment starts whose inside touches e. at_pose: whether the pose itself touches
 /// e.
 struct Earlier {
-  std::uint32_t pose = kNever;
+  std::uint32_t pose = kNeverOnWay;
   bool at_pose = false;
 
   Earlier(const Vec3& e, const Query& query) {
-    for (std::uint32_t i = 0; i < query.poses.size() && pose == kNever; ++i) {
+    for (std::uint32_t i = 0; i < query.poses.size() && pose == kNeverOnWay; ++i) {
       for (const Vec3& m : query.model.vertices) {
         const Vec3 a = transform(query.poses[i], m);
         at_pose |= collides(e, a, query.radius);
@@ -53,7 +53,7 @@ TEST_CASE("ways with and without their ends touch the same points, one pose apar
         const bool leads_there = earlier.at_pose && earlier.pose > 0;
         wrong += found[i] != (leads_there ? earlier.pose - 1 : earlier.pose);
         lower += leads_there;
-        equal += !leads_there && earlier.pose != kNever;
+        equal += !leads_there && earlier.pose != kNeverOnWay;
       }
     }
     CAPTURE(poses);
@@ -150,7 +150,7 @@ struct WholeScene {
         if (way.is_within(quarters)) return static_cast<std::uint32_t>(i);
       }
     }
-    return kNever;
+    return kNeverOnWay;
   }
 };
 
@@ -173,7 +173,7 @@ TEST_CASE("first poses are those of whole numbers' arithmetic") {
       if (undecided) continue;
       ++decided;
       wrong += found[i] != exact;
-      hits += exact != kNever;
+      hits += exact != kNeverOnWay;
     }
   }
   CHECK(wrong == 0);

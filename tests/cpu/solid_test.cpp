@@ -10,15 +10,15 @@ using namespace clearway::test;
 
 namespace {
 
-const Box kRoom{{-4, -3, -1}, {5, 4, 2}};
+const Box kRoomOfSolids{{-4, -3, -1}, {5, 4, 2}};
 const Box kPartOfSolids{{-0.6, -0.4, -0.3}, {0.7, 0.5, 0.2}};
 
 struct SolidScene : SceneChecks<SolidScene> {
   Random random{29};
   Quantisation quantisation{{1e-4, 1e-4, 1e-4}, {0, 0, 0}};
-  std::vector<Quantum> points = quantise(random_points(random, kRoom, 600), quantisation);
+  std::vector<Quantum> points = quantise(random_points(random, kRoomOfSolids, 600), quantisation);
   Bodies bodies;
-  std::vector<Pose> poses = smooth_path(random, kRoom, 40);
+  std::vector<Pose> poses = smooth_path(random, kRoomOfSolids, 40);
   double radius = 0.1;
 
   SolidScene() { bodies.add(box_surface(kPartOfSolids)); }

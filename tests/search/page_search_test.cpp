@@ -16,7 +16,7 @@ using Catch::Contains;
 
 namespace {
 
-constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
 
 /// The sweep on the CPU, with other needs and other memory where a test sets them.
 class MadeUpKind final : public CpuSweepKindOf<Vec3> {
@@ -98,8 +98,8 @@ class Line {
     kind->changed_needs().most_slots = 4;
     kind->changed_needs().on_gpu = true;
     kind->changed_needs().most_device_bytes = most_device_bytes;
-    kind->on_host = [](const SlotLayout& layout) { return layout.slots * 100 * kMiB; };
-    kind->on_device = [](const SlotLayout& layout) { return (5 - layout.slots) * 100 * kMiB; };
+    kind->on_host = [](const SlotLayout& layout) { return layout.slots * 100 * kMebibyte; };
+    kind->on_device = [](const SlotLayout& layout) { return (5 - layout.slots) * 100 * kMebibyte; };
   }
 
  private:
@@ -139,14 +139,14 @@ TEST_CASE("an engine has no more slots than the plan has pages") {
 TEST_CASE("layouts that fit either memory but not both are refused with a budget that works") {
   Line line;
   const std::uint64_t hits = line.run();
-  line.set_at_odds(150 * kMiB);
-  line.options.memory_bytes = 200 * kMiB;
+  line.set_at_odds(150 * kMebibyte);
+  line.options.memory_bytes = 200 * kMebibyte;
   const ResourceError refusal = line.refusal().value();
   REQUIRE_THAT(refusal.what(), Contains("200.0 MiB of memory is too little"));
   REQUIRE(refusal.remedy() == Remedy::kMoreMemory);
   CHECK(line.journals_opened == 1);
   line.options.memory_bytes = static_cast<std::uint64_t>(refusal.amount());
-  CHECK(line.options.memory_bytes > 400 * kMiB);
+  CHECK(line.options.memory_bytes > 400 * kMebibyte);
   CHECK(line.run() == hits);
   --line.options.memory_bytes;
   CHECK_THAT(line.refusal().value().what(), Contains("too little"));
@@ -154,15 +154,15 @@ TEST_CASE("layouts that fit either memory but not both are refused with a budget
 
 TEST_CASE("device memory that fits no layout is refused with the least, or with the GPU") {
   Line line;
-  line.set_at_odds(50 * kMiB);
+  line.set_at_odds(50 * kMebibyte);
   const ResourceError refusal = line.refusal().value();
   CHECK(refusal.remedy() == Remedy::kMoreDeviceMemory);
-  CHECK(refusal.amount() == 100 * kMiB);
+  CHECK(refusal.amount() == 100 * kMebibyte);
   line.kind->changed_needs().short_device = "GPU 1 (Some GPU, 53 MiB free)";
   const ResourceError short_of_room = line.refusal().value();
   CHECK_THAT(short_of_room.what(), Contains("GPU 1 (Some GPU, 53 MiB free)"));
   CHECK(short_of_room.remedy() == Remedy::kOtherGpu);
-  line.kind->changed_needs().most_device_bytes = 100 * kMiB;
+  line.kind->changed_needs().most_device_bytes = 100 * kMebibyte;
   CHECK(line.run() > 0);
 }
 

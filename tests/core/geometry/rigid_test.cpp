@@ -48,7 +48,7 @@ Box random_model_box(Random& random) {
   return box;
 }
 
-Vec3 point_of(Random& random, const Box& box) {
+Vec3 random_point_of(Random& random, const Box& box) {
   Vec3 p = random_point(random, box);
   for (int k = 0; k < 3; ++k) {
     const std::uint64_t kind = below(random, 3);
@@ -127,7 +127,7 @@ TEST_CASE("the rounding of a transform is bounded") {
     const Box box = random_model_box(random);
     Vec3 reach{};
     for (int k = 0; k < 3; ++k) reach[k] = std::max(std::abs(box.lo[k]), std::abs(box.hi[k]));
-    const Vec3 m = point_of(random, box);
+    const Vec3 m = random_point_of(random, box);
     const Vec3 moved = transform(pose, m);
     const Long3 turned = rotate(pose, {m.x, m.y, m.z});
     const long double exact[3] = {turned.x + pose.translation[0], turned.y + pose.translation[1],
@@ -159,7 +159,7 @@ TEST_CASE("no model point moves more than the displacement bound") {
     const double bound = displacement_bound(box, a, b);
     CHECK(bound >= 0);
     for (int i = 0; i < 8; ++i) {
-      const Vec3 m = point_of(random, box);
+      const Vec3 m = random_point_of(random, box);
       const long double moved = distance(transform(a, m), transform(b, m));
       wrong += moved > bound;
       tight += moved > 0.9L * bound;

@@ -55,10 +55,10 @@ TEST_CASE("the middles of cubes are those of the definition, bit for bit") {
 }
 
 TEST_CASE("no cube that the model sweeps is outside the bricks along its path") {
-  test::Random random(11);
+  Random random(11);
   for (int scene = 0; scene < 20; ++scene) {
     Query query;
-    query.model = Model(test::random_points(random, {{-2, -1, 0}, {3, 1, 2}}, 40));
+    query.model = Model(random_points(random, {{-2, -1, 0}, {3, 1, 2}}, 40));
     query.between_poses = scene % 2 == 1;
     std::uniform_real_distribution<double> unit(-1, 1);
     for (int i = 0; i < 6; ++i) {

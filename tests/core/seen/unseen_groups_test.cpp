@@ -18,7 +18,7 @@ TEST_CASE("cubes that touch by a corner are one group, and groups are ordered by
 
 TEST_CASE("groups of random cubes are those of all pairs") {
   std::mt19937 random(3);
-  for (int scene = 0; scene < 200; ++scene) {
+  for (unsigned scene = 0; scene < 200; ++scene) {
     std::vector<Cube> cubes;
     for (std::int32_t x = -3; x < 4; ++x) {
       for (std::int32_t y = -3; y < 4; ++y) {
@@ -28,7 +28,7 @@ TEST_CASE("groups of random cubes are those of all pairs") {
       }
     }
     std::vector<std::uint32_t> poses;
-    for (std::size_t i = 0; i < cubes.size(); ++i) poses.push_back(random() % 5);
+    for (std::size_t i = 0; i < cubes.size(); ++i) poses.push_back(static_cast<std::uint32_t>(random() % 5));
     const std::vector<std::uint32_t> groups = group_cubes(cubes, poses);
     const auto touch = [&](std::size_t a, std::size_t b) {
       for (int k = 0; k < 3; ++k) {

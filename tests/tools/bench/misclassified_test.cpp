@@ -14,7 +14,7 @@ using Catch::Contains;
 
 namespace {
 
-constexpr double kRadius = 0.1, kClearance = 0.5;
+constexpr double kRadiusOfErrors = 0.1, kClearance = 0.5;
 
 /// The distances of points 0, 1, ...; infinite where a point has none.
 using Distances = std::vector<double>;
@@ -23,7 +23,7 @@ using Sources = std::vector<std::uint64_t>;
 ResultHeader header_of(std::uint64_t points, double clearance) {
   ResultHeader header = sample_header(false);
   header.environment_points = points;
-  header.radius = kRadius;
+  header.radius = kRadiusOfErrors;
   header.clearance = clearance;
   return header;
 }
@@ -37,7 +37,7 @@ ResultReader truth_of(const ScratchFolder& folder, const Distances& distances,
   Sources hits;
   Clearances clearances;
   for (std::uint64_t i = 0; i < distances.size(); ++i) {
-    if (distances[i] < kRadius) hits.push_back(i);
+    if (distances[i] < kRadiusOfErrors) hits.push_back(i);
     if (distances[i] >= clearance) continue;
     clearances.source.push_back(i);
     clearances.xyz.push_back({});
@@ -77,15 +77,15 @@ TEST_CASE("equal answers have no wrong points") {
 }
 
 TEST_CASE("wrong points are counted by their distance, first and last ones too") {
-  const double below = std::nextafter(kRadius, 0);
+  const double below = std::nextafter(kRadiusOfErrors, 0);
   // Misses: 0, 3, 7. False hits: 1, 4 (exactly at r), 5 (beyond D), 8 (beyond D).
   const Misclassified out =
-      compare({0.05, 0.12, 0.01, below, kRadius, 0.5, 0.06, 0.0, 9}, {1, 2, 4, 5, 6, 8});
+      compare({0.05, 0.12, 0.01, below, kRadiusOfErrors, 0.5, 0.06, 0.0, 9}, {1, 2, 4, 5, 6, 8});
   CHECK(out.environment_points == 9);
   CHECK(out.misses == 3);
   CHECK(out.false_hits == 4);
   CHECK(out.beyond == 2);
-  CHECK(out.largest_distance == kRadius);
+  CHECK(out.largest_distance == kRadiusOfErrors);
   std::array<std::uint64_t, 18> histogram{};
   histogram[0] = 2;   // distances at r and at the next double below it, 1.4e-17 away
   histogram[15] = 2;  // distances 0.05 and 0.02
@@ -94,11 +94,11 @@ TEST_CASE("wrong points are counted by their distance, first and last ones too")
 }
 
 TEST_CASE("a wrong point counts in its decade") {
-  for (const double d : {kRadius + 1e-15, kRadius + 3e-9, kRadius + 0.002, 0.35, 1.1, 1.05, 3.0}) {
+  for (const double d : {kRadiusOfErrors + 1e-15, kRadiusOfErrors + 3e-9, kRadiusOfErrors + 0.002, 0.35, 1.1, 1.05, 3.0}) {
     const ScratchFolder folder;
     const Misclassified out = misclassified(truth_of(folder, {d}, 4), answer_of(folder, {0}, 1));
-    CHECK(out.largest_distance == d - kRadius);
-    const int decade = 17 + static_cast<int>(std::floor(std::log10(d - kRadius)));
+    CHECK(out.largest_distance == d - kRadiusOfErrors);
+    const int decade = 17 + static_cast<int>(std::floor(std::log10(d - kRadiusOfErrors)));
     CHECK(out.histogram[std::min(decade, 17)] == 1);
   }
 }
@@ -122,7 +122,7 @@ TEST_CASE("wrong points across batches of rows are found") {
   std::uint64_t misses = 0, false_hits = 0, beyond = 0;
   for (std::size_t i = 0; i < kPoints; ++i) {
     distances[i] = static_cast<double>(i * 2654435761u % 1000) / 1000;
-    const bool hit = distances[i] < kRadius;
+    const bool hit = distances[i] < kRadiusOfErrors;
     const bool wrong = i % 97 == 0;
     if (hit != wrong) hits.push_back(i);
     misses += wrong && hit;
@@ -149,9 +149,9 @@ TEST_CASE("results that say nothing of each other are refused") {
   CHECK_THROWS_WITH(misclassified(truth, answer_of(folder, {0}, 1)), Contains("at least the 2"));
   const ResultReader answer = answer_of(folder, {0}, 2);
   CHECK_THROWS_WITH(misclassified(answer, truth), Contains("--clearance"));
-  const ResultReader near_only = truth_of(other, {0.05, 0.2}, kRadius);
+  const ResultReader near_only = truth_of(other, {0.05, 0.2}, kRadiusOfErrors);
   CHECK_THROWS_WITH(misclassified(near_only, answer), Contains("--clearance"));
-  CHECK_THROWS_WITH(points_near_boundary(near_only, kRadius), Contains("--clearance"));
+  CHECK_THROWS_WITH(points_near_boundary(near_only, kRadiusOfErrors), Contains("--clearance"));
 }
 
 TEST_CASE("a truth without a colliding point's clearance is refused") {
@@ -162,17 +162,17 @@ TEST_CASE("a truth without a colliding point's clearance is refused") {
 }
 
 TEST_CASE("points near the boundary are counted in ulps of the radius") {
-  const double ulp = std::nextafter(kRadius, 1) - kRadius;
-  const auto at = [ulp](double ulps) { return kRadius + ulps * ulp; };
+  const double ulp = std::nextafter(kRadiusOfErrors, 1) - kRadiusOfErrors;
+  const auto at = [ulp](double ulps) { return kRadiusOfErrors + ulps * ulp; };
   const ScratchFolder folder;
   // 0.1 lies in the middle of its binade, so that its neighbours are all one ulp apart.
-  const Distances distances{0.0,   kRadius, at(1), at(-1), at(2),          at(3),
+  const Distances distances{0.0,   kRadiusOfErrors, at(1), at(-1), at(2),          at(3),
                             at(4), at(-5),  0.4,   9,      at(0x1p40 + 1), at(-0x1p40)};
-  const NearBoundary near = points_near_boundary(truth_of(folder, distances), kRadius);
+  const NearBoundary near = points_near_boundary(truth_of(folder, distances), kRadiusOfErrors);
   CHECK(near[0] == 3);
   CHECK(near[1] == 4);
   CHECK(near[2] == 6);
   for (std::size_t i = 3; i < 40; ++i) CHECK(near[i] == 7);
   CHECK(near[40] == 8);
-  CHECK(points_near_boundary(truth_of(folder, {}), kRadius) == NearBoundary{});
+  CHECK(points_near_boundary(truth_of(folder, {}), kRadiusOfErrors) == NearBoundary{});
 }

@@ -61,7 +61,7 @@ struct Scans {
 };
 
 template <typename Value>
-Value value_at(const std::string& bytes, std::size_t at) {
+Value record_value_at(const std::string& bytes, std::size_t at) {
   REQUIRE(at + sizeof(Value) <= bytes.size());
   Value value;
   std::memcpy(&value, bytes.data() + at, sizeof value);
@@ -73,14 +73,14 @@ Value value_at(const std::string& bytes, std::size_t at) {
 TEST_CASE("records of scans are copied with all their bytes") {
   const Scans scans;
   const std::string bytes = scans.exported();
-  const auto points = value_at<std::uint32_t>(bytes, 96);
-  CHECK(value_at<std::uint8_t>(bytes, 25) == 4);
-  CHECK(value_at<std::uint16_t>(bytes, 6) == 1);  // adjusted GPS time
-  CHECK(value_at<std::uint8_t>(bytes, 104) == 1);
-  REQUIRE(value_at<std::uint16_t>(bytes, 105) == kOwn + 12);
-  CHECK(value_at<std::uint32_t>(bytes, 107) == 3);
-  CHECK(value_at<std::uint32_t>(bytes, 111 + 4) == 3);  // 'r': all are second returns
-  CHECK(value_at<std::uint64_t>(bytes, 247) == 3);
+  const auto points = record_value_at<std::uint32_t>(bytes, 96);
+  CHECK(record_value_at<std::uint8_t>(bytes, 25) == 4);
+  CHECK(record_value_at<std::uint16_t>(bytes, 6) == 1);  // adjusted GPS time
+  CHECK(record_value_at<std::uint8_t>(bytes, 104) == 1);
+  REQUIRE(record_value_at<std::uint16_t>(bytes, 105) == kOwn + 12);
+  CHECK(record_value_at<std::uint32_t>(bytes, 107) == 3);
+  CHECK(record_value_at<std::uint32_t>(bytes, 111 + 4) == 3);  // 'r': all are second returns
+  CHECK(record_value_at<std::uint64_t>(bytes, 247) == 3);
   REQUIRE(bytes.size() == points + 3 * (kOwn + 12));
   const std::string own = scans.first.build().substr(227 + kOwn, kOwn);
   CHECK(bytes.substr(points, kOwn) == own);
@@ -89,10 +89,10 @@ TEST_CASE("records of scans are copied with all their bytes") {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t at = points + i * (kOwn + 12);
     CHECK(bytes.substr(at + 12, kOwn - 12) == std::string(kOwn - 12, 'r'));
-    CHECK(value_at<std::uint32_t>(bytes, at + kOwn) == poses[i]);
-    CHECK(value_at<double>(bytes, at + kOwn + 4) == distances[i]);
+    CHECK(record_value_at<std::uint32_t>(bytes, at + kOwn) == poses[i]);
+    CHECK(record_value_at<double>(bytes, at + kOwn + 4) == distances[i]);
   }
-  CHECK(value_at<std::int32_t>(bytes, points + 2 * (kOwn + 12)) == 7003);  // in the result's scale
+  CHECK(record_value_at<std::int32_t>(bytes, points + 2 * (kOwn + 12)) == 7003);  // in the result's scale
 }
 
 TEST_CASE("copied records are a LAS file that reads back as the result's points") {
@@ -117,19 +117,19 @@ TEST_CASE("extra bytes of a scan keep their descriptions, and what has none is c
   if (with) scans.first.vlrs = scans.second.vlrs = {{"LASF_Spec", 4, described}};
   const std::string bytes = scans.exported();
   const std::size_t table = 375 + 54;
-  CHECK(value_at<std::uint16_t>(bytes, 375 + 20) == 192 * (with ? 4 : 3));
+  CHECK(record_value_at<std::uint16_t>(bytes, 375 + 20) == 192 * (with ? 4 : 3));
   std::size_t at = table;
   if (with) {
     CHECK(bytes.substr(at, 192) == described);
     at += 192;
   }
   CHECK(bytes.substr(at + 4, 12) == "undocumented");
-  CHECK(value_at<std::uint8_t>(bytes, at + 2) == 0);
-  CHECK(value_at<std::uint8_t>(bytes, at + 3) == (with ? 1 : 3));
+  CHECK(record_value_at<std::uint8_t>(bytes, at + 2) == 0);
+  CHECK(record_value_at<std::uint8_t>(bytes, at + 3) == (with ? 1 : 3));
   CHECK(bytes.substr(at + 192 + 4, 10) == "first_pose");
   CHECK(bytes.substr(at + 2 * 192 + 4, 8) == "distance");
-  CHECK(value_at<std::uint8_t>(bytes, at + 2 * 192 + 3) == 1);
-  CHECK(value_at<double>(bytes, at + 2 * 192 + 40) == -1);
+  CHECK(record_value_at<std::uint8_t>(bytes, at + 2 * 192 + 3) == 1);
+  CHECK(record_value_at<double>(bytes, at + 2 * 192 + 40) == -1);
 }
 
 TEST_CASE("scans of another result are refused with the first difference") {
@@ -184,5 +184,5 @@ TEST_CASE("scans that are no LAS may be among them where no point of theirs is c
 TEST_CASE("nothing to copy gives an empty LAS file") {
   Scans scans;
   scans.rows = {};
-  CHECK(value_at<std::uint64_t>(scans.exported(), 247) == 0);
+  CHECK(record_value_at<std::uint64_t>(scans.exported(), 247) == 0);
 }

@@ -21,7 +21,7 @@ ReadCloud cloud_of(const std::string& text, const Columns& columns = {}) {
   return read_all(*open_point_file(scratch.write("a.csv", text), {columns, true}));
 }
 
-std::vector<Vec3> points_of(const std::string& text, const Columns& columns = {}) {
+std::vector<Vec3> points_of_columns(const std::string& text, const Columns& columns = {}) {
   const ReadCloud cloud = cloud_of(text, columns);
   CHECK(cloud.info.remarks.empty());
   return cloud.positions;
@@ -32,7 +32,7 @@ struct Refusal {
   Remedy remedy = Remedy::kNone;
 };
 
-Refusal refusal_of_text(const std::string& text, const Columns& columns = {}) {
+Refusal refusal_of_columns(const std::string& text, const Columns& columns = {}) {
   try {
     cloud_of(text, columns);
   } catch (const InputError& error) {
@@ -69,30 +69,30 @@ std::string tum_line(int i) {
                std::cos(a));
 }
 
-const std::vector<Vec3> kTwo{{1, -2.5, 3e2}, {4, 5, 6}};
+const std::vector<Vec3> kTwoColumns{{1, -2.5, 3e2}, {4, 5, 6}};
 
 }  // namespace
 
 TEST_CASE("names in a comment count like those in a header") {
   for (const std::string mark : {"#", "//", "# ", "// ", "## ", "# columns: ", "//Fields: "}) {
     INFO(mark);
-    CHECK(points_of(mark + "X Y Z\n1 -2.5 3e2\n4 5 6\n") == kTwo);
-    CHECK(points_of(mark + "time x y z\n9 1 -2.5 3e2\n9 4 5 6\n") == kTwo);
-    CHECK(points_of(mark + "time,x,y,z\n9,1,-2.5,3e2\n9,4,5,6\n") == kTwo);
-    CHECK(points_of(mark + "time,x,y,z\n9 1 -2.5 3e2\n9 4 5 6\n") == kTwo);
-    CHECK(points_of(mark + "Z X Y R\n3e2 1 -2.5 0\n6 4 5 0\n") == kTwo);
-    CHECK(points_of("# made by me\n" + mark +
-                    "id;\"X [m]\";Y;Z\n# end\nP1;1;-2.5;3e2\nP2;4;5;6\n") == kTwo);
+    CHECK(points_of_columns(mark + "X Y Z\n1 -2.5 3e2\n4 5 6\n") == kTwoColumns);
+    CHECK(points_of_columns(mark + "time x y z\n9 1 -2.5 3e2\n9 4 5 6\n") == kTwoColumns);
+    CHECK(points_of_columns(mark + "time,x,y,z\n9,1,-2.5,3e2\n9,4,5,6\n") == kTwoColumns);
+    CHECK(points_of_columns(mark + "time,x,y,z\n9 1 -2.5 3e2\n9 4 5 6\n") == kTwoColumns);
+    CHECK(points_of_columns(mark + "Z X Y R\n3e2 1 -2.5 0\n6 4 5 0\n") == kTwoColumns);
+    CHECK(points_of_columns("# made by me\n" + mark +
+                    "id;\"X [m]\";Y;Z\n# end\nP1;1;-2.5;3e2\nP2;4;5;6\n") == kTwoColumns);
   }
-  CHECK(points_of("//X Y Z R G B\n2\n1 -2.5 3e2 1 2 3\n4 5 6 1 2 3\n") == kTwo);
-  CHECK(points_of("//Z Y X\n3e2 -2.5 1 1 2 3\n6 5 4 1 2 3\n") == kTwo);
+  CHECK(points_of_columns("//X Y Z R G B\n2\n1 -2.5 3e2 1 2 3\n4 5 6 1 2 3\n") == kTwoColumns);
+  CHECK(points_of_columns("//Z Y X\n3e2 -2.5 1 1 2 3\n6 5 4 1 2 3\n") == kTwoColumns);
 }
 
 TEST_CASE("a comment that names x, y and z but does not fit the lines is prose or is warned of") {
-  CHECK(points_of("# the order is x y z\n1 -2.5 3e2\n4 5 6\n") == kTwo);
-  CHECK(points_of("# x y z in metres\n1 -2.5 3e2\n4 5 6\n") == kTwo);
+  CHECK(points_of_columns("# the order is x y z\n1 -2.5 3e2\n4 5 6\n") == kTwoColumns);
+  CHECK(points_of_columns("# x y z in metres\n1 -2.5 3e2\n4 5 6\n") == kTwoColumns);
   const ReadCloud cloud = cloud_of("# time x y z intensity\n1 -2.5 3e2 7\n4 5 6 8\n");
-  CHECK(cloud.positions == kTwo);
+  CHECK(cloud.positions == kTwoColumns);
   REQUIRE(cloud.info.remarks.size() == 1);
   CHECK(cloud.info.remarks[0].severity == Message::Severity::kWarning);
   CHECK(cloud.info.remarks[0].code == "column-names");
@@ -104,15 +104,15 @@ TEST_CASE("easting, northing and heights are x, y and z in whatever order") {
         "Easting [m],Northing [m],Z [m]", "Easting(m),Northing(m),Altitude(m)", "X,Y,Height",
         "x_m,y_m,z_m", "\"X (m)\",\"Y (m)\",Z"}) {
     INFO(names);
-    CHECK(points_of(names + "\n1,-2.5,3e2\n4,5,6\n") == kTwo);
-    CHECK(points_of("# " + names + "\n1,-2.5,3e2\n4,5,6\n") == kTwo);
+    CHECK(points_of_columns(names + "\n1,-2.5,3e2\n4,5,6\n") == kTwoColumns);
+    CHECK(points_of_columns("# " + names + "\n1,-2.5,3e2\n4,5,6\n") == kTwoColumns);
   }
-  CHECK(points_of("Northing;Easting;Height\n-2.5;1;3e2\n5;4;6\n") == kTwo);
-  CHECK(points_of("Point Northing Easting Z\nA -2.5 1 3e2\nB 5 4 6\n") == kTwo);
-  CHECK(points_of("X [m] Y [m] Z [m]\n1 -2.5 3e2\n4 5 6\n") == kTwo);
-  CHECK(points_of("x y z easting northing height\n1 -2.5 3e2 9 9 9\n4 5 6 9 9 9\n") == kTwo);
-  CHECK_THAT(refusal_of_text("easting,y,z\n1,2,3\n").text, Contains("line 1"));
-  CHECK_THAT(refusal_of_text("easting,northing,height,altitude\n1,2,3,4\n").text,
+  CHECK(points_of_columns("Northing;Easting;Height\n-2.5;1;3e2\n5;4;6\n") == kTwoColumns);
+  CHECK(points_of_columns("Point Northing Easting Z\nA -2.5 1 3e2\nB 5 4 6\n") == kTwoColumns);
+  CHECK(points_of_columns("X [m] Y [m] Z [m]\n1 -2.5 3e2\n4 5 6\n") == kTwoColumns);
+  CHECK(points_of_columns("x y z easting northing height\n1 -2.5 3e2 9 9 9\n4 5 6 9 9 9\n") == kTwoColumns);
+  CHECK_THAT(refusal_of_columns("easting,y,z\n1,2,3\n").text, Contains("line 1"));
+  CHECK_THAT(refusal_of_columns("easting,northing,height,altitude\n1,2,3,4\n").text,
              Contains("line 1"));
 }
 
@@ -125,16 +125,16 @@ TEST_CASE("units in brackets: feet are told, others than metres and feet refused
   CHECK(cloud_of("X [local],Y [local],Z [local]\n1,2,3\n").info.unit == LengthUnit::kUnknown);
   for (const std::string unit : {"mm", "cm", "inch", "deg", "km"}) {
     const std::string header = "X [" + unit + "],Y [" + unit + "],Z [" + unit + "]\n";
-    CHECK_THAT(refusal_of_text(header + "1,2,3\n").text,
+    CHECK_THAT(refusal_of_columns(header + "1,2,3\n").text,
                Contains("in " + unit) && Contains("metres"));
   }
-  CHECK_THAT(refusal_of_text("x_mm,y_mm,z_mm\n1,2,3\n").text, Contains("in mm"));
-  CHECK_THAT(refusal_of_text("X [m],Y [m],Z [ft]\n1,2,3\n").text, Contains("m and ft"));
+  CHECK_THAT(refusal_of_columns("x_mm,y_mm,z_mm\n1,2,3\n").text, Contains("in mm"));
+  CHECK_THAT(refusal_of_columns("X [m],Y [m],Z [ft]\n1,2,3\n").text, Contains("m and ft"));
 }
 
 TEST_CASE("names of a trajectory and of angles are refused") {
   const auto check = [](const std::string& text, const std::string& what) {
-    const Refusal refusal = refusal_of_text(text);
+    const Refusal refusal = refusal_of_columns(text);
     CHECK_THAT(refusal.text, Contains("looks like") && Contains(what) && Contains("line"));
     CHECK(refusal.remedy == Remedy::kColumns);
   };
@@ -148,13 +148,13 @@ TEST_CASE("names of a trajectory and of angles are refused") {
     check(mark + "lat,lon,height\n52.1,4.2,3\n", "latitudes");
     check(mark + "Longitude Latitude Altitude\n4.1 52.2 3\n", "angles");
   }
-  CHECK(points_of("lat,lon,x,y,z\n52,4,1,-2.5,3e2\n52,4,4,5,6\n") == kTwo);
+  CHECK(points_of_columns("lat,lon,x,y,z\n52,4,1,-2.5,3e2\n52,4,4,5,6\n") == kTwoColumns);
 }
 
 TEST_CASE("what looks like something else than points is refused with what it looks like") {
   const auto check = [](const std::string& text, const std::string& what) {
     INFO(text.substr(0, 200));
-    const Refusal refusal = refusal_of_text(text);
+    const Refusal refusal = refusal_of_columns(text);
     CHECK_THAT(refusal.text, Contains("looks like") && Contains(what) && Contains("line"));
     CHECK(refusal.remedy == Remedy::kColumns);
     ReaderScratch scratch;
@@ -252,36 +252,36 @@ TEST_CASE("rows of scans in every usual layout pass") {
   for (std::size_t k = 0; k < layouts.size(); ++k) {
     for (const int lines : {1, 2, 3, 10, 100, 250}) {
       INFO("layout " << k << ", " << lines << " lines");
-      CHECK(refusal_of_text(table(lines, layouts[k])).text.empty());
+      CHECK(refusal_of_columns(table(lines, layouts[k])).text.empty());
     }
   }
 }
 
 TEST_CASE("the caller chooses columns by numbers or by names") {
-  CHECK(points_of("9 1 -2.5 3e2\n9 4 5 6\n", {"2", "3", "4"}) == kTwo);
-  CHECK(points_of("h;n;e\n3e2;-2.5;1\n6;5;4\n", {"3", "2", "1"}) == kTwo);
-  CHECK(points_of("a,up,right\n1,3e2,-2.5\n4,6,5\n", {"A", "Right", "up"}) == kTwo);
-  CHECK(points_of("# a up right\n1 3e2 -2.5\n4 6 5\n", {"a", "right", "up"}) == kTwo);
-  CHECK(points_of("2\nP1,1,-2.5,3e2\nP2,4,5,6\n", {"2", "3", "4"}) == kTwo);
+  CHECK(points_of_columns("9 1 -2.5 3e2\n9 4 5 6\n", {"2", "3", "4"}) == kTwoColumns);
+  CHECK(points_of_columns("h;n;e\n3e2;-2.5;1\n6;5;4\n", {"3", "2", "1"}) == kTwoColumns);
+  CHECK(points_of_columns("a,up,right\n1,3e2,-2.5\n4,6,5\n", {"A", "Right", "up"}) == kTwoColumns);
+  CHECK(points_of_columns("# a up right\n1 3e2 -2.5\n4 6 5\n", {"a", "right", "up"}) == kTwoColumns);
+  CHECK(points_of_columns("2\nP1,1,-2.5,3e2\nP2,4,5,6\n", {"2", "3", "4"}) == kTwoColumns);
   // A table that would be refused is read where its columns are chosen.
-  CHECK(points_of(table(5, tum_line), {"2", "3", "4"}).size() == 5);
-  CHECK(points_of("1 1 -2.5 3e2\n2 4 5 6\n3 0 0 0\n", {"2", "3", "4"}).size() == 3);
-  CHECK(points_of("t,x,y,z,qx,qy,qz,qw\n1,1,-2.5,3e2,0,0,0,1\n2,4,5,6,0,0,0,1\n",
-                  {"x", "y", "z"}) == kTwo);
+  CHECK(points_of_columns(table(5, tum_line), {"2", "3", "4"}).size() == 5);
+  CHECK(points_of_columns("1 1 -2.5 3e2\n2 4 5 6\n3 0 0 0\n", {"2", "3", "4"}).size() == 3);
+  CHECK(points_of_columns("t,x,y,z,qx,qy,qz,qw\n1,1,-2.5,3e2,0,0,0,1\n2,4,5,6,0,0,0,1\n",
+                  {"x", "y", "z"}) == kTwoColumns);
   const ReadCloud millimetres = cloud_of("X [mm],Y [mm],Z [mm]\n1,2,3\n", {"1", "2", "3"});
   REQUIRE(millimetres.info.remarks.size() == 1);
   CHECK(millimetres.info.remarks[0].code == "other-unit");
 }
 
 TEST_CASE("chosen columns that are not there are refused") {
-  CHECK_THAT(refusal_of_text("1 2 3\n", {"2", "3", "4"}).text, Contains("line 1"));
-  CHECK_THAT(refusal_of_text("1 2 3 4\n1 2 3\n", {"2", "3", "4"}).text,
+  CHECK_THAT(refusal_of_columns("1 2 3\n", {"2", "3", "4"}).text, Contains("line 1"));
+  CHECK_THAT(refusal_of_columns("1 2 3 4\n1 2 3\n", {"2", "3", "4"}).text,
              Contains("line 2") && Contains("columns 2 3 4"));
-  CHECK_THAT(refusal_of_text("a,b,c\n1,2,3\n", {"a", "b", "d"}).text, Contains("a, b, d"));
-  CHECK_THAT(refusal_of_text("a,b,c,c\n1,2,3,4\n", {"a", "b", "c"}).text, Contains("once"));
-  CHECK_THAT(refusal_of_text("1 2 3\n", {"a", "b", "c"}).text, Contains("a, b, c"));
-  CHECK_THAT(refusal_of_text("9 1 x 3\n9 4 5 6\n", {"2", "3", "4"}).text, Contains("line 1"));
-  CHECK_THAT(refusal_of_text("1 2 3\n", {"0", "1", "2"}).text, Contains("0, 1, 2"));
+  CHECK_THAT(refusal_of_columns("a,b,c\n1,2,3\n", {"a", "b", "d"}).text, Contains("a, b, d"));
+  CHECK_THAT(refusal_of_columns("a,b,c,c\n1,2,3,4\n", {"a", "b", "c"}).text, Contains("once"));
+  CHECK_THAT(refusal_of_columns("1 2 3\n", {"a", "b", "c"}).text, Contains("a, b, c"));
+  CHECK_THAT(refusal_of_columns("9 1 x 3\n9 4 5 6\n", {"2", "3", "4"}).text, Contains("line 1"));
+  CHECK_THAT(refusal_of_columns("1 2 3\n", {"0", "1", "2"}).text, Contains("0, 1, 2"));
   ReaderScratch scratch;
   CHECK_THROWS_AS(open_point_file(scratch.write("a.xyz", "1 2 3\n"), {{"1", "2"}, true}),
                   UsageError);

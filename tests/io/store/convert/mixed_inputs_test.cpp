@@ -12,7 +12,7 @@ using Catch::Contains;
 
 namespace {
 
-Quantisation millimetres_from(double x, double y, double z) {
+Quantisation mixed_millimetres_from(double x, double y, double z) {
   return {{0.001, 0.001, 0.001}, {x, y, z}};
 }
 
@@ -27,12 +27,12 @@ const Message* find(const std::vector<Message>& messages, const std::string& cod
 
 TEST_CASE("floating-point coordinates are rounded to the steps of the files with integers") {
   const ScratchFolder folder;
-  write_las(folder / "b.las", std::vector<Quantum>{{1, 2, 3}}, millimetres_from(1000, 0, 0));
-  write_las(folder / "c.las", std::vector<Quantum>{{7, 8, 9}}, millimetres_from(1001, 0, 0));
+  write_las(folder / "b.las", std::vector<Quantum>{{1, 2, 3}}, mixed_millimetres_from(1000, 0, 0));
+  write_las(folder / "c.las", std::vector<Quantum>{{7, 8, 9}}, mixed_millimetres_from(1001, 0, 0));
   write_ply(folder / "a.ply", std::vector<Vec3>{{1000.0012, 0.0015, -0.25}});
   put_bytes(folder / "d.xyz", "999.9998 nan 0\n1000 0.0004 0\n");
   const Environment environment = read_environment({folder / ""});
-  CHECK(environment.quantisation == millimetres_from(1000, 0, 0));
+  CHECK(environment.quantisation == mixed_millimetres_from(1000, 0, 0));
   REQUIRE(environment.points.size() == 4);
   CHECK(environment.points[0] == StoredPoint{0, {1, 2, -250}});
   CHECK(environment.points[1] == StoredPoint{1, {1, 2, 3}});
@@ -61,7 +61,7 @@ TEST_CASE("rounding to coarse steps of other files is warned of") {
 
 TEST_CASE("files of one kind are not remarked on, nor those for which a scale was asked") {
   const ScratchFolder folder;
-  write_las(folder / "a.las", std::vector<Quantum>{{1, 2, 3}}, millimetres_from(0, 0, 0));
+  write_las(folder / "a.las", std::vector<Quantum>{{1, 2, 3}}, mixed_millimetres_from(0, 0, 0));
   write_ply(folder / "a.ply", std::vector<Vec3>{{0.001, 0.002, 0.003}});
   CHECK(read_environment({folder / "a.las", folder / "a.las"}).warnings.empty());
   CHECK(read_environment({folder / "a.ply", folder / "a.ply"}).warnings.empty());
@@ -75,7 +75,7 @@ TEST_CASE("files of one kind are not remarked on, nor those for which a scale wa
 
 TEST_CASE("a mixture that does not fit the integers, or has two scales, is refused with advice") {
   const ScratchFolder folder;
-  write_las(folder / "a.las", std::vector<Quantum>{{0, 0, 0}}, millimetres_from(0, 0, 0));
+  write_las(folder / "a.las", std::vector<Quantum>{{0, 0, 0}}, mixed_millimetres_from(0, 0, 0));
   write_las(folder / "b.las", std::vector<Quantum>{{0, 0, 0}}, {{0.01, 0.01, 0.01}, {0, 0, 0}});
   write_ply(folder / "far.ply", std::vector<Vec3>{{3e6, 0, 0}});
   const auto far = refused({folder / "a.las", folder / "far.ply"});

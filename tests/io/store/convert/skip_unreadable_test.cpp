@@ -11,11 +11,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Scans {
+struct UnreadableScans {
   ScratchFolder folder;
   ConversionOptions options;
 
-  Scans() {
+  UnreadableScans() {
     fs::create_directory(folder / "scans");
     for (const std::string name : {"a", "b", "c", "d"}) {
       std::vector<Quantum> points;
@@ -29,7 +29,7 @@ struct Scans {
 }  // namespace
 
 TEST_CASE("one unreadable file is refused, and the remedy named") {
-  const Scans scans;
+  const UnreadableScans scans;
   put_bytes(scans.folder / "scans/b.las", "LASF, but nothing else");
   try {
     convert_quietly(scans.options);
@@ -49,7 +49,7 @@ TEST_CASE("one unreadable file is refused, and the remedy named") {
 }
 
 TEST_CASE("unreadable files are left out where that is asked for, and listed") {
-  Scans scans;
+  UnreadableScans scans;
   put_bytes(scans.folder / "scans/b.las", "LASF, but nothing else");
   // The first points of this file are sound, and the fault comes later.
   put_bytes(scans.folder / "scans/c.las",
@@ -73,7 +73,7 @@ TEST_CASE("unreadable files are left out where that is asked for, and listed") {
 }
 
 TEST_CASE("nothing is left out silently where all files can be read, or none") {
-  Scans scans;
+  UnreadableScans scans;
   scans.options.skip_unreadable = true;
   CHECK(convert_quietly(scans.options).warnings.empty());
   for (const std::string name : {"a", "b", "c", "d"}) {
