@@ -122,6 +122,10 @@ void add_convert_report(py::module_& module) {
                     "How many points were left out because a coordinate was not a finite number.")
       .def_readonly("absent_points", &Report::absent_points,
                     "How many records of the scans have no point, such as beams that hit nothing.")
+      .def_readonly("origins", &Report::origins,
+                    "From how many distinct places the points were seen; 0 where no input tells.")
+      .def_readonly("points_without_origin", &Report::points_without_origin,
+                    "For how many points it is not known from where they were seen.")
       .def_property_readonly(
           "scale", [](const Report& r) { return to_array(r.scale); },
           "The step of the stored coordinates on each axis: 3 float64, metres.")
@@ -161,20 +165,22 @@ void add_convert(py::module_& module) {
       [](const py::object& inputs, const py::object& output, std::optional<double> scale,
          std::uint32_t cell_points, std::optional<double> regular_size, std::uint64_t memory_bytes,
          int threads, const UnitArgument& unit, bool ignore_crs, std::vector<std::string> columns,
-         bool skip_unreadable, bool strict, bool overwrite, bool resume, py::object progress,
-         py::object message, py::object stop) {
-        ConvertOptions options{.scale = scale,
-                               .cell_points = cell_points,
-                               .regular_size = regular_size,
-                               .memory_bytes = memory_bytes,
-                               .threads = threads,
-                               .unit = file_unit(unit),
-                               .ignore_crs = ignore_crs,
-                               .columns = std::move(columns),
-                               .skip_unreadable = skip_unreadable,
-                               .strict = strict,
-                               .overwrite = overwrite,
-                               .resume = resume};
+         const py::object& origins, bool skip_unreadable, bool strict, bool overwrite, bool resume,
+         py::object progress, py::object message, py::object stop) {
+        ConvertOptions options{
+            .scale = scale,
+            .cell_points = cell_points,
+            .regular_size = regular_size,
+            .memory_bytes = memory_bytes,
+            .threads = threads,
+            .unit = file_unit(unit),
+            .ignore_crs = ignore_crs,
+            .columns = std::move(columns),
+            .origins = origins.is_none() ? std::filesystem::path() : path_of(origins),
+            .skip_unreadable = skip_unreadable,
+            .strict = strict,
+            .overwrite = overwrite,
+            .resume = resume};
         Watch watch(std::move(progress), std::move(message), std::move(stop));
         watch.attach(options);
         return watch.run([&, from = paths_of(inputs), to = path_of(output)] {
@@ -184,10 +190,10 @@ void add_convert(py::module_& module) {
       "inputs"_a, "output"_a, py::kw_only(), "scale"_a = py::none(),
       "cell_points"_a = ConvertOptions{}.cell_points, "regular_size"_a = py::none(),
       "memory_bytes"_a = ConvertOptions{}.memory_bytes, "threads"_a = 0, "unit"_a = 0.0,
-      "ignore_crs"_a = false, "columns"_a = std::vector<std::string>{}, "skip_unreadable"_a = false,
-      "strict"_a = false, "overwrite"_a = false, "resume"_a = false, "progress"_a = py::none(),
-      "message"_a = py::none(), "stop"_a = py::none(),
-      R"(convert(inputs, output, *, scale=None, cell_points=65536, regular_size=None, memory_bytes=4294967296, threads=0, unit=0.0, ignore_crs=False, columns=(), skip_unreadable=False, strict=False, overwrite=False, resume=False, progress=None, message=None, stop=None)
+      "ignore_crs"_a = false, "columns"_a = std::vector<std::string>{}, "origins"_a = py::none(),
+      "skip_unreadable"_a = false, "strict"_a = false, "overwrite"_a = false, "resume"_a = false,
+      "progress"_a = py::none(), "message"_a = py::none(), "stop"_a = py::none(),
+      R"(convert(inputs, output, *, scale=None, cell_points=65536, regular_size=None, memory_bytes=4294967296, threads=0, unit=0.0, ignore_crs=False, columns=(), origins=None, skip_unreadable=False, strict=False, overwrite=False, resume=False, progress=None, message=None, stop=None)
 --
 
 Turn scans into a store, the one file that searches read. Returns a ConvertReport.
@@ -203,6 +209,8 @@ unit: the unit of the coordinates where the inputs name none: 'm', 'ft', 'ift', 
     0: not known, and taken for metres.
 ignore_crs: takes coordinates in degrees, or in different units, as they are.
 columns: which columns of texts are x, y and z: numbers from 1, or names of the header.
+origins: a CSV file with the header first,x,y,z: from source index first on, the scanner stood at
+    x, y, z. None: the places are those that the inputs tell.
 skip_unreadable: leaves out files that cannot be read, with a warning.
 strict: raises InputError where anything is warned of.
 overwrite: replaces an existing store.

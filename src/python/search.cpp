@@ -59,6 +59,9 @@ void add_store(py::module_& module) {
           "The number of points of each class: a dict, which is empty where the points have no "
           "classes.")
       .def(
+          "has_origins", [](const SharedStore& s) { return s.store.has_origins(); },
+          "Whether it is known for any point from where it was seen.")
+      .def(
           "crs_wkt", [](const SharedStore& s) { return text(s.store.crs_wkt()); },
           "The coordinate reference system as the scans had it, as WKT, or ''.")
       .def(

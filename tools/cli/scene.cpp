@@ -79,6 +79,7 @@ void make_scene_files(const SceneOptions& options) {
   }
   PendingFile model(options.folder / "model.ply", options.force);
   PendingFile trajectory(options.folder / "trajectory.txt", options.force);
+  PendingFile origins(options.folder / "origins.csv", options.force);
   std::optional<PendingFile> environment;
   if (!to_stdout) {
     environment.emplace(options.folder / "environment.las", options.force);
@@ -88,6 +89,7 @@ void make_scene_files(const SceneOptions& options) {
   const auto made = scene::make_scene(scene::kind_named(options.kind), sizes, options.seed);
   scene::write_model(*made, File::create(model.partial()));
   scene::write_trajectory(*made, File::create(trajectory.partial()));
+  scene::write_origins(*made, File::create(origins.partial()));
   ConsoleProgress progress;
   if (to_stdout) {
     write_to_stdout(*made, options, progress);
@@ -98,6 +100,7 @@ void make_scene_files(const SceneOptions& options) {
   }
   model.publish();
   trajectory.publish();
+  origins.publish();
   spdlog::info("{}: {}, {}, {}", options.folder.string(),
                counted(sizes.points, "environment point"),
                counted(sizes.model_points, "model point"), counted(sizes.poses, "pose"));
@@ -108,8 +111,9 @@ void make_scene_files(const SceneOptions& options) {
 void add_scene(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "scene",
-      "Make a synthetic scene like those of the paper: environment.las, model.ply and\n"
-      "trajectory.txt. In metres, z up. The same seed gives the same bytes.");
+      "Make a synthetic scene like those of the paper: environment.las, model.ply,\n"
+      "trajectory.txt and origins.csv, the places of the scanner. In metres, z up. The same seed "
+      "gives the same bytes.");
   const auto options = std::make_shared<SceneOptions>();
   command->add_option("kind", options->kind, "Which scene, see below")
       ->required()

@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <optional>
 #include <string>
 
+#include "core/util/format.hpp"
 #include "io/scans/las/las_writer.hpp"
 #include "io/scans/ply/ply_writer.hpp"
 
@@ -67,6 +69,21 @@ void write_environment(const Scene& scene, std::uint64_t seed, const File& file,
   arena.execute([&] { scan_in_order(scanner, count, writer, progress); });
   writer.finish();
   progress.end();
+}
+
+void write_origins(const Scene& scene, const File& file) {
+  ByteWriter out(file);
+  const auto put = [&](const std::string& text) { out.put_text(text, text.size()); };
+  put("first,x,y,z\n");
+  std::optional<Vec3> before;
+  for (std::uint64_t sweep = 0; sweep < scene.plan.sweeps(); ++sweep) {
+    const Vec3 at = scene.path.to_world(scene.plan.sweep(sweep).scanner);
+    if (before && at.x == before->x && at.y == before->y && at.z == before->z) continue;
+    before = at;
+    put(std::to_string(sweep * scene.plan.rays_a_sweep) + "," + format_number(at.x) + "," +
+        format_number(at.y) + "," + format_number(at.z) + "\n");
+  }
+  out.flush();
 }
 
 void write_model(const Scene& scene, const File& file) {

@@ -11,6 +11,11 @@ namespace clearway::scene {
 void write_environment(const Scene& scene, std::uint64_t seed, const File& file, int threads,
                        Progress& progress);
 
+/// Writes the places of the scanner as CSV with the header first,x,y,z: from point `first` on, it
+/// stood at x, y, z. These are the starts of the rays. A ray is straight along the path, so where
+/// the path bends it is a curve in space (docs/design/scenes.md).
+void write_origins(const Scene& scene, const File& file);
+
 /// Writes the model as binary PLY, float32.
 void write_model(const Scene& scene, const File& file);
 

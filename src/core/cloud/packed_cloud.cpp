@@ -134,6 +134,11 @@ Range<std::int32_t> range_of(const std::int32_t* values, std::size_t n) {
 }
 
 CLEARWAY_SIMD_CLONES
+Range<std::uint32_t> range_of(const std::uint32_t* values, std::size_t n) {
+  return find_range(values, n);
+}
+
+CLEARWAY_SIMD_CLONES
 Range<std::uint64_t> range_of(const std::uint64_t* values, std::size_t n) {
   return find_range(values, n);
 }

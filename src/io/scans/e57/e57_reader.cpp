@@ -151,8 +151,13 @@ class E57Reader final : public PointReader {
     std::uint64_t points = 0;
     for (const E57Scan& scan : scans_) {
       extents_.push_back(find_e57_section(pages_, scan));
-      if (scan.has_coordinates()) points += scan.records;
+      if (scan.has_coordinates()) {
+        add_origin(scan, points);
+        points += scan.records;
+      }
     }
+    const auto known = [](const OriginRun& run) { return run.origin.has_value(); };
+    if (std::none_of(info_.origins.begin(), info_.origins.end(), known)) info_.origins.clear();
     refuse_shared_sections(pages_.name(), scans_, extents_);
     refuse_points_from_nothing(pages_.name(), scans_);
     info_.declared_points = points;
@@ -193,6 +198,22 @@ class E57Reader final : public PointReader {
   }
 
  private:
+  /// Adds where a scan's points were seen from, whose first record has number `first`: from its
+  /// pose, or, as spherical coordinates are those of a scanner, from their origin. Cartesian
+  /// coordinates without a pose may have been moved, so they do not tell.
+  void add_origin(const E57Scan& scan, std::uint64_t first) {
+    if (scan.records == 0) return;
+    std::optional<Vec3> origin;
+    if (scan.pose) {
+      const double* t = scan.pose->translation;
+      origin = Vec3{t[0], t[1], t[2]};
+    } else if (scan.is_spherical() && !scan.is_cartesian()) {
+      origin = Vec3{0, 0, 0};
+    }
+    info_.origins.push_back({first, origin});
+    info_.origins_rest_on = "poses of E57";
+  }
+
   void note_unread(const E57Scan& scan) {
     if (scan.records == 0) {
       remarks_.add(scan, {});

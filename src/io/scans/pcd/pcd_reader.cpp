@@ -304,7 +304,15 @@ PcdBodyReader::PcdBodyReader(InputBuffer input, PcdHeader header)
   if (!header_.viewpoint) return;
   if (auto remark = remark_on_viewpoint(*header_.viewpoint, input_.name())) {
     info_.remarks.push_back(std::move(*remark));
+    const auto& [x, y, z, w, i, j, k] = *header_.viewpoint;
+    info_.origins = {{0, Vec3{x, y, z}}};
+    info_.origins_rest_on = "viewpoints of PCD";
+    return;
   }
+  info_.remarks.push_back({Message::Severity::kNote, "pcd-default-viewpoint",
+                           input_.name() +
+                               ": its VIEWPOINT is the default of PCD, 0 0 0 1 0 0 0, so it does "
+                               "not tell from where the points were seen"});
 }
 
 bool PcdBodyReader::read(PointBatch& batch) {

@@ -29,6 +29,7 @@ struct PtxHeader {
   std::uint64_t points = 0;  ///< number of points, columns times rows
   /// Row-major with last column 0 0 0 1; a point p as a row becomes p M.
   std::array<double, 16> matrix{};
+  Vec3 position{};             ///< where the scanner stood
   double stretch[2] = {1, 1};  ///< least and greatest singular value of the matrix' rotation
   double determinant = 1;
   bool rigid = true;  ///< whether the matrix neither scales nor shears nor mirrors
@@ -122,6 +123,7 @@ std::optional<PtxHeader> read_ptx_header(InputBuffer& input) {
   for (auto& axis : axes) axis = numbers<3>(input, "an axis of the scanner, three numbers");
   for (std::size_t row = 0; row < 4; ++row) read_row(input, row, header.matrix);
   judge_matrix(input, header);
+  header.position = {position[0], position[1], position[2]};
   double squares = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     squares += std::pow(position[k] - header.matrix[12 + k], 2);
@@ -242,6 +244,7 @@ class PtxReader final : public PointReader {
   void rewind() override {
     input_.return_to(start_);
     findings_ = {};
+    origins_.clear();
     open_end_ = OpenEnd();
     left_ = 0;
   }
@@ -265,6 +268,7 @@ class PtxReader final : public PointReader {
     check_room(*header);
     scan_ = *header;
     left_ = scan_.points;
+    if (left_ > 0) origins_.push_back({findings_.records, scan_.position});
     findings_.add(scan_);
     return true;
   }
@@ -305,6 +309,8 @@ class PtxReader final : public PointReader {
   }
 
   void finish() {
+    info_.origins = origins_;
+    info_.origins_rest_on = "scanner positions of PTX";
     info_.remarks = remarks_;
     findings_.append_to(info_.remarks, input_.name());
     open_end_.append_to(info_.remarks, input_.name());
@@ -317,6 +323,7 @@ class PtxReader final : public PointReader {
   PtxHeader scan_;
   std::uint64_t left_ = 0;  ///< points of the current scan that are not read yet
   PtxFindings findings_;
+  std::vector<OriginRun> origins_;  ///< of the scans that were begun
   OpenEnd open_end_;
 };
 

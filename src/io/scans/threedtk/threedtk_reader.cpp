@@ -80,6 +80,9 @@ class ThreedtkReader final : public PointReader {
   ThreedtkReader(InputBuffer input, const fs::path& path) : input_(std::move(input)) {
     pose_ = find_pose(path, info_.remarks);
     info_.unit = LengthUnit::kMetre;
+    const double* t = pose_.translation;
+    info_.origins = {{0, Vec3{t[0], t[1], t[2]}}};
+    info_.origins_rest_on = "poses of 3DTK";
     skip_header();
     first_point_ = input_.mark();
   }

@@ -164,6 +164,7 @@ bool EnvironmentSource::next(RecordBatch& records) {
     } else {
       infos_[file_].remarks = from->info().remarks;
       infos_[file_].origins = from->info().origins;
+      infos_[file_].origins_rest_on = from->info().origins_rest_on;
       points_of_files_.push_back(file_points_);
       continue;
     }

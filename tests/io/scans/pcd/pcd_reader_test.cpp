@@ -114,8 +114,8 @@ TEST_CASE("places of an organised cloud without a point are absent") {
   CHECK(batch.absent == std::vector<std::uint32_t>{0});
   CHECK(std::isnan(batch.positions[0].z));
   CHECK_FALSE(reader->read(batch));
-  REQUIRE(reader->info().remarks.size() == 1);
-  const Message& remark = reader->info().remarks[0];
+  REQUIRE(reader->info().remarks.size() == 2);
+  const Message& remark = reader->info().remarks[1];
   CHECK(remark.severity == Message::Severity::kNote);
   CHECK(remark.code == "absent-points");
   CHECK_THAT(remark.text, Contains("1 of 3"));
@@ -140,9 +140,15 @@ TEST_CASE("a VIEWPOINT is not applied, which a warning says with its numbers") {
   CHECK_THAT(remark.text, Contains("(10, 20, -3)") && Contains("90 degrees"));
   REQUIRE(remark.numbers.size() == 4);
   CHECK(remark.numbers[3].second == Approx(90));
+  REQUIRE(cloud.info.origins.size() == 1);
+  CHECK(cloud.info.origins[0].origin == Vec3{10, 20, -3});
   for (const char* none : {"0 0 0 1 0 0 0", "0 0 0 -1 0 0 0", "0 0 0 0 0 0 0"}) {
     header.viewpoint = none;
-    CHECK(read_twice(header.build("ascii") + "1 2 3\n4 5 6\n").info.remarks.empty());
+    const CloudInfo info = read_twice(header.build("ascii") + "1 2 3\n4 5 6\n").info;
+    REQUIRE(info.remarks.size() == 1);
+    CHECK(info.remarks[0].severity == Message::Severity::kNote);
+    CHECK(info.remarks[0].code == "pcd-default-viewpoint");
+    CHECK(info.origins.empty());
   }
 }
 
