@@ -28,7 +28,8 @@ TEST_CASE("groups of random cubes are those of all pairs") {
       }
     }
     std::vector<std::uint32_t> poses;
-    for (std::size_t i = 0; i < cubes.size(); ++i) poses.push_back(static_cast<std::uint32_t>(random() % 5));
+    for (std::size_t i = 0; i < cubes.size(); ++i)
+      poses.push_back(static_cast<std::uint32_t>(random() % 5));
     const std::vector<std::uint32_t> groups = group_cubes(cubes, poses);
     const auto touch = [&](std::size_t a, std::size_t b) {
       for (int k = 0; k < 3; ++k) {

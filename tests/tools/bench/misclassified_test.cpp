@@ -94,7 +94,8 @@ TEST_CASE("wrong points are counted by their distance, first and last ones too")
 }
 
 TEST_CASE("a wrong point counts in its decade") {
-  for (const double d : {kRadiusOfErrors + 1e-15, kRadiusOfErrors + 3e-9, kRadiusOfErrors + 0.002, 0.35, 1.1, 1.05, 3.0}) {
+  for (const double d : {kRadiusOfErrors + 1e-15, kRadiusOfErrors + 3e-9, kRadiusOfErrors + 0.002,
+                         0.35, 1.1, 1.05, 3.0}) {
     const ScratchFolder folder;
     const Misclassified out = misclassified(truth_of(folder, {d}, 4), answer_of(folder, {0}, 1));
     CHECK(out.largest_distance == d - kRadiusOfErrors);
@@ -167,7 +168,7 @@ TEST_CASE("points near the boundary are counted in ulps of the radius") {
   const ScratchFolder folder;
   // 0.1 lies in the middle of its binade, so that its neighbours are all one ulp apart.
   const Distances distances{0.0,   kRadiusOfErrors, at(1), at(-1), at(2),          at(3),
-                            at(4), at(-5),  0.4,   9,      at(0x1p40 + 1), at(-0x1p40)};
+                            at(4), at(-5),          0.4,   9,      at(0x1p40 + 1), at(-0x1p40)};
   const NearBoundary near = points_near_boundary(truth_of(folder, distances), kRadiusOfErrors);
   CHECK(near[0] == 3);
   CHECK(near[1] == 4);

@@ -92,7 +92,8 @@ TEST_CASE("records of scans are copied with all their bytes") {
     CHECK(record_value_at<std::uint32_t>(bytes, at + kOwn) == poses[i]);
     CHECK(record_value_at<double>(bytes, at + kOwn + 4) == distances[i]);
   }
-  CHECK(record_value_at<std::int32_t>(bytes, points + 2 * (kOwn + 12)) == 7003);  // in the result's scale
+  CHECK(record_value_at<std::int32_t>(bytes, points + 2 * (kOwn + 12)) ==
+        7003);  // in the result's scale
 }
 
 TEST_CASE("copied records are a LAS file that reads back as the result's points") {

@@ -82,7 +82,7 @@ TEST_CASE("names in a comment count like those in a header") {
     CHECK(points_of_columns(mark + "time,x,y,z\n9 1 -2.5 3e2\n9 4 5 6\n") == kTwoColumns);
     CHECK(points_of_columns(mark + "Z X Y R\n3e2 1 -2.5 0\n6 4 5 0\n") == kTwoColumns);
     CHECK(points_of_columns("# made by me\n" + mark +
-                    "id;\"X [m]\";Y;Z\n# end\nP1;1;-2.5;3e2\nP2;4;5;6\n") == kTwoColumns);
+                            "id;\"X [m]\";Y;Z\n# end\nP1;1;-2.5;3e2\nP2;4;5;6\n") == kTwoColumns);
   }
   CHECK(points_of_columns("//X Y Z R G B\n2\n1 -2.5 3e2 1 2 3\n4 5 6 1 2 3\n") == kTwoColumns);
   CHECK(points_of_columns("//Z Y X\n3e2 -2.5 1 1 2 3\n6 5 4 1 2 3\n") == kTwoColumns);
@@ -110,7 +110,8 @@ TEST_CASE("easting, northing and heights are x, y and z in whatever order") {
   CHECK(points_of_columns("Northing;Easting;Height\n-2.5;1;3e2\n5;4;6\n") == kTwoColumns);
   CHECK(points_of_columns("Point Northing Easting Z\nA -2.5 1 3e2\nB 5 4 6\n") == kTwoColumns);
   CHECK(points_of_columns("X [m] Y [m] Z [m]\n1 -2.5 3e2\n4 5 6\n") == kTwoColumns);
-  CHECK(points_of_columns("x y z easting northing height\n1 -2.5 3e2 9 9 9\n4 5 6 9 9 9\n") == kTwoColumns);
+  CHECK(points_of_columns("x y z easting northing height\n1 -2.5 3e2 9 9 9\n4 5 6 9 9 9\n") ==
+        kTwoColumns);
   CHECK_THAT(refusal_of_columns("easting,y,z\n1,2,3\n").text, Contains("line 1"));
   CHECK_THAT(refusal_of_columns("easting,northing,height,altitude\n1,2,3,4\n").text,
              Contains("line 1"));
@@ -261,13 +262,14 @@ TEST_CASE("the caller chooses columns by numbers or by names") {
   CHECK(points_of_columns("9 1 -2.5 3e2\n9 4 5 6\n", {"2", "3", "4"}) == kTwoColumns);
   CHECK(points_of_columns("h;n;e\n3e2;-2.5;1\n6;5;4\n", {"3", "2", "1"}) == kTwoColumns);
   CHECK(points_of_columns("a,up,right\n1,3e2,-2.5\n4,6,5\n", {"A", "Right", "up"}) == kTwoColumns);
-  CHECK(points_of_columns("# a up right\n1 3e2 -2.5\n4 6 5\n", {"a", "right", "up"}) == kTwoColumns);
+  CHECK(points_of_columns("# a up right\n1 3e2 -2.5\n4 6 5\n", {"a", "right", "up"}) ==
+        kTwoColumns);
   CHECK(points_of_columns("2\nP1,1,-2.5,3e2\nP2,4,5,6\n", {"2", "3", "4"}) == kTwoColumns);
   // A table that would be refused is read where its columns are chosen.
   CHECK(points_of_columns(table(5, tum_line), {"2", "3", "4"}).size() == 5);
   CHECK(points_of_columns("1 1 -2.5 3e2\n2 4 5 6\n3 0 0 0\n", {"2", "3", "4"}).size() == 3);
   CHECK(points_of_columns("t,x,y,z,qx,qy,qz,qw\n1,1,-2.5,3e2,0,0,0,1\n2,4,5,6,0,0,0,1\n",
-                  {"x", "y", "z"}) == kTwoColumns);
+                          {"x", "y", "z"}) == kTwoColumns);
   const ReadCloud millimetres = cloud_of("X [mm],Y [mm],Z [mm]\n1,2,3\n", {"1", "2", "3"});
   REQUIRE(millimetres.info.remarks.size() == 1);
   CHECK(millimetres.info.remarks[0].code == "other-unit");
