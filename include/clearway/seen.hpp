@@ -31,6 +31,9 @@ struct UnseenCubes {
   /// Number of each cube's group, from 1 on: groups are ordered by their least first pose, and then
   /// by their least cube. 0 in a shard's part, whose groups are made when it is merged.
   std::vector<std::uint32_t> group;
+  /// Length of the path in metres from each cube's first pose to the next one. Only in a shard's
+  /// part, whose merge needs it.
+  std::vector<double> step = {};
 
   std::size_t size() const { return cube.size(); }
 };

@@ -1,5 +1,8 @@
 #include "clearway/merge.hpp"
 
+#include <optional>
+#include <utility>
+
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
 #include "core/util/messages.hpp"
@@ -10,6 +13,7 @@
 #include "io/result/check_results.hpp"
 #include "io/result/merge_parts.hpp"
 #include "search/ignored.hpp"
+#include "search/seen_space.hpp"
 #include "search/threads.hpp"
 
 namespace clearway {
@@ -42,6 +46,47 @@ void warn_of_ignored(const PartSet& set, const MergeOptions& options, MergeRepor
   std::vector<Message> warnings;
   MessageLog log(options.message, warnings);
   warn_of_colliding_ignored(report, part.model_is_cut, length_unit_of(part.length_unit), log);
+  for (Message& warning : warnings) {
+    report.warnings.push_back({std::move(warning), report.parts});
+  }
+}
+
+/// The cubes that the beams of no part saw.
+UnseenCubes unseen_of_all(const PartSet& set) {
+  UnseenCubes all;
+  bool first = true;
+  for (const ResultReader& part : set.parts()) {
+    const SeenSummary &own = *part.findings().seen, &other = *set.parts().front().findings().seen;
+    if (own.swept != other.swept || own.cube != other.cube) {
+      throw InputError(part.name() + ": sweeps other cubes than " + set.parts().front().name());
+    }
+    UnseenCubes rows;
+    RowStream<UnseenCubes> stream(part);
+    for (UnseenCubes some; stream.read(some);) append_rows(some, rows);
+    if (first) {
+      all = std::move(rows);
+      first = false;
+      continue;
+    }
+    UnseenCubes both;
+    for (std::size_t i = 0, j = 0; i < all.size() && j < rows.size();) {
+      if (all.cube[i] == rows.cube[j]) append_row(part.header(), all, i, both);
+      const bool further_in_all = all.cube[i] <= rows.cube[j];
+      const bool further_in_rows = rows.cube[j] <= all.cube[i];
+      i += further_in_all;
+      j += further_in_rows;
+    }
+    all = std::move(both);
+  }
+  return all;
+}
+
+/// Warns of groups of unseen cubes that are too small to be listed, which only the merge knows.
+void warn_of_unseen(const PartSet& set, const MergeOptions& options, MergeReport& report) {
+  if (!report.seen) return;
+  std::vector<Message> warnings;
+  MessageLog log(options.message, warnings);
+  warn_of_small_groups(*report.seen, set.header(), log);
   for (Message& warning : warnings) {
     report.warnings.push_back({std::move(warning), report.parts});
   }
@@ -85,9 +130,17 @@ MergeReport merge(const std::vector<std::filesystem::path>& parts,
       report.certain = certain_points_in(set.parts(), progress);
       findings.certain = report.certain;
     }
-    merge_parts(set, pending.partial(), options.memory_bytes, findings, progress, report);
+    std::optional<UnseenCubes> unseen;
+    if (set.header().seen) {
+      unseen = unseen_of_all(set);
+      SeenSummary& seen = findings.seen.emplace(*set.parts().front().findings().seen);
+      group_unseen(set.header(), *unseen, seen);
+      report.seen = seen;
+    }
+    merge_parts(set, unseen, pending.partial(), options.memory_bytes, findings, progress, report);
     pending.publish();
     warn_of_ignored(set, options, report);
+    warn_of_unseen(set, options, report);
     return report;
   });
 }

@@ -343,9 +343,12 @@ class Search {
           return kind_for(gpu ? Device::kCuda : Device::kCpu, cloud, query, further_options_);
         }};
     SeenSpace space = find_seen_space(store_, query_, how, progress_);
-    if (!options_.shard) group_unseen(query_, query_.poses, space.unseen, space.summary);
+    warn_of_beams(space.beams, log_);
+    if (!options_.shard) {
+      group_unseen(query_, space.unseen, space.summary);
+      warn_of_small_groups(space.summary, query_, log_);
+    }
     report_.seen = space.summary;
-    if (!options_.shard) warn_of_seen_space(space, query_, log_);
     found.result.unseen = std::move(space.unseen);
   }
 

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -253,11 +254,14 @@ SeenSpace find_seen_space(const StoreReader& store, const Query& query, const Se
       }
     }
   }
+  const std::vector<double> chainage = chainage_of(query.poses);
   std::sort(unseen.begin(), unseen.end(),
             [](const Unseen& a, const Unseen& b) { return a.cube < b.cube; });
   for (const Unseen& one : unseen) {
     space.unseen.cube.push_back({one.cube.i[0], one.cube.i[1], one.cube.i[2]});
     space.unseen.first_pose.push_back(one.first_pose);
+    const std::size_t next = std::size_t{one.first_pose} + 1;
+    space.unseen.step.push_back(next < chainage.size() ? chainage[next] - chainage[next - 1] : 0);
   }
   space.unseen.group.resize(unseen.size());
   space.summary.unseen = unseen.size();
@@ -265,12 +269,13 @@ SeenSpace find_seen_space(const StoreReader& store, const Query& query, const Se
   return space;
 }
 
-void group_unseen(const QueryParameters& query, std::span<const Pose> poses, UnseenCubes& unseen,
-                  SeenSummary& summary) {
+void group_unseen(const QueryParameters& query, UnseenCubes& unseen, SeenSummary& summary) {
   std::vector<Cube> cubes;
   cubes.reserve(unseen.size());
   for (const auto& i : unseen.cube) cubes.push_back({{i[0], i[1], i[2]}});
   unseen.group = group_cubes(cubes, unseen.first_pose);
+  summary.unseen = unseen.size();
+  summary.seen = summary.swept - unseen.size();
   summary.groups = unseen.group.empty() ? 0 : *std::ranges::max_element(unseen.group);
   std::vector<std::uint64_t> size(summary.groups + 1);
   for (const std::uint32_t group : unseen.group) ++size[group];
@@ -281,32 +286,33 @@ void group_unseen(const QueryParameters& query, std::span<const Pose> poses, Uns
     ++summary.listed_groups;
     summary.listed_cubes += size[group];
   }
-  std::vector<bool> reached(poses.size());
+  std::map<std::uint32_t, double> steps;  // of the poses that first reach a cube of a listed group
   for (std::size_t i = 0; i < unseen.size(); ++i) {
-    if (is_listed(unseen.group[i])) reached[unseen.first_pose[i]] = true;
+    if (is_listed(unseen.group[i])) steps[unseen.first_pose[i]] = unseen.step[i];
   }
-  const std::vector<double> chainage = chainage_of(poses);
   summary.not_scanned_length = 0;
-  for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
-    if (reached[i]) summary.not_scanned_length += chainage[i + 1] - chainage[i];
+  for (const auto& [pose, step] : steps) summary.not_scanned_length += step;
+  unseen.step.clear();
+}
+
+void warn_of_beams(const BeamCounts& beams, MessageLog& log) {
+  if (beams.without_origin > 0) {
+    log.warn("beams-without-origin",
+             format_count(beams.without_origin) +
+                 " points do not say where their scanner stood, so that their beams show nothing",
+             {{"points", static_cast<double>(beams.without_origin)}});
+  }
+  if (beams.too_long > 0) {
+    log.warn("long-beams",
+             format_count(beams.too_long) +
+                 " beams are longer than 1 km, or than 2^30 steps of the stored coordinates, and "
+                 "are left out. Are the origins those of these scans?",
+             {{"beams", static_cast<double>(beams.too_long)}});
   }
 }
 
-void warn_of_seen_space(const SeenSpace& space, const QueryParameters& query, MessageLog& log) {
-  const SeenSummary& found = space.summary;
-  if (space.beams.without_origin > 0) {
-    log.warn("beams-without-origin",
-             format_count(space.beams.without_origin) +
-                 " points do not say where their scanner stood, so that their beams show nothing",
-             {{"points", static_cast<double>(space.beams.without_origin)}});
-  }
-  if (space.beams.too_long > 0) {
-    log.warn("long-beams",
-             format_count(space.beams.too_long) +
-                 " beams are longer than 1 km, or than 2^30 steps of the stored coordinates, and "
-                 "are left out. Are the origins those of these scans?",
-             {{"beams", static_cast<double>(space.beams.too_long)}});
-  }
+void warn_of_small_groups(const SeenSummary& found, const QueryParameters& query,
+                          MessageLog& log) {
   const std::uint64_t small = found.groups - found.listed_groups;
   if (small > 0) {
     const std::uint64_t cubes = found.unseen - found.listed_cubes;

@@ -54,11 +54,14 @@ struct SeenSearch {
 SeenSpace find_seen_space(const StoreReader& store, const Query& query, const SeenSearch& how,
                           Progress& progress);
 
-/// Numbers the groups of the unseen cubes and completes the summary. poses: the poses of the path.
-void group_unseen(const QueryParameters& query, std::span<const Pose> poses, UnseenCubes& unseen,
-                  SeenSummary& summary);
+/// Numbers the groups of the unseen cubes, completes the summary, and removes the steps, which only
+/// parts keep. The summary knows the number of swept cubes.
+void group_unseen(const QueryParameters& query, UnseenCubes& unseen, SeenSummary& summary);
 
-/// Warns of beams that were left out, and of groups that are too small to be listed.
-void warn_of_seen_space(const SeenSpace& space, const QueryParameters& query, MessageLog& log);
+/// Warns of points whose beams were left out: "beams-without-origin", "long-beams".
+void warn_of_beams(const BeamCounts& beams, MessageLog& log);
+
+/// Warns of groups of unseen cubes that are too small to be listed: "small-unseen".
+void warn_of_small_groups(const SeenSummary& found, const QueryParameters& query, MessageLog& log);
 
 }  // namespace clearway

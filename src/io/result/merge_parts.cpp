@@ -301,14 +301,16 @@ void for_each_row(const PartSet& set, std::deque<Cursor>& cursors, Visit visit) 
 
 class PartMerge {
  public:
-  PartMerge(const PartSet& set, const std::filesystem::path& path, std::size_t batch_rows,
-            const ResultFindings& findings, Progress& progress, TableSummary& summary)
+  PartMerge(const PartSet& set, const std::optional<UnseenCubes>& unseen,
+            const std::filesystem::path& path, std::size_t batch_rows, const ResultFindings& findings, Progress& progress, TableSummary& summary)
       : set_(set),
+        unseen_(unseen),
         findings_(findings),
         batch_rows_(batch_rows),
         progress_(progress),
         summary_(summary),
-        writer_(path, set.header(), set.collisions(), set.clearances(), set.near()) {}
+        writer_(path, set.header(), set.collisions(), set.clearances(), set.near(),
+                unseen ? unseen->size() : 0) {}
 
   void run() {
     summary_ = {};
@@ -317,6 +319,7 @@ class PartMerge {
     if (Table<Clearances>::is_in(set_.header())) merge_points<Clearances>();
     if (Table<ProfileRows>::is_in(set_.header())) merge_profile();
     if (Table<Nearby>::is_in(set_.header())) merge_points<Nearby>();
+    if (unseen_) writer_.append(*unseen_);
     writer_.finish(findings_);
     progress_.end();
   }
@@ -380,6 +383,7 @@ class PartMerge {
   }
 
   const PartSet& set_;
+  const std::optional<UnseenCubes>& unseen_;
   const ResultFindings& findings_;
   const std::size_t batch_rows_;
   Progress& progress_;
@@ -389,9 +393,10 @@ class PartMerge {
 
 }  // namespace
 
-void merge_parts(const PartSet& set, const std::filesystem::path& path, std::uint64_t memory_bytes,
+void merge_parts(const PartSet& set, const std::optional<UnseenCubes>& unseen,
+                 const std::filesystem::path& path, std::uint64_t memory_bytes,
                  const ResultFindings& findings, Progress& progress, TableSummary& summary) {
-  PartMerge(set, path, batch_rows_of(set, memory_bytes), findings, progress, summary).run();
+  PartMerge(set, unseen, path, batch_rows_of(set, memory_bytes), findings, progress, summary).run();
 }
 
 }  // namespace clearway

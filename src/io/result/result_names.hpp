@@ -34,6 +34,7 @@ inline constexpr const char* kUnseenGroup = "unseen";  // exists where seen spac
 inline constexpr const char* kUnseenHash = "unseen_hash";
 inline constexpr const char* kCube = "cube";
 inline constexpr const char* kGroupOfCube = "group";
+inline constexpr const char* kStep = "step";  // only in parts
 // Attributes with what is known of seen space.
 inline constexpr const char* kCubeSide = "unseen_cube_side";
 inline constexpr const char* kSweptCubes = "swept_cubes";

@@ -108,6 +108,13 @@ void Table<ProfileRows>::check(const RowsRead& read, const ProfileRows& rows) {
   }
 }
 
+void check_steps(const RowsRead& read, const char* dataset, std::span<const double> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isfinite(values[i]) && values[i] >= 0) continue;
+    read.refuse_row(dataset, i, "a finite length, 0 or above");
+  }
+}
+
 void check_groups(const RowsRead& read, const char* dataset,
                   std::span<const std::uint32_t> values) {
   for (std::size_t i = 0; i < values.size(); ++i) {

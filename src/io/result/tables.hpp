@@ -64,6 +64,8 @@ void check_poses(const RowsRead& read, const char* dataset, std::span<const std:
 void check_bodies(const RowsRead& read, const char* dataset, std::span<const std::uint32_t>);
 void check_flags(const RowsRead& read, const char* dataset, std::span<const std::uint8_t>);
 void check_clearances(const RowsRead& read, const char* dataset, std::span<const double>);
+/// Lengths of the path, finite and 0 or more.
+void check_steps(const RowsRead& read, const char* dataset, std::span<const double>);
 /// Groups of unseen cubes: from 1 on, and 0 in parts.
 void check_groups(const RowsRead& read, const char* dataset, std::span<const std::uint32_t>);
 void check_chainages(const RowsRead& read, const char* dataset, std::span<const double>);
@@ -203,7 +205,10 @@ struct Table<UnseenCubes> {
       Column<Rows, std::uint32_t>{result_names::kFirstPose, &Rows::first_pose, in_every_result,
                                   check_poses},
       Column<Rows, std::uint32_t>{result_names::kGroupOfCube, &Rows::group, in_every_result,
-                                  check_groups}};
+                                  check_groups},
+      Column<Rows, double>{result_names::kStep, &Rows::step,
+                           [](const ResultHeader& h) { return h.part.has_value(); },
+                           check_steps}};
 
   static constexpr auto kOrder = &Rows::cube;
   static constexpr const char* kOrderDataset = result_names::kCube;

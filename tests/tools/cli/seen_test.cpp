@@ -1,0 +1,250 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tools/cli/support/program.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+struct Ray {
+  double from[3], to[3];
+};
+
+/// A car of points that drives along x from 8 m to 15 m, towards a wall at 20 m that a scanner at
+/// the origin has scanned through the space where the car drives.
+struct Road {
+  Road() {
+    std::string car, path;
+    for (int i = 0; i <= 10; ++i) {
+      for (int j = 0; j <= 6; ++j) {
+        for (const double x : {-0.3, 0.0, 0.3}) {
+          car += line(x, -0.5 + 0.1 * i, -0.3 + 0.1 * j);
+        }
+      }
+    }
+    for (int i = 0; i <= 70; ++i) {
+      path += "1 0 0 " + std::to_string(8 + 0.1 * i) + " 0 1 0 0 0 0 1 0\n";
+    }
+    put_bytes(folder / "car.xyz", car);
+    put_bytes(folder / "path.txt", path);
+    put_bytes(folder / "wagon.json", R"({"bodies": [{"name": "car", "model": "car.xyz"}]})");
+  }
+
+  static std::string line(double x, double y, double z) {
+    return std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + "\n";
+  }
+
+  /// The beams to the wall. A board at 5 m, from y = 0 to 0.3, stops those behind it.
+  static std::vector<Ray> beams(bool board) {
+    std::vector<Ray> out;
+    for (int i = -60; i <= 60; ++i) {
+      for (int j = -40; j <= 40; ++j) {
+        const double y = 0.05 * i + 0.013, z = 0.05 * j + 0.011;
+        const bool stopped = board && y / 4 >= 0 && y / 4 < 0.3;
+        const double part = stopped ? 0.25 : 1;
+        out.push_back({{0, 0, 0}, {20 * part, y * part, z * part}});
+      }
+    }
+    return out;
+  }
+
+  /// Beams from the side, across the road to a wall at y = 6.
+  static std::vector<Ray> from_the_side() {
+    std::vector<Ray> out;
+    for (int k = 0; k <= 8; ++k) {
+      for (int i = -50; i <= 50; ++i) {
+        for (int j = -40; j <= 40; ++j) {
+          out.push_back({{7.5 + k, -6, 0.0}, {7.5 + k + 0.04 * i, 6, 0.02 * j + 0.011}});
+        }
+      }
+    }
+    return out;
+  }
+
+  /// Converts the beams' points, with their origins.
+  void scan(const std::vector<Ray>& rays) const {
+    std::string points, origins = "first,x,y,z\n";
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Ray& ray = rays[i];
+      points += line(ray.to[0], ray.to[1], ray.to[2]);
+      if (i > 0 && std::equal(ray.from, ray.from + 3, rays[i - 1].from)) continue;
+      origins += std::to_string(i) + "," + std::to_string(ray.from[0]) + "," +
+                 std::to_string(ray.from[1]) + "," + std::to_string(ray.from[2]) + "\n";
+    }
+    put_bytes(folder / "scan.xyz", points);
+    put_bytes(folder / "origins.csv", origins);
+    const Outcome outcome = run_program(
+        folder, "convert " + quoted(folder / "scan.xyz") + " --origins " +
+                    quoted(folder / "origins.csv") + " -o " + quoted(folder / "site.h5") +
+                    " --scale 0.001 --cell-points 2000 --force");
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+  }
+
+  Outcome run(const std::string& options, const std::string& out = "out.h5",
+              const std::string& moves = "--model ") const {
+    const std::string file = moves == "--model " ? "car.xyz" : "wagon.json";
+    return run_program(folder, "run --env " + quoted(folder / "site.h5") + " " + moves +
+                                   quoted(folder / file) + " --trajectory " +
+                                   quoted(folder / "path.txt") + " --radius 0.1 --force -o " +
+                                   quoted(folder / out) + " " + options);
+  }
+
+  nlohmann::json answer(const std::string& options, const std::string& out = "out.h5",
+                        const std::string& moves = "--model ") const {
+    const Outcome outcome = run(options + " --json", out, moves);
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    return nlohmann::json::parse(outcome.out);
+  }
+
+  ScratchFolder folder;
+};
+
+std::vector<Ray> with(std::vector<Ray> rays, const std::vector<Ray>& more) {
+  rays.insert(rays.end(), more.begin(), more.end());
+  return rays;
+}
+
+}  // namespace
+
+TEST_CASE("a path through space that beams crossed is clear, and a hidden place is undecided") {
+  const Road road;
+  road.scan(Road::beams(false));
+  const auto open = road.answer("--seen");
+  CHECK(open["verdict"] == "clear");
+  CHECK(open["seen"]["swept"] > 500);
+  CHECK(open["seen"]["unseen"] == 0);
+  CHECK(road.answer("")["seen"].is_null());
+
+  // Behind the board nobody knows what stands.
+  road.scan(Road::beams(true));
+  CHECK(road.answer("")["verdict"] == "clear");
+  const Outcome told = road.run("--seen --fail-on-collision");
+  CHECK(told.exit_code == 6);
+  CHECK_THAT(told.err, Contains("undecided (not-scanned)") && Contains("of 7.0 m"));
+  const auto hidden = road.answer("--seen");
+  CHECK(hidden["verdict"] == "undecided");
+  CHECK(hidden["reasons"] == nlohmann::json::array({"not-scanned"}));
+  CHECK(hidden["seen"]["listed_groups"] == 1);
+  CHECK(hidden["seen"]["not_scanned_length"].get<double>() > 5);
+  CHECK(hidden["seen"]["swept"] == open["seen"]["swept"]);
+  CHECK(hidden["seen"]["seen"].get<int>() + hidden["seen"]["unseen"].get<int>() ==
+        hidden["seen"]["swept"].get<int>());
+  CHECK(run_program(road.folder, "verify " + quoted(road.folder / "out.h5")).exit_code == 0);
+}
+
+TEST_CASE("a second scan shows that a hidden place is free, or what stands in it") {
+  const Road road;
+  road.scan(with(Road::beams(true), Road::from_the_side()));
+  CHECK(road.answer("--seen")["verdict"] == "clear");
+  std::vector<Ray> post;
+  for (int i = 0; i < 20; ++i) post.push_back({{11, -6, 0}, {11, 0.2, -0.2 + 0.02 * i}});
+  road.scan(with(Road::beams(true), post));
+  const auto found = road.answer("--seen");
+  CHECK(found["verdict"] == "conflict");
+  CHECK(found["seen"]["listed_groups"] > 0);
+}
+
+TEST_CASE("fewer beams see less, and their order does not matter") {
+  const Road road;
+  std::vector<Ray> rays = with(Road::beams(true), Road::from_the_side());
+  road.scan(rays);
+  const auto all = road.answer("--seen --seen-cube 0.1");
+  std::reverse(rays.begin(), rays.end());
+  road.scan(rays);
+  CHECK(road.answer("--seen --seen-cube 0.1")["seen"] == all["seen"]);
+  std::mt19937 random(5);
+  std::uint64_t before = all["seen"]["unseen"];
+  for (int i = 0; i < 3; ++i) {
+    std::erase_if(rays, [&](const Ray&) { return random() % 3 == 0; });
+    road.scan(rays);
+    const std::uint64_t unseen = road.answer("--seen --seen-cube 0.1")["seen"]["unseen"];
+    CHECK(unseen >= before);
+    before = unseen;
+  }
+  CHECK(before > 0);
+}
+
+TEST_CASE("seen space has the same bytes on every engine, with any threads, and from shards") {
+  const Road road;
+  road.scan(Road::beams(true));
+  const auto same = [&](const std::string& name) {
+    return bytes_of(road.folder / name) == bytes_of(road.folder / "out.h5");
+  };
+  const std::string ask = "--seen --seen-cube 0.1 --first-pose";
+  const auto whole = road.answer(ask);
+  REQUIRE(whole["seen"]["unseen"] > 0);
+  REQUIRE(road.run(ask + " --engine kdtree", "kdtree.h5").exit_code == 0);
+  CHECK(same("kdtree.h5"));
+  REQUIRE(road.run(ask + " --engine grid --device cpu", "grid.h5").exit_code == 0);
+  CHECK(same("grid.h5"));
+  REQUIRE(road.run(ask + " --threads 1", "alone.h5").exit_code == 0);
+  CHECK(same("alone.h5"));
+  std::string parts;
+  for (const std::string number : {"1", "2", "3"}) {
+    const auto part = road.answer(ask + " --shard " + number + "/3", "part" + number + ".h5");
+    CHECK(part["verdict"] == "unknown");
+    parts += " " + quoted(road.folder / ("part" + number + ".h5"));
+  }
+  const Outcome merged =
+      run_program(road.folder, "merge" + parts + " -o " + quoted(road.folder / "merged.h5"));
+  INFO(merged.err);
+  REQUIRE(merged.exit_code == 0);
+  CHECK(same("merged.h5"));
+}
+
+TEST_CASE("a vehicle of one body sweeps what its model sweeps") {
+  const Road road;
+  road.scan(Road::beams(true));
+  const auto model = road.answer("--seen");
+  const auto vehicle = road.answer("--seen", "vehicle.h5", "--vehicle ");
+  CHECK(vehicle["seen"] == model["seen"]);
+  CHECK(vehicle["verdict"] == "undecided");
+}
+
+TEST_CASE("with an error budget a cube counts as swept farther from the model") {
+  const Road road;
+  road.scan(Road::beams(false));
+  const auto plain = road.answer("--seen --seen-cube 0.1");
+  const auto budget = road.answer("--seen --seen-cube 0.1 --error-pose 0.05");
+  CHECK(budget["seen"]["swept"] > plain["seen"]["swept"]);
+}
+
+TEST_CASE("groups of few unseen cubes are counted, and do not make a verdict undecided") {
+  const Road road;
+  road.scan(Road::beams(true));
+  const Outcome outcome = road.run("--seen --seen-min 100000 --json");
+  const auto json = nlohmann::json::parse(outcome.out);
+  CHECK(json["verdict"] == "clear");
+  CHECK(json["seen"]["groups"] == 1);
+  CHECK(json["seen"]["listed_groups"] == 0);
+  CHECK(json["warnings"].dump().find("small-unseen") != std::string::npos);
+}
+
+TEST_CASE("what makes no sense of seen space is refused by name") {
+  const Road road;
+  road.scan(Road::beams(true));
+  const auto refusal = [&](const std::string& options) {
+    const Outcome outcome = road.run(options);
+    CHECK(outcome.exit_code == 2);
+    return outcome.err;
+  };
+  CHECK_THAT(refusal("--seen --tolerance 0.01"), Contains("tolerance"));
+  CHECK_THAT(refusal("--seen-cube 0.1"), Contains("seen space"));
+  CHECK_THAT(refusal("--seen --seen-cube 0.003"), Contains("at least 0.004"));
+  CHECK_THAT(refusal("--seen --seen-cube 1e7"), Contains("2^29"));
+  const Outcome convert =
+      run_program(road.folder, "convert " + quoted(road.folder / "scan.xyz") + " -o " +
+                                   quoted(road.folder / "site.h5") + " --scale 0.001 --force");
+  REQUIRE(convert.exit_code == 0);
+  CHECK_THAT(refusal("--seen"), Contains("where its scanner stood"));
+}
