@@ -202,6 +202,9 @@ class SearchedLength:
 class Answer:
     verdict: Final[Literal["clear", "conflict", "undecided", "unknown"]]
     reasons: Final[list[str]]
+    margins: Final[dict[str, float] | None]
+    near_points: Final[int]
+    certain_points: Final[int]
     doubts: Final[list[str]]
     warned_of: Final[list[str]]
     parameters: Final[QueryParameters]
