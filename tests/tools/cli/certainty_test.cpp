@@ -198,7 +198,7 @@ TEST_CASE("parts with an error budget merge to the bytes of the whole, and resum
   const Bench bench;
   std::string points;
   for (int i = 0; i < 3000; ++i) {
-    points += std::to_string(0.2 + 0.0005 * i) + " " + std::to_string(0.01 * (i % 40)) + " " +
+    points += std::to_string(0.12 + 0.0005 * i) + " " + std::to_string(0.01 * (i % 40)) + " " +
               std::to_string(0.01 * (i % 7)) + "\n";
   }
   bench.scan(points, "0.001", "--cell-points 100");
