@@ -296,6 +296,8 @@ class Search {
     query.radius = radius;
     query.first_pose = first_pose;
     query.clearance = query.profile = query.tolerance = 0;
+    query.error_scan = query.error_registration = query.error_pose = query.error_angle =
+        query.error_model = std::nullopt;
     return query;
   }
 

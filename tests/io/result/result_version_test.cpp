@@ -68,7 +68,7 @@ TEST_CASE("results of other versions are refused") {
   const auto version = GENERATE(as<std::uint32_t>(), 0, 1, 5, 0xffffffff);
   replace(folder / "a.h5", "version",
           [&](const hdf5::Id& file) { hdf5::write_number(file, "version", version); });
-  CHECK_THROWS_WITH(ResultReader(folder / "a.h5"), Contains("version") && Contains("2 to 4"));
+  CHECK_THROWS_WITH(ResultReader(folder / "a.h5"), Contains("version") && Contains("2 to 5"));
 }
 
 TEST_CASE("malformed attributes of a profile and a model box are refused") {

@@ -223,6 +223,7 @@ TEST_CASE("parts with an error budget merge to the bytes of the whole, and resum
   CHECK(whole["near_points"].get<int>() > 0);
   CHECK(whole["certain_points"].get<int>() > 0);
   CHECK(json::parse(merged.out)["verdict"] == whole["verdict"]);
+  CHECK(json::parse(merged.out)["near_points"] == whole["near_points"]);
   CHECK(bytes_of(bench.folder / "merged.h5") == bytes_of(bench.folder / "whole.h5"));
   CHECK(bench.program("verify whole.h5").exit_code == 0);
   CHECK(bench.program("compare whole.h5 merged.h5").exit_code == 0);
