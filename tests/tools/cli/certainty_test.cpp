@@ -163,6 +163,8 @@ TEST_CASE("points that collide but may be far enough leave the verdict open") {
   const json large = bench.answer("--radius 0.5 --error-scan 0.1 --first-pose");
   CHECK(reasons_of(large) == Words{"near", "errors-exceed-margin"});
   CHECK(large["verdict"] == "undecided");
+  CHECK_THAT(bench.run("--radius 0.5 --error-scan 0.1").err,
+             Contains("so that no point outside the vehicle is certainly too close"));
 }
 
 TEST_CASE("a solid can be a certain conflict at any margin, by its depth") {
