@@ -113,7 +113,7 @@ const OutcomeWords& words_of(Outcome outcome) {
   static constexpr std::array<OutcomeWords, kOutcomes.size()> kWords{
       {{"conflict", "■", "conflict", "conflict: a point is closer than the radius"},
        {"undecided", "?", "undecided",
-        "undecided: the search could not have found anything, and the warnings say why"},
+        "undecided: a collision is neither certain nor excluded; reasons and warnings say why"},
        {"doubtful", "△", "clear with warnings",
         "clear, but something was warned of: read the warnings below"},
        {"clear", "○", "clear", "clear: no point is closer than the radius"},

@@ -114,7 +114,7 @@ inline constexpr const char* kLockName = "lock";
 /// exactly one of these.
 enum class Outcome {
   kConflict,
-  kUndecided,  ///< the search could not have found anything
+  kUndecided,  ///< a collision is neither certain nor excluded
   kDoubtful,   ///< clear, but there were warnings
   kClear,
   kFailed,

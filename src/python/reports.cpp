@@ -87,7 +87,24 @@ void add_answer(py::module_& module) {
           "no colliding point.")
       .def_property_readonly(
           "reasons", reasons_of,
-          "Why the verdict is undecided: a list of 'question-in-doubt'; otherwise empty.")
+          "Why the verdict is undecided: a list of 'near', 'few', 'errors-exceed-margin' and "
+          "'question-in-doubt'; otherwise empty.")
+      .def_property_readonly(
+          "margins",
+          [](const Answer& a) -> py::object {
+            if (!a.budget) return py::none();
+            py::dict margins;
+            margins["clear"] = a.budget->clear();
+            margins["conflict"] = a.budget->conflict();
+            return margins;
+          },
+          "What the error budget adds to the radius for 'clear' and takes from it for 'conflict', "
+          "in metres: a dict with these two keys. None without a budget.")
+      .def_readonly("near_points", &Answer::near_points,
+                    "How many further points are closer than the radius and the error budget.")
+      .def_property_readonly(
+          "certain_points", [](const Answer& a) { return a.certain.points; },
+          "How many points are certainly too close by the error budget; 0 without one.")
       .def_readonly("doubts", &Answer::doubts,
                     "The codes of the warnings that put the question in doubt: a list of str.")
       .def_readonly("warned_of", &Answer::warned_of,

@@ -53,6 +53,19 @@ CollisionColumns collisions(const Result& result) {
   return columns;
 }
 
+py::object near_points(const Result& result) {
+  if (!result.parameters().has_budget()) return py::none();
+  Nearby read = without_gil([&] { return result.near(); });
+  const bool first_pose = result.parameters().first_pose;
+  CollisionColumns columns;
+  columns.source = to_array(std::move(read.source));
+  columns.xyz = to_array(std::move(read.xyz));
+  columns.first_pose = columns.last_pose = columns.body = py::none();
+  if (first_pose) columns.first_pose = to_array(std::move(read.first_pose));
+  if (first_pose && !result.bodies().empty()) columns.body = to_array(std::move(read.body));
+  return py::cast(std::move(columns));
+}
+
 py::object clearance(const Result& result) {
   if (!(result.parameters().clearance > 0)) return py::none();
   Clearances read = without_gil([&] { return result.clearance(); });
@@ -212,6 +225,9 @@ void add_results(py::module_& module) {
       .def("first_body", first_body,
            "The body that touches each point at its first pose, as an index of bodies(): n uint32. "
            "None where there is one model, or the query did not ask for first poses.")
+      .def("near", near_points,
+           "The points that do not collide but may in truth, by the error budget: Collisions, "
+           "whose last_pose is None. None without a budget.")
       .def("clearance", clearance,
            "The distances of the points that are closer than the clearance: Clearances. None where "
            "the query did not ask for them.")

@@ -382,6 +382,18 @@ void write_page_facts(JsonText& json, const ReportFacts& facts) {
   json.field("up", std::uint64_t(facts.options.conflicts.up)).end('}');
 }
 
+/// The error budget with its two margins, in the environment's unit; nothing without one.
+void write_budget(JsonText& json, const Answer& answer) {
+  if (!answer.budget) return;
+  const ErrorBudget& b = *answer.budget;
+  json.key("margins").begin('{').field("clear", b.clear()).field("conflict", b.conflict()).end('}');
+  json.key("budget").begin('{').field("scan", b.scan).field("registration", b.registration);
+  json.field("pose", b.pose).field("angle", b.angle).field("lever", b.lever);
+  json.field("model", b.model).field("step", b.step).field("motion", b.motion);
+  json.field("chord", b.chord).field("spacing", b.spacing).field("sigmas", b.sigmas).end('}');
+  json.field("near_points", answer.near_points).field("certain_points", answer.certain.points);
+}
+
 void write_warnings(JsonText& json, const std::vector<Message>& warnings) {
   json.key("warnings").begin('[');
   for (const Message& warning : warnings) {
@@ -412,6 +424,7 @@ std::string json_of(const ReportFacts& facts) {
   json.end(']').key("doubts").begin('[');
   for (const std::string& code : facts.answer.doubts) json.value(code);
   json.end(']');
+  write_budget(json, facts.answer);
   json.field("colliding_points", facts.result.size());
   json.field("unit", facts.store.length_unit());
   write_least(json, facts);

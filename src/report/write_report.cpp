@@ -140,6 +140,7 @@ class Report {
     find_conflicts_and_points(summary.conflicts);
     profile_ = result_.profile();
     static_cast<TableSummary&>(answer_) = points_.summary;
+    answer_.near_points = result_.reader().near();
     summarise(profile_, answer_);
     find_least();
     environment_lattice_.step = std::max(kEnvironmentStep, lattice_.step);

@@ -180,13 +180,21 @@ std::uint64_t search_result_bytes(const PackedCloud& cloud, const Query& query) 
                                (query.clearance > 0 ? sizeof(double) + sizeof(std::uint32_t) : 0);
   const std::uint64_t a_pose = query.profile > 0 ? sizeof(ProfilePoint) + sizeof(double) : 0;
   return cloud.entry_count() / 8 + a_slot * cloud.entry_count() + a_pose * query.poses.size() +
-         last_pose_bytes(cloud, query);
+         further_bytes(cloud, query);
 }
 
-std::uint64_t last_pose_bytes(const PackedCloud& cloud, const Query& query) {
-  if (!query.first_pose) return 0;
-  const std::uint64_t inputs = input_bytes(cloud, query) - cloud.allocated_bytes();
-  return cloud.entry_count() / 8 + cloud.entry_count() * sizeof(std::uint32_t) + inputs;
+std::uint64_t further_bytes(const PackedCloud& cloud, const Query& query) {
+  if (!query.first_pose && !query.has_budget()) return 0;
+  const std::uint64_t entries = cloud.entry_count();
+  const std::uint64_t hits = entries / 8;
+  const std::uint64_t poses = query.first_pose ? entries * sizeof(std::uint32_t) : 0;
+  std::uint64_t bytes = input_bytes(cloud, query) - cloud.allocated_bytes();
+  if (query.first_pose) bytes += hits + poses;
+  if (!query.has_budget()) return bytes;
+  // Near points, certain points, and the distances that say which of them are deep in a solid.
+  const std::uint64_t distances =
+      has_solids(query) ? hits + entries * (sizeof(double) + sizeof(std::uint32_t)) : 0;
+  return bytes + 2 * hits + poses + distances;
 }
 
 std::uint64_t tree_building_bytes(const Query& query) {

@@ -86,9 +86,9 @@ std::uint64_t input_bytes(const PackedCloud& cloud, const Query& query);
 /// points and chainage of all poses.
 std::uint64_t search_result_bytes(const PackedCloud& cloud, const Query& query);
 
-/// Bytes that a search for last poses keeps besides the result of the first search: the other hits,
-/// and a copy of the inputs; 0 where no first poses are asked for.
-std::uint64_t last_pose_bytes(const PackedCloud& cloud, const Query& query);
+/// Bytes that further searches keep besides the result of the first one, for last poses and for an
+/// error budget: the other hits, and a copy of the inputs; 0 where neither is asked for.
+std::uint64_t further_bytes(const PackedCloud& cloud, const Query& query);
 
 /// Bytes that are taken while the trees over model and poses are built. To choose what a tolerance
 /// keeps takes less.

@@ -28,9 +28,8 @@ std::uint64_t kept_by_kdtree(const StoreReader& store, const Query& query, int t
 std::uint64_t kdtree_needed_bytes(const StoreReader& store, const Query& query,
                                   const SearchOptions& options) {
   return kept_by_kdtree(store, query, options.threads) +
-         std::max(
-             kdtree_memory_bytes(store, query, options.threads) + last_pose_bytes(store, query),
-             search_result_bytes(store, query) + least_write_bytes(store));
+         std::max(kdtree_memory_bytes(store, query, options.threads) + further_bytes(store, query),
+                  search_result_bytes(store, query) + least_write_bytes(store));
 }
 
 Found search_kdtree(const StoreReader& store, const Query& query, const ShardCells* only,

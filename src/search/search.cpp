@@ -15,6 +15,7 @@
 #include "io/result/answer.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/query_warnings.hpp"
+#include "search/checks/question.hpp"
 #include "search/choose_engine.hpp"
 #include "search/devices.hpp"
 #include "search/ignored.hpp"
@@ -114,7 +115,24 @@ class Search {
     });
     if (options_.float_precision) warn_of_floats(store_, query_, log_);
     warn_of_ignored(store_, header_, header_.ignored, log_);
+    tell_of_large_errors();
     if (options_.strict) refuse_warnings(report_.warnings);
+  }
+
+  /// Notes where the errors are so large that no surface could be a certain conflict.
+  void tell_of_large_errors() {
+    if (!header_.budget || header_.model_solids > 0) return;
+    const double errors = header_.budget->conflict();
+    if (query_.radius > errors) return;
+    const LengthUnit unit = store_.metadata().unit;
+    log_.add({Message::Severity::kNote,
+              "errors-exceed-margin",
+              "the errors of " + length_text(errors, unit) + " are not below the margin of " +
+                  length_text(query_.radius, unit) +
+                  ", so that no point outside the vehicle is certainly too close: nothing can be a "
+                  "conflict. Search a closed mesh as a solid, because points deep inside it are "
+                  "certain; a mesh that is not closed has to be resampled for that",
+              {{"errors", errors}, {"margin", query_.radius}}});
   }
 
   /// Finds out which cells a shard has.
@@ -280,6 +298,8 @@ class Search {
     query.radius = radius;
     query.first_pose = first_pose;
     query.clearance = query.profile = query.tolerance = 0;
+    query.error_scan = query.error_registration = query.error_pose = query.error_angle =
+        query.error_model = std::nullopt;
     return query;
   }
 

@@ -71,6 +71,25 @@ class FindsWhatBruteForceFinds(SceneTest):
                 if engine != "auto":
                     self.assertEqual(report.engine, engine)
 
+    def test_an_error_budget(self):
+        query = clearway.Query(self.model, self.poses, RADIUS, error_scan=0, error_model=0.02)
+        report = self.search(query=query)
+        self.assertGreater(report.margins["clear"], report.margins["conflict"])
+        self.assertGreater(report.margins["conflict"], 0.02)
+        self.assertEqual(report.colliding_points, len(self.expected))
+        self.assertGreater(report.near_points, 0)
+        answer = clearway.Result(self.folder / "out.h5").answer()
+        self.assertEqual(answer.verdict, report.verdict)
+        self.assertEqual(answer.reasons, report.reasons)
+        self.assertEqual(answer.margins, report.margins)
+        near = clearway.Result(self.folder / "out.h5").near()
+        self.assertEqual(len(near), report.near_points)
+        self.assertFalse(set(near.source) & set(self.expected))
+        query.error_scan = query.error_model = None
+        self.assertIsNone(self.search(query=query).margins)
+        with self.assertRaisesRegex(clearway.UsageError, "^error_pose: expected 0 or a number"):
+            query.error_pose = -0.1
+
     def test_a_surface(self):
         square = clearway.Model([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]],
                                      [[0, 1, 2], [0, 2, 3]])

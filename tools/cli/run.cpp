@@ -205,10 +205,6 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["model_solids"] = report.model_solids;
   out["poses"] = report.poses;
   out["colliding_points"] = report.colliding_points;
-  if (report.budget) {
-    out["near_points"] = report.near_points;
-    out["certain_points"] = report.certain.points;
-  }
   out["clearance_points"] = report.clearance_points;
   out["profile_poses"] = report.profile_poses;
   add_answer(report, path, out);

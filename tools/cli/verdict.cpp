@@ -296,6 +296,10 @@ void add_answer(const Answer& answer, const PathWords& path, ordered_json& out) 
   out["reasons"] = ordered_json::array();
   for (const Reason reason : answer.reasons()) out["reasons"].push_back(name_of(reason));
   out["margins"] = margins_json(answer);
+  if (answer.budget) {
+    out["near_points"] = answer.near_points;
+    out["certain_points"] = answer.certain.points;
+  }
   out["seen"] = seen_json(answer);
   out["model_spacing"] = nullptr;
   if (answer.model_spacing > 0) out["model_spacing"] = answer.model_spacing;

@@ -40,7 +40,8 @@ void check_table(const ResultReader& result, Progress& progress) {
 }  // namespace
 
 std::optional<std::string> verify_result(const ResultReader& result, Progress& progress) {
-  progress.begin("verify", result.collisions() + result.clearances() + result.profile_rows(),
+  progress.begin("verify",
+                 result.collisions() + result.clearances() + result.profile_rows() + result.near(),
                  "rows");
   std::optional<std::string> fault;
   try {
@@ -152,6 +153,12 @@ std::string model_text(const ResultHeader& header) {
   return content_text(header.model_triangles, ("triangles" + solids).c_str(), header.model_hash);
 }
 
+std::string margins_text(const ResultHeader& header) {
+  if (!header.budget) return "none";
+  return shown(header.budget->clear()) + " m for clear, " + shown(header.budget->conflict()) +
+         " m for conflict";
+}
+
 class Differences {
  public:
   void add(std::string what, std::string a, std::string b) {
@@ -170,6 +177,7 @@ void add_question(const ResultHeader& a, const ResultHeader& b, Differences& out
           content_text(b.poses, "poses", b.trajectory_hash));
   for_each_value_field(
       [&](const auto& field) { out.add(field.topic, field_text(field, a), field_text(field, b)); });
+  out.add("margins of the error budget", margins_text(a), margins_text(b));
   out.add("precision", a.float_precision ? "float" : "exact",
           b.float_precision ? "float" : "exact");
 }

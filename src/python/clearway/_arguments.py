@@ -58,6 +58,10 @@ def _or_name(check):
     return lambda name, value: value if isinstance(value, str) else check(name, value)
 
 
+def _or_none(check):
+    return lambda name, value: None if value is None else check(name, value)
+
+
 def _whole(most, least=0):
     def check(name, value):
         try:
@@ -157,9 +161,10 @@ _CHECKS = {
     **dict.fromkeys(("radius", "scale", "regular_size"), _above_0),
     **dict.fromkeys(("unit", "metres_per_unit"), _or_name(_at_least_0)),
     "environment_unit": _or_name(_above_0),
-    **dict.fromkeys(("clearance", "profile", "tolerance", "spacing", "field_voxel", "grid_cell", "gap", "split", "journal_interval_seconds",
-                     "error_scan", "error_registration", "error_pose", "error_angle", "error_model", "sigmas"),
+    **dict.fromkeys(("clearance", "profile", "tolerance", "spacing", "field_voxel", "grid_cell", "gap", "split", "journal_interval_seconds", "sigmas"),
                     _at_least_0),
+    **dict.fromkeys(("error_scan", "error_registration", "error_pose", "error_angle",
+                     "error_model"), _or_none(_at_least_0)),
     **dict.fromkeys(("above", "at", "chainage_start", "model_above"), _finite),
     **dict.fromkeys(("threads",), _threads),
     **dict.fromkeys(("memory_bytes", "device_memory_bytes", "max_points", "min_points",

@@ -128,8 +128,58 @@ function spacingSentence({ query: { radius }, inputs: { model: { spacing } } }) 
          `${shortLength(spacing)} from one of them, so the surface may ${closest}.`;
 }
 
+const kReasonWords = {
+  "near": "points are near",
+  "few": "too few of those that are certainly too close hang together",
+  "errors-exceed-margin": "the errors exceed the margin, so that no surface can be a certain conflict",
+  "not-scanned": "parts of the way were not scanned",
+  "question-in-doubt": "the question is in doubt",
+};
+
+/** The first sentence about a result with an error budget. */
+function budgetSentence({ verdict, margins, query, reasons, ...facts }) {
+  const radius = shortLength(query.radius), all = shortLength(query.radius + margins.clear);
+  const sure = `${shortLength(margins.clear)} of errors`;
+  if (verdict === "clear") {
+    return `Nothing was found closer than ${all} to the vehicle, which is the margin of ${radius} ` +
+           `and ${sure}.`;
+  }
+  const found = `${plural(facts.colliding_points, "point")} ` +
+      `${facts.colliding_points === 1 ? "is" : "are"} closer than the margin of ${radius} to the ` +
+      `vehicle, and ${count(facts.near_points)} more closer than ${all}, which adds ${sure}.`;
+  if (verdict === "conflict") {
+    return `${plural(facts.certain_points, "point")} ` +
+           `${facts.certain_points === 1 ? "is" : "are"} certainly too close, even with ` +
+           `${shortLength(margins.conflict)} of errors. ${found}`;
+  }
+  return `Undecided: ${reasons.map((r) => kReasonWords[r]).join("; ")}. ${found}`;
+}
+
+/** The error budget as a table: what was given, what follows, and the two margins. */
+function budgetTable() {
+  const { budget: b, margins } = page.facts;
+  if (!b) return "";
+  const row = (name, value, words) => make("tr", {}, make("th", { scope: "row" }, name),
+                                           make("td", {}, value), make("td", {}, words));
+  const each = `standard deviation, times ${b.sigmas}`;
+  return make("table", { class: "facts", id: "budget" },
+    make("caption", {}, "Error budget"), make("tbody", {},
+    row("Scan", shortLength(b.scan), `${each}; times 6 against a conflict`),
+    row("Registration", shortLength(b.registration), each),
+    row("Poses", shortLength(b.pose), each),
+    row("Angles", shortLength(b.angle * b.lever),
+        `${each}: ${b.angle} rad at ${shortLength(b.lever)} from the vehicle's origin`),
+    row("Model", shortLength(b.model), "hard bound"),
+    row("Steps of coordinates", shortLength(b.step), "hard bound"),
+    row("Way", shortLength(b.motion + b.chord + b.spacing),
+        "what lies between poses and between points of the model; not against a conflict"),
+    row("For clear", shortLength(margins.clear), "added to the margin"),
+    row("For conflict", shortLength(margins.conflict), "taken from the margin")));
+}
+
 function verdictSentences() {
   const { facts } = page, radius = shortLength(facts.query.radius), worst = worstConflict();
+  if (facts.budget) return [budgetSentence(facts), leastSentence()];
   if (facts.verdict === "clear") {
     const points = facts.ignored === null ? "point of the environment" : "searched point";
     const vehicle = facts.inputs.model.spacing === null ? "the vehicle" : "the points of the model";
@@ -309,7 +359,7 @@ function buildVerdict() {
          make("div", { class: "tiles" }, conflict ? conflictTiles() : clearTiles())),
     warned.length > 0 ? make("ul", { class: "warnings", "aria-label": "Warnings" },
                              warned.map((text) => make("li", {}, text))) : "",
-    make("div", { class: "columns" }, questionTable(),
+    make("div", { class: "columns" }, facts.budget ? make("div", {}, questionTable(), budgetTable()) : questionTable(),
          make("div", {}, legend(),
               missing.length > 0 && make("div", { class: "missing" },
                   make("p", {}, "This page could say more:"),

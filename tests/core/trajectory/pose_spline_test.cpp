@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 
 #include "clearway/error.hpp"
 #include "core/geometry/predicate.hpp"
@@ -14,7 +15,6 @@ using namespace clearway;
 namespace {
 
 const Box kBodyOfSpline{{-2, -1, 0}, {3, 1, 1.5}};
-constexpr double kPi = 3.14159265358979323846;
 
 struct Curve {
   explicit Curve(std::vector<Pose> given) : poses(std::move(given)), spline(poses, motions()) {}
@@ -91,7 +91,7 @@ Pose on_helix(double s) {
 /// `count` poses over two turns.
 double helix_error(int count) {
   std::vector<Pose> poses;
-  for (int i = 0; i < count; ++i) poses.push_back(on_helix(4 * kPi * i / (count - 1)));
+  for (int i = 0; i < count; ++i) poses.push_back(on_helix(4 * std::numbers::pi * i / (count - 1)));
   const Curve curve(poses);
   double error = 0;
   for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
@@ -255,13 +255,13 @@ TEST_CASE("a turn on the spot stays on the spot, and a straight way beside it st
 }
 
 TEST_CASE("two poses are joined by a straight line and one even turn") {
-  const double angle = GENERATE(0.0, 1e-9, 1.0, 3.0, kPi);
+  const double angle = GENERATE(0.0, 1e-9, 1.0, 3.0, std::numbers::pi);
   const Vec3 axis{0, 0.6, 0.8};
   const Curve curve({translation({1, 2, 3}), rotation(axis, angle, {3, 2, 3})});
   for (const double t : {0.25, 0.5, 0.75}) {
     const Pose pose = curve.spline.between(0).at(t);
     CHECK(position_distance(pose, translation({1 + 2 * t, 2, 3})) <= 1e-14);
-    const bool either_way = angle == kPi;
+    const bool either_way = angle == std::numbers::pi;
     const double forth = rotation_distance(pose, rotation(axis, t * angle, {}));
     const double back = rotation_distance(pose, rotation(axis, -t * angle, {}));
     CHECK((either_way ? std::min(forth, back) : forth) <= 1e-14);

@@ -65,10 +65,10 @@ TEST_CASE("a result of version 2 is compared with one of version 3") {
 TEST_CASE("results of other versions are refused") {
   const ScratchFolder folder;
   write_result(folder / "a.h5", header_of_3(), {}, 1000, {}, sample_profile(header_of_3()));
-  const auto version = GENERATE(as<std::uint32_t>(), 0, 1, 5, 0xffffffff);
+  const auto version = GENERATE(as<std::uint32_t>(), 0, 1, 6, 0xffffffff);
   replace(folder / "a.h5", "version",
           [&](const hdf5::Id& file) { hdf5::write_number(file, "version", version); });
-  CHECK_THROWS_WITH(ResultReader(folder / "a.h5"), Contains("version") && Contains("2 to 4"));
+  CHECK_THROWS_WITH(ResultReader(folder / "a.h5"), Contains("version") && Contains("2 to 5"));
 }
 
 TEST_CASE("malformed attributes of a profile and a model box are refused") {

@@ -163,6 +163,8 @@ TEST_CASE("points that collide but may be far enough leave the verdict open") {
   const json large = bench.answer("--radius 0.5 --error-scan 0.1 --first-pose");
   CHECK(reasons_of(large) == Words{"near", "errors-exceed-margin"});
   CHECK(large["verdict"] == "undecided");
+  CHECK_THAT(bench.run("--radius 0.5 --error-scan 0.1").err,
+             Contains("so that no point outside the vehicle is certainly too close"));
 }
 
 TEST_CASE("a solid can be a certain conflict at any margin, by its depth") {
@@ -198,7 +200,7 @@ TEST_CASE("parts with an error budget merge to the bytes of the whole, and resum
   const Bench bench;
   std::string points;
   for (int i = 0; i < 3000; ++i) {
-    points += std::to_string(0.2 + 0.0005 * i) + " " + std::to_string(0.01 * (i % 40)) + " " +
+    points += std::to_string(0.12 + 0.0005 * i) + " " + std::to_string(0.01 * (i % 40)) + " " +
               std::to_string(0.01 * (i % 7)) + "\n";
   }
   bench.scan(points, "0.001", "--cell-points 100");
@@ -223,6 +225,7 @@ TEST_CASE("parts with an error budget merge to the bytes of the whole, and resum
   CHECK(whole["near_points"].get<int>() > 0);
   CHECK(whole["certain_points"].get<int>() > 0);
   CHECK(json::parse(merged.out)["verdict"] == whole["verdict"]);
+  CHECK(json::parse(merged.out)["near_points"] == whole["near_points"]);
   CHECK(bytes_of(bench.folder / "merged.h5") == bytes_of(bench.folder / "whole.h5"));
   CHECK(bench.program("verify whole.h5").exit_code == 0);
   CHECK(bench.program("compare whole.h5 merged.h5").exit_code == 0);

@@ -211,6 +211,8 @@ def main():
              "shard": ["--engine", "sweep", "--clearance", "0.3", "--profile", "0.3", "--shard",
                        "2/3"],
              "grid": ["--engine", "grid", "--first-pose"],
+             "error budget": ["--engine", "sweep", "--first-pose", "--error-scan", "0.01",
+                              "--error-pose", "0.02"],
              "kdtree": ["--engine", "kdtree"],
              "kdtree first pose": ["--engine", "kdtree", "--first-pose", "--between-poses"]}
     if arguments.device == "cuda":
