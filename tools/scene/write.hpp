@@ -13,7 +13,7 @@ void write_environment(const Scene& scene, std::uint64_t seed, const File& file,
 
 /// Writes the places of the scanner as CSV with the header first,x,y,z: from point `first` on, it
 /// stood at x, y, z. These are the starts of the rays. A ray is straight along the path, so where
-/// the path bends it is a curve in space (docs/design/scenes.md).
+/// the path bends it is a curve in space.
 void write_origins(const Scene& scene, const File& file);
 
 /// Writes the model as binary PLY, float32.

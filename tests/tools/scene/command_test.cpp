@@ -45,14 +45,14 @@ const std::string kSmall = " --points 30000 --model-points 100 --poses 10 ";
 
 }  // namespace
 
-TEST_CASE("scene writes three files, the same when piped") {
+TEST_CASE("scene writes four files, the same when piped") {
   const Folder folder;
   const std::string a = (folder / "a").string(), b = (folder / "b").string();
   REQUIRE(run_scene("tunnel -o " + a + kSmall) == 0);
   REQUIRE(run_scene("tunnel -o " + b + kSmall + "--environment - >" + b + ".las") == 0);
   CHECK(contents(a + "/environment.las").size() == 227 + 20 * 30000);
   CHECK(contents(a + "/environment.las") == contents(b + ".las"));
-  for (const char* name : {"/model.ply", "/trajectory.txt"}) {
+  for (const char* name : {"/model.ply", "/trajectory.txt", "/origins.csv"}) {
     CHECK_FALSE(contents(a + name).empty());
     CHECK(contents(a + name) == contents(b + name));
   }
