@@ -26,6 +26,10 @@ struct CollisionColumns {
   py::object first_pose, last_pose, body;
 };
 
+struct UnseenColumns {
+  py::array cube, first_pose, group;
+};
+
 /// Makes the columns that clearances and profile have in common. The arrays take over the vectors.
 template <typename Shared, typename Read>
 Shared common_columns(Read& read) {
@@ -63,6 +67,20 @@ py::object near_points(const Result& result) {
   columns.first_pose = columns.last_pose = columns.body = py::none();
   if (first_pose) columns.first_pose = to_array(std::move(read.first_pose));
   if (first_pose && !result.bodies().empty()) columns.body = to_array(std::move(read.body));
+  return py::cast(std::move(columns));
+}
+
+py::object unseen_cubes(const Result& result) {
+  if (!result.parameters().seen) return py::none();
+  UnseenCubes read = without_gil([&] { return result.unseen(); });
+  UnseenColumns columns;
+  const auto rows = static_cast<py::ssize_t>(read.size());
+  const py::capsule owner = keep(std::move(read.cube));
+  const auto& cubes = *owner.get_pointer<std::vector<std::array<std::int32_t, 3>>>();
+  const std::int32_t* const first = cubes.empty() ? nullptr : cubes.front().data();
+  columns.cube = py::array_t<std::int32_t>({rows, py::ssize_t{3}}, first, owner);
+  columns.first_pose = to_array(std::move(read.first_pose));
+  columns.group = to_array(std::move(read.group));
   return py::cast(std::move(columns));
 }
 
@@ -120,6 +138,16 @@ void add_columns(py::module_& module) {
                     "Result.bodies(): n uint32. None where there is one model, or the query did "
                     "not ask for first poses.")
       .def("__len__", [](const CollisionColumns& c) { return c.source.size(); });
+  py::class_<UnseenColumns>(module, "UnseenCubes",
+                            "The cubes that the model sweeps and no beam passed through: arrays of "
+                            "one length, in which row i of each is the same cube.")
+      .def_readonly("cube", &UnseenColumns::cube,
+                    "The indices of each cube along x, y and z, ascending: n x 3 int32.")
+      .def_readonly("first_pose", &UnseenColumns::first_pose,
+                    "The first pose at which the model sweeps each cube: n uint32.")
+      .def_readonly("group", &UnseenColumns::group,
+                    "The number of each cube's group, from 1 on: n uint32.")
+      .def("__len__", [](const UnseenColumns& c) { return c.first_pose.size(); });
   py::class_<ClearanceColumns>(module, "Clearances",
                                "The distances of environment points to the moving model: arrays of "
                                "one length, in which row i of each is the same point.")
@@ -225,6 +253,9 @@ void add_results(py::module_& module) {
       .def("first_body", first_body,
            "The body that touches each point at its first pose, as an index of bodies(): n uint32. "
            "None where there is one model, or the query did not ask for first poses.")
+      .def("unseen", unseen_cubes,
+           "The places that the model sweeps and no beam passed through: UnseenCubes. None where "
+           "the query did not ask for seen space.")
       .def("near", near_points,
            "The points that do not collide but may in truth, by the error budget: Collisions, "
            "whose last_pose is None. None without a budget.")

@@ -99,10 +99,11 @@ ArrayQuery make_query(const py::object& model, const py::object& poses,
                       bool allow_non_rigid, std::vector<PlacedBody> bodies,
                       std::optional<double> error_scan, std::optional<double> error_registration,
                       std::optional<double> error_pose, std::optional<double> error_angle,
-                      std::optional<double> error_model, double sigmas, double gap) {
+                      std::optional<double> error_model, double sigmas, double gap, bool seen,
+                      double seen_cube, std::uint32_t seen_min) {
   return {{radius.value_or(0), first_pose, between_poses, clearance, profile, tolerance,
-           std::move(ignore_classes), std::move(ignore_boxes), error_scan, error_registration,
-           error_pose, error_angle, error_model, sigmas, gap},
+           std::move(ignore_classes), std::move(ignore_boxes), seen, seen_cube, seen_min,
+           error_scan, error_registration, error_pose, error_angle, error_model, sigmas, gap},
           model_object(model),
           poses_array(poses, "poses"),
           allow_non_rigid,
@@ -123,8 +124,8 @@ void add_query(py::module_& module) {
           "ignore_boxes"_a = nothing, "allow_non_rigid"_a = false, "bodies"_a = nothing,
           "error_scan"_a = py::none(), "error_registration"_a = py::none(),
           "error_pose"_a = py::none(), "error_angle"_a = py::none(), "error_model"_a = py::none(),
-          "sigmas"_a = 3.0, "gap"_a = 0.3,
-          R"(__init__(self, model=(), poses=(), radius=None, *, first_pose=False, between_poses=False, clearance=0.0, profile=0.0, tolerance=0.0, ignore_classes=(), ignore_boxes=(), allow_non_rigid=False, bodies=(), error_scan=None, error_registration=None, error_pose=None, error_angle=None, error_model=None, sigmas=3.0, gap=0.3)
+          "sigmas"_a = 3.0, "gap"_a = 0.3, "seen"_a = false, "seen_cube"_a = 0.0, "seen_min"_a = 8,
+          R"(__init__(self, model=(), poses=(), radius=None, *, first_pose=False, between_poses=False, clearance=0.0, profile=0.0, tolerance=0.0, ignore_classes=(), ignore_boxes=(), allow_non_rigid=False, bodies=(), error_scan=None, error_registration=None, error_pose=None, error_angle=None, error_model=None, sigmas=3.0, gap=0.3, seen=False, seen_cube=0.0, seen_min=8)
 --
 
 Ask which points the model comes closer to than the radius, on its way along the poses.

@@ -11,15 +11,16 @@ using namespace clearway;
 namespace {
 
 const Quantisation kTenthMillimetre{{1e-4, 1e-4, 1e-4}, {0, 0, 0}};
-const Box kRoom{{-4, -3, -1}, {5, 4, 2}};
+const Box kRoomOfClearances{{-4, -3, -1}, {5, 4, 2}};
 const Box kPartOfClearances{{-0.6, -0.4, -0.3}, {0.7, 0.5, 0.2}};
 
 struct SceneOfClearances {
   Random random{17};
   Quantisation quantisation = kTenthMillimetre;
-  std::vector<Quantum> points = quantise(random_points(random, kRoom, 1000), quantisation);
+  std::vector<Quantum> points =
+      quantise(random_points(random, kRoomOfClearances, 1000), quantisation);
   std::vector<Vec3> model = random_points(random, kPartOfClearances, 60);
-  std::vector<Pose> poses = smooth_path(random, kRoom, 60);
+  std::vector<Pose> poses = smooth_path(random, kRoomOfClearances, 60);
   double radius = 0.1;
 
   std::uint64_t check(double clearance) const {

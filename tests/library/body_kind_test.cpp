@@ -40,7 +40,7 @@ class HostKindOf final : public SweepKindOf<Element> {
     PageEngines engines;
     for (std::uint32_t device = 0; device < kDevices; ++device) {
       engines.push_back(
-          std::make_unique<HostSweepOf<Element>>(this->store_, this->filter_->ref(), layout, 2000));
+          std::make_unique<HostSweepOf<Element>>(this->cloud_, this->filter_->ref(), layout, 2000));
     }
     return engines;
   }

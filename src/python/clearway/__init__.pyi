@@ -153,6 +153,7 @@ class Query:
         error_registration: float | None = None, error_pose: float | None = None,
         error_angle: float | None = None, error_model: float | None = None, sigmas: float = 3.0,
         gap: float = 0.3,
+        seen: bool = False, seen_cube: float = 0.0, seen_min: int = 8,
     ) -> None: ...
 class QueryParameters:
     radius: Final[float]
@@ -208,12 +209,22 @@ class SearchedLength:
     whole: Final[float]
     part: Final[float]
 
+class SeenSummary:
+    cube: Final[float]
+    swept: Final[int]
+    seen: Final[int]
+    unseen: Final[int]
+    groups: Final[int]
+    listed_groups: Final[int]
+    listed_cubes: Final[int]
+    not_scanned_length: Final[float]
 class Answer:
     verdict: Final[Literal["clear", "conflict", "undecided", "unknown"]]
     reasons: Final[list[str]]
     margins: Final[dict[str, float] | None]
     near_points: Final[int]
     certain_points: Final[int]
+    seen: Final[SeenSummary | None]
     doubts: Final[list[str]]
     warned_of: Final[list[str]]
     parameters: Final[QueryParameters]
@@ -270,6 +281,11 @@ class MergeReport(Answer):
     parts: Final[int]
     warnings: Final[list[PartWarning]]
 
+class UnseenCubes:
+    cube: Final[NDArray[np.int32]]
+    first_pose: Final[_Poses]
+    group: Final[_Poses]
+    def __len__(self) -> int: ...
 class Collisions:
     source: Final[_Sources]
     xyz: Final[_Doubles]
@@ -309,6 +325,7 @@ class Result:
     def bodies(self) -> list[str]: ...
     def first_body(self) -> _Poses | None: ...
     def near(self) -> Collisions | None: ...
+    def unseen(self) -> UnseenCubes | None: ...
     def clearance(self) -> Clearances | None: ...
     def profile(self) -> Profile | None: ...
     def model_spacing(self) -> float: ...

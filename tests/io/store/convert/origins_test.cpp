@@ -19,11 +19,11 @@ namespace {
 constexpr Quantisation kSteps{{0.001, 0.001, 0.001}, {0, 0, 0}};
 
 /// A LAS scan of 300 points with steps of a millimetre, and a file of origins beside it.
-struct Scan {
+struct ScanWithOrigins {
   ScratchFolder folder;
   ConversionOptions options = conversion_of({folder / "a.las"}, folder / "a.h5");
 
-  explicit Scan(const std::string& origins = "") {
+  explicit ScanWithOrigins(const std::string& origins = "") {
     write_las(folder / "a.las", cube_cloud(300, -4000, 4000, 3), kSteps);
     if (!origins.empty()) give(origins);
   }
@@ -58,7 +58,7 @@ E57Bytes::Scan e57_scan(const std::string& xml, bool spherical = false) {
 }  // namespace
 
 TEST_CASE("every point has the origin of its run in the file, whatever threads and layout") {
-  Scan scan("first,x,y,z\n0,1,2,3\n7,-4.0006,5,6\r\n 100 , 1, 2 ,3\n299,1e3,0,0\n");
+  ScanWithOrigins scan("first,x,y,z\n0,1,2,3\n7,-4.0006,5,6\r\n 100 , 1, 2 ,3\n299,1e3,0,0\n");
   SECTION("adaptive") {}
   SECTION("regular") { scan.options.regular_size = 4; }
   const ConversionReport report = convert_quietly(scan.options);
@@ -84,7 +84,7 @@ TEST_CASE("every point has the origin of its run in the file, whatever threads a
 }
 
 TEST_CASE("a store without origins says nothing of them, and origins change its fingerprint") {
-  Scan scan;
+  ScanWithOrigins scan;
   convert_quietly(scan.options);
   const StoreReader without(scan.options.output);
   CHECK_FALSE(without.has_origins());
@@ -132,13 +132,13 @@ TEST_CASE("a file of origins that is not one is refused with its line") {
       {header + "0,1,1,1.25", "line 2: ends without a line break"},
       {header + "0,1e30,1,1\n", "too far away"},
   }));
-  Scan scan(refused.text);
+  ScanWithOrigins scan(refused.text);
   CHECK_THAT(conversion_refusal<InputError>(scan.options), Contains(refused.message));
   CHECK_FALSE(std::filesystem::exists(scan.options.output));
 }
 
 TEST_CASE("an empty or missing file of origins is refused") {
-  Scan scan;
+  ScanWithOrigins scan;
   scan.give("");
   CHECK_THAT(conversion_refusal<InputError>(scan.options), Contains("is empty"));
   scan.options.origins = scan.folder / "none.csv";
@@ -150,7 +150,7 @@ TEST_CASE("an empty or missing file of origins is refused") {
 }
 
 TEST_CASE("origins at zero and far away are warned of") {
-  Scan scan("first,x,y,z\n0,0,0,0\n50,0,0,0\n");
+  ScanWithOrigins scan("first,x,y,z\n0,0,0,0\n50,0,0,0\n");
   CHECK(codes_of(convert_quietly(scan.options)) == std::vector<std::string>{"origins-at-zero"});
   scan.give("first,x,y,z\n0,0,0,0\n50,0,0,0.5\n");
   CHECK(codes_of(convert_quietly(scan.options)).empty());
@@ -175,7 +175,7 @@ TEST_CASE("more origins than the memory may hold are refused with a number") {
 }
 
 TEST_CASE("resuming knows the origins that a store was given") {
-  Scan scan("first,x,y,z\n0,1,2,3\n");
+  ScanWithOrigins scan("first,x,y,z\n0,1,2,3\n");
   convert_quietly(scan.options);
   NoProgress progress;
   CHECK(is_converted(scan.options, progress));
