@@ -145,10 +145,11 @@ void add_inputs(CLI::App& command, RunOptions& options) {
 }
 
 void add_query(CLI::App& command, RunOptions& options) {
-  {
-    const GroupScope group(command, OptionGroup::kAsked);
+  for (const OptionGroup title : {OptionGroup::kAsked, OptionGroup::kCertainty}) {
+    const GroupScope group(command, title);
     for_each_value_field([&](const auto& field) {
-      if (!field.is_required()) add_field(command, field, options);
+      const bool here = field.is_of_certainty() == (title == OptionGroup::kCertainty);
+      if (here && !field.is_required()) add_field(command, field, options);
     });
   }
   const GroupScope group(command, OptionGroup::kIgnored);

@@ -8,7 +8,8 @@ ENDINGS = (".cpp", ".hpp", ".cu", ".cuh")
 
 # Literals of this form that are no codes: names of formats, units and encodings, and the reasons of a
 # verdict, which docs/guide/results.md explains.
-OTHERS = {"question-in-doubt", 
+OTHERS = {
+    "not-scanned", "question-in-doubt",
     "ft-us", "int-ft", "international-feet", "international-foot", "intl-ft", "pose-wxyz",
     "pose-xyzw", "unix-none", "us-ft", "us-survey-feet", "us-survey-foot", "utf-8",
 }

@@ -11,8 +11,8 @@ namespace clearway {
 
 /// A parameter of a query, with all texts and names for the places that list parameters: the
 /// command line, campaigns, results and their comparison, journals, pages and Python. Value: bool,
-/// double (a length in metres unless `unit` says otherwise), one that need not be given, a count, or
-/// a list.
+/// double (a length in metres unless `unit` says otherwise), one that need not be given, a count,
+/// or a list.
 template <typename Value>
 struct QueryField {
   Value QueryParameters::*member;
@@ -41,6 +41,19 @@ struct QueryField {
   bool belongs_to_budget() const {
     if constexpr (std::is_same_v<Value, double>) {
       return member == &QueryParameters::sigmas || member == &QueryParameters::gap;
+    } else {
+      return false;
+    }
+  }
+  /// Whether it says how sure the answer has to be, by an error budget or by seen space.
+  bool is_of_certainty() const {
+    if constexpr (std::is_same_v<Value, std::optional<double>> ||
+                  std::is_same_v<Value, std::uint32_t>) {
+      return true;
+    } else if constexpr (std::is_same_v<Value, double>) {
+      return belongs_to_budget() || member == &QueryParameters::seen_cube;
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      return member == &QueryParameters::seen;
     } else {
       return false;
     }

@@ -19,10 +19,19 @@
 namespace clearway::tool {
 namespace {
 
-constexpr std::array kTitles{"Inputs and output", "What is asked",    "What is ignored",
-                             "The store",         "The model",        "The path",
-                             "Units and frames",  "Conflicts",        "The page",
-                             "Speed and memory",  "Files and resume", "Messages and exit code"};
+constexpr std::array kTitles{"Inputs and output",
+                             "What is asked",
+                             "How sure the answer is",
+                             "What is ignored",
+                             "The store",
+                             "The model",
+                             "The path",
+                             "Units and frames",
+                             "Conflicts",
+                             "The page",
+                             "Speed and memory",
+                             "Files and resume",
+                             "Messages and exit code"};
 
 constexpr std::string_view kNoGroup = "Options";  // CLI11's default group
 

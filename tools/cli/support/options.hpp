@@ -15,6 +15,7 @@ namespace clearway::tool {
 enum class OptionGroup {
   kInputs,
   kAsked,
+  kCertainty,
   kIgnored,
   kStore,
   kModel,
