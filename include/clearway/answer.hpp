@@ -27,7 +27,7 @@ enum class Reason {
   kFew,   ///< points are certainly too close, but too few of them hang together
   /// Points are near, but the errors are so large that no surface could be a certain conflict
   kErrorsExceedMargin,
-  kNotScanned,  ///< the model passes through places that no beam of the scanner reached
+  kNotScanned,      ///< the model passes through places that no beam of the scanner reached
   kQuestionInDoubt  ///< a warning says that the search could not find anything: see is_doubt()
 };
 

@@ -9,11 +9,11 @@ namespace clearway {
 /// What is known of the space that the model sweeps: how many cubes it sweeps, and how many of them
 /// no beam passed through. An unseen cube may hold anything.
 struct SeenSummary {
-  double cube = 0;              ///< side of a cube along x, metres: a multiple of the store's step
-  std::uint64_t swept = 0;      ///< number of cubes that the model sweeps
-  std::uint64_t seen = 0;       ///< how many of them a beam passed through
-  std::uint64_t unseen = 0;     ///< swept - seen
-  std::uint64_t groups = 0;     ///< groups of unseen cubes that touch each other
+  double cube = 0;           ///< side of a cube along x, metres: a multiple of the store's step
+  std::uint64_t swept = 0;   ///< number of cubes that the model sweeps
+  std::uint64_t seen = 0;    ///< how many of them a beam passed through
+  std::uint64_t unseen = 0;  ///< swept - seen
+  std::uint64_t groups = 0;  ///< groups of unseen cubes that touch each other
   /// Groups of at least QueryParameters::seen_min cubes, which make a verdict undecided
   std::uint64_t listed_groups = 0;
   std::uint64_t listed_cubes = 0;  ///< number of cubes in these groups
@@ -25,7 +25,8 @@ struct SeenSummary {
 
 /// Cubes that the model sweeps and no beam passed through, one row per cube, ascending by cube.
 struct UnseenCubes {
-  /// Indices along x, y and z: cube i holds the stored integers from side * i to side * (i + 1) - 1.
+  /// Indices along x, y and z: cube i holds the stored integers from side * i to side * (i + 1)
+  /// - 1.
   std::vector<std::array<std::int32_t, 3>> cube;
   std::vector<std::uint32_t> first_pose;  ///< the first pose at which the model sweeps each cube
   /// Number of each cube's group, from 1 on: groups are ordered by their least first pose, and then

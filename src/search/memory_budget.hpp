@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "clearway/query.hpp"
+#include "core/cloud/packed_cloud.hpp"
 #include "core/page/page_engine.hpp"
 #include "core/query/ignored_points.hpp"
-#include "core/cloud/packed_cloud.hpp"
 #include "search/kinds/page_engine_kind.hpp"
 #include "search/shard_cells.hpp"
 

@@ -421,9 +421,8 @@ class Search {
                                           const SearchOptions& options) {
     return kind_for(device, store_, query, options);
   }
-  std::unique_ptr<PageEngineKind> kind_for([[maybe_unused]] Device device,
-                                           const PackedCloud& cloud, const Query& query,
-                                           const SearchOptions& options) {
+  std::unique_ptr<PageEngineKind> kind_for([[maybe_unused]] Device device, const PackedCloud& cloud,
+                                           const Query& query, const SearchOptions& options) {
 #ifdef CLEARWAY_CUDA
     if (device == Device::kCuda) {
       const OpenGpus open = [this] { return open_gpus(); };

@@ -29,10 +29,10 @@
 namespace clearway {
 namespace {
 
-constexpr double kUsualCube = 0.2;        // metres
-constexpr double kLongestBeam = 1000;     // metres
+constexpr double kUsualCube = 0.2;     // metres
+constexpr double kLongestBeam = 1000;  // metres
 constexpr std::int64_t kMostSide = std::int64_t{1} << 29;
-constexpr std::int64_t kInsets = 4;       // a cube's side in insets, rounded down
+constexpr std::int64_t kInsets = 4;  // a cube's side in insets, rounded down
 
 /// The length of a metre in the store's unit; 1 where the unit is unknown or is no length.
 double metre_of(const StoreReader& store) {
@@ -54,21 +54,22 @@ Query query_of_cubes(const Query& query, double radius) {
 /// The swept cubes of a brick.
 struct SweptBrick {
   std::array<std::uint64_t, kBrickWords> words{};
-  std::vector<std::uint32_t> first_poses;  ///< those of the swept cubes, in the order of their numbers
+  std::vector<std::uint32_t>
+      first_poses;  ///< those of the swept cubes, in the order of their numbers
 
   std::uint64_t count() const { return first_poses.size(); }
 };
 
 /// Searches the middles of a cloud's cubes. Returns the swept cubes of each brick.
-std::vector<SweptBrick> sweep(const BrickCloud& cloud, const Query& query, std::uint64_t memory_bytes,
-                              PageEngineKind& kind, Progress& progress) {
+std::vector<SweptBrick> sweep(const BrickCloud& cloud, const Query& query,
+                              std::uint64_t memory_bytes, PageEngineKind& kind,
+                              Progress& progress) {
   PageBudget budget(cloud, query, query, 0, memory_bytes, kind, nullptr, std::nullopt);
   budget.find();
   throw_if_stopped(progress);
   PageEngines engines = kind.make(budget.layout());
-  const std::vector<PlannedPage> pages =
-      paginate(cloud, budget.cells(), budget.layout().page_bytes, budget.layout().cells,
-               query.ignores_points());
+  const std::vector<PlannedPage> pages = paginate(cloud, budget.cells(), budget.layout().page_bytes,
+                                                  budget.layout().cells, query.ignores_points());
   std::vector<PageEngine*> lanes;
   for (const auto& engine : engines) lanes.push_back(engine.get());
   const BodyNumbers numbers(query);
@@ -160,8 +161,8 @@ class Beams {
   std::atomic<std::uint64_t> beams_ = 0, without_origin_ = 0, too_long_ = 0;
 };
 
-void follow_beams(const StoreReader& store, const SeenSearch& how, BrickMap& map, BeamCounts& counts,
-                  Progress& progress) {
+void follow_beams(const StoreReader& store, const SeenSearch& how, BrickMap& map,
+                  BeamCounts& counts, Progress& progress) {
   Beams beams(store, map);
   progress.begin("beams", store.point_count(), "points");
   in_threads(how.threads, [&] {
@@ -194,8 +195,9 @@ CubeLattice cube_lattice(const StoreReader& store, double asked) {
     const double scale = store.quantisation().scale[k];
     const double quanta = side / scale;
     if (!(quanta < static_cast<double>(kMostSide))) {
-      throw UsageError("cubes of seen space of " + brief(side) + ": expected sides below 2^29 times " +
-                       brief(scale) + ", the step of the stored coordinates");
+      throw UsageError("cubes of seen space of " + brief(side) +
+                       ": expected sides below 2^29 times " + brief(scale) +
+                       ", the step of the stored coordinates");
     }
     lattice.side[k] = std::llround(quanta);
     lattice.inset[k] = lattice.side[k] / kInsets;
@@ -220,8 +222,7 @@ SeenSpace find_seen_space(const StoreReader& store, const Query& query, const Se
   const CubeLattice lattice = cube_lattice(store, query.seen_cube);
   const Query cubes = query_of_cubes(query, how.radius);
   SeenSpace space;
-  space.summary.cube =
-      static_cast<double>(lattice.side[0]) * store.quantisation().scale[0];
+  space.summary.cube = static_cast<double>(lattice.side[0]) * store.quantisation().scale[0];
   const BrickCloud cloud(
       bricks_along(query, how.radius, lattice, store.quantisation(), how.memory_bytes / 4), lattice,
       store.quantisation());
@@ -311,8 +312,7 @@ void warn_of_beams(const BeamCounts& beams, MessageLog& log) {
   }
 }
 
-void warn_of_small_groups(const SeenSummary& found, const QueryParameters& query,
-                          MessageLog& log) {
+void warn_of_small_groups(const SeenSummary& found, const QueryParameters& query, MessageLog& log) {
   const std::uint64_t small = found.groups - found.listed_groups;
   if (small > 0) {
     const std::uint64_t cubes = found.unseen - found.listed_cubes;

@@ -87,16 +87,18 @@ std::string seen_clause(const Answer& answer, const PathWords& path, const std::
   const SeenSummary& seen = *answer.seen;
   const double length = path.chainage.empty() ? 0 : path.chainage.back();
   if (seen.listed_groups > 0) {
-    return fmt::format("; not scanned on {:.1f} of {:.1f} {}: no beam passed through {} of {} cubes "
-                       "that the model sweeps, in {}",
-                       seen.not_scanned_length, length, unit, format_count(seen.unseen),
-                       format_count(seen.swept), counted(seen.listed_groups, "place"));
+    return fmt::format(
+        "; not scanned on {:.1f} of {:.1f} {}: no beam passed through {} of {} cubes "
+        "that the model sweeps, in {}",
+        seen.not_scanned_length, length, unit, format_count(seen.unseen), format_count(seen.swept),
+        counted(seen.listed_groups, "place"));
   }
   if (seen.unseen > 0) {
-    return fmt::format("; a beam passed through all but {} of the {} cubes that the model sweeps, "
-                       "which are in {} of fewer than {} cubes",
-                       format_count(seen.unseen), format_count(seen.swept),
-                       counted(seen.groups, "group"), answer.parameters.seen_min);
+    return fmt::format(
+        "; a beam passed through all but {} of the {} cubes that the model sweeps, "
+        "which are in {} of fewer than {} cubes",
+        format_count(seen.unseen), format_count(seen.swept), counted(seen.groups, "group"),
+        answer.parameters.seen_min);
   }
   return "; a beam passed through each of the " + format_count(seen.swept) +
          " cubes that the model sweeps";

@@ -67,9 +67,8 @@ std::vector<std::string> codes_beside_doubts(const std::vector<Message>& warning
 
 bool Answer::is_in_doubt() const {
   const bool all_seen = seen && seen->swept > 0 && seen->unseen == 0;
-  return std::ranges::any_of(doubts, [&](const std::string& code) {
-    return !(all_seen && code == "out-of-reach");
-  });
+  return std::ranges::any_of(
+      doubts, [&](const std::string& code) { return !(all_seen && code == "out-of-reach"); });
 }
 
 Verdict Answer::verdict() const {

@@ -302,7 +302,8 @@ void for_each_row(const PartSet& set, std::deque<Cursor>& cursors, Visit visit) 
 class PartMerge {
  public:
   PartMerge(const PartSet& set, const std::optional<UnseenCubes>& unseen,
-            const std::filesystem::path& path, std::size_t batch_rows, const ResultFindings& findings, Progress& progress, TableSummary& summary)
+            const std::filesystem::path& path, std::size_t batch_rows,
+            const ResultFindings& findings, Progress& progress, TableSummary& summary)
       : set_(set),
         unseen_(unseen),
         findings_(findings),

@@ -17,11 +17,11 @@ namespace clearway {
 
 /// Writes the datasets that docs/design/result-format.md lists and the header asks for to a file of
 /// its own, which the caller publishes. Its bytes depend on header and rows alone. Collisions come
-/// first, then clearances, then the profile, then near points, then unseen cubes. append() and write() throw
-/// std::logic_error for rows out of this order, for a table that the header does not ask for, for
-/// more rows than promised, for sources that do not ascend (except in the profile) and for columns
-/// of unequal lengths, where a column that the header does not ask for must be empty. A failing
-/// disk throws ResourceError.
+/// first, then clearances, then the profile, then near points, then unseen cubes. append() and
+/// write() throw std::logic_error for rows out of this order, for a table that the header does not
+/// ask for, for more rows than promised, for sources that do not ascend (except in the profile) and
+/// for columns of unequal lengths, where a column that the header does not ask for must be empty. A
+/// failing disk throws ResourceError.
 ///
 /// Instead of appending rows, threads may encode them kEncodedRows at a time; only the last rows of
 /// a table may be fewer. The encoded rows are then hashed in order and written in order. One thread

@@ -126,8 +126,7 @@ void check_range(std::uint64_t first, std::size_t count, std::uint64_t rows) {
 
 /// A dataset that is read, or nothing where the result does not have the column.
 template <typename Value>
-using OptionalRead =
-    std::optional<hdf5::Rows<typename StoredValue<Value>::Number>>;
+using OptionalRead = std::optional<hdf5::Rows<typename StoredValue<Value>::Number>>;
 
 /// The datasets of a table, which are read together.
 template <typename Rows>

@@ -277,7 +277,8 @@ struct ResultWriter::State {
 };
 
 ResultWriter::ResultWriter(const std::filesystem::path& path, const ResultHeader& header,
-                           std::uint64_t collisions, std::uint64_t clearances, std::uint64_t near, std::uint64_t unseen)
+                           std::uint64_t collisions, std::uint64_t clearances, std::uint64_t near,
+                           std::uint64_t unseen)
     : state_(hdf5::naming(path.string(), [&] {
         return std::make_unique<State>(path, header, collisions, clearances, near, unseen);
       })) {}

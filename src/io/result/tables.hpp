@@ -207,8 +207,7 @@ struct Table<UnseenCubes> {
       Column<Rows, std::uint32_t>{result_names::kGroupOfCube, &Rows::group, in_every_result,
                                   check_groups},
       Column<Rows, double>{result_names::kStep, &Rows::step,
-                           [](const ResultHeader& h) { return h.part.has_value(); },
-                           check_steps}};
+                           [](const ResultHeader& h) { return h.part.has_value(); }, check_steps}};
 
   static constexpr auto kOrder = &Rows::cube;
   static constexpr const char* kOrderDataset = result_names::kCube;

@@ -2,9 +2,9 @@
 
 #include <optional>
 
+#include "core/cloud/packed_cloud.hpp"
 #include "core/grid/grid_reach.hpp"
 #include "core/grid/grid_scene.hpp"
-#include "core/cloud/packed_cloud.hpp"
 #include "search/kinds/page_engine_kind.hpp"
 
 namespace clearway {

@@ -2,9 +2,9 @@
 
 #include <optional>
 
+#include "core/cloud/packed_cloud.hpp"
 #include "core/sweep/field/model_field.hpp"
 #include "core/sweep/sweep_filter.hpp"
-#include "core/cloud/packed_cloud.hpp"
 #include "search/kinds/page_engine_kind.hpp"
 
 namespace clearway {

@@ -39,8 +39,9 @@ class Help(unittest.TestCase):
     def test_run_begins_with_the_five_that_matter(self):
         run = groups("run")
         self.assertEqual(next(iter(run.items())), ("Inputs and output", FIVE))
-        self.assertEqual(list(run), ["Inputs and output", "What is asked", "What is ignored",
-                                     "The model", "The path", "Units and frames",
+        self.assertEqual(list(run), ["Inputs and output", "What is asked",
+                                     "How sure the answer is", "What is ignored", "The model",
+                                     "The path", "Units and frames",
                                      "Speed and memory", "Files and resume",
                                      "Messages and exit code"])
 

@@ -81,10 +81,10 @@ struct Road {
     }
     put_bytes(folder / "scan.xyz", points);
     put_bytes(folder / "origins.csv", origins);
-    const Outcome outcome = run_program(
-        folder, "convert " + quoted(folder / "scan.xyz") + " --origins " +
-                    quoted(folder / "origins.csv") + " -o " + quoted(folder / "site.h5") +
-                    " --scale 0.001 --cell-points 2000 --force");
+    const Outcome outcome = run_program(folder, "convert " + quoted(folder / "scan.xyz") +
+                                                    " --origins " + quoted(folder / "origins.csv") +
+                                                    " -o " + quoted(folder / "site.h5") +
+                                                    " --scale 0.001 --cell-points 2000 --force");
     INFO(outcome.err);
     REQUIRE(outcome.exit_code == 0);
   }
