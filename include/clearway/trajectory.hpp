@@ -51,7 +51,7 @@ struct TrajectoryOptions {
   /// The geographic coordinate reference system of latitudes and longitudes; empty: WGS 84.
   std::string datum = {};
   /// The unit of positions, for example kMetresPerMillimetre or FileUnit::named("us-ft"). None: the
-  /// unit that the file declares, or else metres.
+  /// unit that the file declares, or else the unit of the environment.
   FileUnit metres_per_unit = {};
   /// Length of the environment's unit in metres, as Store::metres_per_unit() returns it. Positions
   /// in a known unit are converted to it.

@@ -213,7 +213,7 @@ class ConflictSearch {
     const PointGroups groups = number_groups(grid, sets, kLeastCertainGroup);
     for (std::uint32_t cell = 0; cell < grid.cells(); ++cell) {
       if (PointGroups::is_small(groups.of_cell[cell])) continue;
-      for (const GridPoint& point : grid.points(cell)) out.push_back(row_of[point.row]);
+      for (const GroupedPoint& point : grid.points(cell)) out.push_back(row_of[point.row]);
     }
     return out;
   }

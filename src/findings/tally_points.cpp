@@ -42,7 +42,7 @@ class RunOfPoints {
   RunOfPoints& operator=(const RunOfPoints&) = delete;
   ~RunOfPoints() { hand_on(); }
 
-  void add(std::uint64_t number, const GridPoint& p, const TouchPoses& poses) {
+  void add(std::uint64_t number, const GroupedPoint& p, const TouchPoses& poses) {
     if (number != number_) {
       hand_on();
       number_ = number;
@@ -75,7 +75,7 @@ std::vector<Tally> tally_by(const CellGrid& grid, const PointGroups& groups, boo
     for (std::uint32_t cell = range.begin(); cell != range.end(); ++cell) {
       const std::uint32_t group = groups.of_cell[cell];
       if (PointGroups::is_small(group) != small) continue;
-      for (const GridPoint& p : grid.points(cell)) run.add(number_of(group, p.row), p, poses);
+      for (const GroupedPoint& p : grid.points(cell)) run.add(number_of(group, p.row), p, poses);
     }
   });
   scope.begin();

@@ -26,7 +26,7 @@ struct Tally {
   QuantumBox box{{kMost, kMost, kMost}, {kLeast, kLeast, kLeast}};
   __int128 sum[3]{};
 
-  void add(const GridPoint& p, std::uint32_t first, std::uint32_t last) {
+  void add(const GroupedPoint& p, std::uint32_t first, std::uint32_t last) {
     ++points;
     first_row = std::min(first_row, p.row);
     add_first(first, p.row);

@@ -97,7 +97,7 @@ void find_touched_first(const CellGrid& grid, const PointGroups& groups,
                         std::vector<TouchedFirst>& parts, Progress& progress) {
   using Range = tbb::blocked_range<std::uint32_t>;
   std::array<tbb::spin_mutex, 64> locks;
-  const auto add = [&](const GridPoint& p) {
+  const auto add = [&](const GroupedPoint& p) {
     const std::uint32_t number = part_of_row[p.row] - 1;
     TouchedFirst& part = parts[number];
     if (points.first_pose[p.row] != part.first_pose) return;
@@ -117,7 +117,7 @@ void find_touched_first(const CellGrid& grid, const PointGroups& groups,
     if (progress.stop_requested()) return;
     for (std::uint32_t cell = range.begin(); cell != range.end(); ++cell) {
       if (PointGroups::is_small(groups.of_cell[cell])) continue;
-      for (const GridPoint& p : grid.points(cell)) add(p);
+      for (const GroupedPoint& p : grid.points(cell)) add(p);
     }
   });
   scope.begin();

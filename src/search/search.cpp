@@ -110,6 +110,7 @@ class Search {
       if (told.severity == Message::Severity::kWarning) report_.warnings.push_back(told);
     }
     check_sizes(query_);
+    if (query_.seen) check_seen_space(store_, query_);
     ThreadLimit(threads_or_all(options_.threads)).run([&] {
       warn_of_query(store_, query_, options_.input_warnings, log_);
     });

@@ -210,8 +210,7 @@ CubeLattice cube_lattice(const StoreReader& store, double asked) {
   return lattice;
 }
 
-SeenSpace find_seen_space(const StoreReader& store, const Query& query, const SeenSearch& how,
-                          Progress& progress) {
+void check_seen_space(const StoreReader& store, const QueryParameters& query) {
   if (!store.has_origins()) {
     throw UsageError(
         store.name() +
@@ -219,6 +218,12 @@ SeenSpace find_seen_space(const StoreReader& store, const Query& query, const Se
             "expected a store that was converted with origins",
         Remedy::kNone);
   }
+  cube_lattice(store, query.seen_cube);
+}
+
+SeenSpace find_seen_space(const StoreReader& store, const Query& query, const SeenSearch& how,
+                          Progress& progress) {
+  check_seen_space(store, query);
   const CubeLattice lattice = cube_lattice(store, query.seen_cube);
   const Query cubes = query_of_cubes(query, how.radius);
   SeenSpace space;

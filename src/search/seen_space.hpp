@@ -35,6 +35,10 @@ struct SeenSpace {
 /// unit; 0: 0.2 m. Throws UsageError where it is too small or too large for the store's integers.
 CubeLattice cube_lattice(const StoreReader& store, double asked);
 
+/// Throws UsageError where the store cannot tell seen space: where it does not know where its
+/// scanner stood, or the cubes do not suit its integers.
+void check_seen_space(const StoreReader& store, const QueryParameters& query);
+
 /// How a search for seen space is done.
 struct SeenSearch {
   /// Distance from the model at which a cube's middle counts as swept, metres.
@@ -48,8 +52,8 @@ struct SeenSearch {
 };
 
 /// Finds which cubes the query sweeps, by searching their middles, and which of these no beam of
-/// the store passed through. Groups are not made. Throws UsageError where no point of the store has
-/// an origin, InputError where a cube is beyond 32-bit integers or a cell is damaged,
+/// the store passed through. Groups are not made. Throws as check_seen_space() does, InputError
+/// where a cube is beyond 32-bit integers or a cell is damaged,
 /// ResourceError where memory is too little, Interrupted.
 SeenSpace find_seen_space(const StoreReader& store, const Query& query, const SeenSearch& how,
                           Progress& progress);

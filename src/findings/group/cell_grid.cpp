@@ -30,12 +30,12 @@ QuantumPoint least_of(std::span<const QuantumPoint> points) {
       smaller);
 }
 
-GridPlace place_of(const GridPoint& unmade) {
+GridPlace place_of(const GroupedPoint& unmade) {
   return {static_cast<std::uint32_t>(unmade.q[0]), static_cast<std::uint32_t>(unmade.q[1]),
           static_cast<std::uint32_t>(unmade.q[2])};
 }
 
-bool before(const GridPoint& a, const GridPoint& b) {
+bool before(const GroupedPoint& a, const GroupedPoint& b) {
   const GridPlace at = place_of(a), bt = place_of(b);
   return at != bt ? at < bt : a.row < b.row;
 }
@@ -48,7 +48,7 @@ void CellGrid::sort(std::span<const QuantumPoint> points, const Neighbourhood& n
   const auto& edge = neighbourhood.cell();
   tbb::parallel_for(Range(0, points.size(), kGrain), [&](const Range& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      GridPoint& out = points_[i];
+      GroupedPoint& out = points_[i];
       for (int k = 0; k < 3; ++k) {
         const auto d = static_cast<std::uint64_t>(std::int64_t{points[i].q[k]} - origin_.q[k]);
         out.q[2 - k] = static_cast<std::int32_t>(d / edge[static_cast<std::size_t>(k)]);
@@ -101,20 +101,20 @@ struct Target {
   double x, y, z;
 };
 
-Target target_at(const Neighbourhood& neighbourhood, const GridPoint& p) {
+Target target_at(const Neighbourhood& neighbourhood, const GroupedPoint& p) {
   return {p.q[0] * neighbourhood.step(0), p.q[1] * neighbourhood.step(1),
           p.q[2] * neighbourhood.step(2)};
 }
 
-Target middle_of(const Neighbourhood& neighbourhood, std::span<const GridPoint> points) {
+Target middle_of(const Neighbourhood& neighbourhood, std::span<const GroupedPoint> points) {
   const Target a = target_at(neighbourhood, points.front());
   const Target b = target_at(neighbourhood, points[points.size() / 2]);
   return {(a.x + b.x) / 2, (a.y + b.y) / 2, (a.z + b.z) / 2};
 }
 
 /// The point nearest to a place by double precision, which is a guess.
-const GridPoint& nearest(const Neighbourhood& neighbourhood, std::span<const GridPoint> points,
-                         const Target& target) {
+const GroupedPoint& nearest(const Neighbourhood& neighbourhood,
+                            std::span<const GroupedPoint> points, const Target& target) {
   double least = std::numeric_limits<double>::infinity();
   std::size_t best = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -131,23 +131,23 @@ const GridPoint& nearest(const Neighbourhood& neighbourhood, std::span<const Gri
 
 }  // namespace
 
-bool any_neighbours(const Neighbourhood& neighbourhood, std::span<const GridPoint> a,
-                    std::span<const GridPoint> b) {
-  for (const GridPoint& p : a) {
-    for (const GridPoint& q : b) {
+bool any_neighbours(const Neighbourhood& neighbourhood, std::span<const GroupedPoint> a,
+                    std::span<const GroupedPoint> b) {
+  for (const GroupedPoint& p : a) {
+    for (const GroupedPoint& q : b) {
       if (are_neighbours(neighbourhood, p, q)) return true;
     }
   }
   return false;
 }
 
-Nearness compare_cells(const Neighbourhood& neighbourhood, std::span<const GridPoint> a,
-                       std::span<const GridPoint> b) {
+Nearness compare_cells(const Neighbourhood& neighbourhood, std::span<const GroupedPoint> a,
+                       std::span<const GroupedPoint> b) {
   const std::size_t pairs = a.size() * b.size();
   if (pairs > kFewPairs) {
     if (are_neighbours(neighbourhood, a.front(), b.front())) return Nearness::kNear;
-    const GridPoint* in_a = &nearest(neighbourhood, a, middle_of(neighbourhood, b));
-    const GridPoint* in_b = &nearest(neighbourhood, b, target_at(neighbourhood, *in_a));
+    const GroupedPoint* in_a = &nearest(neighbourhood, a, middle_of(neighbourhood, b));
+    const GroupedPoint* in_b = &nearest(neighbourhood, b, target_at(neighbourhood, *in_a));
     if (are_neighbours(neighbourhood, *in_a, *in_b)) return Nearness::kNear;
     in_a = &nearest(neighbourhood, a, target_at(neighbourhood, *in_b));
     if (are_neighbours(neighbourhood, *in_a, *in_b)) return Nearness::kNear;

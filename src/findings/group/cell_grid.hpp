@@ -69,7 +69,7 @@ struct QuantumPoint {
 };
 
 /// A point and the row of the result that it comes from.
-struct GridPoint {
+struct GroupedPoint {
   std::int32_t q[3];
   std::uint32_t row;
 };
@@ -87,7 +87,7 @@ struct GridPlace {
 /// neighbours. Only cells with points are kept. Runs in the caller's arena of oneTBB.
 class CellGrid {
  public:
-  static constexpr std::uint64_t kBytesOfPoint = sizeof(GridPoint);
+  static constexpr std::uint64_t kBytesOfPoint = sizeof(GroupedPoint);
   static constexpr std::uint64_t kBytesOfCell = sizeof(GridPlace) + sizeof(std::uint32_t);
 
   /// points: fewer than 2^32 - 1, by row. check_cells(count) is called before memory is taken for
@@ -103,11 +103,11 @@ class CellGrid {
   std::uint32_t cells() const { return static_cast<std::uint32_t>(places_.size()); }
   const GridPlace& place(std::uint32_t cell) const { return places_[cell]; }
   std::span<const GridPlace> places() const { return places_; }
-  std::span<const GridPoint> points(std::uint32_t cell) const {
+  std::span<const GroupedPoint> points(std::uint32_t cell) const {
     return {points_.data() + first_[cell], first_[cell + 1] - first_[cell]};
   }
   /// The points of a cell, whose order the caller may change.
-  std::span<GridPoint> points(std::uint32_t cell) {
+  std::span<GroupedPoint> points(std::uint32_t cell) {
     return {points_.data() + first_[cell], first_[cell + 1] - first_[cell]};
   }
   /// The smallest stored integer of all points on each axis, where the cell (0, 0, 0) begins.
@@ -120,7 +120,7 @@ class CellGrid {
 
   QuantumPoint origin_{};
   /// Until make_cells(), q holds the place of the point's cell: z, y, x.
-  std::vector<GridPoint> points_;
+  std::vector<GroupedPoint> points_;
   std::vector<GridPlace> places_;
   /// The first point of each cell, and at the end the number of all points.
   std::vector<std::uint32_t> first_;
@@ -133,20 +133,20 @@ inline std::uint64_t difference_of(const std::int32_t a, const std::int32_t b) {
   return static_cast<std::uint64_t>(a < b ? std::int64_t{b} - a : std::int64_t{a} - b);
 }
 
-inline bool are_neighbours(const Neighbourhood& neighbourhood, const GridPoint& a,
-                           const GridPoint& b) {
+inline bool are_neighbours(const Neighbourhood& neighbourhood, const GroupedPoint& a,
+                           const GroupedPoint& b) {
   return neighbourhood.within(difference_of(a.q[0], b.q[0]), difference_of(a.q[1], b.q[1]),
                               difference_of(a.q[2], b.q[2]));
 }
 
 /// Whether a point of one cell has a neighbour in the other, found by comparing all pairs.
-bool any_neighbours(const Neighbourhood& neighbourhood, std::span<const GridPoint> a,
-                    std::span<const GridPoint> b);
+bool any_neighbours(const Neighbourhood& neighbourhood, std::span<const GroupedPoint> a,
+                    std::span<const GroupedPoint> b);
 
 /// Whether a point of one cell has a neighbour in the other, in a time proportional to the number
 /// of points, which may leave it open: few points are all compared with each other, and of many
 /// only those that seem to be nearest.
-Nearness compare_cells(const Neighbourhood& neighbourhood, std::span<const GridPoint> a,
-                       std::span<const GridPoint> b);
+Nearness compare_cells(const Neighbourhood& neighbourhood, std::span<const GroupedPoint> a,
+                       std::span<const GroupedPoint> b);
 
 }  // namespace clearway

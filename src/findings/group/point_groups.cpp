@@ -26,7 +26,7 @@ class PointTree {
 
   /// neighbourhood: gives the scale of each axis, by which the axis to split is chosen. The points
   /// outlive the tree.
-  PointTree(std::span<GridPoint> points, const Neighbourhood& neighbourhood);
+  PointTree(std::span<GroupedPoint> points, const Neighbourhood& neighbourhood);
 
   /// Whether a point of one tree has a neighbour in the other. Pairs of nodes that are surely near
   /// or surely far are not opened.
@@ -45,18 +45,18 @@ class PointTree {
   static bool near(const Neighbourhood& neighbourhood, const PointTree& a, const Node& in_a,
                    const PointTree& b, const Node& in_b);
   void build(std::uint32_t first, std::uint32_t last, const Neighbourhood& neighbourhood);
-  std::span<const GridPoint> points(const Node& node) const;
+  std::span<const GroupedPoint> points(const Node& node) const;
   const Node& left(const Node& node) const { return *(&node + 1); }
   const Node& right(const Node& node) const { return nodes_[node.right]; }
 
-  std::span<GridPoint> points_;
+  std::span<GroupedPoint> points_;
   std::vector<Node> nodes_;
 };
 
-QuantumBox box_of_points(std::span<const GridPoint> points) {
+QuantumBox box_of_points(std::span<const GroupedPoint> points) {
   QuantumBox box{{points[0].q[0], points[0].q[1], points[0].q[2]},
                  {points[0].q[0], points[0].q[1], points[0].q[2]}};
-  for (const GridPoint& p : points) {
+  for (const GroupedPoint& p : points) {
     box.extend(p.q);
   }
   return box;
@@ -83,7 +83,7 @@ std::uint64_t greatest_difference(const QuantumBox& a, const QuantumBox& b, int 
 
 bool is_one_place(const QuantumBox& box) { return std::equal(box.lo, box.lo + 3, box.hi); }
 
-PointTree::PointTree(std::span<GridPoint> points, const Neighbourhood& neighbourhood)
+PointTree::PointTree(std::span<GroupedPoint> points, const Neighbourhood& neighbourhood)
     : points_(points) {
   nodes_.reserve(points.size() * 4 / kLeafPoints + 1);
   build(0, static_cast<std::uint32_t>(points.size()), neighbourhood);
@@ -100,7 +100,7 @@ void PointTree::build(std::uint32_t first, std::uint32_t last, const Neighbourho
   }
   const std::uint32_t middle = first + (last - first) / 2;
   std::nth_element(points_.begin() + first, points_.begin() + middle, points_.begin() + last,
-                   [axis](const GridPoint& a, const GridPoint& b) {
+                   [axis](const GroupedPoint& a, const GroupedPoint& b) {
                      return a.q[axis] != b.q[axis] ? a.q[axis] < b.q[axis] : a.row < b.row;
                    });
   build(first, middle, neighbourhood);
@@ -109,7 +109,7 @@ void PointTree::build(std::uint32_t first, std::uint32_t last, const Neighbourho
 }
 
 /// The points of a leaf, where points that are all at the same place count as one.
-std::span<const GridPoint> PointTree::points(const Node& node) const {
+std::span<const GroupedPoint> PointTree::points(const Node& node) const {
   return points_.subspan(node.first, is_one_place(node.box) ? 1 : node.last - node.first);
 }
 

@@ -22,7 +22,7 @@ constexpr PageEngineKind::IndexSize size_of(std::uint64_t mebibytes) {
 constexpr double kProfileFineness = 2;
 
 /// The least number of poses for which the model field gets its full fineness, the one that pays
-/// for many poses (docs/design/sweep.md, "Fineness").
+/// for many poses (docs/design/sweep.md, "Field by need").
 constexpr double kPosesOfFullFineness = 1000;
 constexpr double kLeastFineness = 0.25;
 

@@ -15,8 +15,8 @@ struct BucketPoint {
   std::uint32_t index;
 };
 
-/// Puts the points of a bucket in the store's k-d order (docs/design/store-format.md, "Order"):
-/// cells of `cell_points`, and blocks of 64 within these. points: in source order. scratch: as many
+/// Puts the points of a bucket in the store's k-d order (docs/design/store-format.md, "Order of the
+/// points"): cells of `cell_points`, and blocks of 64 within these. points: in source order. scratch: as many
 /// points, overwritten. scale: metres per integer step on each axis. Uses the threads of the
 /// calling TBB arena.
 void order_bucket(std::span<BucketPoint> points, std::span<BucketPoint> scratch,
