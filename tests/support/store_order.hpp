@@ -9,9 +9,9 @@
 
 namespace clearway::test {
 
-/// Puts a bucket's points into the store's order (docs/design/store-format.md, "Order of the points"), as
-/// plainly as that can be written: it sorts by (coordinate, source) on the longest side, cuts, and does the
-/// same with both parts.
+/// Puts a bucket's points into the store's order (docs/design/store-format.md, "Order of the
+/// points"), as plainly as that can be written: it sorts by (coordinate, source) on the longest
+/// side, cuts, and does the same with both parts.
 void order_plainly(std::span<StoredPoint> points, std::uint64_t cell_points,
                    const Quantisation& quantisation);
 

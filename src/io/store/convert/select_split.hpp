@@ -16,9 +16,9 @@ struct BucketPoint {
 };
 
 /// Puts the points of a bucket in the store's k-d order (docs/design/store-format.md, "Order of the
-/// points"): cells of `cell_points`, and blocks of 64 within these. points: in source order. scratch: as many
-/// points, overwritten. scale: metres per integer step on each axis. Uses the threads of the
-/// calling TBB arena.
+/// points"): cells of `cell_points`, and blocks of 64 within these. points: in source order.
+/// scratch: as many points, overwritten. scale: metres per integer step on each axis. Uses the
+/// threads of the calling TBB arena.
 void order_bucket(std::span<BucketPoint> points, std::span<BucketPoint> scratch,
                   std::uint32_t cell_points, const double (&scale)[3], StageClocks& clocks);
 
