@@ -138,7 +138,7 @@ void check_budget(const QueryParameters& query, const SearchOptions& options) {
       throw UsageError(std::string("the ") + field.topic + " is " + std::to_string(*error) +
                        ", expected a finite number, 0 or above");
     } else if constexpr (std::is_same_v<Field, QueryField<double>>) {
-      if (!belongs_to_budget(field) || query.has_budget() || field.is_default(query)) return;
+      if (!field.belongs_to_budget() || query.has_budget() || field.is_default(query)) return;
       throw UsageError(std::string("the ") + field.topic +
                        " is of an error budget, and no error is given: expected an error of the "
                        "scan, the registration, the poses, the angles or the model");
@@ -171,7 +171,7 @@ void check_numbers(const QueryParameters& query, const SearchOptions& options) {
   for_each_value_field([&](const auto& field) {
     if constexpr (std::is_same_v<decltype(field), const QueryField<double>&>) {
       const std::string topic = std::string("the ") + field.topic;
-      if (!belongs_to_budget(field)) check(topic.c_str(), field.of(query), !field.is_required());
+      if (!field.belongs_to_budget()) check(topic.c_str(), field.of(query), !field.is_required());
     }
   });
   check_budget(query, options);

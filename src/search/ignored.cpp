@@ -19,9 +19,8 @@
 #include "core/util/tsan_annotations.hpp"
 #include "io/scans/length_unit.hpp"
 #include "search/checks/question.hpp"
-#include "search/memory_budget.hpp"
+#include "search/page_search.hpp"
 #include "search/threads.hpp"
-#include "stream/run_pages.hpp"
 
 namespace clearway {
 namespace {
@@ -235,15 +234,6 @@ Query query_of_ignored(const Query& query) {
 CollidingIgnored count_colliding_ignored(const StoreReader& store, const Query& query,
                                          std::uint64_t memory_bytes, PageEngineKind& kind,
                                          const ShardCells* only, Progress& progress) {
-  PageBudget budget(store, query, query, 0, memory_bytes, kind, only, std::nullopt,
-                    IgnoredPoints::Search::kIgnored);
-  budget.find();
-  throw_if_stopped(progress);
-  PageEngines engines = kind.make(budget.layout());
-  const std::vector<PlannedPage> pages =
-      paginate(store, budget.cells(), budget.layout().page_bytes, budget.layout().cells, true);
-  std::vector<PageEngine*> lanes;
-  for (const auto& engine : engines) lanes.push_back(engine.get());
   const Heights heights(store, query);
   std::atomic<std::uint64_t> points = 0, high = 0;
   const CollectPage count = [&](std::span<const PlannedCell> cells, const PageResult& found) {
@@ -256,16 +246,10 @@ CollidingIgnored count_colliding_ignored(const StoreReader& store, const Query& 
                             part_of_cell(found.first_poses, i, store.cell_entries()));
     }
   };
-  StageTimes times;
-  run_pages(store, budget.cells(), pages, lanes,
-            {.stage = "ignored", .ignored = budget.ignored(), .threads = kind.needs().threads},
-            count, progress, times);
-  SearchReport taken;
-  const MessageCallback silent;
-  std::vector<Message> none;
-  kind.report_search({lanes.data(), lanes.size()}, taken, MessageLog(silent, none));
-  kind.end(std::move(engines)).clear();
-  return {points, high, budget.needed_bytes(), taken.peak_device_bytes};
+  const CollectedPages taken =
+      collect_pages(store, query, memory_bytes, kind, only, IgnoredPoints::Search::kIgnored,
+                    "ignored", count, progress);
+  return {points, high, taken.needed_host_bytes, taken.peak_device_bytes};
 }
 
 void warn_of_colliding_ignored(const Answer& answer, bool model_is_cut, LengthUnit unit,

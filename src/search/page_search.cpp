@@ -145,4 +145,28 @@ Found search_pages(const StoreReader& store, const Query& query, std::uint64_t m
                report.pinned_bytes);
 }
 
+CollectedPages collect_pages(const PackedCloud& cloud, const Query& query,
+                             std::uint64_t memory_bytes, PageEngineKind& kind,
+                             const ShardCells* only, IgnoredPoints::Search search,
+                             const char* stage, const CollectPage& collect, Progress& progress) {
+  PageBudget budget(cloud, query, query, 0, memory_bytes, kind, only, std::nullopt, search);
+  budget.find();
+  throw_if_stopped(progress);
+  PageEngines engines = kind.make(budget.layout());
+  const std::vector<PlannedPage> pages = paginate(cloud, budget.cells(), budget.layout().page_bytes,
+                                                  budget.layout().cells, query.ignores_points());
+  std::vector<PageEngine*> lanes;
+  for (const auto& engine : engines) lanes.push_back(engine.get());
+  StageTimes times;
+  run_pages(cloud, budget.cells(), pages, lanes,
+            {.stage = stage, .ignored = budget.ignored(), .threads = kind.needs().threads}, collect,
+            progress, times);
+  SearchReport taken;
+  const MessageCallback silent;
+  std::vector<Message> none;
+  kind.report_search({lanes.data(), lanes.size()}, taken, MessageLog(silent, none));
+  kind.end(std::move(engines)).clear();
+  return {budget.needed_bytes(), taken.peak_device_bytes};
+}
+
 }  // namespace clearway

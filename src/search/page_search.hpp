@@ -3,11 +3,13 @@
 #include <cstdint>
 #include <functional>
 
+#include "core/query/ignored_points.hpp"
 #include "core/query/search_result.hpp"
 #include "core/util/progress.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/kinds/page_engine_kind.hpp"
 #include "search/shard_cells.hpp"
+#include "stream/run_pages.hpp"
 #include "stream/search_journal.hpp"
 
 namespace clearway {
@@ -28,6 +30,19 @@ Found search_pages(const StoreReader& store, const Query& query, std::uint64_t m
                    PageEngineKind& kind, const ShardCells* only,
                    const std::function<SearchJournal*()>& open_journal, Progress& progress,
                    SearchReport& report, const MessageLog& log);
+
+/// What a search that hands its pages to the caller took.
+struct CollectedPages {
+  std::uint64_t needed_host_bytes = 0, peak_device_bytes = 0;
+};
+
+/// Searches the cells of a cloud, or those that `only` contains, and hands the result of each page
+/// to `collect`, so that no answer is kept. search: which points are searched; stage: the name for
+/// those who watch the progress. Throws ResourceError as search_pages() does.
+CollectedPages collect_pages(const PackedCloud& cloud, const Query& query,
+                             std::uint64_t memory_bytes, PageEngineKind& kind,
+                             const ShardCells* only, IgnoredPoints::Search search,
+                             const char* stage, const CollectPage& collect, Progress& progress);
 
 /// The most bytes that a search with engine kdtree takes, besides the mapped store. options.threads
 /// is not 0.

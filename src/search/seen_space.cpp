@@ -22,9 +22,8 @@
 #include "core/util/format.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "io/scans/length_unit.hpp"
-#include "search/memory_budget.hpp"
+#include "search/page_search.hpp"
 #include "search/threads.hpp"
-#include "stream/run_pages.hpp"
 
 namespace clearway {
 namespace {
@@ -64,14 +63,6 @@ struct SweptBrick {
 std::vector<SweptBrick> sweep(const BrickCloud& cloud, const Query& query,
                               std::uint64_t memory_bytes, PageEngineKind& kind,
                               Progress& progress) {
-  PageBudget budget(cloud, query, query, 0, memory_bytes, kind, nullptr, std::nullopt);
-  budget.find();
-  throw_if_stopped(progress);
-  PageEngines engines = kind.make(budget.layout());
-  const std::vector<PlannedPage> pages = paginate(cloud, budget.cells(), budget.layout().page_bytes,
-                                                  budget.layout().cells, query.ignores_points());
-  std::vector<PageEngine*> lanes;
-  for (const auto& engine : engines) lanes.push_back(engine.get());
   const BodyNumbers numbers(query);
   std::vector<SweptBrick> swept(cloud.bricks().size());
   const CollectPage collect = [&](std::span<const PlannedCell> cells, const PageResult& found) {
@@ -88,11 +79,8 @@ std::vector<SweptBrick> sweep(const BrickCloud& cloud, const Query& query,
       }
     }
   };
-  StageTimes times;
-  run_pages(cloud, budget.cells(), pages, lanes,
-            {.stage = "swept space", .ignored = budget.ignored(), .threads = kind.needs().threads},
-            collect, progress, times);
-  kind.end(std::move(engines)).clear();
+  collect_pages(cloud, query, memory_bytes, kind, nullptr, IgnoredPoints::Search::kOthers,
+                "swept space", collect, progress);
   return swept;
 }
 

@@ -40,26 +40,32 @@ Vec3 xyz_of(const Quantisation& quantisation, const std::int32_t (&q)[3]) {
   return position(quantisation, q[0], q[1], q[2]);
 }
 
+/// Sets what a colliding point and a near one have in common: which point it is, and by which body
+/// at which pose the model first comes so close to it.
+template <typename Columns, typename Row>
+void set_touched_columns(const RowMeaning& meaning, std::span<const Row> rows, Columns& columns) {
+  set_column(columns.source, rows, [](const auto& row) { return row.source; });
+  set_column(columns.xyz, rows,
+             [&](const auto& row) { return xyz_of(meaning.quantisation, row.q); });
+  if (meaning.header.first_pose) {
+    set_column(columns.first_pose, rows,
+               [&](const auto& row) { return meaning.numbers.pose_of(row.first_pose); });
+  }
+  if (meaning.header.has_first_bodies()) {
+    set_column(columns.body, rows,
+               [&](const auto& row) { return meaning.numbers.body_of(row.first_pose); });
+  }
+}
+
 }  // namespace
 
 std::shared_ptr<WritePiece<Collisions>> encode_rows(const ResultWriter& writer,
                                                     const RowMeaning& meaning,
                                                     std::span<const CollisionRow> rows) {
-  const Quantisation& quantisation = meaning.quantisation;
-  const BodyNumbers numbers = meaning.numbers;
   auto out = std::make_shared<WritePiece<Collisions>>(writer.new_rows<Collisions>());
   Collisions columns;
   for_each_strip(rows, [&](std::span<const CollisionRow> strip) {
-    set_column(columns.source, strip, [](const auto& row) { return row.source; });
-    set_column(columns.xyz, strip, [&](const auto& row) { return xyz_of(quantisation, row.q); });
-    if (meaning.header.first_pose) {
-      set_column(columns.first_pose, strip,
-                 [&](const auto& row) { return numbers.pose_of(row.first_pose); });
-    }
-    if (meaning.header.has_first_bodies()) {
-      set_column(columns.body, strip,
-                 [&](const auto& row) { return numbers.body_of(row.first_pose); });
-    }
+    set_touched_columns(meaning, strip, columns);
     if (meaning.header.last_pose) {
       set_column(columns.last_pose, strip, [](const auto& row) { return row.last_pose; });
     }
@@ -76,21 +82,10 @@ std::shared_ptr<WritePiece<Collisions>> encode_rows(const ResultWriter& writer,
 std::shared_ptr<WritePiece<Nearby>> encode_rows(const ResultWriter& writer,
                                                 const RowMeaning& meaning,
                                                 std::span<const NearRow> rows) {
-  const Quantisation& quantisation = meaning.quantisation;
-  const BodyNumbers numbers = meaning.numbers;
   auto out = std::make_shared<WritePiece<Nearby>>(writer.new_rows<Nearby>());
   Nearby columns;
   for_each_strip(rows, [&](std::span<const NearRow> strip) {
-    set_column(columns.source, strip, [](const auto& row) { return row.source; });
-    set_column(columns.xyz, strip, [&](const auto& row) { return xyz_of(quantisation, row.q); });
-    if (meaning.header.first_pose) {
-      set_column(columns.first_pose, strip,
-                 [&](const auto& row) { return numbers.pose_of(row.first_pose); });
-    }
-    if (meaning.header.has_first_bodies()) {
-      set_column(columns.body, strip,
-                 [&](const auto& row) { return numbers.body_of(row.first_pose); });
-    }
+    set_touched_columns(meaning, strip, columns);
     out->rows.add(columns);
     summarise(columns, out->summary);
   });

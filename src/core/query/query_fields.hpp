@@ -159,9 +159,6 @@ void for_each_value_field(Visit visit) {
       "metres."});
 }
 
-/// The parameters that only a query with an error budget may change from their defaults.
-inline bool belongs_to_budget(const QueryField<double>& field) { return field.belongs_to_budget(); }
-
 /// Calls visit(field) for each parameter that is a list, of points that are left out of the search.
 template <typename Visit>
 void for_each_list_field(Visit visit) {

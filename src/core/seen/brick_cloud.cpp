@@ -123,14 +123,7 @@ std::uint64_t BrickCloud::allocated_bytes() const {
 namespace {
 
 struct BrickHash {
-  std::size_t operator()(const Brick& brick) const {
-    std::uint64_t h = 0;
-    for (const std::int32_t i : brick.i) {
-      h = (h ^ static_cast<std::uint32_t>(i)) * 0x9E3779B97F4A7C15U;
-      h ^= h >> 32;
-    }
-    return static_cast<std::size_t>(h);
-  }
+  std::size_t operator()(const Brick& brick) const { return hash_of(brick); }
 };
 
 struct BrickBox {

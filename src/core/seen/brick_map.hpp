@@ -37,7 +37,7 @@ class BrickMap {
 
   /// Index of a brick; kNone where it is none of bricks().
   std::uint32_t find(const Brick& brick) const {
-    for (std::size_t slot = hash(brick);; ++slot) {
+    for (std::size_t slot = hash_of(brick);; ++slot) {
       const std::uint32_t found = slots_[slot & (slots_.size() - 1)];
       if (found == kNone || bricks_[found] == brick) return found;
     }
@@ -68,17 +68,8 @@ class BrickMap {
   }
 
  private:
-  static std::size_t hash(const Brick& brick) {
-    std::uint64_t h = 0;
-    for (const std::int32_t i : brick.i) {
-      h = (h ^ static_cast<std::uint32_t>(i)) * 0x9E3779B97F4A7C15U;
-      h ^= h >> 29;
-    }
-    return static_cast<std::size_t>(h);
-  }
-
   void insert(std::uint32_t brick) {
-    std::size_t slot = hash(bricks_[brick]);
+    std::size_t slot = hash_of(bricks_[brick]);
     while (slots_[slot & (slots_.size() - 1)] != kNone) ++slot;
     slots_[slot & (slots_.size() - 1)] = brick;
     for (int k = 0; k < 3; ++k) {

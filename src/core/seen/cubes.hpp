@@ -111,4 +111,14 @@ struct Brick {
   }
 };
 
+/// Mixes the indices of a brick, for hash tables.
+inline std::uint64_t hash_of(const Brick& brick) {
+  std::uint64_t h = 0;
+  for (const std::int32_t i : brick.i) {
+    h = (h ^ static_cast<std::uint32_t>(i)) * 0x9E3779B97F4A7C15U;
+    h ^= h >> 29;
+  }
+  return h;
+}
+
 }  // namespace clearway

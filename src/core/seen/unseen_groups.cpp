@@ -1,40 +1,16 @@
 #include "core/seen/unseen_groups.hpp"
 
 #include <algorithm>
-#include <numeric>
+
+#include "core/util/disjoint_sets.hpp"
 
 namespace clearway {
-namespace {
-
-/// Sets of indices that are joined pair by pair. The root of a set is its least index.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0U);
-  }
-
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
-}  // namespace
-
 std::vector<std::uint32_t> group_cubes(std::span<const Cube> cubes,
                                        std::span<const std::uint32_t> first_poses) {
   DisjointSets sets(cubes.size());
-  // Of the 26 neighbours, the 13 that come later join the others too. Those of one column along z
-  // follow each other, so a search finds three at once.
+  // Each cube is joined with those of its 26 neighbours that come after it, because the others join
+  // it themselves. The neighbours in one column along z follow each other, so one search finds
+  // them.
   constexpr int kColumns[5][2] = {{0, 0}, {0, 1}, {1, -1}, {1, 0}, {1, 1}};
   for (std::uint32_t c = 0; c < cubes.size(); ++c) {
     for (const auto& [dx, dy] : kColumns) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/geometry/predicate.hpp"
+#include "core/util/disjoint_sets.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/models/mesh/mesh_builder.hpp"
@@ -85,27 +86,6 @@ std::vector<EdgeUse> edge_uses(const std::vector<Corners>& triangles) {
   return uses;
 }
 
-/// Disjoint sets of triangles, each named by its first triangle.
-class PartFinder {
- public:
-  explicit PartFinder(std::size_t triangles) : root_(triangles) {
-    std::iota(root_.begin(), root_.end(), 0U);
-  }
-
-  std::uint32_t part_of(std::uint32_t triangle) {
-    while (root_[triangle] != triangle) triangle = root_[triangle] = root_[root_[triangle]];
-    return triangle;
-  }
-
-  void join(std::uint32_t a, std::uint32_t b) {
-    const std::uint32_t of_a = part_of(a), of_b = part_of(b);
-    root_[std::max(of_a, of_b)] = std::min(of_a, of_b);
-  }
-
- private:
-  std::vector<std::uint32_t> root_;
-};
-
 /// Calls visit(uses of one edge) for every edge. The uses must be sorted by edge.
 template <typename Visit>
 void for_each_edge(std::span<const EdgeUse> uses, Visit visit) {
@@ -132,11 +112,11 @@ void note(FaultyEdges& edges, const Vec3& from, const Vec3& to) {
 constexpr std::uint32_t kLeastOfSolid = 4;
 
 /// Numbers the solids. faulty: whether a part has a faulty edge, by the part's first triangle.
-void number_solids(PartFinder& finder, const std::vector<bool>& faulty, MeshParts& parts) {
+void number_solids(DisjointSets& finder, const std::vector<bool>& faulty, MeshParts& parts) {
   const auto count = static_cast<std::uint32_t>(parts.mesh.triangles.size());
   std::vector<std::uint32_t> size_of(count), number_of(count, kNoSolid);
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (!is_flat(parts.mesh.triangles[i])) ++size_of[finder.part_of(i)];
+    if (!is_flat(parts.mesh.triangles[i])) ++size_of[finder.root(i)];
   }
   for (std::uint32_t i = 0; i < count; ++i) {
     if (size_of[i] >= kLeastOfSolid && !faulty[i]) {
@@ -148,7 +128,7 @@ void number_solids(PartFinder& finder, const std::vector<bool>& faulty, MeshPart
   parts.solid_of.resize(count);
   for (std::uint32_t i = 0; i < count; ++i) {
     const bool flat = is_flat(parts.mesh.triangles[i]);
-    parts.solid_of[i] = flat ? kNoSolid : number_of[finder.part_of(i)];
+    parts.solid_of[i] = flat ? kNoSolid : number_of[finder.root(i)];
     parts.flat += flat ? 1 : 0;
     parts.surface_triangles += parts.solid_of[i] == kNoSolid ? 1 : 0;
   }
@@ -177,7 +157,7 @@ MeshParts find_parts(const TriangleMesh& mesh) {
   parts.mesh = merged(mesh);
   parts.duplicates = leave_out_duplicates(parts.mesh.triangles);
   const std::vector<EdgeUse> uses = edge_uses(parts.mesh.triangles);
-  PartFinder finder(parts.mesh.triangles.size());
+  DisjointSets finder(parts.mesh.triangles.size());
   for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
     for (const EdgeUse& use : edge) finder.join(edge[0].triangle, use.triangle);
   });
@@ -185,7 +165,7 @@ MeshParts find_parts(const TriangleMesh& mesh) {
   for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
     EdgeFault fault{};
     if (!is_faulty(edge, fault)) return;
-    faulty[finder.part_of(edge[0].triangle)] = true;
+    faulty[finder.root(edge[0].triangle)] = true;
     const auto& vertices = parts.mesh.vertices;
     note(parts.faulty[static_cast<std::size_t>(fault)], vertices[edge[0].low],
          vertices[edge[0].high]);
