@@ -16,7 +16,8 @@ namespace {
 /// Where memory is short, pages get smaller once the number of slots is down to this.
 constexpr std::uint32_t kFewSlots = 4;
 
-/// The layouts that an engine may have, from the best to the least.
+}  // namespace
+
 std::vector<SlotLayout> layouts(const PageEngineNeeds& needs, std::uint64_t least_page_bytes) {
   std::vector<SlotLayout> out;
   for (std::uint32_t cells = needs.page_cells; cells > 0; cells /= 2) {
@@ -30,7 +31,19 @@ std::vector<SlotLayout> layouts(const PageEngineNeeds& needs, std::uint64_t leas
   return out;
 }
 
-}  // namespace
+SlotLayout needed_layout(const PackedCloud& cloud, std::span<const PlannedCell> cells, bool masked,
+                         std::uint32_t devices, const SlotLayout& layout) {
+  const auto pages = paginate(cloud, cells, layout.page_bytes, layout.cells, masked);
+  SlotLayout needed{.slots = 1, .page_bytes = 0, .cells = 1};
+  for (const PlannedPage& page : pages) {
+    needed.page_bytes = std::max(needed.page_bytes, page.shape.bytes());
+    needed.cells = std::max(needed.cells, page.shape.cells);
+  }
+  const std::uint64_t of_a_device = divide_up(pages.size(), devices);
+  needed.slots = static_cast<std::uint32_t>(
+      std::clamp<std::uint64_t>(of_a_device, needed.slots, layout.slots));
+  return needed;
+}
 
 std::uint64_t PageEngineKind::most_poses(const MotionTree& motion,
                                          std::span<const PlannedCell> cells) const {
@@ -111,26 +124,13 @@ bool PageBudget::fits_with(const PageEngineKind::IndexSize& size, bool any_layou
   for (const SlotLayout& layout :
        layouts(kind_.needs(), smallest_page_bytes(cloud_, cells_, masked_))) {
     if (fits(layout, planned, building, most_poses)) {
-      fits(as_needed(layout), planned, building, most_poses);
+      fits(needed_layout(cloud_, cells_, masked_, kind_.needs().devices, layout), planned, building,
+           most_poses);
       return true;
     }
     if (!any_layout && !kind_.needs().on_gpu) break;  // a GPU gets fewer slots first
   }
   return false;
-}
-
-/// The layout reduced to what the plan's pages fill; the pages stay the same.
-SlotLayout PageBudget::as_needed(const SlotLayout& layout) const {
-  const auto pages = paginate(cloud_, cells_, layout.page_bytes, layout.cells, masked_);
-  SlotLayout needed{.slots = 1, .page_bytes = 0, .cells = 1};
-  for (const PlannedPage& page : pages) {
-    needed.page_bytes = std::max(needed.page_bytes, page.shape.bytes());
-    needed.cells = std::max(needed.cells, page.shape.cells);
-  }
-  const std::uint64_t of_a_device = divide_up(pages.size(), kind_.needs().devices);
-  needed.slots = static_cast<std::uint32_t>(
-      std::clamp<std::uint64_t>(of_a_device, needed.slots, layout.slots));
-  return needed;
 }
 
 bool PageBudget::fits(const SlotLayout& layout, std::uint64_t planned, std::uint64_t building,

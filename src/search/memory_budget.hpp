@@ -47,7 +47,6 @@ class PageBudget {
   std::uint64_t kept_bytes(const SlotLayout& layout) const;
   std::uint64_t planned_bytes() const;
   bool fits_with(const PageEngineKind::IndexSize& size, bool any_layout);
-  SlotLayout as_needed(const SlotLayout& layout) const;
   bool fits(const SlotLayout& layout, std::uint64_t planned, std::uint64_t building,
             std::uint64_t most_poses);
 
@@ -70,6 +69,18 @@ class PageBudget {
   std::optional<std::uint64_t> smallest_bytes_;  ///< the least of what fits the device
   std::uint64_t smallest_device_bytes_ = std::numeric_limits<std::uint64_t>::max();
 };
+
+}  // namespace clearway
+
+/// How many pages of which size an engine may hold at a time.
+namespace clearway {
+
+/// The layouts that an engine may have, from the best to the least.
+std::vector<SlotLayout> layouts(const PageEngineNeeds& needs, std::uint64_t least_page_bytes);
+
+/// A layout reduced to what the pages of these cells fill; the pages stay the same.
+SlotLayout needed_layout(const PackedCloud& cloud, std::span<const PlannedCell> cells, bool masked,
+                         std::uint32_t devices, const SlotLayout& layout);
 
 }  // namespace clearway
 

@@ -267,7 +267,7 @@ class Search {
   /// Searches the cells that have colliding points once more, with the poses in reverse order.
   void find_last_poses(Found& found) {
     found.engine_end.clear();
-    options_.end_gpus = end_gpus_ && !header_.budget;
+    options_.end_gpus = end_gpus_ && !header_.budget && !query_.seen;
     const ShardCells cells = cells_with(found.result.hits);
     if (found.result.hits.count() == 0) return;
     Found other = search_further(found, backwards(query_), &cells, "last poses");
@@ -307,7 +307,7 @@ class Search {
   /// Finds the points that do not collide but are closer than `radius`.
   void find_near(Found& found, double radius) {
     const HitSet& hits = found.result.hits;
-    options_.end_gpus = end_gpus_;
+    options_.end_gpus = end_gpus_ && !query_.seen;
     if (!(radius > query_.radius)) {
       found.result.near.emplace(store_.entry_count(), query_.first_pose);
       return;
@@ -352,26 +352,82 @@ class Search {
   /// follows the beams of its own cells; the groups of what none of them saw are made by the merge.
   void find_unseen(Found& found) {
     found.engine_end.clear();
+    touched_ = store_.touched();
     further_options_ = options_;
     further_options_.engine = Engine::kSweep;
-    const bool gpu = report_.device == Device::kCuda && report_.engine != Engine::kKdtree;
-    const SeenSearch how{
-        .radius = header_.budget ? header_.budget->near_radius(query_.radius) : query_.radius,
-        .memory_bytes = options_.memory_bytes,
-        .threads = options_.threads,
-        .only = only(),
-        .kind = [&](const PackedCloud& cloud, const Query& query) {
-          return kind_for(gpu ? Device::kCuda : Device::kCpu, cloud, query, further_options_);
-        }};
-    SeenSpace space = find_seen_space(store_, query_, how, progress_);
-    warn_of_beams(space.beams, log_);
+    further_options_.end_gpus = false;
+    SeenSpace space = [&] {
+      if (report_.device == Device::kCuda && report_.engine != Engine::kKdtree) {
+        try {
+          return seen_space_on(Device::kCuda, found.write_bytes);
+        } catch (const NoGpu&) {
+        } catch (const ResourceError&) {
+          if (!fallback_allowed(options_)) throw;
+        }
+      }
+      return seen_space_on(Device::kCpu, found.write_bytes);
+    }();
+    report_.seconds.swept = space.sweep_seconds;
+    report_.seconds.beams = space.beam_seconds;
+    report_.peak_device_bytes = std::max(report_.peak_device_bytes, space.taken.peak_device_bytes);
+    warn_of_beams(space.left_out, log_);
     if (!options_.shard) {
       group_unseen(query_, space.unseen, space.summary);
       warn_of_small_groups(space.summary, query_, log_);
     }
     report_.seen = space.summary;
+    found.write_bytes -= std::min(found.write_bytes / 2, space.unseen.size() * kUnseenRowBytes);
     found.result.unseen = std::move(space.unseen);
   }
+
+  /// memory_bytes: what the search so far leaves.
+  SeenSpace seen_space_on(Device device, std::uint64_t memory_bytes) {
+    SeenSearch how{
+        .radius = header_.budget ? header_.budget->near_radius(query_.radius) : query_.radius,
+        .memory_bytes = memory_bytes,
+        .threads = options_.threads,
+        .only = only(),
+        .kind =
+            [&](const PackedCloud& cloud, const Query& query) {
+              return kind_for(device, cloud, query, further_options_);
+            },
+        .follow_on_gpus = {}};
+#ifdef CLEARWAY_CUDA
+    if (device == Device::kCuda) {
+      how.follow_on_gpus = [&](const Beams& beams, std::span<const PlannedCell> cells,
+                               std::uint64_t bytes,
+                               BrickMap& map) { return follow_on_gpus(beams, cells, bytes, map); };
+    }
+#endif
+    try {
+      return find_seen_space(store_, query_, how, progress_);
+    } catch (const ResourceError& error) {
+      if (error.remedy() != Remedy::kMoreMemory) throw;
+      const std::uint64_t needed =
+          options_.memory_bytes - memory_bytes + static_cast<std::uint64_t>(error.amount());
+      throw ResourceError(format_size(options_.memory_bytes) +
+                              " of memory is too little: to find what was not scanned needs " +
+                              format_size(needed) +
+                              " or more beside the mapped store; larger cubes need less",
+                          Remedy::kMoreMemory, static_cast<double>(needed));
+    }
+  }
+
+#ifdef CLEARWAY_CUDA
+  std::optional<BeamCounts> follow_on_gpus(const Beams& beams, std::span<const PlannedCell> cells,
+                                           std::uint64_t memory_bytes, BrickMap& map) {
+    SearchOptions options = further_options_;
+    options.end_gpus = end_gpus_;
+    try {
+      return follow_beams_on_gpus(
+          store_, cells, beams, map, memory_bytes, options, [this] { return open_gpus(); },
+          progress_, report_);
+    } catch (const ResourceError&) {
+      if (!fallback_allowed(options_)) throw;
+      return std::nullopt;
+    }
+  }
+#endif
 
   /// Searches all cells, or those of `cells`, for another query after the first search, as stage
   /// `name`. No journal keeps this search, so a run that is resumed begins it again. Leaves in
@@ -478,7 +534,7 @@ class Search {
       throw ResourceError(error.what(), Remedy::kResume);
     }
     journal_.remove_after_publication();
-    const StoreReader::Touched touched = store_.touched();
+    const StoreReader::Touched touched = touched_.value_or(store_.touched());
     report_.cells_read = touched.cells;
     report_.ignored_looked_at = found.result.ignored_points;
     report_.bytes_read = touched.bytes;
@@ -523,6 +579,8 @@ class Search {
   ResultHeader header_;
   std::optional<ShardCells> shard_;
   CollidingIgnored ignored_;
+  /// What the searches for points have read, set before beams are followed.
+  std::optional<StoreReader::Touched> touched_;
   std::optional<DeviceChoice> gpus_;  ///< set once they are open
   /// The query of a further search; it and its options outlive the engines.
   Query further_;

@@ -20,6 +20,7 @@
 #include "core/seen/unseen_groups.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
+#include "core/util/stopwatch.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "io/scans/length_unit.hpp"
 #include "search/page_search.hpp"
@@ -32,6 +33,10 @@ constexpr double kUsualCube = 0.2;     // metres
 constexpr double kLongestBeam = 1000;  // metres
 constexpr std::int64_t kMostSide = std::int64_t{1} << 29;
 constexpr std::int64_t kInsets = 4;  // a cube's side in insets, rounded down
+constexpr const char* kBeamStage = "beams";
+/// A part of the memory is for the bricks, and another for the swept cubes, while the rest
+/// searches.
+constexpr std::uint64_t kMemoryParts = 4;
 
 /// The length of a metre in the store's unit; 1 where the unit is unknown or is no length.
 double metre_of(const StoreReader& store) {
@@ -50,6 +55,12 @@ Query query_of_cubes(const Query& query, double radius) {
   return out;
 }
 
+[[noreturn]] void refuse_more(std::uint64_t needed, std::uint64_t allowed) {
+  throw ResourceError(
+      "the cubes that the model sweeps take more than " + format_size(allowed) + " of memory",
+      Remedy::kMoreMemory, static_cast<double>(needed));
+}
+
 /// The swept cubes of a brick.
 struct SweptBrick {
   std::array<std::uint64_t, kBrickWords> words{};
@@ -59,17 +70,32 @@ struct SweptBrick {
   std::uint64_t count() const { return first_poses.size(); }
 };
 
-/// Searches the middles of a cloud's cubes. Returns the swept cubes of each brick.
-std::vector<SweptBrick> sweep(const BrickCloud& cloud, const Query& query,
-                              std::uint64_t memory_bytes, PageEngineKind& kind,
-                              Progress& progress) {
+/// The swept cubes of each brick of a cloud.
+struct SweptCubes {
+  std::vector<SweptBrick> bricks;
+  std::atomic<std::uint64_t> cubes = 0;
+
+  std::uint64_t bytes() const {
+    return bricks.size() * sizeof(SweptBrick) + cubes * sizeof(std::uint32_t);
+  }
+};
+
+/// Searches the middles of a cloud's cubes. most_bytes: bytes that the swept cubes may take beside
+/// the search, which takes up to memory_bytes.
+void sweep(const BrickCloud& cloud, const Query& query, std::uint64_t memory_bytes,
+           std::uint64_t most_bytes, PageEngineKind& kind, Progress& progress, SweptCubes& swept,
+           CollectedPages& taken) {
   const BodyNumbers numbers(query);
-  std::vector<SweptBrick> swept(cloud.bricks().size());
+  swept.bricks.resize(cloud.bricks().size());
   const CollectPage collect = [&](std::span<const PlannedCell> cells, const PageResult& found) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const auto hits = part_of_cell(found.hits, i, cloud.blocks_per_cell());
       const auto poses = part_of_cell(found.first_poses, i, cloud.cell_entries());
-      SweptBrick& brick = swept[cells[i].cell];
+      SweptBrick& brick = swept.bricks[cells[i].cell];
+      std::size_t count = 0;
+      for (const std::uint64_t word : hits) count += static_cast<std::size_t>(std::popcount(word));
+      swept.cubes += count;
+      brick.first_poses.reserve(count);
       for (std::size_t word = 0; word < hits.size(); ++word) {
         brick.words[word] = hits[word];
         for (std::uint64_t open = hits[word]; open != 0; open &= open - 1) {
@@ -78,94 +104,142 @@ std::vector<SweptBrick> sweep(const BrickCloud& cloud, const Query& query,
         }
       }
     }
+    if (swept.bytes() > most_bytes) refuse_more(kMemoryParts * swept.bytes(), most_bytes);
   };
-  collect_pages(cloud, query, memory_bytes, kind, nullptr, IgnoredPoints::Search::kOthers,
-                "swept space", collect, progress);
-  return swept;
+  taken = collect_pages(cloud, query, memory_bytes, kind, nullptr, IgnoredPoints::Search::kOthers,
+                        "swept space", collect, progress);
 }
 
-/// Follows the beams of a store.
-class Beams {
+/// What is known of a cell's beams before they are followed.
+struct BeamReach {
+  bool enters = true;    ///< whether a beam may enter the bricks, or may have to be counted
+  unsigned minbits = 0;  ///< bits in which the cell's origins are packed
+};
+
+/// Finds out which beams there are in a store.
+class StoreBeams {
  public:
-  Beams(const StoreReader& store, BrickMap& map)
-      : store_(store), origins_(store.metadata().origins->quanta), map_(map) {
+  StoreBeams(const StoreReader& store, const BrickMap& map)
+      : store_(store), origins_(store.metadata().origins->quanta), map_(map.ref()) {
     const double most = kLongestBeam * metre_of(store);
     most_squared_ = most * most;
   }
 
-  void follow_cell(std::uint32_t cell) {
-    const std::uint32_t count = store_.cells()[cell].count;
-    const auto coordinates = store_.peek(cell);
-    const PackedChunk<std::uint32_t> of = store_.origins(cell);
-    constexpr std::uint32_t kAtOnce = 1024;
-    std::array<std::array<std::int32_t, kAtOnce>, 3> q{};
-    BeamCounts counts;
-    for (std::uint32_t first = 0; first < count; first += kAtOnce) {
-      const std::uint32_t n = std::min(kAtOnce, count - first);
-      for (std::size_t k = 0; k < 3; ++k) coordinates[k].decode(first, std::span(q[k]).first(n));
-      for (std::uint32_t i = 0; i < n; ++i) {
-        follow({q[0][i], q[1][i], q[2][i]}, of[first + i], counts);
-      }
+  /// The cells, among those of `only`, whose beams are to be followed; sets beams.origin_minbits.
+  std::vector<PlannedCell> cells(const ShardCells* only, Beams& beams, Progress& progress) const {
+    std::vector<BeamReach> reach(store_.cells().size());
+    const ParallelScope scope;
+    const auto look = piece_of(scope, [&](std::size_t cell) {
+      const auto index = static_cast<std::uint32_t>(cell);
+      throw_if_stopped(progress);
+      reach[cell] = only == nullptr || only->contains(index) ? reach_of(index) : BeamReach{false};
+    });
+    scope.begin();
+    tbb::parallel_for(std::size_t{0}, reach.size(), look);
+    std::vector<PlannedCell> cells;
+    for (std::uint32_t cell = 0; cell < reach.size(); ++cell) {
+      if (!reach[cell].enters) continue;
+      cells.push_back({cell, {}});
+      beams.origin_minbits = std::max(beams.origin_minbits, reach[cell].minbits);
     }
-    beams_ += counts.beams;
-    without_origin_ += counts.without_origin;
-    too_long_ += counts.too_long;
+    return cells;
   }
 
-  BeamCounts counts() const { return {beams_, without_origin_, too_long_}; }
+  Beams beams(const BrickMap& map) const {
+    return {.ref = {.map = map_,
+                    .origins = origins_.front().data(),
+                    .origin_count = static_cast<std::uint32_t>(origins_.size()),
+                    .quantisation = store_.quantisation(),
+                    .most_squared = most_squared_},
+            .map = map,
+            .origins_of = [this](std::uint32_t cell) { return store_.origins(cell); }};
+  }
 
  private:
-  void follow(const std::array<std::int32_t, 3>& q, std::uint32_t origin, BeamCounts& counts) {
-    if (origin == 0) {
-      ++counts.without_origin;
-      return;
-    }
-    Beam beam{};
-    bool any = false;
-    double squared = 0;
-    bool is_short = true;
+  /// Beams of a cell lie in the box around its points and their origins. Where that box holds no
+  /// brick, and no beam in it is too long, the cell need not be looked at.
+  BeamReach reach_of(std::uint32_t cell) const {
+    constexpr std::uint64_t kFewOrigins = 64;
+    const PackedChunk<std::uint32_t> of = store_.origins(cell);
+    BeamReach reach{.minbits = of.minbits()};
+    const std::uint64_t first = of.minimum(), span = std::uint64_t{1} << of.minbits();
+    if (first == 0 || span > kFewOrigins) return reach;
+    const QuantumBox& box = store_.cells()[cell].box;
+    std::int64_t longest[3];
+    bool apart = false;
     for (std::size_t k = 0; k < 3; ++k) {
-      beam.origin[k] = origins_[origin - 1][k];
-      const std::int64_t way = q[k] - beam.origin[k];
-      is_short = is_short && way > -Beam::kMostQuanta && way < Beam::kMostQuanta;
-      beam.way[k] = way;
-      any = any || way != 0;
-      const double length = static_cast<double>(way) * store_.quantisation().scale[k];
-      squared += length * length;
+      std::int64_t lo = box.lo[k], hi = box.hi[k];
+      for (std::uint64_t o = first; o < first + span && o <= origins_.size(); ++o) {
+        lo = std::min(lo, origins_[o - 1][k]);
+        hi = std::max(hi, origins_[o - 1][k]);
+      }
+      longest[k] = hi > lo + Beam::kMostQuanta ? Beam::kMostQuanta : hi - lo;
+      apart = apart || hi < map_.range.lo[k] * map_.brick_side[k] ||
+              lo > (std::int64_t{map_.range.hi[k]} + 1) * map_.brick_side[k];
     }
-    if (!any) return;
-    if (!is_short || squared > most_squared_) {
-      ++counts.too_long;
-      return;
-    }
-    ++counts.beams;
-    map_.see(beam);
+    reach.enters = !apart || is_too_long(longest, store_.quantisation(), most_squared_);
+    return reach;
   }
 
   const StoreReader& store_;
-  std::span<const std::array<std::int64_t, 3>> origins_;
-  BrickMap& map_;
+  const std::span<const std::array<std::int64_t, 3>> origins_;
+  const BrickMapRef& map_;
   double most_squared_ = 0;
-  std::atomic<std::uint64_t> beams_ = 0, without_origin_ = 0, too_long_ = 0;
 };
 
-void follow_beams(const StoreReader& store, const SeenSearch& how, BrickMap& map,
-                  BeamCounts& counts, Progress& progress) {
-  Beams beams(store, map);
-  progress.begin("beams", store.point_count(), "points");
-  in_threads(how.threads, [&] {
+/// Follows the beams to the points of a cell.
+BeamCounts follow_cell(const StoreReader& store, const Beams& beams, std::uint32_t cell) {
+  const std::uint32_t count = store.cells()[cell].count;
+  const auto coordinates = store.peek(cell);
+  const PackedChunk<std::uint32_t> of = beams.origins_of(cell);
+  constexpr std::uint32_t kAtOnce = 1024;
+  std::array<std::array<std::int32_t, kAtOnce>, 3> q{};
+  std::array<std::uint32_t, kAtOnce> origins{};
+  BeamCounts counts;
+  for (std::uint32_t first = 0; first < count; first += kAtOnce) {
+    const std::uint32_t n = std::min(kAtOnce, count - first);
+    for (std::size_t k = 0; k < 3; ++k) coordinates[k].decode(first, std::span(q[k]).first(n));
+    of.decode(first, std::span(origins).first(n));
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const std::int32_t point[3] = {q[0][i], q[1][i], q[2][i]};
+      beams.ref.follow(point, origins[i], counts);
+    }
+  }
+  return counts;
+}
+
+BeamCounts follow_on_cpu(const StoreReader& store, const Beams& beams,
+                         std::span<const PlannedCell> cells, int threads, Progress& progress) {
+  std::uint64_t points = 0;
+  for (const PlannedCell& cell : cells) points += store.cells()[cell.cell].count;
+  progress.begin(kBeamStage, points, "points");
+  std::atomic<std::uint64_t> without_origin = 0, too_long = 0;
+  in_threads(threads, [&] {
     const ParallelScope scope;
-    const auto follow = piece_of(scope, [&](std::size_t cell) {
-      const auto index = static_cast<std::uint32_t>(cell);
+    const auto follow = piece_of(scope, [&](std::size_t i) {
       throw_if_stopped(progress);
-      if (how.only == nullptr || how.only->contains(index)) beams.follow_cell(index);
-      progress.advance(store.cells()[index].count);
+      const BeamCounts counts = follow_cell(store, beams, cells[i].cell);
+      without_origin += counts.without_origin;
+      too_long += counts.too_long;
+      progress.advance(store.cells()[cells[i].cell].count);
     });
     scope.begin();
-    tbb::parallel_for(std::size_t{0}, store.cells().size(), follow);
+    tbb::parallel_for(std::size_t{0}, cells.size(), follow);
   });
   progress.end();
-  counts = beams.counts();
+  return {without_origin, too_long};
+}
+
+BeamCounts follow_beams(const StoreReader& store, const SeenSearch& how, std::uint64_t memory_bytes,
+                        BrickMap& map, Progress& progress) {
+  const StoreBeams known(store, map);
+  Beams beams = known.beams(map);
+  std::vector<PlannedCell> cells;
+  in_threads(how.threads, [&] { cells = known.cells(how.only, beams, progress); });
+  if (how.follow_on_gpus && !cells.empty()) {
+    if (const auto counts = how.follow_on_gpus(beams, cells, memory_bytes, map)) return *counts;
+  }
+  return follow_on_cpu(store, beams, cells, how.threads, progress);
 }
 
 /// A swept cube that no beam saw.
@@ -216,29 +290,45 @@ SeenSpace find_seen_space(const StoreReader& store, const Query& query, const Se
   const Query cubes = query_of_cubes(query, how.radius);
   SeenSpace space;
   space.summary.cube = static_cast<double>(lattice.side[0]) * store.quantisation().scale[0];
-  const BrickCloud cloud(
-      bricks_along(query, how.radius, lattice, store.quantisation(), how.memory_bytes / 4), lattice,
-      store.quantisation());
+  const std::uint64_t share = how.memory_bytes / kMemoryParts;
+  const Stopwatch clock;
+  const BrickCloud cloud(bricks_along(query, how.radius, lattice, store.quantisation(), share),
+                         lattice, store.quantisation());
   if (cloud.bricks().empty()) return space;
-  std::vector<SweptBrick> swept =
-      sweep(cloud, cubes, how.memory_bytes, *how.kind(cloud, cubes), progress);
+  SweptCubes swept;
+  sweep(cloud, cubes, how.memory_bytes - share, share, *how.kind(cloud, cubes), progress, swept,
+        space.taken);
+  space.summary.swept = swept.cubes;
+  space.sweep_seconds = clock.seconds();
 
   std::vector<Brick> bricks;
   std::vector<std::uint32_t> cell_of_brick;
   std::vector<std::uint64_t> words;
-  for (std::uint32_t cell = 0; cell < swept.size(); ++cell) {
-    if (swept[cell].count() == 0) continue;
+  for (std::uint32_t cell = 0; cell < swept.bricks.size(); ++cell) {
+    const SweptBrick& brick = swept.bricks[cell];
+    if (brick.count() == 0) continue;
     bricks.push_back(cloud.bricks()[cell]);
     cell_of_brick.push_back(cell);
-    words.insert(words.end(), swept[cell].words.begin(), swept[cell].words.end());
-    space.summary.swept += swept[cell].count();
+    words.insert(words.end(), brick.words.begin(), brick.words.end());
   }
+  std::uint64_t bytes =
+      cloud.allocated_bytes() + swept.bytes() + BrickMap::bytes_for(bricks.size());
+  if (bytes > how.memory_bytes) refuse_more(bytes, how.memory_bytes);
   BrickMap map(lattice, std::move(bricks), std::move(words));
-  follow_beams(store, how, map, space.beams, progress);
+  const Stopwatch following;
+  space.left_out = follow_beams(store, how, how.memory_bytes - bytes, map, progress);
+  space.beam_seconds = following.seconds();
 
+  std::uint64_t count = 0;
+  for (const std::uint64_t word : map.words()) {
+    count += static_cast<std::uint64_t>(std::popcount(word));
+  }
+  bytes += count * (sizeof(Unseen) + kUnseenRowBytes);
+  if (bytes > how.memory_bytes) refuse_more(bytes, how.memory_bytes);
   std::vector<Unseen> unseen;
+  unseen.reserve(count);
   for (std::uint32_t b = 0; b < map.bricks().size(); ++b) {
-    const SweptBrick& brick = swept[cell_of_brick[b]];
+    const SweptBrick& brick = swept.bricks[cell_of_brick[b]];
     std::size_t next = 0;
     for (std::uint32_t word = 0; word < kBrickWords; ++word) {
       for (std::uint64_t open = brick.words[word]; open != 0; open &= open - 1, ++next) {
@@ -289,19 +379,19 @@ void group_unseen(const QueryParameters& query, UnseenCubes& unseen, SeenSummary
   unseen.step.clear();
 }
 
-void warn_of_beams(const BeamCounts& beams, MessageLog& log) {
-  if (beams.without_origin > 0) {
+void warn_of_beams(const BeamCounts& left_out, MessageLog& log) {
+  if (left_out.without_origin > 0) {
     log.warn("beams-without-origin",
-             format_count(beams.without_origin) +
+             format_count(left_out.without_origin) +
                  " points do not say where their scanner stood, so that their beams show nothing",
-             {{"points", static_cast<double>(beams.without_origin)}});
+             {{"points", static_cast<double>(left_out.without_origin)}});
   }
-  if (beams.too_long > 0) {
+  if (left_out.too_long > 0) {
     log.warn("long-beams",
-             format_count(beams.too_long) +
+             format_count(left_out.too_long) +
                  " beams are longer than 1 km, or than 2^30 steps of the stored coordinates, and "
                  "are left out. Are the origins those of these scans?",
-             {{"beams", static_cast<double>(beams.too_long)}});
+             {{"beams", static_cast<double>(left_out.too_long)}});
   }
 }
 

@@ -3,32 +3,30 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "clearway/query.hpp"
 #include "clearway/seen.hpp"
 #include "core/query/search_result.hpp"
+#include "core/seen/beams.hpp"
 #include "core/seen/cubes.hpp"
 #include "core/util/messages.hpp"
 #include "core/util/progress.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/kinds/page_engine_kind.hpp"
+#include "search/page_search.hpp"
 #include "search/shard_cells.hpp"
 
 namespace clearway {
-
-/// Beams of a search for seen space, by what became of them.
-struct BeamCounts {
-  std::uint64_t beams = 0;           ///< beams that were followed
-  std::uint64_t without_origin = 0;  ///< points whose scanner's place is not known
-  std::uint64_t too_long = 0;        ///< beams of 2^30 steps or more on an axis, or over 1 km
-};
 
 /// The space that a query sweeps, as far as it is known.
 struct SeenSpace {
   UnseenCubes unseen;
   SeenSummary summary;
-  BeamCounts beams;
+  BeamCounts left_out;   ///< beams that were not followed
+  CollectedPages taken;  ///< what the search for swept cubes took
+  double sweep_seconds = 0, beam_seconds = 0;
 };
 
 /// The cubes in which seen space is judged in a store. asked: side of a cube in the environment's
@@ -39,16 +37,24 @@ CubeLattice cube_lattice(const StoreReader& store, double asked);
 /// scanner stood, or the cubes do not suit its integers.
 void check_seen_space(const StoreReader& store, const QueryParameters& query);
 
+/// Bytes of a row of UnseenCubes.
+inline constexpr std::uint64_t kUnseenRowBytes = 5 * sizeof(std::uint32_t) + sizeof(double);
+
 /// How a search for seen space is done.
 struct SeenSearch {
   /// Distance from the model at which a cube's middle counts as swept, metres.
   double radius = 0;
-  std::uint64_t memory_bytes = 0;
+  std::uint64_t memory_bytes = 0;  ///< bytes that the search may take
   int threads = 0;
   /// The cells whose beams are followed; null for all.
   const ShardCells* only = nullptr;
   /// Makes the engine that searches a cloud for a query, both of which outlive it.
   std::function<std::unique_ptr<PageEngineKind>(const PackedCloud&, const Query&)> kind;
+  /// Follows beams to the points of cells on GPUs, with up to so many bytes of memory, and clears
+  /// bits of the map; returns nothing where the CPU has to do it. Empty where it always has to.
+  std::function<std::optional<BeamCounts>(const Beams&, std::span<const PlannedCell>,
+                                          std::uint64_t memory_bytes, BrickMap&)>
+      follow_on_gpus;
 };
 
 /// Finds which cubes the query sweeps, by searching their middles, and which of these no beam of
@@ -63,7 +69,7 @@ SeenSpace find_seen_space(const StoreReader& store, const Query& query, const Se
 void group_unseen(const QueryParameters& query, UnseenCubes& unseen, SeenSummary& summary);
 
 /// Warns of points whose beams were left out: "beams-without-origin", "long-beams".
-void warn_of_beams(const BeamCounts& beams, MessageLog& log);
+void warn_of_beams(const BeamCounts& left_out, MessageLog& log);
 
 /// Warns of groups of unseen cubes that are too small to be listed: "small-unseen".
 void warn_of_small_groups(const SeenSummary& found, const QueryParameters& query, MessageLog& log);

@@ -2,9 +2,13 @@
 #include <catch2/catch.hpp>
 
 #include "catch_session.hpp"
+#include "gpu/beam_engine.hpp"
 #include "gpu/devices.hpp"
 #include "gpu/grid_engine.hpp"
 #include "gpu/sweep_engine.hpp"
+#include "stream/plan.hpp"
+#include "stream/run_pages.hpp"
+#include "support/engines/beam_runs.hpp"
 #include "support/engines/engines.hpp"
 #include "support/engines/grid_runs.hpp"
 
@@ -35,12 +39,30 @@ SearchResult sweep_on_cuda(const PackedCloud& cloud, const Query& query, int thr
       true);
 }
 
+BeamRun beams_on_cuda(const PackedCloud& cloud, const Beams& beams) {
+  std::vector<PlannedCell> cells;
+  for (std::uint32_t cell = 0; cell < cloud.cells().size(); ++cell) cells.push_back({cell, {}});
+  const SlotLayout layout{2, smallest_page_bytes(cloud, cells) * kBeamPageCells, kBeamPageCells};
+  CudaBeamEngine engine(0, beams, cloud, layout);
+  CHECK(engine.device_bytes() ==
+        cuda_beam_bytes(beams) + layout.slots * cuda_beam_slot_bytes(beams, cloud, layout));
+  PageEngine* const lane = &engine;
+  NoProgress silent;
+  StageTimes times;
+  run_pages(
+      cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells), {&lane, 1},
+      {.stage = "beams", .ignored = IgnoredPoints(cloud, {}), .threads = 2},
+      [](std::span<const PlannedCell>, const PageResult&) {}, silent, times);
+  return {engine.words(), engine.counts()};
+}
+
 }  // namespace
 }  // namespace clearway
 
 int main(int count, char** arguments) {
   clearway::test_only({{"sweep on CUDA", clearway::sweep_on_cuda, true, true, true, true},
                        {"grid on CUDA", clearway::grid_on_cuda, false, false, false, false}});
+  clearway::follow_pages_with(clearway::beams_on_cuda);
   return run_catch(count, arguments, [] {
     return clearway::cuda_device_count() == 0 ? "no CUDA device here" : nullptr;
   });

@@ -4,7 +4,8 @@
 set -uo pipefail
 program=$1 folder=$2 only=${3:-} failed=0
 "$program" scene hall -o "$folder" --points 20000 --model-points 2000 --poses 200 --force >/dev/null 2>&1 || exit 1
-"$program" convert "$folder/environment.las" -o "$folder/site.h5" --cell-points 1000 --force >/dev/null 2>&1 || exit 1
+"$program" convert "$folder/environment.las" -o "$folder/site.h5" --origins "$folder/origins.csv" \
+  --cell-points 1000 --force >/dev/null 2>&1 || exit 1
 cat >"$folder/box.off" <<'BOX'
 OFF
 8 6 0
@@ -34,9 +35,10 @@ vehicle="--vehicle $folder/vehicle.json"
 questions=("$points --engine sweep" "$points --engine sweep --first-pose" "$points --engine sweep --between-poses"
   "$points --engine sweep --clearance 0.3" "$points --engine sweep --clearance 0.3 --first-pose"
   "$points --engine sweep --between-poses --first-pose" "$points --engine sweep --profile 0.5"
+  "$points --engine sweep --seen" "$points --engine sweep --between-poses --seen"
   "$points --engine grid" "$points --engine grid --first-pose" "$points --engine grid --precision float")
 for model in "$surface" "$solid" "$vehicle"; do
-  questions+=("$model --first-pose" "$model --clearance 0.3" "$model --profile 0.5")
+  questions+=("$model --first-pose" "$model --clearance 0.3" "$model --profile 0.5" "$model --seen")
 done
 for tool in memcheck racecheck initcheck; do
   for question in "${questions[@]}"; do

@@ -149,6 +149,8 @@ nlohmann::ordered_json seconds_of(const SearchSeconds& search, const ProgramRepo
           {"upload", search.upload},
           {"compute", search.compute},
           {"collect", search.collect},
+          {"swept", search.swept},
+          {"beams", search.beams},
           {"write", search.write},
           {"end_wait", search.end_wait}};
 }

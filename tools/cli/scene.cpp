@@ -47,14 +47,13 @@ scene::Sizes sizes_of(const SceneOptions& options) {
           options.poses.value_or(full.poses)};
 }
 
-void write_to_stdout(const scene::Scene& made, const SceneOptions& options, Progress& progress) {
+File standard_output() {
   if (::isatty(STDOUT_FILENO) == 1) {
     throw UsageError("--environment - writes LAS, which is binary: pipe or redirect it");
   }
   const int descriptor = ::dup(STDOUT_FILENO);
   if (descriptor < 0) throw ResourceError("standard output: cannot open: it is closed");
-  const File out = File::adopt(descriptor, "standard output");
-  scene::write_environment(made, options.seed, out, options.threads, progress);
+  return File::adopt(descriptor, "standard output");
 }
 
 /// Throws ResourceError where the disk is too small, at once instead of after minutes.
@@ -69,9 +68,11 @@ void check_disk_space(const std::filesystem::path& folder, std::uint64_t points)
 }
 
 /// Writes the scene's files; all are complete under temporary names before the first gets its own.
+/// An environment for standard output comes after them.
 void make_scene_files(const SceneOptions& options) {
   const auto sizes = sizes_of(options);
-  const bool to_stdout = options.environment == "-";
+  std::optional<File> to_stdout;
+  if (options.environment == "-") to_stdout.emplace(standard_output());
   std::error_code error;
   std::filesystem::create_directories(options.folder, error);
   if (error) {
@@ -91,9 +92,7 @@ void make_scene_files(const SceneOptions& options) {
   scene::write_trajectory(*made, File::create(trajectory.partial()));
   scene::write_origins(*made, File::create(origins.partial()));
   ConsoleProgress progress;
-  if (to_stdout) {
-    write_to_stdout(*made, options, progress);
-  } else {
+  if (!to_stdout) {
     scene::write_environment(*made, options.seed, File::create(environment->partial()),
                              options.threads, progress);
     environment->publish();
@@ -101,6 +100,10 @@ void make_scene_files(const SceneOptions& options) {
   model.publish();
   trajectory.publish();
   origins.publish();
+  // Last, so that whoever reads the pipe finds the origins of its points.
+  if (to_stdout) {
+    scene::write_environment(*made, options.seed, *to_stdout, options.threads, progress);
+  }
   spdlog::info("{}: {}, {}, {}", options.folder.string(),
                counted(sizes.points, "environment point"),
                counted(sizes.model_points, "model point"), counted(sizes.poses, "pose"));

@@ -105,14 +105,16 @@ struct Brick {
     }
     return out;
   }
-  friend bool operator==(const Brick&, const Brick&) = default;
+  CLEARWAY_HD friend bool operator==(const Brick& a, const Brick& b) {
+    return a.i[0] == b.i[0] && a.i[1] == b.i[1] && a.i[2] == b.i[2];
+  }
   friend bool operator<(const Brick& a, const Brick& b) {
     return Cube{{a.i[0], a.i[1], a.i[2]}} < Cube{{b.i[0], b.i[1], b.i[2]}};
   }
 };
 
 /// Mixes the indices of a brick, for hash tables.
-inline std::uint64_t hash_of(const Brick& brick) {
+CLEARWAY_HD inline std::uint64_t hash_of(const Brick& brick) {
   std::uint64_t h = 0;
   for (const std::int32_t i : brick.i) {
     h = (h ^ static_cast<std::uint32_t>(i)) * 0x9E3779B97F4A7C15U;

@@ -5,6 +5,10 @@
 
 #include "core/util/macros.hpp"
 
+#ifndef __CUDA_ARCH__
+#include <atomic>
+#endif
+
 /// Functions for the bits of a word, and for words that the threads of a device share.
 namespace clearway {
 
@@ -14,6 +18,26 @@ CLEARWAY_HD inline void or_into(std::uint64_t* word, std::uint64_t bits) {
   atomicOr(reinterpret_cast<unsigned long long*>(word), static_cast<unsigned long long>(bits));
 #else
   *word |= bits;
+#endif
+}
+
+/// Reads a word in which other threads, of the host or of a device, clear bits at the same time. On
+/// a device the value may be older than what another thread has cleared.
+CLEARWAY_HD inline std::uint64_t shared_word(const std::uint64_t* word) {
+#ifdef __CUDA_ARCH__
+  return *word;
+#else
+  return std::atomic_ref(*const_cast<std::uint64_t*>(word)).load(std::memory_order_relaxed);
+#endif
+}
+
+/// Clears bits of a word in which other threads, of the host or of a device, clear bits at the same
+/// time.
+CLEARWAY_HD inline void clear_in(std::uint64_t* word, std::uint64_t bits) {
+#ifdef __CUDA_ARCH__
+  atomicAnd(reinterpret_cast<unsigned long long*>(word), static_cast<unsigned long long>(~bits));
+#else
+  std::atomic_ref(*word).fetch_and(~bits, std::memory_order_relaxed);
 #endif
 }
 

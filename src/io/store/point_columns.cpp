@@ -141,6 +141,12 @@ std::span<const std::int64_t> numbers_of(const std::vector<std::array<std::int64
 
 void check_origins(const StoreOrigins& origins, const std::string& name) {
   const auto& quanta = origins.quanta;
+  constexpr std::int64_t kFarthest = std::int64_t{1} << 62;
+  for (const std::int64_t q : numbers_of(quanta)) {
+    if (q < -kFarthest || q > kFarthest) {
+      refuse(name, "dataset 'origins/quanta': expected values from -2^62 to 2^62");
+    }
+  }
   if (!quanta.empty() && quanta.size() < std::numeric_limits<std::uint32_t>::max() &&
       std::adjacent_find(quanta.begin(), quanta.end(), std::greater_equal()) == quanta.end()) {
     return;

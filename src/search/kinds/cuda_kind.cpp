@@ -4,12 +4,16 @@
 #include <future>
 
 #include "cpu/sweep_engine.hpp"
+#include "gpu/beam_engine.hpp"
 #include "gpu/devices.hpp"
 #include "gpu/grid_engine.hpp"
 #include "gpu/sweep_engine.hpp"
 #include "search/check_query.hpp"
 #include "search/kinds/grid_kind.hpp"
 #include "search/kinds/sweep_kind.hpp"
+#include "search/memory_budget.hpp"
+#include "stream/plan.hpp"
+#include "stream/run_pages.hpp"
 
 namespace clearway {
 namespace {
@@ -189,6 +193,64 @@ std::unique_ptr<PageEngineKind> cuda_kind(const PackedCloud& cloud, const Query&
     return std::make_unique<CudaSweepKindOf<Triangle>>(cloud, query, options, std::move(open));
   }
   return std::make_unique<CudaSweepKindOf<Vec3>>(cloud, query, options, std::move(open));
+}
+
+namespace {
+
+/// The layout in which beams are followed within the memory of host and device.
+SlotLayout beam_layout(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                       const Beams& beams, std::uint64_t memory_bytes,
+                       const PageEngineNeeds& needs) {
+  std::uint64_t least_device = 0, least_host = 0;
+  const std::uint64_t words = beams.map.words().size_bytes() + run_pages_bytes(cells.size());
+  for (const SlotLayout& layout : layouts(needs, smallest_page_bytes(cloud, cells))) {
+    least_device =
+        cuda_beam_bytes(beams) + layout.slots * cuda_beam_slot_bytes(beams, cloud, layout);
+    least_host =
+        words + needs.devices * layout.slots * cuda_beam_pinned_bytes(beams, cloud, layout);
+    if (least_device <= needs.most_device_bytes && least_host <= memory_bytes) {
+      return needed_layout(cloud, cells, false, needs.devices, layout);
+    }
+  }
+  if (least_device > needs.most_device_bytes) {
+    refuse_device_memory(least_device, needs.most_device_bytes, needs.short_device);
+  }
+  throw ResourceError("too little memory for pages of beams", Remedy::kMoreMemory,
+                      static_cast<double>(least_host));
+}
+
+}  // namespace
+
+BeamCounts follow_beams_on_gpus(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                                const Beams& beams, BrickMap& map, std::uint64_t memory_bytes,
+                                const SearchOptions& options, OpenGpus open, Progress& progress,
+                                SearchReport& report) {
+  Gpus gpus(std::move(open), options.end_gpus);
+  PageEngineNeeds needs = needs_of(cloud, options, 1);
+  gpus.resolve(needs);
+  const SlotLayout layout = beam_layout(cloud, cells, beams, memory_bytes, needs);
+  PageEngines engines = gpus.engines([&](int gpu) -> std::unique_ptr<PageEngine> {
+    return std::make_unique<CudaBeamEngine>(gpu, beams, cloud, layout);
+  });
+  std::vector<PageEngine*> lanes;
+  for (const auto& engine : engines) lanes.push_back(engine.get());
+  const IgnoredPoints none(cloud, {});
+  StageTimes times;
+  run_pages(
+      cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells), lanes,
+      {.stage = "beams", .ignored = none, .threads = needs.threads},
+      [](std::span<const PlannedCell>, const PageResult&) {}, progress, times);
+  BeamCounts counts;
+  std::vector<std::vector<std::uint64_t>> words;
+  for (const PageEngine* lane : lanes) {
+    const auto& engine = dynamic_cast<const CudaBeamEngine&>(*lane);
+    words.push_back(engine.words());
+    counts.add(engine.counts());
+    report.peak_device_bytes = std::max(report.peak_device_bytes, engine.device_bytes());
+  }
+  for (const auto& of_device : words) map.clear_as_in(of_device);
+  gpus.end(std::move(engines)).clear();
+  return counts;
 }
 
 }  // namespace clearway

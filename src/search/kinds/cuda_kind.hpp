@@ -2,7 +2,10 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 
+#include "core/seen/beams.hpp"
+#include "core/util/progress.hpp"
 #include "search/devices.hpp"
 #include "search/kinds/page_engine_kind.hpp"
 
@@ -18,5 +21,14 @@ using OpenGpus = std::function<DeviceChoice()>;
 /// outlive it.
 std::unique_ptr<PageEngineKind> cuda_kind(const PackedCloud& cloud, const Query& query,
                                           const SearchOptions& options, OpenGpus open);
+
+/// Follows the beams to the points of these cells on the GPUs that `open` gives, page by page, and
+/// clears the bits of the cubes in `map` that they see. memory_bytes: bytes that this may take on
+/// the host. Notes in `report` what it takes on the GPUs. Only in a build with CUDA. Throws
+/// ResourceError, and then has changed nothing, and Interrupted.
+BeamCounts follow_beams_on_gpus(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                                const Beams& beams, BrickMap& map, std::uint64_t memory_bytes,
+                                const SearchOptions& options, OpenGpus open, Progress& progress,
+                                SearchReport& report);
 
 }  // namespace clearway

@@ -179,7 +179,7 @@ TEST_CASE("run --json prints one object with all that was asked for") {
     CHECK(report.contains(key));
   }
   for (const char* key : {"total", "context", "context_wait", "plan", "field", "read", "upload",
-                          "compute", "write", "end_wait"}) {
+                          "compute", "swept", "beams", "write", "end_wait"}) {
     CAPTURE(key);
     CHECK(report["seconds"][key].is_number());
   }

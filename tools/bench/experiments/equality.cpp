@@ -11,6 +11,7 @@ struct Mode {
   const char* name;
   std::vector<std::string> options;
   bool kdtree = true, grid = false;  ///< whether these engines have the mode too
+  bool origins = false;              ///< whether the store has to know its scanner's places
 };
 
 const std::vector<Mode>& modes() {
@@ -22,7 +23,10 @@ const std::vector<Mode>& modes() {
       {"clearance", {"--clearance", "0.3"}, false},
       {"clearance below the radius, first pose", {"--clearance", "0.05", "--first-pose"}, false},
       {"clearance, first pose", {"--clearance", "0.3", "--first-pose"}, false},
-      {"profile", {"--profile", "0.3"}, false}};
+      {"profile", {"--profile", "0.3"}, false},
+      {"seen space", {"--seen"}, true, false, true},
+      {"seen space, small cubes", {"--seen", "--seen-cube", "0.05"}, false, false, true},
+      {"between poses, seen space", {"--between-poses", "--seen"}, true, false, true}};
   return kModes;
 }
 
@@ -40,14 +44,18 @@ class Equality {
   void scene(const std::string& name) {
     const std::string size = bench_.options().size == "small" ? "equality" : bench_.options().size;
     SceneFiles files = bench_.scene(name, size);
-    query(name + ", cells of 65536", files);
-    files.store = bench_.store(name + "-" + size + "-cells-1000", files.environment,
-                               {"--cell-points", "1000"});
-    query(name + ", cells of 1000", files);
+    const std::string origins = (files.environment.parent_path() / "origins.csv").string();
+    for (const char* cells : {"65536", "1000"}) {
+      files.store = bench_.store(name + "-" + size + "-cells-" + cells, files.environment,
+                                 {"--cell-points", cells, "--origins", origins});
+      query(name + ", cells of " + cells, files, true);
+    }
   }
 
-  void query(const std::string& name, const SceneFiles& files) {
+  /// origins: whether the store knows its scanner's places.
+  void query(const std::string& name, const SceneFiles& files, bool origins) {
     for (const Mode& mode : modes()) {
+      if (mode.origins && !origins) continue;
       const std::string key = name + "/" + mode.name + "/";
       bool answered = false;  // the reference is made where a case needs it
       const auto judge = [&](const std::filesystem::path& result) -> Json {
@@ -104,7 +112,7 @@ class Equality {
 void bench_equality(Bench& bench) {
   Equality equality(bench);
   for (const std::string& scene : bench.options().scenes) equality.scene(scene);
-  if (!bench.options().also.store.empty()) equality.query("given", bench.options().also);
+  if (!bench.options().also.store.empty()) equality.query("given", bench.options().also, false);
   equality.finish();
 }
 

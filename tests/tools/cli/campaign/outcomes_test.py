@@ -278,6 +278,39 @@ def options_of_run(work):
     expect(known - own <= passed, f"options of run unknown to a campaign: {known - own - passed}")
 
 
+def errors_and_seen_space(work):
+    """A campaign with an error budget and seen space has the verdicts and reasons of its runs, also
+    where these are divided into shards."""
+    for name, z in (("above", 6), ("below", -6)):  # from below no beam enters the lane
+        (work / "origins.csv").write_text(f"first,x,y,z\n0,10,0,{z}\n")
+        program("convert", work / "scan.xyz", "--origins", work / "origins.csv", "-o",
+                work / f"{name}.h5", "--cell-points", 1000)
+    query = {"first_pose": True, "error_scan": 0.005, "error_registration": 0.005, "sigmas": 4,
+             "seen": True, "seen_cube": 0.25, "seen_min": 4}
+    found = {}
+    for limits in ({"memory": "300M", "threads": 1},
+                   {"memory": "300M", "threads": 1, "shard_seconds": 0.008}):
+        path = work / f"seen-{len(limits)}"
+        program("campaign", "plan",
+                campaign_of(work, environments={"above": "above.h5", "below": "below.h5"},
+                            routes={name: {"trajectory": "middle.txt", "environment": name}
+                                    for name in ("above", "below")},
+                            vehicles={"slim": "slim.off",
+                                      "wide": {"model": "wide.off", "as": "solid"}},
+                            query=query, limits=limits), "-o", path)
+        done = outcome("campaign", "run", path, "--all", "--fail-on-collision")
+        expect(done.returncode == 1, f"a conflict goes first: {done.returncode}: {done.stderr}")
+        expect(any(path.glob("runs/*/*/*/shards/2")) == ("shard_seconds" in limits), "its shards")
+        facts = told_alike(path, status(path)["outcomes"])[1]
+        found[len(limits)] = {
+            f"{run['route']}/{run['vehicle']}": (run["verdict"], run["reasons"])
+            for run in facts["runs"]}
+    expect(found[2] == found[3], f"{found}")
+    expected = {"above/slim": ("clear", []), "above/wide": ("conflict", []),
+                "below/slim": ("undecided", ["not-scanned"]), "below/wide": ("conflict", [])}
+    expect(found[2] == expected, f"{found[2]}")
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
@@ -285,7 +318,8 @@ def main():
         write_path(work / "middle.txt")
         write_path(work / "far.txt", y=5000)
         for check in [every_outcome, warnings_are_repeated, ignored_points_are_told,
-                      lengths_are_rounded, put_back, outdated, options_of_run]:
+                      lengths_are_rounded, put_back, outdated, options_of_run,
+                      errors_and_seen_space]:
             check(work)
             print(check.__name__, flush=True)
 
