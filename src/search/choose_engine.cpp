@@ -83,6 +83,7 @@ Workload workload_of(const PackedCloud& cloud, const QueryParameters& query, con
   work.model_points = static_cast<double>(model_points);
   work.poses = static_cast<double>(poses.size());
   work.radius = std::max({query.radius, query.clearance, query.profile});
+  if (query.seen) work.beams = static_cast<double>(cloud.point_count());
   if (model_points == 0 || poses.empty()) return work;
   double length = 2 * work.radius;
   for (int k = 0; k < 3; ++k) {
@@ -138,6 +139,8 @@ constexpr double kStart = 0.5;
 constexpr double kCores = 350;
 /// By what factor a search on the CPU takes longer where it has distances beyond the radius.
 constexpr double kDistances = 6;
+/// How many beams a core follows in a second; a GPU follows as many as kCores cores or more.
+constexpr double kBeamsPerCore = 2.5e6;
 /// How many environment points a core searches in a second.
 constexpr double kPointsPerCore = 13e6;
 
@@ -153,7 +156,8 @@ DeviceEstimate estimate_devices(std::span<const Workload> work, const QueryParam
     set += may_be_kdtree ? std::min(on_cpu.sweep_seconds, on_cpu.kdtree_seconds)
                          : on_cpu.sweep_seconds;
   }
-  const double cpu = (distances ? kDistances : 1) * set;
+  const double beams = work.empty() ? 0 : work.front().beams / (kBeamsPerCore * threads);
+  const double cpu = (distances ? kDistances : 1) * set + beams;
   return {cpu, kStart + cpu * threads / kCores};
 }
 

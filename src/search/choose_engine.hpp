@@ -34,6 +34,7 @@ struct Workload {
   double radius = 0;
   /// Environment points in the model's box, widened by the radius, at all poses together.
   double reached_points = 0;
+  double beams = 0;  ///< beams that are followed for seen space; the same for each body
 };
 
 Workload workload_of(const PackedCloud& cloud, const Query& query);

@@ -51,6 +51,16 @@ TEST_CASE("bodies take as long as one after the other, and the GPU starts once")
   CHECK(all.cuda < 3 * one.cuda);
 }
 
+TEST_CASE("a GPU pays for few points with many beams, which are followed once for all bodies") {
+  const QueryParameters query{.radius = 0.1, .seen = true};
+  std::vector<Workload> bodies(3, work_of(1000));
+  CHECK_FALSE(pays(bodies[0], query, 16));
+  for (Workload& work : bodies) work.beams = 1e9;
+  CHECK(pays(bodies[0], query, 16));
+  const double one = estimate_devices({bodies.data(), 1}, query, Engine::kSweep, 16).cpu;
+  CHECK(estimate_devices(bodies, query, Engine::kSweep, 16).cpu < 1.1 * one);
+}
+
 TEST_CASE("more threads need more points before a GPU is started ahead") {
   CHECK(surely_many_points(16) > surely_many_points(2));
   CHECK(surely_many_points(0) > 0);
