@@ -80,6 +80,8 @@ struct SearchSeconds {
   double plan = 0;
   double engine = 0;  ///< seconds for making the engine with its slots
   double search = 0, read = 0, upload = 0, compute = 0, collect = 0;
+  double swept = 0;  ///< seconds for finding the cubes of seen space that the model sweeps
+  double beams = 0;  ///< seconds for following the beams of the scan through these cubes
   double write = 0;  ///< seconds for writing the result, while the GPUs' memory is given back
   /// Seconds of waiting for the GPUs' memory to be given back after the result was written
   double end_wait = 0;

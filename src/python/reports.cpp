@@ -38,6 +38,10 @@ void add_seconds(py::module_& module) {
       .def_readonly("upload", &Seconds::upload, "Seconds in which cells were copied to a GPU.")
       .def_readonly("compute", &Seconds::compute, "Seconds in which distances were computed.")
       .def_readonly("collect", &Seconds::collect, "Seconds in which what was found was gathered.")
+      .def_readonly("swept", &Seconds::swept,
+                    "Seconds of finding the cubes of seen space that the model sweeps.")
+      .def_readonly("beams", &Seconds::beams,
+                    "Seconds of following the beams of the scan through these cubes.")
       .def_readonly("write", &Seconds::write, "Seconds of writing the result.")
       .def_readonly(
           "end_wait", &Seconds::end_wait,

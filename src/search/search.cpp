@@ -370,6 +370,8 @@ class Search {
       warn_of_small_groups(space.summary, query_, log_);
     }
     report_.seen = space.summary;
+    report_.seconds.swept = space.swept_seconds;
+    report_.seconds.beams = space.beams_seconds;
     found.result.unseen = std::move(space.unseen);
   }
 

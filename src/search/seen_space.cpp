@@ -20,6 +20,7 @@
 #include "core/seen/unseen_groups.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
+#include "core/util/stopwatch.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "io/scans/length_unit.hpp"
 #include "search/page_search.hpp"
@@ -212,6 +213,7 @@ void check_seen_space(const StoreReader& store, const QueryParameters& query) {
 SeenSpace find_seen_space(const StoreReader& store, const Query& query, const SeenSearch& how,
                           Progress& progress) {
   check_seen_space(store, query);
+  const Stopwatch sweeping;
   const CubeLattice lattice = cube_lattice(store, query.seen_cube);
   const Query cubes = query_of_cubes(query, how.radius);
   SeenSpace space;
@@ -234,7 +236,10 @@ SeenSpace find_seen_space(const StoreReader& store, const Query& query, const Se
     space.summary.swept += swept[cell].count();
   }
   BrickMap map(lattice, std::move(bricks), std::move(words));
+  space.swept_seconds = sweeping.seconds();
+  const Stopwatch following;
   follow_beams(store, how, map, space.beams, progress);
+  space.beams_seconds = following.seconds();
 
   std::vector<Unseen> unseen;
   for (std::uint32_t b = 0; b < map.bricks().size(); ++b) {

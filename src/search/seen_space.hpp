@@ -29,6 +29,7 @@ struct SeenSpace {
   UnseenCubes unseen;
   SeenSummary summary;
   BeamCounts beams;
+  double swept_seconds = 0, beams_seconds = 0;  ///< wall clock of the two steps
 };
 
 /// The cubes in which seen space is judged in a store. asked: side of a cube in the environment's

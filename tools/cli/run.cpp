@@ -134,23 +134,29 @@ struct ProgramReport {
   std::uint64_t peak_host_bytes = 0;
 };
 
-nlohmann::ordered_json seconds_of(const SearchSeconds& search, const ProgramReport& program) {
-  return {{"total", program.total_seconds},
-          {"inputs", program.inputs_seconds},
-          {"context", search.context},
-          {"context_wait", search.context_wait},
-          {"ignored", search.ignored},
-          {"thin", search.thin},
-          {"plan", search.plan},
-          {"field", search.field},
-          {"engine", search.engine},
-          {"search", search.search},
-          {"read", search.read},
-          {"upload", search.upload},
-          {"compute", search.compute},
-          {"collect", search.collect},
-          {"write", search.write},
-          {"end_wait", search.end_wait}};
+nlohmann::ordered_json seconds_of(const SearchSeconds& search, const ProgramReport& program,
+                                  bool seen) {
+  nlohmann::ordered_json out{{"total", program.total_seconds},
+                             {"inputs", program.inputs_seconds},
+                             {"context", search.context},
+                             {"context_wait", search.context_wait},
+                             {"ignored", search.ignored},
+                             {"thin", search.thin},
+                             {"plan", search.plan},
+                             {"field", search.field},
+                             {"engine", search.engine},
+                             {"search", search.search},
+                             {"read", search.read},
+                             {"upload", search.upload},
+                             {"compute", search.compute},
+                             {"collect", search.collect},
+                             {"write", search.write},
+                             {"end_wait", search.end_wait}};
+  if (seen) {
+    out["swept"] = search.swept;
+    out["beams"] = search.beams;
+  }
+  return out;
 }
 
 /// The work that the tolerance saved; null for an exact result.
@@ -230,7 +236,7 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["peak_host_bytes"] = program.peak_host_bytes + report.pinned_bytes;
   out["peak_device_bytes"] = report.peak_device_bytes;
   out["tolerance"] = tolerance_of(report, options.query.tolerance);
-  out["seconds"] = seconds_of(report.seconds, program);
+  out["seconds"] = seconds_of(report.seconds, program, options.query.seen);
   out["warnings"] = warnings_json(report.warnings);
   return out;
 }

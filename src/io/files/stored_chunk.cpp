@@ -77,6 +77,10 @@ std::uint32_t fletcher32(std::span<const std::byte> bytes) {
     sums.first += word;
     sums.second += sums.first;
   }
+  if (bytes.size() % 2 == 1) {  // the filter takes a last single byte as if a zero followed it
+    sums.first += std::to_integer<std::uint64_t>(bytes.back());
+    sums.second += sums.first;
+  }
   sums.first %= kModulus;
   sums.second %= kModulus;
   const bool may_be_zero = sums.first == 0 && sums.second == 0;

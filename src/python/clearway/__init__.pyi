@@ -192,6 +192,8 @@ class SearchSeconds:
     upload: Final[float]
     compute: Final[float]
     collect: Final[float]
+    swept: Final[float]
+    beams: Final[float]
     write: Final[float]
     end_wait: Final[float]
 class ToleranceReport:

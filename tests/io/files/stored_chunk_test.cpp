@@ -52,6 +52,33 @@ TEST_CASE("a chunk's checksum is that of HDF5") {
   }
 }
 
+TEST_CASE("the checksum of an odd number of bytes is that of HDF5") {
+  for (const std::size_t count : {1, 2, 3, 15, 31, 33, 4095, 70'001}) {
+    for (const bool zero : {false, true}) {
+      CAPTURE(count, zero);
+      std::vector<std::uint8_t> values(count);
+      std::mt19937 random(3);
+      for (std::uint8_t& value : values) value = static_cast<std::uint8_t>(zero ? 0 : random());
+      const ScratchFolder folder;
+      {
+        const hdf5::Id file = hdf5::create_file(folder / "a.h5");
+        hdf5::write_dataset<std::uint8_t>(file, "values", values);
+      }
+      const hdf5::Id file = hdf5::open_file(folder / "a.h5");
+      const auto rows = hdf5::Rows<std::uint8_t>::open(file, "values", 0, "a.h5");
+      std::vector<std::vector<std::byte>> chunks;
+      REQUIRE(rows.read_chunks(0, count, chunks));
+      REQUIRE(chunks.size() == 1);
+      CHECK(hdf5::is_sealed(chunks[0]));
+      const std::vector<std::byte> whole = chunks[0];
+      hdf5::seal_chunk(chunks[0]);
+      CHECK((chunks[0] == whole));
+      chunks[0][count - 1] ^= std::byte{4};
+      CHECK_FALSE(hdf5::is_sealed(chunks[0]));
+    }
+  }
+}
+
 TEST_CASE("chunks that were written as they are stored are read by HDF5") {
   const ScratchFolder folder;
   const std::vector<std::uint32_t> values = values_of("random", 70'000);
