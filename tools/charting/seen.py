@@ -57,8 +57,6 @@ def draw_questions(sheet, row, record, styles):
     axes.set_yticks(range(len(names)), names)
     axes.invert_yaxis()
     axes.set(title="a  the whole command, by question", xlabel="total (s)")
-    axes.set_xscale("log")
-    seconds_axis(axes.xaxis)
 
 
 def swept_text(record, scenes):

@@ -1,6 +1,5 @@
 #include "bench/experiments/bench.hpp"
 
-#include <cuda_runtime_api.h>
 #include <hdf5.h>
 #include <spdlog/spdlog.h>
 #include <tbb/info.h>
@@ -19,14 +18,13 @@
 #include "bench/measure/program.hpp"
 #include "bench/variants/variants.hpp"
 #include "clearway/error.hpp"
+
+#ifdef CLEARWAY_CUDA
+#include <cuda_runtime_api.h>
+
 #include "gpu/devices.hpp"
-
-#ifdef CLEARWAY_CUDA
 #endif
 
-#ifdef CLEARWAY_CUDA
-
-#endif
 namespace clearway::bench {
 namespace {
 

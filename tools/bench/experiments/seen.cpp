@@ -31,7 +31,7 @@ std::vector<Question> questions() {
 }
 
 /// A scene's points, or its path, are divided by each of these.
-constexpr std::uint64_t kParts[] = {64, 16, 4, 1};
+constexpr std::uint64_t kPartsOfScene[] = {64, 16, 4, 1};
 
 class Seen {
  public:
@@ -49,7 +49,7 @@ class Seen {
   }
 
   void by_beams() {
-    for (const std::uint64_t part : kParts) {
+    for (const std::uint64_t part : kPartsOfScene) {
       const std::uint64_t points = points_ / part;
       measure("beams", points, bench_.scanned(name_, points), {"--seen"});
     }
@@ -62,7 +62,7 @@ class Seen {
   }
 
   void by_path() {
-    for (const std::uint64_t part : kParts) {
+    for (const std::uint64_t part : kPartsOfScene) {
       SceneFiles files = files_;
       files.trajectory = bench_.work() / "first-poses.txt";
       write_first_poses(files_.trajectory, files.trajectory, part);
