@@ -7,7 +7,7 @@
 
 Needs numpy, h5py and Clearway's Python module (Debian: python3-numpy, python3-h5py).
 Example: PYTHONPATH=build/release/python tools/certainty.py build/release/tools/clearway -o certainty.json
-tools/charts.py draws the file.
+tools/charts.py draws the file. The exit code is 1 where Clearway differs from the definition.
 """
 
 import argparse
@@ -97,6 +97,15 @@ def case(parameters, findings):
     return one
 
 
+def differs(findings):
+    """Whether Clearway and the definition give other verdicts or margins."""
+    if "differ" not in findings:
+        return False
+    margins, formulas = findings["margins"], findings["formulas"]
+    return findings["differ"] > 0 or any(abs(margins[name] - value) > 1e-12
+                                         for name, value in formulas.items())
+
+
 def header(program, size):
     """Machine and program, as clearway-bench writes them."""
     version = subprocess.run([program, "--version"], capture_output=True, text=True,
@@ -131,6 +140,9 @@ def main():
     if "noise" in wanted:
         record["cases"] += noise_cases(options.program, scenes, rays)
     options.output.write_text(json.dumps(record, indent=1) + "\n")
+    wrong_cases = [one["key"] for one in record["cases"] if differs(one["findings"])]
+    if wrong_cases:
+        sys.exit("Clearway differs from the definition: " + ", ".join(wrong_cases))
 
 
 if __name__ == "__main__":

@@ -125,8 +125,9 @@ class Places:
     def __init__(self, shape, errors, margin, count, random):
         true = shape.points(margin)
         self.shape, self.margin = shape, margin
-        shift = random.normal(size=(count, 1, 3)) * errors.registration
-        self.points = true + shift + random.normal(size=(count, *true.shape)) * errors.scan
+        points = true + random.normal(size=(count, 1, 3)) * errors.registration
+        points += random.normal(size=(count, *true.shape)) * errors.scan
+        self.points = np.rint(points / QUANTUM) * QUANTUM  # as the store keeps them
         self.shifts = random.normal(size=(count, 3)) * errors.pose
         self.turns = rotations(random.normal(size=(count, 3)) * errors.angle)
 
