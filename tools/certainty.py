@@ -29,7 +29,8 @@ SIGMAS = (2, 3, 4)
 MARGINS = (0, 0.1)
 SIDES = (0.1, 0.2, 0.4)
 BOUNDS = (0.005, 0.02, 0.045)     # of uniform noise
-DEVIATIONS = (0.005, 0.02, 0.05)  # of normal noise
+# Of normal noise; the second and third are a sixteenth and a twelfth of 0.2 m.
+DEVIATIONS = (0.005, 0.0125, 0.2 / 12, 0.02, 0.05)
 SIZES = {  # trials of each case; places that Clearway is asked about; scenes, and rays of a scanner
     "smoke": (20_000, 1_000, 1, 20_000),
     "small": (1_000_000, 20_000, 4, 100_000),
@@ -106,15 +107,22 @@ def differs(findings):
                                          for name, value in formulas.items())
 
 
+def processor():
+    """The name of this machine's processor."""
+    names = [line.split(":", 1)[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines()
+             if line.startswith("model name")]
+    return names[0] if names else platform.machine()
+
+
 def header(program, size):
     """Machine and program, as clearway-bench writes them."""
     version = subprocess.run([program, "--version"], capture_output=True, text=True,
                              check=True).stdout.strip()
     return {"experiment": "certainty", "size": size,
-            "machine": {"processor": platform.processor() or platform.machine(),
+            "machine": {"processor": processor(),
                         "cores": len(os.sched_getaffinity(0)),
                         "memory_bytes": os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGESIZE"),
-                        "gpus": [], "system": platform.system()},
+                        "gpus": [], "system": platform.freedesktop_os_release()["PRETTY_NAME"]},
             "clearway": {"version": version}, "parameters": {}}
 
 

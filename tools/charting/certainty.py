@@ -85,4 +85,4 @@ def draw_seen(axes, record):
     axes.set(xlabel="standard deviation / side (line: 1 / 12)")
     percent_axis(axes, "cubes at a surface (%)")
     if axes.get_legend_handles_labels()[0]:
-        axes.legend(loc="upper left")
+        axes.legend(loc="lower right")
