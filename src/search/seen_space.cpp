@@ -286,6 +286,7 @@ void check_seen_space(const StoreReader& store, const QueryParameters& query) {
 SeenSpace find_seen_space(const StoreReader& store, const Query& query, const SeenSearch& how,
                           Progress& progress) {
   check_seen_space(store, query);
+  const Stopwatch sweeping;
   const CubeLattice lattice = cube_lattice(store, query.seen_cube);
   const Query cubes = query_of_cubes(query, how.radius);
   SeenSpace space;

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <random>
 #include <span>
 #include <vector>
 
+#include "core/seen/brick_map.hpp"
 #include "core/seen/cubes.hpp"
 
 /// Random scenes of bricks and beams, and what beams see in them by the definition alone.
@@ -94,6 +96,24 @@ struct BeamScene {
     }
     if (out.way[0] == 0 && out.way[1] == 0 && out.way[2] == 0) out.way[pick(0, 2)] = 1;
     return out;
+  }
+
+  /// The bits of the cubes that none of the beams sees, word by word.
+  std::vector<std::uint64_t> left_by(const std::vector<Beam>& beams) const {
+    const BrickMap map(lattice, bricks, words);
+    for (const Beam& beam : beams) map.ref().see(beam);
+    return {map.words().begin(), map.words().end()};
+  }
+
+  /// Calls visit(cube) for each cube whose bit is set.
+  template <typename Visit>
+  void each_cube(const std::vector<std::uint64_t>& bits, const Visit& visit) const {
+    for (std::size_t w = 0; w < bits.size(); ++w) {
+      for (std::uint64_t rest = bits[w]; rest != 0; rest &= rest - 1) {
+        const auto bit = static_cast<std::uint32_t>(std::countr_zero(rest));
+        visit(bricks[w / kBrickWords].cube(static_cast<std::uint32_t>(w % kBrickWords) * 64 + bit));
+      }
+    }
   }
 
   std::mt19937 random;

@@ -51,6 +51,11 @@ constexpr Experiment kExperiments[] = {
      "A mesh as a surface and as points on it: time, and points missed (on the hall, unless "
      "--env, --model and --trajectory name others)",
      false, true},
+    {"seen", bench_seen,
+     "What it costs to know more than the set: time by question, and of seen space by beams, "
+     "cubes, "
+     "path and threads",
+     true},
 };
 
 /// Throws UsageError, which lists the experiments that take --scenes, where one of the others is
@@ -147,7 +152,7 @@ void add_bounds(CLI::App& command, BenchOptions& options) {
 const CLI::Option* add_scenes(CLI::App& command, BenchOptions& options) {
   return command
       .add_option("--scenes", options.scenes,
-                  "Scenes, for table, datasets, equality and choice (default: all)")
+                  "Scenes, for table, datasets, equality, choice, shards and seen (default: all)")
       ->delimiter(',')
       ->check(CLI::IsMember({"mine", "hall", "plant", "tunnel"}));
 }

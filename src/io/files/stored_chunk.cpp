@@ -11,6 +11,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint64_t kMostBytes = 1 << 18;
+constexpr std::uint64_t kMostRows = 1 << 16;
 
 constexpr std::uint64_t kModulus = 65535;
 
@@ -61,7 +62,8 @@ bool is_zero(std::span<const std::byte> bytes) {
 }  // namespace
 
 std::uint64_t rows_of_chunk(std::uint64_t rows, std::uint64_t row_bytes) {
-  return std::min(rows, std::bit_floor(std::max<std::uint64_t>(1, kMostBytes / row_bytes)));
+  const std::uint64_t most = std::bit_floor(std::max<std::uint64_t>(1, kMostBytes / row_bytes));
+  return std::min({rows, most, kMostRows});
 }
 
 std::uint32_t fletcher32(std::span<const std::byte> bytes) {
@@ -75,6 +77,10 @@ std::uint32_t fletcher32(std::span<const std::byte> bytes) {
     std::uint16_t word;
     std::memcpy(&word, bytes.data() + at, 2);
     sums.first += word;
+    sums.second += sums.first;
+  }
+  if (bytes.size() % 2 == 1) {  // the filter takes a last single byte as if a zero followed it
+    sums.first += std::to_integer<std::uint64_t>(bytes.back());
     sums.second += sums.first;
   }
   sums.first %= kModulus;

@@ -52,6 +52,44 @@ TEST_CASE("a chunk's checksum is that of HDF5") {
   }
 }
 
+TEST_CASE("ranges of 2^16 rows end with a chunk, whatever a row takes") {
+  for (const std::uint64_t row_bytes : {1, 2, 4, 8, 12, 24, 36}) {
+    CAPTURE(row_bytes);
+    const std::uint64_t rows = hdf5::rows_of_chunk(1'000'000, row_bytes);
+    CHECK((1 << 16) % rows == 0);
+    CHECK(rows * row_bytes <= 1 << 18);
+    CHECK(hdf5::rows_of_chunk(5, row_bytes) == 5);
+  }
+}
+
+TEST_CASE("the checksum of an odd number of bytes is that of HDF5") {
+  for (const std::size_t count : {1, 2, 3, 15, 31, 33, 4095, 70'001}) {
+    for (const bool zero : {false, true}) {
+      CAPTURE(count, zero);
+      std::vector<std::uint8_t> values(count);
+      std::mt19937 random(3);
+      for (std::uint8_t& value : values) value = static_cast<std::uint8_t>(zero ? 0 : random());
+      const ScratchFolder folder;
+      {
+        const hdf5::Id file = hdf5::create_file(folder / "a.h5");
+        hdf5::write_dataset<std::uint8_t>(file, "values", values);
+      }
+      const hdf5::Id file = hdf5::open_file(folder / "a.h5");
+      const auto rows = hdf5::Rows<std::uint8_t>::open(file, "values", 0, "a.h5");
+      std::vector<std::vector<std::byte>> chunks;
+      REQUIRE(rows.read_chunks(0, count, chunks));
+      REQUIRE(chunks.size() == count / 65'536 + 1);
+      std::vector<std::byte>& chunk = chunks[0];
+      CHECK(hdf5::is_sealed(chunk));
+      const std::vector<std::byte> whole = chunk;
+      hdf5::seal_chunk(chunk);
+      CHECK((chunk == whole));
+      chunk[chunk.size() - 1 - hdf5::kChecksumBytes] ^= std::byte{4};
+      CHECK_FALSE(hdf5::is_sealed(chunk));
+    }
+  }
+}
+
 TEST_CASE("chunks that were written as they are stored are read by HDF5") {
   const ScratchFolder folder;
   const std::vector<std::uint32_t> values = values_of("random", 70'000);

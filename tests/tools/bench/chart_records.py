@@ -185,7 +185,45 @@ def surfaces():
                     "value": f"r / {parts}"}, 0.02 * parts, judged(wrong, 0.01 / parts**2))
 
 
-EXPERIMENTS = (table, threads, grid, datasets, points, accuracy, stability, scaling, surfaces)
+def seen():
+    questions = ("set", "first poses", "least distances", "profile", "error budget", "seen, 0.2 m",
+                 "seen, 0.1 m", "seen, 0.2 m, and budget")
+    varied = {"question": questions, "beams": (17_000, 69_000, 277_000, 1_110_000),
+              "cube": ("0.8", "0.4", "0.2", "0.1", "0.05"), "path": (0.015625, 0.0625, 0.25, 1.0),
+              "threads": (1, 2, 4, 8, 16)}
+    for scene, (vary, values) in itertools.product(("mine", "hall"), varied.items()):
+        for i, at in enumerate(values):
+            one = case({"scene": scene, "engine": "sweep cpu", "vary": vary, "value": at}, 0.2,
+                       failed=REFUSED if at == "0.05" and scene == "mine" else None)
+            for run in one["runs"]:
+                asked = vary != "question" or at.startswith("seen")
+                run["seen"] = {"swept": 100_000, "unseen": 321} if asked else None
+                if asked:
+                    run["seconds"].update(swept=0.02 * (i + 1), beams=0.1 * 2**i)
+            yield one
+
+
+def certainty():
+    shapes = ("wall and plane", "edge and edge", "point and corner")
+    for shape, errors, margin, k in itertools.product(shapes, ("position", "all"), (0, 0.1),
+                                                      (2, 3, 4)):
+        clear = 10**6 // 50 ** (k - 1)
+        here = {"shape": shape, "errors": errors, "margin": margin, "sigmas": k}
+        yield {"key": f"place/{shape}/{errors}/{margin}/{k}", "parameters": {"vary": "place", **here},
+               "findings": {"trials": 10**6, "clear": clear, "conflict": clear if margin else 0,
+                            "groups": {"1": clear, "10": clear // 2, "100": clear // 9}}}
+        yield {"key": f"program/{shape}/{errors}/{margin}/{k}",
+               "parameters": {"vary": "program", **here},
+               "findings": {"places": 10**4, "clear": clear // 100, "conflict": 0, "differ": 1}}
+    for side, sigma in itertools.product((0.1, 0.2, 0.4), (0.005, 0.02, 0.05)):
+        count = int(10**5 * max(0, sigma / side - 0.06))
+        yield {"key": f"noise/normal/{sigma}/{side}",
+               "parameters": {"vary": "noise", "noise": "normal", "size": sigma, "side": side},
+               "findings": {"inside": 10**6, "seen": count, "skin": 10**5, "skin_seen": count}}
+
+
+EXPERIMENTS = (table, threads, grid, datasets, points, accuracy, stability, scaling, surfaces, seen,
+               certainty)
 
 
 def write_records(folder):

@@ -1,6 +1,7 @@
 // What the experiments of the built program clearway-bench find, on scenes of a few thousand
 // points.
 #include <catch2/catch.hpp>
+#include <map>
 #include <set>
 
 #include "tools/bench/experiment.hpp"
@@ -57,6 +58,36 @@ TEST_CASE("surfaces: points on a surface miss what is beyond their spacing alone
     if (one["parameters"]["method"] == "surface") CHECK(one["findings"]["misses"] == 0);
   }
   CHECK(spacings == std::set<std::string>{"", "r / 12", "r / 16", "r / 4", "r / 8"});
+}
+
+TEST_CASE("seen: what is swept grows with the path, and more beams see more of it") {
+  const Experiment seen("seen", 1);
+  const Outcome done = seen.run("--scenes hall");
+  CAPTURE(done.err);
+  REQUIRE(done.exit_code == 0);
+  std::set<std::string> varied;
+  std::map<std::string, std::vector<std::uint64_t>> swept, unseen;
+  const Json figures = seen.figures();
+  for (const Json& one : figures["cases"]) {
+    CAPTURE(one["key"]);
+    const std::string vary = one["parameters"]["vary"];
+    varied.insert(vary);
+    REQUIRE(one["runs"].size() == 1);
+    const Json& run = one["runs"][0];
+    const bool asked = !run["seen"].is_null();
+    CHECK(run["seconds"].contains("beams") == asked);
+    if (!asked) continue;
+    CHECK(run["seconds"]["swept"] > 0);
+    swept[vary].push_back(run["seen"]["swept"]);
+    unseen[vary].push_back(run["seen"]["unseen"]);
+  }
+  CHECK(varied == std::set<std::string>{"beams", "cube", "path", "question", "threads"});
+  CHECK(swept["beams"] == std::vector(4, swept["beams"][0]));
+  CHECK(swept["path"].size() == 4);
+  CHECK(std::is_sorted(swept["path"].begin(), swept["path"].end()));
+  CHECK(swept["path"][0] < swept["path"][3]);
+  CHECK(unseen["beams"][3] < unseen["beams"][0]);
+  CHECK(swept["cube"][0] < swept["cube"][4]);
 }
 
 TEST_CASE("accuracy: exact engines err nowhere, the others say where") {

@@ -142,6 +142,19 @@ TEST_CASE("every nth pose and the last one are kept, bit for bit") {
   CHECK(nth(3).empty());
 }
 
+TEST_CASE("the first poses of a path are kept, bit for bit") {
+  const ScratchFolder folder;
+  const auto poses = put_trajectory(folder / "in.txt", 11);
+  const auto first = [&](std::uint64_t parts) {
+    write_first_poses(folder / "in.txt", folder / "out.txt", parts);
+    return read_trajectory(folder / "out.txt", {});
+  };
+  CHECK(first(1) == poses);
+  CHECK(first(4) == std::vector{poses[0], poses[1], poses[2]});
+  CHECK(first(100) == std::vector{poses[0]});
+  CHECK_THROWS_AS(first(0), UsageError);
+}
+
 TEST_CASE("shifted poses keep their rotations") {
   const ScratchFolder folder;
   auto poses = put_trajectory(folder / "in.txt", 11);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "clearway/result.hpp"
 #include "tools/cli/support/program.hpp"
 
 using namespace clearway;
@@ -123,6 +124,21 @@ TEST_CASE("a point is near closer than the margin plus U_clear, to the last digi
   CHECK(beyond["near_points"] == 1);
   CHECK(beyond["colliding_points"] == 0);
   CHECK(reasons_of(beyond) == Words{"near"});
+}
+
+TEST_CASE("more than 65,536 colliding points, an odd number, are written with what is certain") {
+  const Bench bench;
+  std::string points;
+  for (int i = 0; i < 70'001; ++i) {
+    points += (i % 2 == 0 ? "0.04 0." : "0.098 0.") + std::to_string(100'000 + i) + " 0\n";
+  }
+  bench.scan(points, "0.000001");
+  const json report = bench.answer("--radius 0.3 --error-model 0.1 --first-pose");
+  CHECK(report["colliding_points"] == 70'001);
+  CHECK(bench.program("verify out.h5").exit_code == 0);
+  const std::vector<std::uint8_t> certain = Result(bench.folder / "out.h5").collisions().certain;
+  CHECK(certain.size() == 70'001);
+  CHECK(report["certain_points"] == std::count(certain.begin(), certain.end(), 1));
 }
 
 TEST_CASE(

@@ -1,11 +1,14 @@
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "clearway/result.hpp"
 #include "tools/cli/support/program.hpp"
 
 using namespace clearway;
@@ -21,7 +24,8 @@ struct Ray {
 /// A car of points that drives along x from 8 m to 15 m, towards a wall at 20 m that a scanner at
 /// the origin has scanned through the space where the car drives.
 struct Road {
-  Road() {
+  /// origin: where the road's coordinates have their origin.
+  explicit Road(const std::array<double, 3>& origin = {}) : at(origin) {
     std::string car, path;
     for (int i = 0; i <= 10; ++i) {
       for (int j = 0; j <= 6; ++j) {
@@ -31,7 +35,8 @@ struct Road {
       }
     }
     for (int i = 0; i <= 70; ++i) {
-      path += "1 0 0 " + std::to_string(8 + 0.1 * i) + " 0 1 0 0 0 0 1 0\n";
+      path += "1 0 0 " + std::to_string(at[0] + 8 + 0.1 * i) + " 0 1 0 " + std::to_string(at[1]) +
+              " 0 0 1 " + std::to_string(at[2]) + "\n";
     }
     put_bytes(folder / "car.xyz", car);
     put_bytes(folder / "path.txt", path);
@@ -74,10 +79,11 @@ struct Road {
     std::string points, origins = "first,x,y,z\n";
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Ray& ray = rays[i];
-      points += line(ray.to[0], ray.to[1], ray.to[2]);
+      points += line(at[0] + ray.to[0], at[1] + ray.to[1], at[2] + ray.to[2]);
       if (i > 0 && std::equal(ray.from, ray.from + 3, rays[i - 1].from)) continue;
-      origins += std::to_string(i) + "," + std::to_string(ray.from[0]) + "," +
-                 std::to_string(ray.from[1]) + "," + std::to_string(ray.from[2]) + "\n";
+      origins += std::to_string(i);
+      for (std::size_t k = 0; k < 3; ++k) origins += "," + std::to_string(at[k] + ray.from[k]);
+      origins += "\n";
     }
     put_bytes(folder / "scan.xyz", points);
     put_bytes(folder / "origins.csv", origins);
@@ -106,6 +112,7 @@ struct Road {
     return nlohmann::json::parse(outcome.out);
   }
 
+  std::array<double, 3> at;
   ScratchFolder folder;
 };
 
@@ -172,6 +179,37 @@ TEST_CASE("fewer beams see less, and their order does not matter") {
     before = unseen;
   }
   CHECK(before > 0);
+}
+
+TEST_CASE(
+    "deleting beams only adds unseen cubes, and coordinates of a map projection change none") {
+  const Road road;
+  const auto unseen = [&] {
+    road.answer("--seen --seen-cube 0.1");
+    const auto cubes = Result(road.folder / "out.h5").unseen().cube;
+    return std::set(cubes.begin(), cubes.end());
+  };
+  std::vector<Ray> rays = Road::beams(true);
+  road.scan(rays);
+  const auto all = unseen();
+  CHECK(all.size() > 100);
+  std::mt19937 random(9);
+  std::erase_if(rays, [&](const Ray&) { return random() % 2 == 0; });
+  road.scan(rays);
+  const auto fewer = unseen();
+  CHECK(fewer.size() > all.size());
+  CHECK(std::ranges::includes(fewer, all));
+
+  const Road far({450'000, 5'400'000, 100});
+  far.scan(rays);
+  auto here = road.answer("--seen --seen-cube 0.1")["seen"];
+  auto there = far.answer("--seen --seen-cube 0.1")["seen"];
+  CHECK(here["unseen"] == fewer.size());
+  CHECK(there["not_scanned_length"].get<double>() ==
+        Approx(here["not_scanned_length"].get<double>()));
+  here.erase("not_scanned_length");
+  there.erase("not_scanned_length");
+  CHECK(there == here);
 }
 
 TEST_CASE("seen space has the same bytes on every engine, with any threads, and from shards") {

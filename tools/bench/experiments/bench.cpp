@@ -1,6 +1,5 @@
 #include "bench/experiments/bench.hpp"
 
-#include <cuda_runtime_api.h>
 #include <hdf5.h>
 #include <spdlog/spdlog.h>
 #include <tbb/info.h>
@@ -19,14 +18,13 @@
 #include "bench/measure/program.hpp"
 #include "bench/variants/variants.hpp"
 #include "clearway/error.hpp"
+
+#ifdef CLEARWAY_CUDA
+#include <cuda_runtime_api.h>
+
 #include "gpu/devices.hpp"
-
-#ifdef CLEARWAY_CUDA
 #endif
 
-#ifdef CLEARWAY_CUDA
-
-#endif
 namespace clearway::bench {
 namespace {
 
@@ -163,17 +161,34 @@ Bench::Bench(const std::string& experiment, const BenchOptions& options)
 SceneFiles Bench::scene(const std::string& name) { return scene(name, options_.size); }
 
 SceneFiles Bench::scene(const std::string& name, const std::string& of_size) {
-  const std::filesystem::path folder = work() / (name + "-" + of_size);
+  const std::string label = name + "-" + of_size;
+  SceneFiles files = made(name, label, scene_size(name, of_size));
+  files.store = store(label, files.environment);
+  return files;
+}
+
+SceneFiles Bench::scanned(const std::string& name, std::uint64_t points) {
+  scene::Sizes size = scene_size(name, options_.size);
+  const std::string label =
+      name + "-" + options_.size + (points == size.points ? "" : "-" + std::to_string(points));
+  size.points = points;
+  SceneFiles files = made(name, label, size);
+  files.store = store(label + "-origins", files.environment,
+                      {"--origins", (files.environment.parent_path() / "origins.csv").string()});
+  return files;
+}
+
+SceneFiles Bench::made(const std::string& name, const std::string& label,
+                       const scene::Sizes& size) {
+  const std::filesystem::path folder = work() / label;
   SceneFiles files{.environment = folder / "environment.las",
                    .store = {},
                    .model = folder / "model.ply",
                    .trajectory = folder / "trajectory.txt"};
   if (!std::filesystem::exists(files.trajectory)) {
-    const scene::Sizes size = scene_size(name, of_size);
     spdlog::info("{}: making the scene", folder.string());
     make_scene(folder, name, size);
   }
-  files.store = store(name + "-" + of_size, files.environment);
   return files;
 }
 

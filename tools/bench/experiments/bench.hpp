@@ -68,6 +68,9 @@ class Bench {
   /// folder.
   SceneFiles scene(const std::string& name);
   SceneFiles scene(const std::string& name, const std::string& size);
+  /// A scene of the options' size with another number of points, whose store knows where its
+  /// scanner stood.
+  SceneFiles scanned(const std::string& name, std::uint64_t points);
   /// The scene's environment with a model and a trajectory of other sizes.
   SceneFiles resized(const std::string& name, SceneFiles files, std::uint64_t model_points,
                      std::uint64_t poses);
@@ -124,6 +127,8 @@ class Bench {
   void conclude(Json findings);
 
  private:
+  /// The files of a scene but for its store, made on the first call. label: name of their folder.
+  SceneFiles made(const std::string& name, const std::string& label, const scene::Sizes& size);
   void make_scene(const std::filesystem::path& folder, const std::string& name,
                   const scene::Sizes& size) const;
 
@@ -158,5 +163,6 @@ void bench_equality(Bench& bench);
 void bench_choice(Bench& bench);
 void bench_shards(Bench& bench);
 void bench_surfaces(Bench& bench);
+void bench_seen(Bench& bench);
 
 }  // namespace clearway::bench

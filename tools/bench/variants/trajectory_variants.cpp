@@ -56,6 +56,13 @@ void write_every_nth_pose(const fs::path& in, const fs::path& out, std::uint64_t
   write_poses(in, out, kept);
 }
 
+void write_first_poses(const fs::path& in, const fs::path& out, std::uint64_t parts) {
+  if (parts == 0) throw UsageError("the first of 0 parts of a path; expected 1 or more");
+  auto poses = read_trajectory(in, {.allow_non_rigid = true});
+  poses.resize((poses.size() + parts - 1) / parts);
+  write_poses(in, out, poses);
+}
+
 void write_shifted_poses(const fs::path& in, const fs::path& out, const Vec3& shift) {
   for (int k = 0; k < 3; ++k) {
     if (!std::isfinite(shift[k])) {

@@ -60,6 +60,10 @@ void write_body(const std::filesystem::path& in, const std::filesystem::path& ou
 void write_every_nth_pose(const std::filesystem::path& in, const std::filesystem::path& out,
                           std::uint64_t n);
 
+/// Writes the first of `parts` equal parts of the path, rounded up. parts > 0.
+void write_first_poses(const std::filesystem::path& in, const std::filesystem::path& out,
+                       std::uint64_t parts);
+
 /// Writes the poses with `shift` added to their translations, rounded to double.
 void write_shifted_poses(const std::filesystem::path& in, const std::filesystem::path& out,
                          const Vec3& shift);

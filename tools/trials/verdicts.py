@@ -1,0 +1,203 @@
+"""How often a verdict with an error budget is wrong, for a place whose true distance is the margin:
+by Monte Carlo, and by running Clearway itself on thousands of such places."""
+
+import tempfile
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from trials.scans import write_las
+
+QUANTUM = 0.0001   # metres; the step of the stores, small beside all errors
+APART = 3.0        # metres between two places, so that none touches another's model
+SIDE = 0.5         # metres; sides of the model's faces
+CERTAIN = 10       # points that make a conflict
+
+
+class Errors:
+    """Standard deviations: metres on each axis, and radians."""
+
+    def __init__(self, scan=0.0, registration=0.0, pose=0.0, angle=0.0):
+        self.scan, self.registration, self.pose, self.angle = scan, registration, pose, angle
+
+    def options(self):
+        return {"error_scan": self.scan, "error_registration": self.registration,
+                "error_pose": self.pose, "error_angle": self.angle}
+
+    def margins(self, shape, sigmas):
+        """U_clear and U_conflict as docs/design/verdict.md defines them, of points whose step is
+        QUANTUM and a model that stands still."""
+        hard = np.sqrt(3) * QUANTUM / 2
+        lever = np.linalg.norm(shape.vertices(), axis=1).max()
+        others = self.registration**2 + self.pose**2 + (self.angle * lever) ** 2
+        return {"clear": hard + sigmas * np.sqrt(others + self.scan**2),
+                "conflict": hard + sigmas * np.sqrt(others) + 6 * self.scan}
+
+
+ERRORS = {"position": Errors(registration=0.01, pose=0.02),
+          "all": Errors(scan=0.005, registration=0.01, pose=0.02, angle=np.radians(0.05))}
+
+
+def faces(quadrangles):
+    """Triangles of quadrangles, each of four corners."""
+    triangles = [[4 * i + a, 4 * i + b, 4 * i + c] for i in range(len(quadrangles))
+                 for a, b, c in ((0, 1, 2), (0, 2, 3))]
+    return np.concatenate(quadrangles).astype(float), np.array(triangles, np.uint32)
+
+
+class Wall:
+    """A scanned wall beside a flat side of the vehicle, which is the plane y = 0."""
+    name = "wall and plane"
+
+    def vertices(self):
+        return self.mesh()[0]
+
+    def mesh(self):
+        s = SIDE
+        return faces([np.array([[-s, 0, -s], [s, 0, -s], [s, 0, s], [-s, 0, s]])])
+
+    def points(self, margin):
+        """True points whose least distance is the margin."""
+        at = np.arange(-0.15, 0.151, 0.05)
+        x, z = np.meshgrid(at, at)
+        return np.stack([x.ravel(), np.full(x.size, margin), z.ravel()], 1)
+
+    def distance(self, points):
+        return np.abs(points[..., 1])
+
+
+class Edge(Wall):
+    """A scanned upright edge beside an upright edge of the vehicle, which fills x < 0, y < 0."""
+    name = "edge and edge"
+
+    def mesh(self):
+        s = SIDE
+        return faces([np.array([[0, 0, -s], [0, -s, -s], [0, -s, s], [0, 0, s]]),
+                      np.array([[0, 0, -s], [-s, 0, -s], [-s, 0, s], [0, 0, s]])])
+
+    def points(self, margin):
+        z = np.arange(-0.15, 0.151, 0.02)
+        return np.stack([np.full(z.size, margin / np.sqrt(2))] * 2 + [z], 1)
+
+    def distance(self, points):
+        return corner_distance(points[..., :2])
+
+
+class Corner(Edge):
+    """A single scanned point beside a corner of the vehicle, which fills x < 0, y < 0, z < 0."""
+    name = "point and corner"
+
+    def mesh(self):
+        s = SIDE
+        one = np.array([[0, 0, 0], [-s, 0, 0], [-s, -s, 0], [0, -s, 0]])
+        return faces([np.roll(one, k, 1) for k in range(3)])
+
+    def points(self, margin):
+        return np.full((1, 3), margin / np.sqrt(3))
+
+    def distance(self, points):
+        return corner_distance(points)
+
+
+def corner_distance(points):
+    """Distance to the surface of all that is below 0 on every axis."""
+    outside = np.linalg.norm(np.maximum(points, 0), axis=-1)
+    return np.where(outside > 0, outside, -points.max(-1))
+
+
+SHAPES = {shape.name: shape for shape in (Wall(), Edge(), Corner())}
+
+
+def rotations(vectors):
+    """Rotation matrices of rotation vectors (Rodrigues)."""
+    angle = np.linalg.norm(vectors, axis=1)
+    x, y, z = (vectors / np.where(angle > 0, angle, 1)[:, None]).T
+    zero = np.zeros_like(x)
+    cross = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], 1).reshape(-1, 3, 3)
+    return (np.eye(3) + np.sin(angle)[:, None, None] * cross
+            + (1 - np.cos(angle))[:, None, None] * (cross @ cross))
+
+
+class Places:
+    """Places whose true distance is the margin, as scan and path tell of them."""
+
+    def __init__(self, shape, errors, margin, count, random):
+        true = shape.points(margin)
+        self.shape, self.margin = shape, margin
+        points = true + random.normal(size=(count, 1, 3)) * errors.registration
+        points += random.normal(size=(count, *true.shape)) * errors.scan
+        self.points = np.rint(points / QUANTUM) * QUANTUM  # as the store keeps them
+        self.shifts = random.normal(size=(count, 3)) * errors.pose
+        self.turns = rotations(random.normal(size=(count, 3)) * errors.angle)
+
+    def distances(self):
+        """Distances of the recorded points from the model at the recorded pose, a row a place."""
+        return self.shape.distance((self.points - self.shifts[:, None]) @ self.turns)
+
+
+def wrong(distances, margin, margins):
+    """Which places are called clear, and which a conflict, though they stand at the margin."""
+    clear = distances.min(1) >= margin + margins["clear"]
+    conflict = (distances < margin - margins["conflict"]).sum(1) >= CERTAIN
+    return clear, conflict
+
+
+def monte_carlo(shape, errors, margin, sigmas, trials, seed):
+    """How many of so many places are called clear, and how many a conflict, by number of
+    deviations; also of groups of 1, 10 and 100 places those in which any is called clear."""
+    random = np.random.default_rng(seed)
+    at_once = 20_000
+    found = {k: {"clear": 0, "conflict": 0, "groups": {n: 0 for n in (1, 10, 100)}} for k in sigmas}
+    for _ in range(trials // at_once):
+        distances = Places(shape, errors, margin, at_once, random).distances()
+        for k, sums in found.items():
+            clear, conflict = wrong(distances, margin, errors.margins(shape, k))
+            sums["clear"] += int(clear.sum())
+            sums["conflict"] += int(conflict.sum())
+            for n in sums["groups"]:
+                sums["groups"][n] += int(clear.reshape(-1, n).any(1).sum())
+    return {k: {"trials": trials, "margins": errors.margins(shape, k), **sums}
+            for k, sums in found.items()}
+
+
+class Program:
+    """The Python module clearway, asked about many places at once: each is a pose of one of two
+    bodies that take turns, so that none moves and no place is near another."""
+
+    def __init__(self, clearway):
+        self.clearway = clearway
+
+    def ask(self, places, errors, sigmas):
+        """Which places are called clear, which a conflict, and the margins that it tells."""
+        count, each = places.points.shape[:2]
+        columns = int(np.ceil(np.sqrt(count)))
+        at = APART * np.stack([np.arange(count) % columns, np.arange(count) // columns,
+                               np.zeros(count)], 1)
+        poses = np.zeros((count, 3, 4))
+        poses[:, :, :3], poses[:, :, 3] = places.turns, places.shifts + at
+        module = self.clearway
+        model = module.Model(*places.shape.mesh())
+        bodies = [module.Body(f"turn {i}", model, poses[i::2],
+                              np.arange(i, count, 2, dtype=np.uint32)) for i in range(2)]
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            write_las(folder / "scan.las", (places.points + at[:, None]).reshape(-1, 3), QUANTUM)
+            module.convert(folder / "scan.las", folder / "site.h5")
+            query = module.Query(bodies=bodies, poses=poses, radius=max(places.margin, 1e-9),
+                                 sigmas=sigmas, **errors.options())
+            report = module.search(module.Store(folder / "site.h5"), query, folder / "out.h5")
+            result = module.Result(folder / "out.h5")
+            near = np.concatenate([result.near().source, result.collisions().source])
+            certain = certain_sources(folder / "out.h5", result)
+        clear = np.ones(count, bool)
+        clear[near.astype(np.int64) // each] = False
+        conflict = np.bincount(certain.astype(np.int64) // each, minlength=count) >= CERTAIN
+        return clear, conflict, report.margins
+
+
+def certain_sources(path, result):
+    """Of the colliding points those that are certainly too close."""
+    with h5py.File(path) as file:
+        certain = file["collisions/certain"][:].astype(bool)
+    return result.collisions().source[certain]
