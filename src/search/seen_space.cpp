@@ -21,7 +21,7 @@
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "core/util/tsan_annotations.hpp"
-#include "io/scans/length_unit.hpp"
+#include "search/check_query.hpp"
 #include "search/page_search.hpp"
 #include "search/threads.hpp"
 
@@ -32,12 +32,6 @@ constexpr double kUsualCube = 0.2;     // metres
 constexpr double kLongestBeam = 1000;  // metres
 constexpr std::int64_t kMostSide = std::int64_t{1} << 29;
 constexpr std::int64_t kInsets = 4;  // a cube's side in insets, rounded down
-
-/// The length of a metre in the store's unit; 1 where the unit is unknown or is no length.
-double metre_of(const StoreReader& store) {
-  const double metres = metres_of(store.metadata().unit);
-  return metres > 0 ? 1 / metres : 1;
-}
 
 /// The query whose points are the middles of cubes: classes say nothing of them.
 Query query_of_cubes(const Query& query, double radius) {

@@ -2,6 +2,7 @@
 // writes what others do (docs/design/laz.md).
 #include <tbb/task_arena.h>
 
+#include <bit>
 #include <catch2/catch.hpp>
 
 #include "io/files/thread_limit.hpp"
@@ -71,6 +72,48 @@ TEST_CASE("LAZ holds the integers of its points, in every format and division in
     }
   }
   check_reads(laz);
+}
+
+TEST_CASE("GPS times of LAZ are those of its points, where they are asked for") {
+  const unsigned format = GENERATE(from_range(std::begin(kLazFormats), std::end(kLazFormats)));
+  CAPTURE(format);
+  LazBytes laz = laz_bytes(format, 3000);
+  SECTION("chunks") { laz.chunks = {701}; }
+  SECTION("no table") {
+    laz.chunks = {701};
+    laz.table = LazBytes::Table::kNone;
+  }
+  SECTION("times that stay") {
+    laz.chunks = {1000};
+    for (std::size_t i = 0; i < laz.points.size(); ++i) laz.points[i].gps_time = i / 1000;
+  }
+  SECTION("a chunk that is too large to be kept") {
+    laz = laz_bytes(format, 300000);
+    laz.chunks = {300000};
+  }
+  ReaderScratch scratch;
+  const auto path = scratch.write("a.laz", laz.build());
+  const bool has_times = format != 0 && format != 2;
+  const auto check = [&](const std::vector<double>& times) {
+    REQUIRE(times.size() == (has_times ? laz.points.size() : 0));
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      REQUIRE(std::bit_cast<std::uint64_t>(times[i]) == laz.points[i].gps_time);
+    }
+  };
+  const auto reader = open_point_file(path, {.with_times = true});
+  CHECK((reader->info().gps_times == GpsTimes::kWeekSeconds) == has_times);
+  PointBatch batch;
+  std::vector<double> times;
+  while (reader->read(batch)) times.insert(times.end(), batch.times.begin(), batch.times.end());
+  check(times);
+  times.clear();
+  for (std::size_t piece = 0; piece < reader->pieces(); ++piece) {
+    reader->read_piece(piece, batch, nullptr);
+    times.insert(times.end(), batch.times.begin(), batch.times.end());
+  }
+  if (reader->pieces() > 0) check(times);
+  const auto without = open_point_file(path);
+  while (without->read(batch)) CHECK(batch.times.empty());
 }
 
 TEST_CASE("chunks larger than a group's are read in pieces, by any number of threads") {
