@@ -213,9 +213,8 @@ void add_convert(py::module_& module) {
             .origins = origins.is_none() ? std::filesystem::path() : path_of(origins),
             .origins_path =
                 origins_path.is_none() ? std::filesystem::path() : path_of(origins_path),
-            .origins_path_options =
-                trajectory_options(format, false, angle_unit, angle_frame, crs, "", datum,
-                                   metres_per_unit, 1.0, {0, 0, 0}),
+            .origins_path_options = trajectory_options(format, false, angle_unit, angle_frame, crs,
+                                                       "", datum, metres_per_unit, 1.0, {0, 0, 0}),
             .lever_arm = {lever_arm[0], lever_arm[1], lever_arm[2]},
             .skip_unreadable = skip_unreadable,
             .strict = strict,
@@ -233,8 +232,9 @@ void add_convert(py::module_& module) {
       "ignore_crs"_a = false, "columns"_a = std::vector<std::string>{}, "origins"_a = py::none(),
       "origins_path"_a = py::none(), "lever_arm"_a = std::array<double, 3>{0, 0, 0},
       "format"_a = "auto", "angle_unit"_a = "declared", "angle_frame"_a = "declared", "crs"_a = "",
-      "datum"_a = "", "metres_per_unit"_a = 0.0, "skip_unreadable"_a = false, "strict"_a = false, "overwrite"_a = false, "resume"_a = false,
-      "progress"_a = py::none(), "message"_a = py::none(), "stop"_a = py::none(),
+      "datum"_a = "", "metres_per_unit"_a = 0.0, "skip_unreadable"_a = false, "strict"_a = false,
+      "overwrite"_a = false, "resume"_a = false, "progress"_a = py::none(),
+      "message"_a = py::none(), "stop"_a = py::none(),
       R"(convert(inputs, output, *, scale=None, cell_points=65536, regular_size=None, memory_bytes=4294967296, threads=0, unit=0.0, ignore_crs=False, columns=(), origins=None, origins_path=None, lever_arm=(0.0, 0.0, 0.0), format='auto', angle_unit='declared', angle_frame='declared', crs='', datum='', metres_per_unit=0.0, skip_unreadable=False, strict=False, overwrite=False, resume=False, progress=None, message=None, stop=None)
 --
 

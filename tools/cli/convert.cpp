@@ -65,11 +65,16 @@ nlohmann::ordered_json bytes_moved() {
 }
 
 nlohmann::ordered_json json_of(const OriginsPathReport& path) {
-  return {{"point_clock", path.point_clock}, {"path_clock", path.path_clock},
-          {"first_point", path.first_point}, {"last_point", path.last_point},
-          {"first_pose", path.first_pose},   {"last_pose", path.last_pose},
-          {"shifts", path.shifts},           {"before", path.before},
-          {"after", path.after},             {"in_gaps", path.in_gaps},
+  return {{"point_clock", path.point_clock},
+          {"path_clock", path.path_clock},
+          {"first_point", path.first_point},
+          {"last_point", path.last_point},
+          {"first_pose", path.first_pose},
+          {"last_pose", path.last_pose},
+          {"shifts", path.shifts},
+          {"before", path.before},
+          {"after", path.after},
+          {"in_gaps", path.in_gaps},
           {"without_time", path.without_time}};
 }
 
@@ -212,9 +217,10 @@ void add_convert(CLI::App& program) {
       ->group(title_of(OptionGroup::kInputs))
       ->type_name("FILE");
   command
-      ->add_option("--origins-path", conversion.origins_path,
-                   "The path of a moving scanner, a trajectory with times: each point of LAS or LAZ "
-                   "was seen from where it is at the point's GPS time")
+      ->add_option(
+          "--origins-path", conversion.origins_path,
+          "The path of a moving scanner, a trajectory with times: each point of LAS or LAZ "
+          "was seen from where it is at the point's GPS time")
       ->group(title_of(OptionGroup::kPath))
       ->type_name("FILE");
   {

@@ -160,9 +160,10 @@ void add_export(CLI::App& program) {
       ->type_name("FILE")
       ->required();
   command
-      ->add_option("--what", options->what,
-                   "collisions; near, points that only the error budget brings too close; clearance, "
-                   "what run --clearance found; or profile, a line a pose")
+      ->add_option(
+          "--what", options->what,
+          "collisions; near, points that only the error budget brings too close; clearance, "
+          "what run --clearance found; or profile, a line a pose")
       ->check(CLI::IsMember({"collisions", "near", "clearance", "profile"}))
       ->capture_default_str();
   command

@@ -94,18 +94,19 @@ TEST_CASE("nothing is known beside a timed path and in its gaps") {
 
 TEST_CASE("a timed path gives the same place whatever was asked before") {
   std::mt19937 random(7);
+  const auto below = [&](unsigned n) { return static_cast<double>(random() % n); };
   std::vector<Pose> poses;
   std::vector<double> times;
   double time = 0;
   for (int i = 0; i < 50; ++i) {
-    time += 0.01 + 0.001 * (random() % 1200);
+    time += 0.01 + 0.001 * below(1200);
     times.push_back(time);
-    poses.push_back(turned_pose(random() % 100, random() % 100, 0, random() % 7));
+    poses.push_back(turned_pose(below(100), below(100), 0, below(7)));
   }
   const TimedPath path(poses, times, {0.5, 0.25, 0}, "p.txt");
   std::size_t step = 0;
   for (int i = 0; i < 2000; ++i) {
-    const double at = i % 3 == 0 ? times[random() % 50] : time * (random() % 1000) / 990.0;
+    const double at = i % 3 == 0 ? times[random() % 50] : time * below(1000) / 990;
     std::size_t fresh = 0;
     const TimedPath::Place expected = path.at(at, fresh), place = path.at(at, step);
     REQUIRE(place.where == expected.where);

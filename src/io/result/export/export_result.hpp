@@ -12,8 +12,8 @@
 namespace clearway {
 
 /// Receives the rows of a table front to back and writes them in a format. `Rows` is Collisions,
-/// Nearby or Clearances. Coordinates are written as they are stored, and the columns that the schema names as
-/// fields follow them.
+/// Nearby or Clearances. Coordinates are written as they are stored, and the columns that the
+/// schema names as fields follow them.
 template <typename Rows>
 class RowSink {
  public:

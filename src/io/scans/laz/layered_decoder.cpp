@@ -90,8 +90,7 @@ class LayeredDecoder final : public ChunkDecoder {
     if (!has_classes_) std::fill_n(points.classes, points.count, class_);
     if (!has_times_ && points.times) std::fill_n(points.times, points.count, time_);
     if (plane_.decoder.damaged() || (has_heights_ && heights_.decoder.damaged()) ||
-        (has_classes_ && classes_.decoder.damaged()) ||
-        (has_times_ && times_.decoder.damaged())) {
+        (has_classes_ && classes_.decoder.damaged()) || (has_times_ && times_.decoder.damaged())) {
       throw DamagedChunk{"holds bits that no encoder writes"};
     }
   }

@@ -99,7 +99,7 @@ void OriginTable::add(std::uint64_t first, const std::optional<Vec3>& origin,
 }
 
 void OriginTable::add_quanta(std::uint64_t first, const std::optional<OriginQuanta>& origin,
-                      const std::string& name) {
+                             const std::string& name) {
   std::uint32_t number = 0;
   if (origin) {
     number = number_of(*origin);

@@ -52,6 +52,17 @@ bool is_about_rotation(const Message& remark) {
   return false;
 }
 
+/// Reads a path. Matrices that scale or shear stay refused whatever the caller does, since a
+/// scanner does not, so no error offers to accept them.
+TrajectoryFile read_rigid_path(const std::filesystem::path& path, const TrajectoryOptions& how) {
+  try {
+    return read_trajectory_file(path, how);
+  } catch (const InputError& error) {
+    if (error.remedy() != Remedy::kAllowNonRigid) throw;
+    throw InputError(error.what());
+  }
+}
+
 /// The lever arm in the unit of the environment.
 Vec3 lever_of(const ConvertOptions& options, double metres_per_unit) {
   return {options.lever_arm.x / metres_per_unit, options.lever_arm.y / metres_per_unit,
@@ -96,7 +107,7 @@ PathOrigins::PathOrigins(const ConvertOptions& options, const EnvironmentSource&
   how.default_crs = crs_wkt_;
   how.environment_unit = metres;
   how.environment_unit_is_assumed = unit_ == LengthUnit::kUnknown;
-  TrajectoryFile file = read_trajectory_file(options.origins_path, how);
+  TrajectoryFile file = read_rigid_path(options.origins_path, how);
   const bool turns = !(options.lever_arm == Vec3{0, 0, 0});
   for (const Message& remark : file.remarks) {
     // Times that go back are refused below.
@@ -119,8 +130,8 @@ PathOrigins::PathOrigins(const ConvertOptions& options, const EnvironmentSource&
   }
   const auto counts_weeks = [](GpsTimes kind) { return kind == GpsTimes::kWeekSeconds; };
   const double spans = path_->last() - path_->first();
-  const bool across = clock_ == Clock::kWeekSeconds ||
-                      std::any_of(kinds_.begin(), kinds_.end(), counts_weeks);
+  const bool across =
+      clock_ == Clock::kWeekSeconds || std::any_of(kinds_.begin(), kinds_.end(), counts_weeks);
   if (across && spans > kWeek) {
     refuse(name_, "its times span " + seconds_text(spans) +
                       " s, which is more than a week, so seconds of the GPS week do not tell where "
@@ -247,8 +258,9 @@ std::string PathOrigins::times_of_points(const EnvironmentSource& environment) c
 /// A sentence about a known difference of clocks that would make the ranges overlap; empty where
 /// none does.
 std::string PathOrigins::advice(double first, double last) const {
-  const bool weeks = clock_ == Clock::kWeekSeconds ||
-                     std::find(kinds_.begin(), kinds_.end(), GpsTimes::kWeekSeconds) != kinds_.end();
+  const bool weeks =
+      clock_ == Clock::kWeekSeconds ||
+      std::find(kinds_.begin(), kinds_.end(), GpsTimes::kWeekSeconds) != kinds_.end();
   for (const bool by_weeks : {false, true}) {
     for (const KnownShift& known : kKnownShifts) {
       const double middle = (first + last) / 2 - (path_->first() + path_->last()) / 2;
@@ -260,7 +272,8 @@ std::string PathOrigins::advice(double first, double last) const {
       std::snprintf(text, sizeof text, "%+.0f", shift);
       std::string what = known.what;
       if (by_weeks) {
-        what += std::string(what.empty() ? "" : ", and ") + "by whole weeks, so the path may be of "
+        what += std::string(what.empty() ? "" : ", and ") +
+                "by whole weeks, so the path may be of "
                 "another recording";
       }
       return " The ranges would overlap if " + std::string(text) +
@@ -277,16 +290,16 @@ void PathOrigins::refuse_same_times(const EnvironmentSource& environment) const 
     const OfFile& file = files_[i];
     const std::uint64_t most = file.first == 0 ? 1 : kMoreThanAPulse;
     if (file.with_time <= most || file.first != file.last) continue;
-    refuse(environment.files()[i].string(),
-           "all " + format_count(file.with_time) + " points have the GPS time " +
-               seconds_text(file.first) +
-               " s; expected the times at which they were measured, because the origins on the path "
-               "follow from them");
+    refuse(
+        environment.files()[i].string(),
+        "all " + format_count(file.with_time) + " points have the GPS time " +
+            seconds_text(file.first) +
+            " s; expected the times at which they were measured, because the origins on the path "
+            "follow from them");
   }
 }
 
-OriginsPathReport PathOrigins::finish(const EnvironmentSource& environment,
-                                      MessageLog& log) const {
+OriginsPathReport PathOrigins::finish(const EnvironmentSource& environment, MessageLog& log) const {
   if (environment.crs_wkt() != crs_wkt_ || environment.unit() != unit_) {
     refuse(name_,
            "was read before the coordinate reference system of the points was known, because that "
@@ -300,35 +313,37 @@ OriginsPathReport PathOrigins::finish(const EnvironmentSource& environment,
   }
   refuse_same_times(environment);
   const std::string points = times_of_points(environment);
-  const std::string path = range_text(path_->first(), path_->last()) + ", which is taken for " +
-                           clock_text();
+  const std::string path =
+      range_text(path_->first(), path_->last()) + ", which is taken for " + clock_text();
   if (all_.found == 0) {
     refuse(name_, "gives no point an origin. The GPS times of the points go " + points +
-                      "; those of the path go from " + path + "." +
-                      advice(all_.first, all_.last));
+                      "; those of the path go from " + path + "." + advice(all_.first, all_.last));
   }
   if (clock_ == Clock::kWeekSeconds && all_.shifts.size() > 1) {
     std::set<double> weeks = all_.shifts;
     for (const double shift : {-kWeek, 0.0, kWeek}) weeks.erase(shift);
     if (weeks.size() > 1) {
-      refuse(name_, "its times are seconds of the GPS week, and the points that match them are of " +
-                        format_count(weeks.size()) + " weeks; expected the points of one recording");
+      refuse(name_,
+             "its times are seconds of the GPS week, and the points that match them are of " +
+                 format_count(weeks.size()) + " weeks; expected the points of one recording");
     }
   }
   log.note("the GPS times of the points go " + points + "; those of the path go from " + path +
            ". " +
            (all_.shifts == std::set<double>{0}
                 ? std::string("Both are compared as they are")
-                : "To compare both, " + [&] {
-                    std::string text;
-                    for (const double shift : all_.shifts) {
-                      char one[64];
-                      std::snprintf(one, sizeof one, "%+.0f", shift);
-                      text += (text.empty() ? "" : " or ") + std::string(one);
-                    }
-                    return text;
-                  }() + " s are added to those of the points, which is exact by the definition of "
-                        "these times"));
+                : "To compare both, " +
+                      [&] {
+                        std::string text;
+                        for (const double shift : all_.shifts) {
+                          char one[64];
+                          std::snprintf(one, sizeof one, "%+.0f", shift);
+                          text += (text.empty() ? "" : " or ") + std::string(one);
+                        }
+                        return text;
+                      }() +
+                      " s are added to those of the points, which is exact by the definition of "
+                      "these times"));
   warn(environment, log);
   return report();
 }
@@ -341,7 +356,9 @@ OriginsPathReport PathOrigins::report() const {
     without_time += files_[i].points - files_[i].with_time;
   }
   const bool adjusted = kinds.contains(GpsTimes::kAdjusted);
-  return {.point_clock = kinds.size() > 1 ? "mixed" : adjusted ? "adjusted" : "week-seconds",
+  return {.point_clock = kinds.size() > 1 ? "mixed"
+                         : adjusted       ? "adjusted"
+                                          : "week-seconds",
           .path_clock = clock_ == Clock::kWeekSeconds ? "week-seconds"
                         : clock_ == Clock::kAdjusted  ? "adjusted"
                                                       : "standard",
@@ -376,32 +393,32 @@ void PathOrigins::warn(const EnvironmentSource& environment, MessageLog& log) co
              {{"points", static_cast<double>(all_.not_finite)}});
   }
   if (all_.contradicting > 0) {
-    log.warn("gps-times-contradict",
-             "the GPS times of " + counted(all_.contradicting, "point") +
-                 " cannot be what the headers of their files say (bit 0 of the global encoding: 0 "
-                 "for seconds of the GPS week, 1 for adjusted standard GPS time). They are compared "
-                 "with the path as they are",
-             {{"points", static_cast<double>(all_.contradicting)}});
+    log.warn(
+        "gps-times-contradict",
+        "the GPS times of " + counted(all_.contradicting, "point") +
+            " cannot be what the headers of their files say (bit 0 of the global encoding: 0 "
+            "for seconds of the GPS week, 1 for adjusted standard GPS time). They are compared "
+            "with the path as they are",
+        {{"points", static_cast<double>(all_.contradicting)}});
   }
   const std::uint64_t outside = all_.before + all_.after + all_.in_gaps;
   if (outside == 0) return;
-  log.warn("origins-path-gap",
-           format_count(outside) + " of " + format_count(all_.with_time) +
-               " points with a GPS time have no origin, because the path does not tell where the "
-               "scanner was: " +
-               format_count(all_.before) + " are from before its first pose, " +
-               format_count(all_.after) + " from after its last one, and " +
-               format_count(all_.in_gaps) + " from between poses more than " +
-               format_brief(TimedPath::kLongestStep) + " s apart" +
-               (path_->gaps() > 0 ? " (the path has " + counted(path_->gaps(), "such gap") +
-                                        ", the longest of " + format_brief(path_->longest_gap()) +
-                                        " s)"
-                                  : ""),
-           {{"before", static_cast<double>(all_.before)},
-            {"after", static_cast<double>(all_.after)},
-            {"in_gaps", static_cast<double>(all_.in_gaps)},
-            {"gaps", static_cast<double>(path_->gaps())},
-            {"longest_gap", path_->longest_gap()}});
+  log.warn(
+      "origins-path-gap",
+      format_count(outside) + " of " + format_count(all_.with_time) +
+          " points with a GPS time have no origin, because the path does not tell where the "
+          "scanner was: " +
+          format_count(all_.before) + " are from before its first pose, " +
+          format_count(all_.after) + " from after its last one, and " + format_count(all_.in_gaps) +
+          " from between poses more than " + format_brief(TimedPath::kLongestStep) + " s apart" +
+          (path_->gaps() > 0 ? " (the path has " + counted(path_->gaps(), "such gap") +
+                                   ", the longest of " + format_brief(path_->longest_gap()) + " s)"
+                             : ""),
+      {{"before", static_cast<double>(all_.before)},
+       {"after", static_cast<double>(all_.after)},
+       {"in_gaps", static_cast<double>(all_.in_gaps)},
+       {"gaps", static_cast<double>(path_->gaps())},
+       {"longest_gap", path_->longest_gap()}});
 }
 
 std::uint64_t given_path_hash(const ConvertOptions& options) {
@@ -412,8 +429,9 @@ std::uint64_t given_path_hash(const ConvertOptions& options) {
                           static_cast<int>(how.angle_frame), how.allow_non_rigid ? 1 : 0}) {
     text += "\n" + std::to_string(value);
   }
-  for (const double value : {options.lever_arm.x, options.lever_arm.y, options.lever_arm.z,
-                             how.metres_per_unit.metres(), how.metres_per_unit.is_any_foot() ? 1.0 : 0.0}) {
+  for (const double value :
+       {options.lever_arm.x, options.lever_arm.y, options.lever_arm.z, how.metres_per_unit.metres(),
+        how.metres_per_unit.is_any_foot() ? 1.0 : 0.0}) {
     text += "\n" + format_number(value);
   }
   ColumnHashes hashes;

@@ -96,8 +96,7 @@ TEST_CASE("a point of a moving scanner has the place on the path at its GPS time
   const StoreOrigins& origins = *store.metadata().origins;
   CHECK(origins.quanta.size() == 4);
   CHECK(origins.points_without == 0);
-  CHECK(origins.rest_on ==
-        std::vector<OriginBasis>{{"a path and the GPS times of the points", 4}});
+  CHECK(origins.rest_on == std::vector<OriginBasis>{{"a path and the GPS times of the points", 4}});
 }
 
 TEST_CASE("every point format with GPS times gives origins, compressed or not") {
@@ -170,8 +169,8 @@ TEST_CASE("points that the path does not reach have no origin and are warned of"
   CHECK(report.origins_path->first_point == 99);
   CHECK(report.origins_path->last_point == 104);
   const auto origins = origins_by_source(StoreReader(scan.options.output));
-  const std::vector<bool> expected{false, false, true, true, true, false, true, true, true, false,
-                                   false};
+  const std::vector<bool> expected{false, false, true, true,  true, false,
+                                   true,  true,  true, false, false};
   for (std::size_t i = 0; i < expected.size(); ++i) CHECK(origins[i].has_value() == expected[i]);
 }
 
@@ -293,12 +292,14 @@ TEST_CASE("inputs without GPS times have no origins by a path") {
   CHECK_FALSE(origins[0].has_value());
   CHECK(origins[3].has_value());
   scan.options.inputs = {scan.folder / "b.ply"};
-  CHECK_THAT(conversion_refusal<InputError>(scan.options), Contains("none of the inputs has GPS times"));
+  CHECK_THAT(conversion_refusal<InputError>(scan.options),
+             Contains("none of the inputs has GPS times"));
   scan.las.format = 2;
   scan.las.times.clear();
   put_bytes(scan.folder / "a.las", scan.las.build());
   scan.options.inputs = {scan.folder / "a.las"};
-  CHECK_THAT(conversion_refusal<InputError>(scan.options), Contains("none of the inputs has GPS times"));
+  CHECK_THAT(conversion_refusal<InputError>(scan.options),
+             Contains("none of the inputs has GPS times"));
 }
 
 TEST_CASE("a path that is none, and options that contradict each other, are refused") {
@@ -310,7 +311,8 @@ TEST_CASE("a path that is none, and options that contradict each other, are refu
   }
   SECTION("times that go back") {
     scan.path_text("100 0 0 0 0 0 0 1\n102 1 0 0 0 0 0 1\n101 2 0 0 0 0 0 1\n");
-    CHECK_THAT(conversion_refusal<InputError>(scan.options), Contains("expected times that ascend"));
+    CHECK_THAT(conversion_refusal<InputError>(scan.options),
+               Contains("expected times that ascend"));
   }
   SECTION("a pose that is not a number") {
     scan.path_text("100 0 nan 0 0 0 0 1\n101 1 0 0 0 0 0 1\n");
@@ -361,7 +363,8 @@ TEST_CASE("a table of origins that are seen again and again takes memory for eac
   }
   table.finish();
   CHECK(table.allocated_bytes() < 2 << 20);
-  std::vector<DistributedPoint> points{DistributedPoint::of({}, 0, 0), DistributedPoint::of({}, 1, 0),
+  std::vector<DistributedPoint> points{DistributedPoint::of({}, 0, 0),
+                                       DistributedPoint::of({}, 1, 0),
                                        DistributedPoint::of({}, 49999, 0)};
   CHECK(table.numbers_of(points) == std::vector<std::uint32_t>{1, 20, 1 + 49999 * 7919 % 100});
   CHECK_THROWS_WITH(

@@ -194,8 +194,8 @@ class ColourCoder {
   std::vector<SymbolCoder> bytes_ = std::vector<SymbolCoder>(6, SymbolCoder(256));
 };
 
-/// Encodes the layers of POINT14 that hold coordinates, classes and GPS times. Pulses have at most two
-/// returns.
+/// Encodes the layers of POINT14 that hold coordinates, classes and GPS times. Pulses have at most
+/// two returns.
 class Point14Coder {
  public:
   explicit Point14Coder(const LazPoint& first) : current_(first.channel) { start(current_, first); }

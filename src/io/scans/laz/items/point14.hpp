@@ -71,9 +71,9 @@ class Point14 {
   ArithmeticDecoder next_returns(ArithmeticDecoder plane, unsigned changed);
 
   std::array<Channel, 4> channels_;
-  std::array<ModelsByValue, 4> class_models_;  ///< models of the class for each channel
+  std::array<ModelsByValue, 4> class_models_;    ///< models of the class for each channel
   std::array<std::unique_ptr<Times>, 4> times_;  ///< GPS times of each channel; null before used
-  unsigned last_timed_ = 0;                      ///< channel of the point before, where times are read
+  unsigned last_timed_ = 0;  ///< channel of the point before, where times are read
   unsigned current_ = 0;
   bool has_heights_ = false;
 };
