@@ -157,7 +157,7 @@ TEST_CASE("convert --origins-path gives a moving scanner's points their origins,
                                        {"without_time", 0}});
   CHECK(report["origins"]["distinct"] == 3);
   CHECK(report["origins"]["points_without"] == 1);
-  CHECK_THAT(outcome.err, Contains("by the header adjusted standard GPS time") &&
+  CHECK_THAT(outcome.err, Contains("(adjusted standard GPS time, by the header)") &&
                               Contains("seconds of the GPS week") && Contains("exact"));
   CHECK_THAT(work.run("info " + work.path("a.h5")).out,
              Contains("a path and the GPS times of the points"));

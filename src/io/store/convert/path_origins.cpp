@@ -27,8 +27,15 @@ std::string seconds_text(double seconds) {
   return text;
 }
 
+/// A whole number of seconds with its sign, such as "+604800".
+std::string shift_text(double seconds) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%+.0f", seconds);
+  return text;
+}
+
 std::string range_text(double first, double last) {
-  return seconds_text(first) + " to " + seconds_text(last) + " s";
+  return "from " + seconds_text(first) + " to " + seconds_text(last) + " s";
 }
 
 std::string name_of(GpsTimes kind) {
@@ -139,9 +146,17 @@ PathOrigins::PathOrigins(const ConvertOptions& options, const EnvironmentSource&
   }
 }
 
+/// Whether a time of a file with this kind of times cannot be what the header says.
+bool PathOrigins::contradicts(GpsTimes kind, double time) const {
+  const bool within_week = time >= 0 && time <= kWeek;
+  if (kind == GpsTimes::kWeekSeconds) return !within_week;
+  // Adjusted time was within a week from 0 in September 2011.
+  return within_week && clock_ == Clock::kWeekSeconds;
+}
+
 /// The seconds to add to the time of a point for the time on the path.
 double PathOrigins::shift_for(GpsTimes kind, double time) const {
-  const bool within_week = time >= 0 && time <= kWeek;
+  if (contradicts(kind, time)) return 0;
   const double first = path_->first(), last = path_->last();
   // The time of a point is moved by whole weeks to within a week from the first pose, or to before
   // it where that is nearer to the path.
@@ -150,13 +165,12 @@ double PathOrigins::shift_for(GpsTimes kind, double time) const {
     return at > last && first - (at - kWeek) < at - last ? shift - kWeek : shift;
   };
   if (kind == GpsTimes::kWeekSeconds) {
-    if (!within_week) return 0;
     // The path may have counted on beyond the end of the week, or count from another epoch.
     const double epoch = clock_ == Clock::kAdjusted ? -kAdjustment : 0;
     return nearest(epoch + kWeek * std::ceil((first - epoch - time) / kWeek));
   }
   if (clock_ == Clock::kStandard) return kAdjustment;
-  if (clock_ == Clock::kAdjusted || within_week) return 0;
+  if (clock_ == Clock::kAdjusted) return 0;
   return nearest(kAdjustment - kWeek * std::floor((time + kAdjustment - first) / kWeek));
 }
 
@@ -168,30 +182,22 @@ PathOrigins::OfBatch PathOrigins::origins_of(const QuantaBatch& batch) const {
     return out;
   }
   std::size_t step = 0;
+  double added = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 0; i < batch.times.size(); ++i) {
     const double time = batch.times[i];
     std::optional<OriginQuanta> origin;
-    if (!std::isfinite(time)) {
-      ++out.not_finite;
-    } else {
-      ++out.with_time;
-      out.first = std::min(out.first, time);
-      out.last = std::max(out.last, time);
-      const bool within_week = time >= 0 && time <= kWeek;
-      const bool contradicts = kind == GpsTimes::kWeekSeconds
-                                   ? !within_week
-                                   : within_week && clock_ == Clock::kWeekSeconds;
-      out.contradicting += contradicts ? 1 : 0;
+    if (std::isfinite(time)) {
+      out.note_time(time, contradicts(kind, time));
       const double shift = shift_for(kind, time);
       const TimedPath::Place place = path_->at(time + shift, step);
-      out.before += place.where == TimedPath::Where::kBefore ? 1 : 0;
-      out.after += place.where == TimedPath::Where::kAfter ? 1 : 0;
-      out.in_gaps += place.where == TimedPath::Where::kInGap ? 1 : 0;
+      out.note_place(place.where);
       if (place.where == TimedPath::Where::kOnPath) {
-        ++out.found;
-        if (!out.shifts.contains(shift)) out.shifts.insert(shift);
+        if (shift != added) out.shifts.insert(shift);
+        added = shift;
         origin = quanta_of_origin(quantisation_, place.position, name_);
       }
+    } else {
+      ++out.not_finite;
     }
     if (out.runs.empty() || out.runs.back().origin != origin) {
       out.runs.push_back({batch.first_source + i, origin});
@@ -200,22 +206,41 @@ PathOrigins::OfBatch PathOrigins::origins_of(const QuantaBatch& batch) const {
   return out;
 }
 
+void PathOrigins::OfBatch::note_time(double time, bool contradicts) {
+  ++with_time;
+  contradicting += contradicts ? 1 : 0;
+  first = std::min(first, time);
+  last = std::max(last, time);
+}
+
+void PathOrigins::OfBatch::note_place(TimedPath::Where where) {
+  using Where = TimedPath::Where;
+  ++(where == Where::kOnPath   ? found
+     : where == Where::kBefore ? before
+     : where == Where::kAfter  ? after
+                               : in_gaps);
+}
+
+void PathOrigins::OfBatch::add(const OfBatch& other) {
+  with_time += other.with_time;
+  not_finite += other.not_finite;
+  contradicting += other.contradicting;
+  before += other.before;
+  after += other.after;
+  in_gaps += other.in_gaps;
+  found += other.found;
+  first = std::min(first, other.first);
+  last = std::max(last, other.last);
+  shifts.insert(other.shifts.begin(), other.shifts.end());
+}
+
 void PathOrigins::add(const QuantaBatch& batch, const OfBatch& origins) {
   OfFile& file = files_[batch.file];
   file.points += batch.records;
   file.with_time += origins.with_time;
   file.first = std::min(file.first, origins.first);
   file.last = std::max(file.last, origins.last);
-  all_.with_time += origins.with_time;
-  all_.not_finite += origins.not_finite;
-  all_.contradicting += origins.contradicting;
-  all_.before += origins.before;
-  all_.after += origins.after;
-  all_.in_gaps += origins.in_gaps;
-  all_.found += origins.found;
-  all_.first = std::min(all_.first, origins.first);
-  all_.last = std::max(all_.last, origins.last);
-  all_.shifts.insert(origins.shifts.begin(), origins.shifts.end());
+  all_.add(origins);
   for (const OfBatch::Run& run : origins.runs) {
     table_.add_quanta(run.first, run.origin, names_[batch.file]);
   }
@@ -224,79 +249,97 @@ void PathOrigins::add(const QuantaBatch& batch, const OfBatch& origins) {
 std::string PathOrigins::clock_text() const {
   switch (clock_) {
     case Clock::kWeekSeconds:
-      return "seconds of the GPS week";
+      return name_of(GpsTimes::kWeekSeconds);
     case Clock::kAdjusted:
-      return "adjusted standard GPS time";
+      return name_of(GpsTimes::kAdjusted);
     case Clock::kStandard:
       break;
   }
-  return "seconds since an epoch";
+  return "GPS time, seconds since 1980-01-06";
 }
 
-/// What the times of the points are by the headers, and their range: "adjusted standard GPS time by
-/// the header, 3.000 to 9.000 s".
-std::string PathOrigins::times_of_points(const EnvironmentSource& environment) const {
-  std::string text;
+/// The range of the points' times and what they are by the headers: "from 3.000 to 9.000 s
+/// (adjusted standard GPS time, by the header)".
+std::string PathOrigins::times_of_points() const {
+  std::vector<std::string> texts;
+  std::size_t all = 0;
   for (const GpsTimes kind : {GpsTimes::kWeekSeconds, GpsTimes::kAdjusted}) {
-    double first = std::numeric_limits<double>::infinity(), last = -first;
+    OfFile times;
     std::size_t files = 0;
     for (std::size_t i = 0; i < kinds_.size(); ++i) {
       if (kinds_[i] != kind || files_[i].with_time == 0) continue;
       ++files;
-      first = std::min(first, files_[i].first);
-      last = std::max(last, files_[i].last);
+      times.first = std::min(times.first, files_[i].first);
+      times.last = std::max(times.last, files_[i].last);
     }
+    all += files;
     if (files == 0) continue;
-    text += text.empty() ? "" : "; those of ";
-    if (environment.files().size() > 1) text += counted(files, "file") + " ";
-    text += "from " + range_text(first, last) + ", by the header" + (files > 1 ? "s " : " ") +
-            name_of(kind);
+    texts.push_back((files < all ? "and in others " : "") + range_text(times.first, times.last) +
+                    " (" + name_of(kind) + ", by the header" + (files > 1 ? "s)" : ")"));
   }
-  return text;
+  return texts.size() < 2 ? texts.front() : texts[0] + " " + texts[1];
 }
 
-/// A sentence about a known difference of clocks that would make the ranges overlap; empty where
-/// none does.
+/// What would make the ranges of times overlap, where a known difference of clocks does, or that
+/// none is known.
 std::string PathOrigins::advice(double first, double last) const {
   const bool weeks =
       clock_ == Clock::kWeekSeconds ||
       std::find(kinds_.begin(), kinds_.end(), GpsTimes::kWeekSeconds) != kinds_.end();
+  const double apart = (first + last) / 2 - (path_->first() + path_->last()) / 2;
   for (const bool by_weeks : {false, true}) {
     for (const KnownShift& known : kKnownShifts) {
-      const double middle = (first + last) / 2 - (path_->first() + path_->last()) / 2;
-      const double shift =
-          known.seconds + (by_weeks ? kWeek * std::round((middle - known.seconds) / kWeek) : 0);
-      if (shift == 0 || (by_weeks && known.seconds != 0 && !weeks)) continue;
-      if (path_->first() + shift > last || path_->last() + shift < first) continue;
-      char text[64];
-      std::snprintf(text, sizeof text, "%+.0f", shift);
+      if (by_weeks && known.seconds != 0 && !weeks) continue;
+      const double more = by_weeks ? kWeek * std::round((apart - known.seconds) / kWeek) : 0;
+      const double shift = known.seconds + more;
+      const bool overlap = path_->first() + shift <= last && path_->last() + shift >= first;
+      if (shift == 0 || !overlap) continue;
       std::string what = known.what;
-      if (by_weeks) {
+      if (more != 0) {
         what += std::string(what.empty() ? "" : ", and ") +
-                "by whole weeks, so the path may be of "
-                "another recording";
+                "by whole weeks, so the path may be that of another recording";
       }
-      return " The ranges would overlap if " + std::string(text) +
+      return "They would overlap if " + shift_text(shift) +
              " s were added to the times of the path: " + what +
-             ". Clearway does not add them by itself, so change the times of the path if this is "
-             "meant";
+             ". Nothing is added unless it is certain, so change the times of the path if it is "
+             "meant so";
     }
   }
-  return {};
+  return "No difference between clocks that Clearway knows makes them overlap; is it the path of "
+         "another recording?";
 }
 
-void PathOrigins::refuse_same_times(const EnvironmentSource& environment) const {
+void PathOrigins::refuse_same_times() const {
   for (std::size_t i = 0; i < files_.size(); ++i) {
     const OfFile& file = files_[i];
     const std::uint64_t most = file.first == 0 ? 1 : kMoreThanAPulse;
     if (file.with_time <= most || file.first != file.last) continue;
     refuse(
-        environment.files()[i].string(),
+        names_[i],
         "all " + format_count(file.with_time) + " points have the GPS time " +
             seconds_text(file.first) +
             " s; expected the times at which they were measured, because the origins on the path "
             "follow from them");
   }
+}
+
+void PathOrigins::refuse_several_weeks() const {
+  std::set<double> weeks = all_.shifts;
+  for (const double shift : {-kWeek, 0.0, kWeek}) weeks.erase(shift);
+  if (clock_ != Clock::kWeekSeconds || weeks.size() < 2) return;
+  refuse(name_, "its times are seconds of the GPS week, and the points that match them are of " +
+                    format_count(weeks.size()) + " weeks; expected the points of one recording");
+}
+
+/// A sentence about what was added to times of points.
+std::string PathOrigins::shifts_text() const {
+  if (all_.shifts == std::set<double>{0}) return "Both are compared as they are";
+  std::string text;
+  for (const double shift : all_.shifts) {
+    text += (text.empty() ? "" : " or ") + shift_text(shift);
+  }
+  return "To compare both, " + text +
+         " s are added to those of the points, which is exact by the definition of these times";
 }
 
 OriginsPathReport PathOrigins::finish(const EnvironmentSource& environment, MessageLog& log) const {
@@ -309,78 +352,53 @@ OriginsPathReport PathOrigins::finish(const EnvironmentSource& environment, Mess
     refuse(name_, all_.not_finite > 0
                       ? "gives no point an origin: none of the inputs has a finite GPS time"
                       : "gives no point an origin: none of the inputs has GPS times, which LAS and "
-                        "LAZ have in the point formats 1, 3, 4 and 5 to 10");
+                        "LAZ have in all point formats but 0 and 2");
   }
-  refuse_same_times(environment);
-  const std::string points = times_of_points(environment);
-  const std::string path =
-      range_text(path_->first(), path_->last()) + ", which is taken for " + clock_text();
+  refuse_same_times();
+  const std::string told = "the GPS times of the points go " + times_of_points() +
+                           ", those of the path " + range_text(path_->first(), path_->last()) +
+                           " (taken for " + clock_text() + "). ";
   if (all_.found == 0) {
-    refuse(name_, "gives no point an origin. The GPS times of the points go " + points +
-                      "; those of the path go from " + path + "." + advice(all_.first, all_.last));
+    refuse(name_, "gives no point an origin: " + told + advice(all_.first, all_.last));
   }
-  if (clock_ == Clock::kWeekSeconds && all_.shifts.size() > 1) {
-    std::set<double> weeks = all_.shifts;
-    for (const double shift : {-kWeek, 0.0, kWeek}) weeks.erase(shift);
-    if (weeks.size() > 1) {
-      refuse(name_,
-             "its times are seconds of the GPS week, and the points that match them are of " +
-                 format_count(weeks.size()) + " weeks; expected the points of one recording");
-    }
-  }
-  log.note("the GPS times of the points go " + points + "; those of the path go from " + path +
-           ". " +
-           (all_.shifts == std::set<double>{0}
-                ? std::string("Both are compared as they are")
-                : "To compare both, " +
-                      [&] {
-                        std::string text;
-                        for (const double shift : all_.shifts) {
-                          char one[64];
-                          std::snprintf(one, sizeof one, "%+.0f", shift);
-                          text += (text.empty() ? "" : " or ") + std::string(one);
-                        }
-                        return text;
-                      }() +
-                      " s are added to those of the points, which is exact by the definition of "
-                      "these times"));
-  warn(environment, log);
+  refuse_several_weeks();
+  log.note(told + shifts_text());
+  warn(log);
   return report();
 }
 
 OriginsPathReport PathOrigins::report() const {
+  OriginsPathReport out;
   std::set<GpsTimes> kinds;
-  std::uint64_t without_time = 0;
   for (std::size_t i = 0; i < files_.size(); ++i) {
     if (files_[i].with_time > 0) kinds.insert(kinds_[i]);
-    without_time += files_[i].points - files_[i].with_time;
+    out.without_time += files_[i].points - files_[i].with_time;
   }
-  const bool adjusted = kinds.contains(GpsTimes::kAdjusted);
-  return {.point_clock = kinds.size() > 1 ? "mixed"
-                         : adjusted       ? "adjusted"
-                                          : "week-seconds",
-          .path_clock = clock_ == Clock::kWeekSeconds ? "week-seconds"
-                        : clock_ == Clock::kAdjusted  ? "adjusted"
-                                                      : "standard",
-          .first_point = all_.first,
-          .last_point = all_.last,
-          .first_pose = path_->first(),
-          .last_pose = path_->last(),
-          .shifts = {all_.shifts.begin(), all_.shifts.end()},
-          .before = all_.before,
-          .after = all_.after,
-          .in_gaps = all_.in_gaps,
-          .without_time = without_time};
+  out.point_clock = kinds.size() > 1                      ? "mixed"
+                    : kinds.contains(GpsTimes::kAdjusted) ? "adjusted"
+                                                          : "week-seconds";
+  out.path_clock = clock_ == Clock::kWeekSeconds ? "week-seconds"
+                   : clock_ == Clock::kAdjusted  ? "adjusted"
+                                                 : "standard";
+  out.first_point = all_.first;
+  out.last_point = all_.last;
+  out.first_pose = path_->first();
+  out.last_pose = path_->last();
+  out.shifts.assign(all_.shifts.begin(), all_.shifts.end());
+  out.before = all_.before;
+  out.after = all_.after;
+  out.in_gaps = all_.in_gaps;
+  return out;
 }
 
-void PathOrigins::warn(const EnvironmentSource& environment, MessageLog& log) const {
+void PathOrigins::warn(MessageLog& log) const {
   std::uint64_t without = 0, files = 0;
   for (const OfFile& file : files_) {
     if (file.points == 0 || file.with_time > 0) continue;
     ++files;
     without += file.points;
   }
-  if (files > 0 && environment.files().size() > 1) {
+  if (files > 0) {
     log.warn("no-gps-times",
              counted(files, "input") + (files == 1 ? " has" : " have") + " no GPS times, so " +
                  format_count(without) + " points have no origin",

@@ -37,6 +37,11 @@ class PathOrigins {
     double first = std::numeric_limits<double>::infinity();  ///< least time, as in the file
     double last = -std::numeric_limits<double>::infinity();
     std::set<double> shifts{};  ///< seconds that were added to the times of points with an origin
+
+    void note_time(double time, bool contradicts);
+    void note_place(TimedPath::Where where);
+    /// Adds the sums of another batch, without its runs.
+    void add(const OfBatch& other);
   };
 
   /// Reads the path of options.origins_path, for points of this environment, whose headers have
@@ -65,13 +70,16 @@ class PathOrigins {
     double last = -std::numeric_limits<double>::infinity();
   };
 
+  bool contradicts(GpsTimes kind, double time) const;
   double shift_for(GpsTimes kind, double time) const;
   std::string clock_text() const;
-  std::string times_of_points(const EnvironmentSource& environment) const;
+  std::string times_of_points() const;
+  std::string shifts_text() const;
   std::string advice(double first, double last) const;
-  void refuse_same_times(const EnvironmentSource& environment) const;
+  void refuse_same_times() const;
+  void refuse_several_weeks() const;
   OriginsPathReport report() const;
-  void warn(const EnvironmentSource& environment, MessageLog& log) const;
+  void warn(MessageLog& log) const;
 
   OriginTable& table_;
   std::string name_;
