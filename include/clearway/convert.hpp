@@ -9,6 +9,8 @@
 #include "clearway/box.hpp"
 #include "clearway/file_unit.hpp"
 #include "clearway/progress.hpp"
+#include "clearway/trajectory.hpp"
+#include "clearway/vec3.hpp"
 
 namespace clearway {
 
@@ -34,6 +36,16 @@ struct ConvertOptions {
   /// `first` on, the scanner stood at x, y, z. It replaces what the scans say of their origins.
   /// Empty: the origins are those of the scans, where they have any.
   std::filesystem::path origins = {};
+  /// A trajectory with times: each point of LAS and LAZ inputs was seen from where the scanner was
+  /// at the point's GPS time. It replaces what the scans say of their origins, and excludes
+  /// `origins`. Empty: there is none.
+  std::filesystem::path origins_path = {};
+  /// How origins_path is read. The environment's unit and coordinate reference system are filled
+  /// in, and its own lever_arm does not count.
+  TrajectoryOptions origins_path_options = {};
+  /// Where the scanner is in the frame of the poses of origins_path, metres whatever the unit of
+  /// the environment: it is at p + R lever_arm for a pose with the position p and the rotation R.
+  Vec3 lever_arm{0, 0, 0};
   bool skip_unreadable = false;  ///< leaves out files that cannot be read, with a warning
   bool strict = false;           ///< refuses any warning: all are told, then no store is written
   bool overwrite = false;        ///< replaces an existing store
@@ -49,6 +61,21 @@ struct StageSeconds {
   double seconds = 0;
 };
 
+/// How the points found their places on ConvertOptions::origins_path. Times are seconds.
+struct OriginsPathReport {
+  /// What the times of points and path are: "week-seconds", "adjusted" (standard GPS time),
+  /// "mixed" for files that differ, and for a path also "standard" (any other epoch).
+  std::string point_clock, path_clock;
+  double first_point = 0, last_point = 0;  ///< least and greatest time, as in the files
+  double first_pose = 0, last_pose = 0;
+  /// What was added to times of points to compare them with the path, ascending; one value where
+  /// all files count alike.
+  std::vector<double> shifts = {};
+  std::uint64_t before = 0, after = 0;  ///< points from before the first and after the last pose
+  std::uint64_t in_gaps = 0;            ///< points from between poses more than 1 s apart
+  std::uint64_t without_time = 0;       ///< points without a finite GPS time
+};
+
 struct ConvertReport {
   bool was_finished = false;  ///< true if the store existed already, so that nothing was converted
   std::uint64_t points = 0;   ///< number of points stored
@@ -61,6 +88,8 @@ struct ConvertReport {
   std::uint64_t origins = 0;
   /// Number of stored points for which it is not known from where they were seen
   std::uint64_t points_without_origin = 0;
+  /// Only with ConvertOptions::origins_path
+  std::optional<OriginsPathReport> origins_path = std::nullopt;
   Vec3 scale{}, offset{};  ///< scale and offset of the stored integers, metres
   /// Box around the stored points; none if there are no points
   std::optional<Box> box = std::nullopt;

@@ -57,8 +57,9 @@ struct QueryParameters {
   /// Metres: no place of the true vehicle is farther than this from its model.
   std::optional<double> error_model = {};
   double sigmas = 3;  ///< how many standard deviations a budget counts
-  /// Metres: points at most this far apart hang together when a budget decides about a conflict.
-  double gap = 0.3;
+  /// Metres: points at most this far apart hang together when a budget decides about a conflict; 0:
+  /// 0.3 m. A result with a budget has the length that was used, in the environment's unit.
+  double gap = 0;
 
   /// Whether any error is given, so that the verdict is decided with a budget.
   bool has_budget() const {

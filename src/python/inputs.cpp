@@ -109,6 +109,33 @@ py::dict busy_seconds(const ConvertReport& report) {
   return seconds;
 }
 
+void add_origins_path_report(py::module_& module) {
+  using Report = OriginsPathReport;
+  py::class_<Report>(module, "OriginsPathReport",
+                     "How the points of a moving scanner found their places on its path.")
+      .def_readonly("point_clock", &Report::point_clock,
+                    "What the GPS times of the points are: 'week-seconds', 'adjusted' (adjusted "
+                    "standard GPS time), or 'mixed' where files differ.")
+      .def_readonly("path_clock", &Report::path_clock,
+                    "What the times of the path are taken for: 'week-seconds', 'adjusted', or "
+                    "'standard', which is any other epoch.")
+      .def_readonly("first_point", &Report::first_point,
+                    "The least GPS time of a point, seconds as in the file.")
+      .def_readonly("last_point", &Report::last_point,
+                    "The greatest GPS time of a point, seconds as in the file.")
+      .def_readonly("first_pose", &Report::first_pose, "The time of the first pose, seconds.")
+      .def_readonly("last_pose", &Report::last_pose, "The time of the last pose, seconds.")
+      .def_readonly("shifts", &Report::shifts,
+                    "What was added to times of points to compare them with the path: a list of "
+                    "seconds, ascending.")
+      .def_readonly("before", &Report::before, "How many points are from before the first pose.")
+      .def_readonly("after", &Report::after, "How many points are from after the last pose.")
+      .def_readonly("in_gaps", &Report::in_gaps,
+                    "How many points are from between poses more than 1 s apart.")
+      .def_readonly("without_time", &Report::without_time,
+                    "How many points have no finite GPS time.");
+}
+
 void add_convert_report(py::module_& module) {
   using Report = ConvertReport;
   py::class_<Report>(
@@ -126,6 +153,9 @@ void add_convert_report(py::module_& module) {
                     "From how many distinct places the points were seen; 0 where no input tells.")
       .def_readonly("points_without_origin", &Report::points_without_origin,
                     "For how many points it is not known from where they were seen.")
+      .def_readonly("origins_path", &Report::origins_path,
+                    "How the points found their places on origins_path: an OriginsPathReport; None "
+                    "without it.")
       .def_property_readonly(
           "scale", [](const Report& r) { return to_array(r.scale); },
           "The step of the stored coordinates on each axis: 3 float64, metres.")
@@ -165,8 +195,12 @@ void add_convert(py::module_& module) {
       [](const py::object& inputs, const py::object& output, std::optional<double> scale,
          std::uint32_t cell_points, std::optional<double> regular_size, std::uint64_t memory_bytes,
          int threads, const UnitArgument& unit, bool ignore_crs, std::vector<std::string> columns,
-         const py::object& origins, bool skip_unreadable, bool strict, bool overwrite, bool resume,
-         py::object progress, py::object message, py::object stop) {
+         const py::object& origins, const py::object& origins_path,
+         const std::array<double, 3>& lever_arm, const std::string& format,
+         const std::string& angle_unit, const std::string& angle_frame, const std::string& crs,
+         const std::string& datum, const UnitArgument& metres_per_unit, bool skip_unreadable,
+         bool strict, bool overwrite, bool resume, py::object progress, py::object message,
+         py::object stop) {
         ConvertOptions options{
             .scale = scale,
             .cell_points = cell_points,
@@ -177,6 +211,11 @@ void add_convert(py::module_& module) {
             .ignore_crs = ignore_crs,
             .columns = std::move(columns),
             .origins = origins.is_none() ? std::filesystem::path() : path_of(origins),
+            .origins_path =
+                origins_path.is_none() ? std::filesystem::path() : path_of(origins_path),
+            .origins_path_options = trajectory_options(format, false, angle_unit, angle_frame, crs,
+                                                       "", datum, metres_per_unit, 1.0, {0, 0, 0}),
+            .lever_arm = {lever_arm[0], lever_arm[1], lever_arm[2]},
             .skip_unreadable = skip_unreadable,
             .strict = strict,
             .overwrite = overwrite,
@@ -191,9 +230,12 @@ void add_convert(py::module_& module) {
       "cell_points"_a = ConvertOptions{}.cell_points, "regular_size"_a = py::none(),
       "memory_bytes"_a = ConvertOptions{}.memory_bytes, "threads"_a = 0, "unit"_a = 0.0,
       "ignore_crs"_a = false, "columns"_a = std::vector<std::string>{}, "origins"_a = py::none(),
-      "skip_unreadable"_a = false, "strict"_a = false, "overwrite"_a = false, "resume"_a = false,
-      "progress"_a = py::none(), "message"_a = py::none(), "stop"_a = py::none(),
-      R"(convert(inputs, output, *, scale=None, cell_points=65536, regular_size=None, memory_bytes=4294967296, threads=0, unit=0.0, ignore_crs=False, columns=(), origins=None, skip_unreadable=False, strict=False, overwrite=False, resume=False, progress=None, message=None, stop=None)
+      "origins_path"_a = py::none(), "lever_arm"_a = std::array<double, 3>{0, 0, 0},
+      "format"_a = "auto", "angle_unit"_a = "declared", "angle_frame"_a = "declared", "crs"_a = "",
+      "datum"_a = "", "metres_per_unit"_a = 0.0, "skip_unreadable"_a = false, "strict"_a = false,
+      "overwrite"_a = false, "resume"_a = false, "progress"_a = py::none(),
+      "message"_a = py::none(), "stop"_a = py::none(),
+      R"(convert(inputs, output, *, scale=None, cell_points=65536, regular_size=None, memory_bytes=4294967296, threads=0, unit=0.0, ignore_crs=False, columns=(), origins=None, origins_path=None, lever_arm=(0.0, 0.0, 0.0), format='auto', angle_unit='declared', angle_frame='declared', crs='', datum='', metres_per_unit=0.0, skip_unreadable=False, strict=False, overwrite=False, resume=False, progress=None, message=None, stop=None)
 --
 
 Turn scans into a store, the one file that searches read. Returns a ConvertReport.
@@ -211,6 +253,11 @@ ignore_crs: takes coordinates in degrees, or in different units, as they are.
 columns: which columns of texts are x, y and z: numbers from 1, or names of the header.
 origins: a CSV file with the header first,x,y,z: from source index first on, the scanner stood at
     x, y, z. None: the places are those that the inputs tell.
+origins_path: the path of a moving scanner, a trajectory with times: each point of LAS and LAZ was
+    seen from where the scanner is at the point's GPS time. It excludes origins.
+lever_arm: where the scanner is in the frame of the poses of origins_path: x, y and z, metres.
+format, angle_unit, angle_frame, crs, datum, metres_per_unit: how origins_path is read, as
+    read_trajectory() takes them.
 skip_unreadable: leaves out files that cannot be read, with a warning.
 strict: raises InputError where anything is warned of.
 overwrite: replaces an existing store.
@@ -247,6 +294,7 @@ TrajectoryOptions trajectory_options(const std::string& format, bool allow_non_r
 void add_inputs(py::module_& module) {
   add_labels(module);
   add_read_trajectory(module);
+  add_origins_path_report(module);
   add_convert_report(module);
   add_convert(module);
 }

@@ -1,5 +1,6 @@
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -23,7 +24,7 @@ struct ProfileColumns : Columns {
 /// Columns that the result does not have are None.
 struct CollisionColumns {
   py::array source, xyz;
-  py::object first_pose, last_pose, body;
+  py::object first_pose, last_pose, body, certain;
 };
 
 struct UnseenColumns {
@@ -54,6 +55,13 @@ CollisionColumns collisions(const Result& result) {
   columns.first_pose = array_or_none(read.first_pose, first_pose);
   columns.last_pose = array_or_none(read.last_pose, first_pose && read.last_pose.size() == rows);
   columns.body = array_or_none(read.body, first_pose && !result.bodies().empty());
+  columns.certain = py::none();
+  if (result.parameters().has_budget()) {
+    py::array_t<bool> certain(static_cast<py::ssize_t>(read.certain.size()));
+    std::transform(read.certain.begin(), read.certain.end(), certain.mutable_data(),
+                   [](std::uint8_t flag) { return flag != 0; });
+    columns.certain = std::move(certain);
+  }
   return columns;
 }
 
@@ -64,7 +72,7 @@ py::object near_points(const Result& result) {
   CollisionColumns columns;
   columns.source = to_array(std::move(read.source));
   columns.xyz = to_array(std::move(read.xyz));
-  columns.first_pose = columns.last_pose = columns.body = py::none();
+  columns.first_pose = columns.last_pose = columns.body = columns.certain = py::none();
   if (first_pose) columns.first_pose = to_array(std::move(read.first_pose));
   if (first_pose && !result.bodies().empty()) columns.body = to_array(std::move(read.body));
   return py::cast(std::move(columns));
@@ -137,6 +145,9 @@ void add_columns(py::module_& module) {
                     "The body that touches each point at its first pose, as an index of "
                     "Result.bodies(): n uint32. None where there is one model, or the query did "
                     "not ask for first poses.")
+      .def_readonly("certain", &CollisionColumns::certain,
+                    "Whether the error budget says that each point is certainly too close: n bool. "
+                    "None without a budget, and for points that are only near.")
       .def("__len__", [](const CollisionColumns& c) { return c.source.size(); });
   py::class_<UnseenColumns>(module, "UnseenCubes",
                             "The cubes that the model sweeps and no beam passed through: arrays of "
@@ -258,7 +269,7 @@ void add_results(py::module_& module) {
            "the query did not ask for seen space.")
       .def("near", near_points,
            "The points that do not collide but may in truth, by the error budget: Collisions, "
-           "whose last_pose is None. None without a budget.")
+           "whose last_pose and certain are None. None without a budget.")
       .def("clearance", clearance,
            "The distances of the points that are closer than the clearance: Clearances. None where "
            "the query did not ask for them.")

@@ -124,8 +124,8 @@ void add_query(py::module_& module) {
           "ignore_boxes"_a = nothing, "allow_non_rigid"_a = false, "bodies"_a = nothing,
           "error_scan"_a = py::none(), "error_registration"_a = py::none(),
           "error_pose"_a = py::none(), "error_angle"_a = py::none(), "error_model"_a = py::none(),
-          "sigmas"_a = 3.0, "gap"_a = 0.3, "seen"_a = false, "seen_cube"_a = 0.0, "seen_min"_a = 8,
-          R"(__init__(self, model=(), poses=(), radius=None, *, first_pose=False, between_poses=False, clearance=0.0, profile=0.0, tolerance=0.0, ignore_classes=(), ignore_boxes=(), allow_non_rigid=False, bodies=(), error_scan=None, error_registration=None, error_pose=None, error_angle=None, error_model=None, sigmas=3.0, gap=0.3, seen=False, seen_cube=0.0, seen_min=8)
+          "sigmas"_a = 3.0, "gap"_a = 0.0, "seen"_a = false, "seen_cube"_a = 0.0, "seen_min"_a = 8,
+          R"(__init__(self, model=(), poses=(), radius=None, *, first_pose=False, between_poses=False, clearance=0.0, profile=0.0, tolerance=0.0, ignore_classes=(), ignore_boxes=(), allow_non_rigid=False, bodies=(), error_scan=None, error_registration=None, error_pose=None, error_angle=None, error_model=None, sigmas=3.0, gap=0.0, seen=False, seen_cube=0.0, seen_min=8)
 --
 
 Ask which points the model comes closer to than the radius, on its way along the poses.

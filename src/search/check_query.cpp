@@ -13,8 +13,16 @@
 #include "core/query/ignored_points.hpp"
 #include "core/query/query_fields.hpp"
 #include "core/query/search_result.hpp"
+#include "io/scans/length_unit.hpp"
+#include "io/store/store_reader.hpp"
 
 namespace clearway {
+
+double metre_of(const StoreReader& store) {
+  const double metres = metres_of(store.metadata().unit);
+  return metres > 0 ? 1 / metres : 1;
+}
+
 namespace {
 
 [[noreturn]] void refuse_body(const Body& body, const std::string& what) {
@@ -148,8 +156,8 @@ void check_budget(const QueryParameters& query, const SearchOptions& options) {
   if (!(query.sigmas >= 0) || !std::isfinite(query.sigmas)) {
     throw UsageError("the number of standard deviations has to be finite, 0 or above");
   }
-  if (!(query.gap > 0) || !std::isfinite(query.gap)) {
-    throw UsageError("the gap has to be a finite number of metres above 0");
+  if (!(query.gap >= 0) || !std::isfinite(query.gap)) {
+    throw UsageError("the gap has to be a finite number of metres above 0, or 0 for the usual one");
   }
   if (query.tolerance > 0) {
     throw UsageError(

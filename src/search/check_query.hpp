@@ -4,6 +4,11 @@
 
 namespace clearway {
 
+class StoreReader;
+
+/// The length of a metre in the store's unit; 1 where the unit is unknown or is no length.
+double metre_of(const StoreReader& store);
+
 /// The engine that searches with these options, where kAuto stands for kSweep: kSweep, kGrid or
 /// kKdtree.
 Engine chosen_engine(const SearchOptions& options);

@@ -16,6 +16,8 @@ namespace clearway {
 
 namespace {
 
+constexpr double kUsualGap = 0.3;  // metres
+
 std::uint64_t points_of(const Query& query) {
   std::uint64_t points = 0;
   for (const MovingBody& body : moving_bodies(query)) points += body.model.vertices.size();
@@ -53,6 +55,7 @@ ResultHeader result_header(const StoreReader& store, const Query& query,
   QueryParameters asked = query;
   sort_ignored(asked);
   IgnoredPointCounts ignored = count_ignored(store, asked, options.threads);
+  if (asked.has_budget() && asked.gap == 0) asked.gap = kUsualGap * metre_of(store);
   const bool by_class = !asked.ignore_classes.empty();
   ResultHeader header{
       std::move(asked),

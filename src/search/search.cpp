@@ -282,7 +282,7 @@ class Search {
     find_near(found, budget.near_radius(query_.radius));
     in_threads(options_.threads, [&] {
       const HitSet& certain = *found.result.certain;
-      CertainGroup group(store_.quantisation(), query_.gap, progress_);
+      CertainGroup group(store_.quantisation(), header_.gap, progress_);
       for (const std::uint32_t cell : cells_of(store_, certain).cells) {
         const auto q = store_.coordinates(cell);
         for_each_entry(store_, certain, cell, [&](std::uint64_t, std::uint32_t i) {

@@ -22,7 +22,7 @@
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "core/util/tsan_annotations.hpp"
-#include "io/scans/length_unit.hpp"
+#include "search/check_query.hpp"
 #include "search/page_search.hpp"
 #include "search/threads.hpp"
 
@@ -37,12 +37,6 @@ constexpr const char* kBeamStage = "beams";
 /// A part of the memory is for the bricks, and another for the swept cubes, while the rest
 /// searches.
 constexpr std::uint64_t kMemoryParts = 4;
-
-/// The length of a metre in the store's unit; 1 where the unit is unknown or is no length.
-double metre_of(const StoreReader& store) {
-  const double metres = metres_of(store.metadata().unit);
-  return metres > 0 ? 1 / metres : 1;
-}
 
 /// The query whose points are the middles of cubes: classes say nothing of them.
 Query query_of_cubes(const Query& query, double radius) {

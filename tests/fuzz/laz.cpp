@@ -11,14 +11,16 @@ using namespace clearway::test;
 namespace {
 
 /// Reads some points twice. Not all are read, because a byte may hold a thousand of them.
-void read_some(const MemoryFile& input) {
+void read_some(const MemoryFile& input, bool with_times) {
   constexpr int kMostBatches = 4;
-  const auto reader = read_las(InputBuffer(input.open(), InputBuffer::Access::kSeek));
+  const auto reader = read_las(InputBuffer(input.open(), InputBuffer::Access::kSeek), with_times);
   std::uint64_t counts[2] = {0, 0};
   for (std::uint64_t& count : counts) {
     PointBatch batch;
     for (int i = 0; i < kMostBatches && reader->read(batch); ++i) {
       if (batch.size() == 0 || batch.size() > PointReader::kBatchPoints) std::abort();
+      const bool times = with_times && reader->info().gps_times != GpsTimes::kNone;
+      if (batch.times.size() != (times ? batch.size() : 0)) std::abort();
       count += batch.size();
     }
     reader->rewind();
@@ -60,6 +62,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     file += bytes.substr(kSettings);
   }
   const MemoryFile input({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()});
-  may_refuse([&] { read_some(input); });
+  may_refuse([&] { read_some(input, false); });
+  may_refuse([&] { read_some(input, true); });
   return 0;
 }

@@ -4,6 +4,7 @@ import json
 import os
 import re
 import shutil
+import struct
 import subprocess
 from pathlib import Path
 
@@ -31,6 +32,20 @@ def _positions(trajectory):
     return [line.split()[3:12:4] for line in trajectory.read_text().splitlines()]
 
 
+def _drive(scan, path, folder):
+    """The scan as if a moving scanner had made it: with GPS times, and its path by these times."""
+    las = bytearray(scan.read_bytes())
+    first, size, points = (struct.unpack_from(form, las, at)[0]
+                           for form, at in (("<I", 96), ("<H", 105), ("<I", 107)))
+    seconds = len(path) - 1
+    records = b"".join(las[first + size * i:first + size * (i + 1)] +
+                       struct.pack("<d", seconds * i / points) for i in range(points))
+    las[104:107] = struct.pack("<BH", 1, size + 8)
+    (folder / "drive.las").write_bytes(bytes(las[:first]) + records)
+    (folder / "drive.txt").write_text("".join(
+        f"{time} {' '.join(place)} 0 0 0 1\n" for time, place in enumerate(path)), encoding="utf-8")
+
+
 def make(folder, clearway):
     """Makes all of them; `clearway` runs the program with the words that it gets, in the folder."""
     clearway("scene hall --points 20000 --model-points 2000 --poses 200 -o .".split())
@@ -44,6 +59,7 @@ def make(folder, clearway):
     (folder / "path.csv").write_text("time,x,y,z,roll,pitch,yaw\n" + "".join(
         f"{number},{x},{y},{z},0,0,0\n"
         for number, (x, y, z) in enumerate(_positions(folder / "path.txt"))), encoding="utf-8")
+    _drive(folder / "scan.las", _positions(folder / "path.txt"), folder)
     _box_stl(folder / "car.stl", (4500, 1900, 1500))
     _box_stl(folder / "crane.stl", (500, 500, 3000))
     _box_stl(folder / "bogie.stl", (2, 1.5, 0.8))

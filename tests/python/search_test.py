@@ -3,6 +3,7 @@
 
 import json
 import os
+import struct
 import unittest
 from pathlib import Path
 
@@ -47,6 +48,29 @@ class FindsWhatBruteForceFinds(SceneTest):
         clearway.read_trajectory(path, metres_per_unit="ft", messages=notes)  # said by the caller
         self.assertNotIn("unit-assumed", [m.code for m in notes])
 
+    def test_points_of_a_moving_scanner_have_origins_by_their_times(self):
+        head = bytearray(227)
+        struct.pack_into("<4s2xH16xBB", head, 0, b"LASF", 0, 1, 2)
+        struct.pack_into("<HIIBHI", head, 94, 227, 227, 0, 1, 28, 2)
+        struct.pack_into("<6d", head, 131, 0.001, 0.001, 0.001, 0, 0, 0)
+        las = self.folder / "drive.las"
+        las.write_bytes(head + b"".join(struct.pack("<3i8xd", x, 0, 0, time)
+                                        for x, time in ((1000, 100.25), (2000, 102))))
+        path = self.folder / "drive.txt"
+        path.write_text("100 0 0 0 0 0 0 1\n101 4 0 0 0 0 0 1\n")
+        report = clearway.convert(las, self.folder / "drive.h5", origins_path=path, format="tum",
+                                  lever_arm=(0, 0, 1.5))
+        self.assertEqual((report.origins, report.points_without_origin), (1, 1))
+        found = report.origins_path
+        self.assertEqual((found.point_clock, found.path_clock, found.shifts),
+                         ("week-seconds", "week-seconds", [0]))
+        self.assertEqual((found.first_point, found.last_pose, found.after), (100.25, 101, 1))
+        self.assertTrue(clearway.Store(self.folder / "drive.h5").has_origins())
+        with self.assertRaisesRegex(clearway.UsageError, "one of the two"):
+            clearway.convert(las, self.folder / "other.h5", origins_path=path, origins="o.csv")
+        with self.assertRaisesRegex(TypeError, "^lever_arm: "):
+            clearway.convert(las, self.folder / "other.h5", origins_path=path, lever_arm=1)
+
     def test_a_body_that_lacks_poses_is_told_of_once(self):
         lacking = [i for i in range(len(self.poses)) if not 10 <= i < 15]
         body = clearway.Body("wagon", self.model, self.poses[lacking], path_pose=lacking)
@@ -85,8 +109,14 @@ class FindsWhatBruteForceFinds(SceneTest):
         near = clearway.Result(self.folder / "out.h5").near()
         self.assertEqual(len(near), report.near_points)
         self.assertFalse(set(near.source) & set(self.expected))
+        self.assertIsNone(near.certain)
+        certain = clearway.Result(self.folder / "out.h5").collisions().certain
+        self.assertEqual(certain.dtype, bool)
+        self.assertEqual(certain.sum(), report.certain_points)
+        self.assertLess(certain.sum(), len(certain))
         query.error_scan = query.error_model = None
         self.assertIsNone(self.search(query=query).margins)
+        self.assertIsNone(clearway.Result(self.folder / "out.h5").collisions().certain)
         with self.assertRaisesRegex(clearway.UsageError, "^error_pose: expected 0 or a number"):
             query.error_pose = -0.1
 

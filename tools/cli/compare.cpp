@@ -69,6 +69,20 @@ nlohmann::ordered_json point_json(const PointDifference& point) {
   return out;
 }
 
+/// How the points of a table differ, on one line.
+std::string table_text(const char* what, const TableComparison& table) {
+  return std::string(what) + " in both: " + format_count(table.common) +
+         ", only in a: " + format_count(table.only_in_a) +
+         ", only in b: " + format_count(table.only_in_b) +
+         ", differing: " + format_count(table.differing) + "\n";
+}
+
+nlohmann::ordered_json table_json(const TableComparison& table) {
+  return {{"in_a", table.in_a},           {"in_b", table.in_b},
+          {"common", table.common},       {"only_in_a", table.only_in_a},
+          {"only_in_b", table.only_in_b}, {"differing", table.differing}};
+}
+
 /// A comparison in words, in many lines. a, b: the names of the compared files.
 std::string comparison_text(const Comparison& c, const std::string& a, const std::string& b) {
   std::string text = "a: " + counted(c.in_a, "colliding point") + " in " + a + "\n" +
@@ -85,12 +99,8 @@ std::string comparison_text(const Comparison& c, const std::string& a, const std
   if (c.differing_coordinates > 0) {
     text += "differing coordinates: " + format_count(c.differing_coordinates) + "\n";
   }
-  if (c.clearances) {
-    text += "clearances in both: " + format_count(c.clearances->common) +
-            ", only in a: " + format_count(c.clearances->only_in_a) +
-            ", only in b: " + format_count(c.clearances->only_in_b) +
-            ", differing: " + format_count(c.clearances->differing) + "\n";
-  }
+  if (c.near) text += table_text("near points", *c.near);
+  if (c.clearances) text += table_text("clearances", *c.clearances);
   if (c.profiles) {
     text += "differing poses of the profile: " + format_count(c.profiles->differing);
     if (c.profiles->first) text += ", the first is pose " + std::to_string(*c.profiles->first);
@@ -120,12 +130,8 @@ std::string comparison_json(const Comparison& c, const std::string& a, const std
   if (c.differing_first_poses) out["differing_first_poses"] = *c.differing_first_poses;
   if (c.differing_last_poses) out["differing_last_poses"] = *c.differing_last_poses;
   out["clearances"] = nullptr;
-  if (c.clearances) {
-    out["clearances"] = {
-        {"in_a", c.clearances->in_a},           {"in_b", c.clearances->in_b},
-        {"common", c.clearances->common},       {"only_in_a", c.clearances->only_in_a},
-        {"only_in_b", c.clearances->only_in_b}, {"differing", c.clearances->differing}};
-  }
+  if (c.clearances) out["clearances"] = table_json(*c.clearances);
+  if (c.near) out["near"] = table_json(*c.near);
   out["profiles"] = nullptr;
   if (c.profiles) {
     out["profiles"] = {{"poses", c.profiles->poses},
@@ -189,9 +195,11 @@ void add_compare(CLI::App& program, int& exit_code) {
   command->footer(
       "Prints how many colliding points are only in A, only in B and in both. Where both "
       "results\n"
-      "have first poses or clearances, it prints how many of them differ. It also prints what\n"
-      "differs in the queries: model, trajectory, radius in metres.\n"
-      "Exit code 0: the same points, first poses and clearances, even of different queries.\n"
+      "have first poses, clearances or an error budget, it prints how many of these, or of the\n"
+      "near points, differ. It also prints what differs in the queries: model, trajectory,\n"
+      "radius in metres.\n"
+      "Exit code 0: the same points, first poses, near points and clearances, even of different\n"
+      "queries.\n"
       "Exit code 1: they differ.\n"
       "With --conflicts, exit code 1 says that B has new conflicts, worse ones, new groups that "
       "are\n"

@@ -13,6 +13,7 @@
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/program_json.hpp"
+#include "cli/support/trajectory_options.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
@@ -25,6 +26,7 @@ struct ConvertArguments {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;
   ConvertOptions conversion;
+  LengthOptions lengths;
   std::string layout = "adaptive";
   double scale = 0;
   bool json = false;
@@ -62,6 +64,20 @@ nlohmann::ordered_json bytes_moved() {
   return out;
 }
 
+nlohmann::ordered_json json_of(const OriginsPathReport& path) {
+  return {{"point_clock", path.point_clock},
+          {"path_clock", path.path_clock},
+          {"first_point", path.first_point},
+          {"last_point", path.last_point},
+          {"first_pose", path.first_pose},
+          {"last_pose", path.last_pose},
+          {"shifts", path.shifts},
+          {"before", path.before},
+          {"after", path.after},
+          {"in_gaps", path.in_gaps},
+          {"without_time", path.without_time}};
+}
+
 /// The report as JSON. What only a conversion knows is null for a store that already existed.
 nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertArguments& options,
                                double total_seconds) {
@@ -79,6 +95,7 @@ nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertArgumen
   out["box"] = box_json(store);
   out["sources"] = sources_json(metadata);
   if (metadata.origins) out["origins"] = origins_json(*metadata.origins);
+  if (report.origins_path) out["origins_path"] = json_of(*report.origins_path);
   out["largest_change"] = nullptr;
   out["temporary_bytes"] = nullptr;
   out["output_bytes"] = std::filesystem::file_size(options.output);
@@ -135,6 +152,7 @@ void run_convert(ConvertArguments& options) {
   ConvertOptions& conversion = options.conversion;
   conversion.regular_size = regular_size_of(options.layout);
   if (options.scale != 0) conversion.scale = options.scale;
+  options.lengths.convert(1);  // a lever arm is in metres, whatever the unit of the environment
   const Stopwatch total;
   ConsoleProgress progress;
   watch_call(conversion, progress);
@@ -198,6 +216,20 @@ void add_convert(CLI::App& program) {
                    "`first` on (default: what the scans say)")
       ->group(title_of(OptionGroup::kInputs))
       ->type_name("FILE");
+  command
+      ->add_option(
+          "--origins-path", conversion.origins_path,
+          "The path of a moving scanner, a trajectory with times: each point of LAS or LAZ "
+          "was seen from where it is at the point's GPS time")
+      ->group(title_of(OptionGroup::kPath))
+      ->type_name("FILE");
+  {
+    const GroupScope group(*command, OptionGroup::kPath);
+    options->lengths.add(*command, "--lever-arm", conversion.lever_arm,
+                         "Where the scanner is in the frame of the poses of --origins-path, in "
+                         "metres (default: 0,0,0)");
+  }
+  add_options_of_reading(*command, conversion.origins_path_options);
   command
       ->add_flag("--skip-unreadable", conversion.skip_unreadable,
                  "Leave out files that cannot be read, and list them; reads all once more")

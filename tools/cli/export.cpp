@@ -83,6 +83,10 @@ Exported export_table(const ResultReader& result, ExportOptions& options) {
     }
     return {result.clearances(), "clearance"};
   }
+  if (options.what == "near") {
+    export_near(result, options.output, options.force, progress);
+    return {result.near(), "near point"};
+  }
   if (options.what == "profile") {
     options.trajectory_options.environment_unit =
         options.lengths.convert_for(options.result.string(), result.header().crs_wkt);
@@ -133,6 +137,8 @@ constexpr const char* kFooter =
     "  .csv  text with a header: source,x,y,z,first_pose\n"
     "first_pose counts from 0 and is there where the result has it. source is the point's index\n"
     "in the order of the scans. Text has enough digits to give back each coordinate exactly.\n"
+    "With --what near they are the points of an undecided run that do not collide but may in\n"
+    "truth, and first_pose is the first pose that comes so close.\n"
     "With --what clearance, distance and pose take the place of first_pose, in .xyz too.\n"
     "With --what profile it is CSV only: pose,time,name,chainage,distance,source,x,y,z.\n"
     "Of several bodies it has searched too: 0 where no body has a pose.\n"
@@ -154,9 +160,11 @@ void add_export(CLI::App& program) {
       ->type_name("FILE")
       ->required();
   command
-      ->add_option("--what", options->what,
-                   "collisions; clearance, what run --clearance found; or profile, a line a pose")
-      ->check(CLI::IsMember({"collisions", "clearance", "profile"}))
+      ->add_option(
+          "--what", options->what,
+          "collisions; near, points that only the error budget brings too close; clearance, "
+          "what run --clearance found; or profile, a line a pose")
+      ->check(CLI::IsMember({"collisions", "near", "clearance", "profile"}))
       ->capture_default_str();
   command
       ->add_option("--scans", options->scans,

@@ -154,9 +154,9 @@ void for_each_value_field(Visit visit) {
   visit(QueryField<double>{
       &Q::gap, "gap", "gap", "--gap",
       "Points at most this far apart hang together when the error budget decides about a conflict "
-      "(default: 0.3)",
+      "(default: 0.3 m)",
       "Points at most this far apart hang together when the error budget decides about a conflict; "
-      "metres."});
+      "metres; 0: 0.3 m. Of a result with a budget, the length that was used."});
 }
 
 /// Calls visit(field) for each parameter that is a list, of points that are left out of the search.

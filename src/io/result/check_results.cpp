@@ -246,18 +246,19 @@ class Merge {
   Comparison out_;
 };
 
-ClearanceComparison compare_clearances(const ResultReader& a, const ResultReader& b) {
-  ClearanceComparison out;
-  out.in_a = a.clearances();
-  out.in_b = b.clearances();
+template <typename Rows>
+TableComparison compare_tables(const ResultReader& a, const ResultReader& b) {
+  TableComparison out;
+  out.in_a = a.rows<Rows>();
+  out.in_b = b.rows<Rows>();
   const bool bodies = a.header().bodies == b.header().bodies;
-  ClearanceCursor from_a(a), from_b(b);
+  RowCursor<Rows> from_a(a), from_b(b);
   merge_rows(
       from_a, from_b, [&] { ++out.only_in_a; }, [&] { ++out.only_in_b; },
       [&] {
         ++out.common;
         bool same = true;
-        for_each_column<Clearances>([&](const auto& column) {
+        for_each_column<Rows>([&](const auto& column) {
           const auto in_a = from_a.find(column.values), in_b = from_b.find(column.values);
           const bool is_body = std::string_view(column.dataset) == result_names::kBody;
           if (in_a && in_b && (bodies || !is_body)) same = same && *in_a == *in_b;
@@ -319,8 +320,9 @@ Comparison compare_results(const ResultReader& a, const ResultReader& b, std::si
   }
   Comparison out = Merge(a, b, kept).run();
   if (a.header().clearance > 0 && b.header().clearance > 0) {
-    out.clearances = compare_clearances(a, b);
+    out.clearances = compare_tables<Clearances>(a, b);
   }
+  if (a.header().budget && b.header().budget) out.near = compare_tables<Nearby>(a, b);
   if (a.header().profile > 0 && b.header().profile > 0 && has_same_path(a.header(), b.header())) {
     out.profiles = compare_profiles(a, b);
   }

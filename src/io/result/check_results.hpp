@@ -38,16 +38,16 @@ struct PointDifference {
   std::optional<std::uint32_t> last_pose_a = {}, last_pose_b = {};
 };
 
-/// How the clearances of two results differ.
-struct ClearanceComparison {
+/// How the points of a table differ between two results: those of clearances, or the near ones.
+struct TableComparison {
   std::uint64_t in_a = 0, in_b = 0;
   std::uint64_t common = 0, only_in_a = 0, only_in_b = 0;
-  /// Number of common points that differ in distance or pose, in body where both results have the
-  /// same bodies, or in coordinates where both have them.
+  /// Number of common points that differ in a column that both results have: distance, pose,
+  /// coordinates, or the body where both have the same bodies.
   std::uint64_t differing = 0;
 
   bool equal() const { return only_in_a == 0 && only_in_b == 0 && differing == 0; }
-  friend bool operator==(const ClearanceComparison&, const ClearanceComparison&) = default;
+  friend bool operator==(const TableComparison&, const TableComparison&) = default;
 };
 
 /// How the profiles of two results differ, pose by pose.
@@ -70,18 +70,20 @@ struct Comparison {
   std::optional<std::uint64_t> differing_first_poses;
   /// Number of common points that differ in last pose. Only where both results have last poses.
   std::optional<std::uint64_t> differing_last_poses = {};
-  std::optional<ClearanceComparison> clearances;  ///< only where both results have clearances
+  std::optional<TableComparison> clearances;  ///< only where both results have clearances
+  std::optional<TableComparison> near;        ///< only where both results have an error budget
   /// Only where both results have a profile of the same trajectory.
   std::optional<ProfileComparison> profiles;
   std::vector<QueryDifference> queries;
   std::vector<PointDifference> points;  ///< the first of the differing points, ascending by source
 
-  /// Whether both results have the same points at the same places with the same first poses,
-  /// clearances and profile. Differing queries and last poses do not count.
+  /// Whether both results have the same points at the same places with the same first poses, near
+  /// points, clearances and profile. Differing queries and last poses do not count.
   bool equal() const {
     return only_in_a == 0 && only_in_b == 0 && differing_coordinates == 0 &&
            differing_first_poses.value_or(0) == 0 && differing_last_poses.value_or(0) == 0 &&
-           (!clearances || clearances->equal()) && (!profiles || profiles->equal());
+           (!clearances || clearances->equal()) && (!near || near->equal()) &&
+           (!profiles || profiles->equal());
   }
 };
 

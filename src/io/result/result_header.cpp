@@ -362,6 +362,9 @@ void read_budget(const hdf5::Id& file, const std::string& name, ResultHeader& he
     if (std::isfinite(number) && number >= 0) continue;
     refuse(name, "the error budget has the number " + shown(number) + ", expected 0 or above");
   }
+  if (!(header.gap > 0) || !std::isfinite(header.gap)) {
+    refuse(name, "the error budget has the gap " + shown(header.gap) + ", expected one above 0");
+  }
 }
 
 /// Reads what versions before 4 do not have: bodies, ignored points, or both.

@@ -36,7 +36,7 @@ std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path,
                                              const PointReadOptions& options) {
   File file = File::open_for_reading(path);
   if (!file.is_regular()) {
-    return open_las_stream(std::move(file), std::filesystem::temp_directory_path());
+    return open_las_stream(std::move(file), std::filesystem::temp_directory_path(), options);
   }
   const PointFormat format = format_of(file, path);
   refuse_unless_read(format, file.name());
@@ -44,7 +44,7 @@ std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path,
   InputBuffer input(std::move(file), InputBuffer::Access::kSeek);
   switch (format) {
     case PointFormat::kLas:
-      return read_las(std::move(input));
+      return read_las(std::move(input), options.with_times);
     case PointFormat::kPly:
       return read_ply(std::move(input));
     case PointFormat::kPcd:

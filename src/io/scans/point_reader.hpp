@@ -25,6 +25,13 @@ struct OriginRun {
   std::optional<Vec3> origin;
 };
 
+/// What the GPS times of a file count, as its header says.
+enum class GpsTimes {
+  kNone,         ///< the file has no GPS times
+  kWeekSeconds,  ///< seconds since the beginning of the GPS week
+  kAdjusted,     ///< adjusted standard GPS time: seconds since 1980-01-06, less 10^9
+};
+
 /// What a point cloud file declares before its points.
 struct CloudInfo {
   std::optional<Quantisation> quantisation;      ///< where points are stored as integers
@@ -49,6 +56,7 @@ struct CloudInfo {
   std::vector<OriginRun> origins;
   /// What `origins` rest on, such as "poses of E57".
   std::string origins_rest_on;
+  GpsTimes gps_times = GpsTimes::kNone;
   /// Remarks on the whole file; complete once read() has returned false.
   std::vector<Message> remarks;
 };
@@ -63,6 +71,9 @@ struct PointBatch {
   std::vector<std::uint32_t> absent;
   /// The class of each point, as ASPRS numbers them. Empty where the format has no classes.
   std::vector<std::uint8_t> classes;
+  /// The GPS time of each point. Empty unless PointReadOptions::with_times asks for them and the
+  /// file has them.
+  std::vector<double> times = {};
 
   std::size_t size() const { return quanta.size() + positions.size(); }
 };
@@ -112,6 +123,7 @@ struct PointReadOptions {
   /// formats.
   std::vector<std::string> columns = {};
   bool may_choose = false;  ///< whether messages advise the user to choose the columns
+  bool with_times = false;  ///< whether GPS times are read too, where a file has them
 };
 
 /// Opens a file. Its content decides the format, or the ending of its name where the content does
@@ -126,7 +138,8 @@ std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path,
 /// Points beyond the header's count are read too, with a warning among the remarks. LAZ is first
 /// copied into a nameless file in `temporary_folder`, and can be read again.
 std::unique_ptr<PointReader> open_las_stream(File stream,
-                                             const std::filesystem::path& temporary_folder);
+                                             const std::filesystem::path& temporary_folder,
+                                             const PointReadOptions& options = {});
 
 /// The point files of a list of inputs in the order in which their points are numbered: inputs as
 /// given, and the files of a folder in byte order of their names. Folders are not searched

@@ -40,6 +40,7 @@ from ._clearway import (
     MergeReport,
     Message,
     Model,
+    OriginsPathReport,
     PartWarning,
     PoseLabels,
     Profile,

@@ -10,6 +10,7 @@ _AnyPath = str | bytes | PathLike[str] | PathLike[bytes]
 _Doubles = NDArray[np.float64]
 _Sources = NDArray[np.uint64]
 _Poses = NDArray[np.uint32]
+_Flags = NDArray[np.bool_]
 _Axis = Literal["+x", "x", "-x", "+y", "y", "-y", "+z", "z", "-z"]
 _Progress = Callable[["ProgressUpdate"], Any]
 _Tell = Callable[["Message"], Any]
@@ -55,6 +56,19 @@ class PoseLabels:
     time: Final[_Doubles]
     name: Final[list[str]]
 
+class OriginsPathReport:
+    point_clock: Final[str]
+    path_clock: Final[str]
+    first_point: Final[float]
+    last_point: Final[float]
+    first_pose: Final[float]
+    last_pose: Final[float]
+    shifts: Final[list[float]]
+    before: Final[int]
+    after: Final[int]
+    in_gaps: Final[int]
+    without_time: Final[int]
+
 class ConvertReport:
     was_finished: Final[bool]
     points: Final[int]
@@ -63,6 +77,7 @@ class ConvertReport:
     absent_points: Final[int]
     origins: Final[int]
     points_without_origin: Final[int]
+    origins_path: Final[OriginsPathReport | None]
     scale: Final[_Doubles]
     offset: Final[_Doubles]
     box: Final[Box | None]
@@ -152,7 +167,7 @@ class Query:
         bodies: Sequence[Body] = ..., error_scan: float | None = None,
         error_registration: float | None = None, error_pose: float | None = None,
         error_angle: float | None = None, error_model: float | None = None, sigmas: float = 3.0,
-        gap: float = 0.3,
+        gap: float = 0.0,
         seen: bool = False, seen_cube: float = 0.0, seen_min: int = 8,
     ) -> None: ...
 class QueryParameters:
@@ -294,6 +309,7 @@ class Collisions:
     first_pose: Final[_Poses | None]
     last_pose: Final[_Poses | None]
     body: Final[_Poses | None]
+    certain: Final[_Flags | None]
     def __len__(self) -> int: ...
 class Clearances:
     source: Final[_Sources]
@@ -415,7 +431,11 @@ def convert(
     inputs: _AnyPath | Iterable[_AnyPath], output: _AnyPath, *, scale: float | None = None,
     cell_points: int = 65536, regular_size: float | None = None, memory_bytes: int = 4294967296,
     threads: int = 0, unit: float | str = 0.0, ignore_crs: bool = False, columns: Sequence[str] = (),
-    origins: _AnyPath | None = None, skip_unreadable: bool = False, strict: bool = False, overwrite: bool = False,
+    origins: _AnyPath | None = None, origins_path: _AnyPath | None = None,
+    lever_arm: Sequence[float] = (0.0, 0.0, 0.0), format: str = "auto",
+    angle_unit: Literal["declared", "deg", "rad"] = "declared",
+    angle_frame: Literal["declared", "ned", "enu"] = "declared", crs: str = "", datum: str = "",
+    metres_per_unit: float | str = 0.0, skip_unreadable: bool = False, strict: bool = False, overwrite: bool = False,
     resume: bool = False, progress: _Progress | None = None, message: _Tell | None = None,
     stop: _Stop | None = None,
 ) -> ConvertReport: ...

@@ -176,7 +176,7 @@ _CHECKS = {
                      "default_crs", "datum", "engine", "device", "forward", "up", "title",
                      "project", "client", "author", "date", "result_name", "environment_name",
                      "model_name", "trajectory_name"), _text),
-    **dict.fromkeys(("path", "file", "output", "origins"), _path),
+    **dict.fromkeys(("path", "file", "output", "origins", "origins_path"), _path),
     **dict.fromkeys(("inputs", "parts"), _paths),
     **dict.fromkeys(("model", "poses", "points", "triangles", "path_pose", "lo", "hi"), _anything),
     **dict.fromkeys(("progress", "message"), _callable),

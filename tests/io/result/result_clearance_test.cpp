@@ -111,7 +111,7 @@ TEST_CASE("clearances are compared where both results have them") {
   CHECK(compare_results(ra, ra, 9).equal());
   const Comparison differing = compare_results(ra, rb, 9);
   CHECK_FALSE(differing.equal());
-  CHECK(differing.clearances == ClearanceComparison{1000, 999, 999, 1, 0, 3});
+  CHECK(differing.clearances == TableComparison{1000, 999, 999, 1, 0, 3});
   const Comparison one_sided = compare_results(ra, rc, 9);
   CHECK(one_sided.equal());
   CHECK_FALSE(one_sided.clearances);

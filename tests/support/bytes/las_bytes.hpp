@@ -25,6 +25,7 @@ struct LasBytes {
   std::array<double, 3> offset{100, -200, 0};
   std::vector<std::array<std::int32_t, 3>> points{
       {1, 2, 3}, {-4, 5, -6}, {2147483647, -2147483647 - 1, 0}};
+  std::vector<double> times{};                 ///< GPS times, one for each point; empty: any
   std::vector<std::uint8_t> bytes_of_class{};  ///< one for each point, flags included; empty: any
   std::vector<Record> vlrs;
   std::vector<Record> evlrs;  ///< 1.4: any number; 1.3: one
@@ -76,6 +77,7 @@ struct LasBytes {
     for (std::size_t i = 0; i < points.size(); ++i) {
       std::string one(record_bytes(), 'r');
       for (unsigned k = 0; k < 3; ++k) put(one, 4 * k, points[i][k]);
+      if (!times.empty()) put(one, format < 6 ? 20 : 22, times[i]);
       if (!bytes_of_class.empty()) put(one, format < 6 ? 15 : 16, bytes_of_class[i]);
       bytes += one;
     }

@@ -311,3 +311,49 @@ TEST_CASE("errors that are none, and what a budget cannot be combined with, are 
   const json degrees = bench.answer("--radius 0.1 --error-angle 1deg");
   CHECK(degrees["verdict"] == "clear");
 }
+
+TEST_CASE("near points are compared and exported as colliding ones are") {
+  const Bench bench;
+  bench.scan(wall(0.4, 12) + "0.56 0 0\n0.58 0.01 0\n0.7 0 0\n5 0 0\n");
+  REQUIRE(bench.run("--radius 0.5 --first-pose --error-model 0.1", "out.h5").exit_code == 0);
+  REQUIRE(bench.run("--radius 0.5 --first-pose --error-model 0.1", "whole.h5").exit_code == 0);
+  const Outcome same = bench.program("compare out.h5 whole.h5 --json");
+  CHECK(same.exit_code == 0);
+  CHECK(json::parse(same.out)["near"] == json{{"in_a", 2},
+                                              {"in_b", 2},
+                                              {"common", 2},
+                                              {"only_in_a", 0},
+                                              {"only_in_b", 0},
+                                              {"differing", 0}});
+  REQUIRE(bench.run("--radius 0.5 --first-pose --error-model 0.3", "whole.h5").exit_code == 0);
+  const Outcome other = bench.program("compare out.h5 whole.h5");
+  CHECK(other.exit_code == 1);
+  CHECK_THAT(other.out, Contains("near points in both: 2, only in a: 0, only in b: 1") &&
+                            Contains("only in a: 0\nonly in b: 0\n") && Contains("different"));
+  REQUIRE(bench.program("export out.h5 --what near -o out.csv --force").exit_code == 0);
+  CHECK(bytes_of(bench.folder / "out.csv") ==
+        "source,x,y,z,first_pose\n12,0.56,0,0,0\n13,0.58,0.01,0,0\n");
+  REQUIRE(bench.run("--radius 0.5 --first-pose", "whole.h5").exit_code == 0);
+  const Outcome without = bench.program("compare out.h5 whole.h5 --json");
+  CHECK(without.exit_code == 0);
+  CHECK_FALSE(json::parse(without.out).contains("near"));
+  const Outcome refused = bench.program("export whole.h5 --what near -o out.csv --force");
+  CHECK(refused.exit_code == 2);
+  CHECK_THAT(refused.err, Contains("had no error budget"));
+}
+
+TEST_CASE("without --gap points hang together within 0.3 m, also in feet") {
+  const Bench bench;
+  // Points 0.5 units apart are within 0.3 m of their neighbours in feet, and not in metres.
+  bench.scan(wall(0.1, 12, 0.5), "0.001", "--unit ift");
+  CHECK(bench.answer("--radius 30 --error-model 0.01")["verdict"] == "conflict");
+  const json info = json::parse(bench.program("info --json out.h5").out);
+  CHECK(info["gap"].get<double>() == Approx(0.3 / 0.3048));
+  CHECK(bench.answer("--radius 30 --error-model 0.01 --gap 0.3")["verdict"] == "undecided");
+  bench.scan(wall(0.1, 12, 0.5));
+  CHECK(bench.answer("--radius 30 --error-model 0.01")["verdict"] == "undecided");
+  CHECK(json::parse(bench.program("info --json out.h5").out)["gap"] == 0.3);
+  const Outcome none = bench.run("--radius 30 --error-model 0.01 --gap 0");
+  CHECK(none.exit_code == 2);
+  CHECK_THAT(none.err, Contains("--gap"));
+}

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "support/bytes/las_bytes.hpp"
 #include "tools/cli/support/hall.hpp"
 
 using namespace clearway;
@@ -120,4 +121,58 @@ TEST_CASE("one point far away is named with its line, and --scale accepts the st
   check_refused(refused, 3, "line 101: 1e+09 2 3");
   CHECK_THAT(refused.err, Contains("--scale 1 accepts that step"));
   CHECK(work.run(convert + " --scale 1").exit_code == 0);
+}
+
+TEST_CASE("convert --origins-path gives a moving scanner's points their origins, and says how") {
+  const Work work;
+  LasBytes las;
+  las.format = 6;
+  las.minor = 4;
+  las.global_encoding = 1;
+  las.scale = {0.001, 0.001, 0.001};
+  las.offset = {0, 0, 0};
+  las.points = {{5000, 0, 0}, {6000, 0, 0}, {7000, 0, 0}, {8000, 0, 0}};
+  // 2286 weeks after 1980-01-06, less 10^9.
+  const double sunday = 2286 * 604800.0 - 1e9;
+  las.times = {sunday + 1000.25, sunday + 1001, sunday + 1002, sunday + 1003.5};
+  put_bytes(work.folder / "a.las", las.build());
+  put_bytes(work.folder / "p.txt",
+            "1000 0 0 0 0 0 0 1\n1001 2 0 0 0 0 0 1\n1002 4 0 0 0 0 1 0\n1003 6 0 0 0 0 1 0\n");
+  const std::string convert = "convert " + work.path("a.las") + " -o " + work.path("a.h5") +
+                              " --trajectory-format tum --origins-path " + work.path("p.txt");
+  const Outcome outcome = work.run(convert + " --lever-arm 50cm,0,1 --json");
+  INFO(outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  const json report = json::parse(outcome.out);
+  CHECK(report["origins_path"] == json{{"point_clock", "adjusted"},
+                                       {"path_clock", "week-seconds"},
+                                       {"first_point", las.times[0]},
+                                       {"last_point", las.times[3]},
+                                       {"first_pose", 1000.0},
+                                       {"last_pose", 1003.0},
+                                       {"shifts", {-sunday}},
+                                       {"before", 0},
+                                       {"after", 1},
+                                       {"in_gaps", 0},
+                                       {"without_time", 0}});
+  CHECK(report["origins"]["distinct"] == 3);
+  CHECK(report["origins"]["points_without"] == 1);
+  CHECK_THAT(outcome.err, Contains("(adjusted standard GPS time, by the header)") &&
+                              Contains("seconds of the GPS week") && Contains("exact"));
+  CHECK_THAT(work.run("info " + work.path("a.h5")).out,
+             Contains("a path and the GPS times of the points"));
+  CHECK(work.run(convert + " --lever-arm 50cm,0,1 --resume").exit_code == 0);
+  CHECK(work.run(convert + " --lever-arm 51cm,0,1 --resume").exit_code != 0);
+  check_refused(work.run(convert + " --origins x.csv --force"), 2, "one of the two");
+  check_refused(
+      work.run("convert " + work.path("a.las") + " -o " + work.path("b.h5") + " --lever-arm 1,0,0"),
+      2, "lever arm");
+  // Of standard input, whose CRS is known before its points, the times are kept too.
+  const Outcome piped =
+      work.run("convert - -o " + work.path("c.h5") + " --trajectory-format tum --origins-path " +
+                   work.path("p.txt") + " --lever-arm 0.5,0,1 --json",
+               work.folder / "a.las");
+  INFO(piped.err);
+  REQUIRE(piped.exit_code == 0);
+  CHECK(json::parse(piped.out)["origins"]["hash"] == report["origins"]["hash"]);
 }

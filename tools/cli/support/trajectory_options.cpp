@@ -89,14 +89,11 @@ void add_map(CLI::App& command, TrajectoryOptions& options) {
       ->type_name("CRS");
 }
 
-void add_lengths(CLI::App& command, TrajectoryOptions& options, LengthOptions& lengths) {
+void add_unit(CLI::App& command, TrajectoryOptions& options) {
   add_unit_option(command, "--trajectory-unit", options.metres_per_unit,
                   "Unit of the positions; ft is the environment's foot, ift the international and "
                   "us-ft the US survey foot (default: what a header says, otherwise that of the "
                   "environment)");
-  lengths.add(command, "--lever-arm", options.lever_arm,
-              "Where the point that the trajectory gives, such as an antenna, lies in the model's "
-              "frame, in metres");
 }
 
 }  // namespace
@@ -111,7 +108,21 @@ void add_trajectory_options(CLI::App& command, TrajectoryOptions& options, Lengt
   const GroupScope group(command, OptionGroup::kUnits);
   add_angles(command, options);
   add_map(command, options);
-  add_lengths(command, options, lengths);
+  add_unit(command, options);
+  lengths.add(command, "--lever-arm", options.lever_arm,
+              "Where the point that the trajectory gives, such as an antenna, lies in the model's "
+              "frame, in metres");
+}
+
+void add_options_of_reading(CLI::App& command, TrajectoryOptions& options) {
+  {
+    const GroupScope group(command, OptionGroup::kPath);
+    add_format(command, options);
+  }
+  const GroupScope group(command, OptionGroup::kUnits);
+  add_angles(command, options);
+  add_map(command, options);
+  add_unit(command, options);
 }
 
 }  // namespace clearway::tool

@@ -17,4 +17,8 @@ inline constexpr const char* kTrajectoryHelp =
 /// on.
 void add_trajectory_options(CLI::App& command, TrajectoryOptions& options, LengthOptions& lengths);
 
+/// Adds those of these options that say how a trajectory is read, for a command whose trajectory is
+/// not that of the model.
+void add_options_of_reading(CLI::App& command, TrajectoryOptions& options);
+
 }  // namespace clearway::tool

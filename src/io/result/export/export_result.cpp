@@ -264,8 +264,11 @@ template std::unique_ptr<RowSink<Collisions>> make_row_sink(ExportFormat, const 
                                                             const QuantumBox&, const File&);
 template std::unique_ptr<RowSink<Clearances>> make_row_sink(ExportFormat, const ResultReader&,
                                                             const QuantumBox&, const File&);
+template std::unique_ptr<RowSink<Nearby>> make_row_sink(ExportFormat, const ResultReader&,
+                                                        const QuantumBox&, const File&);
 template QuantumBox bounds_of<Collisions>(const ResultReader&, const Progress&);
 template QuantumBox bounds_of<Clearances>(const ResultReader&, const Progress&);
+template QuantumBox bounds_of<Nearby>(const ResultReader&, const Progress&);
 
 namespace {
 
@@ -298,6 +301,16 @@ void export_table(const ResultReader& result, const std::filesystem::path& outpu
 void export_result(const ResultReader& result, const std::filesystem::path& output, bool overwrite,
                    Progress& progress) {
   export_table<Collisions>(result, output, overwrite, progress);
+}
+
+void export_near(const ResultReader& result, const std::filesystem::path& output, bool overwrite,
+                 Progress& progress) {
+  if (!result.header().budget) {
+    throw UsageError(result.name() +
+                     ": has no near points, because its run had no error budget; expected a run "
+                     "with an error, such as that of the scan");
+  }
+  export_table<Nearby>(result, output, overwrite, progress);
 }
 
 void export_clearances(const ResultReader& result, const std::filesystem::path& output,

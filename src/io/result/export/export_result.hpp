@@ -11,9 +11,9 @@
 
 namespace clearway {
 
-/// Receives the rows of a table front to back and writes them in a format. `Rows` is Collisions or
-/// Clearances. Coordinates are written as they are stored, and the columns that the schema names as
-/// fields follow them.
+/// Receives the rows of a table front to back and writes them in a format. `Rows` is Collisions,
+/// Nearby or Clearances. Coordinates are written as they are stored, and the columns that the
+/// schema names as fields follow them.
 template <typename Rows>
 class RowSink {
  public:
@@ -49,6 +49,11 @@ QuantumBox bounds_of(const ResultReader& result, const Progress& progress);
 /// `overwrite`, for an existing output; InputError for a malformed result.
 void export_result(const ResultReader& result, const std::filesystem::path& output, bool overwrite,
                    Progress& progress);
+
+/// Writes the points of `result` that are only near, by its error budget, as export_result() writes
+/// colliding ones. Throws UsageError for a result without a budget.
+void export_near(const ResultReader& result, const std::filesystem::path& output, bool overwrite,
+                 Progress& progress);
 
 /// Writes the clearances of `result` to `output` in the formats of export_result(), with distance
 /// (double, metres) and pose (uint32) in the place of first_pose; a line of .xyz is "x y z distance

@@ -33,6 +33,14 @@ constexpr LasClassField las_class_field(unsigned point_format) {
   return point_format < 6 ? LasClassField{15, 0x1F} : LasClassField{16, 0xFF};
 }
 
+/// The byte at which the GPS time, a double, begins in the records of a point format; nullopt where
+/// it has none.
+constexpr std::optional<std::size_t> las_time_byte(unsigned point_format) {
+  if (point_format >= 6) return 22;
+  if (point_format == 0 || point_format == 2) return std::nullopt;
+  return 20;
+}
+
 }  // namespace clearway
 
 /// Extra bytes of LAS records: values that every record has after those of its point format.

@@ -39,10 +39,13 @@ InputBuffer spool_bytes(InputBuffer stream, const std::filesystem::path& folder)
 }  // namespace
 
 std::unique_ptr<PointReader> open_las_stream(File stream,
-                                             const std::filesystem::path& temporary_folder) {
+                                             const std::filesystem::path& temporary_folder,
+                                             const PointReadOptions& options) {
   InputBuffer input(std::move(stream), InputBuffer::Access::kStream);
-  if (is_compressed(input)) return read_las(spool_bytes(std::move(input), temporary_folder));
-  return read_las(std::move(input));
+  if (is_compressed(input)) {
+    return read_las(spool_bytes(std::move(input), temporary_folder), options.with_times);
+  }
+  return read_las(std::move(input), options.with_times);
 }
 
 namespace {
@@ -50,11 +53,20 @@ namespace {
 constexpr const char* kWhyMore =
     "Its writer crashed, or wrote into a pipe and could not go back to the header";
 
+/// What the GPS times of a file with this header count.
+GpsTimes gps_times_of(const LasPublicHeader& header) {
+  constexpr std::uint16_t kIsAdjusted = 1;  // a bit of the global encoding
+  if (!las_time_byte(header.point_format)) return GpsTimes::kNone;
+  return (header.encoding & kIsAdjusted) != 0 ? GpsTimes::kAdjusted : GpsTimes::kWeekSeconds;
+}
+
 /// Reads uncompressed points.
 class LasReader final : public PointReader {
  public:
-  LasReader(InputBuffer input, const LasPublicHeader& header, LasCrs crs)
+  LasReader(InputBuffer input, const LasPublicHeader& header, LasCrs crs, bool with_times)
       : input_(std::move(input)), header_(header), crs_(std::move(crs)), points_(header.points) {
+    if (with_times) time_byte_ = las_time_byte(header.point_format);
+    info_.gps_times = gps_times_of(header);
     first_point_ = input_.mark();
     if (input_.can_seek()) {
       read_las_tail(input_, header_, crs_);
@@ -77,6 +89,7 @@ class LasReader final : public PointReader {
     batch.positions.clear();
     batch.quanta.clear();
     batch.classes.clear();
+    batch.times.clear();
     const std::size_t most = InputBuffer::kCapacity / header_.record_bytes;
     while (batch.quanta.size() < kBatchPoints) {
       const auto wanted =
@@ -106,6 +119,7 @@ class LasReader final : public PointReader {
     input_.read_at(read.first, read.span());
     batch.quanta.clear();
     batch.classes.clear();
+    batch.times.clear();
     append(read.span(), batch);
     if (bytes) *bytes = std::move(read);
   }
@@ -173,6 +187,10 @@ class LasReader final : public PointReader {
       std::memcpy(point++, record, sizeof *point);
       *of_point++ = field.of(record);
     }
+    if (!time_byte_) return;
+    for (record = bytes.data(); record != end; record += stride) {
+      out.times.push_back(load<double>(record + *time_byte_));
+    }
   }
 
   void finish() {
@@ -200,23 +218,27 @@ class LasReader final : public PointReader {
   std::uint64_t points_;
   std::uint64_t next_ = 0;  ///< point to read next
   bool tail_read_ = false;
+  /// Where the GPS time is in a record; nullopt unless times are wanted and exist.
+  std::optional<std::size_t> time_byte_;
 };
 
 std::unique_ptr<PointReader> read_compressed(InputBuffer input, const LasPublicHeader& header,
-                                             LasRecords& records) {
+                                             LasRecords& records, bool with_times) {
   const std::string name = input.name();
   if (records.laz.empty()) {
     refuse_byte(name, 104,
                 "the points are compressed (LAZ); expected a record of user `laszip "
                 "encoded` that says how");
   }
-  const laz::Scheme scheme =
+  laz::Scheme scheme =
       laz::read_scheme(name, records.laz, header.point_format, header.record_bytes);
+  scheme.with_times = with_times && scheme.has_times();
   read_las_tail(input, header, records.crs);
   CloudInfo info;
   info.quantisation = header.quantisation;
   info.declared_points = header.points;
   info.declared_box = header.box;
+  info.gps_times = scheme.has_times() ? gps_times_of(header) : GpsTimes::kNone;
   records.crs.describe(info);
   const std::uint64_t end = header.tail_count > 0 ? header.tail_offset : *input.size();
   return read_laz_points(std::move(input), scheme, {header.points_offset, end, header.points},
@@ -225,17 +247,17 @@ std::unique_ptr<PointReader> read_compressed(InputBuffer input, const LasPublicH
 
 }  // namespace
 
-std::unique_ptr<PointReader> read_las(InputBuffer input) {
+std::unique_ptr<PointReader> read_las(InputBuffer input, bool with_times) {
   const LasPublicHeader header = read_las_header(input);
   LasRecords records;
   read_las_vlrs(input, header, records);
-  if (header.compressed) return read_compressed(std::move(input), header, records);
+  if (header.compressed) return read_compressed(std::move(input), header, records, with_times);
   if (!records.laz.empty()) {
     refuse_byte(input.name(), 104,
                 "the points are not compressed, but a record of user `laszip encoded` says how; "
                 "expected bit 7 to be set in a LAZ file, or no such record");
   }
-  return std::make_unique<LasReader>(std::move(input), header, std::move(records.crs));
+  return std::make_unique<LasReader>(std::move(input), header, std::move(records.crs), with_times);
 }
 
 }  // namespace clearway

@@ -13,6 +13,7 @@ namespace clearway {
 /// byte is noticed when it is reached, and data beyond the declared points is read as points, with
 /// a warning. A stream's extended records are read after the last point, so that a CRS that only
 /// they hold appears in info() once read() has returned false. LAZ needs an input that can seek.
-std::unique_ptr<PointReader> read_las(InputBuffer input);
+/// with_times: see PointReadOptions.
+std::unique_ptr<PointReader> read_las(InputBuffer input, bool with_times = false);
 
 }  // namespace clearway

@@ -13,15 +13,17 @@ namespace clearway::laz {
 
 using Quanta = std::array<std::int32_t, 3>;
 
-/// Room for `count` points and, in the same order, their classes.
+/// Room for `count` points and, in the same order, their classes and GPS times. times: null unless
+/// the scheme asks for them.
 struct PointRoom {
   Quanta* quanta = nullptr;
   std::uint8_t* classes = nullptr;
+  double* times = nullptr;
   std::size_t count = 0;
 
-  PointRoom first(std::size_t points) const { return {quanta, classes, points}; }
+  PointRoom first(std::size_t points) const { return {quanta, classes, times, points}; }
   PointRoom behind(std::size_t points) const {
-    return {quanta + points, classes + points, count - points};
+    return {quanta + points, classes + points, times ? times + points : nullptr, count - points};
   }
 };
 

@@ -176,6 +176,7 @@ std::uint64_t threads() {
 
 ChunkGroups::ChunkGroups(const Scheme& scheme)
     : one_at_a_time_(scheme.record_bytes > kMostRecordBytes),
+      with_times_(scheme.with_times),
       decoders_([scheme] { return make_chunk_decoder(scheme); }) {}
 
 bool ChunkGroups::takes(const Chunk& chunk) const {
@@ -200,13 +201,13 @@ std::size_t ChunkGroups::decode(const InputBuffer& input, std::span<const Chunk>
   const std::size_t taken = begins.size() - 1;
   points_.resize(begins.back());
   classes_.resize(begins.back());
+  if (with_times_) times_.resize(begins.back());
+  const PointRoom room{points_.data(), classes_.data(), with_times_ ? times_.data() : nullptr,
+                       points_.size()};
   std::vector<std::optional<DamagedChunk>> damages(taken);
   const auto decode_one = [&](std::size_t i) {
     try {
-      decode_alone(
-          input, chunks[i],
-          PointRoom{points_.data(), classes_.data(), points_.size()}.behind(begins[i]).first(
-              chunks[i].points));
+      decode_alone(input, chunks[i], room.behind(begins[i]).first(chunks[i].points));
     } catch (const DamagedChunk& damage) {
       damages[i] = damage;
     }

@@ -1,6 +1,7 @@
 // Decoder for point formats 6 to 10. The attributes of a chunk's points are in separate layers, so
-// only those of the coordinates and of the class are read.
+// only those of the coordinates, of the class and, where wanted, of the GPS time are read.
 #include <array>
+#include <numeric>
 
 #include "io/files/bytes.hpp"
 #include "io/scans/las/las_header.hpp"
@@ -40,12 +41,13 @@ class LayeredDecoder final : public ChunkDecoder {
     std::array<std::byte, kPointBytes> point;
     std::copy_n(record.begin(), kPointBytes, point.begin());
     class_ = las_class_field(6).of(point.data());
+    time_ = load<double>(point.data() + *las_time_byte(6));
     const auto points = take_number(cursor);
     if (points != chunk.points) {
       throw DamagedChunk{"holds " + std::to_string(points) + " points by its own count, but " +
                          std::to_string(chunk.points) + " by the header and the chunk table"};
     }
-    const std::array<std::uint64_t, 3> sizes = take_sizes(cursor);
+    const std::array<std::uint64_t, kPointLayers> sizes = take_sizes(cursor);
     const std::uint64_t layers = plane_.window.position(cursor);
     end_ = layers + layers_bytes_;
     if (end_ > chunk.end) {
@@ -62,24 +64,33 @@ class LayeredDecoder final : public ChunkDecoder {
     classes_.open(input, layers + sizes[0] + sizes[1], sizes[2]);
     has_heights_ = sizes[1] > 0;
     has_classes_ = sizes[2] > 0;
+    has_times_ = scheme_.with_times && sizes[kTimeLayer] > 0;
+    if (!has_times_) return;
+    point_.begin_times(time_);
+    const std::uint64_t before = std::accumulate(sizes.begin(), sizes.begin() + kTimeLayer, layers);
+    times_.open(input, before, sizes[kTimeLayer]);
   }
 
   void decode(PointRoom points) override {
     if (is_first_ && points.count > 0) {
       points.quanta[0] = first_;
       points.classes[0] = class_;
+      if (points.times) points.times[0] = time_;
       points = points.behind(1);
       is_first_ = false;
     }
     if (points.count == 0) return;
-    if (has_classes_) {
-      run<true>(points);
+    if (has_times_) {
+      run<true, true>(points);
+    } else if (has_classes_) {
+      run<true, false>(points);
     } else {
-      run<false>(points);
-      std::fill_n(points.classes, points.count, class_);
+      run<false, false>(points);
     }
+    if (!has_classes_) std::fill_n(points.classes, points.count, class_);
+    if (!has_times_ && points.times) std::fill_n(points.times, points.count, time_);
     if (plane_.decoder.damaged() || (has_heights_ && heights_.decoder.damaged()) ||
-        (has_classes_ && classes_.decoder.damaged())) {
+        (has_classes_ && classes_.decoder.damaged()) || (has_times_ && times_.decoder.damaged())) {
       throw DamagedChunk{"holds bits that no encoder writes"};
     }
   }
@@ -89,6 +100,7 @@ class LayeredDecoder final : public ChunkDecoder {
       plane_.check();
       if (has_heights_) heights_.check();
       if (has_classes_) classes_.check();
+      if (has_times_) times_.check();
     }
     return end_;
   }
@@ -96,32 +108,39 @@ class LayeredDecoder final : public ChunkDecoder {
  private:
   static constexpr std::size_t kPointBytes = 30;
   static constexpr std::ptrdiff_t kReserve = 16;
+  static constexpr std::size_t kPointLayers = 9;  // layers of POINT14
+  static constexpr std::size_t kTimeLayer = 8;
 
-  template <bool kHasClasses>
+  template <bool kMayHaveClasses, bool kHasTimes>
   void run(PointRoom points) {
     ArithmeticDecoder plane = plane_.decoder, heights = heights_.decoder;
-    ArithmeticDecoder classes = classes_.decoder;
+    ArithmeticDecoder classes = classes_.decoder, times = times_.decoder;
     for (std::size_t i = 0; i < points.count; ++i) {
       plane.move_to(plane_.window.ahead(plane.cursor()));
       if (has_heights_) heights.move_to(heights_.window.ahead(heights.cursor()));
       points.quanta[i] = point_.next(plane, heights);
-      if constexpr (kHasClasses) {
+      if (kMayHaveClasses && has_classes_) {
         classes.move_to(classes_.window.ahead(classes.cursor()));
         points.classes[i] = point_.next_class(classes);
+      }
+      if constexpr (kHasTimes) {
+        times.move_to(times_.window.ahead(times.cursor()));
+        points.times[i] = point_.next_time(times);
       }
     }
     plane_.decoder = plane;
     heights_.decoder = heights;
     classes_.decoder = classes;
+    times_.decoder = times;
   }
 
   std::uint32_t take_number(const std::byte*& cursor) {
     return load<std::uint32_t>(plane_.window.take(cursor, 4).data());
   }
 
-  /// Takes the sizes of the first three layers, and sets layers_bytes_ to the size of all.
-  std::array<std::uint64_t, 3> take_sizes(const std::byte*& cursor) {
-    std::array<std::uint64_t, 3> sizes{};
+  /// Takes the sizes of the layers of POINT14, and sets layers_bytes_ to the size of all layers.
+  std::array<std::uint64_t, kPointLayers> take_sizes(const std::byte*& cursor) {
+    std::array<std::uint64_t, kPointLayers> sizes{};
     layers_bytes_ = 0;
     for (std::uint32_t i = 0; i < scheme_.layers; ++i) {
       const std::uint32_t size = take_number(cursor);
@@ -132,14 +151,17 @@ class LayeredDecoder final : public ChunkDecoder {
   }
 
   Scheme scheme_;
-  Layer plane_, heights_, classes_;
+  Layer plane_, heights_, classes_, times_;
   Point14 point_;
   Quanta first_{};
   /// Class of the first point, and of all points where there is no layer of classes.
   std::uint8_t class_ = 0;
+  /// GPS time of the first point, and of all points where there is no layer of times.
+  double time_ = 0;
   std::uint64_t layers_bytes_ = 0;
   std::uint64_t end_ = 0;
-  bool is_first_ = false, has_more_ = false, has_heights_ = false, has_classes_ = false;
+  bool is_first_ = false, has_more_ = false;
+  bool has_heights_ = false, has_classes_ = false, has_times_ = false;
 };
 
 }  // namespace

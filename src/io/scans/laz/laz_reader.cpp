@@ -15,11 +15,14 @@ using laz::Chunk;
 using laz::Quanta;
 using laz::Scheme;
 
-/// Makes room in the batch for `count` points from index `first` on.
-laz::PointRoom room_in(PointBatch& batch, std::size_t first, std::size_t count) {
+/// Makes room in the batch for `count` points from index `first` on, as the scheme asks for them.
+laz::PointRoom room_in(PointBatch& batch, std::size_t first, std::size_t count,
+                       const Scheme& scheme) {
   batch.quanta.resize(first + count);
   batch.classes.resize(first + count);
-  return {batch.quanta.data() + first, batch.classes.data() + first, count};
+  batch.times.resize(scheme.with_times ? first + count : 0);
+  double* const times = scheme.with_times ? batch.times.data() + first : nullptr;
+  return {batch.quanta.data() + first, batch.classes.data() + first, times, count};
 }
 
 /// Reads a file with a chunk table.
@@ -40,12 +43,17 @@ class TabledReader final : public PointReader {
     batch.positions.clear();
     batch.quanta.clear();
     batch.classes.clear();
+    batch.times.clear();
     while (batch.quanta.size() < kBatchPoints) {
       if (!ready_.empty()) {
         const auto part = ready_.first(std::min(ready_.size(), kBatchPoints - batch.quanta.size()));
         const auto classes = groups_.classes().last(ready_.size()).first(part.size());
         batch.quanta.insert(batch.quanta.end(), part.begin(), part.end());
         batch.classes.insert(batch.classes.end(), classes.begin(), classes.end());
+        if (scheme_.with_times) {
+          const auto times = groups_.times().last(ready_.size()).first(part.size());
+          batch.times.insert(batch.times.end(), times.begin(), times.end());
+        }
         ready_ = ready_.subspan(part.size());
       } else if (next_ == chunks_.size()) {
         break;
@@ -75,7 +83,7 @@ class TabledReader final : public PointReader {
 
   void read_piece(std::size_t piece, PointBatch& batch, PieceBytes* bytes) override {
     const std::span<const Chunk> chunks = chunks_of(piece);
-    laz::PointRoom room = room_in(batch, 0, points_of_piece(piece));
+    laz::PointRoom room = room_in(batch, 0, points_of_piece(piece), scheme_);
     for (const Chunk& chunk : chunks) {
       try {
         groups_.decode_alone(input_, chunk, room.first(chunk.points));
@@ -128,7 +136,7 @@ class TabledReader final : public PointReader {
       }
       const std::size_t before = batch.quanta.size();
       const auto points = std::min<std::uint64_t>(kBatchPoints - before, left_);
-      stream_->decode(room_in(batch, before, points));
+      stream_->decode(room_in(batch, before, points, scheme_));
       left_ -= points;
       if (left_ > 0) return;
       stream_->finish();
@@ -172,7 +180,7 @@ class UntabledReader final : public PointReader {
     batch.positions.clear();
     const auto points = std::min<std::uint64_t>(kBatchPoints, bytes_.points - read_);
     try {
-      for (laz::PointRoom room = room_in(batch, 0, points); room.count > 0;) {
+      for (laz::PointRoom room = room_in(batch, 0, points, scheme_); room.count > 0;) {
         room = room.behind(read_chunk(room));
       }
     } catch (const laz::DamagedChunk& damage) {

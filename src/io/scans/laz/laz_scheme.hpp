@@ -26,6 +26,11 @@ struct Scheme {
   std::uint16_t bytes = 0;         ///< number of extra bytes in a record
   std::uint16_t record_bytes = 0;  ///< bytes of all items
   std::uint32_t layers = 0;        ///< number of layers of all items, where layered
+  /// Whether the GPS times are wanted too; only where the points have some.
+  bool with_times = false;
+
+  /// Whether the points have GPS times.
+  bool has_times() const { return chunks == Chunks::kLayered || gps_time_version > 0; }
 };
 
 /// Reads the scheme from the record's payload. name: the file's, for messages. Throws InputError

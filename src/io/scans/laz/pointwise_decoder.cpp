@@ -2,6 +2,7 @@
 // them must be decoded.
 #include <optional>
 
+#include "io/files/bytes.hpp"
 #include "io/scans/las/las_header.hpp"
 #include "io/scans/laz/chunk_decoder.hpp"
 #include "io/scans/laz/items/gps_time11.hpp"
@@ -34,6 +35,29 @@ class Item {
   std::optional<Version2> second_;
 };
 
+/// The item GPSTIME11 in any version, or none.
+class GpsTimeItem {
+ public:
+  explicit GpsTimeItem(unsigned version) {
+    if (version == 1) first_.emplace();
+    if (version == 2) second_.emplace();
+  }
+  /// bytes: those of the item in the first record.
+  void begin(const std::byte* bytes) {
+    if (first_) first_->begin(load<double>(bytes));
+    if (second_) second_->begin(load<double>(bytes));
+  }
+  ArithmeticDecoder next(ArithmeticDecoder decoder) {
+    if (second_) return second_->next(decoder);
+    return first_ ? first_->next(decoder) : decoder;
+  }
+  double time() const { return second_ ? second_->time() : first_->time(); }
+
+ private:
+  std::optional<GpsTimeVersion1> first_;
+  std::optional<GpsTimeVersion2> second_;
+};
+
 /// All items after POINT10.
 class OtherItems {
  public:
@@ -43,21 +67,23 @@ class OtherItems {
         wave_packet_(scheme.wave_packet_version),
         bytes_(scheme.bytes_version, scheme.bytes) {}
 
-  void begin() {
-    gps_time_.begin();
+  /// bytes: those of the items in the first record.
+  void begin(const std::byte* bytes) {
+    gps_time_.begin(bytes);
     rgb_.begin();
     wave_packet_.begin();
     bytes_.begin();
   }
   ArithmeticDecoder skip(ArithmeticDecoder decoder) {
-    return bytes_.skip(wave_packet_.skip(rgb_.skip(gps_time_.skip(decoder))));
+    return bytes_.skip(wave_packet_.skip(rgb_.skip(gps_time_.next(decoder))));
   }
+  double time() const { return gps_time_.time(); }  ///< GPS time of the last point
   static std::size_t most_bytes(const Scheme& scheme) {
     return kMostBytesGpsTime + kMostBytesRgb + kMostBytesWavePacket + kMostBytesByte * scheme.bytes;
   }
 
  private:
-  Item<GpsTimeVersion1, GpsTimeVersion2> gps_time_;
+  GpsTimeItem gps_time_;
   Item<RgbVersion1, RgbVersion2> rgb_;
   Item<WavePacket, WavePacket> wave_packet_;
   Item<BytesVersion1, BytesVersion2> bytes_;
@@ -79,7 +105,7 @@ class PointwiseDecoder final : public ChunkDecoder {
     first_ = load<Quanta>(record.data());
     first_class_ = las_class_field(0).of(record.data());
     point_.begin(record.data());
-    others_.begin();
+    others_.begin(record.data() + kPointBytes);
     is_first_ = true;
     ends_there_ = chunk.ends_there;
     end_ = chunk.end;
@@ -90,6 +116,7 @@ class PointwiseDecoder final : public ChunkDecoder {
     if (is_first_ && points.count > 0) {
       points.quanta[0] = first_;
       points.classes[0] = first_class_;
+      if (points.times) points.times[0] = others_.time();
       points = points.behind(1);
       is_first_ = false;
     }
@@ -119,7 +146,10 @@ class PointwiseDecoder final : public ChunkDecoder {
       decoder.move_to(window_.ahead(decoder.cursor()));
       points.quanta[i] = point_.next(decoder);
       points.classes[i] = point_.point_class();
-      if constexpr (kHasOthers) decoder = others_.skip(decoder);
+      if constexpr (kHasOthers) {
+        decoder = others_.skip(decoder);
+        if (points.times) points.times[i] = others_.time();
+      }
     }
     decoder_ = decoder;
   }

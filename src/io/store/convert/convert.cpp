@@ -26,6 +26,7 @@
 #include "io/files/file.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/thread_limit.hpp"
+#include "io/scans/point_formats.hpp"
 #include "io/scans/point_reader.hpp"
 #include "io/scans/scan_crs.hpp"
 #include "io/store/convert/count.hpp"
@@ -35,7 +36,9 @@
 #include "io/store/convert/input_warnings.hpp"
 #include "io/store/convert/origin_table.hpp"
 #include "io/store/convert/pack_unit.hpp"
+#include "io/store/convert/path_origins.hpp"
 #include "io/store/convert/quantum_bounds.hpp"
+#include "io/store/convert/read_points.hpp"
 #include "io/store/convert/source_description.hpp"
 #include "io/store/convert/split_tree.hpp"
 #include "io/store/convert/stage_clocks.hpp"
@@ -128,6 +131,17 @@ void check_columns(const std::vector<std::string>& columns) {
   }
 }
 
+void check_origins(const ConversionOptions& options) {
+  if (!options.origins.empty() && !options.origins_path.empty()) {
+    throw UsageError("origins are given by a file and by a path; expected one of the two");
+  }
+  const Vec3& arm = options.lever_arm;
+  if (!is_finite(arm)) throw UsageError("a lever arm: expected three finite lengths");
+  if (options.origins_path.empty() && !(arm == Vec3{0, 0, 0})) {
+    throw UsageError("a lever arm belongs to a path of origins, and none is given");
+  }
+}
+
 void check_options(const ConversionOptions& options) {
   if (options.memory_bytes < kLeastConversionMemory) {
     throw ResourceError(format_size(options.memory_bytes) +
@@ -143,6 +157,7 @@ void check_options(const ConversionOptions& options) {
     throw UsageError("a regular layout: expected cubes of a positive length");
   }
   check_columns(options.columns);
+  check_origins(options);
 }
 
 /// The number of threads that the memory allows, as each has a counting grid of its own.
@@ -222,24 +237,30 @@ class Conversion {
   ConversionReport run() {
     EnvironmentSource environment(options_.inputs, environment_options(), progress_);
     refuse_overwriting(options_.output, environment.read_files());
-    if (!options_.origins.empty()) refuse_overwriting(options_.output, {options_.origins});
+    for (const auto& given : {options_.origins, options_.origins_path}) {
+      if (!given.empty()) refuse_overwriting(options_.output, {given});
+    }
     if (environment.declared_points()) {
       check_disk(folder_, {*environment.declared_points(), *environment.declared_points()});
     }
     OriginTable origins(environment.quantisation(), options_.memory_bytes / 4);
     if (!options_.origins.empty()) add_origins_of_file(options_.origins, origins);
+    std::optional<PathOrigins> path;
+    if (!options_.origins_path.empty()) path.emplace(options_, environment, origins, log_);
     SourceDescription others(environment.read_files(), environment.in_pieces(), progress_);
     FileHashes hashes(environment.files(), environment.in_pieces());
     const Lattice lattice = lattice_for(options_, environment.quantisation());
     InputSurvey survey;
-    CountedEnvironment counted =
-        count_environment(environment, lattice, survey, hashes, threads_, clocks_, progress_);
+    CountedEnvironment counted = count_environment(environment, lattice, survey, hashes, threads_,
+                                                   clocks_, progress_, path ? &*path : nullptr);
     fill_metadata(environment, counted, others.get(hashes.finish()));
     if (environment.unit() == LengthUnit::kUnknown && counted.points > 0) {
       log_.note(
           "the inputs name no unit of length, so metres are assumed; --unit names another one");
     }
     report_.box = warn_of_inputs(environment, survey.boxes, report_.metadata, log_);
+    if (path) report_.origins_path = path->finish(environment, log_);
+    path.reset();
     collect_origins(environment, counted.input_points, origins);
     const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
     const std::vector<TopNode> top = tree.top_nodes(options_.cell_points);
@@ -272,6 +293,7 @@ class Conversion {
             .ignore_crs = options_.ignore_crs,
             .skip_unreadable = options_.skip_unreadable,
             .columns = options_.columns,
+            .with_times = !options_.origins_path.empty(),
             .temporary_folder = folder_};
   }
 
@@ -304,10 +326,10 @@ class Conversion {
   /// Collects the origins of all points, now that the inputs have been read once.
   void collect_origins(const EnvironmentSource& environment, std::uint64_t input_points,
                        OriginTable& origins) {
-    if (options_.origins.empty()) {
-      add_origins_of_inputs(environment, origins);
-    } else {
+    if (!options_.origins.empty()) {
       refuse_origins_beyond(options_.origins, input_points);
+    } else if (options_.origins_path.empty()) {
+      add_origins_of_inputs(environment, origins);
     }
     origins.finish();
     if (origins.any()) origins_ = &origins;
@@ -463,6 +485,7 @@ bool has_wanted_unit(const FileUnit& wanted, LengthUnit found) {
 /// Whether a store has the origins that these options give it beside the scans.
 bool has_wanted_origins(const ConversionOptions& options, const StoreMetadata& found) {
   const std::uint64_t given = found.origins ? found.origins->given_hash : 0;
+  if (!options.origins_path.empty()) return given == given_path_hash(options);
   return given == (options.origins.empty() ? 0 : given_origins_hash(options.origins));
 }
 
@@ -500,6 +523,33 @@ bool is_converted(const ConversionOptions& options, Progress& progress) {
                    Remedy::kOverwriteNotResume);
 }
 
+namespace {
+
+/// Whether a file says from where its points were seen, as far as its header tells.
+bool tells_origins(const std::filesystem::path& file) {
+  if (format_of_name(file) == PointFormat::kPtx) return true;
+  return !open_point_file(file)->info().origins.empty();
+}
+
+/// Warns of a store that an earlier release made without the origins that its inputs tell.
+void warn_of_missing_origins(const ConversionOptions& options, const StoreMetadata& store,
+                             MessageLog& log) {
+  if (store.origins || store.point_count == 0) return;
+  std::vector<std::filesystem::path> files = list_point_files(options.inputs);
+  if (options.skip_unreadable) {
+    NoProgress quiet;
+    files = readable_files(files, {}, quiet).files;
+  }
+  const auto found = std::find_if(files.begin(), files.end(), tells_origins);
+  if (found == files.end()) return;
+  log.warn("origins-missing",
+           options.output.string() + ": does not know from where its points were seen, although " +
+               found->string() +
+               " tells it; an earlier release made the store. Convert again to have the origins");
+}
+
+}  // namespace
+
 ConvertReport convert(const std::vector<std::filesystem::path>& inputs,
                       const std::filesystem::path& output, const ConvertOptions& options) {
   const ConversionOptions conversion{options, inputs, output};
@@ -509,6 +559,7 @@ ConvertReport convert(const std::vector<std::filesystem::path>& inputs,
     MessageLog log(options.message, report.warnings);
     const StoreReader store(output);
     for (const Message& warning : store.metadata().warnings) log.add(warning);
+    warn_of_missing_origins(conversion, store.metadata(), log);
     if (options.strict) refuse_warnings(report.warnings);
     return report;
   }

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "clearway/error.hpp"
+#include "io/store/convert/path_origins.hpp"
 #include "io/store/convert/points_hash.hpp"
 #include "io/store/convert/read_points.hpp"
 
@@ -48,11 +49,11 @@ struct PassSums {
 };
 
 std::vector<Bin> count_bins(const EnvironmentPass& pass, const Lattice& lattice, PassSums& sums,
-                            InputSurvey& survey, Progress& progress) {
+                            InputSurvey& survey, PathOrigins* path, Progress& progress) {
   tbb::enumerable_thread_specific<ClassCounts> classes;
   tbb::enumerable_thread_specific<BinCounter> counters(
       [] { return BinCounter(kFinestShift, kMostBins); });
-  for_each_batch<Nothing>(
+  for_each_batch<PathOrigins::OfBatch>(
       pass,
       [&](const QuantaBatch& batch) {
         const auto running = pass.clocks().measure(Stage::kCount);
@@ -61,15 +62,16 @@ std::vector<Bin> count_bins(const EnvironmentPass& pass, const Lattice& lattice,
         for (const auto& q : batch.quanta) counter.add(lattice(q, 0));
         classes.local().add(batch);
         progress.advance(batch.quanta.size());
-        return Nothing();
+        return path ? path->origins_of(batch) : PathOrigins::OfBatch();
       },
-      [&](const QuantaBatch& batch, Nothing&) {
+      [&](const QuantaBatch& batch, const PathOrigins::OfBatch& origins) {
+        if (path) path->add(batch, origins);
         sums.points_hash.add(batch);
         sums.classes_hash.add(batch);
         survey.places.add(batch);
         sums.points += batch.quanta.size();
       },
-      [](Nothing&) {});
+      [](const PathOrigins::OfBatch&) {});
   for (const ClassCounts& counts : classes) sums.classes.merge(counts);
   BinCounter all(kFinestShift, kMostBins);
   for (const BinCounter& counter : counters) all.merge(counter);
@@ -162,13 +164,14 @@ void refine(const EnvironmentPass& pass, const Lattice& lattice, const SplitTree
 
 CountedEnvironment count_environment(EnvironmentSource& environment, const Lattice& lattice,
                                      InputSurvey& survey, FileHashes& files, int threads,
-                                     StageClocks& clocks, Progress& progress) {
+                                     StageClocks& clocks, Progress& progress, PathOrigins* path) {
   CountedEnvironment counted;
   PassSums sums{PointsHash(environment.quantisation())};
   progress.begin("count", environment.declared_points().value_or(0), "points");
   environment.rewind();
-  counted.bins =
-      count_bins({environment, threads, &files, clocks, progress}, lattice, sums, survey, progress);
+  counted.bins = count_bins({environment, threads, &files, clocks, progress}, lattice, sums, survey,
+                            path, progress);
+  environment.leave_out_times();
   counted.points = sums.points;
   counted.input_points = environment.input_points();
   counted.points_hash = sums.points_hash.digest(counted.input_points);

@@ -15,6 +15,8 @@
 
 namespace clearway {
 
+class PathOrigins;
+
 /// Observations of the counting pass that serve warnings.
 struct InputSurvey {
   PlaceSample places;
@@ -40,9 +42,10 @@ struct CountedEnvironment {
 };
 
 /// Performs the counting pass, which also hashes the files, and further passes while a bin is too
-/// full (docs/design/conversion.md).
+/// full (docs/design/conversion.md). path: finds the origins of the points, or is null.
 CountedEnvironment count_environment(EnvironmentSource& environment, const Lattice& lattice,
                                      InputSurvey& survey, FileHashes& files, int threads,
-                                     StageClocks& clocks, Progress& progress);
+                                     StageClocks& clocks, Progress& progress,
+                                     PathOrigins* path = nullptr);
 
 }  // namespace clearway

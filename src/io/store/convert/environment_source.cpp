@@ -43,7 +43,7 @@ auto reading_one_of(std::size_t files, Read read) {
 EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& inputs,
                                      const EnvironmentOptions& options, Progress& progress)
     : options_(checked(options)),
-      how_to_read_{options.columns, true},
+      how_to_read_{options.columns, true, options.with_times},
       inputs_(inputs, options.skip_unreadable, how_to_read_, progress) {
   open_inputs();
   find_crs();
@@ -60,7 +60,7 @@ EnvironmentSource::~EnvironmentSource() = default;
 void EnvironmentSource::open_inputs() {
   if (inputs_.are_a_stream()) {
     auto stream = open_las_stream(File::adopt(::dup(STDIN_FILENO), "standard input"),
-                                  options_.temporary_folder);
+                                  options_.temporary_folder, how_to_read_);
     if (!stream->can_rewind()) stream = spool(std::move(stream), options_.temporary_folder);
     stream_ = std::move(stream);
   }
@@ -251,6 +251,7 @@ void EnvironmentSource::convert(RecordBatch& records, QuantaBatch& batch, bool w
     append_kept(records, batch);
   }
   keep_classes(records, batch);
+  batch.times = std::move(records.points.times);
   records.points = {};
 }
 

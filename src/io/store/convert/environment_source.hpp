@@ -20,6 +20,7 @@ struct EnvironmentOptions {
   bool ignore_crs = false;        ///< whether to accept degrees and inputs of different units
   bool skip_unreadable = false;   ///< whether to leave out files that cannot be read to their end
   std::vector<std::string> columns{};  ///< columns of texts, see PointReadOptions
+  bool with_times = false;             ///< whether GPS times are read too, where files have them
   std::filesystem::path temporary_folder = ".";
 };
 
@@ -65,6 +66,8 @@ class EnvironmentSource {
   /// Counts what was read. Called for all batches in input order.
   void note(const QuantaBatch& batch);
   void rewind();
+  /// Reads no GPS times from the next rewind() on.
+  void leave_out_times() { how_to_read_.with_times = false; }
 
   /// The place of a record in the inputs; known once read() has returned false.
   struct Place {

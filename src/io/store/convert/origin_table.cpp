@@ -1,6 +1,7 @@
 #include "io/store/convert/origin_table.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <string_view>
@@ -19,6 +20,7 @@ namespace {
 
 constexpr double kMostQuantum = 0x1p62;
 constexpr double kFarMetres = 1000;  // distance from all points above which a warning is due
+constexpr double kNearMetres = 100;  // likewise, where all origins are at 0 0 0
 
 double percentage(std::uint64_t part, std::uint64_t all) {
   return 100 * static_cast<double>(part) / static_cast<double>(all);
@@ -41,29 +43,78 @@ void OriginTable::rest_on(const std::string& what, std::uint64_t given_hash) {
   bases_.push_back({what, 0});
 }
 
+OriginQuanta quanta_of_origin(const Quantisation& quantisation, const Vec3& origin,
+                              const std::string& name) {
+  OriginQuanta q{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double at = origin[static_cast<int>(k)];
+    const double quantum = (at - quantisation.offset[k]) / quantisation.scale[k];
+    if (!(std::abs(quantum) <= kMostQuantum)) {
+      refuse(name, "an origin at " + text_of(origin) + ", which is too far away for steps of " +
+                       brief(quantisation.scale[k]));
+    }
+    q[k] = std::llround(quantum);
+  }
+  return q;
+}
+
+/// The slot of these integers, or the free one where they belong.
+std::size_t OriginTable::slot_of(const OriginQuanta& quanta) const {
+  std::uint64_t hash = 0;
+  for (const std::int64_t q : quanta) {
+    hash = (hash ^ static_cast<std::uint64_t>(q)) * 0x9E3779B97F4A7C15u;
+    hash ^= hash >> 32;
+  }
+  std::size_t slot = hash & (slots_.size() - 1);
+  while (slots_[slot] != 0 && quanta_[slots_[slot] - 1] != quanta) {
+    slot = (slot + 1) & (slots_.size() - 1);
+  }
+  return slot;
+}
+
+/// 1 + the index of these integers in quanta_, to which they are appended where they are new.
+std::uint32_t OriginTable::number_of(const OriginQuanta& quanta) {
+  if (!quanta_.empty() && !runs_.empty() && runs_.back().number > 0 &&
+      quanta_[runs_.back().number - 1] == quanta) {
+    return runs_.back().number;
+  }
+  if (slots_.size() <= 2 * quanta_.size()) {
+    slots_.assign(std::max<std::size_t>(16, 4 * quanta_.size()), 0);
+    slots_.resize(std::bit_ceil(slots_.size()));
+    for (std::uint32_t i = 0; i < quanta_.size(); ++i) slots_[slot_of(quanta_[i])] = i + 1;
+  }
+  std::uint32_t& slot = slots_[slot_of(quanta)];
+  if (slot == 0) {
+    quanta_.push_back(quanta);
+    slot = static_cast<std::uint32_t>(quanta_.size());
+  }
+  return slot;
+}
+
 void OriginTable::add(std::uint64_t first, const std::optional<Vec3>& origin,
                       const std::string& name) {
+  std::optional<OriginQuanta> quanta;
+  if (origin) quanta = quanta_of_origin(quantisation_, *origin, name);
+  add_quanta(first, quanta, name);
+}
+
+void OriginTable::add_quanta(std::uint64_t first, const std::optional<OriginQuanta>& origin,
+                             const std::string& name) {
   std::uint32_t number = 0;
   if (origin) {
-    Quanta q{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double at = (*origin)[static_cast<int>(k)];
-      const double quantum = (at - quantisation_.offset[k]) / quantisation_.scale[k];
-      if (!(std::abs(quantum) <= kMostQuantum)) {
-        refuse(name, "an origin at " + text_of(*origin) + ", which is too far away for steps of " +
-                         brief(quantisation_.scale[k]));
-      }
-      q[k] = std::llround(quantum);
-    }
-    if (quanta_.empty() || quanta_.back() != q) quanta_.push_back(q);
-    number = static_cast<std::uint32_t>(quanta_.size());
+    number = number_of(*origin);
     ++with_origin_;
-    all_zero_ = all_zero_ && origin->x == 0 && origin->y == 0 && origin->z == 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double zero = -quantisation_.offset[k] / quantisation_.scale[k];
+      all_zero_ = all_zero_ && std::abs(static_cast<double>((*origin)[k]) - zero) <= 0.5;
+    }
   }
   const auto basis = static_cast<std::uint32_t>(bases_.empty() ? 0 : bases_.size() - 1);
   if (!runs_.empty() && runs_.back().number == number && runs_.back().basis == basis) return;
   runs_.push_back({first, number, basis});
-  const std::uint64_t bytes = runs_.size() * sizeof(Run) + 3 * quanta_.size() * sizeof(Quanta);
+  const std::uint64_t bytes = runs_.size() * sizeof(Run) +
+                              3 * quanta_.size() * sizeof(OriginQuanta) +
+                              slots_.size() * sizeof(std::uint32_t);
   if (bytes > most_bytes_ || quanta_.size() >= std::numeric_limits<std::uint32_t>::max()) {
     throw ResourceError(name + ": " + format_count(runs_.size()) + " changes of the origin take " +
                             format_size(bytes) + ", and there may be more; origins may take " +
@@ -73,9 +124,9 @@ void OriginTable::add(std::uint64_t first, const std::optional<Vec3>& origin,
 }
 
 void OriginTable::finish() {
-  const std::vector<Quanta> given = quanta_;
+  slots_ = {};
+  const std::vector<OriginQuanta> given = quanta_;
   std::sort(quanta_.begin(), quanta_.end());
-  quanta_.erase(std::unique(quanta_.begin(), quanta_.end()), quanta_.end());
   quanta_.shrink_to_fit();
   for (Run& run : runs_) {
     if (run.number == 0) continue;
@@ -85,7 +136,7 @@ void OriginTable::finish() {
 }
 
 std::uint64_t OriginTable::allocated_bytes() const {
-  return runs_.capacity() * sizeof(Run) + quanta_.capacity() * sizeof(Quanta);
+  return runs_.capacity() * sizeof(Run) + quanta_.capacity() * sizeof(OriginQuanta);
 }
 
 std::uint64_t OriginTable::end_of(std::size_t run) const {
@@ -165,13 +216,23 @@ void OriginTable::warn(const StoreOrigins& origins, std::uint64_t points,
                  " %) have no origin, so it is not known where the space before them was seen from",
              {{"points", static_cast<double>(origins.points_without)}, {"share", share / 100}});
   }
-  const Vec3 zero{0, 0, 0};
-  if (all_zero_ && (given_hash_ != 0 || with_origin_ > 1 || (box && distance(*box, zero) > 0))) {
-    log.warn("origins-at-zero",
-             "all origins are at 0 0 0. That is right for a scan in its scanner's own coordinates, "
-             "and wrong for scans that were moved or merged without their positions");
-  }
+  if (all_zero_) warn_of_zero(box, metres, log);
   if (box && metres > 0) warn_of_far(origins, *box, metres, log);
+}
+
+void OriginTable::warn_of_zero(const std::optional<Box>& box, double metres,
+                               MessageLog& log) const {
+  const double away = box ? metres * distance(*box, {0, 0, 0}) : 0;
+  if (with_origin_ < 2 && away <= kNearMetres) return;
+  const std::string why =
+      away > kNearMetres
+          ? "but all points are more than " + format_brief(away) + " m away from there"
+          : "but they were given for " + format_count(with_origin_) + " scans or parts of one";
+  log.warn("origins-at-zero",
+           "all origins are at 0 0 0, " + why +
+               ". That is right for a single scan in its scanner's own coordinates, and wrong for "
+               "scans that were moved or merged without their positions",
+           {{"runs", static_cast<double>(with_origin_)}, {"metres", away}});
 }
 
 void OriginTable::warn_of_far(const StoreOrigins& origins, const Box& box, double metres,
@@ -179,7 +240,7 @@ void OriginTable::warn_of_far(const StoreOrigins& origins, const Box& box, doubl
   std::uint64_t far = 0;
   double farthest = 0;
   Vec3 at{};
-  for (const Quanta& q : origins.quanta) {
+  for (const OriginQuanta& q : origins.quanta) {
     Vec3 origin{};
     for (int k = 0; k < 3; ++k) {
       origin[k] = static_cast<double>(q[static_cast<std::size_t>(k)]) * quantisation_.scale[k] +

@@ -19,6 +19,14 @@
 
 namespace clearway {
 
+/// A place of a scanner in the integers of a store, as StoreOrigins::quanta has them.
+using OriginQuanta = std::array<std::int64_t, 3>;
+
+/// The integers of an origin in the unit of the environment. Throws InputError, which begins with
+/// `name`, for an origin that they cannot hold.
+OriginQuanta quanta_of_origin(const Quantisation& quantisation, const Vec3& origin,
+                              const std::string& name);
+
 /// The origins of all points of a conversion, by runs of source indices: the points of a run were
 /// seen from the same place, or do not tell from where.
 class OriginTable {
@@ -33,6 +41,9 @@ class OriginTable {
   /// the environment. Throws InputError, which begins with `name`, for an origin that the
   /// integers cannot hold, and ResourceError where the table becomes larger than it may.
   void add(std::uint64_t first, const std::optional<Vec3>& origin, const std::string& name);
+  /// Likewise, for an origin in the integers of the store.
+  void add_quanta(std::uint64_t first, const std::optional<OriginQuanta>& origin,
+                  const std::string& name);
   /// Numbers the distinct origins. Called once, after all runs have been added.
   void finish();
 
@@ -54,27 +65,30 @@ class OriginTable {
             double metres, MessageLog& log) const;
 
  private:
-  using Quanta = std::array<std::int64_t, 3>;
-
   struct Run {
     std::uint64_t first;
     std::uint32_t number;  ///< 1 + index in quanta_, or 0
     std::uint32_t basis;   ///< index in bases_
   };
 
+  std::uint32_t number_of(const OriginQuanta& quanta);
+  std::size_t slot_of(const OriginQuanta& quanta) const;
   std::size_t run_of(std::uint64_t source, std::size_t from) const;
   std::uint64_t end_of(std::size_t run) const;
+  void warn_of_zero(const std::optional<Box>& box, double metres, MessageLog& log) const;
   void warn_of_far(const StoreOrigins& origins, const Box& box, double metres,
                    MessageLog& log) const;
 
   Quantisation quantisation_;
   std::uint64_t most_bytes_;
   std::vector<Run> runs_;
-  std::vector<Quanta> quanta_;  ///< while runs are added, in their order; then distinct, ascending
+  std::vector<OriginQuanta> quanta_;  ///< distinct, in the order of their runs; then ascending
+  /// While runs are added, a hash table of 1 + the index in quanta_, at most half full; 0 is free.
+  std::vector<std::uint32_t> slots_;
   std::vector<OriginBasis> bases_;
   std::uint64_t given_hash_ = 0;
   std::uint64_t with_origin_ = 0;  ///< number of runs that were added with an origin
-  bool all_zero_ = true;           ///< whether all origins are exactly 0, 0, 0
+  bool all_zero_ = true;           ///< whether all origins are at 0, 0, 0, within half a step
   std::size_t counted_run_ = 0;    ///< run of the point that was counted last
 };
 

@@ -29,6 +29,9 @@ struct QuantaBatch {
   std::vector<std::uint32_t> offsets;
   std::vector<std::uint8_t> classes;  ///< classes of the points; empty where all have class 0
 
+  /// The GPS time of each record, with or without a point; empty where they are not wanted.
+  std::vector<double> times;
+
   std::uint64_t records = 0;  ///< number of input points
   std::uint64_t non_finite_points = 0;
   /// Source index of the first non-finite point, where there is one.

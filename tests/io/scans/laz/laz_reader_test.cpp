@@ -2,9 +2,13 @@
 // writes what others do (docs/design/laz.md).
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+#include <bit>
 #include <catch2/catch.hpp>
+#include <random>
 
 #include "io/files/thread_limit.hpp"
+#include "io/scans/laz/items/gps_time11.hpp"
 #include "support/bytes/laz/laz_samples.hpp"
 #include "support/reader_fixture.hpp"
 
@@ -73,6 +77,48 @@ TEST_CASE("LAZ holds the integers of its points, in every format and division in
   check_reads(laz);
 }
 
+TEST_CASE("GPS times of LAZ are those of its points, where they are asked for") {
+  const unsigned format = GENERATE(from_range(std::begin(kLazFormats), std::end(kLazFormats)));
+  CAPTURE(format);
+  LazBytes laz = laz_bytes(format, 3000);
+  SECTION("chunks") { laz.chunks = {701}; }
+  SECTION("no table") {
+    laz.chunks = {701};
+    laz.table = LazBytes::Table::kNone;
+  }
+  SECTION("times that stay") {
+    laz.chunks = {1000};
+    for (std::size_t i = 0; i < laz.points.size(); ++i) laz.points[i].gps_time = i / 1000;
+  }
+  SECTION("a chunk that is too large to be kept") {
+    laz = laz_bytes(format, 300000);
+    laz.chunks = {300000};
+  }
+  ReaderScratch scratch;
+  const auto path = scratch.write("a.laz", laz.build());
+  const bool has_times = format != 0 && format != 2;
+  const auto check = [&](const std::vector<double>& times) {
+    REQUIRE(times.size() == (has_times ? laz.points.size() : 0));
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      REQUIRE(std::bit_cast<std::uint64_t>(times[i]) == laz.points[i].gps_time);
+    }
+  };
+  const auto reader = open_point_file(path, {.with_times = true});
+  CHECK((reader->info().gps_times == GpsTimes::kWeekSeconds) == has_times);
+  PointBatch batch;
+  std::vector<double> times;
+  while (reader->read(batch)) times.insert(times.end(), batch.times.begin(), batch.times.end());
+  check(times);
+  times.clear();
+  for (std::size_t piece = 0; piece < reader->pieces(); ++piece) {
+    reader->read_piece(piece, batch, nullptr);
+    times.insert(times.end(), batch.times.begin(), batch.times.end());
+  }
+  if (reader->pieces() > 0) check(times);
+  const auto without = open_point_file(path);
+  while (without->read(batch)) CHECK(batch.times.empty());
+}
+
 TEST_CASE("chunks larger than a group's are read in pieces, by any number of threads") {
   const unsigned format = GENERATE(1u, 6u);
   const int threads = GENERATE(1, 3);
@@ -115,4 +161,65 @@ TEST_CASE("a file without a chunk table says so, one with it says nothing") {
   REQUIRE(remarks.size() == 1);
   CHECK(remarks[0].severity == Message::Severity::kNote);
   CHECK_THAT(remarks[0].text, Contains("b.laz") && Contains("20 points"));
+}
+
+TEST_CASE("GPS times of version 1 are decoded as they were encoded") {
+  ArithmeticEncoder out;
+  SymbolCoder multiple(512), after_none(3);
+  IntegerCoder coder(32, 6);
+  std::uint64_t time = std::bit_cast<std::uint64_t>(1234.5);
+  std::int32_t usual = 0;
+  unsigned extremes = 0;
+  const auto encode = [&](std::uint64_t next) {
+    const auto step = static_cast<std::int64_t>(next - time);
+    const bool near = step == static_cast<std::int32_t>(step);
+    time = next;
+    if (usual == 0 || step == 0 || !near) {
+      const bool none = usual == 0;
+      const unsigned symbol = step == 0 ? (none ? 0 : 511) : near ? 1 : (none ? 2 : 510);
+      out.symbol(none ? after_none : multiple, symbol);
+      if (step == 0) return;
+      if (!near) {
+        out.bits(32, static_cast<std::uint32_t>(next));
+        return out.bits(32, static_cast<std::uint32_t>(next >> 32));
+      }
+      usual = static_cast<std::int32_t>(step);
+      return coder.encode(out, 0, step, 0);
+    }
+    const auto factor = static_cast<unsigned>(std::clamp<std::int64_t>(step / usual, 0, 509));
+    out.symbol(multiple, factor);
+    const std::int64_t prediction =
+        factor == 0 ? usual / 4 : static_cast<std::int32_t>(factor * static_cast<unsigned>(usual));
+    const unsigned context = factor == 0   ? 2
+                             : factor == 1 ? 1
+                             : factor < 10 ? 3
+                             : factor < 50 ? 4
+                                           : 5;
+    coder.encode(out, prediction, step, context);
+    if (factor == 1) extremes = 0;
+    const bool extreme = (factor == 0 || factor == 509) && ++extremes > 3;
+    if (extreme) extremes = 0;
+    if (extreme || factor == 1) usual = static_cast<std::int32_t>(step);
+  };
+  std::mt19937_64 random(5);
+  std::vector<std::uint64_t> times;
+  std::uint64_t next = time;
+  for (int i = 0; i < 5000; ++i) {
+    const unsigned kind = random() % 16;
+    if (kind == 0) next += random();
+    if (kind > 2) next += 100000 + random() % 50;
+    if (kind > 9) next += 100000 * (random() % 700);
+    if (kind > 13) next -= 500000;
+    times.push_back(next);
+    encode(next);
+  }
+  const std::string bytes = out.finish() + std::string(64, '\0');
+  laz::GpsTimeVersion1 decoded;
+  decoded.begin(1234.5);
+  laz::ArithmeticDecoder decoder(reinterpret_cast<const std::byte*>(bytes.data()));
+  for (const std::uint64_t expected : times) {
+    decoder = decoded.next(decoder);
+    REQUIRE(std::bit_cast<std::uint64_t>(decoded.time()) == expected);
+  }
+  CHECK_FALSE(decoder.damaged());
 }

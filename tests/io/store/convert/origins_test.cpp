@@ -1,6 +1,8 @@
 // Origins of points on their way from scans and files of origins into a store.
 #include "support/origins.hpp"
 
+#include <hdf5.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -154,6 +156,17 @@ TEST_CASE("origins at zero and far away are warned of") {
   CHECK(codes_of(convert_quietly(scan.options)) == std::vector<std::string>{"origins-at-zero"});
   scan.give("first,x,y,z\n0,0,0,0\n50,0,0,0.5\n");
   CHECK(codes_of(convert_quietly(scan.options)).empty());
+  scan.give("first,x,y,z\n0,0,0,0\n");  // a single scan in its scanner's own coordinates
+  CHECK(codes_of(convert_quietly(scan.options)).empty());
+  // All points are 99 m or more, and then 101 m or more away from the scanner.
+  for (const double away : {103.0, 105.0}) {
+    write_las(scan.folder / "a.las", cube_cloud(300, -4000, 4000, 3),
+              {{0.001, 0.001, 0.001}, {away, 0, 0}});
+    const ConversionReport report = convert_quietly(scan.options);
+    CHECK(codes_of(report).size() == (away > 104 ? 1 : 0));
+    if (away > 104) CHECK_THAT(report.warnings[0].text, Contains("more than 101"));
+  }
+  write_las(scan.folder / "a.las", cube_cloud(300, -4000, 4000, 3), kSteps);
   scan.give("first,x,y,z\n0,1,0,0\n50,0,1e6,0\n");
   const ConversionReport far = convert_quietly(scan.options);
   REQUIRE(codes_of(far) == std::vector<std::string>{"origins-far"});
@@ -171,7 +184,7 @@ TEST_CASE("more origins than the memory may hold are refused with a number") {
           table.add(i, Vec3{static_cast<double>(i), 0, 0}, "o.csv");
         }
       }(),
-      Contains("o.csv: 12 changes of the origin"));
+      Contains("o.csv: 10 changes of the origin"));
 }
 
 TEST_CASE("resuming knows the origins that a store was given") {
@@ -185,6 +198,35 @@ TEST_CASE("resuming knows the origins that a store was given") {
   CHECK_FALSE(is_converted(scan.options, progress));
   convert_quietly(scan.options);
   CHECK(is_converted(scan.options, progress));
+}
+
+TEST_CASE("resuming warns of a store that an earlier release made without its inputs' origins") {
+  const ScratchFolder folder;
+  const std::string lonely = "6 7 8\n7 8 9\n";
+  put_bytes(folder / "a.ptx",
+            "1\n1\n5 6 7\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n5 6 7 1\n1 1 1 0.5\n");
+  put_bytes(folder / "b.xyz", lonely);
+  ConvertOptions options{.resume = true};
+  const auto codes = [&](const char* input) {
+    const ConvertReport report = convert({folder / input}, folder / "s.h5", options);
+    std::string text = report.was_finished ? "resumed" : "converted";
+    for (const Message& warning : report.warnings) text += " " + warning.code;
+    return text;
+  };
+  CHECK(codes("a.ptx") == "converted");
+  CHECK(codes("a.ptx") == "resumed");
+  const hid_t store = H5Fopen((folder / "s.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  REQUIRE(H5Ldelete(store, "origins", H5P_DEFAULT) >= 0);
+  for (const char* attribute : {"origins_hash", "origins_given_hash", "origins_index_hash"}) {
+    REQUIRE(H5Adelete(store, attribute) >= 0);
+  }
+  REQUIRE(H5Fclose(store) >= 0);
+  CHECK(codes("a.ptx") == "resumed origins-missing");
+  options.strict = true;
+  CHECK_THROWS_AS(codes("a.ptx"), InputError);
+  std::filesystem::remove(folder / "s.h5");
+  CHECK(codes("b.xyz") == "converted");
+  CHECK(codes("b.xyz") == "resumed");
 }
 
 TEST_CASE("a scan of E57 has its pose's place as origin, or that of its spherical coordinates") {

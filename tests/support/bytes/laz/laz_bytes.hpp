@@ -96,18 +96,19 @@ struct LazBytes {
       LasBytes::put(bytes, 16, point.angle);
     }
     LasBytes::put(bytes, 17, point.user_data);
+    if (layered() || las.format % 2 == 1) LasBytes::put(bytes, layered() ? 22 : 20, point.gps_time);
     return bytes;
   }
 
   std::string pointwise_chunk(std::size_t begin, std::size_t end) const {
     ArithmeticEncoder out;
     Point10Coder coder;
-    GpsTimeCoder gps_time;
+    GpsTimeCoder gps_time(points[begin].gps_time, false);
     ColourCoder colour;
     std::vector<SymbolCoder> extra(las.extra_bytes, SymbolCoder(256));
     for (std::size_t i = begin + 1; i < end; ++i) {
       coder.encode(out, points[i - 1], points[i]);
-      if (las.format % 2 == 1) gps_time.encode(out, points[i - 1], points[i]);
+      if (las.format % 2 == 1) gps_time.encode(out, points[i].gps_time);
       if (las.format >= 2) colour.encode(out, points[i - 1], points[i]);
       for (auto& byte : extra) out.symbol(byte, static_cast<std::uint8_t>(i * i));
     }
@@ -128,8 +129,10 @@ struct LazBytes {
     add(sizes, static_cast<std::uint32_t>(classes.size()));
     bytes += classes;
     for (unsigned i = 3; i < layers; ++i) {
-      add(sizes, std::uint32_t{i % 4});
-      bytes.append(i % 4, 'l');
+      std::string layer(i % 4, 'l');
+      if (i == 8) layer = coder.times_change ? coder.times.finish() : "";
+      add(sizes, static_cast<std::uint32_t>(layer.size()));
+      bytes += layer;
     }
     std::string count;
     add(count, static_cast<std::uint32_t>(end - begin));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -95,32 +96,79 @@ class Point10Coder {
   PositionCoder position_;
 };
 
-/// Encodes GPSTIME11, version 2: no change, the same difference as before plus a little, or a jump.
+/// Encodes the GPS times of GPSTIME11, version 2, or those of a layer, which has no symbols for a
+/// time that stays.
 class GpsTimeCoder {
  public:
-  void encode(ArithmeticEncoder& out, const LazPoint& last, const LazPoint& point) {
-    const auto step = static_cast<std::int64_t>(point.gps_time - last.gps_time);
-    const bool near = step >= -0x80000000LL && step < 0x80000000LL;
-    const bool none = difference_ == 0;
-    out.symbol(none ? after_none_ : multiple_, step == 0 ? (none ? 0 : 511)
-                                               : near    ? 1
-                                                         : (none ? 2 : 512));
-    if (step == 0) return;
-    if (near) {
-      time_.encode(out, difference_, step, none ? 0 : 1);
-      if (none) difference_ = step;
-      return;
+  GpsTimeCoder(std::uint64_t first, bool only_changes)
+      : missing_(only_changes ? 1 : 0), multiple_(516 - missing_), after_none_(6 - missing_) {
+    sequences_[0].time = first;
+  }
+
+  void encode(ArithmeticEncoder& out, std::uint64_t time) {
+    for (unsigned k = 0; k < 4; ++k) {
+      if (!is_near(sequences_[(current_ + k) % 4].time, time)) continue;
+      if (k > 0) put(out, 2 + k, 512 + k);
+      current_ = (current_ + k) % 4;
+      return encode_near(out, time);
     }
-    time_.encode(out, static_cast<std::int32_t>(last.gps_time >> 32),
-                 static_cast<std::int32_t>(point.gps_time >> 32), 8);
-    out.bits(32, static_cast<std::uint32_t>(point.gps_time));
-    difference_ = 0;
+    put(out, 2, 512);
+    difference_.encode(out, half(sequences_[current_].time >> 32), half(time >> 32), 8);
+    out.bits(32, static_cast<std::uint32_t>(time));
+    current_ = newest_ = (newest_ + 1) % 4;
+    sequences_[current_] = {time};
   }
 
  private:
-  SymbolCoder multiple_{516}, after_none_{6};
-  IntegerCoder time_{32, 9};
-  std::int64_t difference_ = 0;
+  struct Sequence {
+    std::uint64_t time = 0;
+    std::int32_t difference = 0;
+    unsigned extremes = 0;
+  };
+
+  static std::int32_t half(std::uint64_t bits) { return static_cast<std::int32_t>(bits); }
+  static bool is_near(std::uint64_t from, std::uint64_t to) {
+    const auto step = static_cast<std::int64_t>(to - from);
+    return step >= -0x80000000LL && step < 0x80000000LL;
+  }
+  /// Encodes a symbol, as it is called where the sequence has no difference, and else.
+  void put(ArithmeticEncoder& out, unsigned none, unsigned otherwise) {
+    if (sequences_[current_].difference == 0) return out.symbol(after_none_, none - missing_);
+    out.symbol(multiple_, otherwise < 511 ? otherwise : otherwise - missing_);
+  }
+
+  void encode_near(ArithmeticEncoder& out, std::uint64_t time) {
+    Sequence& sequence = sequences_[current_];
+    const std::int32_t step = half(time - sequence.time);
+    const std::int32_t usual = sequence.difference;
+    sequence.time = time;
+    if (step == 0 && missing_ == 0) return put(out, 0, 511);
+    if (usual == 0) {
+      put(out, 1, 0);
+      sequence = {time, step, 0};
+      return difference_.encode(out, 0, step, 0);
+    }
+    const auto factor =
+        static_cast<int>(std::clamp<std::int64_t>(std::int64_t{step} / usual, -10, 500));
+    put(out, 0, static_cast<unsigned>(factor < 0 ? 500 - factor : factor));
+    const unsigned context = factor == -10  ? 6
+                             : factor < 0   ? 5
+                             : factor == 0  ? 7
+                             : factor == 1  ? 1
+                             : factor < 10  ? 2
+                             : factor < 500 ? 3
+                                            : 4;
+    difference_.encode(out, half(static_cast<std::uint64_t>(std::int64_t{factor} * usual)), step,
+                       context);
+    if (factor == 1) sequence.extremes = 0;
+    if ((context == 4 || context > 5) && ++sequence.extremes > 3) sequence = {time, step, 0};
+  }
+
+  unsigned missing_;
+  SymbolCoder multiple_, after_none_;
+  IntegerCoder difference_{32, 9};
+  std::array<Sequence, 4> sequences_{};
+  unsigned current_ = 0, newest_ = 0;
 };
 
 /// Encodes RGB12, version 2, without the values that follow from red, which the reader does not
@@ -146,8 +194,8 @@ class ColourCoder {
   std::vector<SymbolCoder> bytes_ = std::vector<SymbolCoder>(6, SymbolCoder(256));
 };
 
-/// Encodes the layers of POINT14 that hold coordinates and classes. Pulses have at most two
-/// returns.
+/// Encodes the layers of POINT14 that hold coordinates, classes and GPS times. Pulses have at most
+/// two returns.
 class Point14Coder {
  public:
   explicit Point14Coder(const LazPoint& first) : current_(first.channel) { start(current_, first); }
@@ -183,12 +231,15 @@ class Point14Coder {
         channel->classes.try_emplace((last.classification & 31u) * 2 + single, 256u).first->second,
         point.classification);
     classes_change = classes_change || point.classification != last.classification;
+    if (time) channel->gps_time.front().encode(times, point.gps_time);
+    times_change = times_change || time;
     channel->last = point;
     channel->time_changed = time;
   }
 
-  ArithmeticEncoder plane, height, classes;
+  ArithmeticEncoder plane, height, classes, times;
   bool classes_change = false;  ///< if no class differs from the last, their layer is left out
+  bool times_change = false;    ///< likewise
 
  private:
   struct Channel {
@@ -199,12 +250,14 @@ class Point14Coder {
     std::map<unsigned, SymbolCoder> returns, number;
     CodersByValue classes;
     PositionCoder position;
+    std::vector<GpsTimeCoder> gps_time;  ///< one, since the channel began
   };
 
   void start(unsigned channel, const LazPoint& last) {
     Channel& started = channels_[channel];
     started.last = last;
     started.position.heights.fill(last.position[2]);
+    started.gps_time.emplace_back(last.gps_time, true);
   }
   void encode_16(std::map<unsigned, SymbolCoder>& coders, unsigned last, unsigned value) {
     plane.symbol(coders.try_emplace(last, 16u).first->second, value);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <random>
+#include <utility>
 
 #include "io/scans/point_reader.hpp"
 #include "support/bytes/laz/laz_bytes.hpp"
@@ -13,6 +14,7 @@ inline std::vector<LazPoint> laz_points(std::size_t count, bool formats_6_to_8, 
   const auto below = [&](unsigned n) { return static_cast<unsigned>(random() % n); };
   std::vector<LazPoint> points(count);
   LazPoint point;
+  std::uint64_t other_time = 0;
   for (LazPoint& next : points) {
     for (std::int32_t& value : point.position) {
       const unsigned bits = below(8) == 0 ? 32 : below(12);
@@ -29,6 +31,7 @@ inline std::vector<LazPoint> laz_points(std::size_t count, bool formats_6_to_8, 
     if (below(6) == 0) point.source = static_cast<std::uint16_t>(random());
     if (below(6) == 0) point.angle = static_cast<std::int8_t>(random());
     if (below(3)) point.gps_time += below(9) == 0 ? std::uint64_t{random()} << 32 : below(1000);
+    if (below(12) == 0) std::swap(point.gps_time, other_time);
     for (auto& value : point.colour) value = static_cast<std::uint16_t>(value + below(300));
     next = point;
   }

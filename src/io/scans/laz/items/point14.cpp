@@ -18,6 +18,32 @@ void Point14::begin(const std::byte* record, bool has_heights) {
   start(channels_[current_], first);
 }
 
+void Point14::begin_times(double time) {
+  for (const auto& times : times_) {
+    if (times) times->used = false;
+  }
+  start_times(current_, time);
+}
+
+void Point14::start_times(unsigned channel, double time) {
+  std::unique_ptr<Times>& times = times_[channel];
+  if (!times) times = std::make_unique<Times>();
+  times->sequences.begin(time);
+  times->used = true;
+  last_timed_ = channel;
+}
+
+double Point14::next_time(ArithmeticDecoder& layer) {
+  // A channel begins with the time of the point before.
+  if (!times_[current_] || !times_[current_]->used) {
+    start_times(current_, times_[last_timed_]->sequences.time());
+  }
+  last_timed_ = current_;
+  GpsTimeLayer& sequences = times_[current_]->sequences;
+  if (channels_[current_].time_changed) layer = sequences.next(layer);
+  return sequences.time();
+}
+
 /// Begins a channel with the last point of another one.
 void Point14::start(Channel& channel, const Channel& from) {
   renew(channel.models);

@@ -6,14 +6,15 @@
 
 #include "io/scans/laz/coding/entropy_models.hpp"
 #include "io/scans/laz/items/coordinate_models.hpp"
+#include "io/scans/laz/items/gps_time11.hpp"
 
 namespace clearway::laz {
 
 /// Most bytes that a point takes in any layer.
 constexpr std::size_t kMostBytesPoint14 = 64;
 
-/// Decodes three layers of the item POINT14: one of scanner channels, returns, x and y, one of z,
-/// and one of classes. Versions 2 to 4 do not differ in these.
+/// Decodes four layers of the item POINT14: one of scanner channels, returns, x and y, one of z,
+/// one of classes, and one of GPS times. Versions 2 to 4 do not differ in these.
 class Point14 {
  public:
   using Quanta = std::array<std::int32_t, 3>;
@@ -27,6 +28,12 @@ class Point14 {
   /// Decodes the class of the point that next() decoded, from the layer of classes. Only where that
   /// layer exists; otherwise no class changes.
   [[gnu::always_inline]] inline std::uint8_t next_class(ArithmeticDecoder& classes);
+  /// Called after begin() where the layer of times exists and is read. time: that of the first
+  /// record.
+  void begin_times(double time);
+  /// Decodes the time of the point that next() decoded, from the layer of times, which holds only
+  /// those that changed. Called for each point, after begin_times().
+  double next_time(ArithmeticDecoder& times);
 
  private:
   /// Bits of `changed`; the two lowest encode how the return number differs.
@@ -42,6 +49,10 @@ class Point14 {
     HeightModel height;
     std::array<MedianOfFive, 12> dx, dy;
   };
+  struct Times {
+    GpsTimeLayer sequences;
+    bool used = false;
+  };
 
   /// A scanner channel: its models and its last point.
   struct Channel {
@@ -55,11 +66,14 @@ class Point14 {
   };
 
   void start(Channel& channel, const Channel& from);
+  void start_times(unsigned channel, double time);
   ArithmeticDecoder next_channel(ArithmeticDecoder plane);
   ArithmeticDecoder next_returns(ArithmeticDecoder plane, unsigned changed);
 
   std::array<Channel, 4> channels_;
-  std::array<ModelsByValue, 4> class_models_;  ///< models of the class for each channel
+  std::array<ModelsByValue, 4> class_models_;    ///< models of the class for each channel
+  std::array<std::unique_ptr<Times>, 4> times_;  ///< GPS times of each channel; null before used
+  unsigned last_timed_ = 0;  ///< channel of the point before, where times are read
   unsigned current_ = 0;
   bool has_heights_ = false;
 };

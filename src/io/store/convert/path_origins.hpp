@@ -1,0 +1,100 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "clearway/convert.hpp"
+#include "clearway/vec3.hpp"
+#include "core/geometry/quantisation.hpp"
+#include "core/trajectory/timed_path.hpp"
+#include "core/util/messages.hpp"
+#include "io/store/convert/environment_source.hpp"
+#include "io/store/convert/origin_table.hpp"
+#include "io/store/convert/quanta_batch.hpp"
+
+namespace clearway {
+
+/// The origins of a conversion by the points' GPS times and the path of the scanner.
+class PathOrigins {
+ public:
+  /// The origins of a batch's records, by runs, and what was found on the way.
+  struct OfBatch {
+    struct Run {
+      std::uint64_t first;  ///< source index
+      std::optional<OriginQuanta> origin;
+    };
+    std::vector<Run> runs;
+    std::uint64_t with_time = 0;  ///< records with a finite time
+    std::uint64_t not_finite = 0;
+    std::uint64_t contradicting = 0;  ///< times that cannot be what the header says
+    std::uint64_t before = 0, after = 0, in_gaps = 0, found = 0;
+    double first = std::numeric_limits<double>::infinity();  ///< least time, as in the file
+    double last = -std::numeric_limits<double>::infinity();
+    std::set<double> shifts{};  ///< seconds that were added to the times of points with an origin
+
+    void note_time(double time, bool contradicts);
+    void note_place(TimedPath::Where where);
+    /// Adds the sums of another batch, without its runs.
+    void add(const OfBatch& other);
+  };
+
+  /// Reads the path of options.origins_path, for points of this environment, whose headers have
+  /// been read. table: receives the origins, and outlives this object. log: receives notes and
+  /// warnings on the path. Throws InputError, UsageError, and ResourceError where the path takes
+  /// more than an eighth of the memory.
+  PathOrigins(const ConvertOptions& options, const EnvironmentSource& environment,
+              OriginTable& table, MessageLog& log);
+
+  /// Several threads may call it at once.
+  OfBatch origins_of(const QuantaBatch& batch) const;
+  /// Adds the origins of a batch. Called for all batches in input order.
+  void add(const QuantaBatch& batch, const OfBatch& origins);
+  /// Called after the last batch: says how times were understood, warns of points without an
+  /// origin, and throws InputError where no point has one, or where the times cannot be right.
+  OriginsPathReport finish(const EnvironmentSource& environment, MessageLog& log) const;
+
+ private:
+  /// What the times of the path count, by their numbers.
+  enum class Clock { kWeekSeconds, kAdjusted, kStandard };
+
+  /// What is known of the times of a file.
+  struct OfFile {
+    std::uint64_t points = 0, with_time = 0;
+    double first = std::numeric_limits<double>::infinity();
+    double last = -std::numeric_limits<double>::infinity();
+  };
+
+  bool contradicts(GpsTimes kind, double time) const;
+  double shift_for(GpsTimes kind, double time) const;
+  std::string clock_text() const;
+  std::string times_of_points() const;
+  std::string shifts_text() const;
+  std::string advice(double first, double last) const;
+  void refuse_same_times() const;
+  void refuse_several_weeks() const;
+  OriginsPathReport report() const;
+  void warn(MessageLog& log) const;
+
+  OriginTable& table_;
+  std::string name_;
+  Quantisation quantisation_;
+  std::vector<GpsTimes> kinds_;  ///< of the files
+  std::vector<std::string> names_;
+  std::string crs_wkt_;
+  LengthUnit unit_;
+  std::optional<TimedPath> path_;
+  Clock clock_ = Clock::kStandard;
+  OfBatch all_;  ///< sums over all batches
+  std::vector<OfFile> files_;
+};
+
+/// What identifies a path of origins and how it is used, as StoreOrigins::given_hash.
+std::uint64_t given_path_hash(const ConvertOptions& options);
+
+}  // namespace clearway

@@ -1,0 +1,124 @@
+#include "core/trajectory/timed_path.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "clearway/error.hpp"
+
+using namespace clearway;
+using Catch::Matchers::Contains;
+
+namespace {
+
+using Where = TimedPath::Where;
+
+/// A pose at a place, turned by an angle about z.
+Pose turned_pose(double x, double y, double z, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {{c, -s, 0, s, c, 0, 0, 0, 1}, {x, y, z}};
+}
+
+Vec3 place_at(const TimedPath& path, double time) {
+  std::size_t step = 0;
+  const TimedPath::Place place = path.at(time, step);
+  REQUIRE(place.where == Where::kOnPath);
+  return place.position;
+}
+
+Where where_at(const TimedPath& path, double time) {
+  std::size_t step = 0;
+  return path.at(time, step).where;
+}
+
+std::string timed_path_refusal(std::vector<double> times, const Vec3& lever = {},
+                               std::vector<Pose> poses = {}) {
+  while (poses.size() < 3) poses.push_back(turned_pose(0, 0, 0, 0));
+  try {
+    TimedPath(poses, std::move(times), lever, "p.txt");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("a timed path moves evenly in time on a line, and turns by slerp") {
+  const double quarter = std::acos(0.0);
+  const std::vector<Pose> poses{turned_pose(0, 0, 0, 0), turned_pose(4, -2, 1, quarter),
+                                turned_pose(4, -2, 3, quarter)};
+  const TimedPath path(poses, {10, 10.5, 11.5}, {2, 0, 0.25}, "p.txt");
+  CHECK(path.first() == 10);
+  CHECK(path.last() == 11.5);
+  for (const double share : {0.0, 0.125, 0.5, 0.9, 1.0}) {
+    const Vec3 at = place_at(path, 10 + 0.5 * share);
+    CHECK(at.x == Approx(4 * share + 2 * std::cos(quarter * share)).margin(1e-12));
+    CHECK(at.y == Approx(-2 * share + 2 * std::sin(quarter * share)).margin(1e-12));
+    CHECK(at.z == Approx(share + 0.25).margin(1e-12));
+  }
+  const Vec3 later = place_at(path, 11);
+  CHECK(later.x == Approx(4).margin(1e-12));
+  CHECK(later.y == Approx(0).margin(1e-12));
+  CHECK(later.z == Approx(2.25).margin(1e-12));
+}
+
+TEST_CASE("a timed path turns the shorter way round, and ignores rotations without a lever arm") {
+  const std::vector<Pose> poses{turned_pose(0, 0, 0, 3), turned_pose(0, 0, 0, -3)};
+  const Vec3 middle = place_at(TimedPath(poses, {0, 1}, {1, 0, 0}, "p.txt"), 0.5);
+  CHECK(middle.x == Approx(-1).margin(1e-12));
+  CHECK(middle.y == Approx(0).margin(1e-12));
+  const Pose mirror{{1, 0, 0, 0, 1, 0, 0, 0, -1}, {1, 2, 3}};
+  const std::vector<Pose> mirrored{mirror, mirror};
+  CHECK(place_at(TimedPath(mirrored, {0, 1}, {}, "p.txt"), 0.5) == Vec3{1, 2, 3});
+  CHECK_THAT(timed_path_refusal({0, 1, 2}, {0, 0, 1}, {mirror, mirror, mirror}),
+             Contains("p.txt: pose 0 (counting from 0) mirrors"));
+}
+
+TEST_CASE("nothing is known beside a timed path and in its gaps") {
+  const std::vector<Pose> poses{turned_pose(0, 0, 0, 0), turned_pose(1, 0, 0, 0),
+                                turned_pose(2, 0, 0, 0), turned_pose(3, 0, 0, 0)};
+  const TimedPath path(poses, {0, 1, 2.001, 2.5}, {}, "p.txt");
+  CHECK(where_at(path, std::nextafter(0.0, -1.0)) == Where::kBefore);
+  CHECK(where_at(path, std::nextafter(2.5, 3.0)) == Where::kAfter);
+  CHECK(where_at(path, std::numeric_limits<double>::infinity()) == Where::kAfter);
+  CHECK(where_at(path, 1.5) == Where::kInGap);
+  CHECK(where_at(path, std::nextafter(2.001, 0.0)) == Where::kInGap);
+  CHECK(place_at(path, 1).x == 1);
+  CHECK(place_at(path, 2.001).x == 2);
+  CHECK(place_at(path, 2.5).x == 3);
+  CHECK(path.gaps() == 1);
+  CHECK(path.longest_gap() == Approx(1.001));
+}
+
+TEST_CASE("a timed path gives the same place whatever was asked before") {
+  std::mt19937 random(7);
+  const auto below = [&](unsigned n) { return static_cast<double>(random() % n); };
+  std::vector<Pose> poses;
+  std::vector<double> times;
+  double time = 0;
+  for (int i = 0; i < 50; ++i) {
+    time += 0.01 + 0.001 * below(1200);
+    times.push_back(time);
+    poses.push_back(turned_pose(below(100), below(100), 0, below(7)));
+  }
+  const TimedPath path(poses, times, {0.5, 0.25, 0}, "p.txt");
+  std::size_t step = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double at = i % 3 == 0 ? times[random() % 50] : time * below(1000) / 990;
+    std::size_t fresh = 0;
+    const TimedPath::Place expected = path.at(at, fresh), place = path.at(at, step);
+    REQUIRE(place.where == expected.where);
+    REQUIRE(place.position == expected.position);
+  }
+}
+
+TEST_CASE("poses without ascending times are refused with the pose") {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THAT(timed_path_refusal({}), Contains("p.txt: its poses have no times"));
+  CHECK_THAT(timed_path_refusal({0, kNan, 1}), Contains("time of pose 1") && Contains("finite"));
+  CHECK_THAT(timed_path_refusal({0, 2, 1}), Contains("pose 2 ") && Contains("time 1 after 2"));
+  CHECK_THAT(timed_path_refusal({0, 1, 1}), Contains("pose 2 ") && Contains("ascend"));
+  CHECK(timed_path_refusal({-1, 0, 1}).empty());
+}
