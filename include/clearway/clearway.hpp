@@ -22,5 +22,6 @@
 #include "clearway/shard.hpp"       // IWYU pragma: export
 #include "clearway/store.hpp"       // IWYU pragma: export
 #include "clearway/trajectory.hpp"  // IWYU pragma: export
+#include "clearway/unseen_groups.hpp"  // IWYU pragma: export
 #include "clearway/unsearched.hpp"  // IWYU pragma: export
 #include "clearway/vehicle.hpp"     // IWYU pragma: export
