@@ -34,8 +34,8 @@ struct UnseenGroup {
   bool behind_conflict = false;
   /// Whether the model reaches the group along more than half of the path.
   bool along_path = false;
-  /// Whether the group goes along the path in the lower half of the model and down to its lowest
-  /// points. That is usually the ground on which the vehicle stands.
+  /// Whether the group goes along the path and reaches down to the lowest points of the model. Its
+  /// lower part is then usually the ground on which the vehicle stands.
   bool is_ground = false;
   /// Whether the group goes along the path in the upper half of the model. No beam comes back from
   /// the open sky.

@@ -196,9 +196,8 @@ class GroupSearch {
     group.along_path = out_.path_length > 0 && to - from > 0.5 * out_.path_length;
     if (!(group.seen->lo.x <= group.seen->hi.x)) group.seen.reset();
     if (!group.along_path || !group.seen || !(model_box_.lo.z <= model_box_.hi.z)) return;
-    const double middle = 0.5 * (model_box_.lo.z + model_box_.hi.z);
-    group.is_ground = group.seen->hi.z < middle && group.seen->lo.z < model_box_.lo.z + seen_.cube;
-    group.is_sky = group.seen->lo.z > middle;
+    group.is_ground = group.seen->lo.z < model_box_.lo.z + seen_.cube;
+    group.is_sky = group.seen->lo.z > 0.5 * (model_box_.lo.z + model_box_.hi.z);
   }
 
   /// Finds the sides, from the cubes that are reached at the first pose of their group.

@@ -280,9 +280,10 @@ std::string unseen_text(const UnseenGroups& unseen, const Answer& answer,
   for (const UnseenGroup& group : unseen.listed) {
     if (!group.is_ground) continue;
     return text + fmt::format(
-                      " The place that was not scanned from {:.1f} to {:.1f} {} is at the lowest "
-                      "part of the model and probably the ground: --model-above {} above it, and a "
-                      "little more where it is rough, leaves out what stands on it.",
+                      " The place that was not scanned from {:.1f} to {:.1f} {} of the path reaches "
+                      "down to the lowest part of the model, so it is probably the ground: run "
+                      "again with --model-above {} above the ground, or a little more where it is "
+                      "rough.",
                       group.chainage_from, group.chainage_to, unit,
                       format_brief(radius + answer.seen->cube / 2));
   }

@@ -204,7 +204,7 @@ function drawProfile() {
     profileSurface(), profileMargins().slice(1), profileRequired(), profileBeyond(), profileConflicts(),
     make("line", { id: "profile-cursor", class: "cursor", y1: top, y2: height - bottom }));
   if (!(query.profile > 0)) {
-    svg.append(make("text", { x: (left + width) / 2, y: height / 2 - 30, class: "middle strong" },
+    svg.append(make("text", { x: (left + width) / 2, y: height / 2 - 30, class: "middle strong halo" },
                     query.between_poses ? "A run between poses has no profile."
                         : "The result has no profile: clearway run --profile D adds this curve."));
   }

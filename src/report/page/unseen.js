@@ -6,10 +6,10 @@ const kShownGroups = 200, kPrintedGroups = 40;
 
 /** What is known of seen space; null where the run did not ask for it. */
 const seenFacts = () => page.facts.seen ?? null;
-/** The listed groups, the largest first. */
+/** The listed groups, the largest first; they are named by this order. */
 const unseenGroups = () => page.unseenGroups ??= [...(seenFacts()?.list ?? [])]
     .sort((a, b) => b.cubes - a.cubes || a.id - b.id);
-const groupName = (group) => `U${group.id}`;
+const groupName = (group) => `U${unseenGroups().indexOf(group) + 1}`;
 const isNotScanned = () => (seenFacts()?.listed_groups ?? 0) > 0;
 
 function selectGroup(group) {
@@ -62,7 +62,6 @@ function rangeCell(group, axis) {
 function groupColumns() {
   const behind = seenFacts().behind_conflicts > 0;
   return [
-    ["Rank", (g) => String(unseenGroups().indexOf(g) + 1), true],
     ["No.", groupName, false],
     ["Cubes", (g) => count(g.cubes), true],
     [`Size (${unitSymbol})`, (g) => sizeOf(g).map((s) => s.toFixed(2)).join(" × "), true],
@@ -72,6 +71,7 @@ function groupColumns() {
     [`Height (${unitSymbol})`, (g) => rangeCell(g, 2), true],
     behind && ["Behind a conflict", (g) => g.behind_conflict ? "yes" : "no", false],
     [`Middle x, y, z (${unitSymbol})`, (g) => coordinates(g.middle), true],
+    ["In the result", (g) => `group ${count(g.id)}`, true],
     ["What to do", groupAdvice, false],
   ].filter(Boolean).map(([title, cell, number]) => ({ title, cell, number }));
 }
@@ -121,7 +121,7 @@ function chosenGroup() {
       `${span(seen.lo[1], seen.hi[1], "right", "left")}, and from ` +
       `${span(seen.lo[2], seen.hi[2], "below", "above")}.` : "";
   const behind = group.behind_conflict
-      ? " A conflict stands in it or next to it, so what collides may hide it from the scanner." : "";
+      ? " A colliding point lies in it or next to it, so what collides may hide it from the scanner." : "";
   return [make("p", {}, make("strong", {}, `${groupName(group)}: `),
       `${plural(group.cubes, "cube")} that no beam passed through. The vehicle first reaches it at ` +
       `chainage ${station(group.chainage_from)} (pose ${count(group.first_pose)})${after(side)}, ` +
@@ -141,9 +141,10 @@ function adviceSentences() {
   if (ground.length > 0) {
     const least = shortLength(+(page.facts.query.radius + (page.facts.margins?.clear ?? 0) +
                                 seen.cube / 2).toPrecision(3));
-    out.push(["The ground", `${names(ground)} ${goes(ground)} along more than half of the path at the ` +
-        "lowest part of the vehicle. That is usually the ground it stands on, into which no beam can " +
-        `look. Run again with --model-above ${least} above the ground, which is the distance to keep ` +
+    out.push(["The ground", `${names(ground)} ${goes(ground)} along more than half of the path and ` +
+        `${ground.length === 1 ? "reaches" : "reach"} down to the lowest part of the vehicle. That is usually ` +
+        "the ground it stands on, into which no beam can look, perhaps joined with other places. " +
+        `Run again with --model-above ${least} above the ground, which is the distance to keep ` +
         "and half a cube, and a little more where the ground is rough. Then none of the ground is left."]);
   }
   if (sky.length > 0) {
@@ -152,8 +153,9 @@ function adviceSentences() {
         "is there. If you know that it is open, leave the place out with --ignore-box."]);
   }
   if (behind.length > 0) {
-    out.push(["Behind a conflict", `${names(behind)} ${behind.length === 1 ? "is" : "are"} next to a ` +
-        "conflict, which may hide the place from the scanner. Clear the conflict, and then scan again."]);
+    out.push(["Behind a conflict", `${names(behind)} ${behind.length === 1 ? "holds" : "hold"} or ` +
+        `${behind.length === 1 ? "touches" : "touch"} a cube with a colliding point. What collides may hide ` +
+        "what lies behind it from the scanner. Clear the conflict, and then scan again."]);
   }
   if (others.length > 0) {
     out.push(["Other places", `Scan ${names(others)} from where the scanner looks into ` +
@@ -166,7 +168,7 @@ function adviceSentences() {
 function unseenNote() {
   const seen = seenFacts();
   if (!isNotScanned()) return scannedSentence();
-  return "Unseen cubes that touch each other are one place. Lateral is how far left (+) or right (−) of " +
+  return "Unseen cubes that touch each other are one place, and the largest place is U1. Lateral is how far left (+) or right (−) of " +
       "the path the middles of its cubes lie when the vehicle first reaches them, height how far above " +
       `the path, along the vehicle's own axes. ${smallGroupsSentence()}` +
       (seen.list.length < seen.listed_groups
@@ -222,10 +224,10 @@ function profileNotScanned() {
 }
 
 function notScannedPattern() {
-  return make("pattern", { id: "not-scanned", width: 8, height: 8, patternUnits: "userSpaceOnUse",
+  return make("pattern", { id: "not-scanned", width: 12, height: 12, patternUnits: "userSpaceOnUse",
                            patternTransform: "rotate(-45)" },
-              make("rect", { width: 8, height: 8, fill: "#efe9fb" }),
-              make("line", { x1: 0, y1: 0, x2: 0, y2: 8, stroke: kUnseenColour, "stroke-width": 1.6 }));
+              make("rect", { width: 12, height: 12, fill: "#f3effc" }),
+              make("line", { x1: 0, y1: 0, x2: 0, y2: 12, stroke: "#a78bda", "stroke-width": 1.4 }));
 }
 
 /** What the shading of stretches that were not scanned means, in words below the profile. */

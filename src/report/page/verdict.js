@@ -406,7 +406,11 @@ function legend() {
               make("li", {}, make("span", { style: `color:${kModelColour}`, class: "symbol" }, "■"),
                    " vehicle"),
               make("li", {}, make("span", { style: "color:#7a828c", class: "symbol" }, "■"),
-                   " environment"));
+                   " environment"),
+              isNotScanned() && make("li", {}, make("span", { style: `color:${kUnseenColour}`, class: "symbol" },
+                                                    "▨"), " not scanned, with numbers U1, U2, …"),
+              conflictList().some(isPossible) &&
+                  make("li", {}, "● a filled number is a certain conflict, ○ a hollow one a possible one"));
 }
 
 function buildVerdict() {
