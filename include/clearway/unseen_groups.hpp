@@ -19,7 +19,7 @@ struct UnseenGroup {
   std::uint32_t id = 0;     ///< its number in UnseenCubes::group
   std::uint64_t cubes = 0;  ///< number of its cubes
   Box box{};                ///< box around its cubes, metres
-  Vec3 middle{};            ///< mean of the middles of its cubes, metres
+  Vec3 middle{};            ///< middle of its cube that is nearest to the mean of all, metres
   /// The least and the greatest first pose of its cubes.
   std::uint32_t first_pose = 0, last_pose = 0;
   /// Chainage of first_pose and of the pose after last_pose, metres along the path.
@@ -45,12 +45,12 @@ struct UnseenGroup {
 /// How much is unseen in each place of the vehicle's cross-section, seen along its path: cells of a
 /// grid that looks forward, so that left is positive.
 struct UnseenFront {
-  double cell = 0;                    ///< side of a cell, metres: a multiple of a cube's side
+  double cell = 0;  ///< side of a cell, metres: a multiple of a cube's side
   std::uint32_t columns = 0, rows = 0;
-  double left = 0, up = 0;            ///< the least corner of the first cell, metres from the path
+  double left = 0, up = 0;  ///< the least corner of the first cell, metres from the path
   /// Length of the unseen stretches of each cell, metres: the volume of the unseen cubes that the
-  /// model first reaches there, divided by the area of the cell. Row by row from below, and within a
-  /// row towards the left.
+  /// model first reaches there, divided by the area of the cell. Row by row from below, and within
+  /// a row towards the left.
   std::vector<double> length;
   /// Length of all that a cell sweeps, metres: the path and the length of the model.
   double way = 0;

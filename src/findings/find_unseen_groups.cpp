@@ -1,11 +1,10 @@
-#include "clearway/unseen_groups.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <span>
 
+#include "clearway/unseen_groups.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/query/body_numbers.hpp"
@@ -20,12 +19,11 @@
 namespace clearway {
 namespace {
 
-constexpr Box kNothing{{std::numeric_limits<double>::infinity(),
-                        std::numeric_limits<double>::infinity(),
-                        std::numeric_limits<double>::infinity()},
-                       {-std::numeric_limits<double>::infinity(),
-                        -std::numeric_limits<double>::infinity(),
-                        -std::numeric_limits<double>::infinity()}};
+constexpr Box kNothing{
+    {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+     std::numeric_limits<double>::infinity()},
+    {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+     -std::numeric_limits<double>::infinity()}};
 
 bool is_finite(const Vec3& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
@@ -132,8 +130,8 @@ class GroupSearch {
     seen_from_path_.reserve(size());
     for (std::size_t i = 0; i < size(); ++i) {
       middles_.push_back(middle_of(i));
-      seen_from_path_.push_back(ahead_left_up(middles_[i], poses_[cubes_.first_pose[i]],
-                                              options_.forward, options_.up));
+      seen_from_path_.push_back(
+          ahead_left_up(middles_[i], poses_[cubes_.first_pose[i]], options_.forward, options_.up));
     }
   }
 
@@ -146,8 +144,7 @@ class GroupSearch {
   }
 
   void make_groups() {
-    const std::uint32_t most =
-        cubes_.group.empty() ? 0 : *std::ranges::max_element(cubes_.group);
+    const std::uint32_t most = cubes_.group.empty() ? 0 : *std::ranges::max_element(cubes_.group);
     std::vector<std::uint64_t> sizes(most + std::size_t{1});
     for (const std::uint32_t group : cubes_.group) ++sizes[group];
     listed_at_.assign(sizes.size(), kNotListed);
@@ -170,6 +167,24 @@ class GroupSearch {
       if (UnseenGroup* group = listed_of(i)) add(i, *group);
     }
     for (UnseenGroup& group : out_.listed) finish(group);
+    find_middles();
+  }
+
+  /// Replaces the mean of each group by the middle of the cube that is nearest to it, because the
+  /// mean of a group along a bend can lie outside all of its cubes. Of equals the first.
+  void find_middles() {
+    std::vector<double> least(out_.listed.size(), std::numeric_limits<double>::infinity());
+    std::vector<Vec3> nearest(out_.listed.size());
+    for (std::size_t i = 0; i < size(); ++i) {
+      const UnseenGroup* group = listed_of(i);
+      if (group == nullptr) continue;
+      const std::uint32_t at = listed_at_[group->id];
+      const Vec3 from = middles_[i] - group->middle;
+      if (!(dot(from, from) < least[at])) continue;
+      least[at] = dot(from, from);
+      nearest[at] = middles_[i];
+    }
+    for (std::size_t k = 0; k < nearest.size(); ++k) out_.listed[k].middle = nearest[k];
   }
 
   UnseenGroup* listed_of(std::size_t i) {
@@ -326,8 +341,7 @@ class GroupSearch {
     for (std::uint32_t row = up; row < std::min(up + 3, front.rows); ++row) {
       for (std::uint32_t column = left; column < std::min(left + 3, front.columns); ++column) {
         front.length[std::size_t{row} * front.columns + column] +=
-            volume / area * overlap(there.y, front.left, column) *
-            overlap(there.z, front.up, row);
+            volume / area * overlap(there.y, front.left, column) * overlap(there.z, front.up, row);
       }
     }
   }

@@ -276,7 +276,7 @@ function paintUnseen(context, painter, unitSize) {
 function groupMarks() {
   return unseenGroups().map((group, i) => ({
     place: inPage(group.middle), text: groupName(group), shape: "square", colour: kUnseenColour,
-    hollow: false, chosen: group === page.group, first: group === page.group, rank: 1e6 + i,
+    hollow: false, chosen: group === page.group, first: i === 0 || group === page.group, rank: i + 1.5,
     select: () => selectGroup(group),
   }));
 }
