@@ -4,7 +4,7 @@
 #include <limits>
 #include <span>
 
-#include "clearway/unseen_groups.hpp"
+#include "clearway/unseen.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/query/body_numbers.hpp"

@@ -413,13 +413,10 @@ void write_unseen_group(JsonText& json, const UnseenGroup& group, const ReportFa
   json.field("is_ground", group.is_ground).field("is_sky", group.is_sky).end('}');
 }
 
-/// Writes what is known of the space that the model sweeps; null where that was not asked for.
+/// Writes what is known of the space that the model sweeps; nothing where that was not asked for.
 void write_seen(JsonText& json, const ReportFacts& facts) {
+  if (!facts.answer.seen) return;
   json.key("seen");
-  if (!facts.answer.seen) {
-    json.raw("null");
-    return;
-  }
   const SeenSummary& seen = *facts.answer.seen;
   const UnseenGroups& unseen = facts.unseen;
   json.begin('{').field("cube", seen.cube).field("swept", seen.swept).field("seen", seen.seen);

@@ -7,7 +7,7 @@
 
 #include "clearway/report.hpp"
 #include "clearway/unsearched.hpp"
-#include "clearway/unseen_groups.hpp"
+#include "clearway/unseen.hpp"
 #include "report/drawn_bodies.hpp"
 #include "report/environment_sample.hpp"
 #include "report/path_places.hpp"

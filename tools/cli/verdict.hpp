@@ -7,7 +7,7 @@
 
 #include "clearway/answer.hpp"
 #include "clearway/trajectory.hpp"
-#include "clearway/unseen_groups.hpp"
+#include "clearway/unseen.hpp"
 #include "io/result/result.hpp"
 
 /// Answers in words and as JSON. The library decides what an answer is; see clearway/answer.hpp.
