@@ -34,8 +34,8 @@ struct UnseenGroup {
   bool behind_conflict = false;
   /// Whether the model reaches the group along more than half of the path.
   bool along_path = false;
-  /// Whether the group goes along the path and reaches down to the lowest points of the model. Its
-  /// lower part is then usually the ground on which the vehicle stands.
+  /// Whether the group goes along the path, is about as wide as the model, and reaches down to its
+  /// lowest points. Its lower part is then usually the ground on which the vehicle stands.
   bool is_ground = false;
   /// Whether the group goes along the path in the upper half of the model. No beam comes back from
   /// the open sky.
@@ -52,7 +52,8 @@ struct UnseenFront {
   /// model first reaches there, divided by the area of the cell. Row by row from below, and within
   /// a row towards the left.
   std::vector<double> length;
-  /// Length of all that a cell sweeps, metres: the path and the length of the model.
+  /// About the length of all that a cell sweeps, metres: the path, the length of the model, and
+  /// before and behind it the radius at which cubes count as swept.
   double way = 0;
 };
 

@@ -211,7 +211,10 @@ class GroupSearch {
     group.along_path = out_.path_length > 0 && to - from > 0.5 * out_.path_length;
     if (!(group.seen->lo.x <= group.seen->hi.x)) group.seen.reset();
     if (!group.along_path || !group.seen || !(model_box_.lo.z <= model_box_.hi.z)) return;
-    group.is_ground = group.seen->lo.z < model_box_.lo.z + seen_.cube;
+    constexpr double kMostOfWidth = 0.75;
+    const double wide = group.seen->hi.y - group.seen->lo.y;
+    group.is_ground = group.seen->lo.z < model_box_.lo.z + seen_.cube &&
+                      wide > kMostOfWidth * (model_box_.hi.y - model_box_.lo.y);
     group.is_sky = group.seen->lo.z > 0.5 * (model_box_.lo.z + model_box_.hi.z);
   }
 
@@ -301,7 +304,7 @@ class GroupSearch {
     Box box = kNothing;
     if (model_box_.lo.x <= model_box_.hi.x) {
       box = model_box_.grown(around);
-      front.way = model_box_.hi.x - model_box_.lo.x;
+      front.way = model_box_.hi.x - model_box_.lo.x + 2 * radius();
     }
     front.way += out_.path_length;
     for (const Vec3& there : seen_from_path_) {

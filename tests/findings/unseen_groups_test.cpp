@@ -148,7 +148,7 @@ TEST_CASE("the cross-section holds the volume of the unseen cubes where the mode
     }
     CHECK(all * front.cell * front.cell ==
           Approx(static_cast<double>(cubes.size()) * side * side * side));
-    if (!turned) CHECK(front.way == Approx(7.6));
+    if (!turned) CHECK(front.way == Approx(7 + 0.6 + 2 * 0.1));
   }
 }
 
@@ -171,6 +171,7 @@ TEST_CASE("a hidden wedge is one group on its side, with its stretch of the path
   CHECK(group.seen->lo.y > -0.11);  // the wedge is on the left
   CHECK(group.seen->hi.y > 0.2);
   CHECK(group.along_path);
+  CHECK_FALSE(group.is_ground);  // it goes along the path, but is too narrow
   CHECK_FALSE(group.behind_conflict);
   REQUIRE(found.middles.size() == cubes.size());
   CHECK(std::ranges::count(found.middles, group.middle) == 1);

@@ -24,7 +24,7 @@ function drawFront(canvas) {
   context.fillStyle = kBackground;
   context.fillRect(x0, y0, pixels * front.columns, pixels * front.rows);
   front.length.forEach((length, i) => {
-    if (!(length > 0)) return;
+    if (length < 0.001) return;  // of what the rounding of a cube's border leaves
     const column = i % front.columns, row = Math.floor(i / front.columns);
     const x = x0 + (front.columns - 1 - column) * pixels, y = y0 + (front.rows - 1 - row) * pixels;
     const share = length / most;
@@ -54,7 +54,8 @@ function drawFrontVehicle(context, x0, y0, pixels) {
   const painter = new Painter(width, height, { origin, right: times(left, -1), up,
       toViewer: times(forward, -1), distance: 0, halfWidth: 0.5 * front.columns * front.cell,
       halfHeight: 0.5 * front.rows * front.cell });
-  const close = Math.ceil(clamp(0.06 * painter.perMetre, 2, 14));
+  const v = vehicleAt(shown), spacing = Math.sqrt(v.length * (v.width + v.height) * 2 / page.model.count);
+  const close = Math.ceil(clamp(Math.max(0.06, spacing) * painter.perMetre, 2, 60));
   const mask = eroded(maskOf(painter, movedModel(shown), close + 1), width, height, close);
   const layer = new OffscreenCanvas(width, height);
   drawMask(layer.getContext("2d"), mask, width, height, [0, 0, 0, 0], [255, 255, 255, 255]);
@@ -111,8 +112,8 @@ function frontWords() {
   return `Of all that was not scanned, ${share(left)} lies left of the path and ` +
       `${share(all - left)} right of it. Most is unseen ${metres(Math.abs(y), 2)} ` +
       `${y < 0 ? "right" : "left"} of the path and ${metres(Math.abs(z), 2)} ` +
-      `${z < 0 ? "below" : "above"} it: ${shortLength(+most.toPrecision(2))} of the ` +
-      `${shortLength(+front.way.toPrecision(3))} that the place sweeps.`;
+      `${z < 0 ? "below" : "above"} it: ${shortLength(+most.toPrecision(2))} of about ` +
+      `${shortLength(+front.way.toPrecision(3))} that this place sweeps.`;
 }
 
 function buildFront() {
@@ -125,8 +126,8 @@ function buildFront() {
   byId("unseen-front").append(make("figure", {}, canvas,
       make("figcaption", {}, make("strong", {}, "The vehicle, seen from behind. "),
            "A number says for how many metres nothing was scanned at this place of the cross-section, " +
-           `of the ${shortLength(+front.way.toPrecision(3))} that it sweeps (the path and the length of ` +
-           `the vehicle). Darker is more. A cell is ${shortLength(front.cell)} wide; cells without a ` +
+           `of about ${shortLength(+front.way.toPrecision(3))} that it sweeps (the path and the length of ` +
+           `the vehicle with the distance to keep before and behind it). Darker is more. A cell is ${shortLength(front.cell)} wide; cells without a ` +
            `number are below 0.05 ${unitSymbol}. The line is the vehicle's outline. ${frontWords()}`)),
       frontScale());
   drawFront(canvas);

@@ -121,7 +121,7 @@ function profileBeyond() {
   const far = shortLength(page.facts.query.profile);
   const shaded = silentStretches().length > 0 ? " and no shading" : "";
   return make("text", { x: profile.left, y: profile.top - 8 },
-              `Where there is no curve${shaded}, nothing is closer than ${far}.`);
+              `Where there is no curve${shaded}, nothing${scannedOnly()} is closer than ${far}.`);
 }
 
 /** Conflicts as bars below the axis, numbered where there is room. */

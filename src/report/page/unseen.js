@@ -12,6 +12,9 @@ const unseenGroups = () => page.unseenGroups ??= [...(seenFacts()?.list ?? [])]
 const groupName = (group) => `U${unseenGroups().indexOf(group) + 1}`;
 const isNotScanned = () => (seenFacts()?.listed_groups ?? 0) > 0;
 
+/** " that was scanned", where places were not scanned of which nothing is known. */
+const scannedOnly = () => isNotScanned() ? " that was scanned" : "";
+
 function selectGroup(group) {
   page.group = group;
   page.pose = shownPose(group.first_pose);

@@ -94,7 +94,7 @@ function clearTiles() {
     }));
   } else if (Math.max(query.clearance, query.profile) > 0) {
     tiles.push(tile(`over ${shortLength(Math.max(query.clearance, query.profile))}`,
-                    "least distance: nothing is closer"));
+                    `least distance: nothing${scannedOnly()} is closer`));
   } else {
     tiles.push(tile("not known", "least distance, see below"));
   }
@@ -162,7 +162,10 @@ function budgetSentence({ verdict, margins, query, reasons, ...facts }) {
     return `Nothing was found closer than ${all} to the vehicle, which is the margin of ${radius} ` +
            `and ${sure}.`;
   }
-  const found = `${plural(facts.colliding_points, "point")} ` +
+  const none = facts.colliding_points + facts.near_points === 0;
+  const found = none ? `No point is closer than ${all} to the vehicle, which is the margin of ${radius} ` +
+                       `and ${sure}.`
+      : `${plural(facts.colliding_points, "point")} ` +
       `${facts.colliding_points === 1 ? "is" : "are"} closer than the margin of ${radius} to the ` +
       `vehicle, and ${count(facts.near_points)} more closer than ${all}, which adds ${sure}.`;
   if (verdict === "conflict") {
@@ -238,9 +241,9 @@ function budgetTable() {
     row("Registration", shortLength(b.registration), each),
     row("Poses", shortLength(b.pose), each),
     row("Angles", shortLength(b.angle * b.lever),
-        `${each}: ${b.angle} rad at ${shortLength(b.lever)} from the vehicle's origin`),
+        `${each}: ${+b.angle.toPrecision(4)} rad at ${shortLength(b.lever)} from the vehicle's origin`),
     row("Model", shortLength(b.model), "hard bound"),
-    row("Steps of coordinates", shortLength(b.step), "hard bound"),
+    row("Steps of coordinates", metres(b.step, 4), "hard bound"),
     row("Way", shortLength(b.motion + b.chord + b.spacing),
         "what lies between poses and between points of the model; not against a conflict"),
     row("For clear", shortLength(margins.clear), "added to the margin"),
