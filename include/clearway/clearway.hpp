@@ -23,4 +23,5 @@
 #include "clearway/store.hpp"       // IWYU pragma: export
 #include "clearway/trajectory.hpp"  // IWYU pragma: export
 #include "clearway/unsearched.hpp"  // IWYU pragma: export
+#include "clearway/unseen.hpp"      // IWYU pragma: export
 #include "clearway/vehicle.hpp"     // IWYU pragma: export

@@ -251,6 +251,7 @@ void write_conflict(JsonText& json, const Conflict& conflict, std::size_t rank,
   json.field("nearest_source", conflict.nearest_source)
       .field("encroachment", conflict.encroachment);
   json.field("depth", conflict.depth).field("points_inside", conflict.points_inside);
+  if (conflict.certain) json.field("class", *conflict.certain ? "certain" : "possible");
   const auto place = conflict.nearest_source ? facts.points.places.find(*conflict.nearest_source)
                                              : facts.points.places.end();
   json.key("nearest_point");
@@ -394,6 +395,62 @@ void write_budget(JsonText& json, const Answer& answer) {
   json.field("near_points", answer.near_points).field("certain_points", answer.certain.points);
 }
 
+void write_unseen_group(JsonText& json, const UnseenGroup& group, const ReportFacts& facts) {
+  json.begin('{').field("id", std::uint64_t{group.id}).field("cubes", group.cubes);
+  json.field("shown", shown_cubes(facts.unseen, group));
+  json.field("lo", group.box.lo).field("hi", group.box.hi).field("middle", group.middle);
+  json.field("first_pose", std::uint64_t{group.first_pose});
+  json.field("last_pose", std::uint64_t{group.last_pose});
+  json.field("chainage_from", group.chainage_from).field("chainage_to", group.chainage_to);
+  json.field("side", name_of(group.side));
+  json.key("seen");
+  if (group.seen) {
+    json.begin('{').field("lo", group.seen->lo).field("hi", group.seen->hi).end('}');
+  } else {
+    json.raw("null");
+  }
+  json.field("behind_conflict", group.behind_conflict).field("along_path", group.along_path);
+  json.field("is_ground", group.is_ground).field("is_sky", group.is_sky).end('}');
+}
+
+/// Writes what is known of the space that the model sweeps; nothing where that was not asked for.
+void write_seen(JsonText& json, const ReportFacts& facts) {
+  if (!facts.answer.seen) return;
+  json.key("seen");
+  const SeenSummary& seen = *facts.answer.seen;
+  const UnseenGroups& unseen = facts.unseen;
+  json.begin('{').field("cube", seen.cube).field("swept", seen.swept).field("seen", seen.seen);
+  json.field("unseen", seen.unseen).field("groups", seen.groups);
+  json.field("listed_groups", seen.listed_groups).field("listed_cubes", seen.listed_cubes);
+  json.field("not_scanned_length", seen.not_scanned_length);
+  json.field("radius", facts.answer.budget
+                           ? facts.answer.budget->near_radius(facts.answer.parameters.radius)
+                           : facts.answer.parameters.radius);
+  json.field("seen_min", std::uint64_t{facts.answer.parameters.seen_min});
+  json.field("behind_conflicts", unseen.behind_conflicts);
+  json.key("origins").begin('[');
+  const auto& origins = facts.store.reader().metadata().origins;
+  if (origins) {
+    for (const OriginBasis& basis : origins->rest_on) {
+      json.begin('{').field("what", basis.what).field("points", basis.points).end('}');
+    }
+  }
+  json.end(']').field("points_without_origin",
+                      origins ? origins->points_without : facts.answer.environment_points);
+  json.field("places", std::uint64_t{origins ? origins->quanta.size() : 0});
+  json.key("list").begin('[');
+  for (const UnseenGroup& group : unseen.listed) write_unseen_group(json, group, facts);
+  json.end(']').key("stretches").begin('[');
+  for (const auto& [from, to] : unseen.stretches) json.begin('[').value(from).value(to).end(']');
+  const UnseenFront& front = unseen.front;
+  json.end(']').key("front").begin('{').field("cell", front.cell);
+  json.field("columns", std::uint64_t{front.columns}).field("rows", std::uint64_t{front.rows});
+  json.field("left", front.left).field("up", front.up).field("way", front.way);
+  json.key("length").begin('[');
+  for (const double length : front.length) json.value(length);
+  json.end(']').end('}').end('}');
+}
+
 void write_warnings(JsonText& json, const std::vector<Message>& warnings) {
   json.key("warnings").begin('[');
   for (const Message& warning : warnings) {
@@ -413,6 +470,14 @@ const Conflict* worst_of(const Conflicts& conflicts) {
   return worst == conflicts.listed.end() ? nullptr : &*worst;
 }
 
+std::uint64_t shown_cubes(const UnseenGroups& unseen, const UnseenGroup& group) {
+  if (unseen.middles.size() <= kMostShownCubes) return group.cubes;
+  const double share =
+      static_cast<double>(kMostShownCubes) / static_cast<double>(unseen.middles.size());
+  return std::max<std::uint64_t>(
+      1, static_cast<std::uint64_t>(static_cast<double>(group.cubes) * share));
+}
+
 std::string json_of(const ReportFacts& facts) {
   JsonText json;
   json.begin('{').field("clearway", CLEARWAY_VERSION).field("title", facts.title);
@@ -425,6 +490,7 @@ std::string json_of(const ReportFacts& facts) {
   for (const std::string& code : facts.answer.doubts) json.value(code);
   json.end(']');
   write_budget(json, facts.answer);
+  write_seen(json, facts);
   json.field("colliding_points", facts.result.size());
   json.field("unit", facts.store.length_unit());
   write_least(json, facts);

@@ -7,6 +7,7 @@
 
 #include "clearway/report.hpp"
 #include "clearway/unsearched.hpp"
+#include "clearway/unseen.hpp"
 #include "report/drawn_bodies.hpp"
 #include "report/environment_sample.hpp"
 #include "report/path_places.hpp"
@@ -41,6 +42,7 @@ struct ReportFacts {
   std::vector<UnsearchedStretch> unsearched;
   SearchedLength searched;
   const Conflicts* conflicts = nullptr;  ///< null where the result has no first poses
+  const UnseenGroups& unseen;            ///< empty where seen space was not asked for
   const ShownPoints& points;
   const EnvironmentSample& environment;
   /// How far from the model's centre environment points are shown at all, and densely.
@@ -56,6 +58,13 @@ inline constexpr std::size_t kMostListedConflicts = 5'000;
 
 /// The conflict that matters most, by is_worse(). Null where there are none.
 const Conflict* worst_of(const Conflicts& conflicts);
+
+/// The most cubes of listed groups that the page draws; each group keeps its share, and at least
+/// one.
+inline constexpr std::size_t kMostShownCubes = 1'000'000;
+
+/// How many cubes of a listed group the page draws.
+std::uint64_t shown_cubes(const UnseenGroups& unseen, const UnseenGroup& group);
 
 /// The facts as one JSON object. docs/guide/report.md describes its keys.
 std::string json_of(const ReportFacts& facts);

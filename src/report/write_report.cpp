@@ -117,6 +117,29 @@ Answer judged(const Result& result, const std::vector<Message>& warnings) {
   return answer;
 }
 
+/// Removes all but the largest of the listed groups, of which the page lists no more.
+void keep_largest(std::size_t most, UnseenGroups& unseen) {
+  if (unseen.listed.size() <= most) return;
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t k = 0; k < unseen.listed.size(); ++k) order.push_back(k);
+  std::ranges::stable_sort(order, [&](std::uint32_t a, std::uint32_t b) {
+    return unseen.listed[a].cubes > unseen.listed[b].cubes;
+  });
+  std::vector<bool> kept(order.size());
+  for (std::size_t k = 0; k < most; ++k) kept[order[k]] = true;
+  std::vector<UnseenGroup> listed;
+  std::vector<Vec3> middles;
+  auto next = unseen.middles.begin();
+  for (std::size_t k = 0; k < unseen.listed.size(); ++k) {
+    const auto end = next + static_cast<std::ptrdiff_t>(unseen.listed[k].cubes);
+    if (kept[k]) middles.insert(middles.end(), next, end);
+    if (kept[k]) listed.push_back(unseen.listed[k]);
+    next = end;
+  }
+  unseen.listed = std::move(listed);
+  unseen.middles = std::move(middles);
+}
+
 /// One call of write_report(), step by step.
 class Report {
  public:
@@ -138,6 +161,7 @@ class Report {
   ReportSummary write(const std::filesystem::path& path) {
     ReportSummary summary;
     find_conflicts_and_points(summary.conflicts);
+    find_unseen();
     profile_ = result_.profile();
     static_cast<TableSummary&>(answer_) = points_.summary;
     answer_.near_points = result_.reader().near();
@@ -177,6 +201,27 @@ class Report {
     }
     std::ranges::sort(selection.wanted);
     points_ = read_shown_points(result_, lattice_, selection, progress_);
+  }
+
+  void find_unseen() {
+    ConflictOptions how = options_.conflicts;
+    how.bodies = options_.bodies;
+    unseen_ = find_unseen_groups(result_, poses_, how);
+    keep_largest(kMostListedConflicts, unseen_);
+  }
+
+  /// The cubes of the listed groups, group after group, as many as the page draws.
+  std::vector<PagePoint> unseen_points() const {
+    std::vector<PagePoint> out;
+    std::size_t first = 0;
+    for (const UnseenGroup& group : unseen_.listed) {
+      const std::uint64_t shown = shown_cubes(unseen_, group);
+      for (std::uint64_t i = 0; i < shown; ++i) {
+        out.push_back(page_point(lattice_, unseen_.middles[first + i * group.cubes / shown], 0));
+      }
+      first += group.cubes;
+    }
+    return out;
   }
 
   void find_least() {
@@ -228,11 +273,10 @@ class Report {
     progress_.begin("page", 0, "");
     shown_ =
         choose_poses(poses_.size(), profile_, conflicts.listed, most_shown_poses(bodies_.size()));
-    if (least_) {
-      shown_.push_back(least_->pose);
-      std::ranges::sort(shown_);
-      shown_.erase(std::unique(shown_.begin(), shown_.end()), shown_.end());
-    }
+    if (least_) shown_.push_back(least_->pose);
+    for (const UnseenGroup& group : unseen_.listed) shown_.push_back(group.first_pose);
+    std::ranges::sort(shown_);
+    shown_.erase(std::unique(shown_.begin(), shown_.end()), shown_.end());
     model_lattice_ = lattice_for(model_box_, path_.half_diagonal() / 0x1p15);
     model_lattice_.origin = box_centre_at(model_box_, {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {}});
     const std::vector<PagePoint> model =
@@ -241,6 +285,7 @@ class Report {
     append_columns("environment", environment_.points, columns);
     append_columns("points", points_.points, columns);
     append_columns("model", model, columns);
+    if (!unseen_.listed.empty()) append_columns("unseen", unseen_points(), columns);
     append_pose_columns(shown_, poses_, chainage_, profile_, options_.labels, lattice_, columns);
     if (is_vehicle()) append_body_columns(bodies_, shown_, lattice_, columns);
     progress_.end();
@@ -260,6 +305,7 @@ class Report {
          .unsearched = unsearched_stretches(poses_, options_.bodies),
          .searched = searched_length(poses_, options_.bodies),
          .conflicts = result_.parameters().first_pose ? &conflicts : nullptr,
+         .unseen = unseen_,
          .points = points_,
          .environment = environment_,
          .reach = path_.reach(),
@@ -289,6 +335,7 @@ class Report {
   ShownPoints points_;
   EnvironmentSample environment_;
   Profile profile_;
+  UnseenGroups unseen_;
   std::vector<double> chainage_;
   std::vector<std::uint32_t> shown_;
   std::size_t shown_model_points_ = 0;

@@ -118,6 +118,7 @@ ordered_json describe(const ResultReader& result) {
     description["certain_points"] = answer.certain.points;
     description["gap"] = h.gap;
   }
+  if (answer.seen) description["seen"] = seen_json(answer);
   if (!answer.doubts.empty()) description["doubts"] = answer.doubts;
   if (!answer.warned_of.empty()) description["warned_of"] = answer.warned_of;
   if (h.model_solids > 0) {

@@ -299,6 +299,15 @@ void refuse_judging_part(const RunOptions& options) {
       "--fail-on-collision tells it of all parts");
 }
 
+/// What can be said of the places that were not scanned, from the written result.
+std::string unseen_sentences(const SearchReport& report, const Query& query,
+                             const RunOptions& options, const std::string& unit) {
+  if (report.shard || !report.is_not_scanned()) return "";
+  ConflictOptions how;
+  how.bodies = query.bodies;
+  return unseen_text(find_unseen_groups(Result(options.output), query.poses, how), report, unit);
+}
+
 Verdict run(RunOptions& options) {
   const Stopwatch total;
   MemoryWatch memory;
@@ -334,7 +343,8 @@ Verdict run(RunOptions& options) {
   log_report(report, options, symbol_of_unit(store.length_unit()), program.total_seconds);
   program.peak_host_bytes = memory.peak_bytes();
   const std::string unit = symbol_of_unit(store.length_unit());
-  const std::string sentence = verdict_text(report, path, unit, caveat_of(report.warnings.size()));
+  const std::string sentence = verdict_text(report, path, unit, caveat_of(report.warnings.size())) +
+                               unseen_sentences(report, query, options, unit);
   if (options.json) {
     spdlog::info("{}", sentence);
     print(text_of_json(json_of(report, options, path, program)));

@@ -265,6 +265,31 @@ std::string verdict_text(const Answer& answer, const PathWords& path, const std:
   return text + caveat + ".";
 }
 
+std::string unseen_text(const UnseenGroups& unseen, const Answer& answer, const std::string& unit) {
+  std::string text;
+  if (unseen.behind_conflicts > 0) {
+    const bool one = unseen.behind_conflicts == 1;
+    text += fmt::format(
+        " {} of the places that were not scanned {} behind a conflict: what collides may hide {} "
+        "from the scanner.",
+        format_count(unseen.behind_conflicts), one ? "is" : "are", one ? "it" : "them");
+  }
+  const double radius = answer.budget ? answer.budget->near_radius(answer.parameters.radius)
+                                      : answer.parameters.radius;
+  for (const UnseenGroup& group : unseen.listed) {
+    if (!group.is_ground) continue;
+    return text +
+           fmt::format(
+               " The place that was not scanned from {:.1f} to {:.1f} {} of the path reaches "
+               "down to the lowest part of the model, so it is probably the ground: run "
+               "again with --model-above {} above the ground, or a little more where it is "
+               "rough.",
+               group.chainage_from, group.chainage_to, unit,
+               format_brief(radius + answer.seen->cube / 2));
+  }
+  return text;
+}
+
 std::string warned_text(const Answer& answer) {
   if (answer.warned_of.empty()) return "";
   return fmt::format(", but its run warned of {}", fmt::join(answer.warned_of, ", "));

@@ -7,6 +7,7 @@
 
 #include "clearway/answer.hpp"
 #include "clearway/trajectory.hpp"
+#include "clearway/unseen.hpp"
 #include "io/result/result.hpp"
 
 /// Answers in words and as JSON. The library decides what an answer is; see clearway/answer.hpp.
@@ -29,6 +30,10 @@ std::string caveat_of(std::size_t warnings);
 /// The verdict in one sentence, with `caveat` before its end. unit: the symbol of lengths, "m".
 std::string verdict_text(const Answer& answer, const PathWords& path, const std::string& unit,
                          const std::string& caveat);
+
+/// Sentences about the places that were not scanned, each with a blank before it: which are behind
+/// a conflict, and which is probably the ground. Empty where there is nothing to say.
+std::string unseen_text(const UnseenGroups& unseen, const Answer& answer, const std::string& unit);
 
 /// A clause with the codes of what the run of a result warned of, as far as the result keeps them,
 /// such as ", but its run warned of leaves-scan"; empty where there are none.

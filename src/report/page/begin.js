@@ -11,6 +11,8 @@ const page = {
   bodyPoses: null,    // of a vehicle of several bodies, see columns.js
   pose: 0,            // which of the shown poses the model has
   conflict: null,     // the selected one
+  group: null,        // the selected group of unseen cubes
+  unseen: null,       // middles of the unseen cubes of listed groups, where there are any
   listeners: {},
 };
 

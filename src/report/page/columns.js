@@ -107,4 +107,5 @@ async function readAll() {
     readBodyPoses(),
   ]);
   page.model.ranges = bodyRanges();
+  if (page.facts.seen?.list.length > 0) page.unseen = await readPoints("unseen", facts.lattice);
 }

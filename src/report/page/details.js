@@ -25,6 +25,8 @@ function detailedDistance({ least_distance: distance }) {
 function conflictFacts(conflict) {
   const { query } = page.facts, words = classOf(conflict.least_distance);
   const rows = [
+    conflict.class && ["Certainty", conflict.class === "certain"
+        ? "certain, even with the errors of the budget" : "possible: the errors leave it open"],
     ["Where", `chainage ${chainageCell(conflict)} ${unitSymbol}${after(sideWords(conflict.side))}`],
     conflict.obstacle_chainage !== null && ["Obstacle", `stands at chainage ${station(conflict.obstacle_chainage)}`],
     conflict.body !== undefined && ["Body", conflict.body],

@@ -8,12 +8,13 @@ async function start() {
   for (let i = 0; i < page.poses.count; ++i) page.path.push(page.bodyPoses ? poseAt(i).t : vehicleAt(i).middle);
   page.enclosed = isEnclosed();
   page.vehicleSize = sizeOfVehicle();
-  for (const build of [buildVerdict, buildProfile, buildPlan, buildTable, buildDetails, buildView,
-                       buildPrint]) {
+  for (const build of [buildVerdict, buildProfile, buildPlan, buildTable, buildDetails, buildUnseen,
+                       buildView, buildPrint]) {
     build();
   }
   const least = page.facts.least_distance;
   if (worstConflict()) selectConflict(worstConflict());
+  else if (unseenGroups().length > 0) selectPose(shownPose(unseenGroups()[0].first_pose));
   else if (least) selectPose(shownPose(least.pose));
   // Of a long path the overview shows little.
   if (worstConflict() && profileLength() < 30 * page.vehicleSize) flyToOverview();

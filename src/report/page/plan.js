@@ -52,54 +52,64 @@ function drawPath(context, painter, unitSize) {
   drawUnsearchedPath(context, painter, unitSize);
 }
 
-/** The numbers of conflicts, the worst ones first; those without room become dots. */
-function drawNumbers(context, painter, unitSize, places) {
+/** What a scene shows of a conflict by a number. A possible conflict is hollow. */
+function conflictMarks() {
   const worst = worstConflict();
-  const order = [...conflictList()].sort((a, b) => (b === page.conflict) - (a === page.conflict) ||
-      (b === worst) - (a === worst) || a.rank - b.rank);
+  return conflictList().map((conflict) => {
+    const { shape, colour } = classOf(conflict.least_distance), chosen = conflict === page.conflict;
+    return { place: placeOf(conflict), text: String(conflict.id), shape, colour, chosen,
+             hollow: isPossible(conflict), rank: conflict.rank, first: chosen || conflict === worst,
+             select: () => selectConflict(conflict) };
+  });
+}
+
+/** The numbers of conflicts and unseen groups, the worst ones first; those without room become dots. */
+function drawNumbers(context, painter, unitSize, places) {
+  const order = [...conflictMarks(), ...groupMarks()].sort((a, b) => b.chosen - a.chosen ||
+      b.first - a.first || a.rank - b.rank);
   const taken = [], dots = [];
-  for (const conflict of order) {
-    const at = painter.project(placeOf(conflict));
+  for (const mark of order) {
+    const at = painter.project(mark.place);
     if (!at || at[0] < 0 || at[1] < 0 || at[0] > painter.width || at[1] > painter.height) continue;
-    const apart = Math.max(24, 8 * String(conflict.id).length) * unitSize;
+    const apart = Math.max(24, 8 * mark.text.length) * unitSize;
     const free = taken.every(([x, y]) => Math.hypot(x - at[0], y - at[1]) > apart);
     (free ? taken : dots).push(at);
-    at.conflict = conflict;
+    at.mark = mark;
   }
-  for (const at of dots) drawNumber(context, at, at.conflict, false, unitSize);
+  for (const at of dots) drawNumber(context, at, at.mark, false, unitSize);
   for (const at of taken.reverse()) {
-    drawNumber(context, at, at.conflict, true, unitSize);
-    places.push({ x: at[0], y: at[1], conflict: at.conflict });
+    drawNumber(context, at, at.mark, true, unitSize);
+    places.push({ x: at[0], y: at[1], mark: at.mark });
   }
 }
 
 /** The outline of a mark: a diamond and a triangle are as large as the disc in them. */
 function markPath(context, shape, x, y, radius) {
   const corners = { diamond: [[0, -1.35], [1.35, 0], [0, 1.35], [-1.35, 0]],
-                    triangle: [[0, -1.75], [1.55, 0.95], [-1.55, 0.95]] }[shape];
+                    triangle: [[0, -1.75], [1.55, 0.95], [-1.55, 0.95]],
+                    square: [[-1, -1], [1, -1], [1, 1], [-1, 1]] }[shape];
   context.beginPath();
   if (!corners) context.arc(x, y, radius, 0, 7);
   for (const [dx, dy] of corners ?? []) context.lineTo(x + dx * radius, y + dy * radius);
   context.closePath();
 }
 
-function drawNumber(context, [x, y], conflict, full, unitSize) {
-  const chosen = conflict === page.conflict, digits = String(conflict.id).length;
-  const radius = (full ? Math.max(chosen ? 12 : 9.5, 3.2 * digits) : 3) * unitSize;
-  const words = classOf(conflict.least_distance);
-  markPath(context, words.shape, x, y, radius);
-  context.fillStyle = chosen ? "#111827" : words.colour;
+function drawNumber(context, [x, y], mark, full, unitSize) {
+  const { chosen, text } = mark, hollow = mark.hollow && !chosen;
+  const radius = (full ? Math.max(chosen ? 12 : 9.5, 3.6 * text.length) : 3) * unitSize;
+  markPath(context, mark.shape, x, y, radius);
+  context.fillStyle = chosen ? "#111827" : hollow ? "#fff" : mark.colour;
   context.globalAlpha = full ? 1 : 0.6;
   context.fill();
   context.globalAlpha = 1;
   if (!full) return;
-  context.strokeStyle = "#fff";
-  context.lineWidth = 1.6 * unitSize;
+  context.strokeStyle = hollow ? mark.colour : "#fff";
+  context.lineWidth = (hollow ? 2.4 : 1.6) * unitSize;
   context.stroke();
-  context.fillStyle = "#fff";
+  context.fillStyle = hollow ? "#111827" : "#fff";
   context.textAlign = "center";
-  setFont(context, (conflict.id > 99 ? 9 : 11) * unitSize, "700");
-  context.fillText(String(conflict.id), x, y + 4 * unitSize);
+  setFont(context, (text.length > 2 ? 9 : 11) * unitSize, "700");
+  context.fillText(text, x, y + 4 * unitSize);
 }
 
 function drawVehicleMark(context, painter, unitSize) {
@@ -152,6 +162,7 @@ function paintPlan(canvas, unitSize) {
   paintEnvironment(painter, { stamp: stampOf("square", size), keep: cut });
   painter.shade(0.8);
   painter.show(context);
+  paintUnseen(context, painter, unitSize);
   drawPath(context, painter, unitSize);
   const marks = new Painter(canvas.width, canvas.height, planCamera(canvas));
   paintClasses(marks, { over: true, size: size + 2 });
@@ -213,9 +224,9 @@ function buildPlan() {
   byId("plan-tools").append(
     button("Zoom in", () => zoomPlan(0.6)), button("Zoom out", () => zoomPlan(1 / 0.6)),
     button("All", fitPlan),
-    make("span", { class: "hint" }, "Drag moves, Ctrl and wheel zoom, a number opens its conflict."));
+    make("span", { class: "hint" }, "Drag moves, Ctrl and wheel zoom, a number opens its conflict or place."));
   byId("plan-note").textContent = environmentNote() + (page.enclosed
-      ? " The scene is enclosed, so what lies above the vehicle is left out." : "") + unsearchedNote();
+      ? " The scene is enclosed, so what lies above the vehicle is left out." : "") + unsearchedNote() + marksNote();
   watchPointer(canvas, panPlan, zoomPlan, (x, y) => pickNumber(plan.places, canvas, x, y));
   canvas.addEventListener("keydown", (event) => {
     const actions = { ArrowLeft: () => panPlan(0.1, 0), ArrowRight: () => panPlan(-0.1, 0),
@@ -230,5 +241,6 @@ function buildPlan() {
   fitPlan();
   on("pose", schedulePlan);
   on("conflict", schedulePlan);
+  on("group", schedulePlan);
   new ResizeObserver(() => { sizePlan(); fitPlan(); }).observe(byId("plan-stage"));
 }

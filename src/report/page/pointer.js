@@ -49,12 +49,12 @@ function spread(touches) {
   return Math.hypot(a[0] - b[0], a[1] - b[1]);
 }
 
-/** Selects the conflict whose number lies there, in pixels of the page. */
+/** Selects what has its number there, in pixels of the page. */
 function pickNumber(places, canvas, x, y) {
   const scale = canvas.width / canvas.clientWidth;
   const near = (p) => Math.hypot(p.x - x * scale, p.y - y * scale);
   const hit = (places ?? []).filter((p) => near(p) < 14 * scale).sort((a, b) => near(a) - near(b));
-  if (hit.length > 0) selectConflict(hit[0].conflict);
+  if (hit.length > 0) hit[0].mark.select();
   return hit.length > 0;
 }
 

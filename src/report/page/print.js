@@ -46,6 +46,7 @@ function preparePrint() {
   drawProfileFor(true);
   document.head.append(make("style", { id: "print-feet" }, pageFeet()));
   byId("verdict-body").append(make("p", { class: "note on-paper" }, byId("footer").textContent));
+  if (unseenGroups().length > 0) byId("unseen-print").append(...printedGroups().filter(Boolean));
   if (conflictList().length === 0) return;
   byId("print-table").append(...printedTable().filter(Boolean));
   holder.append(make("section", {}, ...printedCards().flat()));
@@ -55,6 +56,7 @@ function endPrint() {
   drawProfileFor(false);
   byId("print-cards").replaceChildren();
   byId("print-table").replaceChildren();
+  byId("unseen-print")?.replaceChildren();
   byId("print-feet").remove();
   document.querySelector(".on-paper").remove();
 }

@@ -9,8 +9,8 @@ function profileX(chainage) {
 }
 
 function profileTop() {
-  const { query } = page.facts;
-  return Math.max(1.25 * query.radius, query.profile > 0 ? query.profile : query.clearance);
+  const { query, margins } = page.facts;
+  return Math.max(1.25 * query.radius, 1.1 * (query.radius + (margins?.clear ?? 0)), query.profile > 0 ? query.profile : query.clearance);
 }
 
 /** 0, or the greatest depth inside the vehicle with some room below it. */
@@ -121,7 +121,7 @@ function profileBeyond() {
   const far = shortLength(page.facts.query.profile);
   const shaded = silentStretches().length > 0 ? " and no shading" : "";
   return make("text", { x: profile.left, y: profile.top - 8 },
-              `Where there is no curve${shaded}, nothing is closer than ${far}.`);
+              `Where there is no curve${shaded}, nothing${scannedOnly()} is closer than ${far}.`);
 }
 
 /** Conflicts as bars below the axis, numbered where there is room. */
@@ -141,11 +141,30 @@ function profileConflicts() {
     const extra = conflict === worst ? " (worst)" : "";
     out.push(make("g", { class: chosen ? "mark chosen" : "mark",
                          onclick: (event) => { event.stopPropagation(); selectConflict(conflict); } },
-      make("rect", { x: x1, y, width, height: 7, fill: words.colour }),
+      make("rect", isPossible(conflict)
+          ? { x: x1 + 1, y: y + 1, width: Math.max(2, width - 2), height: 5, fill: "#fff",
+              stroke: words.colour, "stroke-width": 2 }
+          : { x: x1, y, width, height: 7, fill: words.colour }),
       label && make("text", { x: middle, y: y + 21, class: "middle" }, marked),
-      make("title", {}, `Conflict ${conflict.id}${extra}`)));
+      make("title", {}, `Conflict ${conflict.id}${extra}` + (conflict.class ? `, ${conflict.class}` : ""))));
   }
   return out;
+}
+
+/** Between its borders an error budget leaves it open whether something is too close. */
+function profileMargins() {
+  const { query, margins } = page.facts, { left, width, right } = profile;
+  if (!margins) return [];
+  const far = query.radius + margins.clear, close = query.radius - margins.conflict;
+  const y1 = profileY(far), y2 = profileY(Math.max(close, profile.low)), x2 = width - right;
+  const line = (y) => make("line", { x1: left, x2, y1: y, y2: y, class: "margin" });
+  const words = (y, text) => make("text", { x: left + 6, y, class: "strong halo" }, text);
+  const sure = close > profile.low;
+  return [make("rect", { x: left, y: y1, width: x2 - left, height: y2 - y1, class: "margins" }),
+          line(y1), sure && line(y2),
+          words(y1 - 5, `clear above ${shortLength(+far.toPrecision(4))}`),
+          words(sure ? y2 + 15 : y2 - 6, sure ? `certainly too close below ${shortLength(+close.toPrecision(4))}`
+              : "no distance is certainly too close, because the errors exceed the margin")].filter(Boolean);
 }
 
 function profileRequired() {
@@ -178,13 +197,14 @@ function drawProfile() {
                                     "stroke-width": 2.5 }));
   const svg = make("svg", { viewBox: `0 0 ${width} ${height}`, width, height, tabindex: 0,
                             role: "application", "aria-label": profileLabel() },
-    make("defs", {}, hatch, unsearchedPatterns()),
+    make("defs", {}, hatch, unsearchedPatterns(), notScannedPattern()),
     make("rect", { x: left, y: top, width: width - left - right, height: height - top - bottom,
                    class: "field" }),
-    profileAxes(), profileUnsearched(), profileCurve(), profileSurface(), profileRequired(), profileBeyond(), profileConflicts(),
+    profileAxes(), profileMargins().slice(0, 1), profileUnsearched(), profileNotScanned(), profileCurve(),
+    profileSurface(), profileMargins().slice(1), profileRequired(), profileBeyond(), profileConflicts(),
     make("line", { id: "profile-cursor", class: "cursor", y1: top, y2: height - bottom }));
   if (!(query.profile > 0)) {
-    svg.append(make("text", { x: (left + width) / 2, y: height / 2 - 30, class: "middle strong" },
+    svg.append(make("text", { x: (left + width) / 2, y: height / 2 - 30, class: "middle strong halo" },
                     query.between_poses ? "A run between poses has no profile."
                         : "The result has no profile: clearway run --profile D adds this curve."));
   }

@@ -67,7 +67,7 @@ function buildProfile() {
     least ? button(isInside(least.distance) ? "Deepest pose" : "Nearest pose", goToNearest) : "",
     make("span", { class: "hint" }, "Drag moves, Ctrl and wheel zoom, arrow keys step."));
   drawProfile();
-  byId("profile-unsearched").append(...unsearchedLegend());
+  byId("profile-unsearched").append(...unsearchedLegend(), ...notScannedLegend());
   on("pose", moveProfileCursor);
   on("conflict", drawProfile);
   new ResizeObserver(() => {

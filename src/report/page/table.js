@@ -5,6 +5,9 @@ const table = { title: "", down: true, first: 0, rows: 100, side: "", from: "", 
 
 const sizeOf = (c) => c.hi.map((h, k) => h - c.lo[k]);
 
+/** Whether the error budget leaves open if the conflict is one. */
+const isPossible = (conflict) => conflict.class === "possible";
+
 /** Whether the class of a conflict tells it from others. */
 function classesDiffer() {
   return new Set(conflictList().map((c) => classOf(c.least_distance).name)).size > 1;
@@ -28,6 +31,7 @@ function tableColumns() {
     ["Side", (c) => c.side, (c) => kSides[c.side]],
     list.some((c) => c.lateral !== null) && ["Lateral", ...offset("lateral")],
     list.some((c) => c.height !== null) && ["Height", ...offset("height")],
+    list.some((c) => c.class) && ["Certainty", (c) => c.class, certaintyCell],
     measured && classesDiffer() && ["Class", (c) => c.least_distance ?? Infinity, classCell],
     measured && ["Least distance", (c) => c.least_distance ?? Infinity, outside],
     deep && ["Depth", (c) => c.depth ?? 0, (c) => c.depth ? fixed(c.depth, digits) : ""],
@@ -41,7 +45,7 @@ function tableColumns() {
     ["Place x, y, z", (c) => (c.nearest_point ?? c.centroid)[0],
      (c) => coordinates(c.nearest_point ?? c.centroid)],
   ].filter(Boolean).map(([title, value, cell]) =>
-      ({ title, value, cell, number: !["Side", "Class", "Body"].includes(title) }));
+      ({ title, value, cell, number: !["Side", "Class", "Certainty", "Body"].includes(title) }));
 }
 
 /** From and to, or one of them where they are the same. */
@@ -54,6 +58,8 @@ const stationCell = (c) => c.obstacle_chainage === null ? "" : c.obstacle_chaina
 
 /** Empty where no shift to that side that was tried frees the conflict. Never rounded down. */
 const shiftCell = (key) => (c) => c[key] === null ? "" : (Math.ceil(c[key] * 1000) / 1000).toFixed(3);
+
+const certaintyCell = (conflict) => isPossible(conflict) ? "○ possible" : "● certain";
 
 function classCell(conflict) {
   const words = classOf(conflict.least_distance);
@@ -85,7 +91,7 @@ function sortedConflicts(columns, list = filteredConflicts()) {
 }
 
 function sortBy(title) {
-  const numbers = !["No.", "Chainage", "Obstacle at", "Body", "Side", "Lateral", "Height", "Least distance", "Class", "Pose"].includes(title);
+  const numbers = !["No.", "Chainage", "Obstacle at", "Body", "Side", "Lateral", "Height", "Least distance", "Class", "Certainty", "Pose"].includes(title);
   table.down = table.title === title ? !table.down : numbers;
   table.title = title;
   table.first = 0;
@@ -230,7 +236,7 @@ function buildTable() {
 
 function conflictsNote(found) {
   if (!found) {
-    return page.facts.colliding_points === 0 ? "There are none: nothing collides."
+    return page.facts.colliding_points === 0 && !(page.facts.near_points > 0) ? "There are none: nothing collides."
         : "The result has no first poses, so the colliding points have no place along the path. " +
           "clearway run --first-pose adds them, and this table.";
   }
@@ -242,6 +248,11 @@ function conflictsNote(found) {
     const [from, whose] = page.bodyPoses ? ["the body's origin", "body"] : ["the path", "vehicle"];
     text += ` Lateral is how far left (+) or right (−) of ${from} the ${place} lies, height how ` +
         `far above it, along the ${whose}'s own axes.`;
+  }
+  if (found.list.some((c) => c.class)) {
+    text += " A conflict is certain where ten or more of its points that hang together are too close " +
+        `even with the errors (closer than ${shortLength(page.facts.query.radius - page.facts.margins.conflict)}); ` +
+        "the others are possible.";
   }
   if (found.small_groups > 0) {
     text += ` ${plural(found.small_groups, "group")} of fewer than ${count(found.min_points)} points ` +

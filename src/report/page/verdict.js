@@ -40,7 +40,7 @@ function conflictsTile({ count: listed, small_groups: small }) {
 
 function conflictTiles() {
   const { facts } = page, worst = worstConflict(), tiles = [];
-  if (facts.conflicts) tiles.push(conflictsTile(facts.conflicts));
+  if (facts.conflicts) tiles.push(conflictsTile(facts.conflicts), ...certaintyTiles());
   const points = facts.colliding_points;
   tiles.push(tile(count(points), points === 1 ? "colliding point" : "colliding points"));
   if (worst) {
@@ -52,6 +52,21 @@ function conflictTiles() {
                     () => goTo(worst)));
   }
   return tiles;
+}
+
+/** On how much of the path nobody knows what is there; nothing where that is none of it. */
+function scannedTiles() {
+  if (!isNotScanned()) return [];
+  return [tile(notScannedWords(), "of the path not scanned",
+               () => byId("unseen").scrollIntoView())];
+}
+
+/** Of a conflict or an undecided run with a budget: how many conflicts are certain, how many possible. */
+function certaintyTiles() {
+  const list = conflictList(), possible = list.filter(isPossible).length, worst = worstConflict();
+  if (possible === 0) return [];
+  return [tile(count(possible), `of them possible, ${count(list.length - possible)} certain`,
+               () => goTo(worst))];
 }
 
 /** How bad the worst conflict is. */
@@ -79,9 +94,12 @@ function clearTiles() {
     }));
   } else if (Math.max(query.clearance, query.profile) > 0) {
     tiles.push(tile(`over ${shortLength(Math.max(query.clearance, query.profile))}`,
-                    "least distance: nothing is closer"));
+                    `least distance: nothing${scannedOnly()} is closer`));
   } else {
     tiles.push(tile("not known", "least distance, see below"));
+  }
+  if (page.facts.verdict === "undecided" && conflictList().length > 0) {
+    tiles.push(tile(count(conflictList().length), "possible conflicts", () => goTo(worstConflict())));
   }
   const { length, searched_length: searched } = inputs.trajectory;
   tiles.push(tile(station(searched), searched < length ? `of ${station(length)} of path searched`
@@ -144,7 +162,10 @@ function budgetSentence({ verdict, margins, query, reasons, ...facts }) {
     return `Nothing was found closer than ${all} to the vehicle, which is the margin of ${radius} ` +
            `and ${sure}.`;
   }
-  const found = `${plural(facts.colliding_points, "point")} ` +
+  const none = facts.colliding_points + facts.near_points === 0;
+  const found = none ? `No point is closer than ${all} to the vehicle, which is the margin of ${radius} ` +
+                       `and ${sure}.`
+      : `${plural(facts.colliding_points, "point")} ` +
       `${facts.colliding_points === 1 ? "is" : "are"} closer than the margin of ${radius} to the ` +
       `vehicle, and ${count(facts.near_points)} more closer than ${all}, which adds ${sure}.`;
   if (verdict === "conflict") {
@@ -153,6 +174,58 @@ function budgetSentence({ verdict, margins, query, reasons, ...facts }) {
            `${shortLength(margins.conflict)} of errors. ${found}`;
   }
   return `Undecided: ${reasons.map((r) => kReasonWords[r]).join("; ")}. ${found}`;
+}
+
+/** The part of a normal distribution that lies beyond so many standard deviations on one side. */
+function tail(sigmas) {
+  let sum = 0;
+  const step = 0.001;
+  for (let x = sigmas + step / 2; x < sigmas + 12; x += step) sum += Math.exp(-0.5 * x * x) * step;
+  return sum / Math.sqrt(2 * Math.PI);
+}
+
+const percent = (share) => `${+(100 * share).toPrecision(2)} %`;
+
+/** What the answer about seen space rests on. */
+function seenBasis() {
+  const seen = seenFacts();
+  const origins = seen.origins.map((o) => `${o.what} (${plural(o.points, "point")})`);
+  const without = seen.points_without_origin;
+  return [`Seen space: ${plural(seen.places, "place")} of the scanner, from ${joined(origins)}.` +
+          (without > 0 ? ` Of ${plural(without, "point")} nobody said where the scanner stood, so ` +
+                         "their beams show nothing." : "") +
+          " If these places are wrong, places count as seen that nobody saw.",
+          `Cubes of ${shortLength(seen.cube)}, each of which a beam passed through in its inner half, so ` +
+          `beams may be wrong by up to ${shortLength(+(seen.cube / 4).toPrecision(3))}.`];
+}
+
+/** What the errors of the budget make sure of. */
+function budgetBasis({ budget, margins }) {
+  const one = tail(budget.sigmas);
+  return [`The errors below, at ${budget.sigmas} standard deviations, which add ` +
+          `${shortLength(margins.clear)} to the distance to keep.`,
+          `The risk is per place: something exactly at the limit is missed with a risk of ${percent(one)} ` +
+          `at one place, and of ${percent(1 - (1 - one) ** 100)} at one of a hundred such places.`];
+}
+
+/** What the verdict rests on and what it does not cover, for runs that ask how sure it is. */
+function basisOfVerdict() {
+  const { facts } = page, seen = seenFacts();
+  if (!seen && !facts.budget) return "";
+  const rests = [`The scan: ${plural(facts.inputs.environment.points, "point")} of ` +
+                 `${plural(facts.inputs.environment.files, "file")}, as things stood on that day.`,
+                 ...(facts.budget ? budgetBasis(facts)
+                     : ["No error budget: points, path and vehicle are taken as exact."]),
+                 ...(seen ? seenBasis()
+                     : ["Places that no beam of the scanner reached count as free. Only a run with " +
+                        "--seen looks for them."])];
+  const open = ["What changed after the scan.",
+                "Thin, clear and shiny things that a scanner misses: wires, glass, mirrors.",
+                "Errors that no budget names: a wrong unit, a part that the model lacks, outliers."];
+  const list = (title, texts) => make("div", {}, make("h3", {}, title),
+                                      make("ul", {}, texts.map((text) => make("li", {}, text))));
+  return make("div", { class: "columns basis", id: "basis" },
+              list("What this verdict rests on", rests), list("What it does not cover", open));
 }
 
 /** The error budget as a table: what was given, what follows, and the two margins. */
@@ -168,9 +241,9 @@ function budgetTable() {
     row("Registration", shortLength(b.registration), each),
     row("Poses", shortLength(b.pose), each),
     row("Angles", shortLength(b.angle * b.lever),
-        `${each}: ${b.angle} rad at ${shortLength(b.lever)} from the vehicle's origin`),
+        `${each}: ${+b.angle.toPrecision(4)} rad at ${shortLength(b.lever)} from the vehicle's origin`),
     row("Model", shortLength(b.model), "hard bound"),
-    row("Steps of coordinates", shortLength(b.step), "hard bound"),
+    row("Steps of coordinates", metres(b.step, 4), "hard bound"),
     row("Way", shortLength(b.motion + b.chord + b.spacing),
         "what lies between poses and between points of the model; not against a conflict"),
     row("For clear", shortLength(margins.clear), "added to the margin"),
@@ -189,8 +262,10 @@ function verdictSentences() {
             spacingSentence(facts), leastSentence()];
   }
   if (facts.verdict === "undecided") {
-    return [`No point was found closer than ${radius} to the vehicle, but the question is in ` +
-            `doubt (${facts.doubts.join(", ")}), so that is no answer.`, leastSentence()];
+    const why = facts.reasons.map((r) => kReasonWords[r] +
+        (r === "question-in-doubt" ? ` (${facts.doubts.join(", ")})` : ""));
+    return [`No point was found closer than ${radius} to the vehicle, but ${joined(why)}, so that ` +
+            "is no answer.", leastSentence()];
   }
   const where = facts.conflicts ? placesText(facts.conflicts) : "";
   const first = `The environment is closer than ${radius} to the vehicle${where}.${insideText()}`;
@@ -334,13 +409,17 @@ function legend() {
               make("li", {}, make("span", { style: `color:${kModelColour}`, class: "symbol" }, "■"),
                    " vehicle"),
               make("li", {}, make("span", { style: "color:#7a828c", class: "symbol" }, "■"),
-                   " environment"));
+                   " environment"),
+              isNotScanned() && make("li", {}, make("span", { style: `color:${kUnseenColour}`, class: "symbol" },
+                                                    "▨"), " not scanned, with numbers U1, U2, …"),
+              conflictList().some(isPossible) &&
+                  make("li", {}, "● a filled number is a certain conflict, ○ a hollow one a possible one"));
 }
 
 function buildVerdict() {
   const { facts } = page, clear = facts.verdict === "clear", conflict = facts.verdict === "conflict";
   const [first, second] = verdictSentences(), warned = cautions(), missing = missingParts();
-  const searched = searchedSentence();
+  const searched = searchedSentence(), scanned = scannedSentence();
   const doubtful = clear && warned.length > 0;
   byId("made").textContent = `Made ${facts.date} by Clearway ${facts.clearway}`;
   byId("about").append(...["project", "client", "author"].filter((key) => facts[key]).map((key) =>
@@ -352,13 +431,15 @@ function buildVerdict() {
          make("div", { class: "words" }, make("h2", { id: "verdict-word" },
               doubtful ? "Clear, but doubtful" : kVerdictWords[facts.verdict]),
               make("p", {}, first), make("p", {}, second),
+              scanned && make("p", { id: "scanned" }, scanned),
               searched && make("p", { id: "searched" }, searched),
               warned.length > 0 &&
                   make("p", { class: "but" },
                        `${conflict ? "See also" : clear ? "But see" : "See"} ${plural(warned.length, "warning")} below.`)),
-         make("div", { class: "tiles" }, conflict ? conflictTiles() : clearTiles())),
+         make("div", { class: "tiles" }, scannedTiles(), conflict ? conflictTiles() : clearTiles())),
     warned.length > 0 ? make("ul", { class: "warnings", "aria-label": "Warnings" },
                              warned.map((text) => make("li", {}, text))) : "",
+    basisOfVerdict(),
     make("div", { class: "columns" }, facts.budget ? make("div", {}, questionTable(), budgetTable()) : questionTable(),
          make("div", {}, legend(),
               missing.length > 0 && make("div", { class: "missing" },

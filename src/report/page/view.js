@@ -50,6 +50,9 @@ function drawWebgl(canvas) {
                     size: 0.03 * perMetre, least: 1.5 * scale, most: 6 * scale }]),
     ["path", { palette: black, mode: gl.LINE_STRIP, size: 1, least: 2, most: 2 }],
     ["path", { palette: black, size: 0.01 * perMetre, least: 2 * scale, most: 3 * scale }],
+    ...(page.unseen && !view.unseenHidden ? [["unseen", { environment: 3,
+        palette: Array(5).fill(kUnseenRgb), size: seenFacts().cube * perMetre, least: 3 * scale,
+        most: 64 * scale }]] : []),
     ["points", { environment: 0, palette: classes, hidden: view.hidden, size: 0.03 * perMetre,
                  least: 2.5 * scale, most: 9 * scale }],
   ]);
@@ -67,6 +70,9 @@ function drawWithoutWebgl(canvas) {
   const model = { ...page.model, xyz: new Float32Array(movedModel(page.pose).flat()) };
   model.chunks = chunksOf(model.xyz);
   painter.points(model, { stamp: stampOf("square", size + 1), colour: () => packed(kModelRgb) });
+  if (page.unseen && !view.unseenHidden) {
+    painter.points(page.unseen, { stamp: stampOf("square", size + 3), colour: () => packed(kUnseenRgb) });
+  }
   paintClasses(painter, { size: size + 2, hidden: page.facts.classes.map((_, k) => view.hidden >> k & 1) });
   painter.shade();
   const context = canvas.getContext("2d");
@@ -128,11 +134,22 @@ function flyTo(goal) {
   step(start);
 }
 
-/** In front of the vehicle, above it, on the other side than the conflict. */
 function flyToConflict() {
   const conflict = page.conflict;
   if (!conflict) return scheduleView();
-  const v = vehicleAt(page.pose, bodyNumber(conflict.body)), place = placeOf(conflict);
+  flyToPlace(vehicleAt(page.pose, bodyNumber(conflict.body)), placeOf(conflict));
+}
+
+/** To the group where the vehicle first reaches it, because its middle may be far along the path. */
+function flyToGroup() {
+  if (!page.group) return scheduleView();
+  const v = vehicleAt(page.pose), place = inPage(page.group.middle);
+  const far = length(plus(place, v.middle, -1)) > page.vehicleSize;
+  flyToPlace(v, far ? v.middle : place);
+}
+
+/** In front of the vehicle, above it, on the other side than the place. */
+function flyToPlace(v, place) {
   const aside = dot(plus(place, v.middle, -1), v.left) > 0 ? -1 : 1;
   const ahead = dot(plus(place, v.middle, -1), v.forward) < -0.25 * v.length ? -1 : 1;
   const eye = plus(times(v.forward, 0.75 * ahead), v.left, 0.55 * aside);

@@ -94,7 +94,10 @@ function viewNote() {
     text += "This browser has no WebGL2, so the view is drawn without it, and slowly. ";
   }
   if (silentStretches().length > 0) text += "Where the vehicle has no pose, none is drawn. ";
-  return text + environmentNote();
+  if (page.unseen && page.unseen.count < seenFacts().listed_cubes) {
+    text += `${count(page.unseen.count)} of ${count(seenFacts().listed_cubes)} unseen cubes are drawn. `;
+  }
+  return text + environmentNote() + marksNote();
 }
 
 function buildView() {
@@ -116,7 +119,8 @@ function buildView() {
           (value) => { view.cutAbove = value; }),
     check("cut off towards you", "view-cut-front", view.cutFront,
           (value) => { view.cutFront = value; }),
-    ...classChecks());
+    ...classChecks(), page.unseen ? check("▣ not scanned", "view-unseen", true,
+                                          (shown) => { view.unseenHidden = !shown; }) : "");
   buildSlider();
   byId("view-note").append(
     make("span", { class: "hint" },
@@ -130,6 +134,7 @@ function buildView() {
   sizeView();
   on("pose", scheduleView);
   on("conflict", flyToConflict);
+  on("group", flyToGroup);
   on("overview", flyToVehicle);
   flyToOverview();
   new ResizeObserver(sizeView).observe(byId("view-stage"));

@@ -25,7 +25,7 @@ void main() {
   } else {
     int k = int(tag);
     colour = palette[k];
-    shape = environment == 0 ? k + 1 : 0;
+    shape = environment == 0 ? k + 1 : environment == 3 ? 4 : 0;
     if (((hidden >> k) & 1) == 1) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   }
 }`;
@@ -40,6 +40,7 @@ void main() {
   if (shape == 1 && abs(p.x) + abs(p.y) > 1.2) discard;
   if (shape == 2 && abs(p.x) > (p.y + 1.0) / 2.0 + 0.15) discard;
   if (shape == 3 && dot(p, p) > 1.0) discard;
+  if (shape == 4 && max(abs(p.x), abs(p.y)) < 0.72 && abs(abs(p.x) - abs(p.y)) > 0.12) discard;
   result = vec4(colour, 1.0);
 }`;
 
@@ -118,6 +119,7 @@ class WebglScene {
     this.sets = { environment: this.upload(page.environment), points: this.upload(page.points),
                   model: this.upload({ ...page.model, tag: new Uint8Array(page.model.count) }),
                   path: this.upload(pathSet()) };
+    if (page.unseen) this.sets.unseen = this.upload(page.unseen);
     this.empty = gl.createVertexArray();
     this.target = gl.createFramebuffer();
   }

@@ -14,7 +14,7 @@ import unittest
 import scenes
 from browser import Browser, find_chromium
 from page_checks import PageChecks
-from scenes import Scene, clearway, make_car, make_empty, make_hall
+from scenes import Scene, clearway, make_car, make_empty, make_hall, make_road
 
 CHROMIUM = find_chromium()
 
@@ -30,12 +30,13 @@ class ReportTest(PageChecks, unittest.TestCase):
     def setUpClass(cls):
         cls.temporary = tempfile.TemporaryDirectory(prefix="clearway-report-")
         base = cls.temporary.name
-        for name in ("hall", "empty", "street"):
+        for name in ("hall", "empty", "road", "street"):
             os.mkdir(f"{base}/{name}")
         cls.hall = make_hall(f"{base}/hall")
         cls.found = cls.hall.search("out", "--radius", 0.1, "--first-pose", "--clearance", 0.3,
                                     "--profile", 0.5)
         cls.empty = make_empty(f"{base}/empty")
+        cls.road = make_road(f"{base}/road")
         cls.browser = Browser(CHROMIUM) if CHROMIUM else None
 
     @classmethod
@@ -253,6 +254,123 @@ class ReportTest(PageChecks, unittest.TestCase):
             buttons = page.run("byId('profile-tools').textContent")
             self.assertEqual("Nearest pose" in buttons, pieces > 0)
             self.check_quiet(page)
+
+    def test_what_was_not_scanned(self):
+        result = self.road.search("unseen", "--radius", 0.1, "--first-pose", "--profile", 0.5,
+                                  "--seen")
+        info = json.loads(clearway("info", result, "--json"))
+        path, facts = self.road.report(result, "unseen")
+        self.assertEqual([facts["verdict"], facts["reasons"]], ["undecided", ["not-scanned"]])
+        seen = facts["seen"]
+        for key in ("cube", "swept", "seen", "unseen", "groups", "listed_groups",
+                    "not_scanned_length"):
+            self.assertEqual(seen[key], info["seen"][key], key)
+        self.assertEqual(seen["origins"], [{"what": "a file of origins", "points": 9801}])
+        [group] = seen["list"]
+        self.assertEqual([group["cubes"], group["shown"]], [seen["unseen"]] * 2)
+        front = seen["front"]
+        self.assertEqual(len(front["length"]), front["columns"] * front["rows"])
+        self.assertAlmostEqual(sum(front["length"]) * front["cell"] ** 2,
+                               seen["unseen"] * seen["cube"] ** 3, 6)
+        right = sum(length for i, length in enumerate(front["length"])
+                    if front["left"] + (i % front["columns"] + 1) * front["cell"] <= -0.2)
+        self.assertEqual(right, 0)  # the board stands on the left
+        page = self.open(path)
+        self.check_words(page, facts)
+        text = page.run("byId('verdict').innerText")
+        words = f"{seen['not_scanned_length']:.1f} of 7.0 m"
+        for sentence in (f"Not scanned on {words} of the path", "1 place, U1", words + "\n",
+                         "from a file of origins", "wires, glass, mirrors",
+                         "but parts of the way were not scanned, so that is no answer"):
+            self.assertIn(sentence, text)
+        self.assertEqual(page.run("page.unseen.count"), seen["unseen"])
+        shaded = page.run("""[...document.querySelectorAll('#profile-chart rect.not-scanned')]
+            .map((r) => [+r.getAttribute('x'), +r.getAttribute('width')])""")
+        self.assertEqual(len(shaded), len(seen["stretches"]))
+        for (x, width), (start, end) in zip(shaded, seen["stretches"]):
+            self.assertAlmostEqual(x, page.run(f"profileX({start})"), 6)
+            self.assertAlmostEqual(x + width, page.run(f"profileX({end})"), 6)
+        self.assertIn("Not scanned: at chainage", page.run("byId('profile-unsearched').textContent"))
+        # The numbers of the picture are those of the facts: each is drawn in its cell.
+        drawn = page.run("""(() => { const out = [], draw = CanvasRenderingContext2D.prototype.fillText;
+            CanvasRenderingContext2D.prototype.fillText = function (text) { out.push(text); };
+            drawFront(document.createElement('canvas'));
+            CanvasRenderingContext2D.prototype.fillText = draw;
+            return out; })()""")
+        for length in front["length"]:
+            if length >= 0.05:
+                self.assertIn(page.run(f"cellWords({length})"), drawn)
+        self.assertGreater(page.run(f"({BLANK})('#front-canvas')"), 20)
+        page.run("document.querySelector('#unseen-table tbody tr').click()")
+        self.assertEqual(page.run("[page.group.id, page.poses.index[page.pose]]"),
+                         [group["id"], group["first_pose"]])
+        self.assertIn("U1: ", page.run("byId('unseen-chosen').innerText"))
+        page.run("selectPose(0)")
+        page.frames()
+        place = page.run("plan.places.find((p) => p.mark.text === 'U1')")
+        self.assertEqual(place["mark"]["shape"], "square")
+        page.run("""{ const c = byId('plan-canvas'), s = c.width / c.clientWidth;
+            const p = plan.places.find((p) => p.mark.text === 'U1');
+            page.group = null;
+            pickNumber(plan.places, c, p.x / s, p.y / s); }""")
+        self.assertEqual(page.run("page.group.id"), group["id"])
+        page.run("preparePrint()")
+        self.assertEqual(page.run("document.querySelectorAll('#unseen-print tbody tr').length"), 1)
+        page.pdf(f"{self.road.folder}/unseen.pdf")
+        self.check_quiet(page)
+
+    def test_all_that_is_swept_was_seen(self):
+        result = self.road.search("small", "--radius", 0.1, "--seen", "--seen-min", 100000)
+        path, facts = self.road.report(result, "small")
+        self.assertEqual(facts["verdict"], "clear")
+        self.assertEqual(facts["seen"]["list"], [])
+        page = self.open(path)
+        self.check_words(page, facts)
+        text = page.run("byId('scanned').textContent")
+        self.assertIn("A beam of the scanner passed through all but", text)
+        self.assertIn("1 group of fewer than 100,000 cubes", text)
+        self.assertEqual(page.run("document.querySelectorAll('rect.not-scanned').length"), 0)
+        self.check_quiet(page)
+
+    def test_without_seen_space_the_page_has_none_of_it(self):
+        path, facts = self.hall.report(self.found, "plain")
+        self.assertNotIn("seen", list(facts))
+        page = self.open(path)
+        self.assertEqual(page.run("[byId('unseen'), byId('basis'), byId('scanned')]"), [None] * 3)
+        self.assertNotIn("Not scanned", page.run("document.body.innerText"))
+
+    def test_certain_and_possible_conflicts(self):
+        result = self.hall.search("budget", "--radius", 0.1, "--first-pose", "--clearance", 0.5,
+                                  "--profile", 0.6, "--error-scan", 0.003, "--error-pose", 0.01,
+                                  "--error-model", 0.01)
+        listing = f"{self.hall.folder}/budget.json"
+        clearway("conflicts", result, "--trajectory", self.hall.trajectory, "-o", listing, "--force")
+        with open(listing) as file:
+            classes = [c["class"] for c in json.load(file)["conflicts"]]
+        path, facts = self.hall.report(result, "budget")
+        listed = facts["conflicts"]["list"]
+        self.assertEqual([c["class"] for c in listed], classes)
+        self.assertEqual(set(classes), {"certain", "possible"})
+        page = self.open(path)
+        self.check_words(page, facts)
+        at = page.run("tableColumns().map((c) => c.title)").index("Certainty")
+        cells = page.run(f"conflictList().map((c) => tableColumns()[{at}].cell(c))")
+        self.assertEqual([cell[2:] for cell in cells], classes)
+        self.assertEqual(page.run("conflictMarks().map((m) => m.hollow)"),
+                         [c == "possible" for c in classes])
+        text = page.run("byId('verdict').innerText")
+        for words in (f"{classes.count('possible')}\nof them possible, {classes.count('certain')} "
+                      "certain", "0.13 %", "The risk is per place", "--seen looks for them"):
+            self.assertIn(words, text)
+        chart = page.run("document.querySelector('#profile-chart svg').textContent")
+        margins, radius = facts["margins"], facts["query"]["radius"]
+        self.assertIn("clear above " + page.run(
+            f"shortLength(+({radius + margins['clear']}).toPrecision(4))"), chart)
+        band = page.run("""(() => { const r = document.querySelector('rect.margins');
+            return [+r.getAttribute('y'), +r.getAttribute('height')]; })()""")
+        self.assertAlmostEqual(band[0], page.run(f"profileY({radius + margins['clear']})"), 6)
+        self.assertAlmostEqual(sum(band), page.run(f"profileY({radius - margins['conflict']})"), 6)
+        self.check_quiet(page)
 
     def test_street(self):
         data = os.environ.get("CLEARWAY_TEST_DATA")

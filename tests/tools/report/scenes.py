@@ -93,3 +93,27 @@ def make_empty(folder):
             file.write(f"1 0 0 {5 + i / 10} 0 1 0 0 0 0 1 {1 + abs(i - 30) / 100}\n")
     clearway("convert", f"{folder}/floor.xyz", "-o", scene.store, "--force")
     return scene
+
+
+def make_road(folder):
+    """A car that drives towards a wall, which a scanner saw but for a wedge behind a board."""
+    scene = Scene(folder)
+    scene.model = f"{folder}/model.xyz"
+    with open(scene.model, "w") as file:
+        for x in (-0.6, -0.3, 0, 0.3, 0.6):
+            for i in range(11):
+                file.writelines(f"{x} {-0.5 + 0.1 * i:.1f} {-0.3 + 0.1 * j:.1f}\n"
+                                for j in range(7))
+    with open(scene.trajectory, "w") as file:
+        file.writelines(f"1 0 0 {8 + 0.1 * i:.1f} 0 1 0 0 0 0 1 0\n" for i in range(71))
+    with open(f"{folder}/scan.xyz", "w") as file:
+        for i in range(-60, 61):
+            for j in range(-40, 41):
+                y, z = 0.05 * i + 0.013, 0.05 * j + 0.011
+                part = 0.25 if 0 <= y / 4 < 0.3 else 1
+                file.write(f"{20 * part} {y * part:.5f} {z * part:.5f}\n")
+    with open(f"{folder}/origins.csv", "w") as file:
+        file.write("first,x,y,z\n0,0,0,0\n")
+    clearway("convert", f"{folder}/scan.xyz", "--origins", f"{folder}/origins.csv", "-o",
+             scene.store, "--force")
+    return scene

@@ -1,0 +1,403 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "clearway/unseen.hpp"
+#include "core/geometry/point_box.hpp"
+#include "core/geometry/predicate.hpp"
+#include "core/query/body_numbers.hpp"
+#include "core/seen/cubes.hpp"
+#include "core/trajectory/chainage.hpp"
+#include "findings/touched_first.hpp"
+#include "io/files/input_error.hpp"
+#include "io/paths/content_hash.hpp"
+#include "io/result/result.hpp"
+#include "io/scans/requantize.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr Box kNothing{
+    {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+     std::numeric_limits<double>::infinity()},
+    {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+     -std::numeric_limits<double>::infinity()}};
+
+bool is_finite(const Vec3& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+/// The cubes of a result. Its file keeps the side along x alone; the other sides follow from the
+/// side that was asked for, which by default is 0.2 m in the unit of the store.
+CubeLattice lattice_of(const ResultHeader& header, const SeenSummary& seen) {
+  constexpr double kUsualSides[] = {0.2, 0.2 / 0.3048, 0.2 * 3937 / 1200};
+  const double* scale = header.quantisation.scale;
+  const std::int64_t along_x = std::llround(seen.cube / scale[0]);
+  double asked = header.seen_cube;
+  for (const double usual : kUsualSides) {
+    if (!(asked > 0) && std::llround(usual / scale[0]) == along_x) asked = usual;
+  }
+  if (!(asked > 0)) asked = seen.cube;
+  CubeLattice lattice{};
+  for (int k = 0; k < 3; ++k) {
+    lattice.side[k] = std::llround(asked / scale[k]);
+    lattice.inset[k] = lattice.side[k] / 4;
+  }
+  return lattice;
+}
+
+/// One call of find_unseen_groups(), step by step.
+class GroupSearch {
+ public:
+  GroupSearch(const Result& result, const std::vector<Pose>& poses, const ConflictOptions& options,
+              const SeenSummary& seen)
+      : result_(result),
+        header_(result.reader().header()),
+        poses_(poses),
+        options_(options),
+        seen_(seen),
+        lattice_(lattice_of(header_, seen)),
+        cubes_(result.unseen()),
+        chainage_(chainage_of(poses)) {}
+
+  UnseenGroups run() {
+    out_.path_length = chainage_.empty() ? 0 : chainage_.back();
+    find_model_box();
+    place_cubes();
+    make_groups();
+    find_sides();
+    find_conflicts();
+    find_stretches();
+    find_front();
+    list_middles();
+    return std::move(out_);
+  }
+
+ private:
+  std::size_t size() const { return cubes_.size(); }
+
+  /// The model's box along the axes ahead, left and up of a pose of the path; infinite and inverted
+  /// where it is not known. The bodies of a vehicle stand at their own poses.
+  Box model_box_at(std::uint32_t pose) const {
+    if (options_.bodies.empty()) return model_box_;
+    Box box = kNothing;
+    for (const Body& body : options_.bodies) {
+      const Pose* own = pose_at(body, pose);
+      if (own == nullptr) continue;
+      const Box around = box_of(body.model.vertices);
+      for (unsigned corner = 0; corner < 8; ++corner) {
+        const Vec3 there = transform(*own, around.corner(corner));
+        box.extend(ahead_left_up(there, poses_[pose], options_.forward, options_.up));
+      }
+    }
+    return box;
+  }
+
+  void find_model_box() {
+    model_box_ = kNothing;
+    if (!options_.bodies.empty()) {
+      // Bodies that turn against each other change the box a little; some poses tell enough.
+      constexpr std::size_t kSome = 100;
+      const std::size_t stride = std::max<std::size_t>(1, poses_.size() / kSome);
+      for (std::size_t i = 0; i < poses_.size(); i += stride) {
+        const Box box = model_box_at(static_cast<std::uint32_t>(i));
+        model_box_.extend(box.lo);
+        model_box_.extend(box.hi);
+      }
+      return;
+    }
+    if (!result_.bodies().empty()) return;
+    const auto box = options_.model_box ? options_.model_box : result_.model_box();
+    if (box) model_box_ = turned(*box, options_.forward, options_.up);
+  }
+
+  /// The middle of a cube, as the search computes it.
+  Vec3 middle_of(std::size_t i) const {
+    Vec3 out{};
+    for (int k = 0; k < 3; ++k) {
+      const auto side = static_cast<double>(lattice_.side[k]);
+      const double q = side * cubes_.cube[i][static_cast<std::size_t>(k)] + 0.5 * side;
+      out[k] = q * header_.quantisation.scale[k] + header_.quantisation.offset[k];
+    }
+    return out;
+  }
+
+  /// Finds where each cube lies, seen from the pose of the path that first reaches it.
+  void place_cubes() {
+    middles_.reserve(size());
+    seen_from_path_.reserve(size());
+    for (std::size_t i = 0; i < size(); ++i) {
+      middles_.push_back(middle_of(i));
+      seen_from_path_.push_back(
+          ahead_left_up(middles_[i], poses_[cubes_.first_pose[i]], options_.forward, options_.up));
+    }
+  }
+
+  double half(int k) const {
+    return 0.5 * static_cast<double>(lattice_.side[k]) * header_.quantisation.scale[k];
+  }
+
+  double end_of(std::uint32_t pose) const {
+    return chainage_[std::min<std::size_t>(pose + std::size_t{1}, chainage_.size() - 1)];
+  }
+
+  void make_groups() {
+    const std::uint32_t most = cubes_.group.empty() ? 0 : *std::ranges::max_element(cubes_.group);
+    std::vector<std::uint64_t> sizes(most + std::size_t{1});
+    for (const std::uint32_t group : cubes_.group) ++sizes[group];
+    listed_at_.assign(sizes.size(), kNotListed);
+    for (std::uint32_t id = 1; id <= most; ++id) {
+      if (sizes[id] < header_.seen_min) {
+        ++out_.small_groups;
+        out_.small_cubes += sizes[id];
+        continue;
+      }
+      listed_at_[id] = static_cast<std::uint32_t>(out_.listed.size());
+      UnseenGroup group;
+      group.id = id;
+      group.cubes = sizes[id];
+      group.box = kNothing;
+      group.first_pose = std::numeric_limits<std::uint32_t>::max();
+      group.seen = kNothing;
+      out_.listed.push_back(group);
+    }
+    for (std::size_t i = 0; i < size(); ++i) {
+      if (UnseenGroup* group = listed_of(i)) add(i, *group);
+    }
+    for (UnseenGroup& group : out_.listed) finish(group);
+    find_middles();
+  }
+
+  /// Replaces the mean of each group by the middle of the cube that is nearest to it, because the
+  /// mean of a group along a bend can lie outside all of its cubes. Of equals the first.
+  void find_middles() {
+    std::vector<double> least(out_.listed.size(), std::numeric_limits<double>::infinity());
+    std::vector<Vec3> nearest(out_.listed.size());
+    for (std::size_t i = 0; i < size(); ++i) {
+      const UnseenGroup* group = listed_of(i);
+      if (group == nullptr) continue;
+      const std::uint32_t at = listed_at_[group->id];
+      const Vec3 from = middles_[i] - group->middle;
+      if (!(dot(from, from) < least[at])) continue;
+      least[at] = dot(from, from);
+      nearest[at] = middles_[i];
+    }
+    for (std::size_t k = 0; k < nearest.size(); ++k) out_.listed[k].middle = nearest[k];
+  }
+
+  UnseenGroup* listed_of(std::size_t i) {
+    const std::uint32_t at = listed_at_[cubes_.group[i]];
+    return at == kNotListed ? nullptr : &out_.listed[at];
+  }
+
+  void add(std::size_t i, UnseenGroup& group) const {
+    const Vec3 half_cube{half(0), half(1), half(2)};
+    group.box.extend(middles_[i] - half_cube);
+    group.box.extend(middles_[i] + half_cube);
+    group.middle = group.middle + middles_[i];
+    group.first_pose = std::min(group.first_pose, cubes_.first_pose[i]);
+    group.last_pose = std::max(group.last_pose, cubes_.first_pose[i]);
+    if (is_finite(seen_from_path_[i])) group.seen->extend(seen_from_path_[i]);
+  }
+
+  void finish(UnseenGroup& group) const {
+    const auto cubes = static_cast<double>(group.cubes);
+    group.middle = {group.middle.x / cubes, group.middle.y / cubes, group.middle.z / cubes};
+    const double from = chainage_[group.first_pose], to = end_of(group.last_pose);
+    group.chainage_from = from + options_.chainage_start;
+    group.chainage_to = to + options_.chainage_start;
+    group.along_path = out_.path_length > 0 && to - from > 0.5 * out_.path_length;
+    if (!(group.seen->lo.x <= group.seen->hi.x)) group.seen.reset();
+    if (!group.along_path || !group.seen || !(model_box_.lo.z <= model_box_.hi.z)) return;
+    constexpr double kMostOfWidth = 0.75;
+    const double wide = group.seen->hi.y - group.seen->lo.y;
+    group.is_ground = group.seen->lo.z < model_box_.lo.z + seen_.cube &&
+                      wide > kMostOfWidth * (model_box_.hi.y - model_box_.lo.y);
+    group.is_sky = group.seen->lo.z > 0.5 * (model_box_.lo.z + model_box_.hi.z);
+  }
+
+  /// Finds the sides, from the cubes that are reached at the first pose of their group.
+  void find_sides() {
+    std::vector<Box> first(out_.listed.size(), kNothing);
+    for (std::size_t i = 0; i < size(); ++i) {
+      const UnseenGroup* group = listed_of(i);
+      if (group == nullptr || cubes_.first_pose[i] != group->first_pose) continue;
+      if (is_finite(seen_from_path_[i])) first[listed_at_[group->id]].extend(seen_from_path_[i]);
+    }
+    for (std::size_t k = 0; k < out_.listed.size(); ++k) {
+      const Box model = model_box_at(out_.listed[k].first_pose);
+      if (!(model.lo.x <= model.hi.x) || !(first[k].lo.x <= first[k].hi.x)) continue;
+      // Both boxes are along ahead, left and up already.
+      out_.listed[k].side = side_of(first[k], model, Axis::kPlusX, Axis::kPlusZ);
+    }
+  }
+
+  /// Marks the listed groups of a cube and of the cubes that touch it.
+  void mark_around(const std::array<std::int32_t, 3>& cube) {
+    for (std::int32_t dx = -1; dx <= 1; ++dx) {
+      for (std::int32_t dy = -1; dy <= 1; ++dy) {
+        // The cubes of a column along z follow each other.
+        const std::array<std::int32_t, 3> first{cube[0] + dx, cube[1] + dy, cube[2] - 1};
+        const std::array<std::int32_t, 3> last{cube[0] + dx, cube[1] + dy, cube[2] + 1};
+        auto at = std::ranges::lower_bound(cubes_.cube, first);
+        for (; at != cubes_.cube.end() && *at <= last; ++at) {
+          UnseenGroup* group = listed_of(static_cast<std::size_t>(at - cubes_.cube.begin()));
+          if (group == nullptr || group->behind_conflict) continue;
+          group->behind_conflict = true;
+          ++out_.behind_conflicts;
+        }
+      }
+    }
+  }
+
+  /// Finds the groups that hold or touch a cube with a colliding point.
+  void find_conflicts() {
+    if (out_.listed.empty()) return;
+    RowStream<Collisions> stream(result_.reader());
+    std::array<std::int32_t, 3> before{};
+    bool any = false;
+    for (Collisions rows; stream.read(rows);) {
+      for (const Vec3& point : rows.xyz) {
+        std::array<std::int32_t, 3> cube{};
+        for (int k = 0; k < 3; ++k) {
+          const auto q = quantum_at(header_.quantisation, k, point[k]);
+          if (!q) {
+            refuse(result_.reader().name(),
+                   "/collisions/xyz: expected a whole multiple of the scale above the offset");
+          }
+          cube[static_cast<std::size_t>(k)] = lattice_.cube_of(k, *q);
+        }
+        if (any && cube == before) continue;
+        any = true;
+        before = cube;
+        mark_around(cube);
+      }
+    }
+  }
+
+  void find_stretches() {
+    std::vector<std::uint32_t> reached;
+    for (std::size_t i = 0; i < size(); ++i) {
+      if (listed_of(i) != nullptr) reached.push_back(cubes_.first_pose[i]);
+    }
+    std::ranges::sort(reached);
+    reached.erase(std::unique(reached.begin(), reached.end()), reached.end());
+    for (const std::uint32_t pose : reached) {
+      const double from = chainage_[pose] + options_.chainage_start;
+      const double to = end_of(pose) + options_.chainage_start;
+      if (!out_.stretches.empty() && from - out_.stretches.back().second < seen_.cube) {
+        out_.stretches.back().second = std::max(out_.stretches.back().second, to);
+      } else {
+        out_.stretches.emplace_back(from, to);
+      }
+    }
+  }
+
+  /// Shares the unseen cubes among the cells of the cross-section. Each is taken for an upright
+  /// square, so that cubes that lie askew to the path do not make a pattern.
+  void find_front() {
+    constexpr double kMostCells = 24;  // of a side, so that a number fits into each
+    UnseenFront& front = out_.front;
+    const double side = seen_.cube, around = radius() + side;
+    Box box = kNothing;
+    if (model_box_.lo.x <= model_box_.hi.x) {
+      box = model_box_.grown(around);
+      front.way = model_box_.hi.x - model_box_.lo.x + 2 * radius();
+    }
+    front.way += out_.path_length;
+    for (const Vec3& there : seen_from_path_) {
+      if (is_finite(there)) box.extend(there);
+    }
+    if (!(box.lo.y <= box.hi.y)) return;
+    const double widest = std::max(box.hi.y - box.lo.y, box.hi.z - box.lo.z);
+    front.cell = side * std::max(1.0, std::ceil(widest / side / kMostCells));
+    const auto first = [&](double from) { return std::floor(from / front.cell - 0.5); };
+    const auto last = [&](double to) { return std::floor(to / front.cell + 0.5); };
+    front.left = first(box.lo.y) * front.cell;
+    front.up = first(box.lo.z) * front.cell;
+    front.columns = static_cast<std::uint32_t>(last(box.hi.y) - first(box.lo.y)) + 1;
+    front.rows = static_cast<std::uint32_t>(last(box.hi.z) - first(box.lo.z)) + 1;
+    front.length.assign(std::size_t{front.columns} * front.rows, 0);
+    for (const Vec3& there : seen_from_path_) {
+      if (is_finite(there)) share(there, front);
+    }
+  }
+
+  /// Adds a cube to the cells that its square covers.
+  void share(const Vec3& there, UnseenFront& front) const {
+    const double volume = 8 * half(0) * half(1) * half(2), area = front.cell * front.cell;
+    const double side = seen_.cube;
+    const auto overlap = [&](double middle, double least, std::uint32_t n) {
+      const double from = least + n * front.cell;
+      return std::max(0.0, std::min(from + front.cell, middle + 0.5 * side) -
+                               std::max(from, middle - 0.5 * side)) /
+             side;
+    };
+    const auto first = [&](double middle, double least) {
+      return static_cast<std::uint32_t>(
+          std::max(0.0, std::floor((middle - 0.5 * side - least) / front.cell)));
+    };
+    const std::uint32_t left = first(there.y, front.left), up = first(there.z, front.up);
+    // A square is at most as wide as a cell, so that it covers two of them.
+    for (std::uint32_t row = up; row < std::min(up + 3, front.rows); ++row) {
+      for (std::uint32_t column = left; column < std::min(left + 3, front.columns); ++column) {
+        front.length[std::size_t{row} * front.columns + column] +=
+            volume / area * overlap(there.y, front.left, column) * overlap(there.z, front.up, row);
+      }
+    }
+  }
+
+  void list_middles() {
+    std::vector<std::size_t> next;  // where the next cube of each listed group goes
+    std::size_t listed = 0;
+    for (const UnseenGroup& group : out_.listed) {
+      next.push_back(listed);
+      listed += group.cubes;
+    }
+    out_.middles.resize(listed);
+    for (std::size_t i = 0; i < size(); ++i) {
+      const UnseenGroup* group = listed_of(i);
+      if (group != nullptr) out_.middles[next[listed_at_[group->id]]++] = middles_[i];
+    }
+  }
+
+  double radius() const {
+    return header_.budget ? header_.budget->near_radius(header_.radius) : header_.radius;
+  }
+
+  static constexpr std::uint32_t kNotListed = 0xFFFFFFFF;
+
+  const Result& result_;
+  const ResultHeader& header_;
+  const std::vector<Pose>& poses_;
+  const ConflictOptions& options_;
+  const SeenSummary seen_;
+  const CubeLattice lattice_;
+  const UnseenCubes cubes_;
+  const std::vector<double> chainage_;
+  /// Box of the model along ahead, left and up of the path's poses; inverted where it is not known.
+  Box model_box_{};
+  std::vector<Vec3> middles_, seen_from_path_;
+  /// For each group, its place in the list, or kNotListed.
+  std::vector<std::uint32_t> listed_at_;
+  UnseenGroups out_;
+};
+
+}  // namespace
+
+UnseenGroups find_unseen_groups(const Result& result, const std::vector<Pose>& poses,
+                                const ConflictOptions& options) {
+  const ResultReader& reader = result.reader();
+  const auto& seen = reader.findings().seen;
+  if (!reader.header().seen || !seen) return {};
+  if (poses.empty() || hash_of_trajectory(poses) != reader.header().trajectory_hash) {
+    if (poses.empty() && reader.header().poses == 0) return {};
+    throw InputError(reader.name() + ": is the result of another trajectory",
+                     Remedy::kSameTrajectory);
+  }
+  return GroupSearch(result, poses, options, *seen).run();
+}
+
+}  // namespace clearway

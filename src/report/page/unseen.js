@@ -1,0 +1,291 @@
+// Places that the vehicle sweeps and that no beam of the scanner passed through: what they mean, the
+// table of their groups, and how they are drawn.
+
+const kUnseenColour = "#5b21b6", kUnseenRgb = [91, 33, 182];
+const kShownGroups = 200, kPrintedGroups = 40;
+
+/** What is known of seen space; null where the run did not ask for it. */
+const seenFacts = () => page.facts.seen ?? null;
+/** The listed groups, the largest first; they are named by this order. */
+const unseenGroups = () => page.unseenGroups ??= [...(seenFacts()?.list ?? [])]
+    .sort((a, b) => b.cubes - a.cubes || a.id - b.id);
+const groupName = (group) => `U${unseenGroups().indexOf(group) + 1}`;
+const isNotScanned = () => (seenFacts()?.listed_groups ?? 0) > 0;
+
+/** " that was scanned", where places were not scanned of which nothing is known. */
+const scannedOnly = () => isNotScanned() ? " that was scanned" : "";
+
+function selectGroup(group) {
+  page.group = group;
+  page.pose = shownPose(group.first_pose);
+  tell("pose");
+  tell("group");
+}
+
+/** "3.2 of 68.0 m". */
+const notScannedWords = () => `${seenFacts().not_scanned_length.toFixed(1)} of ` +
+    `${page.facts.inputs.trajectory.length.toFixed(1)} ${unitSymbol}`;
+
+/** On how much of the path nobody knows what is there; empty where that was not asked. */
+function scannedSentence() {
+  const seen = seenFacts();
+  if (!seen) return "";
+  const cubes = `cubes of ${shortLength(seen.cube)} that the vehicle sweeps`;
+  if (seen.swept === 0) return "The vehicle sweeps no cube, so nothing is known of seen space.";
+  if (isNotScanned()) {
+    const largest = unseenGroups()[0];
+    return `Not scanned on ${notScannedWords()} of the path: no beam of the scanner passed through ` +
+        `${count(seen.unseen)} of the ${count(seen.swept)} ${cubes}, so anything may stand there. ` +
+        `They lie in ${plural(seen.listed_groups, "place")}` + (seen.listed_groups > 1
+            ? `, of which ${groupName(largest)} is the largest. ` : `, ${groupName(largest)}. `) +
+        smallGroupsSentence();
+  }
+  return seen.unseen > 0
+      ? `A beam of the scanner passed through all but ${count(seen.unseen)} of the ` +
+        `${count(seen.swept)} ${cubes}. ${smallGroupsSentence()}`
+      : `A beam of the scanner passed through each of the ${count(seen.swept)} ${cubes}.`;
+}
+
+function smallGroupsSentence() {
+  const seen = seenFacts(), small = seen.groups - seen.listed_groups;
+  if (small === 0) return "";
+  const cubes = seen.unseen - seen.listed_cubes;
+  return `${isNotScanned() ? "Another" : "They lie in"} ${plural(small, "group")} of fewer than ` +
+      `${count(seen.seen_min)} cubes, ${plural(cubes, "cube")} in all` +
+      (isNotScanned() ? ", are too small to be listed." : ", in which something small can be.");
+}
+
+/** Where a group lies, seen from the path: ranges along an axis of its box there. */
+function rangeCell(group, axis) {
+  if (!group.seen) return "";
+  const [from, to] = [group.seen.lo[axis], group.seen.hi[axis]].map(signed);
+  return from === to ? from : `${from} to ${to}`;
+}
+
+function groupColumns() {
+  const behind = seenFacts().behind_conflicts > 0;
+  return [
+    ["No.", groupName, false],
+    ["Cubes", (g) => count(g.cubes), true],
+    [`Size (${unitSymbol})`, (g) => sizeOf(g).map((s) => s.toFixed(2)).join(" × "), true],
+    [`Chainage (${unitSymbol})`, chainageCell, true],
+    ["Side", (g) => kSides[g.side], false],
+    [`Lateral (${unitSymbol})`, (g) => rangeCell(g, 1), true],
+    [`Height (${unitSymbol})`, (g) => rangeCell(g, 2), true],
+    behind && ["Behind a conflict", (g) => g.behind_conflict ? "yes" : "no", false],
+    [`Middle x, y, z (${unitSymbol})`, (g) => coordinates(g.middle), true],
+    ["In the result", (g) => `group ${count(g.id)}`, true],
+    ["What to do", groupAdvice, false],
+  ].filter(Boolean).map(([title, cell, number]) => ({ title, cell, number }));
+}
+
+/** What most probably explains a group, and what would decide it. */
+function groupAdvice(group) {
+  if (group.is_ground) return "the ground? --model-above";
+  if (group.is_sky) return "open sky? --ignore-box";
+  if (group.behind_conflict) return "clear the conflict, scan again";
+  return "scan it from another place";
+}
+
+function groupRow(group, columns, live) {
+  const cells = columns.map((c) => make("td", { class: c.number ? "number" : null }, c.cell(group)));
+  if (!live) return make("tr", {}, cells);
+  const choose = () => selectGroup(group);
+  return make("tr", { tabindex: 0, "data-group": group.id, onclick: choose, onkeydown: (event) => {
+    if (event.key !== "Enter" && event.key !== " ") return;
+    event.preventDefault();
+    choose();
+  } }, cells);
+}
+
+function groupTable(groups, live) {
+  const columns = groupColumns();
+  return make("table", { class: "list", "aria-label": "Places that were not scanned" },
+      make("thead", {}, make("tr", {}, columns.map((c) =>
+          make("th", { scope: "col", class: c.number ? "number" : null }, c.title)))),
+      make("tbody", {}, groups.map((g) => groupRow(g, columns, live))));
+}
+
+function markGroupRow() {
+  for (const row of document.querySelectorAll("#unseen-table tbody tr")) {
+    row.classList.toggle("chosen", row.dataset.group === String(page.group?.id));
+  }
+  byId("unseen-chosen").replaceChildren(...chosenGroup());
+}
+
+/** What the chosen group is, in words, and a way to see it. */
+function chosenGroup() {
+  const group = page.group;
+  if (!group) return [];
+  const side = sideWords(group.side), seen = group.seen;
+  const span = (lo, hi, minus, plusWord) => `${metres(Math.abs(lo), 2)} ${lo < 0 ? minus : plusWord} to ` +
+      `${metres(Math.abs(hi), 2)} ${hi < 0 ? minus : plusWord}`;
+  const where = seen ? ` Seen from the path, the middles of its cubes lie from ` +
+      `${span(seen.lo[1], seen.hi[1], "right", "left")}, and from ` +
+      `${span(seen.lo[2], seen.hi[2], "below", "above")}.` : "";
+  const behind = group.behind_conflict
+      ? " A colliding point lies in it or next to it, so what collides may hide it from the scanner." : "";
+  return [make("p", {}, make("strong", {}, `${groupName(group)}: `),
+      `${plural(group.cubes, "cube")} that no beam passed through. The vehicle first reaches it at ` +
+      `chainage ${station(group.chainage_from)} (pose ${count(group.first_pose)})${after(side)}, ` +
+      `and its last cube at ${station(group.chainage_to)}.${where}${behind}`),
+      button("Show in 3-D", () => byId("view").scrollIntoView())];
+}
+
+/** What can be done about all that was not scanned, one sentence for each kind of group. */
+function adviceSentences() {
+  const groups = unseenGroups(), seen = seenFacts(), out = [];
+  const names = (list) => joined([...list.slice(0, 5).map(groupName),
+                                  ...(list.length > 5 ? [`${count(list.length - 5)} more`] : [])]);
+  const ground = groups.filter((g) => g.is_ground), sky = groups.filter((g) => g.is_sky);
+  const behind = groups.filter((g) => g.behind_conflict && !g.is_ground && !g.is_sky);
+  const others = groups.filter((g) => !g.behind_conflict && !g.is_ground && !g.is_sky);
+  const goes = (list) => list.length === 1 ? "goes" : "go";
+  if (ground.length > 0) {
+    const least = shortLength(+(page.facts.query.radius + (page.facts.margins?.clear ?? 0) +
+                                seen.cube / 2).toPrecision(3));
+    out.push(["The ground", `${names(ground)} ${goes(ground)} along more than half of the path and ` +
+        `${ground.length === 1 ? "reaches" : "reach"} down to the lowest part of the vehicle. That is usually ` +
+        "the ground it stands on, into which no beam can look, perhaps joined with other places. " +
+        `Run again with --model-above ${least} above the ground, which is the distance to keep ` +
+        "and half a cube, and a little more where the ground is rough. Then none of the ground is left."]);
+  }
+  if (sky.length > 0) {
+    out.push(["The open sky", `${names(sky)} ${goes(sky)} along more than half of the path in the upper ` +
+        "part of the vehicle. No beam comes back from the open sky, so a scan cannot show that nothing " +
+        "is there. If you know that it is open, leave the place out with --ignore-box."]);
+  }
+  if (behind.length > 0) {
+    out.push(["Behind a conflict", `${names(behind)} ${behind.length === 1 ? "holds" : "hold"} or ` +
+        `${behind.length === 1 ? "touches" : "touch"} a cube with a colliding point. What collides may hide ` +
+        "what lies behind it from the scanner. Clear the conflict, and then scan again."]);
+  }
+  if (others.length > 0) {
+    out.push(["Other places", `Scan ${names(others)} from where the scanner looks into ` +
+        `${others.length === 1 ? "it" : "them"}, or look there yourself. If you know that nothing is ` +
+        "there, --ignore-box leaves the place out."]);
+  }
+  return out;
+}
+
+function unseenNote() {
+  const seen = seenFacts();
+  if (!isNotScanned()) return scannedSentence();
+  return "Unseen cubes that touch each other are one place, and the largest place is U1. Lateral is how far left (+) or right (−) of " +
+      "the path the middles of its cubes lie when the vehicle first reaches them, height how far above " +
+      `the path, along the vehicle's own axes. ${smallGroupsSentence()}` +
+      (seen.list.length < seen.listed_groups
+          ? ` This page lists the ${count(seen.list.length)} largest of ${count(seen.listed_groups)}.` : "");
+}
+
+function buildUnseen() {
+  if (!seenFacts()) {
+    byId("unseen").remove();
+    document.querySelector('nav a[href="#unseen"]').remove();
+    return;
+  }
+  byId("unseen-note").append(make("p", {}, unseenNote()));
+  if (seenFacts().unseen > 0) buildFront();
+  if (!isNotScanned()) return;
+  byId("unseen-advice").append(...adviceSentences().map(([title, text]) =>
+      make("li", {}, make("strong", {}, `${title}. `), text)));
+  const groups = unseenGroups(), shown = groups.slice(0, kShownGroups);
+  byId("unseen-table").append(make("div", { class: "scroll" }, groupTable(shown, true)));
+  if (shown.length < groups.length) {
+    byId("unseen-table").append(make("p", { class: "note" },
+        `The ${count(shown.length)} largest of ${count(groups.length)} are in the table.`));
+  }
+  on("group", markGroupRow);
+}
+
+/** The rows that paper has. */
+function printedGroups() {
+  const groups = unseenGroups(), shown = groups.slice(0, kPrintedGroups);
+  return [groupTable(shown, false), shown.length < groups.length &&
+      make("p", { class: "note" }, `${plural(groups.length - shown.length, "more place")} not on paper.`)];
+}
+
+/** Shaded stretches of the profile on which something was not scanned. */
+function profileNotScanned() {
+  const { top, bottom, height, left, right, width } = profile, out = [];
+  let free = -Infinity;
+  for (const [from, to] of seenFacts()?.stretches ?? []) {
+    if (to < profile.from || from > profile.to) continue;
+    const x1 = clamp(profileX(from), left, width - right), x2 = clamp(profileX(to), left, width - right);
+    const wide = Math.max(2, x2 - x1), middle = x1 + wide / 2;
+    out.push(make("rect", { x: x1, y: top, width: wide, height: height - top - bottom,
+                            class: "not-scanned", fill: "url(#not-scanned)" },
+                  make("title", {}, `Not scanned: chainage ${from.toFixed(2)} to ${to.toFixed(2)}`)));
+    if (wide > 16 && middle - free > 90) {
+      free = middle;
+      const y = (top + height - bottom) / 2;
+      out.push(make("text", { x: middle, y: y + 4, class: "middle strong halo",
+                              transform: wide > 84 ? null : `rotate(-90 ${middle} ${y})` }, "not scanned"));
+    }
+  }
+  return out;
+}
+
+function notScannedPattern() {
+  return make("pattern", { id: "not-scanned", width: 12, height: 12, patternUnits: "userSpaceOnUse",
+                           patternTransform: "rotate(-45)" },
+              make("rect", { width: 12, height: 12, fill: "#f3effc" }),
+              make("line", { x1: 0, y1: 0, x2: 0, y2: 12, stroke: "#a78bda", "stroke-width": 1.4 }));
+}
+
+/** What the shading of stretches that were not scanned means, in words below the profile. */
+function notScannedLegend() {
+  const stretches = (seenFacts()?.stretches ?? []).map(([from, to]) =>
+      ({ chainage_from: from, chainage_to: to }));
+  if (stretches.length === 0) return [];
+  return [make("li", {}, make("svg", { width: 26, height: 14, class: "swatch", "aria-hidden": "true" },
+      make("rect", { width: 26, height: 14, fill: "url(#not-scanned)", stroke: kUnseenColour })),
+      ` Not scanned: at chainage ${stretchWords(stretches)} the vehicle reaches places that no beam ` +
+      "passed through. The curve knows nothing of them.")];
+}
+
+/** The mask of the unseen cubes, hatched, so that it is told from points without its colour. */
+function paintUnseen(context, painter, unitSize) {
+  if (!page.unseen) return;
+  const { width, height } = painter, { xyz, count: n } = page.unseen;
+  const half = Math.max(1, Math.round(0.5 * seenFacts().cube * painter.perMetre));
+  const mask = new Uint8Array(width * height);
+  for (let i = 0; i < n; ++i) {
+    const at = painter.project([xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]]);
+    if (!at) continue;
+    const x = at[0] | 0, y = at[1] | 0;
+    for (let qy = Math.max(0, y - half); qy <= Math.min(height - 1, y + half); ++qy) {
+      const from = Math.max(0, x - half), to = Math.min(width, x + half + 1);
+      if (from < to) mask.fill(1, qy * width + from, qy * width + to);
+    }
+  }
+  const image = new ImageData(width, height), period = Math.round(7 * unitSize), [r, g, b] = kUnseenRgb;
+  for (let y = 0; y < height; ++y) {
+    for (let x = 0; x < width; ++x) {
+      const at = y * width + x;
+      if (!mask[at]) continue;
+      const edge = x === 0 || y === 0 || x === width - 1 || y === height - 1 || !mask[at - 1] ||
+          !mask[at + 1] || !mask[at - width] || !mask[at + width];
+      const line = (x + y) % period < 0.35 * period;
+      image.data.set([r, g, b, edge ? 255 : line ? 200 : 60], 4 * at);
+    }
+  }
+  const holder = new OffscreenCanvas(width, height);
+  holder.getContext("2d").putImageData(image, 0, 0);
+  context.drawImage(holder, 0, 0);
+}
+
+/** Squares with the groups' numbers, for plan and 3-D view. */
+function groupMarks() {
+  return unseenGroups().map((group, i) => ({
+    place: inPage(group.middle), text: groupName(group), shape: "square", colour: kUnseenColour,
+    hollow: false, chosen: group === page.group, first: i === 0 || group === page.group, rank: i + 1.5,
+    select: () => selectGroup(group),
+  }));
+}
+
+/** What hollow marks and hatched places mean, where there are any. */
+function marksNote() {
+  return (conflictList().some(isPossible) ? " A hollow mark is a possible conflict, a filled one is certain." : "") +
+      (isNotScanned() ? " Hatched places, with numbers that begin with U, were not scanned." : "");
+}
