@@ -36,6 +36,7 @@ std::string advice_on(const Error& error) {
     case Remedy::kNone:
       return "";
     case Remedy::kMoreMemory:
+      if (error.amount() == 0) return "; give more with --memory";
       return "; " + size_option("--memory", error.amount()) + " is enough";
     case Remedy::kMoreDeviceMemory:
       return "; " + size_option("--device-memory", error.amount()) + " is enough";

@@ -128,7 +128,7 @@ PathOrigins::PathOrigins(const ConvertOptions& options, const EnvironmentSource&
     throw ResourceError(name_ + ": its " + format_count(file.poses.size()) + " poses take " +
                             format_size(path_->bytes()) + "; they may take " +
                             format_size(most_bytes) + ", an eighth of the memory",
-                        Remedy::kMoreMemory);
+                        Remedy::kMoreMemory, 8 * static_cast<double>(path_->bytes()));
   }
   if (path_->first() >= 0 && path_->last() <= 2 * kWeek) {
     clock_ = Clock::kWeekSeconds;

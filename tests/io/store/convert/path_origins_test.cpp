@@ -348,6 +348,19 @@ TEST_CASE("a path that is none, and options that contradict each other, are refu
   CHECK_FALSE(std::filesystem::exists(scan.options.output));
 }
 
+TEST_CASE("a path that takes more than an eighth of the memory is refused with a number") {
+  TimedScan scan({100.25});
+  std::string text;
+  for (int i = 0; i < 480000; ++i) text += std::to_string(100 + 0.001 * i) + " 1 2 3 0 0 0 1\n";
+  scan.path_text(text);
+  scan.options.lever_arm = {1, 0, 0};
+  scan.options.memory_bytes = kLeastConversionMemory;
+  CHECK_THAT(conversion_refusal<ResourceError>(scan.options),
+             Contains("480,000 poses take 29.3 MiB") && Contains("28.0 MiB, an eighth"));
+  scan.options.memory_bytes = 8 * 64 * 480000;
+  CHECK(conversion_refusal(scan.options).empty());
+}
+
 TEST_CASE("a lever arm is in metres and a path in metres becomes the feet of the environment") {
   TimedScan scan({100.25});
   scan.options.unit = FileUnit::named("ift");
