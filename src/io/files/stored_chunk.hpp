@@ -11,8 +11,8 @@ namespace clearway::hdf5 {
 
 inline constexpr std::size_t kChecksumBytes = 4;
 
-/// Number of rows of a dataset's chunks: a power of two of at most 2^16, so that ranges of 2^16 rows
-/// end with a chunk whatever the columns are, or all rows where these are fewer.
+/// Number of rows of a dataset's chunks: a power of two of at most 2^16, so that ranges of 2^16
+/// rows end with a chunk whatever the columns are, or all rows where these are fewer.
 std::uint64_t rows_of_chunk(std::uint64_t rows, std::uint64_t row_bytes);
 
 /// The checksum of HDF5's fletcher32 filter.
