@@ -36,7 +36,7 @@ const char* name_of(Reason reason);    ///< "near", "few", "errors-exceed-margin
 
 /// Whether a warning with this code says that the search could not find anything, whatever stands
 /// in the way, so that an empty result is not an answer: "out-of-reach", "no-points", "no-poses"
-/// and "all-ignored".
+/// "all-ignored" and "nothing-swept".
 bool is_doubt(std::string_view code);
 
 /// The codes of the warnings that are doubts by is_doubt(), each once, in alphabetical order.

@@ -117,7 +117,13 @@ class Search {
     if (options_.float_precision) warn_of_floats(store_, query_, log_);
     warn_of_ignored(store_, header_, header_.ignored, log_);
     tell_of_large_errors();
+    if (query_.seen) warn_of_large_cubes(store_, query_, swept_radius(), log_);
     if (options_.strict) refuse_warnings(report_.warnings);
+  }
+
+  /// The distance from the model at which a place counts as swept.
+  double swept_radius() const {
+    return header_.budget ? header_.budget->near_radius(query_.radius) : query_.radius;
   }
 
   /// Notes where the errors are so large that no surface could be a certain conflict.
@@ -371,6 +377,8 @@ class Search {
     report_.seconds.beams = space.beam_seconds;
     report_.peak_device_bytes = std::max(report_.peak_device_bytes, space.taken.peak_device_bytes);
     warn_of_beams(space.left_out, log_);
+    warn_of_nothing_swept(space.summary, query_, log_);
+    report_.doubts = doubts_among(report_.warnings);
     if (!options_.shard) {
       group_unseen(query_, space.unseen, space.summary);
       warn_of_small_groups(space.summary, query_, log_);
@@ -382,16 +390,15 @@ class Search {
 
   /// memory_bytes: what the search so far leaves.
   SeenSpace seen_space_on(Device device, std::uint64_t memory_bytes) {
-    SeenSearch how{
-        .radius = header_.budget ? header_.budget->near_radius(query_.radius) : query_.radius,
-        .memory_bytes = memory_bytes,
-        .threads = options_.threads,
-        .only = only(),
-        .kind =
-            [&](const PackedCloud& cloud, const Query& query) {
-              return kind_for(device, cloud, query, further_options_);
-            },
-        .follow_on_gpus = {}};
+    SeenSearch how{.radius = swept_radius(),
+                   .memory_bytes = memory_bytes,
+                   .threads = options_.threads,
+                   .only = only(),
+                   .kind =
+                       [&](const PackedCloud& cloud, const Query& query) {
+                         return kind_for(device, cloud, query, further_options_);
+                       },
+                   .follow_on_gpus = {}};
 #ifdef CLEARWAY_CUDA
     if (device == Device::kCuda) {
       how.follow_on_gpus = [&](const Beams& beams, std::span<const PlannedCell> cells,

@@ -23,6 +23,7 @@
 #include "core/util/stopwatch.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "search/check_query.hpp"
+#include "search/checks/question.hpp"
 #include "search/page_search.hpp"
 #include "search/threads.hpp"
 
@@ -372,6 +373,34 @@ void group_unseen(const QueryParameters& query, UnseenCubes& unseen, SeenSummary
   summary.not_scanned_length = 0;
   for (const auto& [pose, step] : steps) summary.not_scanned_length += step;
   unseen.step.clear();
+}
+
+void warn_of_large_cubes(const StoreReader& store, const QueryParameters& query, double radius,
+                         MessageLog& log) {
+  const CubeLattice lattice = cube_lattice(store, query.seen_cube);
+  double side = 0;
+  for (int k = 0; k < 3; ++k) {
+    side = std::max(side, static_cast<double>(lattice.side[k]) * store.quantisation().scale[k]);
+  }
+  constexpr double kRounding = 1e-6;
+  if (!(side > 2 * radius * (1 + kRounding))) return;
+  const LengthUnit unit = store.metadata().unit;
+  log.warn("large-cubes",
+           "cubes of " + length_text(side, unit) + " are larger than twice the distance of " +
+               length_text(radius, unit) +
+               " at which the middle of a cube counts as swept, so that thin parts of the vehicle "
+               "can pass between the middles, and nothing is said of the space around them. Take "
+               "cubes of " +
+               length_text(2 * radius, unit) + " or less",
+           {{"cube", side}, {"distance", radius}});
+}
+
+void warn_of_nothing_swept(const SeenSummary& found, const Query& query, MessageLog& log) {
+  if (found.swept > 0 || query.poses.empty()) return;
+  log.warn(
+      "nothing-swept",
+      "the vehicle sweeps the middle of no cube, so that nothing is known of what was scanned. "
+      "Smaller cubes tell more");
 }
 
 void warn_of_beams(const BeamCounts& left_out, MessageLog& log) {

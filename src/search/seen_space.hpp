@@ -68,6 +68,16 @@ SeenSpace find_seen_space(const StoreReader& store, const Query& query, const Se
 /// parts keep. The summary knows the number of swept cubes.
 void group_unseen(const QueryParameters& query, UnseenCubes& unseen, SeenSummary& summary);
 
+/// Warns of cubes so large that parts of the model can lie between their middles, and sweep none:
+/// "large-cubes". radius: the distance at which a middle counts as swept. Throws as
+/// check_seen_space() does.
+void warn_of_large_cubes(const StoreReader& store, const QueryParameters& query, double radius,
+                         MessageLog& log);
+
+/// Warns where no cube is swept, so that the search says nothing of what was scanned:
+/// "nothing-swept". query: has poses and a model.
+void warn_of_nothing_swept(const SeenSummary& found, const Query& query, MessageLog& log);
+
 /// Warns of points whose beams were left out: "beams-without-origin", "long-beams".
 void warn_of_beams(const BeamCounts& left_out, MessageLog& log);
 

@@ -36,8 +36,8 @@ const char* name_of(Reason reason) {
 }
 
 bool is_doubt(std::string_view code) {
-  constexpr std::array<std::string_view, 4> kDoubts{"all-ignored", "no-points", "no-poses",
-                                                    "out-of-reach"};
+  constexpr std::array<std::string_view, 5> kDoubts{"all-ignored", "no-points", "no-poses",
+                                                    "nothing-swept", "out-of-reach"};
   return std::ranges::find(kDoubts, code) != kDoubts.end();
 }
 

@@ -149,6 +149,29 @@ TEST_CASE("a path through space that beams crossed is clear, and a hidden place 
   CHECK(run_program(road.folder, "verify " + quoted(road.folder / "out.h5")).exit_code == 0);
 }
 
+TEST_CASE(
+    "cubes that are too large for the distance are warned of, and none that is swept is no "
+    "answer") {
+  const Road road;
+  road.scan(Road::beams(false));
+  const auto codes_of = [](const nlohmann::json& answer) {
+    std::vector<std::string> codes;
+    for (const auto& warning : answer["warnings"]) codes.push_back(warning["code"]);
+    return codes;
+  };
+  CHECK(codes_of(road.answer("--seen --seen-cube 0.2")).empty());
+  CHECK(codes_of(road.answer("--seen --seen-cube 0.3")) == std::vector<std::string>{"large-cubes"});
+  CHECK(codes_of(road.answer("--seen --seen-cube 0.3 --error-scan 0.02")).empty());
+  const auto none = road.answer("--seen --seen-cube 40");
+  CHECK(none["seen"]["swept"] == 0);
+  CHECK(none["verdict"] == "undecided");
+  CHECK(none["reasons"] == nlohmann::json::array({"question-in-doubt"}));
+  CHECK(codes_of(none) == std::vector<std::string>{"large-cubes", "nothing-swept"});
+  const Outcome info =
+      run_program(road.folder, "info " + quoted(road.folder / "out.h5") + " --json");
+  CHECK(nlohmann::json::parse(info.out)["verdict"] == "undecided");
+}
+
 TEST_CASE("a second scan shows that a hidden place is free, or what stands in it") {
   const Road road;
   road.scan(with(Road::beams(true), Road::from_the_side()));
