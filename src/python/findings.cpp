@@ -54,6 +54,11 @@ void add_conflict(py::module_& module) {
                     "The greatest index of a pose that touches one of its points; between poses, "
                     "the start of the last way that does. See Conflicts.has_last_poses.")
       .def_readonly(
+          "certain", &Conflict::certain,
+          "Whether the conflict is certain by the error budget, because ten or more of its points "
+          "hang together and are certainly too close; False where it is possible, None without a "
+          "budget.")
+      .def_readonly(
           "obstacle_chainage", &Conflict::obstacle_chainage,
           "Station of the obstacle itself: the chainage of the pose that it is seen from, "
           "plus how far ahead of it the nearest point lies, metres, or None.")

@@ -359,6 +359,7 @@ class Conflict:
     last_pose: Final[int]
     chainage_from: Final[float]
     chainage_to: Final[float]
+    certain: Final[bool | None]
     obstacle_chainage: Final[float | None]
     shift_left: Final[float | None]
     shift_right: Final[float | None]
