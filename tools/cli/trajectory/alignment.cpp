@@ -15,6 +15,7 @@
 #include "clearway/store.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
+#include "cli/support/options.hpp"
 #include "cli/support/program_json.hpp"
 #include "cli/trajectory/commands.hpp"
 #include "core/util/format.hpp"
@@ -55,7 +56,8 @@ void print_json(const AlignmentFile& made) {
   }
   const nlohmann::ordered_json json{
       {"alignment", made.alignment},
-      {"profile", made.profile.empty() ? nlohmann::ordered_json() : made.profile},
+      {"profile",
+       made.profile.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(made.profile)},
       {"unit", made.unit},
       {"metres_per_unit", made.metres_per_unit},
       {"alignment_from", made.first_station},
@@ -65,8 +67,7 @@ void print_json(const AlignmentFile& made) {
       {"last_station", made.stations.back()},
       {"notes", warnings_json(notes)},
       {"warnings", warnings_json(warnings)}};
-  constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
-  print(json.dump(2, ' ', false, kReplace) + "\n");
+  print(text_of_json(json));
 }
 
 void write_alignment(AlignmentCommand& options) {
@@ -89,6 +90,30 @@ void write_alignment(AlignmentCommand& options) {
       options.output.string(), counted(made.poses.size(), "pose"), made.stations.front(),
       made.stations.back(), made.unit);
   if (options.json) print_json(made);
+}
+
+/// Adds the options that say which stretch of which alignment is wanted.
+void add_way(CLI::App& command, AlignmentCommand& options) {
+  const GroupScope group(command, OptionGroup::kPath);
+  AlignmentOptions& what = options.alignment;
+  command
+      .add_option("--alignment", what.alignment, "The alignment's name, where there are several")
+      ->type_name("NAME");
+  command.add_option("--profile", what.profile, "The profile's name, where there are several")
+      ->type_name("NAME");
+  options.lengths.add(command, "--step", what.step,
+                      "From one pose to the next, along the alignment (default: 0.1)");
+  command
+      .add_option("--from", what.station_from,
+                  "Internal station of the first pose, in the unit of the file")
+      ->type_name("STATION");
+  command
+      .add_option("--to", what.station_to,
+                  "Internal station of the last pose, in the unit of the file")
+      ->type_name("STATION");
+  command.add_flag("--reverse", what.reverse, "Travel against the stations");
+  options.lengths.add(command, "--height", what.height,
+                      "Height of all poses, for an alignment without a profile", LengthRange::kAny);
 }
 
 void add_cant(CLI::App& command, AlignmentOptions& options) {
@@ -121,11 +146,24 @@ void add_order(CLI::App& command, AlignmentOptions& options) {
       ->check(CLI::IsMember({"ne", "en"}));
 }
 
+/// Adds the options that say how the elements of the file are understood.
+void add_track(CLI::App& command, AlignmentCommand& options) {
+  const GroupScope group(command, OptionGroup::kUnits);
+  AlignmentOptions& what = options.alignment;
+  add_cant(command, what);
+  options.lengths.add(command, "--rail-distance", what.rail_distance,
+                      "Between the middles of the rails (default: 1.5 for a gauge of 1.435 or 1.5)",
+                      LengthRange::kAboveZero);
+  add_order(command, what);
+  options.lengths.add(command, "--max-gap", what.max_gap,
+                      "The most that an element may miss the next, or its own end (default: 0.001)",
+                      LengthRange::kFromZero);
+}
+
 }  // namespace
 
 void add_trajectory_alignment(CLI::App& trajectory) {
   const auto options = std::make_shared<AlignmentCommand>();
-  AlignmentOptions& what = options->alignment;
   CLI::App* command = trajectory.add_subcommand(
       "alignment", "Write poses in metres along an alignment of a LandXML file");
   command->add_option("IN", options->input, "The LandXML 1.2 file")->type_name("FILE")->required();
@@ -134,35 +172,8 @@ void add_trajectory_alignment(CLI::App& trajectory) {
                    "The poses: CSV with the station, the position and the rotation of each")
       ->type_name("FILE")
       ->required();
-  options->lengths.add(*command, "--step", what.step,
-                       "From one pose to the next, along the alignment (default: 0.1)");
-  command
-      ->add_option("--from", what.station_from,
-                   "Internal station of the first pose, in the unit of the file")
-      ->type_name("STATION");
-  command
-      ->add_option("--to", what.station_to,
-                   "Internal station of the last pose, in the unit of the file")
-      ->type_name("STATION");
-  command->add_flag("--reverse", what.reverse, "Travel against the stations");
-  command
-      ->add_option("--alignment", what.alignment, "The alignment's name, where there are several")
-      ->type_name("NAME");
-  command->add_option("--profile", what.profile, "The profile's name, where there are several")
-      ->type_name("NAME");
-  options->lengths.add(*command, "--height", what.height,
-                       "Height of all poses, for an alignment without a profile",
-                       LengthRange::kAny);
-  add_cant(*command, what);
-  options->lengths.add(
-      *command, "--rail-distance", what.rail_distance,
-      "Between the middles of the rails (default: 1.5 for a gauge of 1.435 or 1.5)",
-      LengthRange::kAboveZero);
-  add_order(*command, what);
-  options->lengths.add(*command, "--max-gap", what.max_gap,
-                       "The most that an element may miss the next, or its own end "
-                       "(default: 0.001)",
-                       LengthRange::kFromZero);
+  add_way(*command, *options);
+  add_track(*command, *options);
   command
       ->add_option("--env", options->environment,
                    "A store: warns where its coordinate system is another than that of the file")

@@ -135,9 +135,10 @@ Pose Alignment::pose_at(double station) const {
   const double z0[3] = {-sin_climb * c, -sin_climb * s, cos_climb};
   Pose pose{{}, {place.at.real(), place.at.imag(), height.value}};
   for (int k = 0; k < 3; ++k) {
-    pose.rotation[3 * k] = x[k];
-    pose.rotation[3 * k + 1] = cos_roll * y0[k] + sin_roll * z0[k];
-    pose.rotation[3 * k + 2] = cos_roll * z0[k] - sin_roll * y0[k];
+    // The sum with 0 leaves no negative zeros, which people would wonder about.
+    pose.rotation[3 * k] = x[k] + 0.0;
+    pose.rotation[3 * k + 1] = cos_roll * y0[k] + sin_roll * z0[k] + 0.0;
+    pose.rotation[3 * k + 2] = cos_roll * z0[k] - sin_roll * y0[k] + 0.0;
   }
   return pose;
 }

@@ -193,8 +193,9 @@ void reverse(AlignmentFile& out) {
   std::ranges::reverse(out.stations);
   for (Pose& pose : out.poses) {
     for (int row = 0; row < 3; ++row) {
-      pose.rotation[3 * row] *= -1;
-      pose.rotation[3 * row + 1] *= -1;
+      for (const int axis : {0, 1}) {
+        pose.rotation[3 * row + axis] = 0.0 - pose.rotation[3 * row + axis];
+      }
     }
   }
 }

@@ -1,0 +1,128 @@
+// Public alignments, and poses of one of them that an independent program computed in 50 digits.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "clearway/alignment.hpp"
+#include "clearway/error.hpp"
+#include "clearway/file_unit.hpp"
+#include "support/test_data.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+std::filesystem::path alignment_named(const std::string& name) {
+  return data_folder() / "alignments" / name;
+}
+
+struct KnownPose {
+  std::string kind;  ///< file, low or reverse
+  double station = 0;
+  double numbers[12];  ///< position, then the columns of the rotation
+};
+
+std::vector<KnownPose> known_poses() {
+  std::ifstream in(alignment_named("PR_Twin_Branch_poses.csv"));
+  std::vector<KnownPose> poses;
+  std::string line;
+  for (std::getline(in, line); std::getline(in, line);) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream fields(line);
+    KnownPose pose;
+    fields >> pose.kind >> pose.station;
+    for (double& number : pose.numbers) fields >> number;
+    pose.kind.erase(0, pose.kind.find('/') + 1);
+    REQUIRE(fields);
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+std::vector<std::string> codes_of(const std::vector<Message>& remarks) {
+  std::vector<std::string> codes;
+  for (const Message& remark : remarks) {
+    if (remark.severity == Message::Severity::kWarning) codes.push_back(remark.code);
+  }
+  return codes;
+}
+
+}  // namespace
+
+TEST_CASE("a real alignment in US survey feet has the poses that are known") {
+  // The file gives the stations with six decimals; they divide the profile's reach evenly, with a
+  // millimetre left out at either end.
+  const double unit = kMetresPerUsSurveyFoot;
+  const double first = 2103.7224673486326 * unit + 0.001;
+  const double last = (2103.7205600000002 + 2796.6790253265699) * unit - 0.001;
+  const auto known = known_poses();
+  REQUIRE(known.size() == 26);
+  for (const KnownPose& pose : known) {
+    const double i = std::round((pose.station - first) / (last - first) * 19);
+    const double station = first + (last - first) * i / 19;
+    REQUIRE(std::abs(station - pose.station) < 1e-6);
+    AlignmentOptions options;
+    options.station_from = options.station_to = station / unit;
+    options.reverse = pose.kind == "reverse";
+    // The file has no cant, so naming a rail changes nothing.
+    if (pose.kind == "low") options.cant = CantUse::kAbout;
+    options.cant_rotation = CantRotation::kInsideRail;
+    const auto poses =
+        read_alignment(alignment_named("PR_Twin_Branch_section_alignment.xml"), options);
+    REQUIRE(poses.size() == 1);
+    for (int k = 0; k < 3; ++k) {
+      CHECK(std::abs(poses[0].translation[k] - pose.numbers[k]) < 2e-9);
+      for (int column = 0; column < 3; ++column) {
+        CHECK(std::abs(poses[0].rotation[3 * k + column] - pose.numbers[3 + 3 * column + k]) <
+              1e-9);
+      }
+    }
+  }
+}
+
+TEST_CASE("public alignments are read, or refused with the reason") {
+  std::vector<Message> remarks;
+  const auto twin =
+      read_alignment(alignment_named("PR_Twin_Branch_section_alignment.xml"), {}, &remarks);
+  CHECK(twin.size() == 8526);
+  CHECK(codes_of(remarks) == std::vector<std::string>{"alignment-feet"});
+
+  const auto first = alignment_named("UT-Alignment-Aplitop-1.xml");
+  remarks.clear();
+  const auto clothoids = read_alignment(first, {}, &remarks);
+  CHECK(clothoids.size() == 5072);
+  CHECK(codes_of(remarks).empty());
+  // It ends where the file says that the last line does.
+  CHECK(std::abs(clothoids.back().translation[0] - 335420.420696) < 1e-9);
+  CHECK(std::abs(clothoids.back().translation[1] - 4084689.855782) < 1e-9);
+  CHECK(std::abs(clothoids.back().translation[2] - 350.7) < 1e-9);
+  CHECK_THROWS_WITH(read_alignment(first, {.order = AxisOrder::kEastingNorthing}),
+                    Contains("Center lies on the other side") && Contains("--order ne"));
+
+  const auto second = alignment_named("Alignment-Aplitop-2.XML");
+  CHECK_THROWS_WITH(read_alignment(second, {.max_gap = 0.01}), Contains("no profile"));
+  // The radius of its second curve is 1.3 mm off its centre, which places nothing, and makes the
+  // curve 0.5 mm shorter than its chord.
+  CHECK(read_alignment(second, {.height = 0}).size() == 56512);
+  CHECK_THROWS_WITH(read_alignment(second, {.max_gap = 0.0001, .height = 0}),
+                    Contains("line 43") && Contains("0.000475 m") && Contains("--max-gap 0.0005"));
+
+  const auto late = alignment_named("TOI-M14334-0000A.XML");
+  remarks.clear();
+  const auto road = read_alignment(late, {.step = 1}, &remarks);
+  CHECK(codes_of(remarks) == std::vector<std::string>{"profile-shorter"});
+  CHECK(std::abs(road.front().translation[2] - 125.687614) < 1e-9);
+  CHECK(std::abs(road.back().translation[2] - 125.806) < 1e-9);
+
+  remarks.clear();
+  const auto crossing = read_alignment(alignment_named("TOI-Y3-0000A.XML"), {.step = 1}, &remarks);
+  CHECK(codes_of(remarks) == std::vector<std::string>{"profile-shorter"});
+  CHECK(crossing.size() == 37);
+  CHECK(std::abs(crossing.back().translation[2] - 126.005283) < 1e-9);
+}
