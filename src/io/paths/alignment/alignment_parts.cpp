@@ -21,8 +21,11 @@ using Complex = std::complex<double>;
 constexpr double kDeclared = 0.001;
 /// Radians by which the direction may change between two elements without a warning.
 constexpr double kKink = 1e-3;
-/// Metres to which messages round.
-std::string metres_text(double metres) { return format_number(std::round(metres * 1e6) / 1e6); }
+/// A length for a message, rounded to a micrometre unless it is smaller.
+std::string metres_text(double metres) {
+  return std::abs(metres) < 1e-6 ? format_brief(metres)
+                                 : format_number(std::round(metres * 1e6) / 1e6);
+}
 
 double cross(Complex a, Complex b) { return a.real() * b.imag() - a.imag() * b.real(); }
 
@@ -52,17 +55,16 @@ class PlanReader {
       xml_.refuse_at(node, "has the length " + brief(element.length) + " m; expected 0 or more");
     }
     if (element.length < kSameStation) return;
-    if (!(std::abs(element.turn()) < 2 * std::numbers::pi)) {
-      xml_.refuse_at(node, "turns by " + brief(std::abs(element.turn()) * 180 / std::numbers::pi) +
-                               " degrees; expected less than a full circle, as closed curves are "
-                               "not read");
-    }
+    check_turn(node, element);
     elements.push_back(element);
     nodes.push_back(node);
+    arc_found.push_back(kind == "Curve" && !xml_.attribute(node, "length"));
   }
 
   std::vector<PlanElement> elements;
   std::vector<pugi::xml_node> nodes;
+  /// Whether each element is an arc whose length follows from its centre and its sense
+  std::vector<bool> arc_found;
 
  private:
   /// The place of a point: x is easting.
@@ -107,14 +109,23 @@ class PlanReader {
       xml_.refuse_at(node, "has the radius " + brief(radius) + " m; expected more than 0");
     }
     element.first_curvature = element.last_curvature = sense / radius;
-    if (element.start == element.end) {
+    if (element.start == element.end && !(length && *length < kSameStation)) {
       xml_.refuse_at(node,
                      "ends where it starts; expected less than a full circle, as closed curves "
                      "are not read");
     }
     element.length = length ? *length : radius * angle_about(center, element, sense);
+    check_turn(node, element);
     if (found && length) check_center(node, element, center);
     return element;
+  }
+
+  void check_turn(pugi::xml_node node, const PlanElement& element) const {
+    if (!(std::abs(element.turn()) < 2 * std::numbers::pi)) {
+      xml_.refuse_at(node, "turns by " + brief(std::abs(element.turn()) * 180 / std::numbers::pi) +
+                               " degrees; expected less than a full circle, as closed curves are "
+                               "not read");
+    }
   }
 
   /// Angle from start to end about the centre in the sense of the curve, from 0 to 2 pi.
@@ -192,12 +203,16 @@ double greatest_kink(const AlignmentPlan& plan, std::size_t* where = nullptr) {
 
 /// Whether the plan has kinks that would not be there if all its curves turned the other way, as
 /// swapped coordinates have it.
-bool is_mirrored(const AlignmentPlan& plan) {
+bool is_mirrored(const AlignmentPlan& plan, const PlanReader& read) {
   if (!(greatest_kink(plan) > kKink)) return false;
   std::vector<PlanElement> turned = plan.elements();
-  for (PlanElement& element : turned) {
+  for (std::size_t i = 0; i < turned.size(); ++i) {
+    PlanElement& element = turned[i];
     element.first_curvature *= -1;
     element.last_curvature *= -1;
+    // From its start to its end in the other sense, an arc takes the rest of its circle.
+    if (!read.arc_found[i]) continue;
+    element.length = 2 * std::numbers::pi / std::abs(element.first_curvature) - element.length;
   }
   return greatest_kink(AlignmentPlan(std::move(turned), plan.first_station())) <= kKink;
 }
@@ -295,7 +310,7 @@ AlignmentPlan read_plan(const LandXml& xml, pugi::xml_node alignment,
   AlignmentPlan plan(read.elements,
                      xml.required_length(alignment, "staStart", "the station at which it begins"));
   const std::string name = xml.name();
-  if (is_mirrored(plan)) {
+  if (is_mirrored(plan, read)) {
     refuse(name, "the direction jumps by up to " +
                      format_brief(greatest_kink(plan) * 180 / std::numbers::pi) +
                      " degrees between the elements of the plan, but nowhere if all curves turned "

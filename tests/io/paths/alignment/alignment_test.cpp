@@ -156,7 +156,7 @@ TEST_CASE("feet of either kind become metres, and doubtful ones are warned of") 
   CHECK_THAT(far.remarks[1].text, Contains("international feet") && Contains("1.219 m elsewhere"));
   file = {};
   file.units = R"(<Metric linearUnit="millimeter"/>)";
-  CHECK(std::abs(made_of(file, {.max_gap = 0}).poses.back().translation[0] - 0.15) < 1e-14);
+  CHECK(std::abs(made_of(file, {.max_gap = 1e-9}).poses.back().translation[0] - 0.15) < 1e-14);
 }
 
 TEST_CASE("lengths that the file leaves out follow from its places") {
@@ -182,11 +182,13 @@ TEST_CASE("lengths that the file leaves out follow from its places") {
 
 TEST_CASE("elements without a length are left out") {
   LandFile file;
-  file.line += R"(<Line length="1e-7"><Start>0 100</Start><End>0 100</End></Line>)";
+  file.line += R"(<Line length="1e-7"><Start>0 100</Start><End>0 100</End></Line>)"
+               R"(<Curve rot="cw" radius="5" length="0"><Start>0 100</Start><Center>0 0</Center>)"
+               R"(<End>0 100</End></Curve>)";
   CHECK(made_of(file).poses.size() == 1787);
   CHECK_THAT(
       refusal_of(with_line(R"(<Line length="-5"><Start>0 0</Start><End>0 100</End></Line>)")),
-      Contains("line 6: XML element \"Line\": has the length -5 m"));
+      Contains("line 7: XML element \"Line\": has the length -5 m"));
   file.line = R"(<Line length="0"><Start>0 100</Start><End>0 100</End></Line>)";
   file.curve = "";
   CHECK_THAT(refusal_of(file), Contains("no element with a length"));
@@ -195,7 +197,7 @@ TEST_CASE("elements without a length are left out") {
 TEST_CASE("gaps and elements that miss their ends are refused, unless they are allowed") {
   const LandFile gap =
       with_line(R"(<Line length="100"><Start>0 0</Start><End>0.0021 100</End></Line>)");
-  CHECK_THAT(refusal_of(gap), Contains("line 6") && Contains("ends 0.0021 m from where the next") &&
+  CHECK_THAT(refusal_of(gap), Contains("line 7") && Contains("ends 0.0021 m from where the next") &&
                                   Contains("--max-gap 0.0021"));
   CHECK(made_of(gap, {.max_gap = 0.0022}).codes().empty());
   const LandFile misfit =
@@ -267,6 +269,11 @@ TEST_CASE("swapped coordinates are noticed by the centre, and by the kinks that 
                R"(<Start>0 100</Start><Center>-50 100</Center><End>-50 50</End></Curve>)";
   CHECK(made_of(wide, {.station_to = 1200}).codes().empty());
   CHECK_THAT(refusal_of(wide, {.order = AxisOrder::kEastingNorthing}), Contains("other side"));
+  // An arc without a length would take the rest of its circle.
+  LandFile bare;
+  bare.curve = "<Curve rot=\"ccw\">" + kArc;
+  CHECK_THAT(refusal_of(bare, {.order = AxisOrder::kEastingNorthing}),
+             Contains("turned the other way"));
   // Clothoids have no centre, but swapped they leave the line beside them at an angle.
   LandFile spiral;
   spiral.attributes = R"(name="a" staStart="1000" length="160")";
