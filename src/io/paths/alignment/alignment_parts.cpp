@@ -540,22 +540,29 @@ CantRotation rotation_of(const LandXml& xml, pugi::xml_node cant, const Alignmen
                           "--cant names it instead");
 }
 
-/// The distance of the rails in metres.
-double rail_distance_of(const LandXml& xml, pugi::xml_node cant, const AlignmentOptions& options) {
-  constexpr double kMostGauge = 10, kNormal = 1.435, kNormalMiddles = 1.5, kSameGauge = 0.0005;
+/// The gauge in metres; nullopt where the file has none.
+std::optional<double> gauge_of(const LandXml& xml, pugi::xml_node cant) {
+  constexpr double kMostGauge = 10;
   const auto number = xml.number(cant, "gauge");
   if (number && !(*number > 0 && *number <= kMostGauge)) {
-    xml.refuse_at(cant, "has gauge=" + excerpt(*xml.attribute(cant, "gauge")) + "; expected " +
-                            xml.unit_name() + "s above 0 and up to " + format_number(kMostGauge) +
+    xml.refuse_at(cant, "has gauge=" + excerpt(*xml.attribute(cant, "gauge")) +
+                            "; expected a number above 0 and up to " + format_number(kMostGauge) +
+                            " in the file's unit, the " + xml.unit_name() +
                             ", for example 1.435 in metres");
   }
+  return xml.length(cant, "gauge");
+}
+
+/// The distance of the rails in metres.
+double rail_distance_of(const LandXml& xml, pugi::xml_node cant, std::optional<double> gauge,
+                        const AlignmentOptions& options) {
+  constexpr double kNormal = 1.435, kNormalMiddles = 1.5, kSameGauge = 0.0005;
   if (options.rail_distance) return *options.rail_distance;
-  const double gauge = number ? *number * xml.metres_per_unit() : 0;
-  if (std::abs(gauge - kNormal) <= kSameGauge || std::abs(gauge - kNormalMiddles) <= kSameGauge) {
-    return kNormalMiddles;
+  for (const double known : {kNormal, kNormalMiddles}) {
+    if (gauge && std::abs(*gauge - known) <= kSameGauge) return kNormalMiddles;
   }
-  xml.refuse_at(cant, (number ? "has a gauge of " + metres_text(gauge) + " m"
-                              : std::string("has no attribute gauge")) +
+  xml.refuse_at(cant, (gauge ? "has a gauge of " + metres_text(*gauge) + " m"
+                             : std::string("has no attribute gauge")) +
                           ", so the distance of the rails' middles is not known; --rail-distance "
                           "gives it in metres");
 }
@@ -578,8 +585,9 @@ void read_cant(const LandXml& xml, pugi::xml_node alignment, const AlignmentOpti
   std::vector<CantPoint> points = cant_points(xml, cant);
   double most = 0;
   for (const CantPoint& point : points) most = std::max(most, std::abs(point.cant));
-  const double distance = most > 0 ? rail_distance_of(xml, cant, options) : 1;
+  const auto gauge = gauge_of(xml, cant);
   if (most == 0) return;
+  const double distance = rail_distance_of(xml, cant, gauge, options);
   if (!(most < distance)) {
     xml.refuse_at(cant, "raises a rail by up to " + brief(most) + " m, with rails " +
                             brief(distance) + " m apart; expected a cant in " +

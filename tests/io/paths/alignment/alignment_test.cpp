@@ -520,6 +520,7 @@ TEST_CASE("cants that make no sense are refused with their line") {
   const std::string gauge = R"(gauge="1.435" rotationPoint="center")";
   CHECK_THAT(refused(R"(gauge="1435" rotationPoint="center")", good),
              Contains("gauge=\"1435\"") && Contains("up to 10"));
+  CHECK_THAT(refused(R"(gauge="1435")", cant_station(1000, 0, "")), Contains("up to 10"));
   CHECK_THAT(refused(R"(gauge="0" rotationPoint="center")", good), Contains("gauge=\"0\""));
   CHECK_THAT(refused(R"(gauge="1.0" rotationPoint="center")", good),
              Contains("a gauge of 1 m") && Contains("--rail-distance"));
