@@ -100,13 +100,13 @@ void clip_to_profile(const LandXml& xml, const AlignmentProfile& profile, Reach&
 void remark_cant_ends(const LandXml& xml, const Alignment& track, const Reach& reach,
                       AlignmentFile& out) {
   if (!track.cant) return;
-  const double first = track.cant->points().front().station;
-  const double last = track.cant->points().back().station;
-  const bool early = reach.from<first - kSameStation, late = reach.to> last + kSameStation;
+  const CantPoint &begin = track.cant->points().front(), &end = track.cant->points().back();
+  const double first = begin.station, last = end.station;
+  const bool early = reach.from + kSameStation < first;
+  const bool late = reach.to - kSameStation > last;
   if (!early && !late) return;
   // Beyond an end without cant the track is level, as is usual.
-  const bool canted = (early && track.cant->points().front().cant != 0) ||
-                      (late && track.cant->points().back().cant != 0);
+  const bool canted = (early && begin.cant != 0) || (late && end.cant != 0);
   const double unit = xml.metres_per_unit();
   const std::string text = xml.name() + ": the cant is given from station " + brief(first / unit) +
                            " to " + brief(last / unit) +
@@ -257,7 +257,7 @@ AlignmentFile read_alignment_file(const std::filesystem::path& path,
   if (options.station_to) reach.to = asked_station(xml, track.plan, *options.station_to, "--to");
   if (track.profile) clip_to_profile(xml, *track.profile, reach, out);
   remark_cant_ends(xml, track, reach, out);
-  remark_equations(xml, node, out);
+  remark_left_out(xml, node, out);
   remark_feet(xml, track.plan, out);
   remark_crs(xml, options.environment_crs, out);
   out.stations = stations_of(reach, options.step);

@@ -598,7 +598,13 @@ void read_cant(const LandXml& xml, pugi::xml_node alignment, const AlignmentOpti
   track.cant.emplace(std::move(points));
 }
 
-void remark_equations(const LandXml& xml, pugi::xml_node alignment, AlignmentFile& out) {
+void remark_left_out(const LandXml& xml, pugi::xml_node alignment, AlignmentFile& out) {
+  if (alignment.child("Superelevation")) {
+    out.warn("superelevation",
+             xml.name() +
+                 ": the superelevation of the road is not read, so the poses are level "
+                 "across where the road leans");
+  }
   std::size_t count = 0;
   std::string first;
   for (const pugi::xml_node node : alignment.children("StaEquation")) {

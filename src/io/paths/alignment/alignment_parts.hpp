@@ -37,7 +37,8 @@ pugi::xml_node choose_by_name(const LandXml& xml, const std::vector<pugi::xml_no
                               const std::string& wanted, const std::string& noun,
                               const std::string& option);
 
-/// Warns of station equations, which the stations of the poses do not follow.
-void remark_equations(const LandXml& xml, pugi::xml_node alignment, AlignmentFile& out);
+/// Warns of parts of an alignment that the poses do not follow: station equations and the
+/// superelevation of a road.
+void remark_left_out(const LandXml& xml, pugi::xml_node alignment, AlignmentFile& out);
 
 }  // namespace clearway

@@ -561,6 +561,11 @@ TEST_CASE("station equations are warned of") {
   CHECK(made.labels.station[60] == 1060);
 }
 
+TEST_CASE("the superelevation of a road is warned of, as it is left out") {
+  CHECK(made_of(with_more("<Superelevation staStart=\"1000\" staEnd=\"1100\"/>"), {.step = 1})
+            .codes() == Codes{"superelevation"});
+}
+
 TEST_CASE("another coordinate system than the environment's is warned of") {
   const std::string utm =
       R"(PROJCS["ETRS89 / UTM zone 32N",GEOGCS["ETRS89",DATUM["European_Terrestrial_Reference_System_1989",)"
