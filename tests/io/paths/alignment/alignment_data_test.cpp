@@ -78,6 +78,30 @@ TEST_CASE("a real alignment in US survey feet has the poses that are known") {
   }
 }
 
+TEST_CASE("places on real clothoids, arcs and lines are those of 30 digits") {
+  // Station, position and x axis by the formulas of docs/design/trajectory.md (mpmath).
+  const double known[][7] = {
+      {33.25, 335116.361810185364, 4084603.02680801523, 368.20682298962234, 0.627114372515553225,
+       0.776835384491086011, 0.0570469033954561365},
+      {62.0, 335120.474720778417, 4084630.40040405413, 369.385234773535111, -0.141763861729100564,
+       0.989589073933876492, 0.0248288593846995581},
+      {120.75, 335158.569626190736, 4084650.59545867278, 368.905295895882979, 0.69544022491188804,
+       -0.717405320457394471, -0.041140001870754973},
+      {380.0, 335316.274655695767, 4084633.2257195769, 351.829896907216495, 0.312804885079886612,
+       0.947461237048705125, -0.0668603631481033501},
+      {490.0625, 335403.666140990831, 4084686.95207400976, 348.706864843008346,
+       0.978988064930436362, 0.169667022784457637, 0.113117063713738834}};
+  for (const auto& row : known) {
+    const auto poses = read_alignment(alignment_named("UT-Alignment-Aplitop-1.xml"),
+                                      {.station_from = row[0], .station_to = row[0]});
+    REQUIRE(poses.size() == 1);
+    for (int k = 0; k < 3; ++k) {
+      CHECK(std::abs(poses[0].translation[k] - row[1 + k]) < 1e-9);
+      CHECK(std::abs(poses[0].rotation[3 * k] - row[4 + k]) < 1e-10);
+    }
+  }
+}
+
 TEST_CASE("public alignments are read, or refused with the reason") {
   std::vector<Message> remarks;
   const auto twin =
