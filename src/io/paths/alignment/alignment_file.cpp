@@ -86,11 +86,15 @@ void clip_to_profile(const LandXml& xml, const AlignmentProfile& profile, Reach&
                           brief(profile.last_station() / unit) + " only";
   if (reach.from > reach.to) refuse(xml.name(), has + ", where no pose is wanted");
   const double begins = reach.from - asked.from, ends = asked.to - reach.to;
-  if (begins <= kWorthTelling && ends <= kWorthTelling) return;
+  const std::string later =
+      begins > kWorthTelling ? "begin " + format_brief(begins) + " m later" : std::string();
+  const std::string earlier =
+      ends > kWorthTelling ? "end " + format_brief(ends) + " m earlier" : std::string();
+  if (later.empty() && earlier.empty()) return;
   out.warn("profile-shorter",
-           xml.name() + ": " + has + ", so the poses begin " + format_brief(std::max(begins, 0.0)) +
-               " m after and end " + format_brief(std::max(ends, 0.0)) +
-               " m before what was asked for",
+           xml.name() + ": " + has + ", so the poses " + later +
+               (later.empty() || earlier.empty() ? "" : " and ") + earlier +
+               " than what was wanted of the plan",
            {{"first", profile.first_station() / unit},
             {"last", profile.last_station() / unit},
             {"begins_after", begins},

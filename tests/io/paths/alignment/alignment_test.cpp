@@ -372,7 +372,7 @@ TEST_CASE("without a profile a height is needed, and with one it is refused") {
 TEST_CASE("poses are made only where the profile reaches") {
   const Made late = made_of(with_profile("<PVI>1040.25 1</PVI><PVI>1100 2</PVI>"));
   CHECK(late.codes() == Codes{"profile-shorter"});
-  CHECK_THAT(late.remarks[0].text, Contains("begin 40.25 m after and end 78.54 m before"));
+  CHECK_THAT(late.remarks[0].text, Contains("begin 40.25 m later and end 78.54 m earlier"));
   CHECK(late.labels.station.front() == 1040.25);
   CHECK(late.labels.station.back() == 1100);
   CHECK(late.poses.size() == 599);
