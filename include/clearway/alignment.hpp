@@ -13,13 +13,14 @@ namespace clearway {
 
 /// The line of a cross-section about which cant turns the track: the rail that stays at the height
 /// of the profile, or the middle between both.
-enum class CantRotation { kCenter, kInsideRail, kOutsideRail, kLeftRail, kRightRail };
-
-/// Whether and how the cant of an alignment counts.
-enum class CantUse {
-  kFile,  ///< it turns about the line that the file names
-  kNone,  ///< it is left out
-  kAbout  ///< it turns about the line that the caller names
+enum class CantLine {
+  kFile,  ///< the line that the file names
+  kNone,  ///< none: the cant is left out
+  kCenter,
+  kInsideRail,
+  kOutsideRail,
+  kLeftRail,
+  kRightRail
 };
 
 /// The order of the coordinates of a place in LandXML.
@@ -33,8 +34,7 @@ struct AlignmentOptions {
   std::optional<double> station_from = {}, station_to = {};
   double step = 0.1;     ///< metres along the alignment from one pose to the next
   bool reverse = false;  ///< drives against the stations: x and y point the other way
-  CantUse cant = CantUse::kFile;
-  CantRotation cant_rotation = CantRotation::kCenter;  ///< for CantUse::kAbout
+  CantLine cant = CantLine::kFile;
   /// Distance in metres between the middles of the two rails, by which cant becomes an angle. None:
   /// 1.5 m for a gauge of 1.435 or 1.5 m; any other gauge is refused then.
   std::optional<double> rail_distance = {};

@@ -31,20 +31,13 @@ constexpr Named<AngleUnit> kAngleUnits[] = {
 constexpr Named<AngleFrame> kAngleFrames[] = {
     {"declared", AngleFrame::kDeclared}, {"ned", AngleFrame::kNed}, {"enu", AngleFrame::kEnu}};
 
-/// What cant turns the track about, or that the file says it or that there is none.
-struct CantArgument {
-  CantUse use;
-  CantRotation rotation = CantRotation::kCenter;
-};
-
-constexpr Named<CantArgument> kCants[] = {
-    {"file", {CantUse::kFile}},
-    {"none", {CantUse::kNone}},
-    {"center", {CantUse::kAbout, CantRotation::kCenter}},
-    {"inside-rail", {CantUse::kAbout, CantRotation::kInsideRail}},
-    {"outside-rail", {CantUse::kAbout, CantRotation::kOutsideRail}},
-    {"left-rail", {CantUse::kAbout, CantRotation::kLeftRail}},
-    {"right-rail", {CantUse::kAbout, CantRotation::kRightRail}}};
+constexpr Named<CantLine> kCants[] = {{"file", CantLine::kFile},
+                                      {"none", CantLine::kNone},
+                                      {"center", CantLine::kCenter},
+                                      {"inside-rail", CantLine::kInsideRail},
+                                      {"outside-rail", CantLine::kOutsideRail},
+                                      {"left-rail", CantLine::kLeftRail},
+                                      {"right-rail", CantLine::kRightRail}};
 constexpr Named<AxisOrder> kOrders[] = {{"ne", AxisOrder::kNorthingEasting},
                                         {"en", AxisOrder::kEastingNorthing}};
 
@@ -132,15 +125,13 @@ void add_read_alignment(py::module_& module) {
          bool reverse, const std::string& cant, std::optional<double> rail_distance,
          const std::string& order, double max_gap, std::optional<double> height,
          const std::string& environment_crs, const py::object& messages, PoseLabels* labels) {
-        const CantArgument about = value_of("cant", kCants, cant);
         const AlignmentOptions options{.alignment = alignment,
                                        .profile = profile,
                                        .station_from = station_from,
                                        .station_to = station_to,
                                        .step = step,
                                        .reverse = reverse,
-                                       .cant = about.use,
-                                       .cant_rotation = about.rotation,
+                                       .cant = value_of("cant", kCants, cant),
                                        .rail_distance = rail_distance,
                                        .order = value_of("order", kOrders, order),
                                        .max_gap = max_gap,

@@ -20,7 +20,7 @@ AlignmentOptions options_of(std::uint8_t byte) {
   if (byte / 4 % 2 != 0) options.height = 7;
   if (byte / 8 % 2 != 0) options.max_gap = 1e9;
   if (byte / 16 % 2 != 0) options.rail_distance = 1.5;
-  if (byte / 32 % 2 != 0) options.cant = CantUse::kAbout;
+  if (byte / 32 % 2 != 0) options.cant = CantLine::kLeftRail;
   if (byte / 64 % 2 != 0) options.alignment = "a";
   if (byte / 128 % 2 != 0) options.station_from = options.station_to = 1050;
   return options;

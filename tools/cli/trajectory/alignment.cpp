@@ -36,18 +36,16 @@ struct AlignmentCommand {
 
 struct NamedCant {
   const char* name;
-  CantUse use;
-  CantRotation rotation = CantRotation::kCenter;
+  CantLine line;
 };
 
-constexpr std::array<NamedCant, 7> kCants{
-    {{"file", CantUse::kFile},
-     {"none", CantUse::kNone},
-     {"center", CantUse::kAbout, CantRotation::kCenter},
-     {"inside-rail", CantUse::kAbout, CantRotation::kInsideRail},
-     {"outside-rail", CantUse::kAbout, CantRotation::kOutsideRail},
-     {"left-rail", CantUse::kAbout, CantRotation::kLeftRail},
-     {"right-rail", CantUse::kAbout, CantRotation::kRightRail}}};
+constexpr std::array<NamedCant, 7> kCants{{{"file", CantLine::kFile},
+                                           {"none", CantLine::kNone},
+                                           {"center", CantLine::kCenter},
+                                           {"inside-rail", CantLine::kInsideRail},
+                                           {"outside-rail", CantLine::kOutsideRail},
+                                           {"left-rail", CantLine::kLeftRail},
+                                           {"right-rail", CantLine::kRightRail}}};
 
 void print_json(const AlignmentFile& made) {
   std::vector<Message> notes, warnings;
@@ -123,10 +121,7 @@ void add_cant(CLI::App& command, AlignmentOptions& options) {
       .add_option_function<std::string>(
           "--cant",
           [&options](const std::string& name) {
-            const auto* const cant = std::ranges::find_if(
-                kCants, [&name](const NamedCant& known) { return name == known.name; });
-            options.cant = cant->use;
-            options.cant_rotation = cant->rotation;
+            options.cant = std::ranges::find(kCants, name, &NamedCant::name)->line;
           },
           "What cant turns the track about, or that there is none (default: file, as it says)")
       ->type_name("NAME")

@@ -89,24 +89,26 @@ namespace {
 
 /// How far the middle of the track is above the profile where the left rail is above the right one
 /// by `cant`.
-SlopedValue raise_of(const SlopedValue& cant, CantRotation rotation) {
+SlopedValue raise_of(const SlopedValue& cant, CantLine line) {
   // On the border between a left and a right curve the direction of the change decides.
   const bool to_the_right = cant.value > 0 || (cant.value == 0 && cant.slope >= 0);
   const double side = to_the_right ? 1 : -1;
   double share = 0;
-  switch (rotation) {
-    case CantRotation::kCenter:
+  switch (line) {
+    case CantLine::kFile:
+    case CantLine::kNone:
+    case CantLine::kCenter:
       break;
-    case CantRotation::kInsideRail:
+    case CantLine::kInsideRail:
       share = side;
       break;
-    case CantRotation::kOutsideRail:
+    case CantLine::kOutsideRail:
       share = -side;
       break;
-    case CantRotation::kLeftRail:
+    case CantLine::kLeftRail:
       share = -1;
       break;
-    case CantRotation::kRightRail:
+    case CantLine::kRightRail:
       share = 1;
       break;
   }
@@ -121,7 +123,7 @@ Pose Alignment::pose_at(double station) const {
   double sin_roll = 0;
   if (cant) {
     const SlopedValue now = cant->at(station);
-    const SlopedValue raise = raise_of(now, rotation);
+    const SlopedValue raise = raise_of(now, cant_line);
     height.value += raise.value;
     height.slope += raise.slope;
     sin_roll = now.value / rail_distance;

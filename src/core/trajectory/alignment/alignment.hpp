@@ -88,7 +88,7 @@ struct Alignment {
   std::optional<AlignmentProfile> profile = {};
   double level = 0;  ///< height everywhere where there is no profile
   std::optional<AlignmentCant> cant = {};
-  CantRotation rotation = CantRotation::kCenter;
+  CantLine cant_line = CantLine::kCenter;
   double rail_distance = 1.5;
 
   /// The pose at a station: x forward, y left, z up, the origin in the middle of the track on the

@@ -472,16 +472,17 @@ std::optional<AlignmentProfile> read_profile(const LandXml& xml, pugi::xml_node 
 
 namespace {
 
-struct NamedRotation {
+struct NamedLine {
   std::string_view name;
-  CantRotation rotation;
+  CantLine line;
 };
 
-constexpr NamedRotation kRotations[] = {{"center", CantRotation::kCenter},
-                                        {"insideRail", CantRotation::kInsideRail},
-                                        {"outsideRail", CantRotation::kOutsideRail},
-                                        {"leftRail", CantRotation::kLeftRail},
-                                        {"rightRail", CantRotation::kRightRail}};
+/// The values of rotationPoint.
+constexpr NamedLine kLines[] = {{"center", CantLine::kCenter},
+                                {"insideRail", CantLine::kInsideRail},
+                                {"outsideRail", CantLine::kOutsideRail},
+                                {"leftRail", CantLine::kLeftRail},
+                                {"rightRail", CantLine::kRightRail}};
 
 /// The cant of a station, positive with the left rail high.
 CantPoint cant_point(const LandXml& xml, pugi::xml_node node) {
@@ -520,9 +521,9 @@ std::vector<CantPoint> cant_points(const LandXml& xml, pugi::xml_node cant) {
   return points;
 }
 
-CantRotation rotation_of(const LandXml& xml, pugi::xml_node cant, const AlignmentOptions& options,
-                         AlignmentFile& out) {
-  if (options.cant == CantUse::kAbout) return options.cant_rotation;
+CantLine line_of(const LandXml& xml, pugi::xml_node cant, const AlignmentOptions& options,
+                 AlignmentFile& out) {
+  if (options.cant != CantLine::kFile) return options.cant;
   const auto name = xml.attribute(cant, "rotationPoint");
   if (!name) {
     out.warn("cant-rotation",
@@ -530,10 +531,10 @@ CantRotation rotation_of(const LandXml& xml, pugi::xml_node cant, const Alignmen
                  ": the cant does not say about which rail it turns the track, so the inner "
                  "rail was taken. If another rail keeps the height of the profile, name it "
                  "with --cant");
-    return CantRotation::kInsideRail;
+    return CantLine::kInsideRail;
   }
-  for (const NamedRotation& known : kRotations) {
-    if (known.name == *name) return known.rotation;
+  for (const NamedLine& known : kLines) {
+    if (known.name == *name) return known.line;
   }
   xml.refuse_at(cant, "has rotationPoint=" + excerpt(*name) +
                           "; expected center, insideRail, outsideRail, leftRail or rightRail; "
@@ -573,12 +574,12 @@ void read_cant(const LandXml& xml, pugi::xml_node alignment, const AlignmentOpti
                Alignment& track, AlignmentFile& out) {
   const pugi::xml_node cant = alignment.child("Cant");
   if (!cant) {
-    if (options.cant == CantUse::kFile && !options.rail_distance) return;
+    if (options.cant == CantLine::kFile && !options.rail_distance) return;
     out.note("no-cant",
              xml.name() + ": the alignment has no cant, so options of cant change nothing");
     return;
   }
-  if (options.cant == CantUse::kNone) return;
+  if (options.cant == CantLine::kNone) return;
   if (const pugi::xml_node second = cant.next_sibling("Cant")) {
     xml.refuse_at(second, "stands twice in its Alignment; expected it once, or --cant none");
   }
@@ -593,7 +594,7 @@ void read_cant(const LandXml& xml, pugi::xml_node alignment, const AlignmentOpti
                             brief(distance) + " m apart; expected a cant in " +
                             (xml.is_imperial() ? "inches" : "millimetres"));
   }
-  track.rotation = rotation_of(xml, cant, options, out);
+  track.cant_line = line_of(xml, cant, options, out);
   track.rail_distance = distance;
   track.cant.emplace(std::move(points));
 }

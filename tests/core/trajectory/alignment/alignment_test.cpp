@@ -143,18 +143,18 @@ TEST_CASE("cant lifts the rails that the line of rotation leaves free") {
   // The raise of the middle, as a share of the cant, for the left rail high and the right rail
   // high.
   const struct {
-    CantRotation rotation;
+    CantLine line;
     double left_high, right_high;
-  } kinds[] = {{CantRotation::kCenter, 0, 0},
-               {CantRotation::kInsideRail, 0.5, 0.5},
-               {CantRotation::kOutsideRail, -0.5, -0.5},
-               {CantRotation::kLeftRail, -0.5, 0.5},
-               {CantRotation::kRightRail, 0.5, -0.5}};
+  } kinds[] = {{CantLine::kCenter, 0, 0},
+               {CantLine::kInsideRail, 0.5, 0.5},
+               {CantLine::kOutsideRail, -0.5, -0.5},
+               {CantLine::kLeftRail, -0.5, 0.5},
+               {CantLine::kRightRail, 0.5, -0.5}};
   for (const auto& kind : kinds) {
     for (const double cant : {0.15, -0.15}) {
       Alignment track = straight_track();
       track.cant.emplace(std::vector<CantPoint>{{0, cant}, {1000, cant}});
-      track.rotation = kind.rotation;
+      track.cant_line = kind.line;
       track.rail_distance = 1.5;
       const Pose pose = track.pose_at(500);
       const double raise = 0.15 * (cant > 0 ? kind.left_high : kind.right_high);
@@ -170,7 +170,7 @@ TEST_CASE("cant lifts the rails that the line of rotation leaves free") {
 
 TEST_CASE("a ramp of cant tilts the way by the raise of the middle") {
   Alignment track = straight_track();
-  track.rotation = CantRotation::kInsideRail;
+  track.cant_line = CantLine::kInsideRail;
   track.cant.emplace(std::vector<CantPoint>{{0, 0.1}, {100, -0.1}, {200, -0.1}});
   const auto climb = [&](double s) {
     const Pose pose = track.pose_at(s);

@@ -63,8 +63,7 @@ TEST_CASE("a real alignment in US survey feet has the poses that are known") {
     options.station_from = options.station_to = pose.station / kMetresPerUsSurveyFoot;
     options.reverse = pose.kind == "reverse";
     // The file has no cant, so naming a rail changes nothing.
-    if (pose.kind == "low") options.cant = CantUse::kAbout;
-    options.cant_rotation = CantRotation::kInsideRail;
+    if (pose.kind == "low") options.cant = CantLine::kInsideRail;
     const auto poses =
         read_alignment(alignment_named("PR_Twin_Branch_section_alignment.xml"), options);
     REQUIRE(poses.size() == 1);

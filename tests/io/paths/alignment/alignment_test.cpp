@@ -456,18 +456,15 @@ TEST_CASE("cant turns the track about the line that the file or the caller names
   CHECK(file.codes().empty());
   CHECK(std::abs(file.poses[0].translation[2] - (level + 0.075)) < 1e-12);
   CHECK(std::abs(file.poses[0].rotation[7] * std::hypot(1, 0.01) - -0.1) < 1e-3);
-  const auto raise = [&](CantRotation rotation) {
-    return made(R"(gauge="1.5")", {.cant = CantUse::kAbout, .cant_rotation = rotation})
-               .poses[0]
-               .translation[2] -
-           level;
+  const auto raise = [&](CantLine line) {
+    return made(R"(gauge="1.5")", {.cant = line}).poses[0].translation[2] - level;
   };
-  CHECK(std::abs(raise(CantRotation::kCenter)) < 1e-12);
-  CHECK(std::abs(raise(CantRotation::kInsideRail) - 0.075) < 1e-12);
-  CHECK(std::abs(raise(CantRotation::kOutsideRail) - -0.075) < 1e-12);
-  CHECK(std::abs(raise(CantRotation::kLeftRail) - 0.075) < 1e-12);
-  CHECK(std::abs(raise(CantRotation::kRightRail) - -0.075) < 1e-12);
-  const Made none = made(R"(gauge="bad")", {.cant = CantUse::kNone});
+  CHECK(std::abs(raise(CantLine::kCenter)) < 1e-12);
+  CHECK(std::abs(raise(CantLine::kInsideRail) - 0.075) < 1e-12);
+  CHECK(std::abs(raise(CantLine::kOutsideRail) - -0.075) < 1e-12);
+  CHECK(std::abs(raise(CantLine::kLeftRail) - 0.075) < 1e-12);
+  CHECK(std::abs(raise(CantLine::kRightRail) - -0.075) < 1e-12);
+  const Made none = made(R"(gauge="bad")", {.cant = CantLine::kNone});
   CHECK(none.poses[0].rotation[7] == 0);
   CHECK(none.codes().empty());
   const Made unsaid = made(R"(gauge="1.435")");
@@ -545,8 +542,8 @@ TEST_CASE("cants that make no sense are refused with their line") {
 }
 
 TEST_CASE("options of cant change nothing without cant, which a note says") {
-  CHECK(made_of({}, {.step = 1, .cant = CantUse::kAbout}).codes() == Codes{"note no-cant"});
-  CHECK(made_of({}, {.step = 1, .cant = CantUse::kNone}).codes() == Codes{"note no-cant"});
+  CHECK(made_of({}, {.step = 1, .cant = CantLine::kCenter}).codes() == Codes{"note no-cant"});
+  CHECK(made_of({}, {.step = 1, .cant = CantLine::kNone}).codes() == Codes{"note no-cant"});
   CHECK(made_of({}, {.step = 1, .rail_distance = 1.5}).codes() == Codes{"note no-cant"});
 }
 
