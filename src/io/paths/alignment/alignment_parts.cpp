@@ -21,6 +21,7 @@ using Complex = std::complex<double>;
 constexpr double kDeclared = 0.001;
 /// Radians by which the direction may change between two elements without a warning.
 constexpr double kKink = 1e-3;
+
 /// A length for a message, rounded to a micrometre unless it is smaller.
 std::string metres_text(double metres) {
   return std::abs(metres) < 1e-6 ? format_brief(metres)
@@ -28,6 +29,14 @@ std::string metres_text(double metres) {
 }
 
 double cross(Complex a, Complex b) { return a.real() * b.imag() - a.imag() * b.real(); }
+
+/// What to do where the coordinates seem to be swapped. order: the one in which they were read.
+std::string swapped_advice(AxisOrder order) {
+  return std::string("The coordinates were read as ") +
+         (order == AxisOrder::kNorthingEasting
+              ? "northing, easting; if the file has easting first, give --order en"
+              : "easting, northing; if the file has northing first, give --order ne");
+}
 
 /// Reads the elements of a plan.
 class PlanReader {
@@ -146,18 +155,10 @@ class PlanReader {
     const double expected = element.first_curvature * (std::numbers::pi - turn);
     if (!clear || !(aside * expected < 0)) return;
     xml_.refuse_at(node, "has rot=" + std::string(*xml_.attribute(node, "rot")) +
-                             ", but its Center lies on the other side. " + swapped_advice());
+                             ", but its Center lies on the other side. " +
+                             swapped_advice(options_.order));
   }
 
- public:
-  std::string swapped_advice() const {
-    const bool ne = options_.order == AxisOrder::kNorthingEasting;
-    return std::string("The coordinates were read as ") +
-           (ne ? "northing, easting; if the file has easting first, give --order en"
-               : "easting, northing; if the file has northing first, give --order ne");
-  }
-
- private:
   double curvature(pugi::xml_node node, const char* name) const {
     const auto text = xml_.attribute(node, name);
     if (!text)
@@ -222,7 +223,10 @@ void check_fit(const LandXml& xml, const PlanReader& read, const AlignmentPlan& 
                double max_gap) {
   for (std::size_t i = 0; i < read.nodes.size(); ++i) {
     const double gap = plan.gap_after(i), misfit = std::abs(plan.misfit_of(i));
+    // What is missing by more is no matter of rounding.
+    constexpr double kMayBeRounding = 0.1;
     const auto allowed = [](double metres) {
+      if (!(metres <= kMayBeRounding)) return std::string();
       return "; --max-gap " + format_number(std::ceil(metres * 1e4) / 1e4) + " allows it";
     };
     if (!(gap <= max_gap)) {
@@ -315,7 +319,7 @@ AlignmentPlan read_plan(const LandXml& xml, pugi::xml_node alignment,
                      format_brief(greatest_kink(plan) * 180 / std::numbers::pi) +
                      " degrees between the elements of the plan, but nowhere if all curves turned "
                      "the other way. " +
-                     read.swapped_advice());
+                     swapped_advice(options.order));
   }
   check_fit(xml, read, plan, options.max_gap);
   remark_kinks(xml, plan, out, name);
@@ -462,10 +466,13 @@ std::optional<AlignmentProfile> read_profile(const LandXml& xml, pugi::xml_node 
   for (std::size_t i = 1; i < read.points.size(); ++i) {
     const double overlap = profile.overlap_before(i);
     if (overlap <= options.max_gap) continue;
+    const std::string by = metres_text(overlap);
+    const bool is_curve = read.points[i].curve != ProfilePoint::Curve::kNone;
     xml.refuse_at(read.nodes[i],
-                  "lies within the curve before it, or its own curve begins " +
-                      metres_text(overlap) +
-                      " m before that one ends; expected curves that do not overlap");
+                  (is_curve ? "its curve begins " + by +
+                                  " m before the previous point or the end of its curve"
+                            : "the curve before it ends " + by + " m beyond it") +
+                      "; expected curves that do not overlap");
   }
   return profile;
 }

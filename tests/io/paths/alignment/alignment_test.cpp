@@ -200,6 +200,8 @@ TEST_CASE("gaps and elements that miss their ends are refused, unless they are a
   CHECK_THAT(refusal_of(gap), Contains("line 7") && Contains("ends 0.0021 m from where the next") &&
                                   Contains("--max-gap 0.0021"));
   CHECK(made_of(gap, {.max_gap = 0.0022}).codes().empty());
+  const LandFile hole = with_line(R"(<Line length="95"><Start>0 0</Start><End>0 95</End></Line>)");
+  CHECK_THAT(refusal_of(hole), Contains("ends 5 m from where") && !Contains("--max-gap"));
   const LandFile misfit =
       with_line(R"(<Line length="100.003"><Start>0 0</Start><End>0 100</End></Line>)");
   CHECK_THAT(refusal_of(misfit), Contains("does not fit its ends") && Contains("0.003 m") &&
