@@ -3,6 +3,7 @@
 /// The whole public interface of Clearway, which finds the points of a scanned environment that lie
 /// within the search radius of a moving model. docs/guide/library.md walks through it.
 
+#include "clearway/alignment.hpp"   // IWYU pragma: export
 #include "clearway/answer.hpp"      // IWYU pragma: export
 #include "clearway/body.hpp"        // IWYU pragma: export
 #include "clearway/conflicts.hpp"   // IWYU pragma: export

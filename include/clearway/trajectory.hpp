@@ -67,8 +67,9 @@ struct TrajectoryOptions {
 /// What a file says of its poses apart from where they are. Each list has one entry for each pose,
 /// or is empty.
 struct PoseLabels {
-  std::vector<double> time;       ///< seconds, in the time scale of the file
-  std::vector<std::string> name;  ///< a name for the reader, or the file's own index
+  std::vector<double> time = {};       ///< seconds, in the time scale of the file
+  std::vector<std::string> name = {};  ///< a name for the reader, or the file's own index
+  std::vector<double> station = {};    ///< metres along an alignment, which are not the way driven
 };
 
 /// Reads the poses of a trajectory in one of the formats of TrajectoryFormat. They belong to a

@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 
+#include "clearway/alignment.hpp"
 #include "clearway/convert.hpp"
 #include "python/arrays.hpp"
 #include "python/values.hpp"
@@ -30,14 +31,27 @@ constexpr Named<AngleUnit> kAngleUnits[] = {
 constexpr Named<AngleFrame> kAngleFrames[] = {
     {"declared", AngleFrame::kDeclared}, {"ned", AngleFrame::kNed}, {"enu", AngleFrame::kEnu}};
 
+constexpr Named<CantLine> kCants[] = {{"file", CantLine::kFile},
+                                      {"none", CantLine::kNone},
+                                      {"center", CantLine::kCenter},
+                                      {"inside-rail", CantLine::kInsideRail},
+                                      {"outside-rail", CantLine::kOutsideRail},
+                                      {"left-rail", CantLine::kLeftRail},
+                                      {"right-rail", CantLine::kRightRail}};
+constexpr Named<AxisOrder> kOrders[] = {{"ne", AxisOrder::kNorthingEasting},
+                                        {"en", AxisOrder::kEastingNorthing}};
+
 void add_labels(py::module_& module) {
   py::class_<PoseLabels>(module, "PoseLabels",
-                         "The times and names that a trajectory's file gives its poses. Make an "
-                         "empty one for read_trajectory(labels=...).")
+                         "The times, names and stations that a file gives its poses. Make an "
+                         "empty one for read_trajectory(labels=...) or read_alignment(labels=...).")
       .def(py::init<>(), "__init__(self)\n--\n\nMake labels that read_trajectory() can fill.")
       .def_property_readonly(
           "time", [](const PoseLabels& l) { return to_array(l.time); },
           "The time of each pose in seconds, as the file counts them: n float64, or empty.")
+      .def_property_readonly(
+          "station", [](const PoseLabels& l) { return to_array(l.station); },
+          "The station of each pose along its alignment, metres: n float64, or empty.")
       .def_property_readonly(
           "name",
           [](const PoseLabels& labels) {
@@ -100,7 +114,67 @@ environment_unit: the environment's unit, into which a known unit is converted:
     another unit is refused then.
 lever_arm: where the positions of the file lie in the model's frame: x, y and z, metres.
 messages: a list to which notes and warnings are appended.
-labels: a PoseLabels, which gets the times and names that the file has.)");
+labels: a PoseLabels, which gets the times, names and stations that the file has.)");
+}
+
+void add_read_alignment(py::module_& module) {
+  module.def(
+      "read_alignment",
+      [](const py::object& path, const std::string& alignment, const std::string& profile,
+         std::optional<double> station_from, std::optional<double> station_to, double step,
+         bool reverse, const std::string& cant, std::optional<double> rail_distance,
+         const std::string& order, double max_gap, std::optional<double> height,
+         const std::string& environment_crs, const py::object& messages, PoseLabels* labels) {
+        const AlignmentOptions options{.alignment = alignment,
+                                       .profile = profile,
+                                       .station_from = station_from,
+                                       .station_to = station_to,
+                                       .step = step,
+                                       .reverse = reverse,
+                                       .cant = value_of("cant", kCants, cant),
+                                       .rail_distance = rail_distance,
+                                       .order = value_of("order", kOrders, order),
+                                       .max_gap = max_gap,
+                                       .height = height,
+                                       .environment_crs = environment_crs};
+        PoseLabels found;
+        const auto poses = read_noting(messages, [&, file = path_of(path)](auto* noted) {
+          return read_alignment(file, options, noted, &found);
+        });
+        if (labels != nullptr) *labels = std::move(found);
+        return to_array(poses);
+      },
+      "path"_a, py::kw_only(), "alignment"_a = "", "profile"_a = "", "station_from"_a = py::none(),
+      "station_to"_a = py::none(), "step"_a = 0.1, "reverse"_a = false, "cant"_a = "file",
+      "rail_distance"_a = py::none(), "order"_a = "ne", "max_gap"_a = 0.001,
+      "height"_a = py::none(), "environment_crs"_a = "", "messages"_a = py::none(),
+      "labels"_a = py::none(),
+      R"(read_alignment(path, *, alignment='', profile='', station_from=None, station_to=None, step=0.1, reverse=False, cant='file', rail_distance=None, order='ne', max_gap=0.001, height=None, environment_crs='', messages=None, labels=None)
+--
+
+Make poses along an alignment of a LandXML file. Returns an array of n x 4 x 4 float64, metres.
+
+The model has x forward, y left and z up, with its origin in the middle of the track on the plane
+of the tops of the rails.
+
+path: the LandXML 1.2 file.
+alignment: the name of the alignment, where the file has several.
+profile: the name of its profile, where it has several.
+station_from: the internal station of the first pose, in the unit of the file; None: as far as
+    plan and profile reach.
+station_to: that of the last pose.
+step: metres along the alignment from one pose to the next.
+reverse: travels against the stations, so that x and y of the poses point the other way.
+cant: what cant turns the track about: 'center', 'inside-rail', 'outside-rail', 'left-rail',
+    'right-rail', 'file', which is what the file says, or 'none', which leaves it out.
+rail_distance: metres between the middles of the rails; None: 1.5 for a gauge of 1.435 or 1.5.
+order: the order of the coordinates in the file: 'ne' (northing, easting) or 'en'.
+max_gap: how many metres an element may miss the next one, or its own end, at the most.
+height: the height in metres of an alignment that has no profile.
+environment_crs: the coordinate system of the environment, for example store.crs_wkt(); a file in
+    another one is warned of.
+messages: a list to which notes and warnings are appended.
+labels: a PoseLabels, which gets the station of each pose.)");
 }
 
 py::dict busy_seconds(const ConvertReport& report) {
@@ -295,6 +369,7 @@ void add_inputs(py::module_& module) {
   add_labels(module);
   add_read_trajectory(module);
   add_origins_path_report(module);
+  add_read_alignment(module);
   add_convert_report(module);
   add_convert(module);
 }

@@ -11,6 +11,7 @@
 #include "support/bytes/pcd_bytes.hpp"
 #include "support/bytes/sbet_bytes.hpp"
 #include "support/clouds.hpp"
+#include "support/land_xml.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -175,6 +176,32 @@ void write_text_seeds(Seeds xyz, Seeds trajectory) {
   add(9, 0, "1 0 0 0 0 1 0 0 0 0 1 0 1 2 3 1 2\n");
 }
 
+void write_alignment_seeds(Seeds seeds) {
+  const auto add = [&seeds](char options, const LandFile& file) {
+    seeds.add(std::string{options} + file.text());
+  };
+  LandFile file;
+  add(0, file);
+  add(2, file);
+  file.more = cant_of(R"(gauge="1.435" rotationPoint="insideRail")",
+                      cant_station(1000, 0, "") + cant_station(1100, 90, R"(curvature="ccw")")) +
+              R"(<StaEquation staAhead="5" staInternal="1050"/>)";
+  file.profile =
+      R"(<Profile><ProfAlign name="p"><PVI>1000 10</PVI><ParaCurve length="20">1050 12</ParaCurve>)"
+      R"(<UnsymParaCurve lengthIn="9" lengthOut="20">1090 12</UnsymParaCurve>)"
+      R"(<CircCurve length="9" radius="500">1150 12</CircCurve><PVI>1179 10</PVI></ProfAlign></Profile>)";
+  add(0, file);
+  add(static_cast<char>(0xF0), file);
+  file.curve =
+      R"(<Spiral length="60" radiusStart="INF" radiusEnd="80" rot="ccw" spiType="clothoid">)"
+      R"(<Start>0 100</Start><End>7.425001432715223 159.16172537187745</End></Spiral>)";
+  file.units = R"(<Imperial linearUnit="USSurveyFoot"/>)";
+  file.other = R"(<CoordinateSystem epsgCode="3878"/>)";
+  add(8, file);
+  file.profile = "";
+  add(12, file);
+}
+
 void write_mesh_seeds(Seeds seeds) {
   const TriangleMesh cube = unit_cube();
   const auto add = [&](char format, const std::string& bytes) {
@@ -314,6 +341,7 @@ int main(int argc, char** argv) {
   write_ply_seeds({folder, "ply"});
   write_ptx_seeds({folder, "ptx"});
   write_text_seeds({folder, "xyz"}, {folder, "trajectory"});
+  write_alignment_seeds({folder, "alignment"});
   write_mesh_seeds({folder, "mesh"});
   write_chunk_seeds({folder, "packed_chunk"});
   write_store_seeds({folder, "store"}, {folder, "store_values"});

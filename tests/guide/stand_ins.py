@@ -24,6 +24,21 @@ def _box_stl(path, size):
     path.write_text("\n".join([*lines, "endsolid box"]) + "\n", encoding="utf-8")
 
 
+LAND_XML = """<?xml version="1.0"?>
+<LandXML version="1.2"><Units><Metric linearUnit="meter"/></Units>
+<Alignments><Alignment name="track" staStart="1000" length="178.539816339745">
+<CoordGeom>
+<Line length="100"><Start>0 0</Start><End>0 100</End></Line>
+<Curve rot="ccw" radius="50" length="78.539816339745">
+<Start>0 100</Start><Center>50 100</Center><End>50 150</End></Curve>
+</CoordGeom>
+<Profile><ProfAlign name="rails"><PVI>1000 10</PVI><PVI>1200 12</PVI></ProfAlign></Profile>
+<Cant name="cant" gauge="1.435" rotationPoint="insideRail">
+<CantStation station="1000" appliedCant="0"/>
+<CantStation station="1200" appliedCant="60" curvature="ccw"/></Cant>
+</Alignment></Alignments></LandXML>
+"""
+
 CAMPAIGN = {"name": "Stand-in", "environments": {"hall": "site.h5"}, "vehicles": {"car": "car.ply"},
             "routes": {"line": "path.txt"}, "radii": [0.1]}
 
@@ -70,6 +85,7 @@ def make(folder, clearway):
     clearway([*asked, *"--radius 0.2 -o other.h5".split()])
     for name, source in (("kdtree", "out"), ("sweep", "out"), ("before", "out"), ("after", "other")):
         shutil.copy(folder / f"{source}.h5", folder / f"{name}.h5")
+    (folder / "track.xml").write_text(LAND_XML, encoding="utf-8")
     (folder / "campaign.json").write_text(json.dumps(CAMPAIGN), encoding="utf-8")
     for name in ("model.ply", "trajectory.txt"):
         (folder / name).unlink()

@@ -433,6 +433,32 @@ class Inputs(SceneTest):
         with self.assertRaisesRegex(clearway.UsageError, "format 'tun': expected one of auto"):
             clearway.read_trajectory(self.folder / "path.tum", format="tun")
 
+    def test_alignments(self):
+        path = self.folder / "track.xml"
+        path.write_text(
+            '<LandXML><Units><Metric linearUnit="meter"/></Units><Alignments>'
+            '<Alignment name="a" staStart="1000"><CoordGeom>'
+            '<Line><Start>0 0</Start><End>0 100</End></Line></CoordGeom>'
+            '<Profile><ProfAlign name="p"><PVI>1000 10</PVI><PVI>1100 11</PVI></ProfAlign></Profile>'
+            '</Alignment></Alignments></LandXML>')
+        labels, messages = clearway.PoseLabels(), []
+        poses = clearway.read_alignment(path, station_from=1010, step=30, cant="none",
+                                        messages=messages, labels=labels)
+        np.testing.assert_array_equal(labels.station, [1010, 1040, 1070, 1100])
+        np.testing.assert_allclose(poses[:, :3, 3], [[x, 0, 10 + x / 100] for x in (10, 40, 70, 100)],
+                                   atol=1e-12)
+        self.assertEqual([message.code for message in messages], ["no-cant"])
+        back = clearway.read_alignment(path, alignment="a", profile="p", reverse=True, step=30)
+        np.testing.assert_array_equal(back[0, :3, 3], poses[-1, :3, 3])
+        np.testing.assert_array_equal(back[0, :3, :2], -poses[-1, :3, :2])
+        for kind, words, named in ((clearway.UsageError, "cant 'inner': expected one of file", {"cant": "inner"}),
+                                   (clearway.UsageError, "step: expected", {"step": 0}),
+                                   (TypeError, "profile: expected a text", {"profile": 1}),
+                                   (clearway.UsageError, "--height", {"height": 3}),
+                                   (clearway.InputError, "no alignment of the name", {"alignment": "b"})):
+            with self.assertRaisesRegex(kind, words):
+                clearway.read_alignment(path, **named)
+
 
 if __name__ == "__main__":
     unittest.main()

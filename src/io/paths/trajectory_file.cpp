@@ -36,6 +36,23 @@ void write_trajectory(std::span<const Pose> poses, const File& file, Progress& p
   progress.end();
 }
 
+void write_trajectory_table(std::span<const Pose> poses, std::span<const double> stations,
+                            const File& file, Progress& progress) {
+  progress.begin("write", poses.size(), "poses");
+  TextWriter out(file);
+  out << "station [m],x [m],y [m],z [m],r00,r01,r02,r10,r11,r12,r20,r21,r22\n";
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    out << stations[i];
+    for (const double coordinate : poses[i].translation) out << "," << coordinate;
+    for (const double number : poses[i].rotation) out << "," << number;
+    out << "\n";
+    throw_if_stopped(progress);
+    progress.advance(1);
+  }
+  out.flush();
+  progress.end();
+}
+
 namespace {
 
 bool is_text(std::span<const std::byte> bytes) {
@@ -240,7 +257,9 @@ std::vector<Pose> read_trajectory(const std::filesystem::path& path,
                                   PoseLabels* labels) {
   TrajectoryFile found =
       remarks == nullptr ? read_without_doubts(path, options) : read_trajectory_file(path, options);
-  if (labels != nullptr) *labels = {std::move(found.times), std::move(found.names)};
+  if (labels != nullptr) {
+    *labels = {std::move(found.times), std::move(found.names), std::move(found.stations)};
+  }
   if (remarks == nullptr) return std::move(found.poses);
   remarks->insert(remarks->end(), std::make_move_iterator(found.remarks.begin()),
                   std::make_move_iterator(found.remarks.end()));

@@ -19,6 +19,7 @@ struct TrajectoryFile {
   std::vector<Pose> poses;
   std::vector<double> times;       ///< seconds, one per pose; empty where the file has none
   std::vector<std::string> names;  ///< one per pose; empty where the file has none
+  std::vector<double> stations;    ///< metres, one per pose; empty where the file has none
   TrajectoryFormat format = TrajectoryFormat::kAuto;
   std::string crs;  ///< CRS into which latitudes and longitudes were converted, or empty
   /// Metres per unit of the positions; 1 except for a CRS in another unit.
@@ -46,6 +47,12 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& path,
 
 /// The command line's name of a format: "matrix", "tum", ...
 const char* name_of(TrajectoryFormat format);
+
+/// Writes a table with the columns station, x, y and z, in metres as its header says, and r00 to
+/// r22, with digits that read_trajectory() reads back to the same doubles. stations: metres, one
+/// for each pose. Throws ResourceError and Interrupted.
+void write_trajectory_table(std::span<const Pose> poses, std::span<const double> stations,
+                            const File& file, Progress& progress);
 
 /// Writes one pose per line as 16 numbers: its 4 x 4 matrix, row-major, with digits that
 /// read_trajectory() reads back to the same doubles. Throws ResourceError and Interrupted.

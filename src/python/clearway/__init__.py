@@ -65,6 +65,7 @@ from ._clearway import (
     find_conflicts,
     follow,
     merge,
+    read_alignment,
     read_model,
     read_model_points,
     read_trajectory,

@@ -54,6 +54,7 @@ class FoundPlace:
 class PoseLabels:
     def __init__(self) -> None: ...
     time: Final[_Doubles]
+    station: Final[_Doubles]
     name: Final[list[str]]
 
 class OriginsPathReport:
@@ -418,6 +419,15 @@ def read_trajectory(
     default_crs: str = "", datum: str = "", metres_per_unit: float | str = 0.0,
     environment_unit: float | str | None = None, lever_arm: Sequence[float] = (0.0, 0.0, 0.0),
     messages: list[Message] | None = None, labels: PoseLabels | None = None,
+) -> _Doubles: ...
+def read_alignment(
+    path: _AnyPath, *, alignment: str = "", profile: str = "", station_from: float | None = None,
+    station_to: float | None = None, step: float = 0.1, reverse: bool = False,
+    cant: Literal["file", "none", "center", "inside-rail", "outside-rail", "left-rail",
+                  "right-rail"] = "file",
+    rail_distance: float | None = None, order: Literal["ne", "en"] = "ne", max_gap: float = 0.001,
+    height: float | None = None, environment_crs: str = "", messages: list[Message] | None = None,
+    labels: PoseLabels | None = None,
 ) -> _Doubles: ...
 def read_vehicle(
     file: _AnyPath, poses: ArrayLike, model_as: Literal["auto", "points", "surface", "solid"] = "auto", *,

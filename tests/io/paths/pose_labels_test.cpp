@@ -53,6 +53,26 @@ TEST_CASE("a separator within quotes is part of the name") {
         1);
 }
 
+TEST_CASE("a column of stations is kept, in metres") {
+  const std::string rest = "x,y,z,qx,qy,qz,qw\n1000,0,0,0,0,0,0,1\n1000.5,1,0,0,0,0,0,1\n";
+  CHECK(labels_of("station," + rest, "path.csv").station == Times{1000, 1000.5});
+  CHECK(labels_of("station [mm]," + rest, "path.csv").station == Times{1, 1.0005});
+  // It is a name too, as before.
+  CHECK(labels_of("station," + rest, "path.csv").name == Names{"1000", "1000.5"});
+  // Without a unit of their own, stations have that of the positions, or of the environment.
+  const std::string in_feet = "station,x [ft],y [ft],z [ft],qx,qy,qz,qw\n10,0,0,0,0,0,0,1\n";
+  CHECK(labels_of(in_feet, "path.csv").station.at(0) == Approx(3.048));
+  const double survey = 1200.0 / 3937;
+  CHECK(labels_of("station," + rest, "path.csv", {.environment_unit = survey}).station.at(0) ==
+        Approx(1000 * survey));
+  CHECK(labels_of("station [m]," + rest, "path.csv", {.environment_unit = survey}).station.at(0) ==
+        1000);
+  // Texts are names alone.
+  const PoseLabels texts = labels_of("station,x,y,z,qx,qy,qz,qw\nA 7,0,0,0,0,0,0,1\n", "path.csv");
+  CHECK(texts.station.empty());
+  CHECK(texts.name == Names{"A 7"});
+}
+
 TEST_CASE("an index counts where there is no name") {
   const std::string pose = ",0,0,0,0,0,0,1\n";
   CHECK(labels_of("index,x,y,z,qx,qy,qz,qw\n007" + pose, "path.csv").name == Names{"007"});

@@ -6,12 +6,14 @@
 namespace clearway::tool {
 
 void add_trajectory(CLI::App& program) {
-  CLI::App* command = program.add_subcommand(
-      "trajectory", "Say what is in a trajectory, make it denser or sparser, follow it");
+  CLI::App* command = program.add_subcommand("trajectory",
+                                             "Say what is in a trajectory, make it denser or "
+                                             "sparser, follow it, make one of an alignment");
   command->require_subcommand(1);
   add_trajectory_info(*command);
   add_trajectory_changes(*command);
   add_trajectory_follow(*command);
+  add_trajectory_alignment(*command);
 }
 
 }  // namespace clearway::tool

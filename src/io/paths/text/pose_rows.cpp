@@ -142,6 +142,15 @@ PoseRows::PoseRows(TrajectoryFormat format, std::optional<PoseColumns> columns,
   // would change if converted into metres and back.
   const bool stays = metres_ == options_.environment_unit && !is_geographic();
   if (unit_.is_known() && !stays) in_metres_ = UnitFactor(metres_);
+  if (columns_ && columns_->station) station_in_metres_ = UnitFactor(metres_of_stations());
+}
+
+/// Metres of the unit of stations: that of their own header, of the positions, or of the
+/// environment.
+double PoseRows::metres_of_stations() const {
+  const auto named = file_unit_of(columns_->station_unit);
+  if (named) return named->metres_in(options_.environment_unit);
+  return unit_.is_known() ? metres_ : options_.environment_unit;
 }
 
 Objection PoseRows::add(std::string_view line) {
@@ -168,6 +177,7 @@ PoseRows PoseRows::for_lines(std::size_t lines) const {
   }
   if (!times_.empty()) part.times_.reserve(lines);
   if (!names_.empty()) part.names_.reserve(lines);
+  if (!stations_.empty()) part.stations_.reserve(lines);
   return part;
 }
 
@@ -187,6 +197,7 @@ void PoseRows::append(std::vector<PoseRows> parts) {
   append_all(&PoseRows::angles_, angles_);
   append_all(&PoseRows::times_, times_);
   append_all(&PoseRows::names_, names_);
+  append_all(&PoseRows::stations_, stations_);
 }
 
 void PoseRows::push(const Pose& pose) {
@@ -285,6 +296,10 @@ void PoseRows::add_labels() {
     if (time && std::isfinite(*time)) add_time(seconds_of(*time));
   }
   if (columns_->name) names_.push_back(name_of_pose(fields_[*columns_->name]));
+  if (columns_->station) {
+    const auto station = parse_whole_number(fields_[*columns_->station]);
+    if (station && std::isfinite(*station)) stations_.push_back(station_in_metres_(*station));
+  }
 }
 
 Objection PoseRows::numbers_in(std::span<const std::size_t> columns, std::span<double> out) const {
@@ -313,6 +328,7 @@ void PoseRows::finish(TrajectoryFile& out) {
   if (angles) append_poses_of_angles(std::move(angles_), *columns_, options_, name_, out);
   if (times_.size() == out.poses.size()) out.times = std::move(times_);
   if (names_.size() == out.poses.size()) out.names = std::move(names_);
+  if (stations_.size() == out.poses.size()) out.stations = std::move(stations_);
   out.unit = unit_;
   if (metres_ == 0) return;
   // Places on a map are in the map's unit already; the file's unit was that of heights.

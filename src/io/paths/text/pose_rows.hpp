@@ -44,6 +44,7 @@ class PoseRows {
   void add_time(double time) { times_.push_back(time); }
   void add_labels();
   void push(const Pose& pose);
+  double metres_of_stations() const;
   bool is_geographic() const { return columns_ && columns_->geographic; }
 
   TrajectoryFormat format_;
@@ -61,6 +62,8 @@ class PoseRows {
   std::vector<AttitudeRow> angles_;
   std::vector<double> times_;
   std::vector<std::string> names_;
+  UnitFactor station_in_metres_{1};
+  std::vector<double> stations_;
 };
 
 }  // namespace clearway

@@ -115,6 +115,10 @@ class TextTrajectory {
     if (!reads_names()) return false;
     const ColumnNames names = parse_column_names(line);
     columns_ = pose_columns(names);
+    if (!columns_ && line.starts_with('<')) {
+      fail({excerpt(line) +
+            " is XML, which is no trajectory; clearway trajectory alignment makes one of LandXML"});
+    }
     if (!columns_) {
       fail({excerpt(line) + ": " + objection_to_header(names)});
     }

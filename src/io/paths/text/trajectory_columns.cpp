@@ -98,6 +98,7 @@ constexpr std::string_view kYaw[] = {"yaw"};
 constexpr std::string_view kTime[] = {"time",     "timestamp", "t",       "gpstime",
                                       "gps_time", "sec",       "seconds", "stamp"};
 
+constexpr std::string_view kStation[] = {"station"};
 constexpr std::string_view kName[] = {"name",     "pose_name", "label", "station", "image",
                                       "filename", "file_name", "file",  "scan"};
 constexpr std::string_view kIndex[] = {"index",   "id",    "pose",   "pose_id", "pose_index",
@@ -165,6 +166,8 @@ std::optional<PoseColumns> pose_columns(const ColumnNames& given) {
     if (columns.rotation.size() == 3) columns.angle_units[k] = header.units[columns.rotation[k]];
   }
   columns.time = find_one(header, kTime);
+  columns.station = find_one(header, kStation);
+  if (columns.station) columns.station_unit = header.units[*columns.station];
   columns.name = find_one(header, kName);
   if (!columns.name) columns.name = find_one(header, kIndex);
   return columns;

@@ -51,6 +51,14 @@ std::string refusal_of_text(const std::string& text) {
 
 }  // namespace
 
+TEST_CASE("XML is refused with the command that makes a trajectory of it") {
+  const ReaderScratch scratch;
+  for (const char* text : {"<?xml version=\"1.0\"?>\n<LandXML/>\n", "\xEF\xBB\xBF<LandXML>\n"}) {
+    CHECK_THROWS_WITH(read_trajectory(scratch.write("a.xml", text)),
+                      Contains("is XML") && Contains("clearway trajectory alignment"));
+  }
+}
+
 TEST_CASE("a long trajectory has its poses in the order of its lines") {
   const ReaderScratch scratch;
   const auto poses_of = [&](const std::string& text) {

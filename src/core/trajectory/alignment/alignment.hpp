@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "clearway/alignment.hpp"
+#include "clearway/pose.hpp"
+#include "core/trajectory/alignment/plan.hpp"
+
+namespace clearway {
+
+/// A value along an alignment, and its change per metre of station.
+struct SlopedValue {
+  double value = 0, slope = 0;
+};
+
+/// A point of intersection of a profile, where two slopes meet, and the curve that rounds it.
+struct ProfilePoint {
+  enum class Curve {
+    kNone,
+    kParabola,  ///< two parabolas that meet at the point's station, or one if they are as long
+    kCircle
+  };
+
+  double station = 0, height = 0;  ///< metres
+  Curve curve = Curve::kNone;
+  double before = 0, after = 0;  ///< kParabola: level metres of the curve on either side, above 0
+  double radius = 0;             ///< kCircle: metres, above 0
+};
+
+/// The heights of an alignment: straight slopes between points, rounded by curves.
+class AlignmentProfile {
+ public:
+  /// points: at least two, with ascending stations; the first and the last have no curve.
+  explicit AlignmentProfile(std::vector<ProfilePoint> points);
+
+  double first_station() const { return points_.front().station; }
+  double last_station() const { return points_.back().station; }
+  /// Height and slope at a station that the profile reaches. Where curves overlap, the later one
+  /// counts.
+  SlopedValue at(double station) const;
+
+  /// Metres by which the curve of a point begins before the previous curve ends, and the last curve
+  /// ends after the profile; not above 0 where it does not. point: not the first.
+  double overlap_before(std::size_t point) const;
+
+ private:
+  struct Piece {
+    double begin = 0;       ///< station
+    std::size_t point = 0;  ///< the point of a curve, or that before a slope
+    bool is_curve = false;
+  };
+
+  double slope_after(std::size_t point) const;
+  SlopedValue on_parabola(std::size_t point, double station) const;
+  SlopedValue on_circle(std::size_t point, double station) const;
+  double begin_of(std::size_t point) const {
+    return points_[point].station - points_[point].before;
+  }
+  double end_of(std::size_t point) const { return points_[point].station + points_[point].after; }
+
+  std::vector<ProfilePoint> points_;  ///< `before` and `after` of circles are filled in
+  std::vector<Piece> pieces_;
+};
+
+/// The cant at a station: how far the left rail is above the right one, in metres.
+struct CantPoint {
+  double station = 0, cant = 0;
+};
+
+/// The cant of an alignment, which changes evenly between its points and is kept beyond them.
+class AlignmentCant {
+ public:
+  /// points: at least one, with ascending stations.
+  explicit AlignmentCant(std::vector<CantPoint> points) : points_(std::move(points)) {}
+
+  const std::vector<CantPoint>& points() const { return points_; }
+  SlopedValue at(double station) const;
+
+ private:
+  std::vector<CantPoint> points_;
+};
+
+/// An alignment in metres and the way in which a vehicle stands on it.
+struct Alignment {
+  AlignmentPlan plan;
+  std::optional<AlignmentProfile> profile = {};
+  double level = 0;  ///< height everywhere where there is no profile
+  std::optional<AlignmentCant> cant = {};
+  CantLine cant_line = CantLine::kCenter;
+  double rail_distance = 1.5;
+
+  /// The pose at a station: x forward, y left, z up, the origin in the middle of the track on the
+  /// plane of the tops of the rails. station: where plan and profile reach.
+  Pose pose_at(double station) const;
+};
+
+}  // namespace clearway

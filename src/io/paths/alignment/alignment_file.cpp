@@ -1,0 +1,284 @@
+#include "io/paths/alignment/alignment_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "clearway/error.hpp"
+#include "core/util/format.hpp"
+#include "io/files/input_error.hpp"
+#include "io/paths/alignment/alignment_parts.hpp"
+#include "io/paths/alignment/land_xml.hpp"
+#include "io/scans/length_unit.hpp"
+#include "io/scans/scan_crs.hpp"
+
+namespace clearway {
+namespace {
+
+void check_number(const std::optional<double>& value, const char* option, bool good,
+                  const char* expected) {
+  if (!value || (std::isfinite(*value) && good)) return;
+  throw UsageError(std::string(option) + ": " + brief(*value) + "; expected " + expected);
+}
+
+void check_options(const AlignmentOptions& options) {
+  check_number(options.step, "--step", options.step > 0, "a length above 0");
+  check_number(options.max_gap, "--max-gap", options.max_gap >= 0, "a length of 0 or more");
+  check_number(options.rail_distance, "--rail-distance", options.rail_distance.value_or(1) > 0,
+               "a length above 0");
+  check_number(options.station_from, "--from", true, "a finite station");
+  check_number(options.station_to, "--to", true, "a finite station");
+  check_number(options.height, "--height", true, "a finite height");
+  if (options.station_from && options.station_to && *options.station_from > *options.station_to) {
+    throw UsageError("--from " + brief(*options.station_from) + " is after --to " +
+                     brief(*options.station_to) +
+                     "; expected ascending stations, and --reverse to travel against them");
+  }
+}
+
+pugi::xml_node choose_alignment(const LandXml& xml, const AlignmentOptions& options) {
+  std::vector<pugi::xml_node> nodes;
+  for (const pugi::xml_node list : xml.root().children("Alignments")) {
+    for (const pugi::xml_node node : list.children("Alignment")) nodes.push_back(node);
+  }
+  if (nodes.empty()) refuse(xml.name(), "holds no Alignment; expected one in its Alignments");
+  return choose_by_name(xml, nodes, options.alignment, "alignment", "--alignment");
+}
+
+/// Stations in metres.
+struct Reach {
+  double from = 0, to = 0;
+};
+
+/// A station that was asked for, which the plan has to reach.
+double asked_station(const LandXml& xml, const AlignmentPlan& plan, double station,
+                     const char* option) {
+  const double metres = UnitFactor(xml.metres_per_unit())(station);
+  const double first = plan.first_station(), last = plan.last_station();
+  if (metres < first - kSameStation || metres > last + kSameStation) {
+    throw UsageError(xml.name() + ": " + option + " " + brief(station) +
+                     " is off the alignment; expected a station from " +
+                     brief(first / xml.metres_per_unit()) + " to " +
+                     brief(last / xml.metres_per_unit()));
+  }
+  return std::clamp(metres, first, last);
+}
+
+/// Shortens the reach to that of the profile.
+void clip_to_profile(const LandXml& xml, const AlignmentProfile& profile, Reach& reach,
+                     AlignmentFile& out) {
+  constexpr double kWorthTelling = 0.001;
+  const Reach asked = reach;
+  // A station just beyond the profile counts as its end.
+  const auto within = [&](double station) {
+    const double end = std::clamp(station, profile.first_station(), profile.last_station());
+    return std::abs(station - end) <= kSameStation;
+  };
+  if (reach.from == reach.to && within(reach.from)) return;
+  reach = {std::max(reach.from, profile.first_station()),
+           std::min(reach.to, profile.last_station())};
+  const double unit = xml.metres_per_unit();
+  const std::string has = "the profile has heights from station " +
+                          brief(profile.first_station() / unit) + " to " +
+                          brief(profile.last_station() / unit) + " only";
+  if (reach.from > reach.to) refuse(xml.name(), has + ", where no pose is wanted");
+  const double begins = reach.from - asked.from, ends = asked.to - reach.to;
+  const std::string later =
+      begins > kWorthTelling ? "begin " + format_brief(begins) + " m later" : std::string();
+  const std::string earlier =
+      ends > kWorthTelling ? "end " + format_brief(ends) + " m earlier" : std::string();
+  if (later.empty() && earlier.empty()) return;
+  out.warn("profile-shorter",
+           xml.name() + ": " + has + ", so the poses " + later +
+               (later.empty() || earlier.empty() ? "" : " and ") + earlier +
+               " than what was wanted of the plan",
+           {{"first", profile.first_station() / unit},
+            {"last", profile.last_station() / unit},
+            {"begins_after", begins},
+            {"ends_before", ends}});
+}
+
+void remark_cant_ends(const LandXml& xml, const Alignment& track, const Reach& reach,
+                      AlignmentFile& out) {
+  if (!track.cant) return;
+  const CantPoint &begin = track.cant->points().front(), &end = track.cant->points().back();
+  const double first = begin.station, last = end.station;
+  const bool early = reach.from + kSameStation < first;
+  const bool late = reach.to - kSameStation > last;
+  if (!early && !late) return;
+  // Beyond an end without cant the track is level, as is usual.
+  const bool canted = (early && begin.cant != 0) || (late && end.cant != 0);
+  const double unit = xml.metres_per_unit();
+  const std::string text = xml.name() + ": the cant is given from station " + brief(first / unit) +
+                           " to " + brief(last / unit) +
+                           " only; beyond its ends the last value was kept, which is " +
+                           (canted ? "not 0" : "0");
+  const std::vector<std::pair<std::string, double>> numbers{{"first", first / unit},
+                                                            {"last", last / unit}};
+  if (canted) {
+    out.warn("cant-ends", text, numbers);
+  } else {
+    out.note("cant-ends", text, numbers);
+  }
+}
+
+/// Warns where it matters which foot the file means.
+void remark_feet(const LandXml& xml, const AlignmentPlan& plan, AlignmentFile& out) {
+  const double unit = xml.metres_per_unit();
+  if (!is_foot(unit)) return;
+  double largest = 0;
+  for (const PlanElement& element : plan.elements()) {
+    largest = std::max({largest, std::abs(element.start.real()), std::abs(element.start.imag())});
+  }
+  const double other = unit == kMetresPerFoot ? kMetresPerUsSurveyFoot : kMetresPerFoot;
+  const double moved = feet_apart(largest, unit, other);
+  if (!(moved > kFeetApart)) return;
+  out.warn("alignment-feet",
+           xml.name() + ": the coordinates are in " + units_text(unit) + ", up to " +
+               brief(largest / unit) + "; in " + units_text(other) + " they would be " +
+               format_brief(moved) +
+               " m elsewhere, so make sure that the scan and the file mean the same foot",
+           {{"metres", moved}});
+}
+
+/// The EPSG code of the coordinates; 0 where the file names none.
+long epsg_of(const LandXml& xml) {
+  const pugi::xml_node system = xml.root().child("CoordinateSystem");
+  for (const char* name : {"epsgCode", "horizontalDatum"}) {
+    std::string_view text = xml.attribute(system, name).value_or("");
+    if (text.starts_with("EPSG:")) text.remove_prefix(5);
+    const auto code = whole_number_of<double>(text);
+    if (code && *code >= 1 && *code <= 99'999'999 && std::floor(*code) == *code) {
+      return static_cast<long>(*code);
+    }
+  }
+  return 0;
+}
+
+void remark_crs(const LandXml& xml, const std::string& environment, AlignmentFile& out) {
+  if (environment.empty()) return;
+  const long code = epsg_of(xml);
+  const ScanCrs scan = scan_crs_of(environment);
+  const std::int32_t other = scan.horizontal_epsg != 0 ? scan.horizontal_epsg : scan.epsg;
+  if (code == 0 || other == 0 || code == other || code == scan.epsg) return;
+  out.warn("alignment-crs",
+           xml.name() + ": the coordinates are in EPSG:" + std::to_string(code) +
+               ", and those of the environment in EPSG:" + std::to_string(other) +
+               "; they were not converted, so transform the alignment first",
+           {{"alignment", static_cast<double>(code)}, {"environment", static_cast<double>(other)}});
+}
+
+std::vector<double> stations_of(const Reach& reach, double step) {
+  const double count = std::floor((reach.to - reach.from) / step) + 2;
+  if (!(count <= kMostAlignmentPoses)) {
+    throw UsageError("--step " + brief(step) + ": gives about " + brief(count) +
+                     " poses; expected at most " +
+                     format_count(static_cast<std::uint64_t>(kMostAlignmentPoses)) +
+                     ", for example with --step " +
+                     format_brief((reach.to - reach.from) / (kMostAlignmentPoses / 2)));
+  }
+  std::vector<double> stations;
+  stations.reserve(static_cast<std::size_t>(count));
+  for (std::size_t i = 0;; ++i) {
+    const double station = reach.from + static_cast<double>(i) * step;
+    if (!(station < reach.to - kSameStation)) break;
+    stations.push_back(station);
+  }
+  stations.push_back(reach.to);
+  return stations;
+}
+
+/// Turns the poses round: their order, and their axes x and y.
+void reverse(AlignmentFile& out) {
+  std::ranges::reverse(out.poses);
+  std::ranges::reverse(out.stations);
+  for (Pose& pose : out.poses) {
+    for (int row = 0; row < 3; ++row) {
+      for (const int axis : {0, 1}) {
+        pose.rotation[3 * row + axis] = 0.0 - pose.rotation[3 * row + axis];
+      }
+    }
+  }
+}
+
+void add_poses(const LandXml& xml, const Alignment& track, AlignmentFile& out) {
+  out.poses.reserve(out.stations.size());
+  for (const double station : out.stations) {
+    const Pose pose = track.pose_at(station);
+    double sum = 0;
+    for (const double number : pose.rotation) sum += number;
+    for (const double number : pose.translation) sum += number;
+    if (!std::isfinite(sum)) {
+      refuse(xml.name(), "gives no finite pose at station " +
+                             brief(station / xml.metres_per_unit()) +
+                             "; its lengths or heights are too large");
+    }
+    out.poses.push_back(pose);
+  }
+}
+
+/// The alignment without its cant.
+Alignment read_track(const LandXml& xml, pugi::xml_node node, const AlignmentOptions& options,
+                     AlignmentFile& out) {
+  Alignment track{.plan = read_plan(xml, node, options, out),
+                  .profile = read_profile(xml, node, options, out)};
+  if (track.profile && options.height) {
+    throw UsageError(
+        "--height: the alignment has a profile, which gives its heights; expected "
+        "--height only without one");
+  }
+  if (!track.profile && !options.height) {
+    refuse(xml.name(),
+           "the alignment has no profile, so its heights are not known; --height gives "
+           "one for all of it");
+  }
+  track.level = options.height.value_or(0);
+  return track;
+}
+
+}  // namespace
+
+AlignmentFile read_alignment_file(const std::filesystem::path& path,
+                                  const AlignmentOptions& options) {
+  check_options(options);
+  const LandXml xml(path);
+  const pugi::xml_node node = choose_alignment(xml, options);
+  AlignmentFile out;
+  out.alignment = xml.name_of(node);
+  out.unit = xml.unit_name();
+  out.metres_per_unit = xml.metres_per_unit();
+  Alignment track = read_track(xml, node, options, out);
+  read_cant(xml, node, options, track, out);
+  Reach reach{track.plan.first_station(), track.plan.last_station()};
+  out.first_station = reach.from;
+  out.last_station = reach.to;
+  if (options.station_from) {
+    reach.from = asked_station(xml, track.plan, *options.station_from, "--from");
+  }
+  if (options.station_to) reach.to = asked_station(xml, track.plan, *options.station_to, "--to");
+  if (track.profile) clip_to_profile(xml, *track.profile, reach, out);
+  remark_cant_ends(xml, track, reach, out);
+  remark_left_out(xml, node, out);
+  remark_feet(xml, track.plan, out);
+  remark_crs(xml, options.environment_crs, out);
+  out.stations = stations_of(reach, options.step);
+  add_poses(xml, track, out);
+  if (options.reverse) reverse(out);
+  return out;
+}
+
+std::vector<Pose> read_alignment(const std::filesystem::path& path, const AlignmentOptions& options,
+                                 std::vector<Message>* remarks, PoseLabels* labels) {
+  AlignmentFile found = read_alignment_file(path, options);
+  if (labels != nullptr) *labels = {.station = std::move(found.stations)};
+  if (remarks != nullptr) {
+    remarks->insert(remarks->end(), std::make_move_iterator(found.remarks.begin()),
+                    std::make_move_iterator(found.remarks.end()));
+  }
+  return std::move(found.poses);
+}
+
+}  // namespace clearway

@@ -1,0 +1,188 @@
+#include "core/trajectory/alignment/alignment.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+#include "core/geometry/rigid.hpp"
+
+using namespace clearway;
+
+namespace {
+
+using Curve = ProfilePoint::Curve;
+
+/// A track along x from station 0 to 1000.
+Alignment straight_track() { return {.plan = AlignmentPlan({{1000, 0, 0, {0, 0}, {1000, 0}}}, 0)}; }
+
+/// The slope of the values on either side, to check the slope that a function gives.
+template <typename At>
+double difference(const At& at, double station) {
+  constexpr double kStep = 1e-3;
+  return (at(station + kStep).value - at(station - kStep).value) / (2 * kStep);
+}
+
+}  // namespace
+
+TEST_CASE("a parabola of a profile joins both slopes") {
+  // From +1 % to -2 % over 120 m about station 300.
+  const AlignmentProfile profile(
+      {{.station = 0, .height = 100},
+       {.station = 300, .height = 103, .curve = Curve::kParabola, .before = 60, .after = 60},
+       {.station = 700, .height = 95}});
+  CHECK(profile.at(0).value == 100);
+  CHECK(profile.at(200).value == Approx(102).epsilon(1e-15));
+  CHECK(profile.at(200).slope == Approx(0.01));
+  const auto parabola = [](double x) { return 102.4 + 0.01 * x - 0.03 * x * x / 240; };
+  for (const double x : {0.0, 13.0, 60.0, 61.5, 119.0}) {
+    CHECK(std::abs(profile.at(240 + x).value - parabola(x)) < 1e-12);
+    CHECK(std::abs(profile.at(240 + x).slope - (0.01 - 0.03 * x / 120)) < 1e-15);
+  }
+  CHECK(std::abs(profile.at(360).value - 101.8) < 1e-12);
+  CHECK(profile.at(700).value == Approx(95).epsilon(1e-15));
+  CHECK(profile.overlap_before(1) == Approx(-240));
+  CHECK(profile.overlap_before(2) == Approx(-340));
+}
+
+TEST_CASE("an unsymmetric parabola has its own length on either side") {
+  const AlignmentProfile profile(
+      {{.station = 0, .height = 0},
+       {.station = 100, .height = -2, .curve = Curve::kParabola, .before = 40, .after = 25},
+       {.station = 200, .height = 1}});
+  // e = l1 l2 (g2 - g1) / 2 (l1 + l2) above the point.
+  const double e = 40.0 * 25 * 0.05 / (2 * 65);
+  CHECK(std::abs(profile.at(100).value - (-2 + e)) < 1e-14);
+  CHECK(std::abs(profile.at(80).value - (-1.6 + e / 4)) < 1e-14);
+  CHECK(std::abs(profile.at(60).value - -1.2) < 1e-14);
+  CHECK(std::abs(profile.at(112.5).value - (-2 + 0.03 * 12.5 + e / 4)) < 1e-14);
+  CHECK(std::abs(profile.at(125).value - (-2 + 0.03 * 25)) < 1e-14);
+  const auto at = [&](double s) { return profile.at(s); };
+  for (const double s : {70.0, 100.0, 110.0, 120.0}) {
+    CHECK(std::abs(profile.at(s).slope - difference(at, s)) < 1e-6);
+  }
+}
+
+TEST_CASE("a circle of a profile touches both slopes") {
+  // Heights and slopes by the equation of the circle, in 25 digits (mpmath).
+  const AlignmentProfile profile(
+      {{.station = 0, .height = 100},
+       {.station = 300, .height = 103, .curve = Curve::kCircle, .radius = 5000},
+       {.station = 700, .height = 95}});
+  const double known[][3] = {{250, 102.4375214796057522295745, 0.005000687393391333639932113},
+                             {290, 102.4775468145992125740054, -0.002999388622873865395819985},
+                             {300, 102.4375527234354622381833, -0.004999437608958322470277381},
+                             {333.25, 102.1607561295727822694357, -0.01165016566803550217280979}};
+  for (const auto& [station, height, slope] : known) {
+    CHECK(std::abs(profile.at(station).value - height) < 1e-12);
+    CHECK(std::abs(profile.at(station).slope - slope) < 1e-14);
+  }
+  CHECK(std::abs(profile.overlap_before(1) - -225.005624156431592650834) < 1e-11);
+  CHECK(std::abs(profile.overlap_before(2) - (374.9831303419166687659908 - 700)) < 1e-11);
+  CHECK(profile.at(225).slope == Approx(0.01));
+  CHECK(profile.at(375).slope == Approx(-0.02));
+}
+
+TEST_CASE("a circle in a sag is the crest turned over") {
+  const auto profile = [](double sign) {
+    return AlignmentProfile(
+        {{.station = 0, .height = 0},
+         {.station = 300, .height = 3 * sign, .curve = Curve::kCircle, .radius = 5000},
+         {.station = 700, .height = -5 * sign}});
+  };
+  for (const double s : {230.0, 300.0, 370.0}) {
+    CHECK(std::abs(profile(1).at(s).value + profile(-1).at(s).value) < 1e-14);
+    CHECK(std::abs(profile(1).at(s).slope + profile(-1).at(s).slope) < 1e-15);
+  }
+}
+
+TEST_CASE("where curves overlap by rounding the later one counts") {
+  const AlignmentProfile profile(
+      {{.station = 0, .height = 0},
+       {.station = 100, .height = 1, .curve = Curve::kParabola, .before = 50, .after = 50 + 1e-9},
+       {.station = 200, .height = 0, .curve = Curve::kParabola, .before = 50, .after = 50},
+       {.station = 300, .height = 0}});
+  CHECK(profile.overlap_before(2) == Approx(1e-9).epsilon(1e-3));
+  CHECK(std::abs(profile.at(150).value - 0.5) < 1e-10);
+  CHECK(std::abs(profile.at(150).slope - -0.01) < 1e-10);
+  // A station on a border, here between two slopes without a curve, belongs to the later one.
+  const AlignmentProfile bare(
+      {{.station = 0, .height = 0}, {.station = 10, .height = 1}, {.station = 20, .height = 1}});
+  CHECK(bare.at(10).slope == 0);
+  CHECK(bare.at(10).value == 1);
+}
+
+TEST_CASE("cant changes evenly between its stations and is kept beyond them") {
+  const AlignmentCant cant({{100, 0}, {150, 0.1}, {250, 0.1}, {300, -0.05}});
+  CHECK(cant.at(0).value == 0);
+  CHECK(cant.at(125).value == Approx(0.05));
+  CHECK(cant.at(125).slope == Approx(0.002));
+  CHECK(cant.at(150).slope == 0);
+  CHECK(cant.at(275).value == Approx(0.025));
+  CHECK(cant.at(300).value == -0.05);
+  CHECK(cant.at(400).value == -0.05);
+  CHECK(cant.at(400).slope == 0);
+}
+
+TEST_CASE("a track without cant stands upright on its slope") {
+  Alignment track = straight_track();
+  track.level = 7;
+  const Pose level = track.pose_at(12.5);
+  const double upright[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  for (int k = 0; k < 9; ++k) CHECK(level.rotation[k] == upright[k]);
+  CHECK(level.translation[0] == 12.5);
+  CHECK(level.translation[2] == 7);
+  track.profile.emplace(
+      std::vector<ProfilePoint>{{.station = 0, .height = 0}, {.station = 1000, .height = 750}});
+  const Pose climbing = track.pose_at(400);
+  CHECK(climbing.translation[2] == Approx(300));
+  const double climb[9] = {0.8, 0, -0.6, 0, 1, 0, 0.6, 0, 0.8};
+  for (int k = 0; k < 9; ++k) CHECK(std::abs(climbing.rotation[k] - climb[k]) < 1e-15);
+}
+
+TEST_CASE("cant lifts the rails that the line of rotation leaves free") {
+  // The raise of the middle, as a share of the cant, for the left rail high and the right rail
+  // high.
+  const struct {
+    CantLine line;
+    double left_high, right_high;
+  } kinds[] = {{CantLine::kCenter, 0, 0},
+               {CantLine::kInsideRail, 0.5, 0.5},
+               {CantLine::kOutsideRail, -0.5, -0.5},
+               {CantLine::kLeftRail, -0.5, 0.5},
+               {CantLine::kRightRail, 0.5, -0.5}};
+  for (const auto& kind : kinds) {
+    for (const double cant : {0.15, -0.15}) {
+      Alignment track = straight_track();
+      track.cant.emplace(std::vector<CantPoint>{{0, cant}, {1000, cant}});
+      track.cant_line = kind.line;
+      track.rail_distance = 1.5;
+      const Pose pose = track.pose_at(500);
+      const double raise = 0.15 * (cant > 0 ? kind.left_high : kind.right_high);
+      CHECK(std::abs(pose.translation[2] - raise) < 1e-15);
+      // The left rail is above the right one by the cant, on rails 1.5 m apart.
+      CHECK(std::abs(1.5 * pose.rotation[7] - cant) < 1e-15);
+      CHECK(std::abs(pose.rotation[8] - std::sqrt(1 - 0.01)) < 1e-15);
+      CHECK(std::abs(pose.rotation[5] - -pose.rotation[7]) < 1e-15);
+      CHECK(is_rigid(stretch_of(pose)));
+    }
+  }
+}
+
+TEST_CASE("a ramp of cant tilts the way by the raise of the middle") {
+  Alignment track = straight_track();
+  track.cant_line = CantLine::kInsideRail;
+  track.cant.emplace(std::vector<CantPoint>{{0, 0.1}, {100, -0.1}, {200, -0.1}});
+  const auto climb = [&](double s) {
+    const Pose pose = track.pose_at(s);
+    return pose.rotation[6] / std::hypot(pose.rotation[0], pose.rotation[3]);
+  };
+  CHECK(std::abs(climb(20) - -0.001) < 1e-15);
+  CHECK(std::abs(climb(80) - 0.001) < 1e-15);
+  CHECK(std::abs(climb(50) - 0.001) < 1e-15);  // on the border, the later side
+  CHECK(climb(150) == 0);
+  for (const double s : {20.0, 80.0}) {
+    const double rise =
+        track.pose_at(s + 0.5).translation[2] - track.pose_at(s - 0.5).translation[2];
+    CHECK(rise == Approx(climb(s)));
+  }
+}

@@ -1,0 +1,196 @@
+// LandXML that was damaged, or made to do harm: it is read, or refused with what is wrong.
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "clearway/alignment.hpp"
+#include "clearway/error.hpp"
+#include "support/land_xml.hpp"
+#include "support/reader_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+std::string refusal_of_text(const ReaderScratch& scratch, const std::string& text) {
+  try {
+    const auto poses = read_alignment(scratch.write("a.xml", text), {.step = 10});
+    for (const Pose& pose : poses) {
+      for (const double number : pose.translation) REQUIRE(std::isfinite(number));
+      for (const double number : pose.rotation) REQUIRE(std::isfinite(number));
+    }
+  } catch (const InputError& error) {
+    return error.what();
+  } catch (const UsageError& error) {
+    return std::string("usage: ") + error.what();
+  }
+  return "read";
+}
+
+std::string refusal_of_text(const std::string& text) {
+  return refusal_of_text(ReaderScratch(), text);
+}
+
+/// The text with the first `what` in it replaced.
+std::string replaced(std::string text, const std::string& what, const std::string& with) {
+  const std::size_t at = text.find(what);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, what.size(), with);
+}
+
+std::string repeated(const std::string& text, std::size_t times) {
+  std::string all;
+  all.reserve(text.size() * times);
+  for (std::size_t i = 0; i < times; ++i) all += text;
+  return all;
+}
+
+const std::string kGood = LandFile().text();
+
+std::string refusal_with(const std::string& what, const std::string& with) {
+  return refusal_of_text(replaced(kGood, what, with));
+}
+
+}  // namespace
+
+TEST_CASE("an alignment that is cut anywhere is refused") {
+  const ReaderScratch scratch;
+  const std::size_t end = kGood.rfind('>');
+  for (std::size_t bytes = 0; bytes < end; bytes += 7) {
+    const std::string refusal = refusal_of_text(scratch, kGood.substr(0, bytes));
+    CHECK_THAT(refusal, Contains("malformed") && Contains("line "));
+  }
+  CHECK(refusal_of_text(scratch, kGood.substr(0, end + 1)) == "read");
+}
+
+TEST_CASE("any byte of an alignment may be another one") {
+  const ReaderScratch scratch;
+  std::size_t read = 0, refused = 0;
+  for (std::size_t i = 0; i < kGood.size(); i += 3) {
+    for (const char c : {'<', '"', '9', '\0', '-'}) {
+      std::string text = kGood;
+      text[i] = c;
+      (refusal_of_text(scratch, text) == "read" ? read : refused) += 1;
+    }
+  }
+  CHECK(read > 100);
+  CHECK(refused > 100);
+}
+
+TEST_CASE("what is no LandXML is refused by what it is") {
+  CHECK_THAT(refusal_of_text(""), Contains("malformed"));
+  CHECK_THAT(refusal_of_text("x y z\n1 2 3\n"), Contains("malformed"));
+  CHECK_THAT(refusal_of_text("<html><body/></html>"),
+             Contains("\"html\"") && Contains("expected LandXML"));
+  CHECK_THAT(refusal_of_text("<LandXML/>"), Contains("has no Units"));
+  CHECK_THAT(refusal_of_text("<LandXML><Units/></LandXML>"),
+             Contains("neither Metric nor Imperial"));
+  CHECK_THAT(refusal_with("<Metric", "<Imperial linearUnit=\"foot\"/><Metric"),
+             Contains("both Metric and Imperial"));
+  CHECK_THAT(refusal_with("linearUnit=\"meter\"", ""), Contains("no attribute linearUnit"));
+  CHECK_THAT(refusal_with("\"meter\"", "\"cubit\""),
+             Contains("linearUnit=\"cubit\"") && Contains("USSurveyFoot"));
+  CHECK_THAT(refusal_with("\"meter\"", "\"foot\""), Contains("linearUnit=\"foot\""));
+  CHECK_THAT(refusal_of_text("<LandXML><Units><Metric linearUnit=\"meter\"/></Units></LandXML>"),
+             Contains("holds no Alignment"));
+  CHECK_THAT(refusal_of_text(
+                 "<LandXML><Units><Metric linearUnit=\"meter\"/></Units><Alignments/></LandXML>"),
+             Contains("holds no Alignment"));
+}
+
+TEST_CASE("empty lists and missing parts are refused by name") {
+  CHECK_THAT(refusal_with("<CoordGeom>", "<CoordGeom/><Other>"), Contains("malformed"));
+  LandFile empty;
+  empty.line = empty.curve = "";
+  CHECK_THAT(refusal_of_text(empty.text()),
+             Contains("\"CoordGeom\"") && Contains("no element with a length"));
+  CHECK_THAT(refusal_with("staStart=\"1000\"", ""),
+             Contains("\"Alignment\"") && Contains("no attribute staStart"));
+  CHECK_THAT(refusal_with("<Start>0 0</Start>", ""),
+             Contains("\"Line\"") && Contains("has no Start"));
+  CHECK_THAT(refusal_with("<End>0 100</End>", "<End/>"),
+             Contains("\"End\"") && Contains("holds 0 numbers"));
+  CHECK_THAT(refusal_with("<End>0 100</End>", "<End>0 100</End><End>0 100</End>"),
+             Contains("stands twice"));
+  CHECK_THAT(refusal_with("<End>0 100</End>", "<End>0 100 0 0</End>"),
+             Contains("more than 3 numbers"));
+  CHECK_THAT(refusal_with("length=\"100\"", "length=\"100\" length=\"100\""),
+             Contains("the attribute length twice"));
+  CHECK_THAT(refusal_with("</CoordGeom>", "</CoordGeom><CoordGeom/>"), Contains("stands twice"));
+}
+
+TEST_CASE("numbers that are none, or too large, are refused") {
+  for (const char* number : {"nan", "inf", "-inf", "1e999", "0x10", "1,5", "", "1 2"}) {
+    const std::string length = "length=\"" + std::string(number) + "\"";
+    CHECK_THAT(refusal_with("length=\"100\"", length), Contains("\"Line\"") && Contains(length));
+  }
+  for (const char* number : {"nan", "inf", "1e999", "x"}) {
+    CHECK_THAT(refusal_with("<End>0 100</End>", "<End>0 " + std::string(number) + "</End>"),
+               Contains("\"End\"") && Contains("finite numbers"));
+    CHECK_THAT(refusal_with("radius=\"50\"", "radius=\"" + std::string(number) + "\""),
+               Contains("\"Curve\""));
+  }
+  // Finite ones whose sums and products are not.
+  CHECK_THAT(refusal_with("<End>0 100</End>", "<End>0 1e308</End>"), !Contains("read"));
+  CHECK_THAT(refusal_with("length=\"100\"", "length=\"1e308\""), !Contains("read"));
+  CHECK_THAT(refusal_with("radius=\"50\"", "radius=\"1e-320\""), Contains("full circle"));
+  CHECK_THAT(refusal_with("radius=\"50\"", "radius=\"0\""), Contains("the radius 0 m"));
+  CHECK_THAT(refusal_with("staStart=\"1000\"", "staStart=\"1e308\""), !Contains("read"));
+  CHECK_THAT(refusal_with("1200 12", "1000.0001 1e308"), Contains("no finite pose"));
+  CHECK(refusal_with("1200 12", "1200 1e300") == "read");
+  CHECK_THAT(refusal_with("1200 12", "1e308 12"), Contains("read"));
+}
+
+TEST_CASE("entities that a document declares are not expanded") {
+  std::string bomb = "<!DOCTYPE LandXML [<!ENTITY a \"" + repeated("a", 1000) + "\">";
+  for (char c = 'b'; c < 'k'; ++c) {
+    const std::string before(1, static_cast<char>(c - 1));
+    bomb += "<!ENTITY " + std::string(1, c) + " \"" + repeated("&" + before + ";", 20) + "\">";
+  }
+  std::string text = replaced(kGood, "<LandXML", bomb + "]>\n<LandXML");
+  CHECK(refusal_of_text(text) == "read");
+  text = replaced(text, "<End>0 100</End>", "<End>&j;</End>");
+  CHECK_THAT(refusal_of_text(text), Contains("\"&j;\""));
+  // Nor is a file that one names opened.
+  text = replaced(kGood, "<LandXML",
+                  "<!DOCTYPE LandXML [<!ENTITY x SYSTEM \"file:///etc/hostname\">]>\n<LandXML");
+  CHECK_THAT(refusal_of_text(replaced(text, "<End>0 100</End>", "<End>&x;</End>")),
+             Contains("\"&x;\""));
+}
+
+TEST_CASE("deep nesting and long lists end in time") {
+  const auto start = std::chrono::steady_clock::now();
+  const std::string deep = repeated("<a>", 200'000) + repeated("</a>", 200'000);
+  CHECK(refusal_with("</CoordGeom>", "</CoordGeom>" + deep) == "read");
+  CHECK_THAT(refusal_with("</CoordGeom>", repeated("<a>", 200'000) + "</CoordGeom>"),
+             Contains("malformed"));
+  CHECK_THAT(refusal_with("<Units>", repeated("<a/>", 9'000'000) + "<Units>"),
+             Contains("tags and attributes; expected at most 8388608"));
+  const std::string many = repeated("<Alignment name=\"x\" staStart=\"0\"/>", 20'000);
+  CHECK_THAT(refusal_with("<Alignments>", "<Alignments>" + many),
+             Contains("has 20,001 alignments") && Contains("and 19,993 more"));
+  // 20,000 elements of 1 m with as many points of the profile.
+  LandFile file;
+  file.curve = "";
+  file.attributes = "name=\"a\" staStart=\"0\"";
+  file.line = file.profile = "";
+  for (int i = 0; i < 20'000; ++i) {
+    const std::string from = std::to_string(i), to = std::to_string(i + 1);
+    file.line += "<Line><Start>0 " + from + "</Start><End>0 " + to + "</End></Line>";
+    file.profile += "<PVI>" + from + " 1</PVI>";
+  }
+  file.profile = "<Profile><ProfAlign>" + file.profile + "</ProfAlign></Profile>";
+  CHECK(refusal_of_text(file.text()) == "read");
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  CHECK(took.count() < 60);
+}
+
+TEST_CASE("names cannot spoil a message") {
+  const std::string refusal =
+      refusal_with("<Alignments>", "<Alignments><Alignment name=\"\x1b[31m&#10;x\"/>");
+  CHECK_THAT(refusal, Contains("\"?[31m?x\""));
+}
