@@ -83,7 +83,7 @@ class BodyTest(SceneTest):
         self.assertEqual(sorted(map(tuple, solid.vertices)), sorted(map(tuple, box.vertices)))
         with self.assertRaisesRegex(clearway.UsageError, "cross or touch"):
             clearway.outline_model([[0, 0], [1, 1], [1, 0], [0, 1]], 0, 1)
-        with self.assertRaisesRegex(clearway.InputError, "needs --mirror"):
+        with self.assertRaisesRegex(clearway.InputError, "is to be mirrored"):
             clearway.read_outline(file)
 
     def test_a_file_of_bodies_is_read(self):
