@@ -14,6 +14,7 @@
 #include "clearway/ignored.hpp"     // IWYU pragma: export
 #include "clearway/merge.hpp"       // IWYU pragma: export
 #include "clearway/model.hpp"       // IWYU pragma: export
+#include "clearway/outline.hpp"     // IWYU pragma: export
 #include "clearway/progress.hpp"    // IWYU pragma: export
 #include "clearway/query.hpp"       // IWYU pragma: export
 #include "clearway/report.hpp"      // IWYU pragma: export

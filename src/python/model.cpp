@@ -13,6 +13,7 @@
 
 #include "clearway/body.hpp"
 #include "clearway/error.hpp"
+#include "clearway/outline.hpp"
 #include "python/values.hpp"
 
 namespace clearway::python {
@@ -225,8 +226,60 @@ std::string model_words(const py::object& object) {
   return std::to_string(py::len(object)) + " model points";
 }
 
+namespace {
+
+void add_made_models(py::module_& module) {
+  module.def("box_model", &box_model, "length"_a, "width"_a, "height"_a,
+             R"(box_model(length, width, height)
+--
+
+Make a closed box that stands on z = 0, with its middle over the origin. Returns a Model, a solid.
+
+length, width, height: its sides along x, y and z, metres.)");
+  module.def(
+      "outline_model",
+      [](const std::vector<std::array<double, 2>>& outline, double rear, double front) {
+        std::vector<OutlinePoint> corners;
+        for (const auto& [y, z] : outline) corners.push_back({y, z});
+        return outline_model(corners, rear, front);
+      },
+      "outline"_a, "rear"_a, "front"_a,
+      R"(outline_model(outline, rear, front)
+--
+
+Make a closed solid with this cross-section, such as a load or a clearance gauge. Returns a Model.
+
+outline: corners y, z of a simple polygon, n x 2, metres; y is to the left, z up.
+rear, front: where the solid begins and ends along x, metres.)");
+  module.def(
+      "read_outline",
+      [](const py::object& path, bool mirror, const UnitArgument& unit) {
+        const auto corners =
+            read_outline(path_of(path), {.mirror = mirror, .unit = file_unit(unit)});
+        py::array_t<double> array({static_cast<py::ssize_t>(corners.size()), py::ssize_t{2}});
+        double* at = array.mutable_data();
+        for (const auto& [y, z] : corners) {
+          *at++ = y;
+          *at++ = z;
+        }
+        return array;
+      },
+      "path"_a, py::kw_only(), "mirror"_a = false, "unit"_a = 0.0,
+      R"(read_outline(path, *, mirror=False, unit=0.0)
+--
+
+Read an outline from a file of text, two numbers in each line. Returns its corners y, z in metres.
+
+path: the file, with the names y,z in its first line or none.
+mirror: the file has height,half_width of one half of a symmetric outline.
+unit: unit of the file: 'mm', 'cm', 'm', 'in', 'ift', 'us-ft' or its length in metres; 0: metres.)");
+}
+
+}  // namespace
+
 void add_model(py::module_& module) {
   add_shape(module);
+  add_made_models(module);
   add_read_model_points(module);
   add_read_model(module);
 }

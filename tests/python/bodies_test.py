@@ -72,6 +72,20 @@ class BodyTest(SceneTest):
         file.write_text(json.dumps({"bodies": bodies}))
         return file
 
+    def test_boxes_and_outlines_are_solids(self):
+        box = clearway.box_model(4, 1.8, 1.4)
+        self.assertEqual((len(box.vertices), len(box.triangles)), (8, 12))
+        file = self.folder / "half.csv"
+        file.write_text("height,half_width\n0,900\n1400,900\n")
+        outline = clearway.read_outline(file, mirror=True, unit="mm")
+        np.testing.assert_allclose(outline, [[0.9, 0], [0.9, 1.4], [-0.9, 1.4], [-0.9, 0]])
+        solid = clearway.outline_model(outline, -2, 2)
+        self.assertEqual(sorted(map(tuple, solid.vertices)), sorted(map(tuple, box.vertices)))
+        with self.assertRaisesRegex(clearway.UsageError, "cross or touch"):
+            clearway.outline_model([[0, 0], [1, 1], [1, 0], [0, 1]], 0, 1)
+        with self.assertRaisesRegex(clearway.InputError, "is to be mirrored"):
+            clearway.read_outline(file)
+
     def test_a_file_of_bodies_is_read(self):
         mesh = "OFF\n3 1 0\n0 0 0\n100 0 0\n0 100 0\n3 0 1 2\n"
         (self.folder / "fin.off").write_text(mesh)

@@ -4,6 +4,7 @@
 
 #include "clearway/error.hpp"
 #include "io/files/input_error.hpp"
+#include "io/models/model_input.hpp"
 #include "io/store/file_kind.hpp"
 
 namespace clearway::tool {
@@ -53,6 +54,7 @@ void check_is_store(const std::filesystem::path& path) {
 }
 
 void check_is_model(const std::filesystem::path& path) {
+  if (names_box(path)) return;
   const FileDescription file = describe_file(path);
   if (!is_one_of_ours(file.kind) && file.kind != FileKind::kTrajectory) return;
   refuse_role(path, file, "a model (points of the vehicle in its own frame)",

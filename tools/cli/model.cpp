@@ -4,12 +4,14 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
+#include "clearway/outline.hpp"
 #include "cli/commands.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
@@ -17,6 +19,7 @@
 #include "core/geometry/point_box.hpp"
 #include "core/util/format.hpp"
 #include "io/files/pending_file.hpp"
+#include "io/models/mesh/mesh_writer.hpp"
 #include "io/models/mesh_facts.hpp"
 #include "io/models/model_input.hpp"
 #include "io/models/sample_mesh.hpp"
@@ -122,6 +125,93 @@ void write_points(const Model& model, const std::filesystem::path& path) {
   writer.finish();
 }
 
+/// A solid that is made from a few numbers.
+struct MadeModel {
+  std::filesystem::path outline, output;
+  OutlineOptions how;
+  Vec3 box{};
+  std::optional<std::array<double, 2>> x;
+  LengthOptions lengths;
+  bool force = false;
+};
+
+void write_solid(const MadeModel& options, const Model& solid) {
+  check_mesh_name(options.output);
+  PendingFile output(options.output, options.force);
+  write_mesh(solid, options.output, File::create(output.partial()));
+  output.publish();
+  const MeshFacts facts = facts_of({solid.vertices, solid.triangles});
+  const Box box = box_of(solid.vertices);
+  double volume = 0;
+  for (const auto& [a, b, c] : solid.triangles) {
+    volume += dot(solid.vertices[a] - box.lo,
+                  cross(solid.vertices[b] - box.lo, solid.vertices[c] - box.lo)) /
+              6;
+  }
+  spdlog::info("{}: a closed solid of {} and {}, {} x {} x {} m, {} m2, {} m3",
+               options.output.string(), counted(solid.vertices.size(), "corner"),
+               counted(solid.triangles.size(), "triangle"), format_brief(box.hi.x - box.lo.x),
+               format_brief(box.hi.y - box.lo.y), format_brief(box.hi.z - box.lo.z),
+               format_brief(facts.area), format_brief(volume));
+}
+
+void add_output(CLI::App& command, MadeModel& options) {
+  command.add_option("-o,--output", options.output, "The solid in metres: a mesh in OFF or PLY")
+      ->type_name("FILE")
+      ->required();
+  command.add_flag("--force", options.force, "Overwrite an existing output");
+}
+
+void add_box(CLI::App& model) {
+  const auto options = std::make_shared<MadeModel>();
+  CLI::App* command = model.add_subcommand(
+      "box", "Make a box that stands on z = 0 with its middle over the origin");
+  options->lengths
+      .add(*command, "size", options->box, "Length along x, width along y and height along z")
+      ->type_name("L,W,H")
+      ->required();
+  add_output(*command, *options);
+  command->footer(
+      "clearway run takes a box without a file, too: --model box:30,5,4.3\n"
+      "Example: clearway model box 30,5,4.3 -o load.off");
+  command->callback([options] {
+    options->lengths.convert(1);
+    const auto& [length, width, height] = options->box;
+    write_solid(*options, box_model(length, width, height));
+  });
+}
+
+void add_outline(CLI::App& model) {
+  const auto options = std::make_shared<MadeModel>();
+  CLI::App* command = model.add_subcommand(
+      "outline", "Make a solid from its cross-section, such as a clearance gauge or a load");
+  command
+      ->add_option("IN", options->outline,
+                   "The outline as text: y,z of each corner in a line, or with --mirror "
+                   "height,half_width")
+      ->type_name("FILE")
+      ->required();
+  options->lengths
+      .add(*command, "--x", options->x, "Where the solid begins and ends along the vehicle")
+      ->type_name("REAR,FRONT")
+      ->required();
+  command->add_flag("--mirror", options->how.mirror,
+                    "The file has height,half_width of the one half of a symmetric outline");
+  add_model_unit(*command, "--unit", options->how.unit);
+  add_output(*command, *options);
+  command->footer("Example: clearway model outline gauge.csv --mirror --x=-2,28 -o gauge.off");
+  command->callback([options] {
+    refuse_overwriting(options->output, {options->outline});
+    options->lengths.convert(1);
+    const auto outline = read_outline(options->outline, options->how);
+    try {
+      write_solid(*options, outline_model(outline, (*options->x)[0], (*options->x)[1]));
+    } catch (const UsageError& error) {
+      throw UsageError(options->outline.string() + ": " + error.what());
+    }
+  });
+}
+
 void run_model(const ModelCommand& options) {
   std::optional<PendingFile> output;
   if (!options.output.empty()) {
@@ -152,12 +242,11 @@ void run_model(const ModelCommand& options) {
 void add_model(CLI::App& program) {
   const auto options = std::make_shared<ModelCommand>();
   CLI::App* command = program.add_subcommand(
-      "model", "Say what is in a model's file, and sample a mesh to the points that run takes");
+      "model", "Say what is in a model's file, sample a mesh to points, make a box or a gauge");
   command
       ->add_option("IN", options->input,
-                   "A mesh in STL, OBJ, PLY or OFF, or points in a scan's format")
-      ->type_name("FILE")
-      ->required();
+                   "A mesh in STL, OBJ, PLY or OFF, points in a scan's format, or box:L,W,H")
+      ->type_name("FILE");
   command->add_option("-o,--output", options->output, "The model's points in metres, a PLY file")
       ->type_name("FILE");
   CLI::Option* spacing = options->lengths.add(
@@ -176,8 +265,13 @@ void add_model(CLI::App& program) {
   command->footer(
       "clearway run searches the mesh itself. With --model-as points it makes such points.\n"
       "Example: clearway model car.stl --unit mm -o car.ply --spacing 0.025");
-  command->callback(
-      [options] { run_stoppable(options->output, kStartsAgain, [&] { run_model(*options); }); });
+  add_box(*command);
+  add_outline(*command);
+  command->callback([options, command] {
+    if (!command->get_subcommands().empty()) return;
+    if (options->input.empty()) throw CLI::RequiredError("IN");
+    run_stoppable(options->output, kStartsAgain, [&] { run_model(*options); });
+  });
 }
 
 }  // namespace clearway::tool

@@ -1,13 +1,18 @@
 #include "io/models/model_input.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include "clearway/error.hpp"
 #include "clearway/model.hpp"
+#include "clearway/outline.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
+#include "io/files/text_number.hpp"
 #include "io/models/mesh/mesh_reader.hpp"
 #include "io/models/mesh_facts.hpp"
 #include "io/models/sample_mesh.hpp"
@@ -18,6 +23,7 @@
 namespace clearway {
 namespace {
 
+constexpr std::string_view kBoxPrefix = "box:";
 constexpr double kBendToTell = 0.1;  // share of the spacing above which a bend is reported
 
 void tell(std::vector<Message>& messages, const ModelInput& input, const std::string& text,
@@ -238,7 +244,36 @@ Model vertices_of(const ModelInput& input, const ModelOptions& options,
   return shape;
 }
 
+/// Makes the box of "box:LENGTH,WIDTH,HEIGHT", in metres where no unit is named.
+void make_box(ModelInput& input) {
+  const std::string name = input.path.string();
+  const std::string_view all = std::string_view(name).substr(kBoxPrefix.size());
+  std::string_view sizes = all;
+  std::array<double, 3> size{};
+  bool sound = true;
+  for (std::size_t k = 0; k < 3 && sound; ++k) {
+    const std::size_t end = k < 2 ? sizes.find(',') : sizes.size();
+    const auto length =
+        end == std::string_view::npos ? std::nullopt : length_of(sizes.substr(0, end));
+    sound = length && length->value > 0;
+    if (!sound) break;
+    size[k] = length->value;
+    sizes.remove_prefix(std::min(end + 1, sizes.size()));
+  }
+  if (!sound) {
+    throw UsageError(name + ": expected a box as box:LENGTH,WIDTH,HEIGHT, three lengths above 0, " +
+                     "for example box:30,5,4.3; a file of this name is ./" + name);
+  }
+  Model box = box_model(size[0], size[1], size[2]);
+  input.mesh = {std::move(box.vertices), std::move(box.triangles)};
+  input.declared_unit = FileUnit::exactly(1);
+}
+
 }  // namespace
+
+bool names_box(const std::filesystem::path& model) {
+  return std::string_view(model.native()).starts_with(kBoxPrefix);
+}
 
 void tell_bend(const ModelInput& input, double allowed, const std::string& of_what,
                std::vector<Message>& messages) {
@@ -285,7 +320,10 @@ ModelInput read_model_input(const std::filesystem::path& path, const ModelOption
   const bool with_faces = !options.vertices_only;
   ModelInput input;
   input.path = path;
-  const bool mesh = read_as_mesh(input, with_faces);
+  const bool box = names_box(path);
+  if (box) make_box(input);
+  if (box && !with_faces) input.between_vertices = std::exchange(input.mesh.triangles, {});
+  const bool mesh = box || read_as_mesh(input, with_faces);
   if (!mesh) read_points(input);
   if (input.mesh.vertices.empty()) {
     refuse(path.string(), "the model has no points; expected one at least");

@@ -29,8 +29,12 @@ struct ModelInput {
   bool is_mesh() const { return !mesh.triangles.empty(); }
 };
 
-/// Reads a model's file, which must have at least one vertex or point; all coordinates are finite
-/// in the environment's unit too. Throws InputError, and UsageError for units that are not above 0.
+/// Whether a model is named by its size, as "box:LENGTH,WIDTH,HEIGHT", and not by a file.
+bool names_box(const std::filesystem::path& model);
+
+/// Reads a model's file, or makes the box that is named instead of one. A file must have at least
+/// one vertex or point; all coordinates are finite in the environment's unit too. Throws
+/// InputError, and UsageError for units that are not above 0.
 ModelInput read_model_input(const std::filesystem::path& path, const ModelOptions& options);
 
 /// Adds a message on how far corners of a polygon are from its plane, where that is not small

@@ -13,6 +13,40 @@ using namespace clearway::test;
 using Catch::Contains;
 using nlohmann::json;
 
+TEST_CASE("a box and an outline are models that run takes, and a file keeps its meaning") {
+  const Work work;
+  const Outcome box = work.run("model box 4,180cm,1.4 -o " + work.path("box.off"));
+  CHECK_THAT(box.err, Contains("a closed solid of 8 corners and 12 triangles, 4 x 1.8 x 1.4 m") &&
+                          Contains("10.08 m3"));
+  put_bytes(work.folder / "half.csv", "height,half_width\n0,0.9\n1.4,0.9\n");
+  const Outcome outline = work.run("model outline " + work.path("half.csv") +
+                                   " --mirror --x=-2,2 -o " + work.path("outline.ply"));
+  REQUIRE(outline.exit_code == 0);
+  const json facts = json::parse(work.run("model " + work.path("outline.ply") + " --json").out);
+  CHECK(facts["watertight"] == true);
+  CHECK(facts["triangles"] == 12);
+  const auto colliding = [&](const std::string& model) {
+    const Outcome run =
+        work.run("run --env " + (work.hall / "site.h5") + " --model " + model +
+                 " --model-as solid --trajectory " + (work.hall / "trajectory.txt") +
+                 " --radius 0.4 --json --force -o " + work.path("out.h5"));
+    INFO(run.err);
+    REQUIRE(run.exit_code == 0);
+    return json::parse(run.out)["colliding_points"].get<std::uint64_t>();
+  };
+  const std::uint64_t expected = colliding("box:4,1.8,1.4");
+  CHECK(expected > 0);
+  CHECK(colliding(work.path("box.off")) == expected);
+  CHECK(colliding(work.path("outline.ply")) == expected);
+  CHECK(work.run("model").exit_code == 2);
+  CHECK(work.run("model box 1,2 -o " + work.path("no.off")).exit_code == 2);
+  const Outcome named = work.run("model box 1,2,3 -o " + work.path("no.stl"));
+  CHECK_THAT(named.err, Contains("expected a name that ends in .off or .ply"));
+  const Outcome crossing = work.run("model outline " + work.path("half.csv") +
+                                    " --mirror --x=2,-2 -o " + work.path("no.off"));
+  CHECK_THAT(crossing.err, Contains("half.csv: a solid from x = 2 to -2"));
+}
+
 namespace {
 
 /// A box of the size of the hall's vehicle, in millimetres.

@@ -47,8 +47,8 @@ class Help(unittest.TestCase):
 
     def test_no_long_list_is_left(self):
         for command in ("run", "convert", "merge", "export", "conflicts", "compare", "report",
-                        "model", "trajectory info", "trajectory follow", "trajectory resample",
-                        "trajectory alignment",
+                        "model", "model box", "model outline", "trajectory info",
+                        "trajectory follow", "trajectory resample", "trajectory alignment",
                         "campaign plan", "campaign run", "campaign report"):
             for title, names in groups(command).items():
                 self.assertLessEqual(len(names), 10, f"{command}: {title}")

@@ -122,6 +122,11 @@ class WordCheck {
       known.push_back(command->get_name());
       list += (list.empty() ? "" : ", ") + command->get_name();
     }
+    // A command such as `model` takes a file or one of its commands.
+    const auto options = command_->get_options();
+    if (std::ranges::any_of(options, [](const auto* option) { return option->get_positional(); })) {
+      return;
+    }
     throw UsageError(word + ": no such command" + did_you_mean(word, known) + "; expected one of " +
                      list + " (" + name_ + " --help explains them)");
   }

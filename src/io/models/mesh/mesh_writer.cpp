@@ -1,0 +1,41 @@
+#include "io/models/mesh/mesh_writer.hpp"
+
+#include <string>
+
+#include "clearway/error.hpp"
+#include "io/files/text_writer.hpp"
+
+namespace clearway {
+namespace {
+
+bool ends_in(const std::filesystem::path& path, const char* extension) {
+  std::string own = path.extension().string();
+  for (char& c : own) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  return own == extension;
+}
+
+}  // namespace
+
+void check_mesh_name(const std::filesystem::path& path) {
+  if (ends_in(path, ".off") || ends_in(path, ".ply")) return;
+  throw UsageError(path.string() + ": expected a name that ends in .off or .ply, for a mesh");
+}
+
+void write_mesh(const Model& model, const std::filesystem::path& path, const File& file) {
+  check_mesh_name(path);
+  TextWriter out(file);
+  if (ends_in(path, ".off")) {
+    out << "OFF\n" << model.vertices.size() << " " << model.triangles.size() << " 0\n";
+  } else {
+    out << "ply\nformat ascii 1.0\nelement vertex " << model.vertices.size()
+        << "\nproperty double x\nproperty double y\nproperty double z\nelement face "
+        << model.triangles.size() << "\nproperty list uchar uint vertex_indices\nend_header\n";
+  }
+  for (const Vec3& p : model.vertices) out << p.x << " " << p.y << " " << p.z << "\n";
+  for (const auto& [a, b, c] : model.triangles) {
+    out << "3 " << a << " " << b << " " << c << "\n";
+  }
+  out.flush();
+}
+
+}  // namespace clearway

@@ -1,0 +1,182 @@
+#include "core/geometry/outline.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <random>
+#include <vector>
+
+#include "clearway/error.hpp"
+
+using namespace clearway;
+
+namespace {
+
+using Outline = std::vector<OutlinePoint>;
+
+double area_of(const Outline& outline) {
+  long double twice = 0;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const OutlinePoint &a = outline[i], &b = outline[(i + 1) % outline.size()];
+    twice += static_cast<long double>(a.y) * b.z - static_cast<long double>(a.z) * b.y;
+  }
+  return std::abs(static_cast<double>(twice / 2));
+}
+
+/// Six times the volume that the triangles enclose, and whether they are closed: each edge is
+/// there once in each direction.
+double volume_of(const Model& solid) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  long double volume = 0;
+  for (const auto& t : solid.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[static_cast<std::size_t>(k)];
+      const std::uint32_t b = t[static_cast<std::size_t>((k + 1) % 3)];
+      REQUIRE(edges[{a, b}]++ == 0);
+    }
+    const Vec3 &p = solid.vertices[t[0]], &q = solid.vertices[t[1]], &r = solid.vertices[t[2]];
+    volume += static_cast<long double>(p.x) * (q.y * r.z - q.z * r.y) +
+              static_cast<long double>(p.y) * (q.z * r.x - q.x * r.z) +
+              static_cast<long double>(p.z) * (q.x * r.y - q.y * r.x);
+  }
+  for (const auto& [edge, count] : edges) REQUIRE(edges.contains({edge.second, edge.first}));
+  return static_cast<double>(volume / 6);
+}
+
+void check_solid(const Outline& outline) {
+  const Model solid = outline_model(outline, -2, 5.5);
+  const std::size_t n = outline.size();
+  REQUIRE(solid.vertices.size() == 2 * n);
+  REQUIRE(solid.triangles.size() == 4 * n - 4);
+  REQUIRE(solid.solid_count() == 1);
+  const double expected = 7.5 * area_of(outline);
+  REQUIRE(volume_of(solid) == Approx(expected).epsilon(1e-9).margin(1e-12));
+  for (std::size_t t = 0; t < 2 * (n - 2); ++t) {  // the caps come first
+    Outline corners;
+    for (const std::uint32_t v : solid.triangles[t]) {
+      corners.push_back({solid.vertices[v].y, solid.vertices[v].z});
+    }
+    REQUIRE(side_of(corners[0], corners[1], corners[2]) == (t % 2 == 0 ? -1 : 1));
+  }
+}
+
+struct Dice {
+  explicit Dice(unsigned seed) : engine(seed) {}
+  double real(double least, double most) {
+    return std::uniform_real_distribution<double>(least, most)(engine);
+  }
+  std::size_t below(std::size_t most) {
+    return std::uniform_int_distribution<std::size_t>(0, most - 1)(engine);
+  }
+  std::mt19937 engine;
+};
+
+/// A polygon through random places, whose crossing edges are exchanged until none cross. With a
+/// coarse grid many corners lie on one line.
+Outline untangled(Dice& dice, std::size_t corners, double grid) {
+  Outline out;
+  while (out.size() < corners) {
+    const OutlinePoint p{std::floor(dice.real(-20, 20)) * grid,
+                         std::floor(dice.real(0, 40)) * grid};
+    if (std::ranges::find(out, p) == out.end()) out.push_back(p);
+  }
+  for (int turn = 0; turn < 2000; ++turn) {
+    const auto edges = touching_edges(out);
+    if (!edges) return out;
+    const auto [i, j] = *edges;
+    if (j == (i + 1) % out.size()) return {};  // folds back: exchanges do not help
+    std::reverse(out.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+                 out.begin() + static_cast<std::ptrdiff_t>(j) + 1);
+  }
+  return {};
+}
+
+/// Puts corners on edges: exactly on them where these are level or upright, otherwise one rounding
+/// beside them.
+Outline with_flat_corners(Dice& dice, const Outline& from) {
+  Outline out;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const OutlinePoint &a = from[i], &b = from[(i + 1) % from.size()];
+    out.push_back(a);
+    if (dice.below(3) != 0) continue;
+    const double part = dice.real(0.2, 0.8);
+    out.push_back({a.y + part * (b.y - a.y), a.z + part * (b.z - a.z)});
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("solids of random outlines are closed, point outwards and have their volume") {
+  std::size_t checked = 0, corners = 0;
+  for (unsigned seed = 0; checked < 1000; ++seed) {
+    INFO("seed " << seed);
+    REQUIRE(seed < 4000);
+    Dice dice(seed);
+    Outline outline = untangled(dice, 3 + dice.below(20), seed % 2 == 0 ? 0.1 : 1.0 / 3);
+    if (outline.empty()) continue;
+    outline = with_flat_corners(dice, outline);
+    if (touching_edges(outline)) continue;  // a corner beside an edge can cross a neighbour
+    if (seed % 3 == 0) std::ranges::reverse(outline);
+    check_solid(outline);
+    ++checked;
+    corners += outline.size();
+  }
+  CHECK(corners > 8000);
+}
+
+TEST_CASE("a corner in the middle of an edge, and a spiral with one ear at each end") {
+  check_solid({{0, 0}, {1, 0}, {2, 0}, {1, 2}});
+  check_solid({{0, 0}, {2, 0}, {1, 2}, {0.5, 1}});
+  Outline spiral;
+  for (int i = 0; i <= 200; ++i) {
+    const double turn = 0.1 * i;
+    spiral.push_back({(10 + turn) * std::cos(turn), (10 + turn) * std::sin(turn)});
+  }
+  for (int i = 200; i >= 0; --i) {
+    const double turn = 0.1 * i;
+    spiral.push_back({(9 + turn) * std::cos(turn), (9 + turn) * std::sin(turn)});
+  }
+  check_solid(spiral);
+}
+
+TEST_CASE("the side of a line is exact where rounding would decide it") {
+  // The example of Shewchuk's paper: points around a line, each one unit of the last place apart.
+  const OutlinePoint b{12, 12}, c{24, 24};
+  for (int i = 0; i < 64; ++i) {
+    for (int j = 0; j < 64; ++j) {
+      const OutlinePoint a{0.5 + i * 0x1p-53, 0.5 + j * 0x1p-53};
+      REQUIRE(side_of(a, b, c) == (j > i) - (j < i));
+    }
+  }
+  CHECK(side_of({0, 0}, {1e-90, 1e-90}, {2e-90, 2e-90}) == 0);
+}
+
+TEST_CASE("outlines that are no simple polygon are refused") {
+  const auto refused = [](const Outline& outline, const char* words) {
+    CHECK_THROWS_WITH(outline_model(outline, 0, 1), Catch::Contains(words));
+  };
+  refused({{0, 0}, {1, 0}}, "2 corners; expected 3 to 10,000");
+  refused({{0, 0}, {1, 1}, {1, 0}, {0, 1}}, "cross or touch");
+  refused({{0, 0}, {1, 0}, {2, 0}}, "cross or touch");                          // no area
+  refused({{0, 0}, {2, 0}, {1, 0}, {1, 1}}, "cross or touch");                  // folds back
+  refused({{0, 0}, {2, 0}, {2, 2}, {1, 0}}, "cross or touch");                  // touches an edge
+  refused({{0, 0}, {1, 0}, {1, 0}, {0, 1}}, "cross or touch");                  // a corner twice
+  refused({{0, 0}, {3, 0}, {3, 3}, {1, 1}, {2, 1}, {1, 1}}, "cross or touch");  // a needle
+  refused({{0, 0}, {1, 0}, {NAN, 1}}, "expected numbers from -1e6 to 1e6");
+  refused({{0, 0}, {1, 0}, {0, 2e6}}, "expected numbers from -1e6 to 1e6");
+  const Outline sound{{0, 0}, {1, 0}, {0, 1}};
+  CHECK_THROWS_WITH(outline_model(sound, 1, 1), Catch::Contains("expected its rear"));
+  CHECK_THROWS_WITH(outline_model(sound, 0, INFINITY), Catch::Contains("expected its rear"));
+}
+
+TEST_CASE("a box stands on the ground with its middle over the origin") {
+  const Model box = box_model(30, 5, 4.3);
+  CHECK(box.vertices.size() == 8);
+  CHECK(box.triangles.size() == 12);
+  CHECK(volume_of(box) == Approx(645));
+  CHECK(box.vertices.front() == Vec3{-15, -2.5, 0});
+  CHECK_THROWS_AS(box_model(0, 1, 1), UsageError);
+  CHECK_THROWS_AS(box_model(1, -1, 1), UsageError);
+  CHECK_THROWS_AS(box_model(1, 1, NAN), UsageError);
+}
