@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "clearway/pose.hpp"
@@ -11,11 +10,12 @@
 #include "core/trajectory/trajectory_doubts.hpp"
 #include "core/util/progress.hpp"
 #include "io/files/file.hpp"
+#include "io/paths/remarks.hpp"
 
 namespace clearway {
 
 /// The contents of a trajectory's file and how they were interpreted.
-struct TrajectoryFile {
+struct TrajectoryFile : Remarks {
   std::vector<Pose> poses;
   std::vector<double> times;       ///< seconds, one per pose; empty where the file has none
   std::vector<std::string> names;  ///< one per pose; empty where the file has none
@@ -29,16 +29,6 @@ struct TrajectoryFile {
   bool in_metres = false;
   FileUnit unit = {};  ///< unit of the positions in the file, where a header or an option names it
   RotationSource rotations = RotationSource::kMatrices;
-  std::vector<Message> remarks;  ///< notes and warnings
-
-  void note(const char* code, std::string text,
-            std::vector<std::pair<std::string, double>> numbers = {}) {
-    remarks.push_back({Message::Severity::kNote, code, std::move(text), std::move(numbers)});
-  }
-  void warn(const char* code, std::string text,
-            std::vector<std::pair<std::string, double>> numbers = {}) {
-    remarks.push_back({Message::Severity::kWarning, code, std::move(text), std::move(numbers)});
-  }
 };
 
 /// Reads a trajectory as read_trajectory() does, with details of the file.

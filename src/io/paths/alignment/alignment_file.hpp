@@ -2,33 +2,22 @@
 
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "clearway/alignment.hpp"
 #include "clearway/pose.hpp"
-#include "clearway/progress.hpp"
+#include "io/paths/remarks.hpp"
 
 namespace clearway {
 
 /// The poses along an alignment and how its file was understood.
-struct AlignmentFile {
+struct AlignmentFile : Remarks {
   std::vector<Pose> poses;         ///< in the order of travel, metres
   std::vector<double> stations;    ///< the internal station of each pose, metres
   std::string alignment, profile;  ///< names of what was read; profile is empty where there is none
   std::string unit;                ///< unit of the file, as LandXML names it
   double metres_per_unit = 1;
   double first_station = 0, last_station = 0;  ///< of the alignment's plan, metres
-  std::vector<Message> remarks;                ///< notes and warnings
-
-  void note(const char* code, std::string text,
-            std::vector<std::pair<std::string, double>> numbers = {}) {
-    remarks.push_back({Message::Severity::kNote, code, std::move(text), std::move(numbers)});
-  }
-  void warn(const char* code, std::string text,
-            std::vector<std::pair<std::string, double>> numbers = {}) {
-    remarks.push_back({Message::Severity::kWarning, code, std::move(text), std::move(numbers)});
-  }
 };
 
 /// Reads an alignment as read_alignment() does, with details of the file.
