@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include <utility>
 
 #include "campaign/plan.hpp"
+#include "clearway/answer.hpp"
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
 #include "io/files/file.hpp"
@@ -111,12 +113,15 @@ std::string warning_words(const ordered_json& facts) {
 
 const OutcomeWords& words_of(Outcome outcome) {
   static constexpr std::array<OutcomeWords, kOutcomes.size()> kWords{
-      {{"conflict", "■", "conflict", "conflict: a point is closer than the radius"},
+      {{"conflict", "■", "conflict",
+        "conflict: a point is closer than the radius, or with an error budget certainly too close"},
        {"undecided", "?", "undecided",
         "undecided: a collision is neither certain nor excluded; reasons and warnings say why"},
        {"doubtful", "△", "clear with warnings",
         "clear, but something was warned of: read the warnings below"},
-       {"clear", "○", "clear", "clear: no point is closer than the radius"},
+       {"clear", "○", "clear",
+        "clear: no point is closer than the radius and the errors, and where seen space was asked "
+        "for, all of it was scanned"},
        {"failed", "✕", "failed", "failed: nothing is known"},
        {"not_done", "…", "not done",
         "not done yet, or a file has changed since: nothing is known"}}};
@@ -185,12 +190,38 @@ std::string ignored_words(const ordered_json& facts) {
   return text;
 }
 
+bool is_in_doubt(const ordered_json& facts) {
+  const ordered_json reasons = facts.value("reasons", ordered_json::array());
+  return std::ranges::find(reasons, name_of(Reason::kQuestionInDoubt)) != reasons.end();
+}
+
+std::string open_words(const ordered_json& facts, const std::string& unit) {
+  static const std::map<std::string, const char*> kWords{
+      {name_of(Reason::kNear), "points are near"},
+      {name_of(Reason::kFew), "too few points that are certainly too close hang together"},
+      {name_of(Reason::kErrorsExceedMargin), "the errors exceed the margin"},
+      {name_of(Reason::kQuestionInDoubt), "the question is in doubt"}};
+  std::string text;
+  for (const auto& reason : facts.value("reasons", ordered_json::array())) {
+    const auto words = kWords.find(reason.get<std::string>());
+    if (words != kWords.end()) text += (text.empty() ? "" : ", ") + std::string(words->second);
+  }
+  const ordered_json seen = facts.value("seen", ordered_json());
+  if (!seen.is_null() && seen["listed_groups"] > 0) {
+    text +=
+        (text.empty() ? "" : ", ") +
+        ("not scanned on " + format_brief(seen["not_scanned_length"].get<double>()) + " " + unit);
+  }
+  return text;
+}
+
 bool is_exact(const ordered_json& facts) { return facts.value("exact", true); }
 
-std::string caveats_of(const ordered_json& facts) {
+std::string caveats_of(const ordered_json& facts, const std::string& unit) {
   std::string text;
-  for (const std::string& one : {warning_words(facts), ignored_words(facts),
-                                 std::string(is_exact(facts) ? "" : "not exact")}) {
+  for (const std::string& one :
+       {warning_words(facts), ignored_words(facts), std::string(is_exact(facts) ? "" : "not exact"),
+        open_words(facts, unit)}) {
     if (!one.empty()) text += (text.empty() ? "" : "; ") + one;
   }
   return text;
@@ -396,15 +427,20 @@ ordered_json task_facts(const std::filesystem::path& run_json, const ordered_jso
       texts.push_back(warning.at("message"));
     }
     const ordered_json& profile = run.at("least_profile");
-    return {{"verdict", run.at("verdict")},
-            {"reasons", run.value("reasons", ordered_json::array())},
-            {"exact", question.at("tolerance") == 0 && question.at("single_precision") == false},
-            {"colliding_points", run.at("colliding_points")},
-            {"ignored", ignored_of(run.at("ignored"))},
-            {"least", place_of(profile.is_null() ? run.at("least_clearance") : profile)},
-            {"first", place_of(run.at("first_place"))},
-            {"warnings", std::move(warnings)},
-            {"warning_texts", std::move(texts)}};
+    ordered_json facts{
+        {"verdict", run.at("verdict")},
+        {"reasons", run.value("reasons", ordered_json::array())},
+        {"exact", question.at("tolerance") == 0 && question.at("single_precision") == false},
+        {"colliding_points", run.at("colliding_points")},
+        {"ignored", ignored_of(run.at("ignored"))},
+        {"least", place_of(profile.is_null() ? run.at("least_clearance") : profile)},
+        {"first", place_of(run.at("first_place"))},
+        {"warnings", std::move(warnings)},
+        {"warning_texts", std::move(texts)}};
+    if (const ordered_json seen = run.value("seen", ordered_json()); !seen.is_null()) {
+      facts["seen"] = seen;
+    }
+    return facts;
   } catch (const JsonError& error) {
     throw ResourceError(run_json.string() + ": is not what the run printed: " + error.what());
   } catch (const ordered_json::exception& error) {

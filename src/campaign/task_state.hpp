@@ -167,8 +167,15 @@ class OutcomeCounts {
 
 /// What has to be said besides the verdict of a run that is done, for example "2 warnings
 /// (out-of-reach, scan-ends); 1,234 points ignored, of which 56 would collide; not exact". Empty
-/// where there is nothing to say.
-std::string caveats_of(const nlohmann::ordered_json& facts);
+/// where there is nothing to say. unit: the unit of lengths, for example "m".
+std::string caveats_of(const nlohmann::ordered_json& facts, const std::string& unit);
+
+/// Whether an undecided run could not have found anything.
+bool is_in_doubt(const nlohmann::ordered_json& facts);
+
+/// Why a run is undecided, and on how much of the path nobody knows what is there: "points are
+/// near, not scanned on 3.2 m". Empty where nothing of this holds.
+std::string open_words(const nlohmann::ordered_json& facts, const std::string& unit);
 
 /// Whether the run was asked for an exact answer, that is, without a tolerance and in double
 /// precision.

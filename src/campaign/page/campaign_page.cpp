@@ -61,7 +61,7 @@ table { border-collapse: separate; border-spacing: 3px; font-variant-numeric: ta
 .matrix td > a, .matrix td:not(:has(a)) { padding: 0.3rem 0.5rem; }
 .matrix td > a { display: block; color: inherit; text-decoration: none; }
 .matrix td > a:hover .word, .matrix td > a:focus .word { text-decoration: underline; }
-.matrix td small { padding-left: 1.7em; color: inherit; white-space: nowrap; }
+.matrix td small { padding-left: 1.7em; color: inherit; min-width: 9rem; }
 .matrix td b { font-weight: 600; padding-left: 1.4em; white-space: nowrap; }
 .list { border-spacing: 0; width: 100%; }
 .list th { text-align: left; background: #e5e9ef; padding: 0.2rem 0.5rem; }
@@ -132,8 +132,9 @@ std::string cell_word(const TaskLook& look) {
 /// found anything.
 std::string cell_distance(const Task& task, const TaskLook& look) {
   const Outcome outcome = outcome_of(look);
-  if (look.status != TaskStatus::kDone || outcome == Outcome::kUndecided) return "";
+  if (look.status != TaskStatus::kDone) return "";
   const ordered_json& facts = look.state->facts;
+  if (outcome == Outcome::kUndecided && is_in_doubt(facts)) return "";
   const ordered_json& least = facts["least"];
   if (!least.is_null()) {
     const auto distance = least["distance"].get<double>();
@@ -160,7 +161,7 @@ std::string cell_details(const Task& task, const TaskLook& look) {
   if (look.status != TaskStatus::kDone) return name_of(look.status);
   const ordered_json& facts = look.state->facts;
   std::string text = words_of(outcome_of(look)).word;
-  const std::string distance = cell_distance(task, look), caveats = caveats_of(facts);
+  const std::string distance = cell_distance(task, look), caveats = caveats_of(facts, task.unit);
   if (!distance.empty()) text += ", least distance " + distance;
   const auto points = facts["colliding_points"].get<std::uint64_t>();
   if (points > 0) {
@@ -330,12 +331,12 @@ class CampaignPage {
     text_ += std::string(R"(<span class="sign" aria-hidden="true">)") + kind.sign +
              R"(</span> <span class="word">)" + cell_word(look) + "</span>";
     if (!distance.empty()) text_ += "<br><b>" + distance + "</b>";
-    if (look.status == TaskStatus::kDone) text_ += cell_caveats(look.state->facts);
+    if (look.status == TaskStatus::kDone) text_ += cell_caveats(look.state->facts, task.unit);
     text_ += link.empty() ? "</td>" : "</a></td>";
   }
 
   /// The caveats of a run as numbers only, because the sections below the tables have the words.
-  static std::string cell_caveats(const ordered_json& facts) {
+  static std::string cell_caveats(const ordered_json& facts, const std::string& unit) {
     std::string text;
     if (const std::size_t warnings = facts["warnings"].size(); warnings > 0) {
       text = counted(warnings, "warning");
@@ -346,6 +347,9 @@ class CampaignPage {
       if (const ordered_json& colliding = facts["ignored"]["colliding"]; !colliding.is_null()) {
         text += ", of which " + format_count(colliding.get<std::uint64_t>()) + " would collide";
       }
+    }
+    if (const std::string open = open_words(facts, unit); !open.empty()) {
+      text += (text.empty() ? "" : ", ") + open;
     }
     if (!is_exact(facts)) text += (text.empty() ? "" : ", ") + std::string("not exact");
     return text.empty() ? "" : "<small>" + text + "</small>";

@@ -87,7 +87,7 @@ std::string caveats_text(const campaign::Plan& plan, const std::vector<TaskLook>
   for (std::size_t i = 0; i < looks.size(); ++i) {
     if (looks[i].status != TaskStatus::kDone || state_is_empty(looks[i])) continue;
     const nlohmann::ordered_json& facts = looks[i].state->facts;
-    const std::string caveats = campaign::caveats_of(facts);
+    const std::string caveats = campaign::caveats_of(facts, plan.tasks[i].unit);
     if (caveats.empty()) continue;
     tasks_of[facts["verdict"].get<std::string>() + "; " + caveats].push_back(i);
   }

@@ -293,7 +293,7 @@ void TaskQueue::end_task(TaskFolder& folder, int code) {
   const campaign::TaskState& state = folder.end(code);
   if (state.ending == campaign::Ending::kDone) {
     end(task);
-    const std::string caveats = campaign::caveats_of(state.facts);
+    const std::string caveats = campaign::caveats_of(state.facts, task.unit);
     spdlog::info("{} of {}: {}: {}{}{}, {:.2f} s", ended_, plan_.tasks.size(), task.name(),
                  state.facts["verdict"].get<std::string>(), caveats.empty() ? "" : "; ", caveats,
                  state.seconds);
