@@ -182,6 +182,8 @@ TEST_CASE("a second scan shows that a hidden place is free, or what stands in it
   const auto found = road.answer("--seen");
   CHECK(found["verdict"] == "conflict");
   CHECK(found["seen"]["listed_groups"] > 0);
+  CHECK_THAT(road.run("--seen").out,
+             Contains("1 of the places that were not scanned is behind a conflict"));
 }
 
 TEST_CASE("fewer beams see less, and their order does not matter") {
