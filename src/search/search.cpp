@@ -416,7 +416,7 @@ class Search {
                               " of memory is too little: to find what was not scanned needs " +
                               format_size(needed) +
                               " or more beside the mapped store; larger cubes need less",
-                          Remedy::kMoreMemory, static_cast<double>(needed));
+                          Remedy::kMoreMemory);
     }
   }
 

@@ -140,7 +140,7 @@ class SweepHits {
     Warp::each([&](std::uint32_t lane) {
       if (!room.fits()) {
         for (std::uint32_t i = lane; i < room.written(); i += kWarpLanes) {
-          work.walks[room.first + i].point = SweepWork::kNone;
+          work.walks[room.first + i] = {SweepWork::kNone, 0};
         }
         return;
       }

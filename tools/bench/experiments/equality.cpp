@@ -25,7 +25,7 @@ const std::vector<Mode>& modes() {
       {"clearance, first pose", {"--clearance", "0.3", "--first-pose"}, false},
       {"profile", {"--profile", "0.3"}, false},
       {"seen space", {"--seen"}, true, false, true},
-      {"seen space, small cubes", {"--seen", "--seen-cube", "0.05"}, false, false, true},
+      {"seen space, small cubes", {"--seen", "--seen-cube", "0.1"}, false, false, true},
       {"between poses, seen space", {"--between-poses", "--seen"}, true, false, true}};
   return kModes;
 }
