@@ -24,8 +24,8 @@ struct PoseColumns {
   bool heading = false;             ///< whether the third angle is called heading instead of yaw
   std::string position_units[3]{};  ///< units in the header, in lower case, or empty
   std::string angle_units[3]{};  ///< units of three angles in the header, in lower case, or empty
-  std::optional<std::size_t> time{};  ///< column called time
-  std::optional<std::size_t> name{};  ///< column with a name or an index
+  std::optional<std::size_t> time{};     ///< column called time
+  std::optional<std::size_t> name{};     ///< column with a name or an index
   std::optional<std::size_t> station{};  ///< column called station, whose texts may be numbers
   std::string station_unit{};            ///< its unit in the header, in lower case, or empty
 };
