@@ -33,7 +33,8 @@ void check_names(const InputBuffer& input, std::string_view line, bool mirror) {
   if (names == (mirror ? "height,half_width" : "y,z")) return;
   std::string expected = mirror ? "two numbers, or first the names height,half_width"
                                 : "two numbers, or first the names y,z";
-  if (names == "height,half_width") expected += "; one half of a symmetric outline is to be mirrored";
+  if (names == "height,half_width")
+    expected += "; one half of a symmetric outline is to be mirrored";
   if (names == "y,z") expected += "; a whole outline is not to be mirrored";
   refuse_line(input.name(), input.line(), excerpt(line) + "; expected " + expected);
 }
