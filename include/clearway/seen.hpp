@@ -17,7 +17,9 @@ struct SeenSummary {
   /// Groups of at least QueryParameters::seen_min cubes, which make a verdict undecided
   std::uint64_t listed_groups = 0;
   std::uint64_t listed_cubes = 0;  ///< number of cubes in these groups
-  /// Length of the path, in metres, on which the model first reaches a cube of a listed group
+  /// Length of the path, in metres, on which the model first reaches cubes of listed groups: from
+  /// each pose that does to the next one. Gaps shorter than a cube count too, because with poses
+  /// closer than a cube not every pose reaches a new one.
   double not_scanned_length = 0;
 
   friend bool operator==(const SeenSummary&, const SeenSummary&) = default;
@@ -32,9 +34,9 @@ struct UnseenCubes {
   /// Number of each cube's group, from 1 on: groups are ordered by their least first pose, and then
   /// by their least cube. 0 in a shard's part, whose groups are made when it is merged.
   std::vector<std::uint32_t> group;
-  /// Length of the path in metres from each cube's first pose to the next one. Only in a shard's
-  /// part, whose merge needs it.
-  std::vector<double> step = {};
+  /// Chainage of each cube's first pose, and the length of the path from it to the next pose,
+  /// metres. Only in a shard's part, whose merge needs them.
+  std::vector<double> chainage = {}, step = {};
 
   std::size_t size() const { return cube.size(); }
 };

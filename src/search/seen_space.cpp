@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,7 @@
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "core/util/tsan_annotations.hpp"
+#include "io/files/input_error.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/question.hpp"
 #include "search/page_search.hpp"
@@ -341,6 +343,7 @@ SeenSpace find_seen_space(const StoreReader& store, const Query& query, const Se
     space.unseen.cube.push_back({one.cube.i[0], one.cube.i[1], one.cube.i[2]});
     space.unseen.first_pose.push_back(one.first_pose);
     const std::size_t next = std::size_t{one.first_pose} + 1;
+    space.unseen.chainage.push_back(chainage[one.first_pose]);
     space.unseen.step.push_back(next < chainage.size() ? chainage[next] - chainage[next - 1] : 0);
   }
   space.unseen.group.resize(unseen.size());
@@ -366,12 +369,21 @@ void group_unseen(const QueryParameters& query, UnseenCubes& unseen, SeenSummary
     ++summary.listed_groups;
     summary.listed_cubes += size[group];
   }
-  std::map<std::uint32_t, double> steps;  // of the poses that first reach a cube of a listed group
+  // The ways from the poses that first reach a cube of a listed group, from and to.
+  std::map<std::uint32_t, std::pair<double, double>> ways;
   for (std::size_t i = 0; i < unseen.size(); ++i) {
-    if (is_listed(unseen.group[i])) steps[unseen.first_pose[i]] = unseen.step[i];
+    if (!is_listed(unseen.group[i])) continue;
+    const double from = unseen.chainage[i];
+    ways[unseen.first_pose[i]] = {from, from + unseen.step[i]};
   }
   summary.not_scanned_length = 0;
-  for (const auto& [pose, step] : steps) summary.not_scanned_length += step;
+  std::optional<double> end;  // of the way before
+  for (const auto& [pose, way] : ways) {
+    const double from = end && way.first - *end < summary.cube ? *end : way.first;
+    summary.not_scanned_length += std::max(0.0, way.second - from);
+    end = std::max(end.value_or(way.second), way.second);
+  }
+  unseen.chainage.clear();
   unseen.step.clear();
 }
 

@@ -38,7 +38,7 @@ CubeLattice cube_lattice(const StoreReader& store, double asked);
 void check_seen_space(const StoreReader& store, const QueryParameters& query);
 
 /// Bytes of a row of UnseenCubes.
-inline constexpr std::uint64_t kUnseenRowBytes = 5 * sizeof(std::uint32_t) + sizeof(double);
+inline constexpr std::uint64_t kUnseenRowBytes = 5 * sizeof(std::uint32_t) + 2 * sizeof(double);
 
 /// How a search for seen space is done.
 struct SeenSearch {
@@ -64,8 +64,8 @@ struct SeenSearch {
 SeenSpace find_seen_space(const StoreReader& store, const Query& query, const SeenSearch& how,
                           Progress& progress);
 
-/// Numbers the groups of the unseen cubes, completes the summary, and removes the steps, which only
-/// parts keep. The summary knows the number of swept cubes.
+/// Numbers the groups of the unseen cubes, completes the summary, and removes chainage and
+/// steps, which only parts keep. The summary knows the number of swept cubes.
 void group_unseen(const QueryParameters& query, UnseenCubes& unseen, SeenSummary& summary);
 
 /// Warns of cubes so large that parts of the model can lie between their middles, and sweep none:

@@ -206,6 +206,8 @@ struct Table<UnseenCubes> {
                                   check_poses},
       Column<Rows, std::uint32_t>{result_names::kGroupOfCube, &Rows::group, in_every_result,
                                   check_groups},
+      Column<Rows, double>{result_names::kChainage, &Rows::chainage,
+                           [](const ResultHeader& h) { return h.part.has_value(); }, check_steps},
       Column<Rows, double>{result_names::kStep, &Rows::step,
                            [](const ResultHeader& h) { return h.part.has_value(); }, check_steps}};
 

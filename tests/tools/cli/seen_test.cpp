@@ -149,6 +149,20 @@ TEST_CASE("a path through space that beams crossed is clear, and a hidden place 
   CHECK(run_program(road.folder, "verify " + quoted(road.folder / "out.h5")).exit_code == 0);
 }
 
+TEST_CASE("poses closer than a cube do not make the length that was not scanned shorter") {
+  const Road road;
+  road.scan(Road::beams(true));
+  const double coarse = road.answer("--seen")["seen"]["not_scanned_length"];
+  std::string path;
+  for (int i = 0; i <= 700; ++i) {
+    path += "1 0 0 " + std::to_string(8 + 0.01 * i) + " 0 1 0 0 0 0 1 0\n";
+  }
+  put_bytes(road.folder / "path.txt", path);
+  const double fine = road.answer("--seen")["seen"]["not_scanned_length"];
+  CHECK(coarse > 6);
+  CHECK(fine == Approx(coarse).margin(0.2));
+}
+
 TEST_CASE(
     "cubes that are too large for the distance are warned of, and none that is swept is no "
     "answer") {
