@@ -5,6 +5,7 @@
 
 #include "clearway/alignment.hpp"   // IWYU pragma: export
 #include "clearway/answer.hpp"      // IWYU pragma: export
+#include "clearway/axis.hpp"        // IWYU pragma: export
 #include "clearway/body.hpp"        // IWYU pragma: export
 #include "clearway/conflicts.hpp"   // IWYU pragma: export
 #include "clearway/convert.hpp"     // IWYU pragma: export

@@ -37,6 +37,8 @@ std::string name_of(const CLI::Option& option) {
 }
 
 /// The value that the command was given for an option; empty without one, or without that option.
+    // Here they say how the model is seen, and to a run how it is turned.
+    if (name == "--forward" || name == "--up") continue;
 std::string given(const CLI::App& command, const std::string& name) {
   const CLI::Option* option = command.get_option_no_throw(name);
   return option == nullptr || option->empty() ? "" : option->results().front();
@@ -56,6 +58,9 @@ std::string reading_options(const CLI::App& command) {
     const bool reads = std::ranges::any_of(
         kGroups, [same](OptionGroup group) { return same->get_group() == title_of(group); });
     if (!reads) continue;
+  if (const ModelAxes axes = header.model_axes.axes; axes.need_turn()) {
+    text += std::string(" --forward ") + name_of(axes.forward) + " --up " + name_of(axes.up);
+  }
     text += " " + name;
     if (option->get_items_expected_max() == 0) continue;
     for (const std::string& value : option->results()) text += " " + shell_word(value);
