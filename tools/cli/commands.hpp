@@ -5,10 +5,11 @@ class App;
 }
 
 /// Each function adds one subcommand: its options, and the callback that runs it. A callback sets
-/// `exit_code` where success is not 0 (run, merge, compare, verify, campaign run) and throws
+/// `exit_code` where success is not 0 (check, run, merge, compare, verify, campaign run) and throws
 /// otherwise.
 namespace clearway::tool {
 
+void add_check(CLI::App& program, int& exit_code);
 void add_convert(CLI::App& program);
 void add_run(CLI::App& program, int& exit_code);
 void add_merge(CLI::App& program, int& exit_code);

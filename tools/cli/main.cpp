@@ -9,6 +9,7 @@ namespace clearway::tool {
 namespace {
 
 void add_commands(CLI::App& program, int& exit_code) {
+  add_check(program, exit_code);
   add_convert(program);
   add_run(program, exit_code);
   add_merge(program, exit_code);
