@@ -23,6 +23,7 @@
 #include "clearway/search.hpp"      // IWYU pragma: export
 #include "clearway/seen.hpp"        // IWYU pragma: export
 #include "clearway/shard.hpp"       // IWYU pragma: export
+#include "clearway/stations.hpp"    // IWYU pragma: export
 #include "clearway/store.hpp"       // IWYU pragma: export
 #include "clearway/trajectory.hpp"  // IWYU pragma: export
 #include "clearway/unsearched.hpp"  // IWYU pragma: export

@@ -62,10 +62,10 @@ void add_vehicle_option(CLI::App& command, std::filesystem::path& vehicle,
 }
 
 std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOptions options,
-                             const Result& result) {
+                             const Result& result, PoseLabels* labels) {
   options.default_crs = result.reader().header().crs_wkt;
   std::vector<Message> remarks;
-  std::vector<Pose> poses = read_trajectory(path, options, &remarks);
+  std::vector<Pose> poses = read_trajectory(path, options, &remarks, labels);
   for (const Message& remark : remarks) log_message(remark);
   return poses;
 }

@@ -40,9 +40,10 @@ void check_axes(const Result& result, const ConflictCommand& options);
 void add_vehicle_option(CLI::App& command, std::filesystem::path& vehicle,
                         const std::string& description, CLI::Option* model);
 
-/// Reads the poses of a result's trajectory and logs the warnings.
+/// Reads the poses of a result's trajectory and logs the warnings. labels: where given, becomes
+/// what the file says of its poses.
 std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOptions options,
-                             const Result& result);
+                             const Result& result, PoseLabels* labels = nullptr);
 
 /// Options that read the model of a result again as it was read for the search, and turn it as its
 /// run did.
