@@ -8,6 +8,7 @@
 #include "clearway/convert.hpp"
 #include "clearway/report.hpp"
 #include "clearway/search.hpp"
+#include "clearway/stations.hpp"
 #include "cli/conflicts/conflict_inputs.hpp"
 #include "cli/run_options.hpp"
 #include "cli/support/lengths.hpp"
@@ -68,6 +69,26 @@ struct ConflictsOutcome {
 
 void add_options(CLI::App& command, ConflictsCommand& options);
 ConflictsOutcome perform(ConflictsCommand& options);
+
+/// The options of `clearway stations`.
+struct StationsCommand : ConflictCommand {
+  std::filesystem::path result, trajectory, model, vehicle;
+  std::vector<std::filesystem::path> outputs;
+  ModelOptions model_options;
+  double every = StationOptions{}.every;
+  std::uint64_t show = 20;
+  bool force = false;
+  bool json = false;
+};
+
+/// The stretches of the path in words.
+struct StationsOutcome {
+  std::string text;  ///< a table of the first stretches
+  std::string json;  ///< the summary as one JSON object
+};
+
+void add_options(CLI::App& command, StationsCommand& options);
+StationsOutcome perform(StationsCommand& options);
 
 /// The options of `clearway report`.
 struct ReportCommand : ConflictCommand {

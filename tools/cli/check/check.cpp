@@ -1,12 +1,10 @@
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <spawn.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -21,20 +19,18 @@
 
 #include "campaign/plan.hpp"
 #include "clearway/clearway.hpp"
+#include "cli/check/check_plan.hpp"
 #include "cli/check/check_record.hpp"
 #include "cli/check/step_options.hpp"
 #include "cli/commands.hpp"
 #include "cli/input_roles.hpp"
 #include "cli/steps.hpp"
 #include "cli/support/console.hpp"
-#include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/program.hpp"
 #include "cli/support/program_json.hpp"
 #include "cli/support/shell_words.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
-#include "core/util/format.hpp"
-#include "io/files/text_number.hpp"
 #include "io/models/model_input.hpp"
 #include "io/result/journal.hpp"
 #include "io/result/result.hpp"
@@ -49,41 +45,7 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 using Words = std::vector<std::string>;
 
-constexpr const char* kStoreName = "site.h5";
-constexpr const char* kResultName = "result.h5";
-constexpr const char* kConflictsName = "conflicts.csv";
-constexpr const char* kReportName = "report.html";
-
-/// Clearances and profile are asked for up to so many times the radius, unless the user says
-/// otherwise.
-constexpr double kClearanceRadii = 3, kProfileRadii = 5;
-
 constexpr const char* kGoesOn = "the same command goes on from what was finished";
-
-// How check deals with the options of its steps.
-const StepOptions kConvertOptions{{"--output", "--force", "--resume", "--json", "--help"},
-                                  {{"--lever-arm", "--origins-lever-arm"},
-                                   {"--trajectory-format", "--origins-format"},
-                                   {"--angles", "--origins-angles"},
-                                   {"--trajectory-crs", "--origins-crs"},
-                                   {"--trajectory-datum", "--origins-datum"},
-                                   {"--trajectory-unit", "--origins-unit"}}};
-// --gap is that of conflicts, and only a run with an error budget takes it.
-const StepOptions kRunOptions{{"--env", "--output", "--first-pose", "--tolerance", "--gap",
-                               "--shard", "--force", "--resume", "--fail-on-collision", "--json",
-                               "--help"}};
-const StepOptions kConflictsOptions{
-    {"--output", "--forward", "--up", "--date", "--force", "--json", "--help"}};
-const StepOptions kReportOptions{
-    {"--env", "--output", "--forward", "--up", "--force", "--json", "--help"}};
-
-/// The options of check that are not those of a step.
-struct CheckCommand {
-  std::vector<fs::path> inputs;
-  fs::path folder;
-  bool force = false, fail_on_collision = false, json = false, open = false;
-  const CLI::App* command = nullptr;  ///< the command that has these options
-};
 
 /// Whether a remedy is about an output that is there already.
 bool is_about_other_question(Remedy remedy) {
@@ -135,15 +97,6 @@ auto in_terms_of_check(const Call& call) {
   }
 }
 
-/// A length as text, times a factor in round numbers: "10cm" times 3 is "30cm".
-std::string times(const std::string& length, double factor) {
-  const char* at = length.data();
-  const char* const end = at + length.size();
-  double number = 0;
-  if (!parse_number(at, end, number)) return length;
-  return format_number(std::stod(fmt::format("{:.2g}", factor * number))) + std::string(at, end);
-}
-
 /// A step that writes one file and can be repeated: its options, and the words of its command line.
 template <typename Command>
 class Step {
@@ -163,117 +116,6 @@ class Step {
   Words words_;
   CLI::App app_;
   Command options_;
-};
-
-Words operator+(Words a, const Words& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
-/// The options of a step that the command has been given.
-template <typename Command>
-Words given(const CLI::App& check, const StepOptions& how) {
-  Command unused;
-  CLI::App step;
-  add_options(step, unused);
-  return given_words(check, step, how);
-}
-
-/// The command lines of all steps.
-class Plan {
- public:
-  explicit Plan(const CheckCommand& options)
-      : options_(options), check_(*options.command), has_store_(is_one_store(options.inputs)) {}
-
-  /// Whether the input is a store already, so that nothing is converted.
-  bool has_store() const { return has_store_; }
-  fs::path environment() const { return has_store_ ? options_.inputs[0] : file(kStoreName); }
-  fs::path file(const char* name) const { return options_.folder / name; }
-
-  /// replacing: in the place of what is there and does not agree.
-  Words convert(bool replacing) const {
-    Words words{"convert"};
-    for (const fs::path& input : options_.inputs) words.push_back(input.string());
-    return words + Words{"-o", file(kStoreName).string()} +
-           given<ConvertCommand>(check_, kConvertOptions) + again(replacing);
-  }
-
-  Words run(bool replacing) const {
-    Words words{"run", "--env", environment().string()};
-    words = words + given<RunOptions>(check_, kRunOptions) + Words{"--first-pose"} + distances();
-    if (has_budget() && is_given("--gap")) words = words + Words{"--gap", value_of("--gap")};
-    return words + Words{"-o", file(kResultName).string()} + again(replacing);
-  }
-
-  Words conflicts() const {
-    return Words{"conflicts", file(kResultName).string()} +
-           given<ConflictsCommand>(check_, kConflictsOptions) +
-           Words{"-o", file(kConflictsName).string(), "--force"};
-  }
-
-  /// date: for the page, where the user names none.
-  Words report(const std::string& date) const {
-    Words words = Words{"report", file(kResultName).string(), "--env", environment().string()} +
-                  given<ReportCommand>(check_, kReportOptions);
-    if (!is_given("--date") && !date.empty()) words = words + Words{"--date", date};
-    return words + Words{"-o", file(kReportName).string(), "--force"};
-  }
-
-  /// A sentence on the distances that were not asked for but are; empty where there are none.
-  std::string about_distances() const {
-    const Words words = distances();
-    if (words.empty()) return "";
-    std::string text;
-    for (std::size_t i = 0; i + 1 < words.size(); i += 2) {
-      text += (text.empty() ? "" : " and ") + words[i] + " " + words[i + 1];
-    }
-    return "taken by default: " + text +
-           fmt::format(", {:g} and {:g} times the radius", kClearanceRadii, kProfileRadii);
-  }
-
- private:
-  static bool is_one_store(const std::vector<fs::path>& inputs) {
-    std::error_code unknown;
-    for (const fs::path& input : inputs) {
-      if (!fs::is_regular_file(input, unknown)) continue;
-      if (describe_file(input).kind != FileKind::kStore) continue;
-      if (inputs.size() == 1) return true;
-      throw UsageError(input.string() +
-                       ": is a store, which has its points already; give it alone, or scans alone");
-    }
-    return false;
-  }
-
-  static Words again(bool replacing) { return {replacing ? "--force" : "--resume"}; }
-
-  bool is_given(const char* name) const { return !check_.get_option(name)->empty(); }
-  std::string value_of(const char* name) const {
-    return is_given(name) ? check_.get_option(name)->results().back() : "";
-  }
-
-  bool has_budget() const {
-    constexpr std::array kErrors{"--error-scan", "--error-registration", "--error-pose",
-                                 "--error-angle", "--error-model"};
-    return std::ranges::any_of(kErrors, [this](const char* name) { return is_given(name); });
-  }
-
-  /// Clearances and profile that the user has not asked for. No search between poses has them, and
-  /// only engine sweep.
-  Words distances() const {
-    const std::string engine = value_of("--engine");
-    const bool sweep = engine.empty() || engine == "auto" || engine == "sweep";
-    if (is_given("--between-poses") || !sweep) return {};
-    Words words;
-    const std::string radius = value_of("--radius");
-    if (!is_given("--clearance"))
-      words = words + Words{"--clearance", times(radius, kClearanceRadii)};
-    if (!is_given("--profile")) words = words + Words{"--profile", times(radius, kProfileRadii)};
-    return words;
-  }
-
-  const CheckCommand& options_;
-  const CLI::App& check_;
-  bool has_store_;
 };
 
 /// Opens a page in the browser of the user. Only says so where there is no program for it.
@@ -305,10 +147,12 @@ class Check {
     parse_all();
     prepare_folder();
     record_.emplace(options_.folder);
+    claim_folder();
     if (!plan_.has_store()) convert_scans();
     const RunOutcome found = search();
     made_for_ = question();
-    const std::string conflicts = list_conflicts();
+    const std::string conflicts = make_table<ConflictsCommand>(kConflictsName, plan_.conflicts());
+    make_table<StationsCommand>(kStationsName, plan_.stations());
     write_page();
     record_->write();
     tell(found, conflicts);
@@ -326,6 +170,7 @@ class Check {
     if (!plan_.has_store()) Step<ConvertCommand>(plan_.convert(false));
     Step<RunOptions> search(plan_.run(false));
     Step<ConflictsCommand>(plan_.conflicts());
+    Step<StationsCommand>(plan_.stations());
     Step<ReportCommand>(plan_.report(""));
     in_terms_of_check([&] {
       RunOptions& options = search.options();
@@ -371,6 +216,20 @@ class Check {
     const std::string why = failed ? failed.message() : "it is no folder";
     throw ResourceError(options_.folder.string() + ": cannot make the folder: " + why +
                         "; -o names one that can be written");
+  }
+
+  /// Refuses to overwrite tables and pages that no check made. From here on the folder is one of a
+  /// check, also if it is interrupted before its end.
+  void claim_folder() {
+    for (const char* name : {kConflictsName, kStationsName, kReportName}) {
+      std::error_code unknown;
+      const fs::path file = plan_.file(name);
+      if (record_->exists() || options_.force || !fs::exists(file, unknown)) continue;
+      throw UsageError(file.string() +
+                       ": exists already, and no check has made it; --force overwrites it, or -o "
+                       "names another folder");
+    }
+    record_->write();
   }
 
   /// Reads trajectory and model once before a conversion, which may take long, so that a mistake in
@@ -492,18 +351,17 @@ class Check {
     return what;
   }
 
-  std::string list_conflicts() {
-    Step<ConflictsCommand> step(plan_.conflicts());
+  /// Makes the table that a step writes, unless it is there. Returns what the step says of it.
+  template <typename Command>
+  std::string make_table(const char* name, const Words& words) {
+    Step<Command> step(words);
     const ordered_json what = made_for(step.essence());
-    const ordered_json known = record_->find(kConflictsName, what);
-    if (known.is_string()) {
-      note_step(kConflictsName, step.words(), true);
-      return known.get<std::string>();
-    }
-    const ConflictsOutcome outcome = in_terms_of_check([&] { return perform(step.options()); });
-    spdlog::info("{}: written", plan_.file(kConflictsName).string());
-    record_->note(kConflictsName, what, outcome.text);
-    note_step(kConflictsName, step.words(), false);
+    const ordered_json known = record_->find(name, what);
+    note_step(name, step.words(), known.is_string());
+    if (known.is_string()) return known.get<std::string>();
+    const auto outcome = in_terms_of_check([&] { return perform(step.options()); });
+    spdlog::info("{}: written", plan_.file(name).string());
+    record_->note(name, what, outcome.text);
     return outcome.text;
   }
 
@@ -546,6 +404,7 @@ class Check {
     ordered_json out = program_json({{"env", plan_.environment()},
                                      {"result", plan_.file(kResultName)},
                                      {"conflicts", plan_.file(kConflictsName)},
+                                     {"stations", plan_.file(kStationsName)},
                                      {"report", plan_.file(kReportName)}});
     out["verdict"] = name_of(found.report.verdict());
     out["sentence"] = found.sentence;
@@ -557,21 +416,13 @@ class Check {
   }
 
   const CheckCommand& options_;
-  Plan plan_;
+  CheckPlan plan_;
   std::optional<CheckRecord> record_;
   ordered_json made_for_;
   std::vector<std::string> commands_;
   ordered_json reused_ = ordered_json::object();
   bool nothing_done_ = true;
 };
-
-template <typename Command>
-void offer(CLI::App& check, const StepOptions& how) {
-  Command unused;
-  CLI::App step;
-  add_options(step, unused);
-  offer_options(check, step, how);
-}
 
 void add_check_options(CLI::App& command, CheckCommand& options) {
   command
@@ -583,17 +434,7 @@ void add_check_options(CLI::App& command, CheckCommand& options) {
   command.add_option("-o,--output", options.folder, "The folder for everything that is made")
       ->type_name("DIR")
       ->required();
-  offer<RunOptions>(command, kRunOptions);
-  offer<ConvertCommand>(command, kConvertOptions);
-  offer<ConflictsCommand>(command, kConflictsOptions);
-  offer<ReportCommand>(command, kReportOptions);
-  command.get_option("--clearance")
-      ->description(
-          "Distances of every point closer than this are found (default: 3 times the radius)");
-  command.get_option("--profile")
-      ->description(
-          "The least distance at every pose is found if it is below this (default: 5 times the "
-          "radius)");
+  offer_options_of_steps(command);
   command.add_flag("--open", options.open, "Open the report in the browser")
       ->group(title_of(OptionGroup::kPage));
   command.add_flag(
@@ -609,15 +450,17 @@ void add_check_options(CLI::App& command, CheckCommand& options) {
 
 void add_check(CLI::App& program, int& exit_code) {
   const auto options = std::make_shared<CheckCommand>();
-  CLI::App* command = program.add_subcommand(
-      "check",
-      "From scans, a vehicle and its path to the finding: convert, run, conflicts, report");
+  CLI::App* command = program.add_subcommand("check",
+                                             "From scans, a vehicle and its path to the finding: "
+                                             "convert, run, conflicts, stations, report");
   add_check_options(*command, *options);
   options->command = command;
   command->footer(
       "Writes into the folder: site.h5, the store; result.h5, with first poses, clearances and "
       "profile;\n"
-      "conflicts.csv; report.html; and check.json, from which the command knows what is there.\n"
+      "conflicts.csv; stations.csv; report.html; and check.json, from which the command knows "
+      "what\n"
+      "is there.\n"
       "The same command again makes only what is missing, also after it was interrupted. Another\n"
       "question in the same folder needs --force, and uses the store again.\n"
       "Prints the conflicts, the commands that it consists of, and the verdict of clearway run.\n"

@@ -63,6 +63,11 @@ ordered_json contents_of(const std::filesystem::path& file) {
 CheckRecord::CheckRecord(std::filesystem::path folder)
     : folder_(std::move(folder)), read_(read_record(folder_ / kRecordName)), now_(read_) {}
 
+bool CheckRecord::exists() const {
+  std::error_code unknown;
+  return std::filesystem::exists(folder_ / kRecordName, unknown);
+}
+
 ordered_json CheckRecord::find(const std::string& name, const ordered_json& what) const {
   const ordered_json& files = now_["files"];
   if (!files.contains(name) || !files[name].is_object()) return nullptr;
@@ -96,7 +101,7 @@ void CheckRecord::note_command(const std::string& name, const std::vector<std::s
 }
 
 void CheckRecord::write() const {
-  if (now_ == read_) return;
+  if (now_ == read_ && exists()) return;
   replace_file(folder_ / kRecordName,
                now_.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
 }

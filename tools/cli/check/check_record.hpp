@@ -21,6 +21,9 @@ class CheckRecord {
   /// Reads the record in a folder.
   explicit CheckRecord(std::filesystem::path folder);
 
+  /// Whether the folder has a record, which says that its files are those of a check.
+  bool exists() const;
+
   /// What was noted about a file of the folder, provided that it was made for `what` and has not
   /// changed since; otherwise null.
   nlohmann::ordered_json find(const std::string& name, const nlohmann::ordered_json& what) const;
@@ -34,7 +37,7 @@ class CheckRecord {
   /// Notes the words of the command that made a file.
   void note_command(const std::string& name, const std::vector<std::string>& words);
 
-  /// Replaces the file of the record, if it differs. Throws ResourceError.
+  /// Writes the file of the record, unless it is there with these contents. Throws ResourceError.
   void write() const;
 
  private:

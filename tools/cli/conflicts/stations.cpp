@@ -20,6 +20,7 @@
 #include "cli/conflicts/conflict_inputs.hpp"
 #include "cli/input_roles.hpp"
 #include "cli/run_again.hpp"
+#include "cli/steps.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
@@ -36,16 +37,6 @@
 
 namespace clearway::tool {
 namespace {
-
-struct StationsCommand : ConflictCommand {
-  std::filesystem::path result, trajectory, model, vehicle;
-  std::vector<std::filesystem::path> outputs;
-  ModelOptions model_options;
-  double every = StationOptions{}.every;
-  std::uint64_t show = 20;
-  bool force = false;
-  bool json = false;
-};
 
 /// An output that does not exist yet.
 struct StationOutput {
@@ -156,12 +147,39 @@ StationOptions options_of(const StationsCommand& command) {
   return out;
 }
 
-void run_stations(StationsCommand& command) {
+void add_inputs(CLI::App& command, StationsCommand& options) {
+  command.add_option("RESULT", options.result, "Result of clearway run with --first-pose")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("--trajectory", options.trajectory, "The trajectory of the run")
+      ->type_name("FILE")
+      ->required();
+  command
+      .add_option("-o,--output", options.outputs,
+                  "Output: .csv or .json; may be given several times")
+      ->type_name("FILE");
+  CLI::Option* model =
+      command
+          .add_option("--model", options.model,
+                      "The model of the run: only for the sides of results of earlier releases")
+          ->type_name("FILE");
+  add_vehicle_option(command, options.vehicle,
+                     "The vehicle of several bodies of the run: for sides and overthrow, and to "
+                     "know where it was searched",
+                     model);
+  add_model_options(command, options.model_options, options.lengths);
+  add_trajectory_options(command, options.trajectory_options, options.lengths);
+}
+
+}  // namespace
+
+StationsOutcome perform(StationsCommand& command) {
   const auto outputs = open_outputs(command);
   check_is_trajectory(command.trajectory);
   const Result result(command.result);
   warn_of_doubts(result.reader());
   check_kind_of_model(result, command.model, command.vehicle);
+  check_axes(result, command);
   const ResultHeader& header = result.reader().header();
   const double metre = command.lengths.convert_for(command.result.string(), header.crs_wkt);
   command.trajectory_options.environment_unit = metre;
@@ -195,56 +213,34 @@ void run_stations(StationsCommand& command) {
   }
   for (const auto& output : outputs) output->pending.publish();
   for (const Message& warning : table.warnings) log_message(warning);
-  if (command.json) return print("{\n" + summary_json(file) + "\n}\n");
   const std::string unit = symbol_of(units_of_wkt(header.crs_wkt).horizontal);
-  print(totals_text(table, command, path_length(poses), unit) +
-        table_text(table, command.show, unit));
+  return {
+      totals_text(table, command, path_length(poses), unit) + table_text(table, command.show, unit),
+      "{\n" + summary_json(file) + "\n}\n"};
 }
 
-void add_inputs(CLI::App& command, StationsCommand& options) {
-  command.add_option("RESULT", options.result, "Result of clearway run with --first-pose")
-      ->type_name("FILE")
-      ->required();
-  command.add_option("--trajectory", options.trajectory, "The trajectory of the run")
-      ->type_name("FILE")
-      ->required();
-  command
-      .add_option("-o,--output", options.outputs,
-                  "Output: .csv or .json; may be given several times")
-      ->type_name("FILE");
-  CLI::Option* model =
-      command
-          .add_option("--model", options.model,
-                      "The model of the run: only for the sides of results of earlier releases")
-          ->type_name("FILE");
-  add_vehicle_option(command, options.vehicle,
-                     "The vehicle of several bodies of the run: for sides and overthrow, and to "
-                     "know where it was searched",
-                     model);
-  add_model_options(command, options.model_options, options.lengths);
-  add_trajectory_options(command, options.trajectory_options, options.lengths);
+void add_options(CLI::App& command, StationsCommand& options) {
+  add_inputs(command, options);
+  options.lengths
+      .add(command, "--every", options.every, "Length of a stretch along the path (default: 5)")
+      ->group(title_of(OptionGroup::kConflicts));
+  add_chainage_option(command, options.lengths, options.find.chainage_start);
+  add_axis_options(command, options);
+  {
+    const GroupScope speed(command, OptionGroup::kSpeed);
+    add_threads_option(command, options.find.threads);
+  }
+  add_count_option(command, "--show", options.show, 0, 1'000'000'000,
+                   "Print a table of so many stretches");
+  command.add_flag("--force", options.force, "Overwrite existing outputs");
+  command.add_flag("--json", options.json, "Print one JSON object, without the stretches");
 }
-
-}  // namespace
 
 void add_stations(CLI::App& program) {
   const auto options = std::make_shared<StationsCommand>();
   CLI::App* command = program.add_subcommand(
       "stations", "Describe the path of a result stretch by stretch: distances and verdict");
-  add_inputs(*command, *options);
-  options->lengths
-      .add(*command, "--every", options->every, "Length of a stretch along the path (default: 5)")
-      ->group(title_of(OptionGroup::kConflicts));
-  add_chainage_option(*command, options->lengths, options->find.chainage_start);
-  add_axis_options(*command, options->find);
-  {
-    const GroupScope speed(*command, OptionGroup::kSpeed);
-    add_threads_option(*command, options->find.threads);
-  }
-  add_count_option(*command, "--show", options->show, 0, 1'000'000'000,
-                   "Print a table of so many stretches");
-  command->add_flag("--force", options->force, "Overwrite existing outputs");
-  command->add_flag("--json", options->json, "Print one JSON object, without the stretches");
+  add_options(*command, *options);
   command->footer(
       "For each stretch: the least distance, and those to the left, to the right and above, with\n"
       "their points; how far the ends and the middle of each body leave the path in curves; and\n"
@@ -252,8 +248,10 @@ void add_stations(CLI::App& program) {
       "Example: clearway stations out.h5 --trajectory path.txt --every 5 -o stations.csv");
   command->callback([options, command] {
     run_stoppable(options->result, kStartsAgain, [&] {
-      advising_to_run_again(*command, {{options->result, options->trajectory}},
-                            [&] { run_stations(*options); });
+      advising_to_run_again(*command, {{options->result, options->trajectory}}, [&] {
+        const auto [text, json] = perform(*options);
+        print(options->json ? json : text);
+      });
     });
   });
 }

@@ -19,7 +19,7 @@ import unittest
 from pathlib import Path
 
 PROGRAM = os.path.abspath(sys.argv[1])
-FILES = ["site.h5", "result.h5", "conflicts.csv", "report.html"]
+FILES = ["site.h5", "result.h5", "conflicts.csv", "stations.csv", "report.html"]
 QUESTION = "--model model.ply --trajectory trajectory.txt --radius 0.1"
 
 
@@ -103,14 +103,14 @@ class Finding(Site):
         verdict = clearway(f"run --env site/site.h5 --first-pose --clearance 0.3 --profile 0.5 "
                            f"{QUESTION} -o again.h5", self.folder).stdout
         self.assertEqual(done.stdout.splitlines()[-1], verdict.splitlines()[-1])
-        self.assertIn("taken by default: --clearance 0.3 and --profile 0.5", done.stderr)
-        self.assertIn("3 and 5 times the radius", done.stderr)
+        self.assertIn("taken by default: --clearance 0.3, which is 3 times the radius and "
+                      "--profile 0.5, which is 5 times the radius", done.stderr)
 
     def test_the_printed_commands_give_the_same_bytes(self):
         done = self.asked("")
         commands = printed_commands(done.stdout)
         self.assertEqual([shlex.split(command)[1] for command in commands],
-                         ["convert", "run", "conflicts", "report"])
+                         ["convert", "run", "conflicts", "stations", "report"])
         made = bytes_of(self.folder / "site")
         self.assertEqual(self.pasted_elsewhere(commands), made)
         self.paste(commands, self.folder)  # where everything is there already
@@ -126,7 +126,8 @@ class Finding(Site):
                          "--title", 'A "site" & more', "--ignore-box", "-1,-2.5,-3,-0.5,9,9",
                          "--ignore-box=1,2,3,4,5,6", "-o", output], self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("--clearance 30cm and --profile 50cm", done.stderr)
+        self.assertIn("--clearance 30cm, which", done.stderr)
+        self.assertIn("--profile 50cm, which", done.stderr)
         made = bytes_of(self.folder / output)
         self.assertEqual(self.pasted_elsewhere(printed_commands(done.stdout), output), made)
 
@@ -135,7 +136,7 @@ class Finding(Site):
         answer = json.loads(done.stdout)
         self.assertEqual(answer["verdict"], "conflict")
         self.assertEqual(answer["run"]["verdict"], "conflict")
-        self.assertEqual(len(answer["commands"]), 4)
+        self.assertEqual(len(answer["commands"]), 5)
         self.assertFalse(answer["nothing_done"])
         self.assertEqual(answer["files"]["result"], "site/result.h5")
         again = json.loads(self.asked("--json").stdout)
@@ -173,7 +174,7 @@ class Finding(Site):
         store = self.check(f"site/site.h5 {QUESTION} -o of_store")
         self.assertEqual(store.stdout.splitlines()[-1], verdict)
         self.assertEqual([shlex.split(c)[1] for c in printed_commands(store.stdout)],
-                         ["run", "conflicts", "report"])
+                         ["run", "conflicts", "stations", "report"])
         self.assertFalse((self.folder / "of_store/site.h5").exists())
         self.assertEqual((self.folder / "of_store/result.h5").read_bytes(),
                          (self.folder / "site/result.h5").read_bytes())
@@ -273,6 +274,26 @@ class Again(Site):
                          (self.folder / "fresh/site.h5").read_bytes())
         self.assertIn("site/site.h5: holds other scans",
                       self.asked("--cell-points 1000", 2).stderr)
+
+    def test_files_that_no_check_made_are_kept(self):
+        (self.folder / "site").mkdir()
+        (self.folder / "site/report.html").write_text("mine")
+        refused = self.asked("", 2)
+        self.assertIn("site/report.html: exists already, and no check has made it", refused.stderr)
+        self.assertEqual((self.folder / "site/report.html").read_text(), "mine")
+        self.asked("--force")
+        self.assertNotEqual((self.folder / "site/report.html").read_text(), "mine")
+
+    def test_what_was_made_by_hand_is_used(self):
+        (self.folder / "site").mkdir()
+        clearway("convert scans -o site/site.h5", self.folder)
+        clearway(f"run --env site/site.h5 {QUESTION} --first-pose --clearance 0.3 --profile 0.5 "
+                 "-o site/result.h5", self.folder)
+        before = [(self.folder / "site" / name).stat().st_mtime_ns for name in FILES[:2]]
+        done = self.asked("")
+        self.assertIn("is the finished result of this query already", done.stderr)
+        self.assertEqual([(self.folder / "site" / name).stat().st_mtime_ns for name in FILES[:2]],
+                         before)
 
     def test_columns_are_remembered(self):
         (self.folder / "wide.txt").write_text(
