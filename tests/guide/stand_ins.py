@@ -86,7 +86,6 @@ def make(folder, clearway):
     for name, source in (("kdtree", "out"), ("sweep", "out"), ("before", "out"), ("after", "other")):
         shutil.copy(folder / f"{source}.h5", folder / f"{name}.h5")
     (folder / "track.xml").write_text(LAND_XML, encoding="utf-8")
-    (folder / "gauge.csv").write_text("height,half_width\n0,1.4\n4,1.4\n", encoding="utf-8")
     (folder / "campaign.json").write_text(json.dumps(CAMPAIGN), encoding="utf-8")
     for name in ("model.ply", "trajectory.txt"):
         (folder / name).unlink()
