@@ -85,6 +85,8 @@ def make(folder, clearway):
     clearway([*asked, *"--radius 0.2 -o other.h5".split()])
     for name, source in (("kdtree", "out"), ("sweep", "out"), ("before", "out"), ("after", "other")):
         shutil.copy(folder / f"{source}.h5", folder / f"{name}.h5")
+    (folder / "gauge.csv").write_text(
+        "height,half_width\n0.4,1.2\n1.2,1.6\n3.2,1.6\n4.3,0.8\n", encoding="utf-8")
     (folder / "track.xml").write_text(LAND_XML, encoding="utf-8")
     (folder / "campaign.json").write_text(json.dumps(CAMPAIGN), encoding="utf-8")
     for name in ("model.ply", "trajectory.txt"):

@@ -67,6 +67,21 @@ void check_disk_space(const std::filesystem::path& folder, std::uint64_t points)
   }
 }
 
+/// Writes the environment to standard output. Where that fails, the files of the scene are removed,
+/// because they belong to no environment.
+void pipe_environment(const scene::Scene& made, const SceneOptions& options, File& pipe,
+                      ConsoleProgress& progress) {
+  try {
+    scene::write_environment(made, options.seed, pipe, options.threads, progress);
+  } catch (...) {
+    for (const char* name : {"model.ply", "trajectory.txt", "origins.csv"}) {
+      std::error_code error;
+      std::filesystem::remove(options.folder / name, error);
+    }
+    throw;
+  }
+}
+
 /// Writes the scene's files; all are complete under temporary names before the first gets its own.
 /// An environment for standard output comes after them.
 void make_scene_files(const SceneOptions& options) {
@@ -101,9 +116,7 @@ void make_scene_files(const SceneOptions& options) {
   trajectory.publish();
   origins.publish();
   // Last, so that whoever reads the pipe finds the origins of its points.
-  if (to_stdout) {
-    scene::write_environment(*made, options.seed, *to_stdout, options.threads, progress);
-  }
+  if (to_stdout) pipe_environment(*made, options, *to_stdout, progress);
   spdlog::info("{}: {}, {}, {}", options.folder.string(),
                counted(sizes.points, "environment point"),
                counted(sizes.model_points, "model point"), counted(sizes.poses, "pose"));
