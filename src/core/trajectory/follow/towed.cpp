@@ -14,9 +14,9 @@ namespace {
 
 /// Longest sub-step, in metres of the path's way.
 constexpr double kStep = 0.02;
-/// Most that the path turns in a sub-step, in radians. On curves of more than 0.4 m this never
+/// Most that the path turns in a sub-step, in radians. On curves of more than 1 m this never
 /// counts; it is for turns on the spot.
-constexpr double kTurn = 0.05;
+constexpr double kTurn = 0.02;
 /// Greatest way, in metres, that a hitch may go back in one stretch.
 constexpr double kMostBack = 0.1;
 /// A hitch that is nearer than this to its last place, in metres, stands still. Far more than
@@ -114,14 +114,19 @@ class TowedMotion {
   /// The exact motion behind a hitch that goes straight: the tangent of half the angle between both
   /// directions falls exponentially.
   void move_on(double way, double direction, double angle) {
-    heading_ = direction -
-               2 * std::atan2(std::sin(angle / 2) * std::exp(-way / length_), std::cos(angle / 2));
-    stretch_ = 0;
-    // What it had gone back is no new way. So a hitch that jitters on the spot goes nowhere.
+    // The part of the step in which the hitch only regains what it had gone back.
     const double along = way * std::cos(angle);
     const double again = std::min(back_, along);
+    const double regained = again > 0 ? way * (again / along) : 0;
+    const double fresh = way - regained;
     back_ -= again;
-    way_ += along > 0 ? way * (1 - again / along) : way;
+    regained_ = std::max(0.0, regained_ + regained - fresh);
+    stretch_ = 0;
+    way_ += fresh;
+    // A hitch that jitters on the spot for long would turn the body by chance, step by step.
+    const double turning = regained_ > most_back_ ? fresh : way;
+    heading_ = direction - 2 * std::atan2(std::sin(angle / 2) * std::exp(-turning / length_),
+                                          std::cos(angle / 2));
     if (way_ > track_.back().way) track_.push_back({way_, hitch_.place.z, hitch_.up});
     const double needed = way_ - length_ - most_back_;
     while (track_.size() > 2 && track_[1].way < needed) track_.pop_front();
@@ -142,11 +147,12 @@ class TowedMotion {
   BodyTowed tow_;
   double length_, most_back_, still_;
   Hitch hitch_{};
-  Vec3 from_{};         ///< the place to which the body has followed the hitch
-  double heading_ = 0;  ///< of the body in the plane, radians from the x axis of the world
-  double way_ = 0;      ///< how far the hitch has gone in the plane, back and again left out
-  double back_ = 0;     ///< how far the hitch is behind the end of that way
-  double stretch_ = 0;  ///< the way back that the hitch is on, in one stretch
+  Vec3 from_{};          ///< the place to which the body has followed the hitch
+  double heading_ = 0;   ///< of the body in the plane, radians from the x axis of the world
+  double way_ = 0;       ///< how far the hitch has gone in the plane, back and again left out
+  double back_ = 0;      ///< how far the hitch is behind the end of that way
+  double regained_ = 0;  ///< what it has lately gone again after going back
+  double stretch_ = 0;   ///< the way back that the hitch is on, in one stretch
   std::deque<Sample> track_;
   bool has_begun_ = false, is_first_move_ = true, is_pushed_ = false, began_askew_ = false;
 };
