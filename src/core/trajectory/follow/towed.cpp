@@ -389,7 +389,8 @@ Towing towing_of(std::span<const std::string> names, std::span<const BodyMount> 
       .tower = std::vector<std::optional<std::size_t>>(mounts.size()), .order = {}, .fault = {}};
   const auto find_fault = [&](std::size_t i, const BodyTowed& tow) -> std::optional<std::string> {
     const auto found = std::ranges::find(names, tow.by);
-    if (found == names.end()) return "no body is named \"" + tow.by + "\"";
+    if (found == names.end())
+      return "no body is named \"" + tow.by + "\"; expected the name of another body";
     if (std::find(found + 1, names.end(), tow.by) != names.end()) {
       return "two bodies are named \"" + tow.by + "\"";
     }
