@@ -183,7 +183,7 @@ _CHECKS = {
     **dict.fromkeys(("path", "file", "output", "origins", "origins_path"), _path),
     **dict.fromkeys(("inputs", "parts"), _paths),
     **dict.fromkeys(("model", "poses", "points", "triangles", "path_pose", "lo", "hi",
-                     "outline"), _anything),
+                     "outline", "towed_by"), _anything),
     **dict.fromkeys(("progress", "message"), _callable),
     **dict.fromkeys(("warnings", "input_warnings"), _messages),
     "stop": _having("is_set"),
