@@ -186,7 +186,7 @@ messages: a list to which warnings are appended, as of poses where the body is o
 }
 
 constexpr const char* kReadVehicle =
-    R"(read_vehicle(file, poses, model_as='auto', *, spacing=0.0, unit=0.0, environment_unit=None, vertices_only=False, above=None, format='auto', allow_non_rigid=False, angle_unit='declared', angle_frame='declared', crs='', default_crs='', datum='', metres_per_unit=0.0, lever_arm=(0.0, 0.0, 0.0), messages=None)
+    R"(read_vehicle(file, poses, model_as='auto', *, spacing=0.0, unit=0.0, environment_unit=None, vertices_only=False, above=None, forward='+x', up='+z', format='auto', allow_non_rigid=False, angle_unit='declared', angle_frame='declared', crs='', default_crs='', datum='', metres_per_unit=0.0, lever_arm=(0.0, 0.0, 0.0), messages=None)
 --
 
 Read the JSON file of a vehicle of several bodies, and the files that it names.
@@ -199,7 +199,7 @@ model_as: 'auto': meshes as their triangles are, and other models as points.
     'surface': triangles; each body has to be a mesh.
     'points': the surface of a mesh is sampled, which needs a spacing.
     'solid': triangles, and what closed parts enclose; each body has to be a mesh.
-spacing, vertices_only, above: of all models, as read_model() takes them.
+spacing, vertices_only, above, forward, up: of all models, as read_model() takes them.
 unit: of models without a model_unit, as read_model() takes it.
 environment_unit: into which lengths with a unit are converted, as read_model() takes it.
 format, allow_non_rigid, angle_unit, angle_frame, crs, default_crs, datum, metres_per_unit,
@@ -211,14 +211,15 @@ void add_read_vehicle(py::module_& module) {
       "read_vehicle",
       [](const py::object& file, const py::object& poses, const std::string& model_as,
          double spacing, const UnitArgument& unit, const EnvironmentUnitArgument& environment_unit,
-         bool vertices_only, std::optional<double> above, const std::string& format,
-         bool allow_non_rigid, const std::string& angle_unit, const std::string& angle_frame,
-         const std::string& crs, const std::string& default_crs, const std::string& datum,
+         bool vertices_only, std::optional<double> above, const std::string& forward,
+         const std::string& up, const std::string& format, bool allow_non_rigid,
+         const std::string& angle_unit, const std::string& angle_frame, const std::string& crs,
+         const std::string& default_crs, const std::string& datum,
          const UnitArgument& metres_per_unit, const std::array<double, 3>& lever_arm,
          const py::object& messages) {
         VehicleOptions options;
         options.model = model_options(value_of("model_as", kModelAs, model_as), spacing, unit,
-                                      environment_unit, vertices_only, above);
+                                      environment_unit, vertices_only, above, forward, up);
         options.trajectory =
             trajectory_options(format, allow_non_rigid, angle_unit, angle_frame, crs, default_crs,
                                datum, metres_per_unit, environment_unit, lever_arm);
@@ -236,9 +237,9 @@ void add_read_vehicle(py::module_& module) {
       },
       "file"_a, "poses"_a, "model_as"_a = "auto", py::kw_only(), "spacing"_a = 0.0, "unit"_a = 0.0,
       "environment_unit"_a = py::none(), "vertices_only"_a = false, "above"_a = py::none(),
-      "format"_a = "auto", "allow_non_rigid"_a = false, "angle_unit"_a = "declared",
-      "angle_frame"_a = "declared", "crs"_a = "", "default_crs"_a = "", "datum"_a = "",
-      "metres_per_unit"_a = 0.0, "lever_arm"_a = std::array<double, 3>{0, 0, 0},
+      "forward"_a = "+x", "up"_a = "+z", "format"_a = "auto", "allow_non_rigid"_a = false,
+      "angle_unit"_a = "declared", "angle_frame"_a = "declared", "crs"_a = "", "default_crs"_a = "",
+      "datum"_a = "", "metres_per_unit"_a = 0.0, "lever_arm"_a = std::array<double, 3>{0, 0, 0},
       "messages"_a = py::none(), kReadVehicle);
 }
 

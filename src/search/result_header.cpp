@@ -81,7 +81,8 @@ ResultHeader result_header(const StoreReader& store, const Query& query,
       std::move(ignored),
       by_class ? metadata.classes->hash : 0,
       names_of(query),
-      {model_spacing(query)}};
+      {model_spacing(query)},
+      {file_axes(query)}};
   header.last_pose = header.first_pose;
   header.budget = error_budget_of(query, metadata.quantisation);
   header.version = header.written_version();

@@ -127,6 +127,7 @@ std::uint32_t QuestionReader::add_model(const PlannedRun& run, const RunOptions&
   header.model_points = points.count;
   header.model_triangles = points.triangles;
   header.model_hash = points.hash;
+  header.model_axes = {{options.model_options.forward, options.model_options.up}};
   const std::uint64_t estimated = points_to_search(points.count, points.triangles);
   return named(run.environment.key, [&] {
     return estimate_.shards(options, {{points.box, estimated, path.poses}});
@@ -156,6 +157,7 @@ std::uint32_t QuestionReader::add_bodies(const PlannedRun& run, const RunOptions
                       body.poses});
   }
   header.model_hash = hash_of_bodies(query.bodies);
+  header.model_axes = {file_axes(query)};
   return named(run.environment.key, [&] { return estimate_.shards(options, models); });
 }
 
@@ -244,7 +246,7 @@ const QuestionReader::Environment& QuestionReader::environment(const campaign::E
 
 const QuestionReader::ReadModel& QuestionReader::model(const PlannedRun& run,
                                                        const RunOptions& options) {
-  const ModelOptions how = model_options_of(options);
+  const ModelOptions how = named(run.vehicle.key, [&] { return model_options_of(options); });
   const std::string id =
       run.vehicle.name + '\n' + format_number(how.spacing) + '\n' + format_number(how.radius) +
       '\n' + std::to_string(static_cast<int>(how.as)) + '\n' + format_number(how.environment_unit);

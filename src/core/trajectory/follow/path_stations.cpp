@@ -104,6 +104,12 @@ Pose PathStations::pose_at(const Place& place) const {
   return spline_->between(place.way).at(place.t);
 }
 
+Vec3 PathStations::position_at(const Place& place) const {
+  const Vec3 from = poses_[place.way].position();
+  if (place.t == 0) return from;
+  return from + vec3_of(spline_->positions(place.way).displacement(place.t));
+}
+
 Vec3 PathStations::direction_at(const Place& place) const {
   // A stop has no direction of its own, so it takes that of the next way, or else that of the last
   // one.

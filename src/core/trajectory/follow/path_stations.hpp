@@ -49,6 +49,8 @@ class PathStations {
 
   /// The pose at a place. If the place is a pose, that pose to the last bit.
   Pose pose_at(const Place& place) const;
+  /// The position of pose_at(), without its rotation; up to rounding.
+  Vec3 position_at(const Place& place) const;
   /// The direction of the path in the order of the poses; its length is 0 only if the whole path is
   /// at one place.
   Vec3 direction_at(const Place& place) const;
