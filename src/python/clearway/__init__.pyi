@@ -126,7 +126,8 @@ class Body:
     ) -> None: ...
 def follow(
     name: str, model: ArrayLike | Model, path: ArrayLike, *, at: float | None = None,
-    pivots: tuple[float, float] | None = None, messages: list[Message] | None = None,
+    pivots: tuple[float, float] | None = None, towed_by: Body | Literal["path"] | None = None,
+    messages: list[Message] | None = None,
 ) -> Body: ...
 
 class UnsearchedStretch:

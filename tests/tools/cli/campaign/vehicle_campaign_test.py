@@ -13,7 +13,9 @@ from campaign_scene import expect, make_scene, outcome, program, status, write_c
 
 LIMITS = {"memory": "300M", "threads": 1}
 WAGON = {"bodies": [{"name": 'middle, "low"', "model": "v00.ply", "pivots": [1.05, -1.05]},
-                    {"name": "front", "model": "v00.ply", "at": 1}]}
+                    {"name": "front", "model": "v00.ply", "at": 1},
+                    {"name": "tail", "model": "v00.ply",
+                     "towed": {"by": "front", "at": -1, "pivots": [1, -1]}}]}
 
 
 def plan(work, name, **changes):
@@ -34,7 +36,7 @@ def runs_are_those_of_the_program(work):
     expect((folder / "out.h5").read_bytes() == (work / "out.h5").read_bytes(), "another result")
     with open(folder / "conflicts.csv", newline="") as file:
         rows = list(csv.DictReader(file))
-    expect(rows and rows[0]["body_name"] in ('middle, "low"', "front"), f"{rows[:1]}")
+    expect(rows and rows[0]["body_name"] in ('middle, "low"', "front", "tail"), f"{rows[:1]}")
     program("conflicts", work / "out.h5", "--vehicle", work / "vehicles/wagon.json",
             "--trajectory", work / "routes/r00.txt", "-o", work / "conflicts.csv")
     expect((folder / "conflicts.csv").read_bytes() == (work / "conflicts.csv").read_bytes() and
