@@ -195,6 +195,29 @@ TEST_CASE("the height of --model-above and the points of clearway model are of t
   CHECK(work.bytes("upright.ply") == work.bytes("turned.ply"));
 }
 
+TEST_CASE("the steps of a path are those of the turned model") {
+  const Turned turned;
+  const Work& work = turned.work;
+  turned.write_turned("turned.obj", "+z", "+y");
+  const auto resampled = [&](const std::string& model, const std::string& axes) {
+    const Outcome done = work.run("trajectory resample " + (work.hall / "trajectory.txt") +
+                                  " --max-motion 0.05 --force -o " + work.path("dense.txt") +
+                                  " --model " + work.path(model) + axes);
+    INFO(done.err);
+    REQUIRE(done.exit_code == 0);
+    return work.bytes("dense.txt");
+  };
+  const std::string expected = resampled("upright.obj", "");
+  CHECK(resampled("turned.obj", " --forward z --up y") == expected);
+  const auto described = [&](const std::string& model, const std::string& axes) {
+    return work
+        .run("trajectory info " + (work.hall / "trajectory.txt") + " --json --model " +
+             work.path(model) + axes)
+        .out;
+  };
+  CHECK(described("turned.obj", " --forward z --up y") == described("upright.obj", ""));
+}
+
 TEST_CASE("the axes hold for all bodies of a vehicle, and a merge keeps them") {
   const Turned turned;
   const Work& work = turned.work;

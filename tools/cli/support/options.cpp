@@ -212,12 +212,12 @@ CLI::Option* add_axis_option(CLI::App& command, const std::string& name, Axis& a
           CLI::IsMember({"+x", "-x", "+y", "-y", "+z", "-z", "x", "y", "z"}, CLI::ignore_case));
 }
 
-void add_turn_options(CLI::App& command, ModelOptions& options) {
+void add_turn_options(CLI::App& command, Axis& forward, Axis& up) {
   const GroupScope group(command, OptionGroup::kUnits);
-  add_axis_option(command, "--forward", options.forward,
+  add_axis_option(command, "--forward", forward,
                   "Axis of the model's file that points ahead, for example +y; the model is turned "
                   "so that it becomes x (default: +x)");
-  add_axis_option(command, "--up", options.up,
+  add_axis_option(command, "--up", up,
                   "Axis of the model's file that points up, for example +y; the model is turned so "
                   "that it becomes z (default: +z)");
 }

@@ -94,7 +94,7 @@ CLI::Option* add_axis_option(CLI::App& command, const std::string& name, Axis& a
                              const std::string& description);
 
 /// Adds --forward and --up, which turn the model when it is read.
-void add_turn_options(CLI::App& command, ModelOptions& options);
+void add_turn_options(CLI::App& command, Axis& forward, Axis& up);
 
 /// Adds --model-spacing, --model-unit, --model-vertices and --model-above.
 void add_model_options(CLI::App& command, ModelOptions& options, LengthOptions& lengths);

@@ -33,6 +33,7 @@ struct ChangeOptions {
   std::filesystem::path input, output, model, environment;
   double max_motion = 0;
   FileUnit model_unit = {};
+  ModelAxes model_axes;
   LengthOptions lengths;
   TrajectoryOptions trajectory;
   std::string unit = "m";  ///< the symbol of the unit of lengths, for messages
@@ -111,6 +112,8 @@ void write_changed(ChangeOptions& options, const Change& change) {
   const Box model = box_of(
       read_model_points(options.model, {.unit = options.model_unit,
                                         .environment_unit = options.trajectory.environment_unit,
+                                        .forward = options.model_axes.forward,
+                                        .up = options.model_axes.up,
                                         .vertices_only = true}));
   const double motion_before = largest_motion(model, before);
   if (!std::isfinite(motion_before)) {
@@ -156,6 +159,7 @@ void add_change(CLI::App& command, const char* max_motion_help, const Change& ch
                   "The store: says the unit of lengths, and which foot a ft is, and gives the CRS")
       ->type_name("FILE");
   add_model_unit(command, "--model-unit", options->model_unit);
+  add_turn_options(command, options->model_axes.forward, options->model_axes.up);
   add_trajectory_options(command, options->trajectory, options->lengths);
   command.add_flag("--force", options->force, "Overwrite an existing output");
   command.add_flag("--json", options->json, "One JSON object on standard output");

@@ -27,6 +27,7 @@ struct InfoOptions {
   std::filesystem::path input, environment, model;
   double radius = 0;
   FileUnit model_unit = {};
+  ModelAxes model_axes;
   LengthOptions lengths;
   TrajectoryOptions trajectory;
   bool json = false;
@@ -122,6 +123,8 @@ Description describe(InfoOptions& options) {
     model = box_of(
         read_model_points(options.model, {.unit = options.model_unit,
                                           .environment_unit = options.trajectory.environment_unit,
+                                          .forward = options.model_axes.forward,
+                                          .up = options.model_axes.up,
                                           .vertices_only = true}));
     what.motion = motion_of(poses, model, options.radius);
   }
@@ -154,6 +157,7 @@ void add_trajectory_info(CLI::App& trajectory) {
                                         "The model: says how far it moves from pose to pose")
                            ->type_name("FILE");
   add_model_unit(*command, "--model-unit", options->model_unit);
+  add_turn_options(*command, options->model_axes.forward, options->model_axes.up);
   options->lengths
       .add(*command, "--radius", options->radius,
            "Count the steps that move the model by more than this; needs --model")

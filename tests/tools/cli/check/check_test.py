@@ -191,8 +191,11 @@ class Finding(Site):
         wagon = {"bodies": [{"name": "front", "model": "model.ply"},
                             {"name": "rear", "model": "model.ply", "at": -4}]}
         (self.folder / "wagon.json").write_text(json.dumps(wagon))
+        wagon["bodies"][1] = {"name": "rear", "model": "model.ply",
+                              "towed": {"by": "front", "at": -2.4, "pivots": [2.4, -1]}}
+        (self.folder / "towed.json").write_text(json.dumps(wagon))
         self.asked("")
-        for words in ("--vehicle wagon.json", "--model model.ply --between-poses",
+        for words in ("--vehicle wagon.json", "--vehicle towed.json", "--model model.ply --between-poses",
                       "--model model.ply --error-scan 0.005 --error-model 0.01 --gap 0.2",
                       "--model model.ply --forward=-x",
                       "--model model.ply --clearance 0.2 --min-points 3 --split 0"):
