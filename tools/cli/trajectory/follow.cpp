@@ -70,8 +70,9 @@ Path read_path(const FollowOptions& options) {
   path.poses = read_trajectory(options.input, options.trajectory, &remarks, &path.labels);
   for (const Message& remark : remarks) log_message(remark);
   if (!path.labels.time.empty() || !path.labels.name.empty()) {
-    spdlog::info("{}: its times and names are left out, as the output has matrices only",
-                 options.input.string());
+    spdlog::info("{}: its times and names are left out, as the output has {}",
+                 options.input.string(),
+                 writes_table(options) ? "no column for them" : "matrices only");
   }
   if (path.poses.empty())
     throw InputError(options.input.string() + ": no poses; nothing to follow");
