@@ -39,6 +39,8 @@ LAND_XML = """<?xml version="1.0"?>
 </Alignment></Alignments></LandXML>
 """
 
+ROUTE = ((0, 0), (30, 0), (30, 40))
+
 CAMPAIGN = {"name": "Stand-in", "environments": {"hall": "site.h5"}, "vehicles": {"car": "car.ply"},
             "routes": {"line": "path.txt"}, "radii": [0.1]}
 
@@ -86,6 +88,12 @@ def make(folder, clearway):
     for name, source in (("kdtree", "out"), ("sweep", "out"), ("before", "out"), ("after", "other")):
         shutil.copy(folder / f"{source}.h5", folder / f"{name}.h5")
     (folder / "track.xml").write_text(LAND_XML, encoding="utf-8")
+    (folder / "route.csv").write_text("x,y\n" + "".join(f"{x},{y}\n" for x, y in ROUTE), encoding="utf-8")
+    (folder / "route.geojson").write_text(json.dumps({"type": "LineString", "coordinates": ROUTE}),
+                                          encoding="utf-8")
+    (folder / "lane.csv").write_text("x,y\n" + "".join(
+        f"{x},{y}\n" for x, y, _ in _positions(folder / "path.txt")[::40]), encoding="utf-8")
+    (folder / "curve.csv").write_text("x,y,z\n0,0,4\n20,0,4\n40,2,4.1\n", encoding="utf-8")
     (folder / "campaign.json").write_text(json.dumps(CAMPAIGN), encoding="utf-8")
     for name in ("model.ply", "trajectory.txt"):
         (folder / name).unlink()

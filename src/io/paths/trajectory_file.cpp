@@ -40,10 +40,12 @@ void write_trajectory_table(std::span<const Pose> poses, std::span<const double>
                             const File& file, Progress& progress) {
   progress.begin("write", poses.size(), "poses");
   TextWriter out(file);
-  out << "station [m],x [m],y [m],z [m],r00,r01,r02,r10,r11,r12,r20,r21,r22\n";
+  if (!stations.empty()) out << "station [m],";
+  out << "x [m],y [m],z [m],r00,r01,r02,r10,r11,r12,r20,r21,r22\n";
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    out << stations[i];
-    for (const double coordinate : poses[i].translation) out << "," << coordinate;
+    if (!stations.empty()) out << stations[i] << ",";
+    const double* at = poses[i].translation;
+    out << at[0] << "," << at[1] << "," << at[2];
     for (const double number : poses[i].rotation) out << "," << number;
     out << "\n";
     throw_if_stopped(progress);

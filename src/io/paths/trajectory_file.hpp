@@ -40,7 +40,8 @@ const char* name_of(TrajectoryFormat format);
 
 /// Writes a table with the columns station, x, y and z, in metres as its header says, and r00 to
 /// r22, with digits that read_trajectory() reads back to the same doubles. stations: metres, one
-/// for each pose. Throws ResourceError and Interrupted.
+/// for each pose; the column is left out where there are none. Throws ResourceError and
+/// Interrupted.
 void write_trajectory_table(std::span<const Pose> poses, std::span<const double> stations,
                             const File& file, Progress& progress);
 
