@@ -91,8 +91,11 @@ def make(folder, clearway):
     (folder / "route.csv").write_text("x,y\n" + "".join(f"{x},{y}\n" for x, y in ROUTE), encoding="utf-8")
     (folder / "route.geojson").write_text(json.dumps({"type": "LineString", "coordinates": ROUTE}),
                                           encoding="utf-8")
-    (folder / "lane.csv").write_text("x,y\n" + "".join(
-        f"{x},{y}\n" for x, y, _ in _positions(folder / "path.txt")[::40]), encoding="utf-8")
+    (folder / "lane.csv").write_text("x,y\n1,0\n19,0\n", encoding="utf-8")
+    (folder / "street.xyz").write_text("".join(
+        f"{x / 10} {y / 10} {x / 1000}\n" for x in range(201) for y in range(-20, 21)), encoding="utf-8")
+    clearway("convert street.xyz -o street.h5 --unit m".split())
+    (folder / "street.xyz").unlink()
     (folder / "curve.csv").write_text("x,y,z\n0,0,4\n20,0,4\n40,2,4.1\n", encoding="utf-8")
     (folder / "campaign.json").write_text(json.dumps(CAMPAIGN), encoding="utf-8")
     for name in ("model.ply", "trajectory.txt"):
