@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds Clearway, makes a factory hall with a car body on its conveyor, and shows what the car
 # touches, in a report for any browser. Installs missing packages (Debian 12). Output: the folder demo/.
-# Usage: tools/demo.sh [hall|plant|mine|tunnel] [POINTS]
+# Usage: tools/demo.sh [hall|plant|mine|tunnel|road] [POINTS]
 set -euo pipefail
 cd "$(dirname "$0")/.."
 kind=${1:-hall}

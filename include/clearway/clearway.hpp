@@ -5,6 +5,7 @@
 
 #include "clearway/alignment.hpp"   // IWYU pragma: export
 #include "clearway/answer.hpp"      // IWYU pragma: export
+#include "clearway/axis.hpp"        // IWYU pragma: export
 #include "clearway/body.hpp"        // IWYU pragma: export
 #include "clearway/conflicts.hpp"   // IWYU pragma: export
 #include "clearway/convert.hpp"     // IWYU pragma: export
@@ -23,6 +24,7 @@
 #include "clearway/search.hpp"      // IWYU pragma: export
 #include "clearway/seen.hpp"        // IWYU pragma: export
 #include "clearway/shard.hpp"       // IWYU pragma: export
+#include "clearway/stations.hpp"    // IWYU pragma: export
 #include "clearway/store.hpp"       // IWYU pragma: export
 #include "clearway/trajectory.hpp"  // IWYU pragma: export
 #include "clearway/unsearched.hpp"  // IWYU pragma: export

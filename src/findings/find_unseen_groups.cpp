@@ -11,6 +11,7 @@
 #include "core/seen/cubes.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "findings/touched_first.hpp"
+#include "findings/unseen_lattice.hpp"
 #include "io/files/input_error.hpp"
 #include "io/paths/content_hash.hpp"
 #include "io/result/result.hpp"
@@ -29,25 +30,6 @@ bool is_finite(const Vec3& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-/// The cubes of a result. Its file keeps the side along x alone; the other sides follow from the
-/// side that was asked for, which by default is 0.2 m in the unit of the store.
-CubeLattice lattice_of(const ResultHeader& header, const SeenSummary& seen) {
-  constexpr double kUsualSides[] = {0.2, 0.2 / 0.3048, 0.2 * 3937 / 1200};
-  const double* scale = header.quantisation.scale;
-  const std::int64_t along_x = std::llround(seen.cube / scale[0]);
-  double asked = header.seen_cube;
-  for (const double usual : kUsualSides) {
-    if (!(asked > 0) && std::llround(usual / scale[0]) == along_x) asked = usual;
-  }
-  if (!(asked > 0)) asked = seen.cube;
-  CubeLattice lattice{};
-  for (int k = 0; k < 3; ++k) {
-    lattice.side[k] = std::llround(asked / scale[k]);
-    lattice.inset[k] = lattice.side[k] / 4;
-  }
-  return lattice;
-}
-
 /// One call of find_unseen_groups(), step by step.
 class GroupSearch {
  public:
@@ -58,7 +40,7 @@ class GroupSearch {
         poses_(poses),
         options_(options),
         seen_(seen),
-        lattice_(lattice_of(header_, seen)),
+        lattice_(lattice_of_unseen(header_, seen)),
         cubes_(result.unseen()),
         chainage_(chainage_of(poses)) {}
 
@@ -113,23 +95,12 @@ class GroupSearch {
     if (box) model_box_ = turned(*box, options_.forward, options_.up);
   }
 
-  /// The middle of a cube, as the search computes it.
-  Vec3 middle_of(std::size_t i) const {
-    Vec3 out{};
-    for (int k = 0; k < 3; ++k) {
-      const auto side = static_cast<double>(lattice_.side[k]);
-      const double q = side * cubes_.cube[i][static_cast<std::size_t>(k)] + 0.5 * side;
-      out[k] = q * header_.quantisation.scale[k] + header_.quantisation.offset[k];
-    }
-    return out;
-  }
-
   /// Finds where each cube lies, seen from the pose of the path that first reaches it.
   void place_cubes() {
     middles_.reserve(size());
     seen_from_path_.reserve(size());
     for (std::size_t i = 0; i < size(); ++i) {
-      middles_.push_back(middle_of(i));
+      middles_.push_back(middle_of_cube(lattice_, header_.quantisation, cubes_.cube[i]));
       seen_from_path_.push_back(
           ahead_left_up(middles_[i], poses_[cubes_.first_pose[i]], options_.forward, options_.up));
     }

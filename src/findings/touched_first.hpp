@@ -19,9 +19,6 @@
 
 namespace clearway {
 
-/// Whether two axes lie along one line.
-bool along_one_line(Axis a, Axis b);
-
 /// The unit vector to the left in the model's frame.
 Vec3 direction_to_left(Axis forward, Axis up);
 

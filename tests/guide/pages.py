@@ -44,7 +44,8 @@ SAMPLES = {
 # (page, beginning of a snippet): the file that the page tells the reader to write.
 WRITTEN = {
     ("docs/guide/campaigns.md", "{"): "campaign.json",
-    ("docs/guide/vehicles.md", '{"bodies"'): "wagon.json",
+    ("docs/guide/vehicles.md", '{"bodies": [\n  {"name": "body"'): "wagon.json",
+    ("docs/guide/vehicles.md", '{"bodies": [\n  {"name": "tractor"'): "road.json",
 }
 
 # (page, beginning of the command): the exit code, where it is not 0.

@@ -141,6 +141,28 @@ class FindsWhatBruteForceFinds(SceneTest):
         with self.assertRaises(clearway.InputError):  # its corners alone are another model
             clearway.write_report(result, store, square.vertices, self.poses, page, overwrite=True)
 
+    def test_a_model_with_other_axes_is_turned(self):
+        upright = np.array([[2.0, 0.5, 1.0], [-1.0, 0.25, 0.5]])
+        in_file = np.stack([upright[:, 2], -upright[:, 0], -upright[:, 1]], axis=1)
+        np.savetxt(self.folder / "turned.xyz", in_file, "%.17g")
+        turned = clearway.read_model(self.folder / "turned.xyz", forward="-y", up="x")
+        np.testing.assert_array_equal(turned.vertices, upright)
+        self.assertEqual(turned.file_axes, ("-y", "+x"))
+        points = clearway.read_model_points(self.folder / "turned.xyz", forward="-y", up="+x")
+        np.testing.assert_array_equal(points, upright)
+        with self.assertRaisesRegex(clearway.UsageError, "same axis"):
+            clearway.read_model(self.folder / "turned.xyz", forward="z")
+        with self.assertRaisesRegex(clearway.UsageError, "forward"):
+            clearway.read_model(self.folder / "turned.xyz", forward="w")
+        self.search(query=clearway.Query(turned, self.poses, RADIUS, first_pose=True))
+        result = clearway.Result(self.folder / "out.h5")
+        self.assertEqual(result.model_axes(), ("-y", "+x"))
+        clearway.find_conflicts(result, self.poses, model=turned)
+        with self.assertRaisesRegex(clearway.UsageError, "turned the model"):
+            clearway.find_conflicts(result, self.poses, forward="-y")
+        self.search(query=clearway.Query(upright, self.poses, RADIUS, first_pose=True))
+        self.assertEqual(clearway.Result(self.folder / "out.h5").model_axes(), ("+x", "+z"))
+
     def test_a_solid(self):
         corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
         faces = ["0 1 3", "0 3 2", "4 6 7", "4 7 5", "0 4 5", "0 5 1",

@@ -141,6 +141,7 @@ void add_inputs(CLI::App& command, RunOptions& options) {
       ->type_name("KIND")
       ->check(CLI::IsMember({"auto", "surface", "solid", "points"}));
   add_model_options(command, options.model_options, options.lengths);
+  add_turn_options(command, options.model_options);
   add_trajectory_options(command, options.trajectory_options, options.lengths);
 }
 

@@ -46,7 +46,7 @@ class Help(unittest.TestCase):
                                      "Messages and exit code"])
 
     def test_no_long_list_is_left(self):
-        for command in ("run", "convert", "merge", "export", "conflicts", "compare", "report",
+        for command in ("check", "run", "convert", "merge", "export", "conflicts", "compare", "report",
                         "model", "model box", "model outline", "trajectory info",
                         "trajectory follow", "trajectory resample", "trajectory alignment",
                         "trajectory line",

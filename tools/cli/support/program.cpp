@@ -155,6 +155,9 @@ std::string advice_on(const Message& message) {
   if (message.code == "loose-vertices") {
     return ", or search all vertices, and nothing else of the file, with --model-vertices";
   }
+  if (message.code == "sideways") {
+    return ". clearway run --forward and --up turn the model when it is read";
+  }
   if (message.code == "one-long-conflict") {
     return ". clearway run --model-above leaves out the lowest part of the model";
   }

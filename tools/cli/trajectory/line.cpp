@@ -78,7 +78,8 @@ void write_line(LineCommand& options) {
   const LineFile made = read_line_file(options.input, options.line);
   for (const Message& remark : made.remarks) log_message(remark);
   ConsoleProgress progress;
-  write_trajectory_table(made.poses, made.stations, File::create(output.partial()), progress);
+  write_trajectory_table(made.poses, {.stations = made.stations, .in_metres = true},
+                         File::create(output.partial()), progress);
   output.publish();
   spdlog::info("{}: {} in metres, along {} m of a line of {}", options.output.string(),
                counted(made.poses.size(), "pose"), format_brief(made.length),
