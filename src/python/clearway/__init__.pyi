@@ -437,6 +437,15 @@ def read_alignment(
     height: float | None = None, environment_crs: str = "", messages: list[Message] | None = None,
     labels: PoseLabels | None = None,
 ) -> _Doubles: ...
+def read_line(
+    path: _AnyPath, *, step: float = 0.1, reverse: bool = False, height: float | None = None,
+    corner_radius: float | None = None, ground: Store | None = None, track: float | None = None,
+    cant: Literal["none", "center", "inside-rail", "outside-rail", "left-rail",
+                  "right-rail"] = "center",
+    rail_distance: float | None = None, unit: float | str = 0.0,
+    environment_unit: float | str | None = None, environment_crs: str = "",
+    messages: list[Message] | None = None, labels: PoseLabels | None = None,
+) -> _Doubles: ...
 def read_vehicle(
     file: _AnyPath, poses: ArrayLike, model_as: Literal["auto", "points", "surface", "solid"] = "auto", *,
     spacing: float = 0.0, unit: float | str = 0.0, environment_unit: float | str | None = None,
