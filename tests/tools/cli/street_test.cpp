@@ -247,7 +247,7 @@ TEST_CASE("a car along y is turned into the street, as the car that was turned b
     turned += line + "\n";
   }
   put_bytes(folder / "turned.obj", turned);
-  const auto run = [&](const std::string& model, const std::string& output,
+  const auto run = [&](const std::filesystem::path& model, const std::string& output,
                        const std::string& options) {
     const Outcome done = run_program(
         folder, "run --env " + quoted(folder / "street.h5") + " --model " + quoted(model) +

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -177,22 +178,39 @@ class Check {
       model_options_of(options);
       check_query(options.query, options.search);
       if (!options.vehicle.empty()) check_vehicle_search(options.search);
-      if (options.vehicle.empty()) check_model(options.model);
-      check_is_trajectory(options.trajectory);
+      check_roles(options);
     });
   }
 
-  /// As check_is_model() does, with the places that check has for files.
-  static void check_model(const fs::path& model) {
-    if (!names_box(model)) {
-      const FileDescription file = describe_file(model);
-      if (file.kind == FileKind::kStore) {
-        throw InputError(model.string() + ": is " + file.words +
-                         ", not a model (points of the vehicle in its own frame); it is the input "
-                         "that comes first");
-      }
+  /// Refuses files in the wrong place. Where input_roles.hpp names options of single commands,
+  /// check names its own.
+  void check_roles(const RunOptions& run) const {
+    if (run.vehicle.empty() && !names_box(run.model)) {
+      refuse_kinds(run.model, {FileKind::kStore},
+                   "a model (points of the vehicle in its own frame)",
+                   "stores and scans are the inputs that come first");
     }
-    check_is_model(model);
+    if (run.vehicle.empty()) check_is_model(run.model);
+    refuse_kinds(run.trajectory, {FileKind::kPoints, FileKind::kMesh, FileKind::kStore},
+                 "a trajectory (a list of poses)",
+                 "the inputs that come first are scans, and --model takes the vehicle");
+    check_is_trajectory(run.trajectory);
+    if (!options_.command->get_option("--columns")->empty()) return;
+    std::error_code unknown;
+    for (const fs::path& input : options_.inputs) {
+      if (!fs::is_regular_file(input, unknown)) continue;
+      refuse_kinds(input, {FileKind::kTrajectory}, "a scan",
+                   "--trajectory takes it, or --columns says that it holds points");
+      refuse_kinds(input, {FileKind::kResult, FileKind::kJournal}, "a scan or a store",
+                   "expected what was searched for it");
+    }
+  }
+
+  static void refuse_kinds(const fs::path& path, std::initializer_list<FileKind> kinds,
+                           const char* expected, const char* advice) {
+    const FileDescription file = describe_file(path);
+    if (std::ranges::find(kinds, file.kind) == kinds.end()) return;
+    throw InputError(path.string() + ": is " + file.words + ", not " + expected + "; " + advice);
   }
 
   void prepare_folder() {

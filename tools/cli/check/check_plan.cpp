@@ -156,7 +156,7 @@ std::string CheckPlan::about_distances() const {
   for (std::size_t i = 0; i + 1 < words.size(); i += 2) {
     const double radii = words[i] == "--clearance" ? kClearanceRadii : kProfileRadii;
     text += (text.empty() ? "" : " and ") +
-            fmt::format("{} {}, which is {:g} times the radius", words[i], words[i + 1], radii);
+            fmt::format("{} {} ({:g} times the radius)", words[i], words[i + 1], radii);
   }
   return text.empty() ? "" : "taken by default: " + text;
 }

@@ -103,8 +103,8 @@ class Finding(Site):
         verdict = clearway(f"run --env site/site.h5 --first-pose --clearance 0.3 --profile 0.5 "
                            f"{QUESTION} -o again.h5", self.folder).stdout
         self.assertEqual(done.stdout.splitlines()[-1], verdict.splitlines()[-1])
-        self.assertIn("taken by default: --clearance 0.3, which is 3 times the radius and "
-                      "--profile 0.5, which is 5 times the radius", done.stderr)
+        self.assertIn("taken by default: --clearance 0.3 (3 times the radius) and "
+                      "--profile 0.5 (5 times the radius)", done.stderr)
 
     def test_the_printed_commands_give_the_same_bytes(self):
         done = self.asked("")
@@ -126,8 +126,8 @@ class Finding(Site):
                          "--title", 'A "site" & more', "--ignore-box", "-1,-2.5,-3,-0.5,9,9",
                          "--ignore-box=1,2,3,4,5,6", "-o", output], self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("--clearance 30cm, which", done.stderr)
-        self.assertIn("--profile 50cm, which", done.stderr)
+        self.assertIn("--clearance 30cm (", done.stderr)
+        self.assertIn("--profile 50cm (", done.stderr)
         made = bytes_of(self.folder / output)
         self.assertEqual(self.pasted_elsewhere(printed_commands(done.stdout), output), made)
 
@@ -347,23 +347,25 @@ class Mistakes(Site):
         (self.folder / "scans/broken.las").write_bytes(b"LASF" + b"\0" * 500)
         self.refused(f"scans {QUESTION} -o out", 3, "broken.las", "--skip-unreadable leaves out")
         self.check(f"scans {QUESTION} -o out --skip-unreadable")
-        self.refused(f"trajectory.txt {QUESTION} -o out2", 3, "trajectory.txt")
+        self.refused(f"trajectory.txt {QUESTION} -o out2", 3, "trajectory.txt: is a trajectory",
+                     "--trajectory takes it")
         self.refused(f"scans {QUESTION} -o scans", 2, "is the folder of the scans")
         self.refused(f"- {QUESTION} -o out2", 2, "expected scans in files or folders")
         self.refused(f"out/site.h5 scans {QUESTION} -o out2", 2, "is a store", "give it alone")
-        self.refused(f"out/result.h5 {QUESTION} -o out2", 3, "out/result.h5")
+        self.refused(f"out/result.h5 {QUESTION} -o out2", 3, "out/result.h5: is a result", "not a scan or a store")
 
     def test_model_and_trajectory(self):
         self.refused("scans --model trajectory.txt --trajectory model.ply --radius 0.1 -o out", 3,
                      "trajectory.txt: is a trajectory", "--trajectory takes it")
         self.refused("scans --model model.ply --trajectory model.ply --radius 0.1 -o out", 3,
-                     "model.ply: is", "not a trajectory", "--model takes it")
+                     "model.ply: is", "not a trajectory",
+                     "--model takes the vehicle")
         self.refused("scans --model none.ply --trajectory trajectory.txt --radius 0.1 -o out", 4,
                      "none.ply")
         self.refused("scans --trajectory trajectory.txt --radius 0.1 -o out", 2, "--model")
         self.asked("")
         self.refused("scans --model site/site.h5 --trajectory trajectory.txt --radius 0.1 -o out",
-                     3, "not a model", "input that comes first")
+                     3, "not a model", "inputs that come first")
         (self.folder / "broken.obj").write_text("v 0 0 0\nv 1 0 0\nf 1 2 9\n")
         broken = self.refused("scans --model broken.obj --trajectory trajectory.txt --radius 0.1 "
                               "-o early", 3, "broken.obj")
