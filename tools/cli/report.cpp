@@ -185,7 +185,7 @@ void add_classes(CLI::App& command, ReportCommand& options) {
       ->type_name("METRES,...");
 }
 
-void add_page_options(CLI::App& command, ReportOptions& options) {
+void add_page_options(CLI::App& command, ReportOptions& options, LengthOptions& lengths) {
   const GroupScope group(command, OptionGroup::kPage);
   command.add_option("--title", options.title, "Title of the page (default: names of the files)")
       ->type_name("TEXT");
@@ -201,6 +201,9 @@ void add_page_options(CLI::App& command, ReportOptions& options) {
       ->type_name("N")
       ->check(CLI::Range(std::uint64_t{1000}, std::uint64_t{20'000'000}))
       ->capture_default_str();
+  lengths.add(command, "--every", options.every,
+              "Length of a stretch in the table of stations (default: 5, or so long that there are "
+              "at most 200)");
   command.add_flag("--force", options.overwrite, "Overwrite an existing page")
       ->group(title_of(OptionGroup::kFiles));
 }
@@ -213,7 +216,7 @@ void add_report(CLI::App& program) {
       "report", "Write a page that shows what a run found: one HTML file for any browser");
   add_report_inputs(*command, *options);
   add_classes(*command, *options);
-  add_page_options(*command, options->report);
+  add_page_options(*command, options->report, options->lengths);
   add_conflict_options(*command, *options);
   add_axis_options(*command, options->find);
   command->add_flag("--json", options->json, "Print what the page says as one JSON object");

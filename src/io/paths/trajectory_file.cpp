@@ -37,10 +37,11 @@ void write_trajectory(std::span<const Pose> poses, const File& file, Progress& p
 }
 
 void write_trajectory_table(std::span<const Pose> poses, std::span<const double> stations,
-                            const File& file, Progress& progress) {
+                            PositionUnit unit, const File& file, Progress& progress) {
   progress.begin("write", poses.size(), "poses");
   TextWriter out(file);
-  out << "station [m],x [m],y [m],z [m],r00,r01,r02,r10,r11,r12,r20,r21,r22\n";
+  out << (unit == PositionUnit::kMetres ? "station [m],x [m],y [m],z [m]" : "station [m],x,y,z")
+      << ",r00,r01,r02,r10,r11,r12,r20,r21,r22\n";
   for (std::size_t i = 0; i < poses.size(); ++i) {
     out << stations[i];
     for (const double coordinate : poses[i].translation) out << "," << coordinate;

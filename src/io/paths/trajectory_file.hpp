@@ -38,11 +38,15 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& path,
 /// The command line's name of a format: "matrix", "tum", ...
 const char* name_of(TrajectoryFormat format);
 
-/// Writes a table with the columns station, x, y and z, in metres as its header says, and r00 to
+/// The unit that a table of poses names for their positions; none where it is not known, so that
+/// readers take that of the environment.
+enum class PositionUnit { kNone, kMetres };
+
+/// Writes a table with the columns station, in metres as its header says, x, y and z, and r00 to
 /// r22, with digits that read_trajectory() reads back to the same doubles. stations: metres, one
 /// for each pose. Throws ResourceError and Interrupted.
 void write_trajectory_table(std::span<const Pose> poses, std::span<const double> stations,
-                            const File& file, Progress& progress);
+                            PositionUnit unit, const File& file, Progress& progress);
 
 /// Writes one pose per line as 16 numbers: its 4 x 4 matrix, row-major, with digits that
 /// read_trajectory() reads back to the same doubles. Throws ResourceError and Interrupted.

@@ -80,7 +80,8 @@ void write_alignment(AlignmentCommand& options) {
   const AlignmentFile made = read_alignment_file(options.input, options.alignment);
   for (const Message& remark : made.remarks) log_message(remark);
   ConsoleProgress progress;
-  write_trajectory_table(made.poses, made.stations, File::create(output.partial()), progress);
+  write_trajectory_table(made.poses, made.stations, PositionUnit::kMetres,
+                         File::create(output.partial()), progress);
   output.publish();
   spdlog::info(
       "{}: {} in metres, from station {:.3f} m to {:.3f} m of the alignment, whose unit is "

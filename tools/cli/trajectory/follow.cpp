@@ -16,6 +16,8 @@
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "cli/trajectory/commands.hpp"
+#include "cli/trajectory/stations.hpp"
+#include "core/trajectory/chainage.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
 #include "core/trajectory/trajectory_doubts.hpp"
 #include "core/util/format.hpp"
@@ -52,15 +54,11 @@ BodyMount mount_of(const FollowOptions& options) {
   return BodyPivots{front, rear};
 }
 
-std::vector<Pose> read_path(const FollowOptions& options) {
+std::vector<Pose> read_path(const FollowOptions& options, PoseLabels& labels) {
   std::vector<Message> remarks;
-  PoseLabels labels;
   std::vector<Pose> poses = read_trajectory(options.input, options.trajectory, &remarks, &labels);
   for (const Message& remark : remarks) log_message(remark);
-  if (!labels.time.empty() || !labels.name.empty()) {
-    spdlog::info("{}: its times and names are left out, as the output has matrices only",
-                 options.input.string());
-  }
+  tell_of_labels(options.input, labels);
   if (poses.empty()) throw InputError(options.input.string() + ": no poses; nothing to follow");
   return poses;
 }
@@ -73,6 +71,20 @@ auto on_path(const FollowOptions& options, const Work& work) {
   } catch (const InputError& error) {
     throw InputError(options.input.string() + ": " + error.what());
   }
+}
+
+/// The station of each pose of the body: that of the place of the path where the origin of its
+/// frame is, or between its pivots is taken to be. Empty where the path has none.
+std::vector<double> stations_of(const FollowedPath& followed, const PathStations& path, double at,
+                                const std::vector<double>& stations) {
+  std::vector<double> out;
+  if (stations.empty()) return out;
+  std::vector<double> lengths;
+  for (std::size_t i = 0; i < path.poses().size(); ++i) lengths.push_back(path.of_pose(i));
+  for (const std::uint64_t i : followed.of) {
+    out.push_back(at == 0 ? stations[i] : value_at(lengths, stations, path.of_pose(i) + at));
+  }
+  return out;
 }
 
 void refuse_nowhere(const FollowOptions& options, const FollowedPath& followed,
@@ -120,7 +132,8 @@ void write_followed(const FollowOptions& options) {
   const int threads = threads_or_all(options.threads);
   check_threads(threads);
   PendingFile output(options.output, options.force);
-  const std::vector<Pose> poses = read_path(options);
+  PoseLabels labels;
+  const std::vector<Pose> poses = read_path(options, labels);
   const auto path = on_path(options, [&] { return PathStations(poses, threads); });
   const auto followed = on_path(options, [&] { return follow_path(path, mount, threads); });
   refuse_nowhere(options, followed, path);
@@ -133,7 +146,8 @@ void write_followed(const FollowOptions& options) {
                              ". Where the body is on that part of the path is a guess"));
   }
   ConsoleProgress progress;
-  write_trajectory(followed.poses, File::create(output.partial()), progress);
+  write_poses(followed.poses, stations_of(followed, path, options.at.value_or(0), labels.station),
+              output.partial(), progress);
   output.publish();
   report(options, followed, path);
 }
