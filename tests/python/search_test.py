@@ -366,6 +366,42 @@ class FindsWhatBruteForceFinds(SceneTest):
         with self.assertRaises(clearway.InputError):
             clearway.find_conflicts(result, self.poses[1:])
 
+    def test_station_table(self):
+        self.search(query=self.query(first_pose=True, clearance=0.3))
+        result = clearway.Result(self.folder / "out.h5")
+        lines = ["station [m],x,y,z,r00,r01,r02,r10,r11,r12,r20,r21,r22"]
+        for i, pose in enumerate(self.poses):
+            lines.append(",".join(repr(float(v)) for v in
+                                  [100 + 2 * i, *pose[:3, 3], *pose[:3, :3].ravel()]))
+        (self.folder / "stations.csv").write_text("\n".join(lines) + "\n")
+        labels = clearway.PoseLabels()
+        clearway.read_trajectory(self.folder / "stations.csv", labels=labels)
+        steps = np.linalg.norm(np.diff(self.poses[:, :3, 3], axis=0), axis=1)
+        chainage = np.concatenate([[0], np.cumsum(steps)])
+        every = chainage[-1] / 3.5
+        table = clearway.station_table(result, self.poses, every=every, labels=labels)
+        self.assertEqual((len(table), table.bodies), (4, [""]))
+        row_of = np.minimum(chainage // every, 3)
+        clear = result.clearance()
+        for i, row in enumerate(table.rows):
+            here = row_of[clear.pose] == i
+            self.assertEqual(row.least is None, not here.any())
+            if row.least:
+                self.assertEqual(row.least.distance, clear.distance[here].min())
+            self.assertAlmostEqual(
+                row.station_from, np.interp(i * every, chainage, 100 + 2 * np.arange(len(chainage))))
+            self.assertIn(row.verdict, ("clear", "conflict", "undecided"))
+            self.assertEqual(len(row.overthrow), 1)
+        self.assertIn("conflict", [row.verdict for row in table.rows])
+        found = clearway.find_conflicts(result, self.poses, min_points=1, labels=labels)
+        for conflict in found.listed:
+            self.assertEqual(conflict.station_from, 100 + 2 * conflict.first_pose)
+            self.assertEqual(conflict.station_to, 100 + 2 * conflict.last_pose)
+        self.assertIsNone(clearway.find_conflicts(result, self.poses, min_points=1).listed[0].station_from)
+        for every in (0, -1, float("nan")):
+            with self.assertRaises(clearway.UsageError):
+                clearway.station_table(result, self.poses, every=every)
+
     def test_report_page(self):
         self.search(query=self.query(first_pose=True))
         summary = clearway.write_report(

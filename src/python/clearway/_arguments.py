@@ -162,7 +162,7 @@ _CHECKS = {
                      "width", "corner_radius", "track"), _above_0),
     **dict.fromkeys(("unit", "metres_per_unit"), _or_name(_at_least_0)),
     "environment_unit": _or_name(_above_0),
-    **dict.fromkeys(("clearance", "profile", "tolerance", "spacing", "field_voxel", "grid_cell", "gap", "max_gap", "split", "journal_interval_seconds", "sigmas", "seen_cube"),
+    **dict.fromkeys(("clearance", "profile", "tolerance", "spacing", "field_voxel", "grid_cell", "gap", "max_gap", "split", "journal_interval_seconds", "sigmas", "seen_cube", "every"),
                     _at_least_0),
     **dict.fromkeys(("error_scan", "error_registration", "error_pose", "error_angle",
                      "error_model"), _or_none(_at_least_0)),

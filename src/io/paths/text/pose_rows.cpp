@@ -329,6 +329,10 @@ void PoseRows::finish(TrajectoryFile& out) {
   if (times_.size() == out.poses.size()) out.times = std::move(times_);
   if (names_.size() == out.poses.size()) out.names = std::move(names_);
   if (stations_.size() == out.poses.size()) out.stations = std::move(stations_);
+  // A column "station" may hold names too, such as numbers of scanner stations, but not where its
+  // header gives it a unit.
+  const bool is_length = columns_ && columns_->station && !columns_->station_unit.empty();
+  if (is_length && columns_->name == columns_->station) out.names.clear();
   out.unit = unit_;
   if (metres_ == 0) return;
   // Places on a map are in the map's unit already; the file's unit was that of heights.
