@@ -66,6 +66,9 @@ struct ConflictOptions {
   /// conflict is seen from its body; without them sides are unknown, and places are seen from the
   /// path.
   std::span<const Body> bodies = {};
+  /// Station of each pose along its alignment, metres, as PoseLabels has it; or empty. It must
+  /// outlive the call.
+  std::span<const double> station = {};
 };
 
 /// Colliding points that hang together: each has a neighbour within the gap.
@@ -81,6 +84,9 @@ struct Conflict {
   /// Chainage of first_pose and of last_pose, in metres along the path. With motion between poses,
   /// chainage_to is that of the pose after last_pose.
   double chainage_from = 0, chainage_to = 0;
+  /// Station along the alignment of the two poses of chainage_from and chainage_to, metres. None
+  /// unless the options have stations.
+  std::optional<double> station_from = {}, station_to = {};
   /// Station of the obstacle itself, metres: the chainage of the pose that it is seen from, plus
   /// how far ahead of that pose, in the direction in which the path continues, the nearest point
   /// lies (docs/design/findings.md, "Stations and sides"). It is seen from the pose where it is
@@ -129,6 +135,7 @@ struct SmallGroup {
   Box box{};                 ///< box around its points, metres
   std::uint32_t first_pose = 0, last_pose = 0;
   double chainage_from = 0, chainage_to = 0;  ///< chainages of the two poses, as in Conflict
+  std::optional<double> station_from = {}, station_to = {};  ///< as in Conflict
 };
 
 struct Conflicts {

@@ -37,7 +37,12 @@ struct ReportOptions {
   /// How conflicts are found; its memory, threads, progress and stop flag apply to the whole
   /// report. Its bodies are not used: `bodies` below are.
   ConflictOptions conflicts = {};
-  PoseLabels labels = {};  ///< times and names of the poses, if the trajectory has them
+  /// Times, names and stations of the poses, if the trajectory has them. Its stations take the
+  /// place of those of `conflicts`.
+  PoseLabels labels = {};
+  /// Length of a stretch of the table of stations, metres; 0: 5, or the next of 10, 20, 50, 100 and
+  /// so on of which there are at most 200.
+  double every = 0;
   /// Warnings for the page to show, such as those of reading model and trajectory. Warnings of the
   /// search need not be among them, because they are found again from store, model and poses.
   std::vector<Message> warnings = {};

@@ -50,8 +50,8 @@ struct Overthrow {
 /// A stretch of the path.
 struct StationRow {
   double chainage_from = 0, chainage_to = 0;  ///< metres
-  /// Station along the alignment at chainage_from and chainage_to, metres, on the straight line
-  /// between the stations of the poses. None without stations.
+  /// Station along the alignment at chainage_from and chainage_to, metres, interpolated linearly
+  /// along the way between the stations of the poses. None without stations.
   std::optional<double> station_from = {}, station_to = {};
   /// The point that has the least clearance of all whose nearest pose is on the stretch; and of
   /// those that lie there to the left of their body's box, to the right of it, and above it. Of

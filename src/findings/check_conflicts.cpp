@@ -36,6 +36,12 @@ void check_options(const ConflictOptions& options) {
   }
 }
 
+void check_stations(const std::vector<Pose>& poses, std::span<const double> station) {
+  if (station.empty() || station.size() == poses.size()) return;
+  throw UsageError(counted(station.size(), "station") + " for " + counted(poses.size(), "pose") +
+                   "; expected one for each pose, or none");
+}
+
 }  // namespace
 
 void check_conflicts(const ResultReader& result, const std::vector<Pose>& poses,
@@ -51,6 +57,7 @@ void check_conflicts(const ResultReader& result, const std::vector<Pose>& poses,
   }
   const std::uint64_t hash = hash_of_trajectory(poses);
   if (poses.size() == header.poses && hash == header.trajectory_hash) {
+    check_stations(poses, options.station);
     if (!options.bodies.empty()) check_bodies_of(result, options.bodies);
     return;
   }

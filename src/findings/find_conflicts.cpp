@@ -275,18 +275,23 @@ class ConflictSearch {
                             position_box(reader_.header().quantisation, tally.box),
                             tally.first_pose, tally.last_pose,
                             chainage_[tally.first_pose] + options_.chainage_start,
-                            end_of(tally.last_pose) + options_.chainage_start});
+                            chainage_[end_of(tally.last_pose)] + options_.chainage_start,
+                            station_of(tally.first_pose), station_of(end_of(tally.last_pose))});
     }
     std::ranges::sort(out_.small, {}, [](const SmallGroup& group) {
       return std::pair(group.chainage_from, group.source);
     });
   }
 
-  /// The chainage at which the contact of a last pose ends, which between poses is the end of its
-  /// way.
-  double end_of(std::uint32_t last_pose) const {
+  /// The pose at which the contact of a last pose ends, which between poses is the end of its way.
+  std::uint32_t end_of(std::uint32_t last_pose) const {
     const bool way = reader_.header().between_poses && last_pose + 1 < chainage_.size();
-    return chainage_[last_pose + (way ? 1 : 0)];
+    return last_pose + (way ? 1 : 0);
+  }
+
+  std::optional<double> station_of(std::uint32_t pose) const {
+    if (options_.station.empty()) return std::nullopt;
+    return options_.station[pose];
   }
 
   double length_of(const Tally& tally) const {
@@ -430,7 +435,9 @@ class ConflictSearch {
     if (!out_.has_last_poses && conflict.nearest_pose) {
       conflict.last_pose = std::max(conflict.last_pose, *conflict.nearest_pose);
     }
-    conflict.chainage_to = end_of(conflict.last_pose) + options_.chainage_start;
+    conflict.chainage_to = chainage_[end_of(conflict.last_pose)] + options_.chainage_start;
+    conflict.station_from = station_of(conflict.first_pose);
+    conflict.station_to = station_of(end_of(conflict.last_pose));
     const std::uint32_t at = conflict.nearest_pose.value_or(conflict.first_pose);
     const Pose* pose = pose_of(conflict.body, at);
     if (pose == nullptr) return;
@@ -488,8 +495,7 @@ class ConflictSearch {
     tbb::parallel_for(std::size_t{0}, out_.listed.size(), [&](std::size_t i) {
       if (progress_.stop_requested()) return;
       Conflict& conflict = out_.listed[i];
-      const bool way = reader_.header().between_poses && conflict.last_pose + 1 < poses_.size();
-      const std::uint32_t last = conflict.last_pose + (way ? 1 : 0);
+      const std::uint32_t last = end_of(conflict.last_pose);
       const SideShifts free = shifts.least(points[i], conflict.first_pose, last, most);
       conflict.shift_left = free.left;
       conflict.shift_right = free.right;

@@ -84,12 +84,7 @@ class TableMaker {
 
   std::optional<double> station_at(double chainage) const {
     if (options_.station.empty()) return std::nullopt;
-    const std::vector<double>& all = rows_.chainage();
-    const auto next = std::ranges::upper_bound(all, chainage);
-    if (next == all.end()) return options_.station.back();
-    const auto i = static_cast<std::size_t>(next - all.begin());
-    const double part = (chainage - all[i - 1]) / (all[i] - all[i - 1]);
-    return options_.station[i - 1] + part * (options_.station[i] - options_.station[i - 1]);
+    return value_at(rows_.chainage(), options_.station, chainage);
   }
 
   void add_distances() {
@@ -390,10 +385,8 @@ void check_options(const ResultReader& result, const std::vector<Pose>& poses,
   checked.forward = options.forward;
   checked.up = options.up;
   checked.bodies = options.bodies;
+  checked.station = options.station;
   check_conflicts(result, poses, checked);
-  if (options.station.empty() || options.station.size() == poses.size()) return;
-  throw UsageError(counted(options.station.size(), "station") + " for " +
-                   counted(poses.size(), "pose") + "; expected one for each pose, or none");
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 
 #include "clearway/body.hpp"
 #include "clearway/conflicts.hpp"
+#include "clearway/stations.hpp"
+#include "clearway/trajectory.hpp"
 #include "python/arrays.hpp"
 #include "python/model.hpp"
 #include "python/store.hpp"
@@ -22,6 +24,11 @@ using namespace py::literals;
 struct GroupedConflicts : Conflicts {
   std::vector<std::uint32_t> conflict_of = {};
 };
+
+/// The stations of labels, of which there may be none.
+std::vector<double> stations_of(const PoseLabels* labels) {
+  return labels == nullptr ? std::vector<double>() : labels->station;
+}
 
 py::object place(const std::optional<Vec3>& point) {
   return point ? py::object(to_array(*point)) : py::none();
@@ -66,6 +73,11 @@ void add_conflict(py::module_& module) {
                     "conflict's own points are free, metres, or None as for shift_left.")
       .def_readonly("chainage_from", &Conflict::chainage_from, "Metres along the path.")
       .def_readonly("chainage_to", &Conflict::chainage_to, "Metres along the path.")
+      .def_readonly("station_from", &Conflict::station_from,
+                    "Station along the alignment of the pose of chainage_from, metres; None unless "
+                    "the labels have stations.")
+      .def_readonly("station_to", &Conflict::station_to,
+                    "Station along the alignment of the pose of chainage_to, metres, or None.")
       .def_readonly("least_distance", &Conflict::least_distance,
                     "The least distance between the conflict and the model, metres. None where the "
                     "result has no clearances.")
@@ -119,7 +131,11 @@ void add_small_group(py::module_& module) {
       .def_readonly("last_pose", &SmallGroup::last_pose,
                     "The greatest index of a pose that touches one of its points.")
       .def_readonly("chainage_from", &SmallGroup::chainage_from, "Metres along the path.")
-      .def_readonly("chainage_to", &SmallGroup::chainage_to, "Metres along the path.");
+      .def_readonly("chainage_to", &SmallGroup::chainage_to, "Metres along the path.")
+      .def_readonly("station_from", &SmallGroup::station_from,
+                    "Station of the pose of chainage_from, metres, or None.")
+      .def_readonly("station_to", &SmallGroup::station_to,
+                    "Station of the pose of chainage_to, metres, or None.");
 }
 
 void add_conflicts(py::module_& module) {
@@ -164,13 +180,15 @@ void add_find_conflicts(py::module_& module) {
       [](const Result& result, const py::object& poses, double gap, std::uint64_t min_points,
          double split, double chainage_start, const std::string& forward, const std::string& up,
          std::optional<Box> model_box, const py::object& model,
-         const std::vector<PlacedBody>& bodies, std::uint64_t memory_bytes, int threads,
-         py::object progress, py::object stop) {
+         const std::vector<PlacedBody>& bodies, const PoseLabels* labels,
+         std::uint64_t memory_bytes, int threads, py::object progress, py::object stop) {
         ConflictOptions options = conflict_options(gap, min_points, split, chainage_start, forward,
                                                    up, model_box, memory_bytes, threads);
         const std::vector<Pose> path = poses_of(poses_array(poses, "poses"), "poses");
         const std::vector<Body> placed = bodies_on(bodies, path);
         options.bodies = placed;
+        const std::vector<double> station = stations_of(labels);
+        options.station = station;
         std::optional<Model> shape;
         if (!model.is_none()) shape = model_of(model_object(model));
         if (shape) options.model = &*shape;
@@ -187,9 +205,9 @@ void add_find_conflicts(py::module_& module) {
       "min_points"_a = ConflictOptions{}.min_points, "split"_a = ConflictOptions{}.split,
       "chainage_start"_a = 0.0, "forward"_a = "+x", "up"_a = "+z", "model_box"_a = py::none(),
       "model"_a = py::none(), "bodies"_a = py::tuple(),
-      "memory_bytes"_a = ConflictOptions{}.memory_bytes, "threads"_a = 0, "progress"_a = py::none(),
-      "stop"_a = py::none(),
-      R"(find_conflicts(result, poses, *, gap=0.3, min_points=10, split=25.0, chainage_start=0.0, forward='+x', up='+z', model_box=None, model=None, bodies=(), memory_bytes=4294967296, threads=0, progress=None, stop=None)
+      "labels"_a = py::none(), "memory_bytes"_a = ConflictOptions{}.memory_bytes, "threads"_a = 0,
+      "progress"_a = py::none(), "stop"_a = py::none(),
+      R"(find_conflicts(result, poses, *, gap=0.3, min_points=10, split=25.0, chainage_start=0.0, forward='+x', up='+z', model_box=None, model=None, bodies=(), labels=None, memory_bytes=4294967296, threads=0, progress=None, stop=None)
 --
 
 Group the colliding points of a result, place by place. Returns a Conflicts.
@@ -205,7 +223,110 @@ model_box: the Box around the model, where the result does not hold it.
 model: the one model of the search, an n x 3 array or a Model: for shift_left, shift_right.
 bodies: the bodies of the search, where it was one of a vehicle; sides and offsets are then
     seen from the body that touches.
+labels: the PoseLabels that read_trajectory() filled; with stations, conflicts have theirs too.
 memory_bytes, threads, progress, stop: as search() takes them.)");
+}
+
+}  // namespace
+
+namespace {
+
+void add_station_rows(py::module_& module) {
+  py::class_<Overthrow>(module, "Overthrow",
+                        "How far the centre line of a body leaves the path in a curve.")
+      .def_readonly("end", &Overthrow::end,
+                    "The greatest overthrow of the body's two ends, outwards: metres, or None.")
+      .def_readonly("middle", &Overthrow::middle,
+                    "The greatest overthrow of the body's middle, inwards: metres, or None.");
+  py::class_<StationRow>(module, "StationRow", "A stretch of the path.")
+      .def_readonly("chainage_from", &StationRow::chainage_from, "Metres along the path.")
+      .def_readonly("chainage_to", &StationRow::chainage_to, "Metres along the path.")
+      .def_readonly("station_from", &StationRow::station_from,
+                    "Station along the alignment at chainage_from, metres; None unless the labels "
+                    "have stations.")
+      .def_readonly("station_to", &StationRow::station_to,
+                    "Station along the alignment at chainage_to, metres, or None.")
+      .def_readonly("least", &StationRow::least,
+                    "The point that is nearest of all whose nearest pose is on the stretch: a "
+                    "FoundPlace, or None.")
+      .def_readonly("left", &StationRow::left,
+                    "The nearest of those to the left of their body's box, or None.")
+      .def_readonly("right", &StationRow::right,
+                    "The nearest of those to the right of their body's box, or None.")
+      .def_readonly("above", &StationRow::above,
+                    "The nearest of those above their body's box, or None.")
+      .def_property_readonly(
+          "verdict", [](const StationRow& row) { return name_of(row.verdict); },
+          "'clear', 'conflict' or 'undecided'.")
+      .def_property_readonly(
+          "reasons",
+          [](const StationRow& row) {
+            std::vector<std::string> names;
+            for (const Reason reason : row.reasons) names.emplace_back(name_of(reason));
+            return names;
+          },
+          "Why the verdict is undecided: a list such as ['near'].")
+      .def_readonly("searched", &StationRow::is_searched,
+                    "Whether the whole vehicle was searched on all of the stretch.")
+      .def_readonly("overthrow", &StationRow::overthrow,
+                    "A list of Overthrow, one for each body of StationTable.bodies.")
+      .def("__repr__", [](const StationRow& row) {
+        return py::str("<StationRow {:.2f} to {:.2f} m: {}>")
+            .format(row.chainage_from, row.chainage_to, name_of(row.verdict));
+      });
+}
+
+void add_station_table(py::module_& module) {
+  add_station_rows(module);
+  py::class_<StationTable>(module, "StationTable", "The path of a result, stretch by stretch.")
+      .def_readonly("bodies", &StationTable::bodies,
+                    "The names of the bodies; for one model a single empty name.")
+      .def_readonly("rows", &StationTable::rows, "A list of StationRow in the order of the path.")
+      .def_readonly("warnings", &StationTable::warnings,
+                    "A list of Message: what the table lacks, and why.")
+      .def("__len__", [](const StationTable& table) { return table.rows.size(); })
+      .def("__repr__", [](const StationTable& table) {
+        return text("<a table of " + std::to_string(table.rows.size()) + " stretches>");
+      });
+  module.def(
+      "station_table",
+      [](const Result& result, const py::object& poses, double every, double chainage_start,
+         const std::string& forward, const std::string& up, std::optional<Box> model_box,
+         const std::vector<PlacedBody>& bodies, const PoseLabels* labels, int threads,
+         py::object progress, py::object stop) {
+        StationOptions options;
+        options.every = every;
+        options.chainage_start = chainage_start;
+        options.forward = value_of("forward", kAxes, forward);
+        options.up = value_of("up", kAxes, up);
+        options.model_box = model_box;
+        options.threads = threads;
+        const std::vector<Pose> path = poses_of(poses_array(poses, "poses"), "poses");
+        const std::vector<Body> placed = bodies_on(bodies, path);
+        options.bodies = placed;
+        const std::vector<double> station = stations_of(labels);
+        options.station = station;
+        Watch watch(std::move(progress), py::none(), std::move(stop));
+        watch.attach(options);
+        return watch.run([&] { return station_table(result, path, options); });
+      },
+      "result"_a, "poses"_a, py::kw_only(), "every"_a = StationOptions{}.every,
+      "chainage_start"_a = 0.0, "forward"_a = "+x", "up"_a = "+z", "model_box"_a = py::none(),
+      "bodies"_a = py::tuple(), "labels"_a = py::none(), "threads"_a = 0,
+      "progress"_a = py::none(), "stop"_a = py::none(),
+      R"(station_table(result, poses, *, every=5.0, chainage_start=0.0, forward='+x', up='+z', model_box=None, bodies=(), labels=None, threads=0, progress=None, stop=None)
+--
+
+Describe the path of a result stretch by stretch. Returns a StationTable.
+
+result: the Result of a query with first_pose=True; with a clearance it has distances too.
+poses: the poses of the search, n x 4 x 4.
+every: metres; the length of a stretch. The last one may be shorter.
+chainage_start, forward, up, model_box: as find_conflicts() takes them.
+bodies: the bodies of the search, where it was one of a vehicle. Without them sides and overthrow
+    are unknown, and no stretch is clear unless all bodies were searched on the whole path.
+labels: the PoseLabels that read_trajectory() filled; with stations, rows have theirs too.
+threads, progress, stop: as search() takes them.)");
 }
 
 }  // namespace
@@ -236,6 +357,7 @@ void add_findings(py::module_& module) {
   add_small_group(module);
   add_conflicts(module);
   add_find_conflicts(module);
+  add_station_table(module);
 }
 
 }  // namespace clearway::python

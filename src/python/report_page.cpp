@@ -36,7 +36,7 @@ void add_summary(py::module_& module) {
 }
 
 constexpr const char* kWriteReport =
-    R"(write_report(result, store, model, poses, output, *, title='', project='', client='', author='', date='', result_name='', environment_name='', model_name='', trajectory_name='', model_above=None, model_left_out=0, classes=(), max_points=1000000, gap=0.3, min_points=10, split=25.0, chainage_start=0.0, forward='+x', up='+z', memory_bytes=4294967296, threads=0, labels=None, warnings=(), bodies=(), overwrite=False, progress=None, stop=None)
+    R"(write_report(result, store, model, poses, output, *, title='', project='', client='', author='', date='', result_name='', environment_name='', model_name='', trajectory_name='', model_above=None, model_left_out=0, classes=(), max_points=1000000, gap=0.3, min_points=10, split=25.0, chainage_start=0.0, forward='+x', up='+z', memory_bytes=4294967296, threads=0, labels=None, every=0.0, warnings=(), bodies=(), overwrite=False, progress=None, stop=None)
 --
 
 Write one HTML file that needs nothing else: verdict, profile, plan, conflicts, 3-D view.
@@ -54,6 +54,8 @@ classes: one to three distances, metres, ascending: below these a point is hit, 
 max_points: how many environment points the page shows at the most.
 gap, min_points, split, chainage_start, forward, up: as find_conflicts() takes them.
 labels: the PoseLabels that read_trajectory() filled.
+every: metres; the length of a stretch in the table of stations. 0: 5, or so long that there are
+    at most 200.
 warnings: messages of reading the inputs, which the page shows. What the search warned of is found
     again and shown in any case; it may be among them.
 bodies: the bodies of the search, where it was one of a vehicle; then model is () or None, and
@@ -71,7 +73,7 @@ void add_write_report(py::module_& module) {
          std::optional<double> model_above, std::uint64_t model_left_out,
          std::vector<double> classes, std::uint64_t max_points, double gap,
          std::uint64_t min_points, double split, double chainage_start, const std::string& forward,
-         const std::string& up, std::uint64_t memory_bytes, int threads, const PoseLabels* labels,
+         const std::string& up, std::uint64_t memory_bytes, int threads, const PoseLabels* labels, double every,
          const py::object& warnings, const std::vector<PlacedBody>& bodies, bool overwrite,
          py::object progress, py::object stop) {
         ReportOptions options{std::move(title),
@@ -90,6 +92,7 @@ void add_write_report(py::module_& module) {
                               conflict_options(gap, min_points, split, chainage_start, forward, up,
                                                std::nullopt, memory_bytes, threads),
                               labels == nullptr ? PoseLabels{} : *labels,
+                              every,
                               messages_of(warnings),
                               overwrite};
         Watch watch(std::move(progress), py::none(), std::move(stop));
@@ -112,6 +115,7 @@ void add_write_report(py::module_& module) {
       "min_points"_a = ConflictOptions{}.min_points, "split"_a = ConflictOptions{}.split,
       "chainage_start"_a = 0.0, "forward"_a = "+x", "up"_a = "+z",
       "memory_bytes"_a = ConflictOptions{}.memory_bytes, "threads"_a = 0, "labels"_a = py::none(),
+      "every"_a = 0.0,
       "warnings"_a = py::tuple(), "bodies"_a = py::tuple(), "overwrite"_a = false,
       "progress"_a = py::none(), "stop"_a = py::none(), kWriteReport);
 }

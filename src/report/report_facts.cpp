@@ -247,6 +247,8 @@ void write_conflict(JsonText& json, const Conflict& conflict, std::size_t rank,
   json.field("first_pose", std::uint64_t{conflict.first_pose});
   json.field("last_pose", std::uint64_t{conflict.last_pose});
   json.field("chainage_from", conflict.chainage_from).field("chainage_to", conflict.chainage_to);
+  if (conflict.station_from) json.field("station_from", conflict.station_from);
+  if (conflict.station_to) json.field("station_to", conflict.station_to);
   json.field("obstacle_chainage", conflict.obstacle_chainage);
   json.field("shift_left", conflict.shift_left).field("shift_right", conflict.shift_right);
   json.field("least_distance", conflict.least_distance)
@@ -326,6 +328,46 @@ void write_conflicts(JsonText& json, const ReportFacts& facts) {
   for (const auto& [conflict, rank] : listed_in_page(found)) {
     write_conflict(json, *conflict, rank, facts);
   }
+  json.end(']').end('}');
+}
+
+void write_place(JsonText& json, const char* name, const std::optional<FoundPlace>& place) {
+  const std::string prefix = name;
+  json.field(name, place ? std::optional(place->distance) : std::nullopt);
+  json.field((prefix + "_source").c_str(), place ? std::optional(place->source) : std::nullopt);
+  json.field((prefix + "_pose").c_str(), place ? std::optional(place->pose) : std::nullopt);
+}
+
+void write_station_row(JsonText& json, const StationRow& row) {
+  json.begin('{').field("chainage_from", row.chainage_from).field("chainage_to", row.chainage_to);
+  if (row.station_from) json.field("station_from", row.station_from);
+  if (row.station_to) json.field("station_to", row.station_to);
+  write_place(json, "least", row.least);
+  write_place(json, "left", row.left);
+  write_place(json, "right", row.right);
+  write_place(json, "above", row.above);
+  json.field("verdict", name_of(row.verdict)).key("reasons").begin('[');
+  for (const Reason reason : row.reasons) json.value(name_of(reason));
+  json.end(']').field("searched", row.is_searched).key("overthrow").begin('[');
+  for (const Overthrow& body : row.overthrow) {
+    json.begin('{').field("end", body.end).field("middle", body.middle).end('}');
+  }
+  json.end(']').end('}');
+}
+
+/// Writes the table of stations; null where the result has no first poses.
+void write_stations(JsonText& json, const ReportFacts& facts) {
+  json.key("stations");
+  if (facts.stations == nullptr) {
+    json.raw("null");
+    return;
+  }
+  json.begin('{').field("every", facts.every).key("bodies").begin('[');
+  for (const std::string& name : facts.stations->bodies) json.value(name);
+  json.end(']').key("notes").begin('[');
+  for (const Message& message : facts.stations->warnings) json.value(message.text);
+  json.end(']').key("list").begin('[');
+  for (const StationRow& row : facts.stations->rows) write_station_row(json, row);
   json.end(']').end('}');
 }
 
@@ -504,6 +546,7 @@ std::string json_of(const ReportFacts& facts) {
   write_warnings(json, facts.options.warnings);
   write_classes(json, facts);
   write_conflicts(json, facts);
+  write_stations(json, facts);
   write_page_facts(json, facts);
   json.end('}');
   return json.text();

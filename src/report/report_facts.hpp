@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "clearway/report.hpp"
+#include "clearway/stations.hpp"
 #include "clearway/unsearched.hpp"
 #include "clearway/unseen.hpp"
 #include "report/drawn_bodies.hpp"
@@ -41,8 +42,10 @@ struct ReportFacts {
   std::vector<double> classes;
   std::vector<UnsearchedStretch> unsearched;
   SearchedLength searched;
-  const Conflicts* conflicts = nullptr;  ///< null where the result has no first poses
-  const UnseenGroups& unseen;            ///< empty where seen space was not asked for
+  const Conflicts* conflicts = nullptr;    ///< null where the result has no first poses
+  const StationTable* stations = nullptr;  ///< null where the result has no first poses
+  double every = 0;                        ///< length of its stretches
+  const UnseenGroups& unseen;              ///< empty where seen space was not asked for
   const ShownPoints& points;
   const EnvironmentSample& environment;
   /// How far from the model's centre environment points are shown at all, and densely.

@@ -112,6 +112,9 @@ void append_pose_columns(std::span<const std::uint32_t> shown, std::span<const P
   add_places(out, poses, lattice);
   out.add("pose.chainage", [&](std::uint32_t i) { return chainage[i] / kChainageStep; });
   if (!profile.distance.empty()) add_profile(out, profile, lattice);
+  if (!labels.station.empty()) {
+    out.add("pose.station", [&](std::uint32_t i) { return labels.station[i] / kChainageStep; });
+  }
   if (!labels.time.empty()) {
     out.add("pose.time",
             [&](std::uint32_t i) { return (labels.time[i] - labels.time[0]) / kTimeStep; });

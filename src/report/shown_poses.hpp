@@ -22,7 +22,7 @@ std::vector<std::uint32_t> choose_poses(std::uint64_t poses, const Profile& prof
                                         std::size_t most = kMostShownPoses);
 
 /// Appends the columns pose.*: index, place, rotation, chainage, and where known distance, point,
-/// time and name.
+/// station, time and name.
 void append_pose_columns(std::span<const std::uint32_t> shown, std::span<const Pose> poses,
                          std::span<const double> chainage, const Profile& profile,
                          const PoseLabels& labels, const PageLattice& lattice,
@@ -31,7 +31,8 @@ void append_pose_columns(std::span<const std::uint32_t> shown, std::span<const P
 /// The value of pose.distance for a pose without a point within the profile's distance. Depths are
 /// greater than it.
 inline constexpr std::int32_t kNoDistance = -2147483647;
-/// The step that an integer counts in the columns of rotations, distances, chainage and time.
+/// The step that an integer counts in the columns of rotations, distances, chainage and stations,
+/// and time.
 inline constexpr double kRotationStep = 1.0 / (1 << 17), kDistanceStep = 1e-4, kChainageStep = 1e-3,
                         kTimeStep = 1e-3;
 

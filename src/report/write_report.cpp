@@ -144,6 +144,9 @@ void keep_largest(std::size_t most, UnseenGroups& unseen) {
 /// One call of write_report(), step by step.
 class Report {
  public:
+  /// The most rows of the table of stations that a page takes.
+  static constexpr std::size_t kMostStationRowsOfPage = 5000;
+
   Report(const Result& result, const Store& store, const Model& model,
          const std::vector<Pose>& poses, const ReportOptions& options)
       : result_(result),
@@ -162,6 +165,7 @@ class Report {
   ReportSummary write(const std::filesystem::path& path) {
     ReportSummary summary;
     find_conflicts_and_points(summary.conflicts);
+    find_stations();
     find_unseen();
     profile_ = result_.profile();
     static_cast<TableSummary&>(answer_) = points_.summary;
@@ -192,6 +196,7 @@ class Report {
     if (result_.parameters().first_pose) {
       ConflictOptions find = options_.conflicts;
       find.bodies = options_.bodies;
+      find.station = options_.labels.station;
       if (options_.bodies.empty()) find.model = &model_;
       conflicts = find_conflicts(result_, poses_, find, &conflict_of);
     }
@@ -202,6 +207,40 @@ class Report {
     }
     std::ranges::sort(selection.wanted);
     points_ = read_shown_points(result_, lattice_, selection, progress_);
+  }
+
+  /// The length of the stretches of the table of stations.
+  double every() const {
+    if (options_.every != 0) return options_.every;
+    constexpr double kMostRows = 200;
+    const double length = path_length(poses_);
+    for (double scale = 5;; scale *= 10) {
+      for (const double every : {scale, 2 * scale, 4 * scale}) {
+        if (!(length > every * kMostRows)) return every;
+      }
+    }
+  }
+
+  void find_stations() {
+    if (!result_.parameters().first_pose) return;
+    every_ = every();
+    StationOptions how;
+    how.every = every_;
+    how.chainage_start = options_.conflicts.chainage_start;
+    how.forward = options_.conflicts.forward;
+    how.up = options_.conflicts.up;
+    how.model_box = model_box_;
+    how.bodies = options_.bodies;
+    how.station = options_.labels.station;
+    how.threads = options_.conflicts.threads;
+    how.progress = options_.conflicts.progress;
+    how.stop = options_.conflicts.stop;
+    stations_ = station_table(result_, poses_, how);
+    if (stations_->rows.size() <= kMostStationRowsOfPage) return;
+    throw UsageError("a table of " + counted(stations_->rows.size(), "stretch", "stretches") +
+                     " of " + format_brief(every_) +
+                     " m is too long for a page; expected at least " +
+                     format_brief(path_length(poses_) / kMostStationRowsOfPage) + " m");
   }
 
   void find_unseen() {
@@ -306,6 +345,8 @@ class Report {
          .unsearched = unsearched_stretches(poses_, options_.bodies),
          .searched = searched_length(poses_, options_.bodies),
          .conflicts = result_.parameters().first_pose ? &conflicts : nullptr,
+         .stations = stations_ ? &*stations_ : nullptr,
+         .every = every_,
          .unseen = unseen_,
          .points = points_,
          .environment = environment_,
@@ -336,6 +377,8 @@ class Report {
   ShownPoints points_;
   EnvironmentSample environment_;
   Profile profile_;
+  std::optional<StationTable> stations_;
+  double every_ = 0;
   UnseenGroups unseen_;
   std::vector<double> chainage_;
   std::vector<std::uint32_t> shown_;

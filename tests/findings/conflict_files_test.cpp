@@ -7,6 +7,8 @@
 #include "clearway/error.hpp"
 #include "findings/conflict_fixture.hpp"
 #include "io/result/answer.hpp"
+#include "io/result/conflicts/bcf/bcf_text.hpp"
+#include "io/result/conflicts/conflict_fields.hpp"
 #include "io/result/conflicts/json_text.hpp"
 #include "io/result/conflicts/markup_text.hpp"
 #include "io/result/conflicts/write_conflicts.hpp"
@@ -125,6 +127,68 @@ TEST_CASE("a GeoPackage keeps systems that have no number, and goes without any"
   Written none("");
   none.write(ConflictFormat::kGeoPackage);
   CHECK(value_of(none.folder / "out", "SELECT srs_id FROM gpkg_contents") == "-1");
+}
+
+TEST_CASE("files of conflicts have stations where the trajectory has them, and only there") {
+  const std::vector<double> station{1234.5};
+  const auto with = [&](ConflictFormat format) {
+    Written written("");
+    written.options.station = station;
+    return written.write(format);
+  };
+  const auto without = [](ConflictFormat format) { return Written("").write(format); };
+  const std::string csv = with(ConflictFormat::kCsv);
+  CHECK_THAT(csv, Catch::Contains(",chainage_to,station_from,station_to,least_distance,"));
+  CHECK_THAT(csv, Catch::Contains(",0,0,0,0,1234.5,1234.5,,"));
+  const json listed = json::parse(with(ConflictFormat::kJson))["conflicts"];
+  CHECK(listed[1]["station_from"] == 1234.5);
+  CHECK(listed[1]["station_to"] == 1234.5);
+  CHECK(json::parse(with(ConflictFormat::kGeoJson))["features"][0]["properties"]["station_to"] ==
+        1234.5);
+  for (const auto format : {ConflictFormat::kCsv, ConflictFormat::kJson, ConflictFormat::kGeoJson,
+                            ConflictFormat::kBcf}) {
+    CHECK_THAT(without(format), !Catch::Contains("station"));
+  }
+  Written written("");
+  written.options.station = station;
+  written.write(ConflictFormat::kGeoPackage);
+  CHECK(value_of(written.folder / "out",
+                 "SELECT typeof(station_from) || station_to FROM stretches WHERE id = 2") ==
+        "real1234.5");
+  // Small groups stand in for conflicts, and have stations too.
+  Written small("");
+  small.options.station = station;
+  small.options.min_points = 4;
+  const Result result(small.folder / "out.h5");
+  const Conflicts found = find_conflicts(result, small.found.poses, small.options);
+  REQUIRE(found.listed.empty());
+  CHECK(found.small.at(1).station_to == 1234.5);
+  const Answer answer = counted_answer(result.reader());
+  const ConflictFile file{found,  small.options,     result.reader().header(),
+                          answer, small.found.poses, {}};
+  CHECK_THAT("{" + summary_json(file) + "}", Catch::Contains("\"station_from\": 1234.5"));
+  const std::vector<double> two{1, 2};
+  small.options.station = two;
+  CHECK_THROWS_WITH(find_conflicts(result, small.found.poses, small.options),
+                    Catch::Contains("2 stations for 1 pose"));
+}
+
+TEST_CASE("a topic of BCF names the stations of its conflict") {
+  Found found;
+  found.quanta = {{0, 0, 0}};
+  const ResultHeader header = found.header();
+  Conflicts conflicts;
+  Conflict conflict;
+  conflict.id = 1;
+  conflict.chainage_to = 12.5;
+  conflict.station_from = 1250;
+  conflict.station_to = 1237.5;
+  conflicts.listed.push_back(conflict);
+  const ConflictOptions options;
+  const Answer answer = answer_of(header);
+  const ConflictFile file{conflicts, options, header, answer, found.poses, {}};
+  CHECK_THAT(bcf_markup(file, conflicts.listed[0]),
+             Catch::Contains("Conflict 1 at 0 m to 12.5 m, station 1250 to 1237.5 m"));
 }
 
 TEST_CASE("strings of JSON are escaped, and bytes that are not UTF-8 replaced") {

@@ -39,6 +39,8 @@ LAND_XML = """<?xml version="1.0"?>
 </Alignment></Alignments></LandXML>
 """
 
+ROUTE = ((0, 0), (30, 0), (30, 40))
+
 CAMPAIGN = {"name": "Stand-in", "environments": {"hall": "site.h5"}, "vehicles": {"car": "car.ply"},
             "routes": {"line": "path.txt"}, "radii": [0.1]}
 
@@ -93,6 +95,15 @@ def make(folder, clearway):
     (folder / "gauge.csv").write_text(
         "height,half_width\n0.4,1.2\n1.2,1.6\n3.2,1.6\n4.3,0.8\n", encoding="utf-8")
     (folder / "track.xml").write_text(LAND_XML, encoding="utf-8")
+    (folder / "route.csv").write_text("x,y\n" + "".join(f"{x},{y}\n" for x, y in ROUTE), encoding="utf-8")
+    (folder / "route.geojson").write_text(json.dumps({"type": "LineString", "coordinates": ROUTE}),
+                                          encoding="utf-8")
+    (folder / "lane.csv").write_text("x,y\n1,0\n19,0\n", encoding="utf-8")
+    (folder / "street.xyz").write_text("".join(
+        f"{x / 10} {y / 10} {x / 1000}\n" for x in range(201) for y in range(-20, 21)), encoding="utf-8")
+    clearway("convert street.xyz -o street.h5 --unit m".split())
+    (folder / "street.xyz").unlink()
+    (folder / "curve.csv").write_text("x,y,z\n0,0,4\n20,0,4\n40,2,4.1\n", encoding="utf-8")
     (folder / "campaign.json").write_text(json.dumps(CAMPAIGN), encoding="utf-8")
     for name in ("model.ply", "trajectory.txt"):
         (folder / name).unlink()

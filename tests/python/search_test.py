@@ -366,6 +366,42 @@ class FindsWhatBruteForceFinds(SceneTest):
         with self.assertRaises(clearway.InputError):
             clearway.find_conflicts(result, self.poses[1:])
 
+    def test_station_table(self):
+        self.search(query=self.query(first_pose=True, clearance=0.3))
+        result = clearway.Result(self.folder / "out.h5")
+        lines = ["station [m],x,y,z,r00,r01,r02,r10,r11,r12,r20,r21,r22"]
+        for i, pose in enumerate(self.poses):
+            lines.append(",".join(repr(float(v)) for v in
+                                  [100 + 2 * i, *pose[:3, 3], *pose[:3, :3].ravel()]))
+        (self.folder / "stations.csv").write_text("\n".join(lines) + "\n")
+        labels = clearway.PoseLabels()
+        clearway.read_trajectory(self.folder / "stations.csv", labels=labels)
+        steps = np.linalg.norm(np.diff(self.poses[:, :3, 3], axis=0), axis=1)
+        chainage = np.concatenate([[0], np.cumsum(steps)])
+        every = chainage[-1] / 3.5
+        table = clearway.station_table(result, self.poses, every=every, labels=labels)
+        self.assertEqual((len(table), table.bodies), (4, [""]))
+        row_of = np.minimum(chainage // every, 3)
+        clear = result.clearance()
+        for i, row in enumerate(table.rows):
+            here = row_of[clear.pose] == i
+            self.assertEqual(row.least is None, not here.any())
+            if row.least:
+                self.assertEqual(row.least.distance, clear.distance[here].min())
+            self.assertAlmostEqual(
+                row.station_from, np.interp(i * every, chainage, 100 + 2 * np.arange(len(chainage))))
+            self.assertIn(row.verdict, ("clear", "conflict", "undecided"))
+            self.assertEqual(len(row.overthrow), 1)
+        self.assertIn("conflict", [row.verdict for row in table.rows])
+        found = clearway.find_conflicts(result, self.poses, min_points=1, labels=labels)
+        for conflict in found.listed:
+            self.assertEqual(conflict.station_from, 100 + 2 * conflict.first_pose)
+            self.assertEqual(conflict.station_to, 100 + 2 * conflict.last_pose)
+        self.assertIsNone(clearway.find_conflicts(result, self.poses, min_points=1).listed[0].station_from)
+        for every in (0, -1, float("nan")):
+            with self.assertRaises(clearway.UsageError):
+                clearway.station_table(result, self.poses, every=every)
+
     def test_report_page(self):
         self.search(query=self.query(first_pose=True))
         summary = clearway.write_report(
@@ -480,6 +516,43 @@ class Inputs(SceneTest):
                                    (clearway.InputError, "no alignment of the name", {"alignment": "b"})):
             with self.assertRaisesRegex(kind, words):
                 clearway.read_alignment(path, **named)
+
+    def test_lines(self):
+        path = self.folder / "route.csv"
+        path.write_text("x,y,station\n0,0,100\n10,0,110\n10,20,130\n")
+        labels, messages = clearway.PoseLabels(), []
+        poses = clearway.read_line(path, step=2, height=3, corner_radius=4, messages=messages,
+                                   labels=labels)
+        self.assertEqual([message.code for message in messages], ["line-rounded"])
+        np.testing.assert_allclose(poses[3, :3, 3], [6, 0, 3], atol=1e-12)
+        turned = 1 / 2  # radians after 2 m of an arc of 4 m
+        np.testing.assert_allclose(poses[4, :2, 0], [np.cos(turned), np.sin(turned)], atol=1e-12)
+        self.assertEqual((labels.station[0], labels.station[-1]), (100, 130))
+        back = clearway.read_line(path, step=2, height=3, corner_radius=4, reverse=True)
+        np.testing.assert_array_equal(back[-1, :3, 3], poses[0, :3, 3])
+        np.testing.assert_array_equal(back[-1, :3, :2], -poses[0, :3, :2])
+        inches = clearway.read_line(path, height=3, corner_radius=0.1, unit="in")
+        np.testing.assert_allclose(inches[-1, :3, 3], [0.254, 0.508, 3], atol=1e-12)
+        for kind, words, named in ((clearway.UsageError, "cant 'inner': expected one of file", {"cant": "inner"}),
+                                   (clearway.UsageError, "corner_radius: expected", {"corner_radius": 0}),
+                                   (clearway.InputError, "turns by 90 degrees", {"height": 1}),
+                                   (clearway.InputError, "no heights", {"corner_radius": 1})):
+            with self.assertRaisesRegex(kind, words):
+                clearway.read_line(path, **named)
+        place = [[x / 10, y / 10, 4 + y / 1000] for x in range(-20, 220) for y in range(-20, 220)]
+        np.savetxt(self.folder / "ground.xyz", place)
+        clearway.convert(self.folder / "ground.xyz", self.folder / "ground.h5", unit="m")
+        store = clearway.Store(self.folder / "ground.h5")
+        on_ground = clearway.read_line(path, corner_radius=4, ground=store, track=1.5)
+        np.testing.assert_allclose(on_ground[:, 2, 3], 4 + on_ground[:, 1, 3] / 100, atol=0.003)
+        np.testing.assert_allclose(on_ground[0, 2, 1], 0.01, atol=0.002)
+        with self.assertRaisesRegex(TypeError, "ground: expected a clearway.Store"):
+            clearway.read_line(path, corner_radius=4, ground="ground.h5", track=1.5)
+        with self.assertRaisesRegex(clearway.UsageError, "both or neither"):
+            clearway.read_line(path, corner_radius=4, ground=store)
+        with self.assertRaises(clearway.InputError) as refused:
+            clearway.read_line(path, height=1)
+        self.assertEqual(refused.exception.remedy, "round_corners")
 
 
 if __name__ == "__main__":

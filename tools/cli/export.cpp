@@ -8,7 +8,7 @@
 #include "clearway/error.hpp"
 #include "clearway/trajectory.hpp"
 #include "cli/commands.hpp"
-#include "cli/ignored/ignored_options.hpp"
+#include "cli/support/ignored_options.hpp"
 #include "cli/run_again.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
@@ -140,7 +140,8 @@ constexpr const char* kFooter =
     "With --what near they are the points of an undecided run that do not collide but may in\n"
     "truth, and first_pose is the first pose that comes so close.\n"
     "With --what clearance, distance and pose take the place of first_pose, in .xyz too.\n"
-    "With --what profile it is CSV only: pose,time,name,chainage,distance,source,x,y,z.\n"
+    "With --what profile it is CSV only: pose,time,name,station,chainage,distance,\n"
+    "source,x,y,z.\n"
     "Of several bodies it has searched too: 0 where no body has a pose.\n"
     "With --scans it copies records of LAS, all of one point format, with all their fields.\n"
     "Example: clearway export out.h5 -o colliding.las";

@@ -8,7 +8,7 @@
 
 #include "clearway/trajectory.hpp"
 #include "cli/commands.hpp"
-#include "cli/ignored/ignored_options.hpp"
+#include "cli/support/ignored_options.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/program_json.hpp"
 #include "cli/verdict.hpp"

@@ -153,7 +153,7 @@ void add_classes(CLI::App& command, ReportCommand& options) {
       ->type_name("METRES,...");
 }
 
-void add_page_options(CLI::App& command, ReportOptions& options) {
+void add_page_options(CLI::App& command, ReportOptions& options, LengthOptions& lengths) {
   const GroupScope group(command, OptionGroup::kPage);
   command.add_option("--title", options.title, "Title of the page (default: names of the files)")
       ->type_name("TEXT");
@@ -169,6 +169,9 @@ void add_page_options(CLI::App& command, ReportOptions& options) {
       ->type_name("N")
       ->check(CLI::Range(std::uint64_t{1000}, std::uint64_t{20'000'000}))
       ->capture_default_str();
+  lengths.add(command, "--every", options.every,
+              "Length of a stretch in the table of stations (default: 5, or so long that there are "
+              "at most 200)");
   command.add_flag("--force", options.overwrite, "Overwrite an existing page")
       ->group(title_of(OptionGroup::kFiles));
 }
@@ -204,7 +207,7 @@ ReportSummary perform(ReportCommand& options) {
 void add_options(CLI::App& command, ReportCommand& options) {
   add_report_inputs(command, options);
   add_classes(command, options);
-  add_page_options(command, options.report);
+  add_page_options(command, options.report, options.lengths);
   add_conflict_options(command, options);
   add_axis_options(command, options);
   command.add_flag("--json", options.json, "Print what the page says as one JSON object");

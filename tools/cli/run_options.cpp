@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "clearway/error.hpp"
-#include "cli/ignored/ignored_options.hpp"
+#include "cli/support/ignored_options.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "core/geometry/angle.hpp"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/ignored/ignored_options.hpp"
+#include "cli/support/ignored_options.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/query/spacing_text.hpp"
 #include "core/util/format.hpp"
@@ -35,6 +35,9 @@ std::string place_text(const Answer& answer, const std::optional<FoundPlace>& pl
     text += " (";
     if (!path.labels.name.empty()) text += path.labels.name[pose] + ", ";
     if (!path.labels.time.empty()) text += fmt::format("time {}, ", path.labels.time[pose]);
+    if (!path.labels.station.empty()) {
+      text += fmt::format("station {:.2f} m, ", path.labels.station[pose]);
+    }
     text += fmt::format("{:.2f} {} along the path)", path.chainage[pose], unit);
   }
   if (const std::string body = body_of(answer, place); !body.empty()) text += ", body " + body;
@@ -192,6 +195,7 @@ ordered_json place_json(const Answer& answer, const std::optional<FoundPlace>& p
   if (const std::string body = body_of(answer, place); !body.empty()) out["body"] = body;
   if (!path.labels.time.empty()) out["time"] = path.labels.time[place->pose];
   if (!path.labels.name.empty()) out["name"] = path.labels.name[place->pose];
+  if (!path.labels.station.empty()) out["station"] = path.labels.station[place->pose];
   return out;
 }
 

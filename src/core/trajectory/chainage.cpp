@@ -1,5 +1,6 @@
 #include "core/trajectory/chainage.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/geometry/predicate.hpp"
@@ -33,6 +34,15 @@ double path_length(std::span<const Pose> poses) {
   double length = 0;
   for (std::size_t i = 1; i < poses.size(); ++i) length += step_length(poses[i - 1], poses[i]);
   return length;
+}
+
+double value_at(std::span<const double> chainage, std::span<const double> values, double at) {
+  const auto next = std::upper_bound(chainage.begin(), chainage.end(), at);
+  if (next == chainage.end()) return values.back();
+  if (next == chainage.begin()) return values.front();
+  const auto i = static_cast<std::size_t>(next - chainage.begin());
+  const double part = (at - chainage[i - 1]) / (chainage[i] - chainage[i - 1]);
+  return values[i - 1] + part * (values[i] - values[i - 1]);
 }
 
 std::optional<Vec3> travel_direction(std::span<const Pose> poses, std::size_t at) {

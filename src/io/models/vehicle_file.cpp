@@ -3,6 +3,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
 #include <list>
 #include <numeric>
 #include <optional>
@@ -42,6 +43,13 @@ BodyMount pivots_of(const KeyReader& key, double environment_unit) {
   return pivots;
 }
 
+/// A place on a body's x axis, where a hitch or an axle may be.
+double hitch_at(const KeyReader& key, double environment_unit) {
+  const double x = length_at(key, environment_unit);
+  if (!(std::abs(x) <= kFarthestHitch)) key.refuse("expected at most 1000 km from the origin");
+  return x;
+}
+
 BodyMount towed_of(const KeyReader& key, double environment_unit) {
   key.allow({"by", "at", "pivots"});
   const KeyReader both = key.at("pivots");
@@ -50,9 +58,9 @@ BodyMount towed_of(const KeyReader& key, double environment_unit) {
     both.refuse("expected two lengths, the hitch and the axle, for example [9.2, 1.4]");
   }
   const BodyTowed towed{.by = key.has("by") ? key.at("by").text() : "",
-                        .at = length_at(key.at("at"), environment_unit),
-                        .hitch = length_at(pivots[0], environment_unit),
-                        .axle = length_at(pivots[1], environment_unit)};
+                        .at = hitch_at(key.at("at"), environment_unit),
+                        .hitch = hitch_at(pivots[0], environment_unit),
+                        .axle = hitch_at(pivots[1], environment_unit)};
   if (!(towed.hitch > towed.axle)) {
     both.refuse("expected the hitch, which comes first, ahead of the axle, for example [9.2, 1.4]");
   }

@@ -363,6 +363,8 @@ class Conflict:
     last_pose: Final[int]
     chainage_from: Final[float]
     chainage_to: Final[float]
+    station_from: Final[float | None]
+    station_to: Final[float | None]
     certain: Final[bool | None]
     obstacle_chainage: Final[float | None]
     shift_left: Final[float | None]
@@ -386,6 +388,29 @@ class SmallGroup:
     last_pose: Final[int]
     chainage_from: Final[float]
     chainage_to: Final[float]
+    station_from: Final[float | None]
+    station_to: Final[float | None]
+class Overthrow:
+    end: Final[float | None]
+    middle: Final[float | None]
+class StationRow:
+    chainage_from: Final[float]
+    chainage_to: Final[float]
+    station_from: Final[float | None]
+    station_to: Final[float | None]
+    least: Final[FoundPlace | None]
+    left: Final[FoundPlace | None]
+    right: Final[FoundPlace | None]
+    above: Final[FoundPlace | None]
+    verdict: Final[str]
+    reasons: Final[list[str]]
+    searched: Final[bool]
+    overthrow: Final[list[Overthrow]]
+class StationTable:
+    bodies: Final[list[str]]
+    rows: Final[list[StationRow]]
+    warnings: Final[list[Message]]
+    def __len__(self) -> int: ...
 class Conflicts:
     listed: Final[list[Conflict]]
     small: Final[list[SmallGroup]]
@@ -437,6 +462,15 @@ def read_alignment(
     height: float | None = None, environment_crs: str = "", messages: list[Message] | None = None,
     labels: PoseLabels | None = None,
 ) -> _Doubles: ...
+def read_line(
+    path: _AnyPath, *, step: float = 0.1, reverse: bool = False, height: float | None = None,
+    corner_radius: float | None = None, ground: Store | None = None, track: float | None = None,
+    cant: Literal["none", "center", "inside-rail", "outside-rail", "left-rail",
+                  "right-rail"] = "center",
+    rail_distance: float | None = None, unit: float | str = 0.0,
+    environment_unit: float | str | None = None, environment_crs: str = "",
+    messages: list[Message] | None = None, labels: PoseLabels | None = None,
+) -> _Doubles: ...
 def read_vehicle(
     file: _AnyPath, poses: ArrayLike, model_as: Literal["auto", "points", "surface", "solid"] = "auto", *,
     spacing: float = 0.0, unit: float | str = 0.0, environment_unit: float | str | None = None,
@@ -478,8 +512,15 @@ def find_conflicts(
     result: Result, poses: ArrayLike, *, gap: float = 0.3, min_points: int = 10,
     split: float = 25.0, chainage_start: float = 0.0, forward: _Axis = "+x", up: _Axis = "+z",
     model_box: Box | None = None, model: ArrayLike | Model | None = None,
-    bodies: Sequence[Body] = (), memory_bytes: int = 4294967296, threads: int = 0, progress: _Progress | None = None, stop: _Stop | None = None,
+    bodies: Sequence[Body] = (), labels: PoseLabels | None = None, memory_bytes: int = 4294967296,
+    threads: int = 0, progress: _Progress | None = None, stop: _Stop | None = None,
 ) -> Conflicts: ...
+def station_table(
+    result: Result, poses: ArrayLike, *, every: float = 5.0, chainage_start: float = 0.0,
+    forward: _Axis = "+x", up: _Axis = "+z", model_box: Box | None = None,
+    bodies: Sequence[Body] = (), labels: PoseLabels | None = None, threads: int = 0,
+    progress: _Progress | None = None, stop: _Stop | None = None,
+) -> StationTable: ...
 def write_report(
     result: Result, store: Store, model: ArrayLike | Model | None, poses: ArrayLike, output: _AnyPath, *,
     title: str = "", project: str = "", client: str = "", author: str = "", date: str = "",
@@ -488,7 +529,7 @@ def write_report(
     classes: Sequence[float] = (), max_points: int = 1000000, gap: float = 0.3,
     min_points: int = 10, split: float = 25.0, chainage_start: float = 0.0, forward: _Axis = "+x",
     up: _Axis = "+z", memory_bytes: int = 4294967296, threads: int = 0,
-    labels: PoseLabels | None = None, warnings: Iterable[Message] = (),
+    labels: PoseLabels | None = None, every: float = 0.0, warnings: Iterable[Message] = (),
     bodies: Sequence[Body] = (), overwrite: bool = False,
     progress: _Progress | None = None, stop: _Stop | None = None,
 ) -> ReportSummary: ...

@@ -159,10 +159,10 @@ _messages = _each(_kind(_clearway.Message))
 
 _CHECKS = {
     **dict.fromkeys(("radius", "scale", "regular_size", "step", "rail_distance", "length",
-                     "width"), _above_0),
+                     "width", "corner_radius", "track"), _above_0),
     **dict.fromkeys(("unit", "metres_per_unit"), _or_name(_at_least_0)),
     "environment_unit": _or_name(_above_0),
-    **dict.fromkeys(("clearance", "profile", "tolerance", "spacing", "field_voxel", "grid_cell", "gap", "max_gap", "split", "journal_interval_seconds", "sigmas", "seen_cube"),
+    **dict.fromkeys(("clearance", "profile", "tolerance", "spacing", "field_voxel", "grid_cell", "gap", "max_gap", "split", "journal_interval_seconds", "sigmas", "seen_cube", "every"),
                     _at_least_0),
     **dict.fromkeys(("error_scan", "error_registration", "error_pose", "error_angle",
                      "error_model"), _or_none(_at_least_0)),
@@ -200,7 +200,7 @@ _CHECKS = {
     "bodies": _each(_kind(_clearway.Body)),
     "model_box": _kind(_clearway.Box),
     "labels": _kind(_clearway.PoseLabels),
-    "store": _kind(_clearway.Store),
+    **dict.fromkeys(("store", "ground"), _kind(_clearway.Store)),
     "result": _kind(_clearway.Result),
     "query": _kind(_clearway.Query),
 }

@@ -66,14 +66,15 @@ async function readPoints(name, lattice, offset = [0, 0, 0]) {
 async function readPoses() {
   const facts = page.facts.page, start = page.facts.inputs.trajectory.chainage_start;
   const read = async (name) => integersOf(await columnBytes("pose." + name));
-  const [index, x, y, z, chainage, distance, px, py, pz, time] = await Promise.all(
-      ["index", "x", "y", "z", "chainage", "distance", "px", "py", "pz", "time"].map(read));
+  const [index, x, y, z, chainage, distance, px, py, pz, time, station] = await Promise.all(
+      ["index", "x", "y", "z", "chainage", "distance", "px", "py", "pz", "time", "station"].map(read));
   const rotation = await Promise.all([...Array(9).keys()].map((k) => read("r" + k)));
   const names = await columnBytes("pose.name");
   return {
     count: index ? index.length : 0,
     index, x, y, z, rotation, distance, px, py, pz, time,
     chainage: chainage ? Float64Array.from(chainage, (c) => start + c * facts.chainage_step) : [],
+    station: station ? Float64Array.from(station, (s) => s * facts.chainage_step) : null,
     name: names ? new TextDecoder().decode(names).split("\n") : null,
   };
 }

@@ -28,7 +28,8 @@ function conflictFacts(conflict) {
     conflict.class && ["Certainty", conflict.class === "certain"
         ? "certain, even with the errors of the budget" : "possible: the errors leave it open"],
     ["Where", `chainage ${chainageCell(conflict)} ${unitSymbol}${after(sideWords(conflict.side))}`],
-    conflict.obstacle_chainage !== null && ["Obstacle", `stands at chainage ${station(conflict.obstacle_chainage)}`],
+    conflict.station_from !== undefined && ["Station", `${stationsCell(conflict)} m`],
+    conflict.obstacle_chainage !== null && ["Obstacle", `stands at chainage ${placeWords(conflict.obstacle_chainage)}`],
     conflict.body !== undefined && ["Body", conflict.body],
     ["Place", coordinates(conflict.nearest_point ?? conflict.centroid)],
     offsetWords(conflict) && ["Offset", offsetWords(conflict)],

@@ -9,7 +9,7 @@ async function start() {
   page.enclosed = isEnclosed();
   page.vehicleSize = sizeOfVehicle();
   for (const build of [buildVerdict, buildProfile, buildPlan, buildTable, buildDetails, buildUnseen,
-                       buildView, buildPrint]) {
+                       buildStations, buildView, buildPrint]) {
     build();
   }
   const least = page.facts.least_distance;

@@ -44,6 +44,7 @@ function preparePrint() {
   const holder = byId("print-cards");
   if (byId("print-feet")) return;
   drawProfileFor(true);
+  unfoldStations(true);
   document.head.append(make("style", { id: "print-feet" }, pageFeet()));
   byId("verdict-body").append(make("p", { class: "note on-paper" }, byId("footer").textContent));
   if (unseenGroups().length > 0) byId("unseen-print").append(...printedGroups().filter(Boolean));
@@ -54,6 +55,7 @@ function preparePrint() {
 
 function endPrint() {
   drawProfileFor(false);
+  unfoldStations(false);
   byId("print-cards").replaceChildren();
   byId("print-table").replaceChildren();
   byId("unseen-print")?.replaceChildren();

@@ -93,6 +93,13 @@ function profileAxes() {
     out.push(make("line", { x1: profileX(c), x2: profileX(c), y1: top, y2: height - bottom,
                             class: "grid" }),
              make("text", { x: profileX(c), y: height - bottom + 16, class: "middle" }, String(c)));
+    if (stationAt(c) !== null) {
+      out.push(make("text", { x: profileX(c), y: top + 11, class: "middle station" },
+                    fixed(stationAt(c), profile.to - profile.from < 50 ? 2 : 0)));
+    }
+  }
+  if (page.poses.station) {
+    out.push(make("text", { x: width - right, y: top - 8, class: "end station" }, "station (m)"));
   }
   out.push(make("text", { x: width - right, y: height - 4, class: "end" },
                 `chainage (${unitSymbol})`),

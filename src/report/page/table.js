@@ -25,6 +25,7 @@ function tableColumns() {
   return [
     ["No.", (c) => c.id, (c) => String(c.id)],
     ["Chainage", (c) => c.chainage_from, chainageCell],
+    list.some((c) => c.station_from !== undefined) && ["Station", (c) => c.station_from, stationsCell],
     list.some((c) => c.obstacle_chainage !== null) &&
         ["Obstacle at", (c) => c.obstacle_chainage ?? c.chainage_from, stationCell],
     list.some((c) => c.body !== undefined) && ["Body", (c) => c.body ?? "", (c) => c.body ?? ""],
@@ -54,6 +55,12 @@ function chainageCell(conflict) {
   return from === to ? from : `${from} – ${to}`;
 }
 
+/** The stations of a conflict or a stretch, which go down where the path runs against them. */
+function stationsCell({ station_from: from, station_to: to }) {
+  const words = [from, to].map((s) => fixed(s, 2));
+  return words[0] === words[1] ? words[0] : `${words[0]} – ${words[1]}`;
+}
+
 const stationCell = (c) => c.obstacle_chainage === null ? "" : c.obstacle_chainage.toFixed(2);
 
 /** Empty where no shift to that side that was tried frees the conflict. Never rounded down. */
@@ -71,7 +78,7 @@ function classCell(conflict) {
 function titleWithUnit(title) {
   const has = ["Chainage", "Obstacle at", "Lateral", "Height", "Least distance", "Depth", "Missing",
                "Shift left", "Shift right", "Size", "Place x, y, z"].includes(title);
-  return has ? `${title} (${unitSymbol})` : title;
+  return title === "Station" ? "Station (m)" : has ? `${title} (${unitSymbol})` : title;
 }
 
 function filteredConflicts() {
@@ -91,7 +98,7 @@ function sortedConflicts(columns, list = filteredConflicts()) {
 }
 
 function sortBy(title) {
-  const numbers = !["No.", "Chainage", "Obstacle at", "Body", "Side", "Lateral", "Height", "Least distance", "Class", "Certainty", "Pose"].includes(title);
+  const numbers = !["No.", "Chainage", "Station", "Obstacle at", "Body", "Side", "Lateral", "Height", "Least distance", "Class", "Certainty", "Pose"].includes(title);
   table.down = table.title === title ? !table.down : numbers;
   table.title = title;
   table.first = 0;

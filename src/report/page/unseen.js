@@ -127,8 +127,8 @@ function chosenGroup() {
       ? " A colliding point lies in it or next to it, so what collides may hide it from the scanner." : "";
   return [make("p", {}, make("strong", {}, `${groupName(group)}: `),
       `${plural(group.cubes, "cube")} that no beam passed through. The vehicle first reaches it at ` +
-      `chainage ${station(group.chainage_from)} (pose ${count(group.first_pose)})${after(side)}, ` +
-      `and its last cube at ${station(group.chainage_to)}.${where}${behind}`),
+      `chainage ${placeWords(group.chainage_from)} (pose ${count(group.first_pose)})${after(side)}, ` +
+      `and its last cube at ${placeWords(group.chainage_to)}.${where}${behind}`),
       button("Show in 3-D", () => byId("view").scrollIntoView())];
 }
 

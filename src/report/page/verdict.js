@@ -48,7 +48,7 @@ function conflictTiles() {
     if (inside > 0) tiles.push(tile(count(inside), "of them inside the vehicle"));
     tiles.push(worstTile(worst));
     tiles.push(tile(`No. ${worst.id}`,
-                    `worst: chainage ${station(stationOf(worst))}${after(kSides[worst.side])}`,
+                    `worst: chainage ${placeWords(stationOf(worst))}${after(kSides[worst.side])}`,
                     () => goTo(worst)));
   }
   return tiles;
@@ -87,7 +87,7 @@ function clearTiles() {
   const { least_distance: least, query, inputs } = page.facts, tiles = [];
   if (least) {
     tiles.push(tile(metres(least.distance), "least distance found"));
-    tiles.push(tile(station(least.chainage), "chainage of it", () => {
+    tiles.push(tile(station(least.chainage), `chainage of it${besideChainage(least.chainage)}`, () => {
       selectPose(shownPose(least.pose));
       byId("view").scrollIntoView();
       tell("overview");
@@ -112,7 +112,7 @@ function placesText({ count: listed, small_groups: small, first_small: first }) 
   if (listed === 0) {
     return ` at ${plural(small, "place")}, too small for the list` + (first
         ? `; ${small === 1 ? "it has" : "the first has"} ${plural(first.points, "point")} at ` +
-          `chainage ${station(first.chainage_from)}. --min-points 1 lists ${small === 1 ? "it" : "them"}`
+          `chainage ${placeWords(first.chainage_from)}. --min-points 1 lists ${small === 1 ? "it" : "them"}`
         : "");
   }
   const more = small > 0 ? ` and at ${count(small)} more that are too small for the list` : "";
@@ -272,8 +272,8 @@ function verdictSentences() {
   if (!worst) return [first, leastSentence()];
   const worstText = worst.least_distance === null
       ? `Conflict ${worst.id} has the most points. It begins at chainage ` +
-        `${station(worst.chainage_from)}${after(sideWords(worst.side))}${bodyWords(worst)}.`
-      : `The worst place is conflict ${worst.id}, at chainage ${station(stationOf(worst))}` +
+        `${placeWords(worst.chainage_from)}${after(sideWords(worst.side))}${bodyWords(worst)}.`
+      : `The worst place is conflict ${worst.id}, at chainage ${placeWords(stationOf(worst))}` +
         `${after(sideWords(worst.side))}${bodyWords(worst)}: ` +
         `${nearnessText(worst.least_distance, radius)}.` +
         nearestPointSentence({ ...worst, point: worst.nearest_point, side: "unknown" },

@@ -27,6 +27,24 @@ const kTouching = 0.001;
 /** With the digits of the distance, so that both add up to what is required. */
 const missingWords = (missing, distance) => metres(missing, digitsFor([distance]));
 const station = (v) => metres(v, 2);
+/** The station along the alignment at a chainage, between those of the shown poses; null without stations. */
+function stationAt(at) {
+  const { station: stations, chainage } = page.poses;
+  if (!stations || stations.length === 0) return null;
+  let lo = 0, hi = chainage.length;  // the first pose behind it
+  while (lo < hi) {
+    const middle = lo + hi >> 1;
+    if (chainage[middle] <= at) lo = middle + 1; else hi = middle;
+  }
+  if (lo === 0 || lo === chainage.length) return stations[lo === 0 ? 0 : lo - 1];
+  const part = (at - chainage[lo - 1]) / (chainage[lo] - chainage[lo - 1]);
+  return stations[lo - 1] + part * (stations[lo] - stations[lo - 1]);
+}
+/** " (station 1234.50 m)" beside a chainage, which is what a client knows a place by; or nothing. */
+const besideChainage = (chainage) => stationAt(chainage) === null ? ""
+    : ` (station ${fixed(stationAt(chainage), 2)} m)`;
+/** A place of the path: its chainage, with the station beside it. */
+const placeWords = (chainage) => station(chainage) + besideChainage(chainage);
 const shortLength = (v) => `${+v.toPrecision(4)} ${unitSymbol}`;
 const coordinates = (p) => p.map((v) => v.toFixed(2)).join(", ");
 
@@ -106,7 +124,7 @@ function nearestPointSentence({ point, ...of }, distance) {
 function leastSentence() {
   const { least_distance: least, query } = page.facts;
   if (least) {
-    const where = `at chainage ${station(least.chainage)} (pose ${count(least.pose)}` +
+    const where = `at chainage ${placeWords(least.chainage)} (pose ${count(least.pose)}` +
         `${bodyWords(least)}).${nearestPointSentence(least, least.distance)}`;
     return isInside(least.distance)
         ? `The greatest depth inside the vehicle is ${metres(-least.distance)}, ${where}`
@@ -127,6 +145,7 @@ function worstConflict() {
 function poseLabel(i) {
   const poses = page.poses;
   const parts = [`pose ${count(poses.index[i])}`, `chainage ${station(poses.chainage[i])}`];
+  if (poses.station) parts.push(`station ${fixed(poses.station[i], 2)} m`);
   if (poses.name && poses.name[i]) parts.push(poses.name[i]);
   if (poses.time) {
     const facts = page.facts.page;

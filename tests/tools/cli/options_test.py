@@ -49,6 +49,7 @@ class Help(unittest.TestCase):
         for command in ("check", "run", "convert", "merge", "export", "conflicts", "compare", "report",
                         "model", "model box", "model outline", "trajectory info",
                         "trajectory follow", "trajectory resample", "trajectory alignment",
+                        "trajectory line",
                         "campaign plan", "campaign run", "campaign report"):
             for title, names in groups(command).items():
                 self.assertLessEqual(len(names), 10, f"{command}: {title}")

@@ -237,6 +237,7 @@ TEST_CASE("every complaint about a towed body names the key") {
   refused(tow("\"tractor\"", "[8, 8]"), ".towed.pivots: expected the hitch");
   refused(tow("\"tractor\"", "[0, 8]"), ".towed.pivots: expected the hitch");
   refused(tow("\"tractor\"", "[8, \"x\"]"), ".towed.pivots[1]: is \"x\", expected a length");
+  refused(tow("\"tractor\"", "[1e308, 0]"), ".towed.pivots[0]: expected at most 1000 km");
   for (const char* more :
        {R"("at": 1, )", R"("pivots": [1, -1], )", R"("trajectory": "a.txt", )"}) {
     refused(more + std::string(Turn::kTrailer), ": a body moves in one way");

@@ -121,3 +121,28 @@ TEST_CASE("trajectory follow overwrites neither outputs nor inputs") {
   CHECK(outcome.exit_code == 2);
   CHECK(bytes_of(circle.folder / "path.txt") == before);
 }
+
+TEST_CASE("trajectory follow keeps stations, those of the place that the body is at") {
+  const Circle circle;
+  const std::vector<Pose> path = read_trajectory(circle.folder / "path.txt");
+  std::vector<double> stations;
+  for (std::size_t i = 0; i < path.size(); ++i)
+    stations.push_back(500 + 0.2 * static_cast<double>(i));
+  NoProgress progress;
+  write_trajectory_table(path, {.stations = stations, .in_metres = true},
+                         File::create(circle.folder / "line.csv"), progress);
+  const auto check = [&](const std::string& how, double first, std::size_t count) {
+    const Outcome outcome = circle.follow(how, "line.csv");
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    PoseLabels labels;
+    const auto poses = read_trajectory(circle.folder / "out.txt", {}, nullptr, &labels);
+    CHECK(poses.size() == count);
+    REQUIRE(labels.station.size() == count);
+    for (std::size_t i = 0; i < count; ++i) {
+      CHECK(labels.station[i] == Approx(first + 0.2 * static_cast<double>(i)).margin(1e-6));
+    }
+  };
+  check("--at 10.05 --force", 520.1, 700);  // poses 0 to 699, 10.05 m ahead
+  check("--pivots 5,-5 --force", 510, 701);
+}

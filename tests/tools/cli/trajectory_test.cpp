@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/trajectory/trajectory_summary.hpp"
@@ -207,4 +208,60 @@ TEST_CASE("resample takes the meaning of ft from the store") {
   const Outcome told =
       run_program(files.folder, "convert --resume " + at("scan.xyz") + " -o " + at("s.h5"));
   CHECK_THAT(told.err, Contains("is the store of these inputs already, with coordinates in "));
+}
+
+TEST_CASE("resample and thin keep stations, and put those of new poses between them") {
+  const PathFiles files;
+  std::vector<double> stations;
+  for (std::size_t i = 0; i < files.poses.size(); ++i) {
+    stations.push_back(700 - 3 * static_cast<double>(i));
+  }
+  NoProgress progress;
+  write_trajectory_table(files.poses, {.stations = stations, .in_metres = true},
+                         File::create(files.folder / "line.csv"), progress);
+  const std::string given = "--trajectory-format csv --allow-non-rigid ";
+  const auto read = [&](const std::string& name, std::vector<double>& found) {
+    PoseLabels labels;
+    const auto poses =
+        read_trajectory(files.folder / name, {TrajectoryFormat::kCsv, true}, nullptr, &labels);
+    found = labels.station;
+    REQUIRE(found.size() == poses.size());
+    return poses;
+  };
+  const Outcome dense = files.run("resample", "line.csv", "dense.csv", given + "--max-motion 0.5");
+  INFO(dense.err);
+  REQUIRE(dense.exit_code == 0);
+  std::vector<double> found;
+  const std::vector<Pose> more = read("dense.csv", found);
+  REQUIRE(more.size() > 2 * files.poses.size());
+  CHECK(has_in_order(more, files.poses));
+  std::vector<double> way{0};
+  for (std::size_t i = 1; i < more.size(); ++i) {
+    const double* a = more[i - 1].translation;
+    const double* b = more[i].translation;
+    way.push_back(way.back() + std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]));
+  }
+  std::size_t last = 0, next = 1;  // of the given poses, the last one met
+  for (std::size_t i = 1, from = 0; i < more.size(); ++i) {
+    if (next < files.poses.size() && more[i] == files.poses[next]) {
+      CHECK(found[i] == stations[next]);
+      for (std::size_t k = from + 1; k < i; ++k) {
+        const double part = (way[k] - way[from]) / (way[i] - way[from]);
+        CHECK(found[k] == Approx(stations[last] + part * (stations[next] - stations[last])));
+      }
+      from = i;
+      last = next++;
+    }
+  }
+  CHECK(next == files.poses.size());
+
+  const Outcome thin = files.run("thin", "line.csv", "thin.csv", given + "--max-motion 3");
+  INFO(thin.err);
+  REQUIRE(thin.exit_code == 0);
+  const std::vector<Pose> fewer = read("thin.csv", found);
+  REQUIRE(fewer.size() < files.poses.size());
+  for (std::size_t i = 0; i < fewer.size(); ++i) {
+    const auto at = std::find(files.poses.begin(), files.poses.end(), fewer[i]);
+    CHECK(found[i] == stations[static_cast<std::size_t>(at - files.poses.begin())]);
+  }
 }

@@ -149,6 +149,51 @@ TEST_CASE("a profile is exported with the trajectory's times and names") {
   CHECK_THAT(refused.err, Contains("path.csv") && Contains("other poses"));
 }
 
+TEST_CASE("stations of the trajectory stand beside the chainage") {
+  const Street street;
+  std::string path = "station [m],x,y,z,qx,qy,qz,qw\n";
+  for (int i = 0; i <= 100; ++i) {
+    path += std::to_string(2000 - 2 * i) + "," + std::to_string(i * 0.1) + ",0,0,0,0,0,1\n";
+  }
+  put_bytes(street.folder / "path.csv", path);
+  const Outcome outcome =
+      street.run("--radius 0.3 --profile 0.5 --clearance 0.5 --first-pose --json");
+  INFO(outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.err, Contains("(station 18") && Contains(" m along the path)"));
+  const json report = json::parse(outcome.out);
+  for (const char* place : {"first_place", "least_clearance", "least_profile"}) {
+    CAPTURE(place);
+    CHECK(report[place]["station"] == 2000 - 2 * report[place]["pose"].get<int>());
+    CHECK_FALSE(report[place].contains("name"));
+  }
+  const std::string trajectory = " --trajectory path.csv ";
+  REQUIRE(street.program("export out.h5 --what profile" + trajectory + "-o p.csv").exit_code == 0);
+  CHECK_THAT(bytes_of(street.folder / "p.csv"),
+             Contains("pose,station,chainage,distance,source,x,y,z\n0,2000,0,,,,,\n1,1998,0.1,"));
+  const Outcome conflicts = street.program("conflicts out.h5" + trajectory + "--min-points 1");
+  INFO(conflicts.err);
+  CHECK_THAT(conflicts.out, Contains("station (m)") && Contains("18"));
+  const Outcome small = street.program("conflicts out.h5" + trajectory + "--min-points 1000");
+  CHECK_THAT(small.out, Contains("(station 18"));
+  const Outcome table =
+      street.program("stations out.h5" + trajectory + "--every 5 -o p.csv --force");
+  INFO(table.err);
+  REQUIRE(table.exit_code == 0);
+  CHECK_THAT(table.out, Contains("2 stretches of 5 m along 10 m of path") &&
+                            Contains("2000.00 - 1900.00") && Contains("conflict"));
+  CHECK_THAT(bytes_of(street.folder / "p.csv"), Contains("\n5,10,1900,1800,"));
+  CHECK(street.program("stations out.h5" + trajectory + "-o p.txt").exit_code == 2);
+  CHECK(street.program("stations out.h5" + trajectory + "--every 0").exit_code == 2);
+  CHECK(street.program("stations out.h5" + trajectory + "--every 1e-6").exit_code == 2);
+  const Outcome summary = street.program("stations out.h5" + trajectory + "--json");
+  CHECK(json::parse(summary.out)["station_count"] == 2);
+  REQUIRE(street.run("--radius 0.3 --force").exit_code == 0);
+  const Outcome lacking = street.program("stations out.h5" + trajectory);
+  CHECK(lacking.exit_code == 2);
+  CHECK_THAT(lacking.err, Contains("has no first poses") && Contains("--first-pose"));
+}
+
 TEST_CASE("combinations of export that make no sense are refused") {
   const Street street;
   REQUIRE(street.run("--radius 0.1").exit_code == 0);

@@ -151,6 +151,65 @@ class ReportTest(PageChecks, unittest.TestCase):
         self.assertGreater(os.path.getsize(f"{self.hall.folder}/page.pdf"), 50000)
         self.check_quiet(page)
 
+    def test_stations(self):
+        line = f"{self.hall.folder}/line.csv"
+        with open(self.hall.trajectory) as matrices, open(line, "w") as table:
+            table.write("station [m],x,y,z,r00,r01,r02,r10,r11,r12,r20,r21,r22\n")
+            for i, text in enumerate(matrices):
+                m = text.split()
+                table.write(",".join([str(2500 - i), m[3], m[7], m[11],
+                                      *(m[4 * row + k] for row in range(3) for k in range(3))]) + "\n")
+        plain = self.hall.trajectory
+        rows = f"{self.hall.folder}/stations.json"
+        clearway("stations", self.found, "--trajectory", line, "--every", 3, "-o", rows, "--force")
+        with open(rows) as file:
+            expected = json.load(file)["stations"]
+        self.hall.trajectory = line
+        try:
+            path, facts = self.hall.report(self.found, "stations", "--every", 3)
+            self.assertIn("too long for a page",
+                          self.hall.report(self.found, "bad", "--every", 0.001, code=2)[1])
+        finally:
+            self.hall.trajectory = plain
+        listed = facts["stations"]["list"]
+        self.assertEqual(len(listed), len(expected))
+        self.assertEqual(facts["stations"]["every"], 3)
+        for a, b in zip(listed, expected):
+            for key in ("chainage_from", "chainage_to", "station_from", "station_to", "least",
+                        "least_source", "left", "left_source", "right", "above", "verdict",
+                        "reasons", "searched"):
+                self.assertEqual(a[key], b[key], key)
+            self.assertAlmostEqual(a["overthrow"][0]["end"] or 0, b["overthrow_end"] or 0, 6)
+        for conflict in facts["conflicts"]["list"]:
+            self.assertEqual(conflict["station_from"], 2500 - conflict["first_pose"])
+        without = self.hall.report(self.found, "plain")[1]
+        self.assertNotIn("station_from", without["conflicts"]["list"][0])
+        self.assertEqual(without["stations"]["every"], 5)
+        page = self.open(path)
+        self.check_words(page, facts)
+        cells = "[...document.querySelectorAll('#stations tbody tr')].map((r) => r.innerText)"
+        page.run("document.querySelector('#stations details').open = true")
+        shown = page.run(cells)
+        self.assertEqual(len(shown), len(listed))
+        for text, row in zip(shown, listed):
+            self.assertIn(row["verdict"], text)
+            self.assertIn(f"{row['station_from']:.2f} \u2013 {row['station_to']:.2f}", text)
+        worst = next(c for c in facts["conflicts"]["list"] if c["id"] == facts["conflicts"]["worst"])
+        self.assertIn("(station 2", page.run("byId('verdict').innerText"))
+        self.assertIn(f"{worst['station_from']:.2f}", page.run("byId('conflict-details').innerText"))
+        self.assertIn("station (m)", page.run("byId('profile').textContent"))
+        self.assertIn("station 2", page.run("poseLabel(3)"))
+        # A station lies between those of the poses.
+        self.assertAlmostEqual(page.run("stationAt((page.poses.chainage[4] + page.poses.chainage[5]) / 2)"),
+                               2495.5, 2)
+        page.run("document.querySelectorAll('#stations tbody tr')[1].click()")
+        page.run("document.querySelector('#stations details').open = false")
+        page.run("preparePrint()")
+        self.assertTrue(page.run("document.querySelector('#stations details').open"))
+        page.run("endPrint()")
+        self.assertFalse(page.run("document.querySelector('#stations details').open"))
+        self.check_quiet(page)
+
     def test_without_first_poses(self):
         bare = self.hall.search("bare", "--radius", 0.1)
         path, facts = self.hall.report(bare, "bare")

@@ -69,10 +69,15 @@ std::string length_cell(const std::optional<double>& length, int width, int digi
                 : fmt::format("  {:>{}}", "-", width);
 }
 
+std::string station_cell(const Conflict& c) {
+  if (!c.station_from || !c.station_to) return "";
+  return fmt::format("  {:>23}", fmt::format("{:.2f} - {:.2f}", *c.station_from, *c.station_to));
+}
+
 std::string row_text(const Conflict& c, bool distances, bool depths, bool shifts) {
   std::string row = fmt::format("{:>5}  {:>19}", c.id,
                                 fmt::format("{:.2f} - {:.2f}", c.chainage_from, c.chainage_to)) +
-                    length_cell(c.obstacle_chainage, 12, 2) +
+                    station_cell(c) + length_cell(c.obstacle_chainage, 12, 2) +
                     fmt::format("  {:>11}  {:>7}", format_count(c.points), name_of(c.side));
   if (distances) {
     row += c.least_distance
@@ -90,6 +95,12 @@ std::string row_text(const Conflict& c, bool distances, bool depths, bool shifts
   return row + fmt::format("  {:.3f} {:.3f} {:.3f}\n", c.centroid.x, c.centroid.y, c.centroid.z);
 }
 
+/// A clause with the stations of a group, empty without stations.
+std::string station_clause(const SmallGroup& group) {
+  if (!group.station_from || !group.station_to) return "";
+  return fmt::format(" (station {:.2f} - {:.2f} m)", *group.station_from, *group.station_to);
+}
+
 /// A line about the groups that are not listed, and where the first of them is.
 std::string small_text(const ConflictFile& file) {
   const Conflicts& c = file.conflicts;
@@ -100,10 +111,10 @@ std::string small_text(const ConflictFile& file) {
          counted(c.small_points, "point") + "; " +
          (c.small_groups == 1 ? "it is" : "the first is") +
          fmt::format(
-             " at chainage {:.2f} - {:.2f}, {:.3f} {:.3f} {:.3f}. --min-points 1 lists {}\n",
-             first.chainage_from, first.chainage_to, (first.box.lo.x + first.box.hi.x) / 2,
-             (first.box.lo.y + first.box.hi.y) / 2, (first.box.lo.z + first.box.hi.z) / 2,
-             c.small_groups == 1 ? "it" : "them");
+             " at chainage {:.2f} - {:.2f}{}, {:.3f} {:.3f} {:.3f}. --min-points 1 lists {}\n",
+             first.chainage_from, first.chainage_to, station_clause(first),
+             (first.box.lo.x + first.box.hi.x) / 2, (first.box.lo.y + first.box.hi.y) / 2,
+             (first.box.lo.z + first.box.hi.z) / 2, c.small_groups == 1 ? "it" : "them");
 }
 
 std::string totals_text(const ConflictFile& file) {
@@ -136,8 +147,9 @@ std::string conflict_text(const ConflictFile& file, std::size_t most) {
     text += fmt::format("the {} {}:\n", distances ? "worst" : "first", rows.size());
   }
   text +=
-      fmt::format("{:>5}  {:>19}  {:>12}  {:>11}  {:>7}", "id", fmt::format("chainage ({})", unit),
-                  fmt::format("obstacle ({})", unit), "points", "side");
+      fmt::format("{:>5}  {:>19}", "id", fmt::format("chainage ({})", unit)) +
+      (rows.front().station_from ? fmt::format("  {:>23}", "station (m)") : "") +
+      fmt::format("  {:>12}  {:>11}  {:>7}", fmt::format("obstacle ({})", unit), "points", "side");
   if (distances) {
     text += fmt::format("  {:>12}  {:>16}", fmt::format("distance ({})", unit),
                         fmt::format("encroachment ({})", unit));
@@ -286,8 +298,10 @@ ConflictsOutcome perform(ConflictsCommand& options) {
   ConsoleProgress progress;
   options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
   options.find.stop = &stop_flag();
+  PoseLabels labels;
   const std::vector<Pose> poses =
-      read_poses(options.trajectory, options.trajectory_options, result);
+      read_poses(options.trajectory, options.trajectory_options, result, &labels);
+  options.find.station = labels.station;
   const SeenFrom from = read_seen_from(options, poses, result);
   options.find.bodies = from.bodies;
   if (!from.model.empty()) options.find.model = &from.model;
@@ -310,9 +324,9 @@ ConflictsOutcome perform(ConflictsCommand& options) {
   for (const auto& output : outputs) output->pending.publish();
   for (const Message& warning : file.warnings) log_message(warning);
   tell_of_unknown_sides(options, result, conflicts);
-  return {
-      conflict_text(file, options.show), "{\n" + summary_json(file) + "\n}\n",
-      verdict_to_repeat(result.reader(), {.chainage = chainage_of(poses)}, symbol_of(file.unit()))};
+  return {conflict_text(file, options.show), "{\n" + summary_json(file) + "\n}\n",
+          verdict_to_repeat(result.reader(), {{.station = labels.station}, chainage_of(poses)},
+                            symbol_of(file.unit()))};
 }
 
 void add_options(CLI::App& command, ConflictsCommand& options) {

@@ -18,6 +18,7 @@
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "cli/trajectory/commands.hpp"
+#include "cli/trajectory/stations.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/resample_trajectory.hpp"
 #include "core/trajectory/trajectory_doubts.hpp"
@@ -103,10 +104,7 @@ void write_changed(ChangeOptions& options, const Change& change) {
   const std::vector<Pose> before =
       read_trajectory(options.input, options.trajectory, &remarks, &labels);
   for (const Message& remark : remarks) log_message(remark);
-  if (!labels.time.empty() || !labels.name.empty()) {
-    spdlog::info("{}: its times and names are left out, as the output has matrices only",
-                 options.input.string());
-  }
+  tell_of_labels(options.input, labels);
   if (before.empty()) spdlog::warn("{}: no poses", options.input.string());
   // No other place of a mesh is farther out than its vertices.
   const Box model = box_of(
@@ -123,7 +121,7 @@ void write_changed(ChangeOptions& options, const Change& change) {
   warn_of_jumps(before, model, options, change.consequence);
   ConsoleProgress progress;
   const std::vector<Pose> after = changed(before, model, options, change, progress);
-  write_trajectory(after, File::create(output.partial()), progress);
+  write_poses(after, stations_along(before, labels.station, after), output.partial(), progress);
   output.publish();
 
   const double motion_after = largest_motion(model, after);

@@ -17,6 +17,8 @@
 #include "cli/support/program_json.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "cli/trajectory/commands.hpp"
+#include "cli/trajectory/stations.hpp"
+#include "core/trajectory/chainage.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
 #include "core/trajectory/trajectory_doubts.hpp"
 #include "core/util/format.hpp"
@@ -62,17 +64,16 @@ struct Path {
   PoseLabels labels;
 };
 
-bool writes_table(const FollowOptions& options) { return file_ending(options.output) == ".csv"; }
+bool writes_path_poses(const FollowOptions& options) {
+  return file_ending(options.output) == ".csv";
+}
 
 Path read_path(const FollowOptions& options) {
   std::vector<Message> remarks;
   Path path;
   path.poses = read_trajectory(options.input, options.trajectory, &remarks, &path.labels);
   for (const Message& remark : remarks) log_message(remark);
-  if (!path.labels.time.empty() || !path.labels.name.empty()) {
-    spdlog::info("{}: its times and names are left out, as the output has matrices only",
-                 options.input.string());
-  }
+  tell_of_labels(options.input, path.labels);
   if (path.poses.empty())
     throw InputError(options.input.string() + ": no poses; nothing to follow");
   return path;
@@ -86,6 +87,20 @@ auto on_path(const FollowOptions& options, const Work& work) {
   } catch (const InputError& error) {
     throw InputError(options.input.string() + ": " + error.what());
   }
+}
+
+/// The station of each pose of the body: that of the place of the path where the origin of its
+/// frame is, or between its pivots is taken to be. Empty where the path has none.
+std::vector<double> stations_of(const FollowedPath& followed, const PathStations& path, double at,
+                                const std::vector<double>& stations) {
+  std::vector<double> out;
+  if (stations.empty()) return out;
+  std::vector<double> lengths;
+  for (std::size_t i = 0; i < path.poses().size(); ++i) lengths.push_back(path.of_pose(i));
+  for (const std::uint64_t i : followed.of) {
+    out.push_back(at == 0 ? stations[i] : value_at(lengths, stations, path.of_pose(i) + at));
+  }
+  return out;
 }
 
 void refuse_nowhere(const FollowOptions& options, const FollowedPath& followed,
@@ -110,10 +125,12 @@ nlohmann::ordered_json ranges_of(const std::vector<std::uint64_t>& poses) {
   return ranges;
 }
 
-/// A body's poses, the lists of what is odd, and the length of the path in metres.
+/// A body's poses and their stations, the lists of what is odd, and the length of the path in
+/// metres.
 struct Placed {
   FollowedPath followed;
   double path_length;
+  std::vector<double> stations = {};
 };
 
 void report(const FollowOptions& options, const Placed& placed, std::size_t path_poses) {
@@ -143,19 +160,22 @@ void report(const FollowOptions& options, const Placed& placed, std::size_t path
 }
 
 /// Places a body of its own at the station or on the pivots of the options.
-Placed place_by_options(const FollowOptions& options, const std::vector<Pose>& poses, int threads) {
+Placed place_by_options(const FollowOptions& options, const Path& given, int threads) {
   const BodyMount mount = mount_of(options);
-  const auto path = on_path(options, [&] { return PathStations(poses, threads); });
+  const auto path = on_path(options, [&] { return PathStations(given.poses, threads); });
   Placed placed{on_path(options, [&] { return follow_path(path, mount, threads); }), path.length()};
   refuse_nowhere(options, placed.followed, path);
   for (const Message& doubt : doubts_about(placed.followed, path, mount, options.input.string())) {
     log_message(doubt);
   }
+  placed.stations =
+      stations_of(placed.followed, path, options.at.value_or(0), given.labels.station);
   return placed;
 }
 
 /// Places a body of the vehicle's file.
-Placed place_of_vehicle(const FollowOptions& options, const std::vector<Pose>& poses, int threads) {
+Placed place_of_vehicle(const FollowOptions& options, const Path& path, int threads) {
+  const std::vector<Pose>& poses = path.poses;
   std::vector<Message> doubts;
   Placed placed{.followed = {}, .path_length = on_path(options, [&] {
                                   return PathStations(poses, threads).length();
@@ -166,23 +186,23 @@ Placed place_of_vehicle(const FollowOptions& options, const std::vector<Pose>& p
   for (const Message& doubt : doubts) log_message(doubt);
   placed.followed.poses = body.poses;
   placed.followed.of.assign(body.path_pose.begin(), body.path_pose.end());
+  for (const std::uint32_t pose : body.path_pose) {
+    if (!path.labels.station.empty()) placed.stations.push_back(path.labels.station[pose]);
+  }
   return placed;
 }
 
-void write(const FollowOptions& options, const FollowedPath& followed, const PoseLabels& labels,
-           const File& file) {
+void write(const FollowOptions& options, const Placed& placed, const File& file) {
   ConsoleProgress progress;
-  if (!writes_table(options)) {
+  const FollowedPath& followed = placed.followed;
+  if (!writes_path_poses(options) && placed.stations.empty()) {
     write_trajectory(followed.poses, file, progress);
     return;
   }
-  const std::vector<std::uint32_t> path_pose(followed.of.begin(), followed.of.end());
-  std::vector<double> stations;
-  for (const std::uint32_t pose : path_pose) {
-    if (!labels.station.empty()) stations.push_back(labels.station[pose]);
-  }
-  write_trajectory_table(followed.poses, {.path_pose = path_pose, .stations = stations}, file,
-                         progress);
+  std::vector<std::uint32_t> path_pose;
+  if (writes_path_poses(options)) path_pose.assign(followed.of.begin(), followed.of.end());
+  write_trajectory_table(followed.poses, {.path_pose = path_pose, .stations = placed.stations},
+                         file, progress);
 }
 
 void check_options(const FollowOptions& options) {
@@ -201,14 +221,14 @@ void write_followed(const FollowOptions& options) {
   check_threads(threads);
   PendingFile output(options.output, options.force);
   const Path path = read_path(options);
-  const Placed placed = options.vehicle.empty() ? place_by_options(options, path.poses, threads)
-                                                : place_of_vehicle(options, path.poses, threads);
+  const Placed placed = options.vehicle.empty() ? place_by_options(options, path, threads)
+                                                : place_of_vehicle(options, path, threads);
   const auto jumps = jumps_of(step_lengths(path.poses), kLeastJump);
   if (!jumps.empty()) {
     log_message(jump_warning(jumps, options.input.string() + ": ", "m",
                              ". Where the body is on that part of the path is a guess"));
   }
-  write(options, placed.followed, path.labels, File::create(output.partial()));
+  write(options, placed, File::create(output.partial()));
   output.publish();
   report(options, placed, path.poses.size());
 }

@@ -35,7 +35,11 @@ void check_mount(const BodyMount& mount) {
     }
   }
   if (const auto* tow = std::get_if<BodyTowed>(&mount)) {
-    check_finite({tow->at, tow->hitch, tow->axle});
+    for (const double x : {tow->at, tow->hitch, tow->axle}) {
+      if (std::abs(x) <= kFarthestHitch) continue;
+      throw UsageError("a hitch or an axle is at x = " + format_number(x) +
+                       "; expected at most 1000 km from the origin of the body");
+    }
     if (!(tow->hitch > tow->axle)) {
       throw UsageError("the hitch of a towed body is at x = " + format_number(tow->hitch) +
                        ", its axle at " + format_number(tow->axle) +

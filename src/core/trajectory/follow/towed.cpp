@@ -252,6 +252,11 @@ class ChainDrive {
     }
   }
 
+  /// Whether no body goes on, because all are pushed.
+  bool is_over() const {
+    return std::ranges::all_of(links_, [](const Link& link) { return link.motion.is_pushed(); });
+  }
+
   /// Moves the bodies to a sub-step. first: the pose that the first tower has there.
   void move(const SubStep& step, const BodyPose& first) {
     for (Link& link : links_) move(step, link, link.tower ? links_[*link.tower].now : first);
@@ -333,7 +338,7 @@ void drive(const Chain& chain, std::span<const MountedBody> bodies, const Towing
   SubSteps way(path, unit);
   std::vector<SubStep> steps;
   std::vector<BodyPose> first;
-  for (way.next(steps); !steps.empty(); way.next(steps)) {
+  for (way.next(steps); !steps.empty() && !drive.is_over(); way.next(steps)) {
     first.resize(steps.size());
 #pragma omp parallel for schedule(static, 64) num_threads(threads)
     for (std::size_t i = 0; i < steps.size(); ++i) {

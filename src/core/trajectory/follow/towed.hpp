@@ -12,6 +12,9 @@
 
 namespace clearway {
 
+/// Farthest that a hitch or an axle may be from the origin of its body, metres.
+inline constexpr double kFarthestHitch = 1e6;
+
 /// Which body tows which, of a list of bodies.
 struct Towing {
   /// What is wrong about the tower that a body names.

@@ -19,6 +19,13 @@ FieldValue value_of(const std::optional<Number>& number) {
 
 }  // namespace
 
+namespace {
+
+/// The number of fields before those of stations, which stand behind chainage_to.
+constexpr std::ptrdiff_t kAfterChainage = 16;
+
+}  // namespace
+
 std::vector<ConflictField> fields_of(const Conflict& c, const ResultHeader& header) {
   std::vector<ConflictField> fields{{"id", std::uint64_t{c.id}},
                                     {"points", c.points},
@@ -49,6 +56,12 @@ std::vector<ConflictField> fields_of(const Conflict& c, const ResultHeader& head
                                     {"obstacle_chainage", value_of<double>(c.obstacle_chainage)},
                                     {"shift_left", value_of<double>(c.shift_left)},
                                     {"shift_right", value_of<double>(c.shift_right)}};
+  if (c.station_from) {
+    const std::initializer_list<ConflictField> stations{
+        {"station_from", value_of<double>(c.station_from)},
+        {"station_to", value_of<double>(c.station_to)}};
+    fields.insert(fields.begin() + kAfterChainage, stations);
+  }
   if (header.budget) {
     const bool certain = c.certain.value_or(false);
     fields.push_back({"class", std::string_view(certain ? "certain" : "possible")});
@@ -75,6 +88,8 @@ Conflict as_conflict(const SmallGroup& group) {
   out.last_pose = group.last_pose;
   out.chainage_from = group.chainage_from;
   out.chainage_to = group.chainage_to;
+  out.station_from = group.station_from;
+  out.station_to = group.station_to;
   return out;
 }
 
@@ -85,16 +100,23 @@ std::vector<Conflict> small_groups_instead(const Conflicts& conflicts) {
   return out;
 }
 
-std::vector<ConflictField> sample_fields(const ResultHeader& header) {
+std::vector<ConflictField> sample_fields(const ConflictFile& file) {
   Conflict conflict;
-  if (!header.bodies.empty()) conflict.body = 0;
-  return fields_of(conflict, header);
+  if (!file.header.bodies.empty()) conflict.body = 0;
+  if (!file.options.station.empty()) conflict.station_from = conflict.station_to = 0;
+  return fields_of(conflict, file.header);
 }
 
 namespace {
 
 /// Most small groups that a file lists, the first ones along the path; nobody reads millions.
 constexpr std::size_t kMostSmallGroups = 1000;
+
+std::string stations_json(const SmallGroup& group) {
+  if (!group.station_from || !group.station_to) return "";
+  return ", \"station_from\": " + json_number(*group.station_from) +
+         ", \"station_to\": " + json_number(*group.station_to);
+}
 
 std::string small_json(const std::vector<SmallGroup>& groups) {
   std::string out;
@@ -106,7 +128,7 @@ std::string small_json(const std::vector<SmallGroup>& groups) {
            ", \"first_pose\": " + std::to_string(group.first_pose) +
            ", \"last_pose\": " + std::to_string(group.last_pose) +
            ", \"chainage_from\": " + json_number(group.chainage_from) +
-           ", \"chainage_to\": " + json_number(group.chainage_to) + "}";
+           ", \"chainage_to\": " + json_number(group.chainage_to) + stations_json(group) + "}";
   }
   return "[" + out + "]";
 }

@@ -24,7 +24,7 @@ struct ConflictField {
 
 /// The fields of a conflict, with the same names in the same order for every conflict of a result.
 /// The arguments must outlive the fields. body and body_name exist only where the result has
-/// bodies.
+/// bodies, station_from and station_to only where the conflict has stations.
 std::vector<ConflictField> fields_of(const Conflict& conflict, const ResultHeader& header);
 
 /// A shift rounded up to a thousandth of the unit, so that it is never less than needed.
@@ -38,8 +38,8 @@ Conflict as_conflict(const SmallGroup& group);
 /// otherwise none.
 std::vector<Conflict> small_groups_instead(const Conflicts& conflicts);
 
-/// The fields of a sample conflict of such a result, which give a table its columns.
-std::vector<ConflictField> sample_fields(const ResultHeader& header);
+/// The fields of a sample conflict of such a file, which give a table its columns.
+std::vector<ConflictField> sample_fields(const ConflictFile& file);
 
 /// The members of a JSON object about the whole result, without the braces, each on a line that
 /// begins with two blanks: the query, hashes, how conflicts were made, counts and warnings.

@@ -145,7 +145,7 @@ void add_contents(sqlite::Database& database, const Layer& layer, const std::vec
 void add_layer(sqlite::Database& database, const Layer& layer, const ConflictFile& file,
                std::int32_t srs) {
   std::string columns, places = "?, ?";
-  for (const ConflictField& field : sample_fields(file.header)) {
+  for (const ConflictField& field : sample_fields(file)) {
     if (field.name == "id") continue;
     columns += ", \"" + std::string(field.name) + "\" " + sql_type(field.value, field.name);
     places += ", ?";

@@ -13,7 +13,7 @@ namespace clearway {
 void write_csv(const ConflictFile& conflicts, const File& file) {
   const Conflicts& found = conflicts.conflicts;
   TextWriter out(file);
-  for (const ConflictField& field : sample_fields(conflicts.header)) out << field.name << ",";
+  for (const ConflictField& field : sample_fields(conflicts)) out << field.name << ",";
   out << "small_groups,small_points\n";
   const auto write_row = [&](const Conflict& conflict) {
     for (const ConflictField& field : fields_of(conflict, conflicts.header)) {

@@ -341,6 +341,7 @@ class ProfileTable {
     out_ << "pose";
     if (!labels.time.empty()) out_ << ",time";
     if (!labels.name.empty()) out_ << ",name";
+    if (!labels.station.empty()) out_ << ",station";
     out_ << ",chainage,distance,source,x,y,z" << (has_bodies_ ? ",searched\n" : "\n");
   }
 
@@ -349,6 +350,7 @@ class ProfileTable {
       out_ << pose_;
       if (!labels_.time.empty()) out_ << "," << labels_.time[pose_];
       if (!labels_.name.empty()) out_ << "," << csv_cell(labels_.name[pose_]);
+      if (!labels_.station.empty()) out_ << "," << labels_.station[pose_];
       out_ << "," << chainage_start_ + rows.chainage[i] << ",";
       if (rows.source[i] == Profile::kNoPoint) {
         out_ << ",,,,";
@@ -390,7 +392,7 @@ void export_profile(const ResultReader& result, const PoseLabels& labels, double
   if (export_format_of(output) != ExportFormat::kCsv) {
     throw UsageError(output.string() + ": a profile is exported as .csv only");
   }
-  for (const std::size_t count : {labels.time.size(), labels.name.size()}) {
+  for (const std::size_t count : {labels.time.size(), labels.name.size(), labels.station.size()}) {
     if (count != 0 && count != result.profile_rows()) {
       throw std::logic_error("export_profile: labels of another number of poses");
     }

@@ -492,7 +492,8 @@ TEST_CASE("towers that make no sense are refused by name") {
       "in a ring");
   refused({BodyTowed{"", 0, 5, 5}}, "expected the axle behind the hitch");
   refused({BodyTowed{"", 0, 0, 5}}, "expected the axle behind the hitch");
-  refused({BodyTowed{"", std::nan(""), 5, 0}}, "finite");
+  refused({BodyTowed{"", std::nan(""), 5, 0}}, "expected at most 1000 km");
+  refused({BodyTowed{"", 0, 1e308, -1e308}}, "expected at most 1000 km");
   refused({BodyOwnPoses{}}, "keeps 0 poses");
   CHECK_THROWS_AS(follow(std::vector<Body>(2), path, {BodyStation{0}}), UsageError);
   std::vector<Pose> mirrored = path;

@@ -52,6 +52,15 @@ std::string length_text(const ConflictFile& file, const std::string& number) {
   return number + " " + symbol_of(file.unit());
 }
 
+/// The stations of a conflict to a centimetre, which are metres: "1250 m", or "1250 to 1262.5 m" in
+/// either direction.
+std::string station_text(const Conflict& c) {
+  const auto text = [](double metres) { return format_number(std::round(metres * 100) / 100); };
+  std::string out = text(*c.station_from);
+  if (c.station_to && *c.station_to != *c.station_from) out += " to " + text(*c.station_to);
+  return out + " m";
+}
+
 std::string title_of(const ConflictFile& file, const Conflict& c) {
   const std::string what =
       c.id > 0 ? "Conflict " + std::to_string(c.id) : "Group of " + counted(c.points, "point");
@@ -59,6 +68,7 @@ std::string title_of(const ConflictFile& file, const Conflict& c) {
   if (c.chainage_to > c.chainage_from) {
     out += " to " + length_text(file, format_brief(c.chainage_to));
   }
+  if (c.station_from) out += ", station " + station_text(c);
   if (c.side != Side::kUnknown) out += std::string(", ") + name_of(c.side);
   return out;
 }
