@@ -150,3 +150,30 @@ TEST_CASE("a vehicle that is not of the result is refused, and no output is left
   CHECK_FALSE(std::filesystem::exists(yard().folder / "no.csv"));
   CHECK_FALSE(std::filesystem::exists(yard().folder / "no.csv.partial"));
 }
+
+TEST_CASE("the station table of a vehicle is seen from its bodies") {
+  const auto stations = [](const std::string& options) {
+    return yard().run("stations " + yard().name("out.h5") + " --trajectory " +
+                      yard().name("path.txt") + " --every 4 --force -o " + yard().name("s.json") +
+                      " " + options);
+  };
+  const Outcome outcome = stations("--vehicle " + yard().name("wagon.json"));
+  INFO(outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  const json rows = json::parse(bytes_of(yard().folder / "s.json"))["stations"];
+  REQUIRE(rows.size() == 3);
+  CHECK(rows[0]["verdict"] == "clear");
+  CHECK(rows[1]["verdict"] == "conflict");
+  CHECK(rows[2]["verdict"] == "conflict");  // the crane's rear passes its points
+  // Both lie to the right of their own bodies, nearest with a front corner beside them.
+  CHECK(rows[1]["right"].get<double>() == Approx(0.1));
+  CHECK(rows[1]["left"].is_null());
+  CHECK(rows[1]["truck_overthrow_end"] == 0);
+  CHECK(rows[1]["crane_overthrow_middle"].get<double>() == Approx(10));
+  const Outcome blind = stations("");
+  CHECK(blind.exit_code == 0);
+  CHECK_THAT(blind.err, Contains("without the bodies of the vehicle"));
+  CHECK(json::parse(bytes_of(yard().folder / "s.json"))["stations"][0]["verdict"] == "clear");
+  CHECK(stations("--vehicle " + yard().name("other.json")).exit_code == 3);
+  CHECK(stations("--model " + yard().name("box.xyz")).exit_code == 3);
+}
