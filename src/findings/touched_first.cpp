@@ -14,11 +14,9 @@
 namespace clearway {
 namespace {
 
-int line_of(Axis axis) { return static_cast<int>(axis) / 2; }
-
 Vec3 direction_of(Axis axis) {
   Vec3 out{0, 0, 0};
-  out[line_of(axis)] = static_cast<int>(axis) % 2 == 0 ? 1 : -1;
+  out[line_of(axis)] = is_negative(axis) ? -1 : 1;
   return out;
 }
 
@@ -34,6 +32,10 @@ Vec3 in_model_frame(const Vec3& place, const Pose& pose) {
 }
 
 }  // namespace
+
+int line_of(Axis axis) { return static_cast<int>(axis) / 2; }
+
+bool is_negative(Axis axis) { return static_cast<int>(axis) % 2 != 0; }
 
 bool along_one_line(Axis a, Axis b) { return line_of(a) == line_of(b); }
 

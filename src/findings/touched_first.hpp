@@ -19,6 +19,12 @@
 
 namespace clearway {
 
+/// The axis of the model's frame on whose line an axis lies: 0 is x.
+int line_of(Axis axis);
+
+/// Whether an axis points against that of the model's frame.
+bool is_negative(Axis axis);
+
 /// Whether two axes lie along one line.
 bool along_one_line(Axis a, Axis b);
 
