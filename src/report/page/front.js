@@ -140,8 +140,7 @@ function buildFront() {
            "A number says how many percent of the space that the vehicle sweeps at this place of its " +
            "cross-section were not scanned. Darker is more, white is all scanned, and grey is not swept. " +
            (little ? "Small squares are places that the vehicle sweeps on less than a tenth of the way. " : "") +
-           `A cell is ${shortLength(front.cell)} wide, and the vehicle sweeps at most ` +
-           `${shortLength(+most.toPrecision(2))} in one. The line is the vehicle's outline. ${frontWords()}`)),
+           `A cell is ${shortLength(front.cell)} wide. The line is the vehicle's outline. ${frontWords()}`)),
       frontScale());
   drawFront(canvas);
 }
