@@ -44,12 +44,19 @@ if(CLEARWAY_FUZZ)
   add_compile_options(-fno-sanitize-recover=all)
 endif()
 
-# clearway_unity(TARGET): compiles the sources of each folder of the target as one (CLEARWAY_UNITY).
-# A source with SKIP_UNITY_BUILD_INCLUSION stays alone.
+# clearway_unity(TARGET [FOLDER=OTHER...]): compiles the sources of each folder of the target as one
+# (CLEARWAY_UNITY), and those of FOLDER together with those of OTHER. A source with
+# SKIP_UNITY_BUILD_INCLUSION stays alone.
 function(clearway_unity target)
   get_target_property(sources ${target} SOURCES)
   foreach(source ${sources})
     get_filename_component(folder ${source} DIRECTORY)
+    foreach(joined ${ARGN})
+      string(REGEX REPLACE "^${folder}=" "" other "${joined}")
+      if(NOT other STREQUAL joined)
+        set(folder ${other})
+      endif()
+    endforeach()
     string(MAKE_C_IDENTIFIER "in_${folder}" group)
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
   endforeach()

@@ -10,7 +10,7 @@ install_missing_packages
 seconds=${1:-60}
 targets=("${@:2}")
 [ ${#targets[@]} -gt 0 ] ||
-  targets=(las las_records laz e57 pcd ply ptx xyz mesh trajectory alignment json packed_chunk store
+  targets=(las las_records laz e57 pcd ply ptx xyz mesh trajectory alignment line json packed_chunk store
     store_values result journal)
 
 cmake --preset fuzz

@@ -5,6 +5,7 @@
 
 #include "clearway/alignment.hpp"   // IWYU pragma: export
 #include "clearway/answer.hpp"      // IWYU pragma: export
+#include "clearway/axis.hpp"        // IWYU pragma: export
 #include "clearway/body.hpp"        // IWYU pragma: export
 #include "clearway/conflicts.hpp"   // IWYU pragma: export
 #include "clearway/convert.hpp"     // IWYU pragma: export
@@ -12,6 +13,7 @@
 #include "clearway/file_unit.hpp"   // IWYU pragma: export
 #include "clearway/follow.hpp"      // IWYU pragma: export
 #include "clearway/ignored.hpp"     // IWYU pragma: export
+#include "clearway/line.hpp"        // IWYU pragma: export
 #include "clearway/merge.hpp"       // IWYU pragma: export
 #include "clearway/model.hpp"       // IWYU pragma: export
 #include "clearway/outline.hpp"     // IWYU pragma: export
@@ -22,6 +24,7 @@
 #include "clearway/search.hpp"      // IWYU pragma: export
 #include "clearway/seen.hpp"        // IWYU pragma: export
 #include "clearway/shard.hpp"       // IWYU pragma: export
+#include "clearway/stations.hpp"    // IWYU pragma: export
 #include "clearway/store.hpp"       // IWYU pragma: export
 #include "clearway/trajectory.hpp"  // IWYU pragma: export
 #include "clearway/unsearched.hpp"  // IWYU pragma: export

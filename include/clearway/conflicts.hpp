@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "clearway/axis.hpp"
 #include "clearway/body.hpp"
 #include "clearway/box.hpp"
 #include "clearway/model.hpp"
@@ -40,9 +41,6 @@ inline const char* name_of(Side side) {
   return "";
 }
 
-/// An axis of the model's frame, with its sign.
-enum class Axis { kPlusX, kMinusX, kPlusY, kMinusY, kPlusZ, kMinusZ };
-
 struct ConflictOptions {
   /// Greatest distance of two neighbouring points of a conflict, in metres.
   double gap = 0.3;
@@ -51,7 +49,8 @@ struct ConflictOptions {
   /// it. 0: groups are never cut.
   double split = 25;
   double chainage_start = 0;  ///< chainage of the first pose, metres; it does not move the cuts
-  /// Axes of the model's frame; must not be parallel
+  /// Axes of the model's frame; must not be parallel. They say how the model is seen and turn
+  /// nothing. For a result whose model was turned when it was read, they stay as they are here.
   Axis forward = Axis::kPlusX, up = Axis::kPlusZ;
   /// Box of the model's points, for results that do not hold it. Without any box, sides are
   /// unknown.

@@ -39,6 +39,8 @@ enum class Remedy {
   kDeclareAngles,  ///< declare unit and frame of the trajectory's angles
   kDeclareLength,  ///< declare the unit of the trajectory's positions
   kAllowNonRigid,
+  kGiveHeight,    ///< give the height of a line that has none
+  kRoundCorners,  ///< round the corners of a line with arcs of a radius
   kAskForClearance,
   kAskForFirstPose,
   kSameTrajectory,   ///< give the trajectory's file and options that the search had

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "clearway/axis.hpp"
 #include "clearway/file_unit.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/vec3.hpp"
@@ -41,6 +42,9 @@ struct Model {
   /// much, to a point that does not collide, and the answer says so. 0: the model is not a sampled
   /// mesh.
   double spacing = 0;
+  /// The axes of the model's file that pointed ahead and up before the model was turned. A result
+  /// keeps them, so that the file is turned again when it is read for the result.
+  ModelAxes file_axes = {};
 
   bool empty() const { return vertices.empty(); }
   bool is_surface() const { return !triangles.empty(); }
@@ -85,6 +89,9 @@ struct ModelOptions {
   /// Length of the environment's unit in metres, as Store::metres_per_unit() returns it. Models in
   /// a known unit are converted to it.
   double environment_unit = 1;
+  /// The axes of the file that point ahead and up; must not be parallel. The model is turned so
+  /// that x points ahead, y to the left and z up. The other options are about the turned model.
+  Axis forward = Axis::kPlusX, up = Axis::kPlusZ;
   /// Takes only the vertices of a mesh, without its surface.
   bool vertices_only = false;
   /// Height in the model's frame, metres: points whose z is below it are left out, for example

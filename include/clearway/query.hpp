@@ -139,4 +139,14 @@ inline double model_spacing(const Query& query) {
   return spacing;
 }
 
+/// The axes of the models' files that pointed ahead and up before the models were turned. Those of
+/// a frame that needs no turn where the bodies differ in them.
+inline ModelAxes file_axes(const Query& query) {
+  const std::vector<MovingBody> bodies = moving_bodies(query);
+  const ModelAxes axes = bodies.front().model.file_axes;
+  const bool same = std::ranges::all_of(
+      bodies, [&](const MovingBody& body) { return body.model.file_axes == axes; });
+  return same ? axes : ModelAxes{};
+}
+
 }  // namespace clearway

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "clearway/answer.hpp"
+#include "clearway/axis.hpp"
 #include "clearway/box.hpp"
 #include "clearway/ignored.hpp"
 #include "clearway/query.hpp"
@@ -115,6 +116,9 @@ class Result {
   /// Largest gap between the samples of the mesh, metres, the greatest of all bodies; 0 if no model
   /// is a sampled mesh, and in files of earlier releases.
   double model_spacing() const;
+  /// The axes of the model's file that pointed ahead and up before the search turned the model; for
+  /// a vehicle, those of all its bodies' files. They need no turn where nothing was turned.
+  ModelAxes model_axes() const;
   /// Box around the model's points; none in files before version 3.
   std::optional<Box> model_box() const;
 

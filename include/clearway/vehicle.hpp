@@ -13,7 +13,8 @@ namespace clearway {
 
 struct VehicleOptions {
   /// How the models of all bodies are read; a body's own model_unit overrides the unit. Lengths of
-  /// the vehicle's file that have a unit are converted to environment_unit.
+  /// the vehicle's file that have a unit are converted to environment_unit. Stations and pivots are
+  /// along the turned x axis.
   ModelOptions model = {};
   /// How the trajectories of bodies that have one of their own are read
   TrajectoryOptions trajectory = {};

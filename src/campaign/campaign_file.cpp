@@ -251,12 +251,18 @@ void read_entries(const KeyReader& file, const fs::path& folder, Campaign& campa
   campaign.environments =
       environments.read(file.at("environments"), [](const KeyReader&, Entry&) {});
   EntryReader<Vehicle> vehicles(
-      folder, "model", names_of(kModelKeys, names_of(kModelKindKeys, names_of(kAxisKeys, {}))));
+      folder, "model",
+      names_of(kModelKeys, names_of(kModelKindKeys, names_of(kAxisKeys, {"turn"}))));
   campaign.vehicles =
       vehicles.read(file.at("vehicles"), [](const KeyReader& member, Vehicle& vehicle) {
         vehicle.arguments = arguments_of(member, kModelKeys);
         vehicle.kind = arguments_of(member, kModelKindKeys);
         vehicle.axes = arguments_of(member, kAxisKeys);
+        if (!member.has("turn") || !member.at("turn").flag()) return;
+        if (vehicle.axes.empty()) member.at("turn").refuse("needs forward or up beside it");
+        // The search turns the model, and conflicts and reports know that from its result.
+        vehicle.kind.insert(vehicle.kind.end(), vehicle.axes.begin(), vehicle.axes.end());
+        vehicle.axes.clear();
       });
   EntryReader<Route> routes(folder, "trajectory",
                             names_of(kTrajectoryKeys, names_of(kChainageKeys, {"environment"})));

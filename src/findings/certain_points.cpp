@@ -48,6 +48,23 @@ bool CertainGroup::any_group() {
   return any;
 }
 
+std::vector<std::uint32_t> members_of_certain_groups(std::span<const QuantumPoint> points,
+                                                     const Quantisation& quantisation, double gap,
+                                                     Progress& progress) {
+  std::vector<std::uint32_t> out;
+  if (points.size() < kLeastCertainGroup) return out;
+  const Neighbourhood neighbourhood(quantisation, gap);
+  CellGrid grid(points, neighbourhood, [](std::uint64_t) {});
+  UnionFind sets(grid.cells());
+  join_cells(grid, neighbourhood, sets, progress);
+  const PointGroups groups = number_groups(grid, sets, kLeastCertainGroup);
+  for (std::uint32_t cell = 0; cell < grid.cells(); ++cell) {
+    if (PointGroups::is_small(groups.of_cell[cell])) continue;
+    for (const GroupedPoint& point : grid.points(cell)) out.push_back(point.row);
+  }
+  return out;
+}
+
 CertainPoints certain_points_in(std::span<const ResultReader> results, Progress& progress) {
   const ResultHeader& header = results.front().header();
   CertainGroup group(header.quantisation, header.gap, progress);

@@ -9,6 +9,7 @@
 #include "clearway/answer.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "core/util/progress.hpp"
+#include "findings/group/cell_grid.hpp"
 #include "io/result/result.hpp"
 
 namespace clearway {
@@ -36,6 +37,13 @@ class CertainGroup {
   std::size_t looked_at_ = 0;  ///< number of points when groups were last looked for
   CertainPoints found_;
 };
+
+/// Which of these points hang together in groups of ten or more, each at most `gap` from the next;
+/// indices of `points` in no particular order. points: the stored integers of points that are
+/// certainly too close. Runs in the caller's arena of oneTBB. Throws Interrupted.
+std::vector<std::uint32_t> members_of_certain_groups(std::span<const QuantumPoint> points,
+                                                     const Quantisation& quantisation, double gap,
+                                                     Progress& progress);
 
 /// What the points of all these results together say, each of which has an error budget of the same
 /// query. Throws InputError as RowStream does, and Interrupted.

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include "core/geometry/axes.hpp"
 #include "core/util/format.hpp"
-#include "findings/touched_first.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/paths/content_hash.hpp"
@@ -41,6 +41,7 @@ void check_options(const ConflictOptions& options) {
 void check_conflicts(const ResultReader& result, const std::vector<Pose>& poses,
                      const ConflictOptions& options) {
   check_options(options);
+  check_axes(result, options);
   const ResultHeader& header = result.header();
   if (!header.first_pose) {
     throw UsageError(result.name() +
@@ -58,6 +59,16 @@ void check_conflicts(const ResultReader& result, const std::vector<Pose>& poses,
              " with the hash " + hash_text(header.trajectory_hash) + ". The one given has " +
              format_count(poses.size()) + " with the hash " + hash_text(hash),
          Remedy::kSameTrajectory);
+}
+
+void check_axes(const ResultReader& result, const ConflictOptions& options) {
+  const ModelAxes kept = result.header().model_axes.axes;
+  const ModelAxes asked{options.forward, options.up};
+  if (!kept.need_turn() || !asked.need_turn()) return;
+  throw UsageError(result.name() + ": its search turned the model, whose file had " +
+                   name_of(kept.forward) + " ahead and " + name_of(kept.up) +
+                   " up, so that now x points ahead and z up; expected no other axes, and " +
+                   name_of(asked.forward) + " ahead and " + name_of(asked.up) + " up were given");
 }
 
 void check_bodies_of(const ResultReader& result, std::span<const Body> bodies) {

@@ -15,6 +15,10 @@ namespace clearway {
 void check_conflicts(const ResultReader& result, const std::vector<Pose>& poses,
                      const ConflictOptions& options);
 
+/// Throws UsageError for axes other than x ahead and z up where the search turned the model,
+/// because then the turned model has these.
+void check_axes(const ResultReader& result, const ConflictOptions& options);
+
 /// Throws InputError where a result is not that of the vehicle with these bodies.
 void check_bodies_of(const ResultReader& result, std::span<const Body> bodies);
 

@@ -15,10 +15,10 @@
 #include "clearway/vec3.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/query/body_numbers.hpp"
-#include "core/query/error_budget.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "core/util/progress.hpp"
+#include "findings/certain_points.hpp"
 #include "findings/check_conflicts.hpp"
 #include "findings/colliding_points.hpp"
 #include "findings/group/cell_grid.hpp"
@@ -204,16 +204,10 @@ class ConflictSearch {
       quanta.push_back(points_.quanta[row]);
       row_of.push_back(static_cast<std::uint32_t>(row));
     }
-    if (quanta.size() < kLeastCertainGroup) return out;
     const ResultHeader& header = reader_.header();
-    const Neighbourhood neighbourhood(header.quantisation, header.gap);
-    CellGrid grid(quanta, neighbourhood, [](std::uint64_t) {});
-    UnionFind sets(grid.cells());
-    join_cells(grid, neighbourhood, sets, progress_);
-    const PointGroups groups = number_groups(grid, sets, kLeastCertainGroup);
-    for (std::uint32_t cell = 0; cell < grid.cells(); ++cell) {
-      if (PointGroups::is_small(groups.of_cell[cell])) continue;
-      for (const GroupedPoint& point : grid.points(cell)) out.push_back(row_of[point.row]);
+    for (const std::uint32_t member :
+         members_of_certain_groups(quanta, header.quantisation, header.gap, progress_)) {
+      out.push_back(row_of[member]);
     }
     return out;
   }

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "clearway/unseen.hpp"
+#include "core/geometry/axes.hpp"
 #include "core/geometry/inside.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/geometry/predicate.hpp"
@@ -13,6 +14,7 @@
 #include "core/seen/cubes.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "findings/touched_first.hpp"
+#include "findings/unseen_lattice.hpp"
 #include "io/files/input_error.hpp"
 #include "io/paths/content_hash.hpp"
 #include "io/result/result.hpp"
@@ -31,25 +33,6 @@ bool is_finite(const Vec3& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-/// The cubes of a result. Its file keeps the side along x alone; the other sides follow from the
-/// side that was asked for, which by default is 0.2 m in the unit of the store.
-CubeLattice lattice_of(const ResultHeader& header, const SeenSummary& seen) {
-  constexpr double kUsualSides[] = {0.2, 0.2 / 0.3048, 0.2 * 3937 / 1200};
-  const double* scale = header.quantisation.scale;
-  const std::int64_t along_x = std::llround(seen.cube / scale[0]);
-  double asked = header.seen_cube;
-  for (const double usual : kUsualSides) {
-    if (!(asked > 0) && std::llround(usual / scale[0]) == along_x) asked = usual;
-  }
-  if (!(asked > 0)) asked = seen.cube;
-  CubeLattice lattice{};
-  for (int k = 0; k < 3; ++k) {
-    lattice.side[k] = std::llround(asked / scale[k]);
-    lattice.inset[k] = lattice.side[k] / 4;
-  }
-  return lattice;
-}
-
 /// One call of find_unseen_groups(), step by step.
 class GroupSearch {
  public:
@@ -60,7 +43,7 @@ class GroupSearch {
         poses_(poses),
         options_(options),
         seen_(seen),
-        lattice_(lattice_of(header_, seen)),
+        lattice_(lattice_of_unseen(header_, seen)),
         cubes_(result.unseen()),
         chainage_(chainage_of(poses)) {}
 
@@ -120,9 +103,7 @@ class GroupSearch {
     middles_.reserve(size());
     seen_from_path_.reserve(size());
     for (std::size_t i = 0; i < size(); ++i) {
-      const auto& cube = cubes_.cube[i];
-      middles_.push_back(
-          middle_of(lattice_, header_.quantisation, Cube{{cube[0], cube[1], cube[2]}}));
+      middles_.push_back(middle_of_cube(lattice_, header_.quantisation, cubes_.cube[i]));
       seen_from_path_.push_back(
           ahead_left_up(middles_[i], poses_[cubes_.first_pose[i]], options_.forward, options_.up));
     }
@@ -336,11 +317,10 @@ class GroupSearch {
   /// Calls visit(left, up, parts) for the cells that are seen along the model's forward axis.
   template <typename Visit>
   void each_front_cell(const SweptCells& cells, const Visit& visit) const {
-    const Vec3 to_left = direction_to_left(options_.forward, options_.up);
     const int ahead = line_of(options_.forward), up = line_of(options_.up);
     const bool up_is_last = up == 2 || (up == 1 && ahead == 2);
     const bool turns_up = is_negative(options_.up);
-    const bool turns_left = to_left.x + to_left.y + to_left.z < 0;
+    const bool turns_left = is_negative(axis_to_left({options_.forward, options_.up}));
     // Cell i reaches from i to i + 1, so that turned round it is cell -1 - i.
     const auto turned_round = [](bool turns, std::int32_t i) { return turns ? -1 - i : i; };
     for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -9,16 +9,11 @@
 #include <cstddef>
 #include <utility>
 
+#include "core/geometry/axes.hpp"
 #include "core/util/tsan_annotations.hpp"
 
 namespace clearway {
 namespace {
-
-Vec3 direction_of(Axis axis) {
-  Vec3 out{0, 0, 0};
-  out[line_of(axis)] = is_negative(axis) ? -1 : 1;
-  return out;
-}
 
 /// A place in the frame of a pose. Solved by Cramer's rule, because rotations from text are not
 /// quite orthonormal.
@@ -32,12 +27,6 @@ Vec3 in_model_frame(const Vec3& place, const Pose& pose) {
 }
 
 }  // namespace
-
-int line_of(Axis axis) { return static_cast<int>(axis) / 2; }
-
-bool is_negative(Axis axis) { return static_cast<int>(axis) % 2 != 0; }
-
-bool along_one_line(Axis a, Axis b) { return line_of(a) == line_of(b); }
 
 Vec3 direction_to_left(Axis forward, Axis up) {
   return cross(direction_of(up), direction_of(forward));

@@ -19,15 +19,6 @@
 
 namespace clearway {
 
-/// The axis of the model's frame on whose line an axis lies: 0 is x.
-int line_of(Axis axis);
-
-/// Whether an axis points against that of the model's frame.
-bool is_negative(Axis axis);
-
-/// Whether two axes lie along one line.
-bool along_one_line(Axis a, Axis b);
-
 /// The unit vector to the left in the model's frame.
 Vec3 direction_to_left(Axis forward, Axis up);
 

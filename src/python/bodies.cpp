@@ -50,6 +50,65 @@ BodyMount mount_of(const std::optional<double>& at,
   return BodyStation{at.value_or(0)};
 }
 
+BodyTowed tow_of(std::optional<double> at, const std::optional<std::pair<double, double>>& pivots) {
+  if (!at || !pivots) {
+    throw UsageError(
+        "towed_by: expected at, the hitch on the tower, and pivots, the hitch and the axle on the "
+        "body, for example at=-0.6, pivots=(9.2, 1.4)");
+  }
+  return {.by = {}, .at = *at, .hitch = pivots->first, .axle = pivots->second};
+}
+
+/// The motion of a tower. Throws UsageError where it was placed on another path.
+std::shared_ptr<const Motion> motion_of(const PlacedBody& tower, const std::vector<Pose>& path) {
+  bodies_on({tower}, path);
+  if (tower.motion) return tower.motion;
+  return std::make_shared<const Motion>(Motion{
+      .name = tower.name,
+      .mount = BodyOwnPoses{},
+      .tower = nullptr,
+      .own = {
+          .name = tower.name, .model = {}, .poses = tower.poses, .path_pose = tower.path_pose}});
+}
+
+/// How a body moves by the arguments of follow(). towed_by: None, "path" or a Body.
+Motion motion_of(const std::string& name, std::optional<double> at,
+                 const std::optional<std::pair<double, double>>& pivots, const py::object& towed_by,
+                 const std::vector<Pose>& path) {
+  if (towed_by.is_none()) return {.name = name, .mount = mount_of(at, pivots), .tower = nullptr};
+  BodyTowed tow = tow_of(at, pivots);
+  if (py::isinstance<py::str>(towed_by) && towed_by.cast<std::string>() == "path") {
+    return {.name = name, .mount = tow, .tower = nullptr};
+  }
+  if (!py::isinstance<PlacedBody>(towed_by)) {
+    throw UsageError("towed_by: expected a Body that tows this one, or \"path\"");
+  }
+  auto tower = motion_of(towed_by.cast<const PlacedBody&>(), path);
+  tow.by = tower->name;
+  return {.name = name, .mount = tow, .tower = std::move(tower)};
+}
+
+/// Follows the path with the body and its towers, and returns the body.
+Body followed(Body body, const std::vector<Pose>& path, const Motion& motion,
+              std::vector<Message>& doubts) {
+  std::vector<Body> bodies;
+  std::vector<BodyMount> mounts{motion.mount};
+  bodies.push_back(std::move(body));
+  for (const Motion* tower = motion.tower.get(); tower != nullptr; tower = tower->tower.get()) {
+    bodies.push_back(tower->own);
+    bodies.back().name = tower->name;
+    mounts.push_back(tower->mount);
+  }
+  std::vector<Message> all;
+  body = std::move(follow(std::move(bodies), path, mounts, &all).front());
+  // What is odd about the towers was told when they were placed.
+  const std::string name = "body " + motion.name + ": ";
+  for (Message& doubt : all) {
+    if (doubt.text.starts_with(name)) doubts.push_back(std::move(doubt));
+  }
+  return body;
+}
+
 void add_body(py::module_& module) {
   py::class_<PlacedBody>(
       module, "Body",
@@ -95,19 +154,21 @@ void add_follow(py::module_& module) {
       "follow",
       [](std::string name, const py::object& model, const py::object& path,
          std::optional<double> at, std::optional<std::pair<double, double>> pivots,
-         const py::object& messages) {
+         const py::object& towed_by, const py::object& messages) {
         Body body = make_body(std::move(name), model, py::tuple(), py::none());
         const auto poses =
             std::make_shared<const std::vector<Pose>>(poses_of(poses_array(path, "path"), "path"));
-        const BodyMount mount = mount_of(at, pivots);
+        const auto motion =
+            std::make_shared<const Motion>(motion_of(body.name, at, pivots, towed_by, *poses));
         std::vector<Message> doubts;
-        Body placed = without_gil([&] { return follow(std::move(body), *poses, mount, &doubts); });
+        Body placed =
+            without_gil([&] { return followed(std::move(body), *poses, *motion, doubts); });
         append_to(messages, doubts);
-        return PlacedBody{std::move(placed), poses};
+        return PlacedBody{std::move(placed), poses, false, motion};
       },
       "name"_a, "model"_a, "path"_a, py::kw_only(), "at"_a = py::none(), "pivots"_a = py::none(),
-      "messages"_a = py::none(),
-      R"(follow(name, model, path, *, at=None, pivots=None, messages=None)
+      "towed_by"_a = py::none(), "messages"_a = py::none(),
+      R"(follow(name, model, path, *, at=None, pivots=None, towed_by=None, messages=None)
 --
 
 Place a body of a vehicle at the poses of a path. Returns a Body, for Query(bodies=...).
@@ -117,11 +178,15 @@ model: in the body's own frame, as Query takes it: points, n x 3, metres; or a M
 path: the poses that the vehicle follows, n x 4 x 4: those of the query.
 at: the body has the path's pose so many metres ahead; negative: behind.
 pivots: two places of the body that lie on the path, front and rear, metres ahead: (10, -10).
+towed_by: the Body that tows this one like a trailer, placed on the same path, or "path": then `at`
+    is the x of the hitch in the tower's frame, and `pivots` are the x of the hitch and of the axle
+    in the body's own frame, (9.2, 1.4). A tower that follow() did not make drives along the curve
+    through its poses.
 messages: a list to which warnings are appended, as of poses where the body is off the path.)");
 }
 
 constexpr const char* kReadVehicle =
-    R"(read_vehicle(file, poses, model_as='auto', *, spacing=0.0, unit=0.0, environment_unit=None, vertices_only=False, above=None, format='auto', allow_non_rigid=False, angle_unit='declared', angle_frame='declared', crs='', default_crs='', datum='', metres_per_unit=0.0, lever_arm=(0.0, 0.0, 0.0), messages=None)
+    R"(read_vehicle(file, poses, model_as='auto', *, spacing=0.0, unit=0.0, environment_unit=None, vertices_only=False, above=None, forward='+x', up='+z', format='auto', allow_non_rigid=False, angle_unit='declared', angle_frame='declared', crs='', default_crs='', datum='', metres_per_unit=0.0, lever_arm=(0.0, 0.0, 0.0), messages=None)
 --
 
 Read the JSON file of a vehicle of several bodies, and the files that it names.
@@ -134,7 +199,7 @@ model_as: 'auto': meshes as their triangles are, and other models as points.
     'surface': triangles; each body has to be a mesh.
     'points': the surface of a mesh is sampled, which needs a spacing.
     'solid': triangles, and what closed parts enclose; each body has to be a mesh.
-spacing, vertices_only, above: of all models, as read_model() takes them.
+spacing, vertices_only, above, forward, up: of all models, as read_model() takes them.
 unit: of models without a model_unit, as read_model() takes it.
 environment_unit: into which lengths with a unit are converted, as read_model() takes it.
 format, allow_non_rigid, angle_unit, angle_frame, crs, default_crs, datum, metres_per_unit,
@@ -146,14 +211,15 @@ void add_read_vehicle(py::module_& module) {
       "read_vehicle",
       [](const py::object& file, const py::object& poses, const std::string& model_as,
          double spacing, const UnitArgument& unit, const EnvironmentUnitArgument& environment_unit,
-         bool vertices_only, std::optional<double> above, const std::string& format,
-         bool allow_non_rigid, const std::string& angle_unit, const std::string& angle_frame,
-         const std::string& crs, const std::string& default_crs, const std::string& datum,
+         bool vertices_only, std::optional<double> above, const std::string& forward,
+         const std::string& up, const std::string& format, bool allow_non_rigid,
+         const std::string& angle_unit, const std::string& angle_frame, const std::string& crs,
+         const std::string& default_crs, const std::string& datum,
          const UnitArgument& metres_per_unit, const std::array<double, 3>& lever_arm,
          const py::object& messages) {
         VehicleOptions options;
         options.model = model_options(value_of("model_as", kModelAs, model_as), spacing, unit,
-                                      environment_unit, vertices_only, above);
+                                      environment_unit, vertices_only, above, forward, up);
         options.trajectory =
             trajectory_options(format, allow_non_rigid, angle_unit, angle_frame, crs, default_crs,
                                datum, metres_per_unit, environment_unit, lever_arm);
@@ -171,9 +237,9 @@ void add_read_vehicle(py::module_& module) {
       },
       "file"_a, "poses"_a, "model_as"_a = "auto", py::kw_only(), "spacing"_a = 0.0, "unit"_a = 0.0,
       "environment_unit"_a = py::none(), "vertices_only"_a = false, "above"_a = py::none(),
-      "format"_a = "auto", "allow_non_rigid"_a = false, "angle_unit"_a = "declared",
-      "angle_frame"_a = "declared", "crs"_a = "", "default_crs"_a = "", "datum"_a = "",
-      "metres_per_unit"_a = 0.0, "lever_arm"_a = std::array<double, 3>{0, 0, 0},
+      "forward"_a = "+x", "up"_a = "+z", "format"_a = "auto", "allow_non_rigid"_a = false,
+      "angle_unit"_a = "declared", "angle_frame"_a = "declared", "crs"_a = "", "default_crs"_a = "",
+      "datum"_a = "", "metres_per_unit"_a = 0.0, "lever_arm"_a = std::array<double, 3>{0, 0, 0},
       "messages"_a = py::none(), kReadVehicle);
 }
 

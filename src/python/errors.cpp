@@ -70,6 +70,10 @@ const char* name_of(Remedy remedy) {
       return "declare_length";
     case Remedy::kAllowNonRigid:
       return "allow_non_rigid";
+    case Remedy::kGiveHeight:
+      return "give_height";
+    case Remedy::kRoundCorners:
+      return "round_corners";
     case Remedy::kAskForClearance:
       return "ask_for_clearance";
     case Remedy::kAskForFirstPose:

@@ -18,10 +18,6 @@ namespace {
 
 using namespace py::literals;
 
-constexpr Named<Axis> kAxes[] = {{"+x", Axis::kPlusX}, {"x", Axis::kPlusX}, {"-x", Axis::kMinusX},
-                                 {"+y", Axis::kPlusY}, {"y", Axis::kPlusY}, {"-y", Axis::kMinusY},
-                                 {"+z", Axis::kPlusZ}, {"z", Axis::kPlusZ}, {"-z", Axis::kMinusZ}};
-
 /// Conflicts, and the conflict of each row of the result.
 struct GroupedConflicts : Conflicts {
   std::vector<std::uint32_t> conflict_of = {};

@@ -3,11 +3,14 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <mutex>
 #include <optional>
 
 #include "clearway/alignment.hpp"
 #include "clearway/convert.hpp"
+#include "clearway/line.hpp"
 #include "python/arrays.hpp"
+#include "python/store.hpp"
 #include "python/values.hpp"
 #include "python/watch.hpp"
 
@@ -44,14 +47,15 @@ constexpr Named<AxisOrder> kOrders[] = {{"ne", AxisOrder::kNorthingEasting},
 void add_labels(py::module_& module) {
   py::class_<PoseLabels>(module, "PoseLabels",
                          "The times, names and stations that a file gives its poses. Make an "
-                         "empty one for read_trajectory(labels=...) or read_alignment(labels=...).")
+                         "empty one for read_trajectory(labels=...), read_alignment(labels=...) "
+                         "or read_line(labels=...).")
       .def(py::init<>(), "__init__(self)\n--\n\nMake labels that read_trajectory() can fill.")
       .def_property_readonly(
           "time", [](const PoseLabels& l) { return to_array(l.time); },
           "The time of each pose in seconds, as the file counts them: n float64, or empty.")
       .def_property_readonly(
           "station", [](const PoseLabels& l) { return to_array(l.station); },
-          "The station of each pose along its alignment, metres: n float64, or empty.")
+          "The station of each pose along its alignment or line, metres: n float64, or empty.")
       .def_property_readonly(
           "name",
           [](const PoseLabels& labels) {
@@ -175,6 +179,73 @@ environment_crs: the coordinate system of the environment, for example store.crs
     another one is warned of.
 messages: a list to which notes and warnings are appended.
 labels: a PoseLabels, which gets the station of each pose.)");
+}
+
+void add_read_line(py::module_& module) {
+  module.def(
+      "read_line",
+      [](const py::object& path, double step, bool reverse, std::optional<double> height,
+         std::optional<double> corner_radius, SharedStore* ground, std::optional<double> track,
+         const std::string& cant, std::optional<double> rail_distance, const UnitArgument& unit,
+         const EnvironmentUnitArgument& environment_unit, const std::string& environment_crs,
+         const py::object& messages, PoseLabels* labels) {
+        const EnvironmentUnit environment = environment_unit_of(environment_unit);
+        const LineOptions options{
+            .step = step,
+            .reverse = reverse,
+            .height = height,
+            .corner_radius = corner_radius,
+            .ground = ground == nullptr ? nullptr : &ground->store,
+            .track = track,
+            .cant = value_of("cant", kCants, cant),
+            .rail_distance = rail_distance,
+            .unit = file_unit(unit),
+            .environment_unit = environment.metres,
+            .environment_unit_is_assumed = environment_unit && environment.is_assumed,
+            .environment_crs = environment_crs};
+        PoseLabels found;
+        const auto poses = read_noting(messages, [&, file = path_of(path)](auto* noted) {
+          std::unique_lock<std::timed_mutex> turn;
+          if (ground != nullptr) turn = std::unique_lock(ground->turn);
+          return read_line(file, options, noted, &found);
+        });
+        if (labels != nullptr) *labels = std::move(found);
+        return to_array(poses);
+      },
+      "path"_a, py::kw_only(), "step"_a = 0.1, "reverse"_a = false, "height"_a = py::none(),
+      "corner_radius"_a = py::none(), "ground"_a = py::none(), "track"_a = py::none(),
+      "cant"_a = "center", "rail_distance"_a = py::none(), "unit"_a = 0.0,
+      "environment_unit"_a = py::none(), "environment_crs"_a = "", "messages"_a = py::none(),
+      "labels"_a = py::none(),
+      R"(read_line(path, *, step=0.1, reverse=False, height=None, corner_radius=None, ground=None, track=None, cant='center', rail_distance=None, unit=0.0, environment_unit=None, environment_crs='', messages=None, labels=None)
+--
+
+Make poses along a line of CSV or GeoJSON. Returns an array of n x 4 x 4 float64, metres.
+
+The model has x forward, y left and z up.
+
+path: a table whose first line names the columns x, y and, where it has them, z, station and cant;
+    or GeoJSON with one LineString in the coordinates of the environment.
+step: metres along the line in plan from one pose to the next.
+reverse: travels from the last vertex to the first.
+height: the height in metres of a line whose vertices have none; on the ground about where it
+    begins.
+corner_radius: the radius in metres of arcs that are put at the vertices, between straight legs;
+    None: a smooth curve leads through the vertices, which may turn by 15 degrees at most.
+ground: a Store whose ground under the wheels gives height and roll. Under a parked car the ground
+    is not seen, and the path is about 0.3 m too high.
+track: metres between the middles of the left and the right wheels; only with ground.
+cant: what a column of cant turns the track about, which the line then is: 'center',
+    'inside-rail', 'outside-rail', 'left-rail', 'right-rail', or 'none', which leaves it out.
+rail_distance: metres between the middles of the rails, over which cant is measured; None: 1.5.
+unit: the unit of the coordinates: metres, or a name such as 'mm' or 'us-ft'; 0: what the file
+    says, otherwise that of the environment.
+environment_unit: the environment's unit: store.metres_per_unit(), store.length_unit(), or a name;
+    None: the metre.
+environment_crs: the coordinate system of the environment, for example store.crs_wkt(); a file in
+    another one is warned of.
+messages: a list to which notes and warnings are appended.
+labels: a PoseLabels, which gets the station of each pose if the file has stations.)");
 }
 
 py::dict busy_seconds(const ConvertReport& report) {
@@ -370,6 +441,7 @@ void add_inputs(py::module_& module) {
   add_read_trajectory(module);
   add_origins_path_report(module);
   add_read_alignment(module);
+  add_read_line(module);
   add_convert_report(module);
   add_convert(module);
 }

@@ -99,6 +99,11 @@ spacing: where the vertices are samples of a mesh, how far its surface may be fr
       .def_readonly("spacing", &Model::spacing,
                     "Metres. The vertices are samples of a mesh, and no place of its surface is "
                     "farther than this from one of them. 0 where the model is no sampled mesh.")
+      .def_property_readonly(
+          "file_axes", [](const Model& s) { return to_tuple(s.file_axes); },
+          "The axes of the model's file that pointed ahead and up before the model was turned, "
+          "such "
+          "as ('+y', '+z'); ('+x', '+z') where it was not turned.")
       .def("__repr__", [](const Model& s) {
         return text("<Model: " + std::to_string(s.vertices.size()) + " vertices, " +
                     std::to_string(s.triangles.size()) + " triangles>");
@@ -110,9 +115,10 @@ void add_read_model_points(py::module_& module) {
       "read_model_points",
       [](const py::object& path, double spacing, const UnitArgument& unit,
          const EnvironmentUnitArgument& environment_unit, bool vertices_only,
-         std::optional<double> above, const py::object& messages) {
-        const ModelOptions options =
-            model_options(ModelAs::kPoints, spacing, unit, environment_unit, vertices_only, above);
+         std::optional<double> above, const std::string& forward, const std::string& up,
+         const py::object& messages) {
+        const ModelOptions options = model_options(
+            ModelAs::kPoints, spacing, unit, environment_unit, vertices_only, above, forward, up);
         return to_array(read_noting(messages, [&, file = path_of(path)](auto* noted) {
           auto read = read_model_points(file, options, noted);
           check_unit_is_given(environment_unit, unit, *noted);
@@ -120,8 +126,9 @@ void add_read_model_points(py::module_& module) {
         }));
       },
       "path"_a, py::kw_only(), "spacing"_a = 0.0, "unit"_a = 0.0, "environment_unit"_a = py::none(),
-      "vertices_only"_a = false, "above"_a = py::none(), "messages"_a = py::none(),
-      R"(read_model_points(path, *, spacing=0.0, unit=0.0, environment_unit=None, vertices_only=False, above=None, messages=None)
+      "vertices_only"_a = false, "above"_a = py::none(), "forward"_a = "+x", "up"_a = "+z",
+      "messages"_a = py::none(),
+      R"(read_model_points(path, *, spacing=0.0, unit=0.0, environment_unit=None, vertices_only=False, above=None, forward='+x', up='+z', messages=None)
 --
 
 Read a model: points of a scan's format, or a mesh (STL, OBJ, PLY with faces, OFF).
@@ -140,6 +147,8 @@ environment_unit: the environment's unit, into which a known unit is converted:
     another unit is refused then.
 vertices_only: takes the vertices of a mesh alone, and not its surface.
 above: leaves out points whose z is below it, metres; for example wheels on the ground.
+forward, up: the axes of the file that point ahead and up, such as '+y' or '-z'. The model is turned
+    so that x points ahead, y to the left and z up.
 messages: a list to which notes and warnings are appended.)");
 }
 
@@ -148,10 +157,11 @@ void add_read_model(py::module_& module) {
       "read_model",
       [](const py::object& path, const std::string& model_as, double spacing,
          const UnitArgument& unit, const EnvironmentUnitArgument& environment_unit,
-         bool vertices_only, std::optional<double> above, const py::object& messages) {
+         bool vertices_only, std::optional<double> above, const std::string& forward,
+         const std::string& up, const py::object& messages) {
         const ModelOptions options =
             model_options(value_of("model_as", kModelAs, model_as), spacing, unit, environment_unit,
-                          vertices_only, above);
+                          vertices_only, above, forward, up);
         return read_noting(messages, [&, file = path_of(path)](auto* noted) {
           Model read = read_model(file, options, noted);
           check_unit_is_given(environment_unit, unit, *noted);
@@ -160,8 +170,8 @@ void add_read_model(py::module_& module) {
       },
       "path"_a, "model_as"_a = "auto", py::kw_only(), "spacing"_a = 0.0, "unit"_a = 0.0,
       "environment_unit"_a = py::none(), "vertices_only"_a = false, "above"_a = py::none(),
-      "messages"_a = py::none(),
-      R"(read_model(path, model_as='auto', *, spacing=0.0, unit=0.0, environment_unit=None, vertices_only=False, above=None, messages=None)
+      "forward"_a = "+x", "up"_a = "+z", "messages"_a = py::none(),
+      R"(read_model(path, model_as='auto', *, spacing=0.0, unit=0.0, environment_unit=None, vertices_only=False, above=None, forward='+x', up='+z', messages=None)
 --
 
 Read a model, to be searched as it is. Returns a Model.
@@ -174,7 +184,7 @@ model_as: 'auto': a mesh as its surface, any other file as its points; with spac
     'points': samples of the surface of a mesh, or the points of the file.
 spacing, vertices_only: for points, as read_model_points() takes them.
 above: cuts the triangles at this height, and leaves out what is below it; metres; not for 'solid'.
-unit, environment_unit, messages: as read_model_points() takes them.)");
+unit, environment_unit, forward, up, messages: as read_model_points() takes them.)");
 }
 
 }  // namespace
@@ -189,6 +199,10 @@ void refuse_none(const py::handle& object) {
 }
 
 }  // namespace
+
+py::tuple to_tuple(const ModelAxes& axes) {
+  return py::make_tuple(name_of(axes.forward), name_of(axes.up));
+}
 
 py::object model_object(const py::handle& object) {
   refuse_none(object);
@@ -206,12 +220,15 @@ Model model_of(const py::object& object) {
 
 ModelOptions model_options(ModelAs as, double spacing, const UnitArgument& unit,
                            const EnvironmentUnitArgument& environment_unit, bool vertices_only,
-                           std::optional<double> above) {
+                           std::optional<double> above, const std::string& forward,
+                           const std::string& up) {
   const EnvironmentUnit environment = environment_unit_of(environment_unit);
   return {.as = as,
           .spacing = spacing,
           .unit = file_unit(unit),
           .environment_unit = environment.metres,
+          .forward = value_of("forward", kAxes, forward),
+          .up = value_of("up", kAxes, up),
           .vertices_only = vertices_only,
           .above = above,
           .environment_unit_is_assumed = environment.is_assumed};

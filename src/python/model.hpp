@@ -16,6 +16,14 @@ inline constexpr Named<ModelAs> kModelAs[] = {{"auto", ModelAs::kAuto},
                                               {"surface", ModelAs::kSurface},
                                               {"solid", ModelAs::kSolid}};
 
+inline constexpr Named<Axis> kAxes[] = {
+    {"+x", Axis::kPlusX}, {"x", Axis::kPlusX}, {"-x", Axis::kMinusX},
+    {"+y", Axis::kPlusY}, {"y", Axis::kPlusY}, {"-y", Axis::kMinusY},
+    {"+z", Axis::kPlusZ}, {"z", Axis::kPlusZ}, {"-z", Axis::kMinusZ}};
+
+/// The names of two axes, ahead and up, as Python shows them: ("+y", "+z").
+py::tuple to_tuple(const ModelAxes& axes);
+
 /// A Model is returned as it is, and anything else as points_array() converts it.
 py::object model_object(const py::handle& object);
 
@@ -23,10 +31,12 @@ py::object model_object(const py::handle& object);
 /// are not finite.
 Model model_of(const py::object& object);
 
-/// The options for the values that Python has for them. Throws UsageError for an unknown unit.
+/// The options for the values that Python has for them. Throws UsageError for an unknown unit
+/// and for unknown axes.
 ModelOptions model_options(ModelAs as, double spacing, const UnitArgument& unit,
                            const EnvironmentUnitArgument& environment_unit, bool vertices_only,
-                           std::optional<double> above);
+                           std::optional<double> above, const std::string& forward,
+                           const std::string& up);
 
 /// The size of a model in words, such as "12 model points" or "12 model triangles".
 std::string model_words(const py::object& object);

@@ -13,6 +13,7 @@ PYBIND11_MODULE(_clearway, module) {
   add_errors(module);
   add_values(module);
   add_model(module);
+  add_store(module);
   add_inputs(module);
   add_reports(module);
   add_bodies(module);

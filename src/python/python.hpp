@@ -82,6 +82,7 @@ void add_errors(py::module_& module);       // errors.cpp
 void add_values(py::module_& module);       // values.cpp
 void add_model(py::module_& module);        // model.cpp
 void add_reports(py::module_& module);      // reports.cpp
+void add_store(py::module_& module);        // search.cpp, before all that takes a store
 void add_inputs(py::module_& module);       // inputs.cpp
 void add_search(py::module_& module);       // search.cpp
 void add_merge(py::module_& module);        // merge.cpp

@@ -7,6 +7,7 @@
 #include "clearway/result.hpp"
 #include "core/query/query_fields.hpp"
 #include "python/arrays.hpp"
+#include "python/model.hpp"
 
 namespace clearway::python {
 namespace {
@@ -278,6 +279,10 @@ void add_results(py::module_& module) {
       .def("model_spacing", &Result::model_spacing,
            "Metres: the model's points are samples of a mesh, and no place of its surface is "
            "farther than this from one of them. 0 where the model is no sampled mesh.")
+      .def(
+          "model_axes", [](const Result& r) { return to_tuple(r.model_axes()); },
+          "The axes of the model's file that pointed ahead and up before the search turned the "
+          "model, such as ('+y', '+z'); ('+x', '+z') where nothing was turned.")
       .def("model_box", &Result::model_box,
            "The box around the model in its own frame: a Box, or None where the file does not have "
            "it.")

@@ -27,6 +27,8 @@ constexpr Named<Engine> kEngines[] = {{"auto", Engine::kAuto},
 constexpr Named<Device> kDevices[] = {
     {"auto", Device::kAuto}, {"cpu", Device::kCpu}, {"cuda", Device::kCuda}};
 
+}  // namespace
+
 void add_store(py::module_& module) {
   py::class_<SharedStore>(
       module, "Store",
@@ -81,6 +83,8 @@ void add_store(py::module_& module) {
                     std::to_string(s.store.point_count()) + " points>");
       });
 }
+
+namespace {
 
 template <typename Value>
 void add_parameter(py::class_<ArrayQuery>& query, const QueryField<Value>& field) {
@@ -258,7 +262,6 @@ Query query_of(const ArrayQuery& query) {
 }
 
 void add_search(py::module_& module) {
-  add_store(module);
   add_query(module);
   add_searches(module);
 }

@@ -37,6 +37,14 @@ auto in_turn(SharedStore& shared, StopFlag stop, Call call) {
   return call(std::as_const(shared.store));
 }
 
+/// How follow() moves a body, for the bodies that it tows.
+struct Motion {
+  std::string name;
+  BodyMount mount;
+  std::shared_ptr<const Motion> tower;  ///< null where no other body tows it
+  Body own = {};                        ///< with BodyOwnPoses, its poses without its model
+};
+
 /// A Body, and what it knows of the path that it was placed on.
 struct PlacedBody : Body {
   /// The path that follow() or read_vehicle() placed the body on. Null for a body that was made of
@@ -44,6 +52,8 @@ struct PlacedBody : Body {
   std::shared_ptr<const std::vector<Pose>> path = nullptr;
   /// Whether path_pose was not given, so that the body has one pose for each of the path's.
   bool has_all_poses = false;
+  /// How follow() moved it. Null for other bodies, which tow along the curve through their poses.
+  std::shared_ptr<const Motion> motion = nullptr;
 };
 
 /// The bodies of a query along this path. Throws UsageError where a body was placed on another

@@ -155,6 +155,9 @@ void write_inputs(JsonText& json, const ReportFacts& facts) {
   json.field("surface_triangles", surface_triangles(facts.bodies));
   json.field("spacing", spacing_of(header));
   write_box(json, "box", facts.model_box);
+  if (const ModelAxes axes = header.model_axes.axes; axes.need_turn()) {
+    json.key("axes").begin('[').value(name_of(axes.forward)).value(name_of(axes.up)).end(']');
+  }
   json.field("above", options.model_above).field("left_out", options.model_left_out);
   if (!header.bodies.empty()) write_bodies(json, facts);
   json.end('}');

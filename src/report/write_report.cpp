@@ -59,6 +59,7 @@ void check_model(const Result& result, const Model& model, const ReportOptions& 
 void check_report_inputs(const Result& result, const Store& store, const Model& model,
                          const std::vector<Pose>& poses, const ReportOptions& options) {
   const ResultHeader& header = result.reader().header();
+  check_axes(result.reader(), options.conflicts);
   check_hash(result, "environment", store.reader().metadata().points_hash, header.environment_hash,
              Remedy::kSameEnvironment);
   if (store.crs_wkt() != header.crs_wkt) {

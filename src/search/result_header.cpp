@@ -49,13 +49,17 @@ std::vector<std::string> names_of(const Query& query) {
 
 }  // namespace
 
+void choose_gap(QueryParameters& query, double metre) {
+  if (query.has_budget() && query.gap == 0) query.gap = kUsualGap * metre;
+}
+
 ResultHeader result_header(const StoreReader& store, const Query& query,
                            const SearchOptions& options) {
   const StoreMetadata& metadata = store.metadata();
   QueryParameters asked = query;
   sort_ignored(asked);
   IgnoredPointCounts ignored = count_ignored(store, asked, options.threads);
-  if (asked.has_budget() && asked.gap == 0) asked.gap = kUsualGap * metre_of(store);
+  choose_gap(asked, metre_of(store));
   const bool by_class = !asked.ignore_classes.empty();
   ResultHeader header{
       std::move(asked),
@@ -77,7 +81,8 @@ ResultHeader result_header(const StoreReader& store, const Query& query,
       std::move(ignored),
       by_class ? metadata.classes->hash : 0,
       names_of(query),
-      {model_spacing(query)}};
+      {model_spacing(query)},
+      {file_axes(query)}};
   header.last_pose = header.first_pose;
   header.budget = error_budget_of(query, metadata.quantisation);
   header.version = header.written_version();

@@ -7,6 +7,10 @@
 
 namespace clearway {
 
+/// Gives a query with an error budget but without a gap the usual gap of 0.3 m. metre: the length
+/// of a metre in the environment's unit.
+void choose_gap(QueryParameters& query, double metre);
+
 /// The header of the result of a search. For a shard, the part is still missing.
 ResultHeader result_header(const StoreReader& store, const Query& query,
                            const SearchOptions& options);

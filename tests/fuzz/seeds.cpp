@@ -176,6 +176,18 @@ void write_text_seeds(Seeds xyz, Seeds trajectory) {
   add(9, 0, "1 0 0 0 0 1 0 0 0 0 1 0 1 2 3 1 2\n");
 }
 
+void write_line_seeds(Seeds seeds) {
+  const auto add = [&seeds](char options, const std::string& text) {
+    seeds.add(std::string{options} + text);
+  };
+  add(0, "x [m],y [m],z [m],station,cant [mm]\n0,0,1,5,0\n10,0,2,15,10\n20,1,3,25,20\n");
+  add(6, "# route\nx;y\n0;0\n10;0\n10;0\n10;10\n");
+  add(2, R"({"type": "LineString", "coordinates": [[0, 0], [10, 0], [20, 1]]})");
+  add(4, R"({"type": "FeatureCollection", "crs": {"properties": {"name": "EPSG:25832"}}, )"
+         R"("features": [{"type": "Feature", "geometry": {"type": "MultiLineString", )"
+         R"("coordinates": [[[0, 0, 1], [10, 0, 2], [10, 10, 3]]]}}]})");
+}
+
 void write_alignment_seeds(Seeds seeds) {
   const auto add = [&seeds](char options, const LandFile& file) {
     seeds.add(std::string{options} + file.text());
@@ -342,6 +354,7 @@ int main(int argc, char** argv) {
   write_ptx_seeds({folder, "ptx"});
   write_text_seeds({folder, "xyz"}, {folder, "trajectory"});
   write_alignment_seeds({folder, "alignment"});
+  write_line_seeds({folder, "line"});
   write_mesh_seeds({folder, "mesh"});
   write_chunk_seeds({folder, "packed_chunk"});
   write_store_seeds({folder, "store"}, {folder, "store_values"});

@@ -7,7 +7,7 @@ FOLLOWED = {"docs/guide/vehicles.md"}
 
 # (page, beginning of the command): why the test does not run it.
 NOT_RUN = {
-    ("README.md", "tools/demo.sh"): "builds the program; the tutorial's commands are those of the demo",
+    ("README.md", "tools/demo.sh"): "builds the program, and runs a check as the first command of the page",
     ("README.md", "tools/test.sh"): "runs all tests",
     ("README.md", "cmake --preset release &&"): "builds the program and runs all tests",
     ("docs/guide/tutorial.md", "git clone"): "gets the sources",
@@ -44,7 +44,8 @@ SAMPLES = {
 # (page, beginning of a snippet): the file that the page tells the reader to write.
 WRITTEN = {
     ("docs/guide/campaigns.md", "{"): "campaign.json",
-    ("docs/guide/vehicles.md", '{"bodies"'): "wagon.json",
+    ("docs/guide/vehicles.md", '{"bodies": [\n  {"name": "body"'): "wagon.json",
+    ("docs/guide/vehicles.md", '{"bodies": [\n  {"name": "tractor"'): "road.json",
 }
 
 # (page, beginning of the command): the exit code, where it is not 0.

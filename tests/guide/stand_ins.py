@@ -39,8 +39,12 @@ LAND_XML = """<?xml version="1.0"?>
 </Alignment></Alignments></LandXML>
 """
 
+ROUTE = ((0, 0), (30, 0), (30, 40))
+
 CAMPAIGN = {"name": "Stand-in", "environments": {"hall": "site.h5"}, "vehicles": {"car": "car.ply"},
             "routes": {"line": "path.txt"}, "radii": [0.1]}
+
+WAGON = {"bodies": [{"name": "body", "model": "body.ply", "pivots": [1, -1]}]}
 
 
 def _positions(trajectory):
@@ -79,13 +83,27 @@ def make(folder, clearway):
     _box_stl(folder / "crane.stl", (500, 500, 3000))
     _box_stl(folder / "bogie.stl", (2, 1.5, 0.8))
     clearway("model bogie.stl --spacing 0.1 -o bogie.ply".split())
+    for name, length in (("tractor", "5"), ("trailer", "9")):
+        clearway(["model", "box", f"{length},2.5,3", "-o", f"{name}.ply"])
+    (folder / "wagon.json").write_text(json.dumps(WAGON), encoding="utf-8")
     clearway("convert scans/ -o site.h5".split())
     asked = "run --env site.h5 --model car.ply --trajectory path.txt --first-pose".split()
     clearway([*asked, *"--radius 0.1 --clearance 0.3 --profile 0.5 -o out.h5".split()])
     clearway([*asked, *"--radius 0.2 -o other.h5".split()])
     for name, source in (("kdtree", "out"), ("sweep", "out"), ("before", "out"), ("after", "other")):
         shutil.copy(folder / f"{source}.h5", folder / f"{name}.h5")
+    (folder / "gauge.csv").write_text(
+        "height,half_width\n0.4,1.2\n1.2,1.6\n3.2,1.6\n4.3,0.8\n", encoding="utf-8")
     (folder / "track.xml").write_text(LAND_XML, encoding="utf-8")
+    (folder / "route.csv").write_text("x,y\n" + "".join(f"{x},{y}\n" for x, y in ROUTE), encoding="utf-8")
+    (folder / "route.geojson").write_text(json.dumps({"type": "LineString", "coordinates": ROUTE}),
+                                          encoding="utf-8")
+    (folder / "lane.csv").write_text("x,y\n1,0\n19,0\n", encoding="utf-8")
+    (folder / "street.xyz").write_text("".join(
+        f"{x / 10} {y / 10} {x / 1000}\n" for x in range(201) for y in range(-20, 21)), encoding="utf-8")
+    clearway("convert street.xyz -o street.h5 --unit m".split())
+    (folder / "street.xyz").unlink()
+    (folder / "curve.csv").write_text("x,y,z\n0,0,4\n20,0,4\n40,2,4.1\n", encoding="utf-8")
     (folder / "campaign.json").write_text(json.dumps(CAMPAIGN), encoding="utf-8")
     for name in ("model.ply", "trajectory.txt"):
         (folder / name).unlink()

@@ -84,6 +84,65 @@ TEST_CASE("options hold for all bodies, and threads change none") {
   CHECK(files.read(bodies, options)[1].model.vertices.size() > 20);
 }
 
+TEST_CASE("towed bodies of a file are those that follow gives, in any order") {
+  const Files files;
+  std::vector<Message> told;
+  const auto bodies = files.read(
+      R"({"name": "second", "model": "line.xyz",
+          "towed": {"by": "trailer", "at": "-90cm", "pivots": [6, 0]}},
+         {"name": "trailer", "model": "fin.off",
+          "towed": {"by": "truck", "at": -0.6, "pivots": ["9.2m", 1.4]}},
+         {"name": "truck", "model": "line.xyz", "pivots": [3, -1]},
+         {"name": "crane", "model": "line.xyz", "trajectory": "own.txt"},
+         {"name": "load", "model": "line.xyz", "towed": {"by": "crane", "at": 0, "pivots": [2, 0]}},
+         {"name": "free", "model": "line.xyz", "towed": {"at": -1, "pivots": [4, 0]}})",
+      {}, &told);
+  std::vector<Body> given = bodies;
+  for (Body& body : given) {
+    if (body.name != "crane") body.poses.clear(), body.path_pose.clear();
+  }
+  const auto expected = follow(
+      given, files.path,
+      {BodyTowed{"trailer", -0.9, 6, 0}, BodyTowed{"truck", -0.6, 9.2, 1.4}, BodyPivots{3, -1},
+       BodyOwnPoses{}, BodyTowed{"crane", 0, 2, 0}, BodyTowed{"", -1, 4, 0}});
+  REQUIRE(bodies.size() == 6);
+  CHECK(hash_of_bodies(bodies) == hash_of_bodies(expected));
+  CHECK(bodies[0].path_pose == bodies[2].path_pose);
+  CHECK(bodies[2].path_pose.size() < files.path.size());
+  CHECK(bodies[4].path_pose == bodies[3].path_pose);
+  VehicleOptions one;
+  one.threads = 1;
+  CHECK(hash_of_bodies(files.read(R"({"name": "a", "model": "line.xyz",
+                                      "towed": {"at": -1, "pivots": [4, 0]}})",
+                                  one)) == hash_of_bodies({{{.name = "a",
+                                                             .model = bodies[5].model,
+                                                             .poses = bodies[5].poses,
+                                                             .path_pose = bodies[5].path_pose}}}));
+}
+
+TEST_CASE("towed bodies are the same in feet") {
+  Files files;
+  const std::string body = R"({"name": "a", "model": "line.xyz",
+                               "towed": {"at": "-1m", "pivots": ["4m", "0m"]}})";
+  const auto metres = files.read(body);
+  constexpr double kFoot = 0.3048;
+  for (Pose& pose : files.path) {
+    for (double& coordinate : pose.translation) coordinate /= kFoot;
+  }
+  VehicleOptions options;
+  options.model.environment_unit = kFoot;
+  const auto feet = files.read(body, options);
+  REQUIRE(feet[0].poses.size() == metres[0].poses.size());
+  double worst = 0;
+  for (std::size_t i = 0; i < feet[0].poses.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      worst = std::max(worst, std::abs(feet[0].poses[i].translation[k] * kFoot -
+                                       metres[0].poses[i].translation[k]));
+    }
+  }
+  CHECK(worst < 1e-6);
+}
+
 TEST_CASE("errors name the file and the key") {
   const Files files;
   CHECK_THROWS_WITH(files.read(R"({"name": "a", "model": "line.xyz", "pivots": [1, "x"]})"),
@@ -133,6 +192,16 @@ TEST_CASE("a body whose station or pivots are far from the vehicle is warned of"
                            {"name": "c", "model": "wagon.xyz", "at": -40},
                            {"name": "d", "model": "wagon.xyz", "at": -60})")
             .empty());
+  const std::string truck = R"({"name": "truck", "model": "wagon.xyz"}, )";
+  CHECK(codes(truck + R"({"name": "a", "model": "wagon.xyz",
+                          "towed": {"by": "truck", "at": -6, "pivots": [6, -4]}})")
+            .empty());
+  CHECK(codes(truck + R"({"name": "a", "model": "wagon.xyz",
+                          "towed": {"by": "truck", "at": -60, "pivots": [6, -4]}})") ==
+        "body-far ");
+  CHECK(codes(truck + R"({"name": "a", "model": "wagon.xyz",
+                          "towed": {"by": "truck", "at": -6, "pivots": [60, 55]}})") ==
+        "body-far body-far ");
   // 150 of 200 m: most of the path is not searched, though it is only its end.
   CHECK(codes(R"({"name": "wagon", "model": "wagon.xyz", "at": -150})") ==
         "body-off-path body-far ");

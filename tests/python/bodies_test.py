@@ -45,6 +45,51 @@ class BodyTest(SceneTest):
             np.testing.assert_array_equal(column, alone)
         np.testing.assert_array_equal(result.first_body(), (ahead != least)[found])
 
+    def test_towed_bodies(self):
+        angle = 0.1 / 15 * np.arange(2000)
+        path = np.tile(np.eye(4), (len(angle), 1, 1))
+        path[:, 0, 0] = path[:, 1, 1] = np.cos(angle)
+        path[:, 1, 0] = np.sin(angle)
+        path[:, 0, 1] = -path[:, 1, 0]
+        path[:, 0, 3] = 15 * np.sin(angle)
+        path[:, 1, 3] = 15 - 15 * np.cos(angle)
+        messages = []
+        tractor = clearway.follow("tractor", self.model, path, towed_by="path", at=0,
+                                  pivots=(3.8, 0))
+        trailer = clearway.follow("trailer", self.model, path, towed_by=tractor, at=-0.6,
+                                  pivots=(8, 0), messages=messages)
+        second = clearway.follow("second", self.model, path, towed_by=trailer, at=-0.9,
+                                 pivots=(6, 0))
+        # sqrt(R^2 + h^2 - L^2), one after the other
+        for body, radius in ((tractor, 14.510686), (trailer, 12.121056), (second, 10.570241)):
+            found = np.hypot(body.poses[-1, 0, 3], body.poses[-1, 1, 3] - 15)
+            self.assertLess(abs(found - radius), 1e-5)
+            self.assertEqual(len(body.poses), len(path))
+        self.assertEqual([(m.code, m.severity) for m in messages], [("body-transient", "note")])
+        (self.folder / "model.xyz").write_text("0 0 0\n1 0 1\n")
+        bodies = clearway.read_vehicle(self.write_vehicle([
+            {"name": "second", "model": "model.xyz",
+             "towed": {"by": "trailer", "at": -0.9, "pivots": [6, 0]}},
+            {"name": "trailer", "model": "model.xyz",
+             "towed": {"by": "tractor", "at": -0.6, "pivots": [8, 0]}},
+            {"name": "tractor", "model": "model.xyz", "towed": {"at": 0, "pivots": [3.8, 0]}}]),
+            path)
+        for read, followed in zip(bodies, (second, trailer, tractor)):
+            np.testing.assert_array_equal(read.poses, followed.poses)
+        # A body of its own poses tows along the curve through them, here those of the tractor.
+        own = clearway.Body("own", self.model, tractor.poses)
+        behind = clearway.follow("behind", self.model, path, towed_by=own, at=-0.6, pivots=(8, 0))
+        self.assertLess(np.abs(behind.poses - trailer.poses)[100:].max(), 1e-4)
+        for arguments, words in (({"towed_by": tractor, "at": 0}, "towed_by: expected at"),
+                                 ({"towed_by": "road", "at": 0, "pivots": (1, 0)}, '"path"'),
+                                 ({"towed_by": tractor, "at": 0, "pivots": (0, 1)}, "the axle"),
+                                 ({"towed_by": clearway.Body("x", self.model, path[:5]), "at": 0,
+                                   "pivots": (1, 0)}, "path")):
+            with self.assertRaisesRegex(clearway.UsageError, words):
+                clearway.follow("t", self.model, path, **arguments)
+        with self.assertRaisesRegex(clearway.InputError, "goes backwards"):
+            clearway.follow("t", self.model, path[::-1], towed_by="path", at=0, pivots=(8, 0))
+
     def test_a_profile_tells_what_was_not_searched(self):
         front = clearway.follow("front", self.model, self.poses, at=1)
         query = clearway.Query(poses=self.poses, radius=RADIUS, bodies=[front], profile=0.01)

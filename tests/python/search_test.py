@@ -141,6 +141,28 @@ class FindsWhatBruteForceFinds(SceneTest):
         with self.assertRaises(clearway.InputError):  # its corners alone are another model
             clearway.write_report(result, store, square.vertices, self.poses, page, overwrite=True)
 
+    def test_a_model_with_other_axes_is_turned(self):
+        upright = np.array([[2.0, 0.5, 1.0], [-1.0, 0.25, 0.5]])
+        in_file = np.stack([upright[:, 2], -upright[:, 0], -upright[:, 1]], axis=1)
+        np.savetxt(self.folder / "turned.xyz", in_file, "%.17g")
+        turned = clearway.read_model(self.folder / "turned.xyz", forward="-y", up="x")
+        np.testing.assert_array_equal(turned.vertices, upright)
+        self.assertEqual(turned.file_axes, ("-y", "+x"))
+        points = clearway.read_model_points(self.folder / "turned.xyz", forward="-y", up="+x")
+        np.testing.assert_array_equal(points, upright)
+        with self.assertRaisesRegex(clearway.UsageError, "same axis"):
+            clearway.read_model(self.folder / "turned.xyz", forward="z")
+        with self.assertRaisesRegex(clearway.UsageError, "forward"):
+            clearway.read_model(self.folder / "turned.xyz", forward="w")
+        self.search(query=clearway.Query(turned, self.poses, RADIUS, first_pose=True))
+        result = clearway.Result(self.folder / "out.h5")
+        self.assertEqual(result.model_axes(), ("-y", "+x"))
+        clearway.find_conflicts(result, self.poses, model=turned)
+        with self.assertRaisesRegex(clearway.UsageError, "turned the model"):
+            clearway.find_conflicts(result, self.poses, forward="-y")
+        self.search(query=clearway.Query(upright, self.poses, RADIUS, first_pose=True))
+        self.assertEqual(clearway.Result(self.folder / "out.h5").model_axes(), ("+x", "+z"))
+
     def test_a_solid(self):
         corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
         faces = ["0 1 3", "0 3 2", "4 6 7", "4 7 5", "0 4 5", "0 5 1",
@@ -458,6 +480,43 @@ class Inputs(SceneTest):
                                    (clearway.InputError, "no alignment of the name", {"alignment": "b"})):
             with self.assertRaisesRegex(kind, words):
                 clearway.read_alignment(path, **named)
+
+    def test_lines(self):
+        path = self.folder / "route.csv"
+        path.write_text("x,y,station\n0,0,100\n10,0,110\n10,20,130\n")
+        labels, messages = clearway.PoseLabels(), []
+        poses = clearway.read_line(path, step=2, height=3, corner_radius=4, messages=messages,
+                                   labels=labels)
+        self.assertEqual([message.code for message in messages], ["line-rounded"])
+        np.testing.assert_allclose(poses[3, :3, 3], [6, 0, 3], atol=1e-12)
+        turned = 1 / 2  # radians after 2 m of an arc of 4 m
+        np.testing.assert_allclose(poses[4, :2, 0], [np.cos(turned), np.sin(turned)], atol=1e-12)
+        self.assertEqual((labels.station[0], labels.station[-1]), (100, 130))
+        back = clearway.read_line(path, step=2, height=3, corner_radius=4, reverse=True)
+        np.testing.assert_array_equal(back[-1, :3, 3], poses[0, :3, 3])
+        np.testing.assert_array_equal(back[-1, :3, :2], -poses[0, :3, :2])
+        inches = clearway.read_line(path, height=3, corner_radius=0.1, unit="in")
+        np.testing.assert_allclose(inches[-1, :3, 3], [0.254, 0.508, 3], atol=1e-12)
+        for kind, words, named in ((clearway.UsageError, "cant 'inner': expected one of file", {"cant": "inner"}),
+                                   (clearway.UsageError, "corner_radius: expected", {"corner_radius": 0}),
+                                   (clearway.InputError, "turns by 90 degrees", {"height": 1}),
+                                   (clearway.InputError, "no heights", {"corner_radius": 1})):
+            with self.assertRaisesRegex(kind, words):
+                clearway.read_line(path, **named)
+        place = [[x / 10, y / 10, 4 + y / 1000] for x in range(-20, 220) for y in range(-20, 220)]
+        np.savetxt(self.folder / "ground.xyz", place)
+        clearway.convert(self.folder / "ground.xyz", self.folder / "ground.h5", unit="m")
+        store = clearway.Store(self.folder / "ground.h5")
+        on_ground = clearway.read_line(path, corner_radius=4, ground=store, track=1.5)
+        np.testing.assert_allclose(on_ground[:, 2, 3], 4 + on_ground[:, 1, 3] / 100, atol=0.003)
+        np.testing.assert_allclose(on_ground[0, 2, 1], 0.01, atol=0.002)
+        with self.assertRaisesRegex(TypeError, "ground: expected a clearway.Store"):
+            clearway.read_line(path, corner_radius=4, ground="ground.h5", track=1.5)
+        with self.assertRaisesRegex(clearway.UsageError, "both or neither"):
+            clearway.read_line(path, corner_radius=4, ground=store)
+        with self.assertRaises(clearway.InputError) as refused:
+            clearway.read_line(path, height=1)
+        self.assertEqual(refused.exception.remedy, "round_corners")
 
 
 if __name__ == "__main__":

@@ -5,15 +5,17 @@ class App;
 }
 
 /// Each function adds one subcommand: its options, and the callback that runs it. A callback sets
-/// `exit_code` where success is not 0 (run, merge, compare, verify, campaign run) and throws
+/// `exit_code` where success is not 0 (check, run, merge, compare, verify, campaign run) and throws
 /// otherwise.
 namespace clearway::tool {
 
+void add_check(CLI::App& program, int& exit_code);
 void add_convert(CLI::App& program);
 void add_run(CLI::App& program, int& exit_code);
 void add_merge(CLI::App& program, int& exit_code);
 void add_export(CLI::App& program);
 void add_conflicts(CLI::App& program);
+void add_stations(CLI::App& program);
 void add_compare(CLI::App& program, int& exit_code);
 void add_info(CLI::App& program);
 void add_verify(CLI::App& program, int& exit_code);

@@ -9,6 +9,7 @@
 
 #include "clearway/error.hpp"
 #include "cli/commands.hpp"
+#include "cli/steps.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
@@ -21,16 +22,6 @@
 
 namespace clearway::tool {
 namespace {
-
-struct ConvertArguments {
-  std::vector<std::filesystem::path> inputs;
-  std::filesystem::path output;
-  ConvertOptions conversion;
-  LengthOptions lengths;
-  std::string layout = "adaptive";
-  double scale = 0;
-  bool json = false;
-};
 
 std::optional<double> regular_size_of(const std::string& layout) {
   const std::string regular = "regular:";
@@ -79,7 +70,7 @@ nlohmann::ordered_json json_of(const OriginsPathReport& path) {
 }
 
 /// The report as JSON. What only a conversion knows is null for a store that already existed.
-nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertArguments& options,
+nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertCommand& options,
                                double total_seconds) {
   const StoreReader store(options.output);
   const StoreMetadata& metadata = store.metadata();
@@ -126,7 +117,7 @@ std::string unit_clause(const std::filesystem::path& store) {
   return unit == LengthUnit::kUnknown ? "" : ", with coordinates in " + to_string(unit);
 }
 
-void log_report(const ConvertArguments& options, const ConvertReport& report) {
+void log_report(const ConvertCommand& options, const ConvertReport& report) {
   if (report.was_finished) {
     spdlog::info("{}: is the store of these inputs already{}; nothing to do{}",
                  options.output.string(), unit_clause(options.output),
@@ -148,110 +139,115 @@ void log_report(const ConvertArguments& options, const ConvertReport& report) {
       report.confirm_seconds, format_size(report.temporary_bytes));
 }
 
-void run_convert(ConvertArguments& options) {
+}  // namespace
+
+ConvertReport perform(ConvertCommand& options) {
   ConvertOptions& conversion = options.conversion;
   conversion.regular_size = regular_size_of(options.layout);
   if (options.scale != 0) conversion.scale = options.scale;
   options.lengths.convert(1);  // a lever arm is in metres, whatever the unit of the environment
-  const Stopwatch total;
   ConsoleProgress progress;
   watch_call(conversion, progress);
-  const ConvertReport report = convert(options.inputs, options.output, conversion);
+  ConvertReport report = convert(options.inputs, options.output, conversion);
   log_report(options, report);
-  if (options.json) print(text_of_json(json_of(report, options, total.seconds())));
+  return report;
 }
 
-}  // namespace
-
-void add_convert(CLI::App& program) {
-  auto options = std::make_shared<ConvertArguments>();
-  ConvertOptions& conversion = options->conversion;
-  CLI::App* command =
-      program.add_subcommand("convert", "Turn scans into a store, the one file that runs read");
+void add_options(CLI::App& command, ConvertCommand& options) {
+  ConvertOptions& conversion = options.conversion;
   command
-      ->add_option(
-          "INPUT", options->inputs,
+      .add_option(
+          "INPUT", options.inputs,
           "Scans (LAS, LAZ, E57, PLY, PCD, PTX, PTS, 3DTK, text), folders of scans, or - for LAS "
           "or LAZ on standard input")
       ->required();
-  command->add_option("-o,--output", options->output, "The store, an HDF5 file")
+  command.add_option("-o,--output", options.output, "The store, an HDF5 file")
       ->type_name("FILE")
       ->required();
   command
-      ->add_option("--scale", options->scale,
-                   "Step of the stored integers in metres (default: that of the input, else the "
-                   "finest power of ten from 1e-6 to 1e-3 that fits)")
+      .add_option("--scale", options.scale,
+                  "Step of the stored integers in metres (default: that of the input, else the "
+                  "finest power of ten from 1e-6 to 1e-3 that fits)")
       ->group(title_of(OptionGroup::kStore))
       ->type_name("METRES")
       ->transform(positive_length());
-  command->add_option("--cell-points", conversion.cell_points, "Points per cell, 64 to 1048576")
+  command.add_option("--cell-points", conversion.cell_points, "Points per cell, 64 to 1048576")
       ->group(title_of(OptionGroup::kStore))
       ->type_name("N")
       ->capture_default_str();
   command
-      ->add_option("--layout", options->layout,
-                   "adaptive, or regular:SIZE for cubes of that size, for example regular:50cm")
+      .add_option("--layout", options.layout,
+                  "adaptive, or regular:SIZE for cubes of that size, for example regular:50cm")
       ->group(title_of(OptionGroup::kStore))
       ->capture_default_str();
-  add_memory_option(*command, conversion.memory_bytes);
-  add_threads_option(*command, conversion.threads);
-  add_unit_option(*command, "--unit", conversion.unit,
+  add_memory_option(command, conversion.memory_bytes);
+  add_threads_option(command, conversion.threads);
+  add_unit_option(command, "--unit", conversion.unit,
                   "Unit of the coordinates where the inputs name none: m, ft, ift or us-ft "
                   "(default: not known, and taken for metres)")
       ->group(title_of(OptionGroup::kUnits));
   command
-      ->add_flag("--ignore-crs", conversion.ignore_crs,
-                 "Accept coordinates in degrees, and inputs in different units, as they are")
+      .add_flag("--ignore-crs", conversion.ignore_crs,
+                "Accept coordinates in degrees, and inputs in different units, as they are")
       ->group(title_of(OptionGroup::kUnits));
   command
-      ->add_option("--columns", conversion.columns,
-                   "Columns of x, y and z in texts: numbers from 1, or names of the header")
+      .add_option("--columns", conversion.columns,
+                  "Columns of x, y and z in texts: numbers from 1, or names of the header")
       ->group(title_of(OptionGroup::kInputs))
       ->type_name("X,Y,Z")
       ->delimiter(',')
       ->allow_extra_args(false);
   command
-      ->add_option("--origins", conversion.origins,
-                   "Where the scanners stood: CSV with the header first,x,y,z, from source index "
-                   "`first` on (default: what the scans say)")
+      .add_option("--origins", conversion.origins,
+                  "Where the scanners stood: CSV with the header first,x,y,z, from source index "
+                  "`first` on (default: what the scans say)")
       ->group(title_of(OptionGroup::kInputs))
       ->type_name("FILE");
   command
-      ->add_option(
-          "--origins-path", conversion.origins_path,
-          "The path of a moving scanner, a trajectory with times: each point of LAS or LAZ "
-          "was seen from where it is at the point's GPS time")
+      .add_option("--origins-path", conversion.origins_path,
+                  "The path of a moving scanner, a trajectory with times: each point of LAS or LAZ "
+                  "was seen from where it is at the point's GPS time")
       ->group(title_of(OptionGroup::kPath))
       ->type_name("FILE");
   {
-    const GroupScope group(*command, OptionGroup::kPath);
-    options->lengths.add(*command, "--lever-arm", conversion.lever_arm,
-                         "Where the scanner is in the frame of the poses of --origins-path, in "
-                         "metres (default: 0,0,0)");
+    const GroupScope group(command, OptionGroup::kPath);
+    options.lengths.add(command, "--lever-arm", conversion.lever_arm,
+                        "Where the scanner is in the frame of the poses of --origins-path, in "
+                        "metres (default: 0,0,0)");
   }
-  add_options_of_reading(*command, conversion.origins_path_options);
+  add_options_of_reading(command, conversion.origins_path_options);
   command
-      ->add_flag("--skip-unreadable", conversion.skip_unreadable,
-                 "Leave out files that cannot be read, and list them; reads all once more")
+      .add_flag("--skip-unreadable", conversion.skip_unreadable,
+                "Leave out files that cannot be read, and list them; reads all once more")
       ->group(title_of(OptionGroup::kInputs));
-  command->add_flag(
+  command.add_flag(
       "--strict", conversion.strict,
       "Treat warnings as errors: all are shown, and no store is written (exit code 3)");
   CLI::Option* force =
-      command->add_flag("--force", conversion.overwrite, "Overwrite an existing store");
+      command.add_flag("--force", conversion.overwrite, "Overwrite an existing store");
   command
-      ->add_flag(
+      .add_flag(
           "--resume", conversion.resume,
           "Leave a finished store of these inputs as it is; an interrupted conversion starts again")
       ->excludes(force);
-  command->add_flag("--json", options->json, "Print one JSON object about the conversion");
+  command.add_flag("--json", options.json, "Print one JSON object about the conversion");
+}
+
+void add_convert(CLI::App& program) {
+  auto options = std::make_shared<ConvertCommand>();
+  CLI::App* command =
+      program.add_subcommand("convert", "Turn scans into a store, the one file that runs read");
+  add_options(*command, *options);
   command->footer(
       "Needs temporary disk space beside the output: 20 bytes a point, 32 from standard input.\n"
       "Standard input is LAS or LAZ: clearway convert - -o site.h5 < scan.las\n"
       "Example: clearway convert scans/ -o site.h5 --memory 2G");
   command->callback([options] {
-    run_stoppable(options->output, "the same command starts it again, from the beginning",
-                  [&] { run_convert(*options); });
+    run_stoppable(options->output, "the same command starts it again, from the beginning", [&] {
+      const Stopwatch total;
+      const ConvertReport report = perform(*options);
+      if (options->json) print(text_of_json(json_of(report, *options, total.seconds())));
+    });
   });
 }
 

@@ -8,7 +8,7 @@
 #include "clearway/error.hpp"
 #include "clearway/trajectory.hpp"
 #include "cli/commands.hpp"
-#include "cli/ignored/ignored_options.hpp"
+#include "cli/support/ignored_options.hpp"
 #include "cli/run_again.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"

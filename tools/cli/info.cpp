@@ -8,7 +8,7 @@
 
 #include "clearway/trajectory.hpp"
 #include "cli/commands.hpp"
-#include "cli/ignored/ignored_options.hpp"
+#include "cli/support/ignored_options.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/program_json.hpp"
 #include "cli/verdict.hpp"
@@ -106,6 +106,9 @@ ordered_json describe(const ResultReader& result) {
                            {"model_hash", hash_text(h.model_hash)},
                            {"trajectory_hash", hash_text(h.trajectory_hash)}};
   if (h.model_spacing.metres > 0) description["model_spacing"] = h.model_spacing.metres;
+  if (const ModelAxes axes = h.model_axes.axes; axes.need_turn()) {
+    description["model_axes"] = {{"forward", name_of(axes.forward)}, {"up", name_of(axes.up)}};
+  }
   if (!h.bodies.empty()) description["bodies"] = h.bodies;
   const Answer answer = h.model_solids > 0 ? answer_of(result) : counted_answer(result);
   description["verdict"] = name_of(answer.verdict());

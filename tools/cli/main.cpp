@@ -9,11 +9,13 @@ namespace clearway::tool {
 namespace {
 
 void add_commands(CLI::App& program, int& exit_code) {
+  add_check(program, exit_code);
   add_convert(program);
   add_run(program, exit_code);
   add_merge(program, exit_code);
   add_export(program);
   add_conflicts(program);
+  add_stations(program);
   add_compare(program, exit_code);
   add_info(program);
   add_verify(program, exit_code);

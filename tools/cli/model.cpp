@@ -260,6 +260,7 @@ void add_model(CLI::App& program) {
       ->excludes(spacing);
   options->lengths.add(*command, "--above,--model-above", options->how.above,
                        "Leave out the points whose z is below this", LengthRange::kAny);
+  add_turn_options(*command, options->how);
   command->add_flag("--force", options->force, "Overwrite an existing output");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->footer(

@@ -15,6 +15,7 @@
 #include "cli/conflicts/conflict_inputs.hpp"
 #include "cli/input_roles.hpp"
 #include "cli/run_again.hpp"
+#include "cli/steps.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
@@ -24,21 +25,13 @@
 #include "io/files/pending_file.hpp"
 
 namespace clearway::tool {
-namespace {
-
-struct ReportCommand : ConflictCommand {
-  std::filesystem::path result, environment, model, vehicle, trajectory, output;
-  ModelOptions model_options;
-  ReportOptions report;
-  std::vector<ParsedLength> classes;
-  bool json = false;
-  const CLI::App* command = nullptr;  ///< the command that has these options
-};
 
 std::string now_in_utc() {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(now));
 }
+
+namespace {
 
 std::string file_name(const std::filesystem::path& path) {
   const std::filesystem::path name = path.filename();
@@ -123,31 +116,6 @@ void check_model_or_vehicle(const ReportCommand& options) {
   if (options.vehicle.empty()) check_is_model(options.model);
 }
 
-void run_report(ReportCommand& options) {
-  ConsoleProgress progress;
-  options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
-  options.find.stop = &stop_flag();
-  check_model_or_vehicle(options);
-  check_is_trajectory(options.trajectory);
-  const Result result(options.result);
-  check_kind_of_model(result, options.model, options.vehicle);
-  const Store store(options.environment);
-  if (auto warning = options.lengths.convert_for(store)) {
-    options.report.warnings.push_back(std::move(*warning));
-  }
-  set_environment_unit(store, options.trajectory_options, options.model_options);
-  for (const ParsedLength& length : options.classes) {
-    options.report.classes.push_back(length.in_units_of(store.metres_per_unit()));
-  }
-  options.report.conflicts = options.find;
-  const Query query = read_query_again(options, result, store);
-  name_files(options);
-  const ReportSummary summary =
-      write_report(result, store, query.model, query.poses, options.output, options.report);
-  log_summary(options, summary, result);
-  if (options.json) print(summary.facts + "\n");
-}
-
 void add_report_inputs(CLI::App& command, ReportCommand& options) {
   command.add_option("RESULT", options.result, "Result of clearway run")
       ->type_name("FILE")
@@ -207,26 +175,58 @@ void add_page_options(CLI::App& command, ReportOptions& options) {
 
 }  // namespace
 
+ReportSummary perform(ReportCommand& options) {
+  ConsoleProgress progress;
+  options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
+  options.find.stop = &stop_flag();
+  check_model_or_vehicle(options);
+  check_is_trajectory(options.trajectory);
+  const Result result(options.result);
+  check_kind_of_model(result, options.model, options.vehicle);
+  check_axes(result, options);
+  const Store store(options.environment);
+  if (auto warning = options.lengths.convert_for(store)) {
+    options.report.warnings.push_back(std::move(*warning));
+  }
+  set_environment_unit(store, options.trajectory_options, options.model_options);
+  for (const ParsedLength& length : options.classes) {
+    options.report.classes.push_back(length.in_units_of(store.metres_per_unit()));
+  }
+  options.report.conflicts = options.find;
+  const Query query = read_query_again(options, result, store);
+  name_files(options);
+  ReportSummary summary =
+      write_report(result, store, query.model, query.poses, options.output, options.report);
+  log_summary(options, summary, result);
+  return summary;
+}
+
+void add_options(CLI::App& command, ReportCommand& options) {
+  add_report_inputs(command, options);
+  add_classes(command, options);
+  add_page_options(command, options.report);
+  add_conflict_options(command, options);
+  add_axis_options(command, options);
+  command.add_flag("--json", options.json, "Print what the page says as one JSON object");
+  options.command = &command;
+}
+
 void add_report(CLI::App& program) {
   const auto options = std::make_shared<ReportCommand>();
   CLI::App* command = program.add_subcommand(
       "report", "Write a page that shows what a run found: one HTML file for any browser");
-  add_report_inputs(*command, *options);
-  add_classes(*command, *options);
-  add_page_options(*command, options->report);
-  add_conflict_options(*command, *options);
-  add_axis_options(*command, options->find);
-  command->add_flag("--json", options->json, "Print what the page says as one JSON object");
+  add_options(*command, *options);
   command->footer(
       "Store, model and trajectory are those of the run: they are compared by their hashes.\n"
       "Ask the run for --first-pose, --clearance and --profile: the page shows all of them.\n"
       "Example: clearway report out.h5 --env site.h5 --model car.ply --trajectory path.txt -o "
       "report.html");
-  options->command = command;
   command->callback([options] {
     run_stoppable(options->output, kStartsAgain, [&] {
-      advising_to_run_again(*options->command, {{options->result, options->trajectory}},
-                            [&] { run_report(*options); });
+      advising_to_run_again(*options->command, {{options->result, options->trajectory}}, [&] {
+        const ReportSummary summary = perform(*options);
+        if (options->json) print(summary.facts + "\n");
+      });
     });
   });
 }

@@ -24,6 +24,7 @@
 #include "cli/commands.hpp"
 #include "cli/input_roles.hpp"
 #include "cli/run_options.hpp"
+#include "cli/steps.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
@@ -308,7 +309,9 @@ std::string unseen_sentences(const SearchReport& report, const Query& query,
   return unseen_text(find_unseen_groups(Result(options.output), query.poses, how), report, unit);
 }
 
-Verdict run(RunOptions& options) {
+}  // namespace
+
+RunOutcome perform(RunOptions& options) {
   const Stopwatch total;
   MemoryWatch memory;
   ConsoleProgress progress;
@@ -338,23 +341,19 @@ Verdict run(RunOptions& options) {
       in_threads(options.search.threads, [&] { return read_query(options, store, path.labels); });
   path.chainage = chainage_of(query.poses);
   ProgramReport program{.inputs_seconds = total.seconds()};
-  const SearchReport report = search(store, query, options.output, options.search);
+  SearchReport report = search(store, query, options.output, options.search);
   program.total_seconds = total.seconds();
   log_report(report, options, symbol_of_unit(store.length_unit()), program.total_seconds);
   program.peak_host_bytes = memory.peak_bytes();
   const std::string unit = symbol_of_unit(store.length_unit());
   const std::string sentence = verdict_text(report, path, unit, caveat_of(report.warnings.size())) +
                                unseen_sentences(report, query, options, unit);
-  if (options.json) {
-    spdlog::info("{}", sentence);
-    print(text_of_json(json_of(report, options, path, program)));
-  } else {
-    print_verdict(sentence);
-  }
-  return report.verdict();
+  RunOutcome outcome;
+  outcome.sentence = sentence;
+  if (options.json) outcome.json = json_of(report, options, path, program);
+  outcome.report = std::move(report);
+  return outcome;
 }
-
-}  // namespace
 
 void add_run(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<RunOptions>();
@@ -381,8 +380,14 @@ void add_run(CLI::App& program, int& exit_code) {
       "--first-pose -o out.h5");
   command->callback([options, &exit_code] {
     run_stoppable(options->output, kHowToResume, [&] {
-      const Verdict verdict = run(*options);
-      if (options->fail_on_collision) exit_code = exit_code_of(verdict);
+      const RunOutcome outcome = perform(*options);
+      if (options->json) {
+        spdlog::info("{}", outcome.sentence);
+        print(text_of_json(outcome.json));
+      } else {
+        print_verdict(outcome.sentence);
+      }
+      if (options->fail_on_collision) exit_code = exit_code_of(outcome.report.verdict());
     });
   });
 }

@@ -5,31 +5,16 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <optional>
-#include <string_view>
 
 #include "cli/run_options.hpp"
 #include "cli/support/options.hpp"
+#include "cli/support/shell_words.hpp"
 #include "core/util/format.hpp"
 #include "io/result/result.hpp"
 
 namespace clearway::tool {
 namespace {
-
-/// The text, quoted where a shell would not take it for one word.
-std::string shell_word(const std::string& text) {
-  constexpr std::string_view kPlain = "_./:=,+@%-";
-  const bool plain = !text.empty() && std::ranges::all_of(text, [&](unsigned char c) {
-    return std::isalnum(c) != 0 || kPlain.find(static_cast<char>(c)) != std::string_view::npos;
-  });
-  if (plain) return text;
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
-}
-
-std::string shell_word(const std::filesystem::path& path) { return shell_word(path.string()); }
 
 /// The long name of an option with its hyphens; empty for a positional argument.
 std::string name_of(const CLI::Option& option) {
@@ -52,6 +37,8 @@ std::string reading_options(const CLI::App& command) {
     const std::string name = name_of(*option);
     const CLI::Option* same = name.empty() ? nullptr : run.get_option_no_throw(name);
     if (same == nullptr || option->empty() || name == "--vehicle") continue;
+    // Here they say how the model is seen, and to a run how it is turned.
+    if (name == "--forward" || name == "--up") continue;
     constexpr std::array kGroups{OptionGroup::kModel, OptionGroup::kPath, OptionGroup::kUnits};
     const bool reads = std::ranges::any_of(
         kGroups, [same](OptionGroup group) { return same->get_group() == title_of(group); });
@@ -71,6 +58,9 @@ std::string model_words(const ResultHeader& header, const CLI::App& command) {
                      (!file.empty() ? shell_word(file)
                       : one         ? "MODEL"
                                     : "VEHICLE.json");
+  if (const ModelAxes axes = header.model_axes.axes; axes.need_turn()) {
+    text += std::string(" --forward ") + name_of(axes.forward) + " --up " + name_of(axes.up);
+  }
   if (header.model_solids > 0) return text + " --model-as solid";
   return header.model_triangles == 0 && one ? text + " --model-as points" : text;
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "clearway/error.hpp"
-#include "cli/ignored/ignored_options.hpp"
+#include "cli/support/ignored_options.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "core/geometry/angle.hpp"
@@ -141,6 +141,7 @@ void add_inputs(CLI::App& command, RunOptions& options) {
       ->type_name("KIND")
       ->check(CLI::IsMember({"auto", "surface", "solid", "points"}));
   add_model_options(command, options.model_options, options.lengths);
+  add_turn_options(command, options.model_options);
   add_trajectory_options(command, options.trajectory_options, options.lengths);
 }
 

@@ -36,6 +36,7 @@ Scenes (environment points, model points, poses; the defaults):
   plant    350,109,065   434,700   398,999   the same, larger, the path sampled every 2 mm
   mine     806,183,400   100,000    17,795   galleries scanned stop and go; a front loader
   tunnel    18,919,000    28,622    19,392   a railway tunnel with open ends; a wagon
+  road      20,000,000   100,000     4,000   a road through a village; a lorry with a high load
 
 Examples:
   clearway scene hall -o hall --points 5000000
@@ -64,6 +65,21 @@ void check_disk_space(const std::filesystem::path& folder, std::uint64_t points)
     throw ResourceError(folder.string() + ": the environment needs " +
                         format_size(points * kBytesAPoint) + ", the disk has " + format_size(free) +
                         " free; fewer --points, or --environment - to pipe it on");
+  }
+}
+
+/// Writes the environment to standard output. Where that fails, the files of the scene are removed,
+/// because they belong to no environment.
+void pipe_environment(const scene::Scene& made, const SceneOptions& options, File& pipe,
+                      ConsoleProgress& progress) {
+  try {
+    scene::write_environment(made, options.seed, pipe, options.threads, progress);
+  } catch (...) {
+    for (const char* name : {"model.ply", "trajectory.txt", "origins.csv"}) {
+      std::error_code error;
+      std::filesystem::remove(options.folder / name, error);
+    }
+    throw;
   }
 }
 
@@ -101,9 +117,7 @@ void make_scene_files(const SceneOptions& options) {
   trajectory.publish();
   origins.publish();
   // Last, so that whoever reads the pipe finds the origins of its points.
-  if (to_stdout) {
-    scene::write_environment(*made, options.seed, *to_stdout, options.threads, progress);
-  }
+  if (to_stdout) pipe_environment(*made, options, *to_stdout, progress);
   spdlog::info("{}: {}, {}, {}", options.folder.string(),
                counted(sizes.points, "environment point"),
                counted(sizes.model_points, "model point"), counted(sizes.poses, "pose"));
@@ -114,13 +128,13 @@ void make_scene_files(const SceneOptions& options) {
 void add_scene(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "scene",
-      "Make a synthetic scene like those of the paper: environment.las, model.ply,\n"
+      "Make a synthetic scene, four of them like those of the paper: environment.las, model.ply,\n"
       "trajectory.txt and origins.csv, the places of the scanner. In metres, z up. The same seed "
       "gives the same bytes.");
   const auto options = std::make_shared<SceneOptions>();
   command->add_option("kind", options->kind, "Which scene, see below")
       ->required()
-      ->check(CLI::IsMember({"hall", "plant", "mine", "tunnel"}));
+      ->check(CLI::IsMember({"hall", "plant", "mine", "tunnel", "road"}));
   command->add_option("-o,--output", options->folder, "Folder for the files, created if missing")
       ->required()
       ->type_name("DIR");

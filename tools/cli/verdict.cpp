@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/ignored/ignored_options.hpp"
+#include "cli/support/ignored_options.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/query/spacing_text.hpp"
 #include "core/util/format.hpp"

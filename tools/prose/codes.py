@@ -6,12 +6,12 @@ LIST = "docs/guide/warnings.md"
 SOURCES = ("src", "tools/cli")
 ENDINGS = (".cpp", ".hpp", ".cu", ".cuh")
 
-# Literals of this form that are no codes: names of formats, units, clocks, encodings and rails, and the reasons of a
-# verdict, which docs/guide/results.md explains.
+# Literals of this form that are no codes: names of formats, units, clocks, encodings, rails and programs, and the
+# reasons of a verdict, which docs/guide/results.md explains.
 OTHERS = {
     "inside-rail", "left-rail", "not-scanned", "outside-rail", "question-in-doubt", "right-rail",
     "ft-us", "int-ft", "international-feet", "international-foot", "intl-ft", "pose-wxyz",
-    "pose-xyzw", "unix-none", "us-ft", "us-survey-feet", "us-survey-foot", "utf-8", "week-seconds",
+    "pose-xyzw", "unix-none", "us-ft", "us-survey-feet", "us-survey-foot", "utf-8", "week-seconds", "xdg-open",
 }
 KEBAB = re.compile(r'"([a-z]+[0-9]*(?:-[a-z0-9]+)+)"')
 GIVEN = re.compile(r'\b(?:warn|warning|note)\w*\(\s*(?:\w+,\s*)?"([a-z0-9-]+)"')

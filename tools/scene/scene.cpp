@@ -18,7 +18,7 @@ Pose pose_along(const Vec3& position, const Vec3& forward, const Attitude& attit
 }
 
 std::string_view name_of(Kind kind) {
-  constexpr std::string_view kNames[] = {"hall", "plant", "mine", "tunnel"};
+  constexpr std::string_view kNames[] = {"hall", "plant", "mine", "tunnel", "road"};
   return kNames[static_cast<int>(kind)];
 }
 
@@ -33,7 +33,8 @@ Sizes full_sizes(Kind kind) {
   constexpr Sizes kSizes[] = {{55872714, 214489, 17234},
                               {350109065, 434700, 398999},
                               {806183400, 100000, 17795},
-                              {18919000, 28622, 19392}};
+                              {18919000, 28622, 19392},
+                              {20000000, 100000, 4000}};
   return kSizes[static_cast<int>(kind)];
 }
 
@@ -50,6 +51,8 @@ std::unique_ptr<const Scene> make_scene(Kind kind, const Sizes& sizes, std::uint
       return make_mine(sizes, seed);
     case Kind::kTunnel:
       return make_tunnel(sizes, seed);
+    case Kind::kRoad:
+      return make_road(sizes, seed);
   }
   throw UsageError("no such kind of scene");
 }

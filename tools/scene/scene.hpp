@@ -24,9 +24,10 @@ struct Attitude {
 /// but for the attitude. Orthonormal to rounding.
 Pose pose_along(const Vec3& position, const Vec3& forward, const Attitude& attitude);
 
-enum class Kind { kHall, kPlant, kMine, kTunnel };
+enum class Kind { kHall, kPlant, kMine, kTunnel, kRoad };
 
-inline constexpr Kind kAllKinds[] = {Kind::kHall, Kind::kPlant, Kind::kMine, Kind::kTunnel};
+inline constexpr Kind kAllKinds[] = {Kind::kHall, Kind::kPlant, Kind::kMine, Kind::kTunnel,
+                                     Kind::kRoad};
 
 std::string_view name_of(Kind kind);
 /// The kind of scene with this name. Throws UsageError where there is none.
@@ -38,7 +39,8 @@ struct Sizes {
   std::uint64_t poses;         ///< >= 1
 };
 
-/// The sizes of the data set that the scene resembles. Source: the paper, table 1.
+/// The sizes of the data set that the scene resembles (the paper, table 1). The road resembles none
+/// of them; its sizes are those of a drive with a car-mounted scanner.
 Sizes full_sizes(Kind kind);
 
 /// A synthetic environment, a model and its trajectory: the same for the same kind, sizes and seed,

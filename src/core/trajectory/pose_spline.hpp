@@ -19,6 +19,13 @@ class PositionCurve {
     return 3 * (rest * rest * moves_[0] + 2 * t * rest * moves_[1] + t * t * moves_[2]);
   }
 
+  /// How far the curve has gone from its first position at 0 <= t <= 1, in metres.
+  Eigen::Vector3d displacement(double t) const {
+    const double rest = 1 - t;
+    return (1 - rest * rest * rest) * moves_[0] + t * t * (3 - 2 * t) * moves_[1] +
+           t * t * t * moves_[2];
+  }
+
  private:
   friend class PoseSpline;
 

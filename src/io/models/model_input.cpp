@@ -10,6 +10,7 @@
 #include "clearway/error.hpp"
 #include "clearway/model.hpp"
 #include "clearway/outline.hpp"
+#include "core/geometry/axes.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
@@ -154,6 +155,21 @@ void scale(ModelInput& input, const ModelOptions& options) {
        "its unit is " + shown(unit) + " m, the environment's " + shown(options.environment_unit) +
            " m: its coordinates are converted",
        {{"metres", unit}});
+}
+
+/// Turns the model so that its x axis points ahead and its z axis up.
+void turn(ModelInput& input, const ModelOptions& options) {
+  const ModelAxes axes{options.forward, options.up};
+  if (!axes.need_turn()) return;
+  for (Vec3& p : input.mesh.vertices) p = turned(p, axes);
+  tell(input.messages, input,
+       std::string("its ") + name_of(axes.forward) + " axis points ahead and its " +
+           name_of(axes.up) + " axis up: it is turned so that these are x and z");
+}
+
+void check_axes(const ModelOptions& options) {
+  if (!along_one_line(options.forward, options.up)) return;
+  throw UsageError("forward and up lie along the same axis; expected two different axes");
 }
 
 /// Adds remarks on a mesh, or on single vertices in a mesh's file, to the messages.
@@ -317,6 +333,7 @@ ModelInput read_model_input(const std::filesystem::path& path, const ModelOption
     throw UsageError(path.string() + ": units of " + shown(options.unit.metres()) + " m and " +
                      shown(options.environment_unit) + " m; expected numbers above 0");
   }
+  check_axes(options);
   const bool with_faces = !options.vertices_only;
   ModelInput input;
   input.path = path;
@@ -329,6 +346,7 @@ ModelInput read_model_input(const std::filesystem::path& path, const ModelOption
     refuse(path.string(), "the model has no points; expected one at least");
   }
   scale(input, options);
+  turn(input, options);
   tell_remarks(input);
   if (mesh && !input.is_mesh() && input.between_vertices.empty()) {
     tell(input.messages, input,
@@ -341,6 +359,7 @@ ModelInput read_model_input(const std::filesystem::path& path, const ModelOption
 }
 
 void check_model_options(const ModelOptions& options) {
+  check_axes(options);
   const bool surface = options.as == ModelAs::kSurface || options.as == ModelAs::kSolid;
   if (!surface || !options.asks_for_points()) return;
   throw UsageError(
@@ -407,6 +426,7 @@ Model read_model(const std::filesystem::path& path, const ModelOptions& options,
     default:
       shape = points_of(input, options, told);
   }
+  shape.file_axes = {options.forward, options.up};
   if (messages) messages->insert(messages->end(), told.begin(), told.end());
   return shape;
 }

@@ -48,7 +48,7 @@ std::string contents_of(const ModelInput& input);
 /// The warning that a mesh has vertices which nothing refers to.
 Message loose_vertices_warning(const ModelInput& input, std::uint64_t vertices);
 
-/// Throws UsageError where options of points are combined with a surface.
+/// Throws UsageError for parallel axes, and where options of points are combined with a surface.
 void check_model_options(const ModelOptions& options);
 
 /// How a file is searched, never kAuto. This is the only place that decides what a mesh becomes.

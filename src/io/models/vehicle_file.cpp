@@ -3,6 +3,8 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
+#include <list>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -12,6 +14,7 @@
 #include "clearway/error.hpp"
 #include "clearway/vehicle.hpp"
 #include "core/geometry/point_box.hpp"
+#include "core/trajectory/follow/towed.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
@@ -40,6 +43,30 @@ BodyMount pivots_of(const KeyReader& key, double environment_unit) {
   return pivots;
 }
 
+/// A place on a body's x axis, where a hitch or an axle may be.
+double hitch_at(const KeyReader& key, double environment_unit) {
+  const double x = length_at(key, environment_unit);
+  if (!(std::abs(x) <= kFarthestHitch)) key.refuse("expected at most 1000 km from the origin");
+  return x;
+}
+
+BodyMount towed_of(const KeyReader& key, double environment_unit) {
+  key.allow({"by", "at", "pivots"});
+  const KeyReader both = key.at("pivots");
+  const std::vector<KeyReader> pivots = both.elements();
+  if (pivots.size() != 2) {
+    both.refuse("expected two lengths, the hitch and the axle, for example [9.2, 1.4]");
+  }
+  const BodyTowed towed{.by = key.has("by") ? key.at("by").text() : "",
+                        .at = hitch_at(key.at("at"), environment_unit),
+                        .hitch = hitch_at(pivots[0], environment_unit),
+                        .axle = hitch_at(pivots[1], environment_unit)};
+  if (!(towed.hitch > towed.axle)) {
+    both.refuse("expected the hitch, which comes first, ahead of the axle, for example [9.2, 1.4]");
+  }
+  return towed;
+}
+
 FileUnit unit_of(const KeyReader& key) {
   const std::string name = key.text();
   if (const auto unit = file_unit_of(name)) return *unit;
@@ -60,12 +87,28 @@ std::string name_of(const KeyReader& key, std::set<std::string>& names) {
 void set_motion(const KeyReader& body, const std::filesystem::path& folder, double environment_unit,
                 BodyEntry& entry) {
   const bool has_at = body.has("at"), has_pivots = body.has("pivots");
-  if (has_at + has_pivots + body.has("trajectory") > 1) {
-    body.refuse("a body moves in one way: expected one of at, pivots and trajectory, or none");
+  const bool has_towed = body.has("towed"), has_trajectory = body.has("trajectory");
+  if (has_at + has_pivots + has_towed + has_trajectory > 1) {
+    body.refuse(
+        "a body moves in one way: expected one of at, pivots, towed and trajectory, or none");
   }
   if (has_at) entry.mount = BodyStation{length_at(body.at("at"), environment_unit)};
   if (has_pivots) entry.mount = pivots_of(body.at("pivots"), environment_unit);
-  if (body.has("trajectory")) entry.trajectory = folder / body.at("trajectory").text();
+  if (has_towed) entry.mount = towed_of(body.at("towed"), environment_unit);
+  if (!has_trajectory) return;
+  entry.mount = BodyOwnPoses{};
+  entry.trajectory = folder / body.at("trajectory").text();
+}
+
+/// Which body of the file tows which.
+Towing towing_of(const std::vector<BodyEntry>& entries) {
+  std::vector<std::string> names;
+  std::vector<BodyMount> mounts;
+  for (const BodyEntry& entry : entries) {
+    names.push_back(entry.name);
+    mounts.push_back(entry.mount);
+  }
+  return clearway::towing_of(names, mounts);
 }
 
 }  // namespace
@@ -79,7 +122,7 @@ std::vector<BodyEntry> read_vehicle_file(const std::filesystem::path& path,
   std::set<std::string> names;
   const std::filesystem::path folder = path.parent_path();
   for (const KeyReader& body : bodies) {
-    body.allow({"name", "model", "model_unit", "at", "pivots", "trajectory"});
+    body.allow({"name", "model", "model_unit", "at", "pivots", "towed", "trajectory"});
     BodyEntry entry{.at = body,
                     .name = name_of(body.at("name"), names),
                     .model = folder / body.at("model").text(),
@@ -87,6 +130,9 @@ std::vector<BodyEntry> read_vehicle_file(const std::filesystem::path& path,
     if (body.has("model_unit")) entry.model_unit = unit_of(body.at("model_unit"));
     set_motion(body, folder, environment_unit, entry);
     entries.push_back(std::move(entry));
+  }
+  if (const auto fault = towing_of(entries).fault) {
+    entries[fault->body].at.at("towed").at("by").refuse(fault->what);
   }
   return entries;
 }
@@ -113,19 +159,23 @@ class VehicleReader {
 
  public:
   VehicleReader(const std::filesystem::path& file, const std::vector<Pose>& path,
-                const VehicleOptions& options, std::vector<Message>* warnings)
+                const VehicleOptions& options, std::vector<Message>* warnings,
+                FollowedPath* last = nullptr)
       : file_(file),
         path_(path),
         options_(options),
         threads_(options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency()),
-        warnings_(warnings) {}
+        warnings_(warnings),
+        last_(last) {}
 
-  Body read(const BodyEntry& entry) {
-    Body body{.name = entry.name, .model = {}, .poses = {}, .path_pose = {}};
+  Model read_model_of(const BodyEntry& entry) {
     ModelOptions how = options_.model;
     if (entry.model_unit.is_known()) how.unit = entry.model_unit;
-    body.model =
-        named(entry.at.at("model"), [&] { return read_model(entry.model, how, warnings_); });
+    return named(entry.at.at("model"), [&] { return read_model(entry.model, how, warnings_); });
+  }
+
+  /// Gives a body that is not towed its poses.
+  void place(const BodyEntry& entry, Body& body) {
     const auto* station = std::get_if<BodyStation>(&entry.mount);
     if (!entry.trajectory.empty()) {
       read_own(entry, body);
@@ -133,9 +183,33 @@ class VehicleReader {
       body.poses = path_;
       number_poses(body);
     } else {
-      follow(entry, body);
+      take(entry,
+           named(entry.at, [&] { return follow_path(stations(entry), entry.mount, threads_); }),
+           body);
     }
-    return body;
+  }
+
+  /// Gives the towed bodies their poses. bodies: one for each entry, of which those that are not
+  /// towed have theirs.
+  void place_towed(const std::vector<BodyEntry>& entries, const Towing& towing,
+                   std::vector<Body>& bodies) {
+    if (towing.order.empty()) return;
+    std::vector<MountedBody> mounted;
+    for (const BodyEntry& entry : entries) {
+      mounted.push_back({entry.mount, &stations(entries[towing.order.front()]), {}});
+    }
+    std::list<PathStations> own;
+    for (const auto& tower : towing.tower) {
+      if (!tower || entries[*tower].trajectory.empty()) continue;
+      named(entries[*tower].at.at("trajectory"),
+            [&] { own.emplace_back(bodies[*tower].poses, threads_); });
+      mounted[*tower].path = &own.back();
+    }
+    const BodyEntry& first = entries[towing.order.front()];
+    std::vector<FollowedPath> followed = named(first.at.at("towed"), [&] {
+      return follow_towed(mounted, towing, options_.model.environment_unit, threads_);
+    });
+    for (const std::size_t i : towing.order) take(entries[i], std::move(followed[i]), bodies[i]);
   }
 
  private:
@@ -156,10 +230,10 @@ class VehicleReader {
     std::iota(body.path_pose.begin(), body.path_pose.end(), 0);
   }
 
-  void follow(const BodyEntry& entry, Body& body) {
-    const PathStations& path = named(entry.at, [&]() -> const PathStations& { return stations(); });
-    FollowedPath followed =
-        named(entry.at, [&] { return follow_path(path, entry.mount, threads_); });
+  /// Gives a body the poses that were found for it.
+  void take(const BodyEntry& entry, FollowedPath followed, Body& body) {
+    const PathStations& path = stations(entry);
+    if (followed.pushed_from) entry.at.at("towed").refuse(pushed_text(followed, path));
     const std::string name = file_.string() + ": " + entry.at.key() + " (" + entry.name + ")";
     if (warnings_ != nullptr) {
       for (Message& doubt : doubts_about(followed, path, entry.mount, name)) {
@@ -173,12 +247,13 @@ class VehicleReader {
     }
     body.poses = std::move(followed.poses);
     body.path_pose.assign(followed.of.begin(), followed.of.end());
+    if (last_ != nullptr) *last_ = std::move(followed);
   }
 
   /// The stations of the path, computed once when the first body without a trajectory of its own
-  /// needs them.
-  const PathStations& stations() {
-    if (!stations_) stations_.emplace(path_, threads_);
+  /// needs them, which an error names.
+  const PathStations& stations(const BodyEntry& entry) {
+    if (!stations_) named(entry.at, [&] { stations_.emplace(path_, threads_); });
     return *stations_;
   }
 
@@ -187,6 +262,7 @@ class VehicleReader {
   const VehicleOptions& options_;
   int threads_;
   std::vector<Message>* warnings_;
+  FollowedPath* last_;  ///< receives what is odd about the body that was placed last; may be null
   std::optional<PathStations> stations_;
 };
 
@@ -204,10 +280,42 @@ struct Stretch {
 };
 
 /// A body that follows the path, placed on a straight path.
-struct MountedBody {
+struct BodyAhead {
   const BodyEntry& entry;
   Stretch body, pivots;
 };
+
+/// How far the origin of each body is ahead of the path's pose on a straight path; none for bodies
+/// with a trajectory of their own, and for those that they tow.
+std::vector<std::optional<double>> origins_ahead(const std::vector<BodyEntry>& entries,
+                                                 const Towing& towing) {
+  std::vector<std::optional<double>> ahead;
+  for (const BodyEntry& entry : entries) {
+    const auto* station = std::get_if<BodyStation>(&entry.mount);
+    ahead.push_back(station != nullptr ? station->at : 0);
+    if (!entry.trajectory.empty()) ahead.back().reset();
+  }
+  for (const std::size_t i : towing.order) {
+    const auto& tow = std::get<BodyTowed>(entries[i].mount);
+    const std::optional<double> tower = towing.tower[i] ? ahead[*towing.tower[i]] : 0.0;
+    if (tower) {
+      ahead[i] = *tower + tow.at - tow.hitch;
+    } else {
+      ahead[i].reset();
+    }
+  }
+  return ahead;
+}
+
+BodyAhead placed_ahead(const BodyEntry& entry, double at, const Box& box) {
+  BodyAhead one{entry, {at + box.lo.x, at + box.hi.x}, {at, at}};
+  if (const auto* pivots = std::get_if<BodyPivots>(&entry.mount)) {
+    one.pivots = {std::min(pivots->front, pivots->rear), std::max(pivots->front, pivots->rear)};
+  } else if (const auto* tow = std::get_if<BodyTowed>(&entry.mount)) {
+    one.pivots = {at + tow->axle, at + tow->hitch};
+  }
+  return one;
+}
 
 double horizontal_length(const Box& box) {
   return std::max(box.hi.x - box.lo.x, box.hi.y - box.lo.y);
@@ -216,7 +324,7 @@ double horizontal_length(const Box& box) {
 /// A body is far from the vehicle where this many times the longest body fits in between.
 constexpr double kFarLengths = 3;
 
-void warn_far(const std::filesystem::path& file, const MountedBody& one, const std::string& what,
+void warn_far(const std::filesystem::path& file, const BodyAhead& one, const std::string& what,
               double gap, double longest, std::vector<Message>& warnings) {
   warnings.push_back(
       {Message::Severity::kWarning,
@@ -234,41 +342,37 @@ void warn_far(const std::filesystem::path& file, const MountedBody& one, const s
 /// searched.
 void warn_of_far_bodies(const std::filesystem::path& file, const std::vector<BodyEntry>& entries,
                         const std::vector<Body>& bodies, std::vector<Message>& warnings) {
-  std::vector<MountedBody> apart;
+  std::vector<BodyAhead> apart;
   double longest = 0;
+  const auto ahead = origins_ahead(entries, towing_of(entries));
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (bodies[i].model.empty() || !entries[i].trajectory.empty()) continue;
+    if (bodies[i].model.empty() || !ahead[i]) continue;
     const Box box = box_of(bodies[i].model.vertices);
     longest = std::max(longest, horizontal_length(box));
-    const auto* station = std::get_if<BodyStation>(&entries[i].mount);
-    const double at = station != nullptr ? station->at : 0;
-    MountedBody one{entries[i], {at + box.lo.x, at + box.hi.x}, {at, at}};
-    if (const auto* pivots = std::get_if<BodyPivots>(&entries[i].mount)) {
-      one.pivots = {std::min(pivots->front, pivots->rear), std::max(pivots->front, pivots->rear)};
-    }
-    apart.push_back(one);
+    apart.push_back(placed_ahead(entries[i], *ahead[i], box));
   }
   const double far = kFarLengths * longest;
   if (!(far > 0)) return;
-  for (const MountedBody& one : apart) {
-    if (std::holds_alternative<BodyPivots>(one.entry.mount) && one.body.gap_to(one.pivots) > far) {
+  for (const BodyAhead& one : apart) {
+    if (!std::holds_alternative<BodyStation>(one.entry.mount) &&
+        one.body.gap_to(one.pivots) > far) {
       warn_far(file, one, "the pivots and the model are", one.body.gap_to(one.pivots), longest,
                warnings);
     }
   }
   // The vehicle grows from the path's pose, as a train does wagon by wagon.
   Stretch vehicle{0, 0};
-  const auto near = [&](const MountedBody& one) { return vehicle.gap_to(one.body) <= far; };
+  const auto near = [&](const BodyAhead& one) { return vehicle.gap_to(one.body) <= far; };
   for (auto next = std::ranges::find_if(apart, near); next != apart.end();
        next = std::ranges::find_if(apart, near)) {
     vehicle.add(next->body);
-    std::vector<MountedBody> rest;
+    std::vector<BodyAhead> rest;
     for (auto one = apart.begin(); one != apart.end(); ++one) {
       if (one != next) rest.push_back(*one);
     }
     apart.swap(rest);
   }
-  for (const MountedBody& one : apart) {
+  for (const BodyAhead& one : apart) {
     warn_far(file, one, "the path's pose and the nearest other body are", vehicle.gap_to(one.body),
              longest, warnings);
   }
@@ -281,9 +385,52 @@ std::vector<Body> read_vehicle(const std::filesystem::path& file, const std::vec
   VehicleReader reader(file, path, options, warnings);
   std::vector<Body> bodies;
   const std::vector<BodyEntry> entries = read_vehicle_file(file, options.model.environment_unit);
-  for (const BodyEntry& entry : entries) bodies.push_back(reader.read(entry));
+  for (const BodyEntry& entry : entries) {
+    bodies.push_back(
+        {.name = entry.name, .model = reader.read_model_of(entry), .poses = {}, .path_pose = {}});
+    if (!std::holds_alternative<BodyTowed>(entry.mount)) reader.place(entry, bodies.back());
+  }
+  reader.place_towed(entries, towing_of(entries), bodies);
   if (warnings != nullptr) warn_of_far_bodies(file, entries, bodies, *warnings);
   return bodies;
+}
+
+namespace {
+
+/// The body with this name after all its towers.
+std::vector<BodyEntry> with_towers(const std::vector<BodyEntry>& entries, const std::string& name,
+                                   const std::filesystem::path& file) {
+  auto found = std::ranges::find(entries, name, &BodyEntry::name);
+  if (found == entries.end()) {
+    std::string names;
+    for (const BodyEntry& entry : entries) names += (names.empty() ? "" : ", ") + entry.name;
+    throw UsageError(file.string() + ": no body is named \"" + name + "\"; expected one of " +
+                     names);
+  }
+  std::vector<BodyEntry> chain;
+  const std::vector<std::optional<std::size_t>> tower = towing_of(entries).tower;
+  auto body = static_cast<std::size_t>(found - entries.begin());
+  for (chain.push_back(entries[body]); tower[body]; body = *tower[body]) {
+    chain.insert(chain.begin(), entries[*tower[body]]);
+  }
+  return chain;
+}
+
+}  // namespace
+
+Body place_body(const std::filesystem::path& file, const std::string& name,
+                const std::vector<Pose>& path, const VehicleOptions& options,
+                std::vector<Message>* warnings, FollowedPath& followed) {
+  const std::vector<BodyEntry> chain =
+      with_towers(read_vehicle_file(file, options.model.environment_unit), name, file);
+  VehicleReader reader(file, path, options, warnings, &followed);
+  std::vector<Body> bodies;
+  for (const BodyEntry& entry : chain) {
+    bodies.push_back({.name = entry.name, .model = {}, .poses = {}, .path_pose = {}});
+    if (!std::holds_alternative<BodyTowed>(entry.mount)) reader.place(entry, bodies.back());
+  }
+  reader.place_towed(chain, towing_of(chain), bodies);
+  return std::move(bodies.back());
 }
 
 }  // namespace clearway

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "clearway/body.hpp"
 #include "clearway/file_unit.hpp"
+#include "clearway/vehicle.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
 #include "io/files/json.hpp"
 
@@ -18,9 +20,8 @@ struct BodyEntry {
   std::string name;
   std::filesystem::path model;
   FileUnit model_unit = {};  ///< unit of the model's file; where not known, that of the command
-  BodyMount mount = BodyStation{0};  ///< used unless there is a trajectory
-  /// Trajectory of its own; empty where the body follows the path.
-  std::filesystem::path trajectory;
+  BodyMount mount = BodyStation{0};
+  std::filesystem::path trajectory;  ///< file of the poses of a body with BodyOwnPoses; else empty
 };
 
 /// Reads a vehicle's JSON file (docs/guide/vehicles.md). environment_unit: metres of the unit in
@@ -28,5 +29,13 @@ struct BodyEntry {
 /// ResourceError where the file cannot be read.
 std::vector<BodyEntry> read_vehicle_file(const std::filesystem::path& path,
                                          double environment_unit);
+
+/// Reads the vehicle's file and returns one of its bodies without a model, with the poses that it
+/// has while the vehicle follows `path`, as read_vehicle() does. Reads no model, and trajectories
+/// only of that body and its towers. followed: receives what is odd at poses, as lists of the
+/// path's poses. Throws what read_vehicle() throws, and UsageError where no body has the name.
+Body place_body(const std::filesystem::path& file, const std::string& name,
+                const std::vector<Pose>& path, const VehicleOptions& options,
+                std::vector<Message>* warnings, FollowedPath& followed);
 
 }  // namespace clearway

@@ -36,14 +36,23 @@ void write_trajectory(std::span<const Pose> poses, const File& file, Progress& p
   progress.end();
 }
 
-void write_trajectory_table(std::span<const Pose> poses, std::span<const double> stations,
+void write_trajectory_table(std::span<const Pose> poses, const TrajectoryColumns& columns,
                             const File& file, Progress& progress) {
   progress.begin("write", poses.size(), "poses");
   TextWriter out(file);
-  out << "station [m],x [m],y [m],z [m],r00,r01,r02,r10,r11,r12,r20,r21,r22\n";
+  const std::string unit = columns.in_metres ? " [m]" : "";
+  if (!columns.path_pose.empty()) out << "path_pose,";
+  if (!columns.stations.empty()) out << "station [m],";
+  for (const char* axis : {"x", "y", "z"}) out << axis << unit << ",";
+  out << "r00,r01,r02,r10,r11,r12,r20,r21,r22\n";
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    out << stations[i];
-    for (const double coordinate : poses[i].translation) out << "," << coordinate;
+    if (!columns.path_pose.empty()) out << std::to_string(columns.path_pose[i]) << ",";
+    if (!columns.stations.empty()) out << columns.stations[i] << ",";
+    const char* comma = "";
+    for (const double coordinate : poses[i].translation) {
+      out << comma << coordinate;
+      comma = ",";
+    }
     for (const double number : poses[i].rotation) out << "," << number;
     out << "\n";
     throw_if_stopped(progress);

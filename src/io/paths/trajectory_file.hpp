@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -38,10 +39,16 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& path,
 /// The command line's name of a format: "matrix", "tum", ...
 const char* name_of(TrajectoryFormat format);
 
-/// Writes a table with the columns station, x, y and z, in metres as its header says, and r00 to
-/// r22, with digits that read_trajectory() reads back to the same doubles. stations: metres, one
-/// for each pose. Throws ResourceError and Interrupted.
-void write_trajectory_table(std::span<const Pose> poses, std::span<const double> stations,
+/// What a table of poses has beside x, y, z and r00 to r22. A span that is empty has no column.
+struct TrajectoryColumns {
+  std::span<const std::uint32_t> path_pose = {};  ///< index of the path's pose, for each pose
+  std::span<const double> stations = {};          ///< metres, for each pose
+  bool in_metres = false;                         ///< whether the header says that of x, y and z
+};
+
+/// Writes a table of poses with a header, and with digits that read_trajectory() reads back to the
+/// same doubles. Throws ResourceError and Interrupted.
+void write_trajectory_table(std::span<const Pose> poses, const TrajectoryColumns& columns,
                             const File& file, Progress& progress);
 
 /// Writes one pose per line as 16 numbers: its 4 x 4 matrix, row-major, with digits that

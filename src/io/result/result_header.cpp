@@ -7,6 +7,7 @@
 
 #include "clearway/body.hpp"
 #include "clearway/error.hpp"
+#include "core/geometry/axes.hpp"
 #include "core/query/error_budget.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/query/query_fields.hpp"
@@ -170,6 +171,24 @@ bool has_value(const hdf5::Id& file, const char* attribute, const char* value,
   if (found == value) return true;
   refuse(name,
          std::string("attribute '") + attribute + "' is " + excerpt(found) + ", expected " + value);
+}
+
+std::string text_of(const ModelAxes& axes) {
+  return std::string(name_of(axes.forward)) + "," + name_of(axes.up);
+}
+
+/// Reads the attribute "+y,+z" of a model whose y axis pointed ahead and whose z axis up.
+ModelAxes read_model_axes(const hdf5::Id& file, const std::string& name) {
+  if (!hdf5::has_attribute(file, names::kModelAxes, name)) return {};
+  const std::string found = hdf5::read_text_attribute(file, names::kModelAxes, name);
+  for (int forward = 0; forward < 6; ++forward) {
+    for (int up = 0; up < 6; ++up) {
+      const ModelAxes axes{static_cast<Axis>(forward), static_cast<Axis>(up)};
+      if (!along_one_line(axes.forward, axes.up) && text_of(axes) == found) return axes;
+    }
+  }
+  refuse(name, "attribute 'model_axes' is " + excerpt(found) +
+                   ", expected the axes that point ahead and up, for example +y,+z");
 }
 
 void read_model_box(const hdf5::Id& file, const std::string& name, Box& box) {
@@ -423,6 +442,9 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   if (header.model_spacing.metres > 0) {
     hdf5::write_number(file, names::kModelSpacing, header.model_spacing.metres);
   }
+  if (header.model_axes.axes.need_turn()) {
+    hdf5::write_attribute(file, names::kModelAxes, text_of(header.model_axes.axes));
+  }
   if (header.budget) {
     for_each_derived(*header.budget, [&](const char* attribute, const double& number) {
       hdf5::write_number(file, attribute, number);
@@ -469,6 +491,7 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
     header.model_spacing.metres = hdf5::read_number<double>(file, names::kModelSpacing, name);
     check_spacing(header.model_spacing.metres, name);
   }
+  header.model_axes.axes = read_model_axes(file, name);
   header.float_precision = has_value(file, names::kPrecision, names::kFloat, name);
   header.ways_without_ends =
       header.has_poses_of_ways() && !has_value(file, names::kFirstPoseOf, names::kClosedWay, name);

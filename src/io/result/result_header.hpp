@@ -50,6 +50,14 @@ struct ModelSpacing {
   friend bool operator==(const ModelSpacing&, const ModelSpacing&) { return true; }
 };
 
+/// The axes of the model's file that pointed ahead and up before the model was turned (file_axes()
+/// of the query). They are not part of the question, which is about the turned model, so any two
+/// compare equal.
+struct KeptAxes {
+  ModelAxes axes = {};
+  friend bool operator==(const KeptAxes&, const KeptAxes&) { return true; }
+};
+
 /// The query that a result answers. It depends only on the source points, the model, the trajectory
 /// and the parameters, and on engine and precision where they affect the answer
 /// (docs/design/result-format.md), so that `cmp` compares runs.
@@ -83,6 +91,7 @@ struct ResultHeader : QueryParameters {
   /// Names of the bodies; empty unless the query has several.
   std::vector<std::string> bodies = {};
   ModelSpacing model_spacing{};  ///< the greatest spacing of all bodies
+  KeptAxes model_axes{};
   /// Whether each colliding point also has a last pose. It does in the result of a search with
   /// first poses, except in those of older releases.
   bool last_pose = false;

@@ -64,6 +64,8 @@ inline constexpr const char* kModelTriangles = "model_triangles";  // only for a
 inline constexpr const char* kModelSolids = "model_solids";        // only with solids
 inline constexpr const char* kModelSpacing = "model_spacing";      // only for a sampled mesh
 
+inline constexpr const char* kModelAxes = "model_axes";  // only for a model that was turned
+
 inline constexpr const char* kShard = "shard";  // only in parts, together with kDivision
 inline constexpr const char* kDivision = "division";
 inline constexpr const char* kStore = "store";

@@ -442,6 +442,8 @@ Profile Result::profile() const {
 
 double Result::model_spacing() const { return reader_->header().model_spacing.metres; }
 
+ModelAxes Result::model_axes() const { return reader_->header().model_axes.axes; }
+
 std::optional<Box> Result::model_box() const {
   if (!reader_->header().has_model_box()) return std::nullopt;
   return reader_->header().model_box;

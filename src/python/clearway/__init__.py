@@ -68,6 +68,7 @@ from ._clearway import (
     merge,
     outline_model,
     read_alignment,
+    read_line,
     read_model,
     read_model_points,
     read_outline,

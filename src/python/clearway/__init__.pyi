@@ -111,6 +111,7 @@ class Model:
     solid_of: Final[_Poses]
     NO_SOLID: ClassVar[int]
     spacing: Final[float]
+    file_axes: Final[tuple[str, str]]
     def __init__(
         self, vertices: ArrayLike, triangles: ArrayLike = ..., spacing: float = 0.0,
     ) -> None: ...
@@ -125,7 +126,8 @@ class Body:
     ) -> None: ...
 def follow(
     name: str, model: ArrayLike | Model, path: ArrayLike, *, at: float | None = None,
-    pivots: tuple[float, float] | None = None, messages: list[Message] | None = None,
+    pivots: tuple[float, float] | None = None, towed_by: Body | Literal["path"] | None = None,
+    messages: list[Message] | None = None,
 ) -> Body: ...
 
 class UnsearchedStretch:
@@ -348,6 +350,7 @@ class Result:
     def clearance(self) -> Clearances | None: ...
     def profile(self) -> Profile | None: ...
     def model_spacing(self) -> float: ...
+    def model_axes(self) -> tuple[str, str]: ...
     def model_box(self) -> Box | None: ...
 class Conflict:
     id: Final[int]
@@ -405,12 +408,14 @@ class ReportSummary:
 
 def read_model_points(
     path: _AnyPath, *, spacing: float = 0.0, unit: float | str = 0.0, environment_unit: float | str | None = None,
-    vertices_only: bool = False, above: float | None = None, messages: list[Message] | None = None,
+    vertices_only: bool = False, above: float | None = None, forward: _Axis = "+x", up: _Axis = "+z",
+    messages: list[Message] | None = None,
 ) -> _Doubles: ...
 def read_model(
     path: _AnyPath, model_as: Literal["auto", "points", "surface", "solid"] = "auto", *, spacing: float = 0.0,
     unit: float | str = 0.0, environment_unit: float | str | None = None, vertices_only: bool = False,
-    above: float | None = None, messages: list[Message] | None = None,
+    above: float | None = None, forward: _Axis = "+x", up: _Axis = "+z",
+    messages: list[Message] | None = None,
 ) -> Model: ...
 def box_model(length: float, width: float, height: float) -> Model: ...
 def outline_model(outline: _Doubles | Sequence[Sequence[float]], rear: float, front: float) -> Model: ...
@@ -432,11 +437,20 @@ def read_alignment(
     height: float | None = None, environment_crs: str = "", messages: list[Message] | None = None,
     labels: PoseLabels | None = None,
 ) -> _Doubles: ...
+def read_line(
+    path: _AnyPath, *, step: float = 0.1, reverse: bool = False, height: float | None = None,
+    corner_radius: float | None = None, ground: Store | None = None, track: float | None = None,
+    cant: Literal["none", "center", "inside-rail", "outside-rail", "left-rail",
+                  "right-rail"] = "center",
+    rail_distance: float | None = None, unit: float | str = 0.0,
+    environment_unit: float | str | None = None, environment_crs: str = "",
+    messages: list[Message] | None = None, labels: PoseLabels | None = None,
+) -> _Doubles: ...
 def read_vehicle(
     file: _AnyPath, poses: ArrayLike, model_as: Literal["auto", "points", "surface", "solid"] = "auto", *,
     spacing: float = 0.0, unit: float | str = 0.0, environment_unit: float | str | None = None,
-    vertices_only: bool = False, above: float | None = None, format: str = "auto",
-    allow_non_rigid: bool = False, angle_unit: Literal["declared", "deg", "rad"] = "declared",
+    vertices_only: bool = False, above: float | None = None, forward: _Axis = "+x", up: _Axis = "+z",
+    format: str = "auto", allow_non_rigid: bool = False, angle_unit: Literal["declared", "deg", "rad"] = "declared",
     angle_frame: Literal["declared", "ned", "enu"] = "declared", crs: str = "",
     default_crs: str = "", datum: str = "", metres_per_unit: float | str = 0.0,
     lever_arm: Sequence[float] = (0.0, 0.0, 0.0), messages: list[Message] | None = None,

@@ -158,7 +158,8 @@ _bytes = _whole(2**64 - 1)
 _messages = _each(_kind(_clearway.Message))
 
 _CHECKS = {
-    **dict.fromkeys(("radius", "scale", "regular_size", "step", "rail_distance"), _above_0),
+    **dict.fromkeys(("radius", "scale", "regular_size", "step", "rail_distance", "length",
+                     "width", "corner_radius", "track"), _above_0),
     **dict.fromkeys(("unit", "metres_per_unit"), _or_name(_at_least_0)),
     "environment_unit": _or_name(_above_0),
     **dict.fromkeys(("clearance", "profile", "tolerance", "spacing", "field_voxel", "grid_cell", "gap", "max_gap", "split", "journal_interval_seconds", "sigmas", "seen_cube"),
@@ -166,13 +167,14 @@ _CHECKS = {
     **dict.fromkeys(("error_scan", "error_registration", "error_pose", "error_angle",
                      "error_model"), _or_none(_at_least_0)),
     **dict.fromkeys(("above", "at", "chainage_start", "model_above", "station_from",
-                     "station_to", "height"), _finite),
+                     "station_to", "height", "rear", "front"), _finite),
     **dict.fromkeys(("threads",), _threads),
     **dict.fromkeys(("memory_bytes", "device_memory_bytes", "max_points", "min_points",
                      "model_left_out"), _bytes),
     **dict.fromkeys(("first_pose", "between_poses", "allow_non_rigid", "vertices_only",
                      "ignore_crs", "skip_unreadable", "strict", "overwrite", "resume",
-                     "float_precision", "end_gpus", "model_is_cut", "seen", "reverse"), _flag),
+                     "float_precision", "end_gpus", "model_is_cut", "seen", "reverse", "mirror"),
+                    _flag),
     **dict.fromkeys(("name", "model_as", "format", "angle_unit", "angle_frame", "crs",
                      "default_crs", "datum", "engine", "device", "forward", "up", "title",
                      "project", "client", "author", "date", "result_name", "environment_name",
@@ -180,7 +182,8 @@ _CHECKS = {
                      "environment_crs"), _text),
     **dict.fromkeys(("path", "file", "output", "origins", "origins_path"), _path),
     **dict.fromkeys(("inputs", "parts"), _paths),
-    **dict.fromkeys(("model", "poses", "points", "triangles", "path_pose", "lo", "hi"), _anything),
+    **dict.fromkeys(("model", "poses", "points", "triangles", "path_pose", "lo", "hi",
+                     "outline", "towed_by"), _anything),
     **dict.fromkeys(("progress", "message"), _callable),
     **dict.fromkeys(("warnings", "input_warnings"), _messages),
     "stop": _having("is_set"),
@@ -197,13 +200,13 @@ _CHECKS = {
     "bodies": _each(_kind(_clearway.Body)),
     "model_box": _kind(_clearway.Box),
     "labels": _kind(_clearway.PoseLabels),
-    "store": _kind(_clearway.Store),
+    **dict.fromkeys(("store", "ground"), _kind(_clearway.Store)),
     "result": _kind(_clearway.Result),
     "query": _kind(_clearway.Query),
 }
 # Poses, where elsewhere it is a file; a name, where elsewhere it is a length.
 _OF_CALL = {("follow", "path"): _anything, ("unsearched_stretches", "path"): _anything,
-            ("read_alignment", "profile"): _text}
+            ("read_alignment", "profile"): _text, ("box_model", "height"): _above_0}
 
 
 def _check_of(call, name):

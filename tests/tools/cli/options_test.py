@@ -46,9 +46,10 @@ class Help(unittest.TestCase):
                                      "Messages and exit code"])
 
     def test_no_long_list_is_left(self):
-        for command in ("run", "convert", "merge", "export", "conflicts", "compare", "report",
+        for command in ("check", "run", "convert", "merge", "export", "conflicts", "compare", "report",
                         "model", "model box", "model outline", "trajectory info",
                         "trajectory follow", "trajectory resample", "trajectory alignment",
+                        "trajectory line",
                         "campaign plan", "campaign run", "campaign report"):
             for title, names in groups(command).items():
                 self.assertLessEqual(len(names), 10, f"{command}: {title}")

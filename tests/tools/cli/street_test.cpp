@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "clearway/model.hpp"
@@ -230,4 +231,68 @@ TEST_CASE("malformed scans are refused by name") {
     CHECK_THAT(outcome.err, Contains(name));
     CHECK_FALSE(std::filesystem::exists(folder / "a.h5"));
   }
+}
+
+TEST_CASE("a car along y is turned into the street, as the car that was turned by hand") {
+  const ScratchFolder folder;
+  convert_street(folder, "");
+  std::string turned;  // by -90 degrees about z
+  std::ifstream car(street("prius.obj"));
+  for (std::string line; std::getline(car, line);) {
+    char x[40], y[40], z[40];
+    if (std::sscanf(line.c_str(), "v %39s %39s %39s", x, y, z) == 3) {
+      const std::string opposite = x[0] == '-' ? x + 1 : std::string("-") + x;
+      line = std::string("v ") + y + " " + opposite + " " + z;
+    }
+    turned += line + "\n";
+  }
+  put_bytes(folder / "turned.obj", turned);
+  const auto run = [&](const std::filesystem::path& model, const std::string& output,
+                       const std::string& options) {
+    const Outcome done = run_program(
+        folder, "run --env " + quoted(folder / "street.h5") + " --model " + quoted(model) +
+                    " --trajectory " + quoted(street("trajectory.txt")) +
+                    " --radius 0.1 --model-above 0.3 --first-pose -o " + quoted(folder / output) +
+                    " " + options);
+    INFO(done.err);
+    REQUIRE(done.exit_code == 0);
+    return done.err;
+  };
+  run(folder / "turned.obj", "hand.h5", "");
+  CHECK_THAT(run(street("prius.obj"), "turned.h5", "--forward +y"), !Contains("sideways"));
+  CHECK_THAT(run(street("prius.obj"), "across.h5", ""),
+             Contains("it drives sideways") && Contains("--forward and --up turn the model"));
+  CHECK(run_program(folder,
+                    "compare " + quoted(folder / "hand.h5") + " " + quoted(folder / "turned.h5"))
+            .exit_code == 0);
+  CHECK(run_program(folder,
+                    "compare " + quoted(folder / "hand.h5") + " " + quoted(folder / "across.h5"))
+            .exit_code == 1);
+  const Outcome page = run_program(
+      folder, "report " + quoted(folder / "turned.h5") + " --env " + quoted(folder / "street.h5") +
+                  " --model " + quoted(street("prius.obj")) + " --model-above 0.3 --trajectory " +
+                  quoted(street("trajectory.txt")) + " -o " + quoted(folder / "page.html"));
+  INFO(page.err);
+  CHECK(page.exit_code == 0);
+}
+
+TEST_CASE("one command goes from the street's files to the known answer and its page") {
+  const ScratchFolder folder;
+  const std::string check = "check " + quoted(street("street.las")) + " --model " +
+                            quoted(street("beetle.ply")) + " --trajectory " +
+                            quoted(street("trajectory.txt")) + " --radius 0.1 -o " +
+                            quoted(folder / "site") + " --fail-on-collision";
+  const Outcome first = run_program(folder, check);
+  INFO(first.err);
+  REQUIRE(first.exit_code == 1);
+  const auto rows = read_rows(ResultReader(folder / "site/result.h5"));
+  CHECK(rows.size() == 78439);
+  CHECK(fnv1a(rows.source) == 0xd4d727161424e54f);
+  for (const char* name : {"site.h5", "conflicts.csv", "report.html"}) {
+    CHECK(std::filesystem::file_size(folder / "site" / name) > 0);
+  }
+  const Outcome second = run_program(folder, check);
+  CHECK(second.exit_code == 1);
+  CHECK(second.out == first.out);
+  CHECK_THAT(second.err, Contains("nothing was to be done"));
 }

@@ -29,6 +29,7 @@ constexpr Frozen kFrozen[] = {
     {Kind::kPlant, 0x40f398c01bf56a75, 0xe94a9fb348c4f1e, 0x98a873e342b5d507},
     {Kind::kMine, 0xb8cda99bc11d9066, 0x1796e90e4db10c93, 0x4ff9abdb3ab9c52e},
     {Kind::kTunnel, 0x1f948fce5fc49023, 0xad9af581b5e94469, 0x180175abefbe0e6},
+    {Kind::kRoad, 0xb9c3e3a6d6d05e33, 0x77948c48400ab8d6, 0x247fead9e19ead3c},
 };
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <unordered_map>
+#include <vector>
 
+#include "scene/vector.hpp"
 #include "tools/scene/made_scene.hpp"
 
 using namespace clearway;
@@ -51,21 +53,26 @@ Vec3 pulled_back(const Pose& pose, const Vec3& e) {
           r[2] * d.x + r[5] * d.y + r[8] * d.z};
 }
 
-double colliding_share(const test::MadeScene& made) {
+std::vector<Vec3> colliding_points(const test::MadeScene& made) {
   const ModelCubes model(made.model);
   const double reach = model.reach() * model.reach();
-  std::size_t hits = 0;
+  std::vector<Vec3> hits;
   for (const Vec3& e : made.environment) {
     for (const Pose& pose : made.poses) {
       const double dx = e.x - pose.translation[0], dy = e.y - pose.translation[1];
       if (dx * dx + dy * dy > reach) continue;
       if (model.touches(pulled_back(pose, e))) {
-        ++hits;
+        hits.push_back(e);
         break;
       }
     }
   }
-  return static_cast<double>(hits) / static_cast<double>(made.environment.size());
+  return hits;
+}
+
+double colliding_share(const test::MadeScene& made) {
+  return static_cast<double>(colliding_points(made).size()) /
+         static_cast<double>(made.environment.size());
 }
 
 }  // namespace
@@ -80,4 +87,16 @@ TEST_CASE("as many points collide as in the paper's table 1, about") {
         Approx(0.044).margin(0.014));
   CHECK(colliding_share(test::made_scene(Kind::kTunnel, {8000, 28622, 2000})) ==
         Approx(0.086).margin(0.02));
+}
+
+TEST_CASE("the lorry passes through the village but for a sign and a parked van") {
+  const auto road = make_scene(Kind::kRoad, {1, 1, 1}, 1);
+  const Vec3 sign = road->path.to_world({70, 1.7, 4}), van = road->path.to_world({214, 2.6, 1.3});
+  std::size_t at_sign = 0, at_van = 0, elsewhere = 0;
+  for (const Vec3& p : colliding_points(test::made_scene(Kind::kRoad, {300000, 100000, 500}))) {
+    ++(length(p - sign) < 1.5 ? at_sign : length(p - van) < 4 ? at_van : elsewhere);
+  }
+  CHECK(at_sign > 5);
+  CHECK(at_van > 100);
+  CHECK(elsewhere == 0);
 }

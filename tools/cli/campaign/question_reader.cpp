@@ -20,6 +20,7 @@
 #include "io/store/store_reader.hpp"
 #include "search/check_query.hpp"
 #include "search/choose_engine.hpp"
+#include "search/result_header.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -103,6 +104,7 @@ campaign::RunFacts QuestionReader::facts_of(const PlannedRun& run) {
   static_cast<QueryParameters&>(header) = options.query;
   header.float_precision = options.search.float_precision;
   sort_ignored(header);
+  choose_gap(header, store.metres > 0 ? 1 / store.metres : 1);
   if (!header.ignore_classes.empty() && header.classes_hash == 0) {
     throw InputError(file_.string() + ": query.ignore_classes: the points of " +
                      run.environment.file.string() + " have no classes");
@@ -125,6 +127,7 @@ std::uint32_t QuestionReader::add_model(const PlannedRun& run, const RunOptions&
   header.model_points = points.count;
   header.model_triangles = points.triangles;
   header.model_hash = points.hash;
+  header.model_axes = {{options.model_options.forward, options.model_options.up}};
   const std::uint64_t estimated = points_to_search(points.count, points.triangles);
   return named(run.environment.key, [&] {
     return estimate_.shards(options, {{points.box, estimated, path.poses}});
@@ -154,6 +157,7 @@ std::uint32_t QuestionReader::add_bodies(const PlannedRun& run, const RunOptions
                       body.poses});
   }
   header.model_hash = hash_of_bodies(query.bodies);
+  header.model_axes = {file_axes(query)};
   return named(run.environment.key, [&] { return estimate_.shards(options, models); });
 }
 
@@ -242,7 +246,7 @@ const QuestionReader::Environment& QuestionReader::environment(const campaign::E
 
 const QuestionReader::ReadModel& QuestionReader::model(const PlannedRun& run,
                                                        const RunOptions& options) {
-  const ModelOptions how = model_options_of(options);
+  const ModelOptions how = named(run.vehicle.key, [&] { return model_options_of(options); });
   const std::string id =
       run.vehicle.name + '\n' + format_number(how.spacing) + '\n' + format_number(how.radius) +
       '\n' + std::to_string(static_cast<int>(how.as)) + '\n' + format_number(how.environment_unit);

@@ -38,6 +38,7 @@ struct ComparedSide {
                const std::filesystem::path& vehicle)
       : result(file), has_shifts(!model.empty() || !vehicle.empty()) {
     check_kind_of_model(result, model, vehicle);
+    check_axes(result, options);
     warn_of_doubts(result.reader());
     const std::vector<Pose> poses = read_poses(trajectory, options.trajectory_options, result);
     std::vector<Body> bodies;
@@ -241,7 +242,7 @@ void add_conflict_comparison(CLI::App& command, ConflictComparison& options,
   command.add_option("--vehicle-b", options.vehicle_b, "The vehicle of B, where it is another")
       ->type_name("FILE");
   add_conflict_options(command, options);
-  add_axis_options(command, options.find);
+  add_axis_options(command, options);
   {
     const GroupScope conflict_group(command, OptionGroup::kConflicts);
     options.lengths.add(

@@ -1,7 +1,7 @@
 #include "cli/conflicts/conflict_inputs.hpp"
 
 #include <CLI/CLI.hpp>
-#include <map>
+#include <algorithm>
 #include <string>
 
 #include "clearway/error.hpp"
@@ -16,23 +16,6 @@
 #include "io/result/result.hpp"
 
 namespace clearway::tool {
-namespace {
-
-void add_axis(CLI::App& command, const std::string& name, Axis& axis, const char* description) {
-  static const std::map<std::string, Axis> kAxes{
-      {"+x", Axis::kPlusX}, {"x", Axis::kPlusX}, {"-x", Axis::kMinusX},
-      {"+y", Axis::kPlusY}, {"y", Axis::kPlusY}, {"-y", Axis::kMinusY},
-      {"+z", Axis::kPlusZ}, {"z", Axis::kPlusZ}, {"-z", Axis::kMinusZ}};
-  command
-      .add_option_function<std::string>(
-          name, [&axis](const std::string& text) { axis = kAxes.at(text); }, description)
-      ->type_name("AXIS")
-      ->transform(
-          CLI::IsMember({"+x", "-x", "+y", "-y", "+z", "-z", "x", "y", "z"}, CLI::ignore_case));
-}
-
-}  // namespace
-
 void add_conflict_options(CLI::App& command, ConflictCommand& options) {
   const GroupScope group(command, OptionGroup::kConflicts);
   options.lengths.add(command, "--gap", options.find.gap,
@@ -52,12 +35,25 @@ void add_conflict_options(CLI::App& command, ConflictCommand& options) {
   add_trajectory_options(command, options.trajectory_options, options.lengths);
 }
 
-void add_axis_options(CLI::App& command, ConflictOptions& options) {
+void add_axis_options(CLI::App& command, ConflictCommand& options) {
   const GroupScope group(command, OptionGroup::kUnits);
-  add_axis(command, "--forward", options.forward,
-           "Axis of the model that points ahead, for example +y (default: +x)");
-  add_axis(command, "--up", options.up,
-           "Axis of the model that points up, for example -z (default: +z)");
+  options.axes = {
+      add_axis_option(command, "--forward", options.find.forward,
+                      "Axis of the model that points ahead, for example +y (default: +x); not for "
+                      "a result whose run turned the model"),
+      add_axis_option(command, "--up", options.find.up,
+                      "Axis of the model that points up, for example -z (default: +z)")};
+}
+
+void check_axes(const Result& result, const ConflictCommand& options) {
+  const ModelAxes kept = result.model_axes();
+  const bool given = std::ranges::any_of(
+      options.axes, [](const CLI::Option* axis) { return axis != nullptr && !axis->empty(); });
+  if (!kept.need_turn() || !given) return;
+  throw UsageError(result.reader().name() + ": its run turned the model by --forward " +
+                   name_of(kept.forward) + " --up " + name_of(kept.up) +
+                   ", and this command turns the model's file in the same way; leave out its own "
+                   "--forward and --up");
 }
 
 void add_vehicle_option(CLI::App& command, std::filesystem::path& vehicle,
@@ -66,10 +62,10 @@ void add_vehicle_option(CLI::App& command, std::filesystem::path& vehicle,
 }
 
 std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOptions options,
-                             const Result& result) {
+                             const Result& result, PoseLabels* labels) {
   options.default_crs = result.reader().header().crs_wkt;
   std::vector<Message> remarks;
-  std::vector<Pose> poses = read_trajectory(path, options, &remarks);
+  std::vector<Pose> poses = read_trajectory(path, options, &remarks, labels);
   for (const Message& remark : remarks) log_message(remark);
   return poses;
 }
@@ -77,6 +73,8 @@ std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOption
 ModelOptions model_options_of(const Result& result, ModelOptions options) {
   const ResultHeader& header = result.reader().header();
   options.radius = header.radius;
+  options.forward = header.model_axes.axes.forward;
+  options.up = header.model_axes.axes.up;
   if (header.model_solids > 0) {
     options.as = ModelAs::kSolid;
   } else if (header.model_triangles > 0) {

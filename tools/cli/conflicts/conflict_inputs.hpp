@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -23,23 +24,29 @@ struct ConflictCommand {
   ConflictOptions find;
   TrajectoryOptions trajectory_options;
   LengthOptions lengths;
+  std::array<const CLI::Option*, 2> axes{};  ///< --forward and --up, where the command has them
 };
 
 /// Adds --gap, --min-points, --split, --memory, --threads and the options of trajectories.
 void add_conflict_options(CLI::App& command, ConflictCommand& options);
 
-/// Adds --forward and --up.
-void add_axis_options(CLI::App& command, ConflictOptions& options);
+/// Adds --forward and --up, which say how the model is seen. `options` outlive the command.
+void add_axis_options(CLI::App& command, ConflictCommand& options);
+
+/// Throws UsageError where --forward or --up is given for a result whose run turned the model.
+void check_axes(const Result& result, const ConflictCommand& options);
 
 /// Adds --vehicle to a command that takes --model, which is the option `model`.
 void add_vehicle_option(CLI::App& command, std::filesystem::path& vehicle,
                         const std::string& description, CLI::Option* model);
 
-/// Reads the poses of a result's trajectory and logs the warnings.
+/// Reads the poses of a result's trajectory and logs the warnings. labels: where given, becomes
+/// what the file says of its poses.
 std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOptions options,
-                             const Result& result);
+                             const Result& result, PoseLabels* labels = nullptr);
 
-/// Options that read the model of a result again as it was read for the search.
+/// Options that read the model of a result again as it was read for the search, and turn it as its
+/// run did.
 ModelOptions model_options_of(const Result& result, ModelOptions options);
 
 /// Throws InputError where a vehicle is given for the result of one model, or a model for the

@@ -19,6 +19,7 @@
 #include "cli/conflicts/conflict_inputs.hpp"
 #include "cli/input_roles.hpp"
 #include "cli/run_again.hpp"
+#include "cli/steps.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
@@ -157,16 +158,6 @@ std::string conflict_text(const ConflictFile& file, std::size_t most) {
   return text;
 }
 
-struct ConflictsCommand : ConflictCommand {
-  std::filesystem::path result, trajectory, model, vehicle;
-  std::vector<std::filesystem::path> outputs;
-  ModelOptions model_options;
-  std::string date = ConflictFile::kNoDate;
-  std::uint64_t show = 20;
-  bool force = false;
-  bool json = false;
-};
-
 /// An output that does not exist yet.
 struct ConflictOutput {
   ConflictOutput(const std::filesystem::path& path, bool overwrite)
@@ -239,12 +230,55 @@ void tell_of_unknown_sides(const ConflictsCommand& options, const Result& result
       options.result.string());
 }
 
-void run_conflicts(ConflictsCommand& options) {
+/// A day, or a time in UTC, in the form of ISO 8601.
+std::string full_date(const std::string& text) {
+  std::string full = text.size() == 10 ? text + "T00:00:00Z" : text;
+  constexpr std::string_view kForm = "0000-00-00T00:00:00Z";
+  bool good = full.size() == kForm.size();
+  for (std::size_t i = 0; good && i < kForm.size(); ++i) {
+    const bool digit = full[i] >= '0' && full[i] <= '9';
+    good = kForm[i] == '0' ? digit : full[i] == kForm[i];
+  }
+  const auto number = [&](std::size_t at, std::size_t digits) {
+    return static_cast<unsigned>(std::stoul(full.substr(at, digits)));
+  };
+  good =
+      good &&
+      std::chrono::year_month_day(std::chrono::year(static_cast<int>(number(0, 4))),
+                                  std::chrono::month(number(5, 2)), std::chrono::day(number(8, 2)))
+          .ok() &&
+      number(11, 2) < 24 && number(14, 2) < 60 && number(17, 2) < 60;
+  if (good) return full;
+  throw CLI::ValidationError("--date", text +
+                                           ": expected a day such as 2025-03-31, or a time such "
+                                           "as 2025-03-31T12:00:00Z");
+}
+
+void add_sides(CLI::App& command, ConflictsCommand& options) {
+  add_axis_options(command, options);
+  CLI::Option* model =
+      command
+          .add_option(
+              "--model", options.model,
+              "The model of the run: for lateral shifts, the sides of older results, and BCF "
+              "pictures")
+          ->type_name("FILE");
+  add_vehicle_option(
+      command, options.vehicle,
+      "The vehicle of several bodies of the run: for sides, lateral shifts and BCF pictures",
+      model);
+  add_model_options(command, options.model_options, options.lengths);
+}
+
+}  // namespace
+
+ConflictsOutcome perform(ConflictsCommand& options) {
   const Outputs outputs = open_outputs(options);
   check_is_trajectory(options.trajectory);
   const Result result(options.result);
   warn_of_doubts(result.reader());
   check_kind_of_model(result, options.model, options.vehicle);
+  check_axes(result, options);
   const double unit =
       options.lengths.convert_for(options.result.string(), result.reader().header().crs_wkt);
   options.trajectory_options.environment_unit = unit;
@@ -276,86 +310,42 @@ void run_conflicts(ConflictsCommand& options) {
   for (const auto& output : outputs) output->pending.publish();
   for (const Message& warning : file.warnings) log_message(warning);
   tell_of_unknown_sides(options, result, conflicts);
-  const std::string verdict =
-      verdict_to_repeat(result.reader(), {.chainage = chainage_of(poses)}, symbol_of(file.unit()));
-  if (options.json) {
-    if (!verdict.empty()) spdlog::info("the verdict of this result is {}", verdict);
-    print("{\n" + summary_json(file) + "\n}\n");
-  } else {
-    print(conflict_text(file, options.show) +
-          (verdict.empty() ? "" : "the verdict of this result is " + verdict + "\n"));
-  }
+  return {
+      conflict_text(file, options.show), "{\n" + summary_json(file) + "\n}\n",
+      verdict_to_repeat(result.reader(), {.chainage = chainage_of(poses)}, symbol_of(file.unit()))};
 }
 
-/// A day, or a time in UTC, in the form of ISO 8601.
-std::string full_date(const std::string& text) {
-  std::string full = text.size() == 10 ? text + "T00:00:00Z" : text;
-  constexpr std::string_view kForm = "0000-00-00T00:00:00Z";
-  bool good = full.size() == kForm.size();
-  for (std::size_t i = 0; good && i < kForm.size(); ++i) {
-    const bool digit = full[i] >= '0' && full[i] <= '9';
-    good = kForm[i] == '0' ? digit : full[i] == kForm[i];
-  }
-  const auto number = [&](std::size_t at, std::size_t digits) {
-    return static_cast<unsigned>(std::stoul(full.substr(at, digits)));
-  };
-  good =
-      good &&
-      std::chrono::year_month_day(std::chrono::year(static_cast<int>(number(0, 4))),
-                                  std::chrono::month(number(5, 2)), std::chrono::day(number(8, 2)))
-          .ok() &&
-      number(11, 2) < 24 && number(14, 2) < 60 && number(17, 2) < 60;
-  if (good) return full;
-  throw CLI::ValidationError("--date", text +
-                                           ": expected a day such as 2025-03-31, or a time such "
-                                           "as 2025-03-31T12:00:00Z");
+void add_options(CLI::App& command, ConflictsCommand& options) {
+  command.add_option("RESULT", options.result, "Result of clearway run with --first-pose")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("--trajectory", options.trajectory, "The trajectory of the run")
+      ->type_name("FILE")
+      ->required();
+  command
+      .add_option("-o,--output", options.outputs,
+                  "Output: .csv, .json, .geojson, .gpkg or .bcf; may be given several times")
+      ->type_name("FILE");
+  add_conflict_options(command, options);
+  add_sides(command, options);
+  add_count_option(command, "--show", options.show, 0, 1'000'000'000,
+                   "Print a table of so many conflicts");
+  command
+      .add_option_function<std::string>(
+          "--date", [&date = options.date](const std::string& text) { date = full_date(text); },
+          "Date that BCF and GeoPackage show, for example 2025-03-31 (default: 2000-01-01, so that "
+          "equal conflicts give equal files)")
+      ->group(title_of(OptionGroup::kConflicts))
+      ->type_name("DATE");
+  command.add_flag("--force", options.force, "Overwrite existing outputs");
+  command.add_flag("--json", options.json, "Print one JSON object, without the conflicts");
 }
-
-void add_sides(CLI::App& command, ConflictsCommand& options) {
-  add_axis_options(command, options.find);
-  CLI::Option* model =
-      command
-          .add_option(
-              "--model", options.model,
-              "The model of the run: for lateral shifts, the sides of older results, and BCF "
-              "pictures")
-          ->type_name("FILE");
-  add_vehicle_option(
-      command, options.vehicle,
-      "The vehicle of several bodies of the run: for sides, lateral shifts and BCF pictures",
-      model);
-  add_model_options(command, options.model_options, options.lengths);
-}
-
-}  // namespace
 
 void add_conflicts(CLI::App& program) {
   const auto options = std::make_shared<ConflictsCommand>();
   CLI::App* command = program.add_subcommand(
       "conflicts", "Group the colliding points of a result to conflicts, place by place");
-  command->add_option("RESULT", options->result, "Result of clearway run with --first-pose")
-      ->type_name("FILE")
-      ->required();
-  command->add_option("--trajectory", options->trajectory, "The trajectory of the run")
-      ->type_name("FILE")
-      ->required();
-  command
-      ->add_option("-o,--output", options->outputs,
-                   "Output: .csv, .json, .geojson, .gpkg or .bcf; may be given several times")
-      ->type_name("FILE");
-  add_conflict_options(*command, *options);
-  add_sides(*command, *options);
-  add_count_option(*command, "--show", options->show, 0, 1'000'000'000,
-                   "Print a table of so many conflicts");
-  command
-      ->add_option_function<std::string>(
-          "--date", [&date = options->date](const std::string& text) { date = full_date(text); },
-          "Date that BCF and GeoPackage show, for example 2025-03-31 (default: 2000-01-01, so that "
-          "equal conflicts give equal files)")
-      ->group(title_of(OptionGroup::kConflicts))
-      ->type_name("DATE");
-  command->add_flag("--force", options->force, "Overwrite existing outputs");
-  command->add_flag("--json", options->json, "Print one JSON object, without the conflicts");
+  add_options(*command, *options);
   command->footer(
       "Points at most the gap apart belong to one conflict, also through other points. Conflicts "
       "are\n"
@@ -364,8 +354,15 @@ void add_conflicts(CLI::App& program) {
       "Example: clearway conflicts out.h5 --trajectory path.txt -o conflicts.csv");
   command->callback([options, command] {
     run_stoppable(options->result, kStartsAgain, [&] {
-      advising_to_run_again(*command, {{options->result, options->trajectory}},
-                            [&] { run_conflicts(*options); });
+      advising_to_run_again(*command, {{options->result, options->trajectory}}, [&] {
+        const auto [text, json, verdict] = perform(*options);
+        if (options->json) {
+          if (!verdict.empty()) spdlog::info("the verdict of this result is {}", verdict);
+          print(json);
+        } else {
+          print(text + (verdict.empty() ? "" : "the verdict of this result is " + verdict + "\n"));
+        }
+      });
     });
   });
 }

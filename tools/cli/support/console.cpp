@@ -17,6 +17,8 @@
 #include <cstring>
 #include <initializer_list>
 #include <iterator>
+#include <optional>
+#include <set>
 
 #include "clearway/error.hpp"
 #include "cli/support/program.hpp"
@@ -208,7 +210,26 @@ void ConsoleProgress::draw(Clock::time_point now) {
   std::fprintf(stderr, "\r%s\033[K", line.c_str());
 }
 
+namespace {
+
+/// The messages that were logged; nothing where messages may be repeated.
+std::optional<std::set<std::string>> logged;
+std::mutex logged_mutex;
+
+bool is_repeated(const Message& message) {
+  const std::lock_guard lock(logged_mutex);
+  return logged && !logged->insert(message.text).second;
+}
+
+}  // namespace
+
+void log_messages_once() {
+  const std::lock_guard lock(logged_mutex);
+  logged.emplace();
+}
+
 void log_message(const Message& message) {
+  if (is_repeated(message)) return;
   const bool warning = message.severity == Message::Severity::kWarning;
   spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, "{}{}", message.text,
               advice_on(message));

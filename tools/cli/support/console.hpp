@@ -67,6 +67,9 @@ class ConsoleProgress final : public Progress {
 /// Logs a note or a warning of the library.
 void log_message(const Message& message);
 
+/// Makes log_message() log no message twice, for a command whose steps read the same files.
+void log_messages_once();
+
 /// Sends progress and messages of a library call to the terminal and makes the call stop when a
 /// signal asks to.
 template <typename Options>

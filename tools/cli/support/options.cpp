@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -195,6 +196,30 @@ void add_model_unit(CLI::App& command, const std::string& names, FileUnit& unit)
                   "Unit of the model's file; ft is the environment's foot, ift the international "
                   "and us-ft the US survey foot (default: that of the environment)")
       ->group(title_of(OptionGroup::kUnits));
+}
+
+CLI::Option* add_axis_option(CLI::App& command, const std::string& name, Axis& axis,
+                             const std::string& description) {
+  static const std::map<std::string, Axis> kAxes{
+      {"+x", Axis::kPlusX}, {"x", Axis::kPlusX}, {"-x", Axis::kMinusX},
+      {"+y", Axis::kPlusY}, {"y", Axis::kPlusY}, {"-y", Axis::kMinusY},
+      {"+z", Axis::kPlusZ}, {"z", Axis::kPlusZ}, {"-z", Axis::kMinusZ}};
+  return command
+      .add_option_function<std::string>(
+          name, [&axis](const std::string& text) { axis = kAxes.at(text); }, description)
+      ->type_name("AXIS")
+      ->transform(
+          CLI::IsMember({"+x", "-x", "+y", "-y", "+z", "-z", "x", "y", "z"}, CLI::ignore_case));
+}
+
+void add_turn_options(CLI::App& command, ModelOptions& options) {
+  const GroupScope group(command, OptionGroup::kUnits);
+  add_axis_option(command, "--forward", options.forward,
+                  "Axis of the model's file that points ahead, for example +y; the model is turned "
+                  "so that it becomes x (default: +x)");
+  add_axis_option(command, "--up", options.up,
+                  "Axis of the model's file that points up, for example +y; the model is turned so "
+                  "that it becomes z (default: +z)");
 }
 
 void add_model_options(CLI::App& command, ModelOptions& options, LengthOptions& lengths) {

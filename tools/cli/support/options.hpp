@@ -58,6 +58,7 @@ void group_common_options(CLI::App& program);
 
 namespace CLI {
 class App;
+class Option;
 class Validator;
 }  // namespace CLI
 
@@ -87,6 +88,13 @@ void add_threads_option(CLI::App& command, int& threads);
 
 /// Adds --model-unit under all of `names`.
 void add_model_unit(CLI::App& command, const std::string& names, FileUnit& unit);
+
+/// Adds an option that takes an axis of the model, such as "+y" or "z".
+CLI::Option* add_axis_option(CLI::App& command, const std::string& name, Axis& axis,
+                             const std::string& description);
+
+/// Adds --forward and --up, which turn the model when it is read.
+void add_turn_options(CLI::App& command, ModelOptions& options);
 
 /// Adds --model-spacing, --model-unit, --model-vertices and --model-above.
 void add_model_options(CLI::App& command, ModelOptions& options, LengthOptions& lengths);

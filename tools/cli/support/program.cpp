@@ -100,6 +100,12 @@ std::string advice_on(const Error& error) {
       return "; --trajectory-unit says it";
     case Remedy::kAllowNonRigid:
       return "; --allow-non-rigid accepts any invertible matrix";
+    case Remedy::kGiveHeight:
+      return "; --height gives one for all of it, and --on-ground takes that of the ground in a "
+             "scan";
+    case Remedy::kRoundCorners:
+      return "; --corner-radius METRES puts arcs at the vertices, and more vertices describe a "
+             "curve";
     case Remedy::kAskForClearance:
       return "; run with --clearance";
     case Remedy::kAskForFirstPose:
@@ -143,8 +149,14 @@ std::string advice_on(const Message& message) {
     }
     return ". --between-poses searches the way too; clearway trajectory resample adds poses";
   }
+  if (message.code == "line-curved") {
+    return "; --corner-radius keeps legs straight and rounds their corners";
+  }
   if (message.code == "loose-vertices") {
     return ", or search all vertices, and nothing else of the file, with --model-vertices";
+  }
+  if (message.code == "sideways") {
+    return ". clearway run --forward and --up turn the model when it is read";
   }
   if (message.code == "one-long-conflict") {
     return ". clearway run --model-above leaves out the lowest part of the model";

@@ -18,6 +18,7 @@
 #include "cli/support/options.hpp"
 #include "cli/support/program_json.hpp"
 #include "cli/trajectory/commands.hpp"
+#include "cli/trajectory/description.hpp"
 #include "core/util/format.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/paths/alignment/alignment_file.hpp"
@@ -48,10 +49,6 @@ constexpr std::array<NamedCant, 7> kCants{{{"file", CantLine::kFile},
                                            {"right-rail", CantLine::kRightRail}}};
 
 void print_json(const AlignmentFile& made) {
-  std::vector<Message> notes, warnings;
-  for (const Message& remark : made.remarks) {
-    (remark.severity == Message::Severity::kNote ? notes : warnings).push_back(remark);
-  }
   const nlohmann::ordered_json json{
       {"alignment", made.alignment},
       {"profile",
@@ -63,8 +60,8 @@ void print_json(const AlignmentFile& made) {
       {"poses", made.poses.size()},
       {"first_station", made.stations.front()},
       {"last_station", made.stations.back()},
-      {"notes", warnings_json(notes)},
-      {"warnings", warnings_json(warnings)}};
+      {"notes", remarks_json(made.remarks, Message::Severity::kNote)},
+      {"warnings", remarks_json(made.remarks, Message::Severity::kWarning)}};
   print(text_of_json(json));
 }
 
@@ -80,7 +77,8 @@ void write_alignment(AlignmentCommand& options) {
   const AlignmentFile made = read_alignment_file(options.input, options.alignment);
   for (const Message& remark : made.remarks) log_message(remark);
   ConsoleProgress progress;
-  write_trajectory_table(made.poses, made.stations, File::create(output.partial()), progress);
+  write_trajectory_table(made.poses, {.stations = made.stations, .in_metres = true},
+                         File::create(output.partial()), progress);
   output.publish();
   spdlog::info(
       "{}: {} in metres, from station {:.3f} m to {:.3f} m of the alignment, whose unit is "
@@ -114,20 +112,6 @@ void add_way(CLI::App& command, AlignmentCommand& options) {
                       "Height of all poses, for an alignment without a profile", LengthRange::kAny);
 }
 
-void add_cant(CLI::App& command, AlignmentOptions& options) {
-  std::vector<std::string> names;
-  for (const NamedCant& cant : kCants) names.emplace_back(cant.name);
-  command
-      .add_option_function<std::string>(
-          "--cant",
-          [&options](const std::string& name) {
-            options.cant = std::ranges::find(kCants, name, &NamedCant::name)->line;
-          },
-          "What cant turns the track about, or that there is none (default: file, as it says)")
-      ->type_name("NAME")
-      ->check(CLI::IsMember(names));
-}
-
 void add_order(CLI::App& command, AlignmentOptions& options) {
   command
       .add_option_function<std::string>(
@@ -145,7 +129,9 @@ void add_order(CLI::App& command, AlignmentOptions& options) {
 void add_track(CLI::App& command, AlignmentCommand& options) {
   const GroupScope group(command, OptionGroup::kUnits);
   AlignmentOptions& what = options.alignment;
-  add_cant(command, what);
+  add_cant_option(command, what.cant,
+                  "What cant turns the track about, or that there is none (default: file, as it "
+                  "says)");
   options.lengths.add(command, "--rail-distance", what.rail_distance,
                       "Between the middles of the rails (default: 1.5 for a gauge of 1.435 or 1.5)",
                       LengthRange::kAboveZero);
@@ -156,6 +142,23 @@ void add_track(CLI::App& command, AlignmentCommand& options) {
 }
 
 }  // namespace
+
+void add_cant_option(CLI::App& command, CantLine& cant, const std::string& description,
+                     std::optional<CantLine> without) {
+  std::vector<std::string> names;
+  for (const NamedCant& known : kCants) {
+    if (known.line != without) names.emplace_back(known.name);
+  }
+  command
+      .add_option_function<std::string>(
+          "--cant",
+          [&cant](const std::string& name) {
+            cant = std::ranges::find(kCants, name, &NamedCant::name)->line;
+          },
+          description)
+      ->type_name("NAME")
+      ->check(CLI::IsMember(names));
+}
 
 void add_trajectory_alignment(CLI::App& trajectory) {
   const auto options = std::make_shared<AlignmentCommand>();

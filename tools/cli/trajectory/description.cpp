@@ -68,6 +68,8 @@ ordered_json box_json(const Box& box) {
   return {{"lo", {box.lo.x, box.lo.y, box.lo.z}}, {"hi", {box.hi.x, box.hi.y, box.hi.z}}};
 }
 
+}  // namespace
+
 ordered_json remarks_json(const std::vector<Message>& remarks, Message::Severity severity) {
   std::vector<Message> chosen;
   for (const Message& remark : remarks) {
@@ -75,8 +77,6 @@ ordered_json remarks_json(const std::vector<Message>& remarks, Message::Severity
   }
   return warnings_json(chosen);
 }
-
-}  // namespace
 
 std::string axis_name(const BodyAxis& axis) {
   return std::string(axis.negative ? "-" : "") + "xyz"[axis.axis];

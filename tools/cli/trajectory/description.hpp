@@ -4,9 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "clearway/box.hpp"
 #include "clearway/pose.hpp"
+#include "clearway/progress.hpp"
 #include "cli/trajectory/scan_overlap.hpp"
 #include "core/trajectory/trajectory_summary.hpp"
 #include "io/paths/trajectory_file.hpp"
@@ -47,6 +49,10 @@ struct Description {
 
 /// The name of an axis: "x", "-x" and so on.
 std::string axis_name(const BodyAxis& axis);
+
+/// The remarks of one severity.
+nlohmann::ordered_json remarks_json(const std::vector<Message>& remarks,
+                                    Message::Severity severity);
 
 nlohmann::ordered_json json_of(const Description& what);
 /// The description in words, with one fact on each line.

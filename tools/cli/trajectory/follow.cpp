@@ -14,12 +14,15 @@
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
+#include "cli/support/program_json.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "cli/trajectory/commands.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
 #include "core/trajectory/trajectory_doubts.hpp"
 #include "core/util/format.hpp"
+#include "io/files/file.hpp"
 #include "io/files/pending_file.hpp"
+#include "io/models/vehicle_file.hpp"
 #include "io/paths/trajectory_file.hpp"
 #include "search/threads.hpp"
 
@@ -27,7 +30,8 @@ namespace clearway::tool {
 namespace {
 
 struct FollowOptions {
-  std::filesystem::path input, output;
+  std::filesystem::path input, output, vehicle;
+  std::string body;  ///< name of a body of `vehicle`
   std::optional<double> at;
   std::optional<std::array<double, 2>> pivots;
   LengthOptions lengths;
@@ -41,7 +45,7 @@ BodyMount mount_of(const FollowOptions& options) {
   if (!options.at && !options.pivots) {
     throw UsageError(
         "where the body is on the path is missing; expected --at or --pivots, for example --at 10 "
-        "or --pivots 10,-10");
+        "or --pivots 10,-10, or --vehicle and --body");
   }
   if (options.at) return BodyStation{*options.at};
   const auto [front, rear] = *options.pivots;
@@ -52,17 +56,27 @@ BodyMount mount_of(const FollowOptions& options) {
   return BodyPivots{front, rear};
 }
 
-std::vector<Pose> read_path(const FollowOptions& options) {
-  std::vector<Message> remarks;
+/// The path, and what is known of each of its poses.
+struct Path {
+  std::vector<Pose> poses;
   PoseLabels labels;
-  std::vector<Pose> poses = read_trajectory(options.input, options.trajectory, &remarks, &labels);
+};
+
+bool writes_table(const FollowOptions& options) { return file_ending(options.output) == ".csv"; }
+
+Path read_path(const FollowOptions& options) {
+  std::vector<Message> remarks;
+  Path path;
+  path.poses = read_trajectory(options.input, options.trajectory, &remarks, &path.labels);
   for (const Message& remark : remarks) log_message(remark);
-  if (!labels.time.empty() || !labels.name.empty()) {
-    spdlog::info("{}: its times and names are left out, as the output has matrices only",
-                 options.input.string());
+  if (!path.labels.time.empty() || !path.labels.name.empty()) {
+    spdlog::info("{}: its times and names are left out, as the output has {}",
+                 options.input.string(),
+                 writes_table(options) ? "no column for them" : "matrices only");
   }
-  if (poses.empty()) throw InputError(options.input.string() + ": no poses; nothing to follow");
-  return poses;
+  if (path.poses.empty())
+    throw InputError(options.input.string() + ": no poses; nothing to follow");
+  return path;
 }
 
 /// Does `work`; an InputError that it throws about the path is given the name of the path's file.
@@ -97,45 +111,107 @@ nlohmann::ordered_json ranges_of(const std::vector<std::uint64_t>& poses) {
   return ranges;
 }
 
-void report(const FollowOptions& options, const FollowedPath& followed, const PathStations& path) {
+/// A body's poses, the lists of what is odd, and the length of the path in metres.
+struct Placed {
+  FollowedPath followed;
+  double path_length;
+};
+
+void report(const FollowOptions& options, const Placed& placed, std::size_t path_poses) {
+  const FollowedPath& followed = placed.followed;
   spdlog::info("{}: {}, from {}; the path is {:.6g} m long", options.output.string(),
-               counted(followed.poses.size(), "pose"), format_count(path.poses().size()),
-               path.length());
+               counted(followed.poses.size(), "pose"), format_count(path_poses),
+               placed.path_length);
   if (!options.json) return;
-  nlohmann::ordered_json json{{"poses_in", path.poses().size()},
+  nlohmann::ordered_json json{{"poses_in", path_poses},
                               {"poses_out", followed.poses.size()},
-                              {"length", path.length()}};
+                              {"length", placed.path_length}};
   if (options.at) json["at"] = *options.at;
   if (options.pivots) json["pivots"] = *options.pivots;
+  if (!options.vehicle.empty()) {
+    json["vehicle"] = options.vehicle.string();
+    json["body"] = options.body;
+  }
   json["off_path"] = ranges_of(followed.off_path);
   json["undefined"] = ranges_of(followed.undefined);
   json["folded"] = ranges_of(followed.folded);
   json["turned"] = ranges_of(followed.turned);
-  print(json.dump(2) + "\n");
+  if (!options.vehicle.empty()) {
+    json["transient"] = ranges_of(followed.transient);
+    json["rolled_back"] = ranges_of(followed.rolled_back);
+  }
+  print(text_of_json(json));
+}
+
+/// Places a body of its own at the station or on the pivots of the options.
+Placed place_by_options(const FollowOptions& options, const std::vector<Pose>& poses, int threads) {
+  const BodyMount mount = mount_of(options);
+  const auto path = on_path(options, [&] { return PathStations(poses, threads); });
+  Placed placed{on_path(options, [&] { return follow_path(path, mount, threads); }), path.length()};
+  refuse_nowhere(options, placed.followed, path);
+  for (const Message& doubt : doubts_about(placed.followed, path, mount, options.input.string())) {
+    log_message(doubt);
+  }
+  return placed;
+}
+
+/// Places a body of the vehicle's file.
+Placed place_of_vehicle(const FollowOptions& options, const std::vector<Pose>& poses, int threads) {
+  std::vector<Message> doubts;
+  Placed placed{.followed = {}, .path_length = on_path(options, [&] {
+                                  return PathStations(poses, threads).length();
+                                })};
+  const Body body = place_body(options.vehicle, options.body, poses,
+                               {.model = {}, .trajectory = options.trajectory, .threads = threads},
+                               &doubts, placed.followed);
+  for (const Message& doubt : doubts) log_message(doubt);
+  placed.followed.poses = body.poses;
+  placed.followed.of.assign(body.path_pose.begin(), body.path_pose.end());
+  return placed;
+}
+
+void write(const FollowOptions& options, const FollowedPath& followed, const PoseLabels& labels,
+           const File& file) {
+  ConsoleProgress progress;
+  if (!writes_table(options)) {
+    write_trajectory(followed.poses, file, progress);
+    return;
+  }
+  const std::vector<std::uint32_t> path_pose(followed.of.begin(), followed.of.end());
+  std::vector<double> stations;
+  for (const std::uint32_t pose : path_pose) {
+    if (!labels.station.empty()) stations.push_back(labels.station[pose]);
+  }
+  write_trajectory_table(followed.poses, {.path_pose = path_pose, .stations = stations}, file,
+                         progress);
+}
+
+void check_options(const FollowOptions& options) {
+  if (!options.vehicle.empty() && options.body.empty()) {
+    throw UsageError("--vehicle: which body is missing; expected --body with its name");
+  }
+  if (options.vehicle.empty()) mount_of(options);
 }
 
 void write_followed(const FollowOptions& options) {
-  const BodyMount mount = mount_of(options);
-  refuse_overwriting(options.output, {options.input});
+  check_options(options);
+  std::vector<std::filesystem::path> inputs{options.input};
+  if (!options.vehicle.empty()) inputs.push_back(options.vehicle);
+  refuse_overwriting(options.output, inputs);
   const int threads = threads_or_all(options.threads);
   check_threads(threads);
   PendingFile output(options.output, options.force);
-  const std::vector<Pose> poses = read_path(options);
-  const auto path = on_path(options, [&] { return PathStations(poses, threads); });
-  const auto followed = on_path(options, [&] { return follow_path(path, mount, threads); });
-  refuse_nowhere(options, followed, path);
-  for (const Message& doubt : doubts_about(followed, path, mount, options.input.string())) {
-    log_message(doubt);
-  }
-  const auto jumps = jumps_of(step_lengths(poses), kLeastJump);
+  const Path path = read_path(options);
+  const Placed placed = options.vehicle.empty() ? place_by_options(options, path.poses, threads)
+                                                : place_of_vehicle(options, path.poses, threads);
+  const auto jumps = jumps_of(step_lengths(path.poses), kLeastJump);
   if (!jumps.empty()) {
     log_message(jump_warning(jumps, options.input.string() + ": ", "m",
                              ". Where the body is on that part of the path is a guess"));
   }
-  ConsoleProgress progress;
-  write_trajectory(followed.poses, File::create(output.partial()), progress);
+  write(options, placed.followed, path.labels, File::create(output.partial()));
   output.publish();
-  report(options, followed, path);
+  report(options, placed, path.poses.size());
 }
 
 }  // namespace
@@ -143,13 +219,25 @@ void write_followed(const FollowOptions& options) {
 void add_trajectory_follow(CLI::App& trajectory) {
   const auto options = std::make_shared<FollowOptions>();
   CLI::App* command = trajectory.add_subcommand(
-      "follow", "Write the poses of a body that follows the path, at a station or on two pivots");
+      "follow",
+      "Write the poses of a body that follows the path, or of one that is towed along it");
   command->add_option("IN", options->input, kTrajectoryHelp)->type_name("FILE")->required();
   command
-      ->add_option("-o,--output", options->output,
-                   "The body's poses: 16 numbers a line, a row-major 4x4 matrix")
+      ->add_option(
+          "-o,--output", options->output,
+          "The body's poses: 16 numbers a line, a row-major 4x4 matrix; a name that ends in "
+          ".csv gets a table, whose column path_pose says which pose of the path each "
+          "belongs to")
       ->type_name("FILE")
       ->required();
+  CLI::Option* vehicle =
+      command
+          ->add_option("--vehicle", options->vehicle,
+                       "The JSON file of a vehicle, of which --body names one body")
+          ->type_name("FILE");
+  command->add_option("--body", options->body, "The name of a body of the vehicle's file")
+      ->type_name("NAME")
+      ->needs(vehicle);
   CLI::Option* at = options->lengths.add(
       *command, "--at", options->at,
       "The body has the path's pose so many metres ahead; negative: behind", LengthRange::kAny);
@@ -157,7 +245,9 @@ void add_trajectory_follow(CLI::App& trajectory) {
       .add(*command, "--pivots", options->pivots,
            "Two places of the body lie on the path, so many metres ahead or behind; "
            "the body points from the second to the first")
-      ->excludes(at);
+      ->excludes(at)
+      ->excludes(vehicle);
+  at->excludes(vehicle);
   add_trajectory_options(*command, options->trajectory, options->lengths);
   add_threads_option(*command, options->threads);
   command->add_flag("--force", options->force, "Overwrite an existing output");

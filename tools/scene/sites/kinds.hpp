@@ -11,6 +11,7 @@ std::unique_ptr<const Scene> make_hall(const Sizes& sizes, std::uint64_t seed);
 std::unique_ptr<const Scene> make_plant(const Sizes& sizes, std::uint64_t seed);
 std::unique_ptr<const Scene> make_mine(const Sizes& sizes, std::uint64_t seed);
 std::unique_ptr<const Scene> make_tunnel(const Sizes& sizes, std::uint64_t seed);
+std::unique_ptr<const Scene> make_road(const Sizes& sizes, std::uint64_t seed);
 
 /// Streams of random numbers; the scanner has the streams 1 to 3.
 enum Stream : std::uint64_t { kModelStream = 10, kLayoutStream = 11, kShapeStream = 12 };

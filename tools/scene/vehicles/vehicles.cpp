@@ -238,4 +238,15 @@ Mesh train_wagon() {
   return mesh;
 }
 
+Mesh lorry() {
+  Mesh mesh;
+  mesh.add_box({3.6, -1.25, 0.45}, {6, 1.25, 3.2});    // cab
+  mesh.add_box({-6, -1.25, 0.9}, {3.4, 1.25, 1.2});    // bed
+  mesh.add_box({-5.6, -0.5, 0.6}, {4.2, 0.5, 0.9});    // frame
+  mesh.add_box({-5.5, -1.45, 1.2}, {3.1, 1.45, 4.0});  // load
+  mesh.add_box({4.6, -1.55, 2.0}, {4.8, -1.25, 2.4});  // mirrors
+  mesh.add_box({4.6, 1.25, 2.0}, {4.8, 1.55, 2.4});
+  return mesh;
+}
+
 }  // namespace clearway::scene

@@ -117,16 +117,15 @@ SlopedValue raise_of(const SlopedValue& cant, CantLine line) {
 
 }  // namespace
 
-Pose Alignment::pose_at(double station) const {
-  const PlanPlace place = plan.at(station);
-  SlopedValue height = profile ? profile->at(station) : SlopedValue{level, 0};
+Pose pose_on_track(const PlanPlace& place, SlopedValue height,
+                   const std::optional<SlopedValue>& cant, CantLine cant_line,
+                   double rail_distance) {
   double sin_roll = 0;
   if (cant) {
-    const SlopedValue now = cant->at(station);
-    const SlopedValue raise = raise_of(now, cant_line);
+    const SlopedValue raise = raise_of(*cant, cant_line);
     height.value += raise.value;
     height.slope += raise.slope;
-    sin_roll = now.value / rail_distance;
+    sin_roll = cant->value / rail_distance;
   }
   const double cos_roll = std::sqrt((1 - sin_roll) * (1 + sin_roll));
   const double cos_climb = 1 / std::hypot(1.0, height.slope), sin_climb = height.slope * cos_climb;
@@ -143,6 +142,12 @@ Pose Alignment::pose_at(double station) const {
     pose.rotation[3 * k + 2] = cos_roll * z0[k] - sin_roll * y0[k] + 0.0;
   }
   return pose;
+}
+
+Pose Alignment::pose_at(double station) const {
+  return pose_on_track(plan.at(station), profile ? profile->at(station) : SlopedValue{level, 0},
+                       cant ? std::optional(cant->at(station)) : std::nullopt, cant_line,
+                       rail_distance);
 }
 
 }  // namespace clearway

@@ -82,6 +82,14 @@ class AlignmentCant {
   std::vector<CantPoint> points_;
 };
 
+/// The pose of a vehicle on a track: x forward, y left, z up, the origin in the middle of the track
+/// on the plane of the tops of the rails. height: of the line about which cant turns the track,
+/// with its slope along the way. cant: how far the left rail is above the right one, with its
+/// change along the way; none where the track is level across. rail_distance: metres.
+Pose pose_on_track(const PlanPlace& place, SlopedValue height,
+                   const std::optional<SlopedValue>& cant, CantLine cant_line,
+                   double rail_distance);
+
 /// An alignment in metres and the way in which a vehicle stands on it.
 struct Alignment {
   AlignmentPlan plan;

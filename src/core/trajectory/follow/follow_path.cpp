@@ -4,18 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <thread>
 
 #include "clearway/error.hpp"
-#include "clearway/follow.hpp"
 #include "core/util/format.hpp"
 
 namespace clearway {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-
-enum State : std::uint8_t { kOffPath = 1, kUndefined = 2, kFolded = 4, kTurned = 8 };
 
 /// Least cosine of the angle between two axes that count as parallel: that of 60 degrees.
 constexpr double kAlong = 0.5;
@@ -26,6 +22,9 @@ constexpr double kLeastChord = 1e-6;
 /// Least sine between the up direction and the chord for the up direction to mean anything.
 constexpr double kLeastUp = 1e-6;
 
+Eigen::Vector3d as_eigen(const Vec3& v) { return {v.x, v.y, v.z}; }
+Vec3 as_vec3(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
 Eigen::Vector3d position_of(const Pose& pose) {
   return Eigen::Map<const Eigen::Vector3d>(pose.translation);
 }
@@ -34,57 +33,74 @@ Eigen::Vector3d axis_of(const Pose& pose, int axis) {
   return Eigen::Map<const RowMajor>(pose.rotation).col(axis).normalized();
 }
 
-Pose pose_of(const Eigen::Vector3d& x, const Eigen::Vector3d& up, const Eigen::Vector3d& origin) {
+}  // namespace
+
+BodyPose framed(const Vec3& along, const Vec3& mean, const Vec3& origin) {
+  const Eigen::Vector3d x = as_eigen(along), mean_up = as_eigen(mean);
+  const Eigen::Vector3d up = mean_up - mean_up.dot(x) * x;
+  if (!(up.norm() > kLeastUp)) return {.state = kUndefined};
+  const Eigen::Vector3d z = up.normalized();
   RowMajor rotation;
-  rotation << x, up.cross(x), up;
-  Pose pose{};
-  std::copy_n(rotation.data(), 9, pose.rotation);
-  std::copy_n(origin.data(), 3, pose.translation);
-  return pose;
+  rotation << x, z.cross(x), z;
+  BodyPose body;
+  std::copy_n(rotation.data(), 9, body.pose.rotation);
+  for (int axis = 0; axis < 3; ++axis) body.pose.translation[axis] = origin[axis];
+  if (up.norm() < kAcross) body.state = kTurned;
+  return body;
 }
 
-/// The pose of a body that belongs to one pose of the path.
-struct BodyPose {
-  Pose pose{};
-  std::uint8_t state = 0;
-};
+namespace {
 
-BodyPose at_station(const PathStations& path, std::size_t i, const BodyStation& station) {
+/// The place `ahead` metres ahead of a moment, or none if that is off the path. For 0 it is the
+/// moment's own place.
+std::optional<PathStations::Place> ahead_of(const PathStations& path, const PathMoment& moment,
+                                            double ahead) {
+  if (ahead == 0) return moment.place;
+  return path.at_station(moment.station + ahead);
+}
+
+BodyPose at_station(const PathStations& path, const PathMoment& moment,
+                    const BodyStation& station) {
   BodyPose body;
-  const auto place = path.ahead_of(i, station.at);
+  const auto place = ahead_of(path, moment, station.at);
   if (!place) return {.state = kOffPath};
   body.pose = path.pose_at(*place);
   const Vec3 way = path.direction_at(*place);
-  const Eigen::Vector3d along(way.x, way.y, way.z);
+  const Eigen::Vector3d along = as_eigen(way);
   // On a path that is driven backwards, places ahead are behind the model.
   const bool backwards = along.dot(axis_of(body.pose, 0)) < -kAlong * along.norm();
   if (station.at != 0 && backwards) body.state = kTurned;
   return body;
 }
 
-BodyPose on_pivots(const PathStations& path, std::size_t i, const BodyPivots& pivots) {
-  const auto front_place = path.ahead_of(i, pivots.front);
-  const auto rear_place = path.ahead_of(i, pivots.rear);
+BodyPose on_pivots(const PathStations& path, const PathMoment& moment, const BodyPivots& pivots) {
+  const auto front_place = ahead_of(path, moment, pivots.front);
+  const auto rear_place = ahead_of(path, moment, pivots.rear);
   if (!front_place || !rear_place) return {.state = kOffPath};
   const Pose front = path.pose_at(*front_place), rear = path.pose_at(*rear_place);
   const Eigen::Vector3d chord = position_of(front) - position_of(rear);
   const double length = chord.norm(), way = std::abs(pivots.front - pivots.rear);
   if (!(length > kLeastChord * way)) return {.state = kUndefined};
   const Eigen::Vector3d x = chord / length;
-  const Eigen::Vector3d mean_up = (axis_of(front, 2) + axis_of(rear, 2)) / 2;
-  const Eigen::Vector3d up = mean_up - mean_up.dot(x) * x;
-  if (!(up.norm() > kLeastUp)) return {.state = kUndefined};
   const double share = -pivots.rear / (pivots.front - pivots.rear);
-  BodyPose body;
-  body.pose = pose_of(x, up.normalized(), position_of(rear) + share * chord);
+  BodyPose body = framed(as_vec3(x), as_vec3((axis_of(front, 2) + axis_of(rear, 2)) / 2),
+                         as_vec3(position_of(rear) + share * chord));
+  if (!body.exists()) return body;
   if (length < way / 2) body.state |= kFolded;
   // A frame with another axis forward or up, such as a camera's, gives no frame of the body.
-  if (x.dot(axis_of(path.poses()[i], 0)) < kAlong || up.norm() < kAcross) body.state |= kTurned;
+  if (x.dot(axis_of(path.poses()[moment.place.way], 0)) < kAlong) body.state |= kTurned;
   return body;
 }
 
-void refuse_mirroring(const PathStations& path, const BodyMount& mount) {
-  if (!std::holds_alternative<BodyPivots>(mount) || path.poses().empty()) return;
+}  // namespace
+
+BodyPose body_pose_at(const PathStations& path, const PathMoment& moment, const BodyMount& mount) {
+  if (const auto* pivots = std::get_if<BodyPivots>(&mount)) return on_pivots(path, moment, *pivots);
+  return at_station(path, moment, std::get<BodyStation>(mount));
+}
+
+void refuse_mirroring(const PathStations& path) {
+  if (path.poses().empty()) return;
   // Paths of which only some poses mirror were refused before.
   if (Eigen::Map<const RowMajor>(path.poses()[0].rotation).determinant() > 0) return;
   throw InputError(
@@ -92,28 +108,25 @@ void refuse_mirroring(const PathStations& path, const BodyMount& mount) {
       "poses that do not mirror");
 }
 
-}  // namespace
+void add_pose(FollowedPath& followed, std::uint64_t index, const BodyPose& body) {
+  if ((body.state & kOffPath) != 0) followed.off_path.push_back(index);
+  if ((body.state & kUndefined) != 0) followed.undefined.push_back(index);
+  if ((body.state & kFolded) != 0) followed.folded.push_back(index);
+  if ((body.state & kTurned) != 0) followed.turned.push_back(index);
+  if (!body.exists()) return;
+  followed.poses.push_back(body.pose);
+  followed.of.push_back(index);
+}
 
 FollowedPath follow_path(const PathStations& path, const BodyMount& mount, int threads) {
-  refuse_mirroring(path, mount);
+  if (std::holds_alternative<BodyPivots>(mount)) refuse_mirroring(path);
   std::vector<BodyPose> bodies(path.poses().size());
 #pragma omp parallel for schedule(static, 256) num_threads(threads)
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const auto* pivots = std::get_if<BodyPivots>(&mount);
-    bodies[i] = pivots != nullptr ? on_pivots(path, i, *pivots)
-                                  : at_station(path, i, std::get<BodyStation>(mount));
+    bodies[i] = body_pose_at(path, {{i, 0}, path.of_pose(i)}, mount);
   }
   FollowedPath followed;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const std::uint8_t state = bodies[i].state;
-    if ((state & kOffPath) != 0) followed.off_path.push_back(i);
-    if ((state & kUndefined) != 0) followed.undefined.push_back(i);
-    if ((state & kFolded) != 0) followed.folded.push_back(i);
-    if ((state & kTurned) != 0) followed.turned.push_back(i);
-    if ((state & (kOffPath | kUndefined)) != 0) continue;
-    followed.poses.push_back(bodies[i].pose);
-    followed.of.push_back(i);
-  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) add_pose(followed, i, bodies[i]);
   return followed;
 }
 
@@ -176,77 +189,69 @@ Message off_path_message(const std::string& name, const std::vector<std::uint64_
                  missing);
 }
 
-std::vector<Message> doubts_about(const FollowedPath& followed, const PathStations& path,
-                                  const BodyMount& mount, const std::string& name) {
-  std::vector<Message> doubts;
-  const std::size_t count = path.poses().size();
-  const auto warn = [&](const std::string& code, const std::vector<std::uint64_t>& poses,
-                        const std::string& what) {
-    if (poses.empty()) return;
-    doubts.push_back(
-        message(Message::Severity::kWarning, code, share_text(name, poses, count) + what, poses));
-  };
-  const bool pivots = std::holds_alternative<BodyPivots>(mount);
-  if (!followed.off_path.empty()) {
-    const bool mostly = followed.off_path.size() > count / 2;
-    doubts.push_back(off_path_message(name, followed.off_path, count,
-                                      std::string("as ") + (pivots ? "a pivot" : "its station") +
-                                          " is off the path, which is " +
-                                          metres_text(path.length()) + " m long",
-                                      mostly ? "Check its stations, or make the path longer"
-                                             : "Make the path longer to search there too"));
-  }
-  warn("body-undefined", followed.undefined,
-       "the body has no pose there. Its pivots are at one place, or one is above the other. The "
-       "path turns back there, or stands on its end");
-  warn("body-folded", followed.folded,
-       "the path turns back between the pivots. They are closer together than half their way "
-       "along the path. Split the path where it turns back");
-  warn("body-turned", followed.turned,
-       pivots
-           ? "the path's x axis is more than 60 degrees from the body's, or its z axis within 30. "
-             "If the path is driven backwards, give the pivots the other way round. Otherwise its "
-             "poses may have other axes than x forward and z up"
-           : "the path is driven against its x axis. Stations ahead are behind the model there");
-  return doubts;
-}
-
 namespace {
 
-void check_mount(const BodyMount& mount) {
-  const auto* pivots = std::get_if<BodyPivots>(&mount);
-  const auto* station = std::get_if<BodyStation>(&mount);
-  const bool finite = pivots != nullptr
-                          ? std::isfinite(pivots->front) && std::isfinite(pivots->rear)
-                          : std::isfinite(station->at);
-  if (!finite) throw UsageError("a station or a pivot has to be a finite number of metres");
-  if (pivots != nullptr && pivots->front == pivots->rear) {
-    throw UsageError("both pivots are " + format_number(pivots->front) +
-                     " m ahead; expected two different places");
-  }
+/// The texts about a body that depend on how it moves.
+struct MountTexts {
+  const char *off_path, *undefined, *turned;
+};
+
+constexpr MountTexts kAtStation{
+    "its station is off the path", "",
+    "the path is driven against its x axis. Stations ahead are behind the model there"};
+constexpr MountTexts kOnPivots{
+    "a pivot is off the path",
+    "Its pivots are at one place, or one is above the other. The path turns back there, or stands "
+    "on its end",
+    "the path's x axis is more than 60 degrees from the body's, or its z axis within 30. "
+    "If the path is driven backwards, give the pivots the other way round. Otherwise its "
+    "poses may have other axes than x forward and z up"};
+constexpr MountTexts kTowed{
+    "its tower has none, because a station or a pivot is off the path",
+    "Its tower has none, or its hitch has no direction up",
+    "the tower's x axis is more than 60 degrees from where the hitch goes first, or its z axis "
+    "within 30 of the body's x axis. The path's poses may have other axes than x forward and z up"};
+
+const MountTexts& texts_of(const BodyMount& mount) {
+  if (std::holds_alternative<BodyTowed>(mount)) return kTowed;
+  return std::holds_alternative<BodyPivots>(mount) ? kOnPivots : kAtStation;
 }
 
 }  // namespace
 
-Body follow(Body body, const std::vector<Pose>& path, const BodyMount& mount,
-            std::vector<Message>* warnings) {
-  check_mount(mount);
-  const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const PathStations stations(path, threads);
-  FollowedPath followed = follow_path(stations, mount, threads);
-  const std::string name = "body " + body.name;
-  if (followed.poses.empty() && !path.empty()) {
-    throw InputError(name + ": the path is " + format_brief(stations.length()) +
-                     " m long, and the body has a pose nowhere on it");
+std::vector<Message> doubts_about(const FollowedPath& followed, const PathStations& path,
+                                  const BodyMount& mount, const std::string& name) {
+  std::vector<Message> doubts;
+  const std::size_t count = path.poses().size();
+  const MountTexts& texts = texts_of(mount);
+  const auto tell = [&](Message::Severity severity, const std::string& code,
+                        const std::vector<std::uint64_t>& poses, const std::string& what) {
+    if (poses.empty()) return;
+    doubts.push_back(message(severity, code, share_text(name, poses, count) + what, poses));
+  };
+  if (!followed.off_path.empty()) {
+    const bool mostly = followed.off_path.size() > count / 2;
+    doubts.push_back(off_path_message(name, followed.off_path, count,
+                                      std::string("as ") + texts.off_path + ", which is " +
+                                          metres_text(path.length()) + " m long",
+                                      mostly ? "Check its stations, or make the path longer"
+                                             : "Make the path longer to search there too"));
   }
-  if (warnings != nullptr) {
-    for (Message& doubt : doubts_about(followed, stations, mount, name)) {
-      warnings->push_back(std::move(doubt));
-    }
-  }
-  body.poses = std::move(followed.poses);
-  body.path_pose.assign(followed.of.begin(), followed.of.end());
-  return body;
+  constexpr auto kWarning = Message::Severity::kWarning, kNote = Message::Severity::kNote;
+  tell(kWarning, "body-undefined", followed.undefined,
+       std::string("the body has no pose there. ") + texts.undefined);
+  tell(kWarning, "body-folded", followed.folded,
+       "the path turns back between the pivots. They are closer together than half their way "
+       "along the path. Split the path where it turns back");
+  tell(kWarning, "body-turned", followed.turned, texts.turned);
+  tell(kNote, "body-transient", followed.transient,
+       "where the body stands when the path begins is not known, so it begins in line with its "
+       "tower. That still matters while the hitch goes three times as far as from the hitch to the "
+       "axle. Begin the path earlier, where it is straight");
+  tell(kNote, "body-rolls-back", followed.rolled_back,
+       "the hitch goes back a little, or has not come as far again. The body does not turn while "
+       "its hitch goes back");
+  return doubts;
 }
 
 }  // namespace clearway

@@ -82,19 +82,32 @@ PathStations::PathStations(PathStations&&) noexcept = default;
 
 std::optional<PathStations::Place> PathStations::ahead_of(std::size_t i, double ahead) const {
   if (ahead == 0) return Place{i, 0};
-  const double station = of_pose_[i] + ahead;
+  return at_station(of_pose_[i] + ahead);
+}
+
+std::optional<PathStations::Place> PathStations::at_station(double station) const {
   if (!(station >= -kRounding && station <= length() + kRounding)) return std::nullopt;
   const auto next = std::upper_bound(of_pose_.begin(), of_pose_.end(), station);
   if (next == of_pose_.begin()) return Place{0, 0};
   if (next == of_pose_.end()) return Place{poses_.size() - 1, 0};
   const auto way = static_cast<std::size_t>(next - of_pose_.begin()) - 1;
-  return Place{way, parameter_at(spline_->positions(way), station - of_pose_[way], lengths_[way])};
+  return on_way(way, station - of_pose_[way]);
+}
+
+PathStations::Place PathStations::on_way(std::size_t way, double metres) const {
+  return {way, parameter_at(spline_->positions(way), metres, lengths_[way])};
 }
 
 Pose PathStations::pose_at(const Place& place) const {
   if (place.t == 0) return poses_[place.way];
   if (place.t == 1) return poses_[place.way + 1];
   return spline_->between(place.way).at(place.t);
+}
+
+Vec3 PathStations::position_at(const Place& place) const {
+  const Vec3 from = poses_[place.way].position();
+  if (place.t == 0) return from;
+  return from + vec3_of(spline_->positions(place.way).displacement(place.t));
 }
 
 Vec3 PathStations::direction_at(const Place& place) const {

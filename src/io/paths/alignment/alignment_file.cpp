@@ -12,6 +12,7 @@
 #include "io/files/input_error.hpp"
 #include "io/paths/alignment/alignment_parts.hpp"
 #include "io/paths/alignment/land_xml.hpp"
+#include "io/paths/poses_along.hpp"
 #include "io/scans/length_unit.hpp"
 #include "io/scans/scan_crs.hpp"
 
@@ -159,48 +160,10 @@ long epsg_of(const LandXml& xml) {
 }
 
 void remark_crs(const LandXml& xml, const std::string& environment, AlignmentFile& out) {
-  if (environment.empty()) return;
   const long code = epsg_of(xml);
-  const ScanCrs scan = scan_crs_of(environment);
-  const std::int32_t other = scan.horizontal_epsg != 0 ? scan.horizontal_epsg : scan.epsg;
-  if (code == 0 || other == 0 || code == other || code == scan.epsg) return;
-  out.warn("alignment-crs",
-           xml.name() + ": the coordinates are in EPSG:" + std::to_string(code) +
-               ", and those of the environment in EPSG:" + std::to_string(other) +
-               "; they were not converted, so transform the alignment first",
-           {{"alignment", static_cast<double>(code)}, {"environment", static_cast<double>(other)}});
-}
-
-std::vector<double> stations_of(const Reach& reach, double step) {
-  const double count = std::floor((reach.to - reach.from) / step) + 2;
-  if (!(count <= kMostAlignmentPoses)) {
-    throw UsageError("--step " + brief(step) + ": gives about " + brief(count) +
-                     " poses; expected at most " +
-                     format_count(static_cast<std::uint64_t>(kMostAlignmentPoses)) +
-                     ", for example with --step " +
-                     format_brief((reach.to - reach.from) / (kMostAlignmentPoses / 2)));
-  }
-  std::vector<double> stations;
-  stations.reserve(static_cast<std::size_t>(count));
-  for (std::size_t i = 0;; ++i) {
-    const double station = reach.from + static_cast<double>(i) * step;
-    if (!(station < reach.to - kSameStation)) break;
-    stations.push_back(station);
-  }
-  stations.push_back(reach.to);
-  return stations;
-}
-
-/// Turns the poses round: their order, and their axes x and y.
-void reverse(AlignmentFile& out) {
-  std::ranges::reverse(out.poses);
-  std::ranges::reverse(out.stations);
-  for (Pose& pose : out.poses) {
-    for (int row = 0; row < 3; ++row) {
-      for (const int axis : {0, 1}) {
-        pose.rotation[3 * row + axis] = 0.0 - pose.rotation[3 * row + axis];
-      }
-    }
+  if (const auto other = other_epsg(code, environment)) {
+    out.warn("alignment-crs", other_crs_text(xml.name(), code, *other, "alignment"),
+             {{"alignment", static_cast<double>(code)}, {"environment", *other}});
   }
 }
 
@@ -264,9 +227,9 @@ AlignmentFile read_alignment_file(const std::filesystem::path& path,
   remark_left_out(xml, node, out);
   remark_feet(xml, track.plan, out);
   remark_crs(xml, options.environment_crs, out);
-  out.stations = stations_of(reach, options.step);
+  out.stations = even_stations(reach.from, reach.to, options.step);
   add_poses(xml, track, out);
-  if (options.reverse) reverse(out);
+  if (options.reverse) turn_round(out.poses, out.stations);
   return out;
 }
 

@@ -24,7 +24,4 @@ struct AlignmentFile : Remarks {
 AlignmentFile read_alignment_file(const std::filesystem::path& path,
                                   const AlignmentOptions& options);
 
-/// The greatest number of poses that are made of one alignment.
-inline constexpr double kMostAlignmentPoses = 1e7;
-
 }  // namespace clearway

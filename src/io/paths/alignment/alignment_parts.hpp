@@ -9,13 +9,11 @@
 #include "core/trajectory/alignment/alignment.hpp"
 #include "io/paths/alignment/alignment_file.hpp"
 #include "io/paths/alignment/land_xml.hpp"
+#include "io/paths/poses_along.hpp"
 
 /// The parts of an alignment in LandXML 1.2. All functions throw InputError, with the line, for
 /// what is malformed, not read or does not fit together, and append warnings to `out`.
 namespace clearway {
-
-/// Stations, as lengths, count as equal up to this many metres.
-inline constexpr double kSameStation = 1e-6;
 
 /// The plan of an element Alignment.
 AlignmentPlan read_plan(const LandXml& xml, pugi::xml_node alignment,

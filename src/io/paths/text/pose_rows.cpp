@@ -45,13 +45,11 @@ bool contradict(const FileUnit& header, const FileUnit& option) {
   return !(vague && is_foot(header.metres()) && is_foot(option.metres()));
 }
 
-/// The unit of positions that the header names, or the options; not known where neither does. A
-/// header in "ft" does not contradict options that say which foot it is. texts: the units in the
-/// header, in lower case, or empty. Throws InputError where they are not known, differ, exist only
-/// for some positions, or contradict the options.
-FileUnit unit_of_positions(std::span<const std::string> texts, const TrajectoryOptions& options,
+}  // namespace
+
+FileUnit unit_of_positions(std::span<const std::string> texts, const FileUnit& option,
                            const std::string& name) {
-  const FileUnit declared = unit_in_header(texts, name), option = options.metres_per_unit;
+  const FileUnit declared = unit_in_header(texts, name);
   if (contradict(declared, option)) {
     refuse(name, "the header has positions in units of " + brief(declared.metres()) +
                      " m, but a unit of " + brief(option.metres()) + " m was declared");
@@ -59,6 +57,8 @@ FileUnit unit_of_positions(std::span<const std::string> texts, const TrajectoryO
   const bool option_counts = !declared.is_known() || (declared.is_any_foot() && option.is_known());
   return option_counts ? option : declared;
 }
+
+namespace {
 
 /// A time in seconds, whose unit follows from its size alone: ns, us, ms or s since 1970.
 double seconds_of(double time) {
@@ -136,7 +136,7 @@ PoseRows::PoseRows(TrajectoryFormat format, std::optional<PoseColumns> columns,
   std::span<const std::string> units;
   if (columns_) units = columns_->position_units;
   if (is_geographic()) units = units.subspan(2);
-  unit_ = unit_of_positions(units, options_, name_);
+  unit_ = unit_of_positions(units, options_.metres_per_unit, name_);
   metres_ = unit_.metres_in(options_.environment_unit);
   // Numbers in the environment's own unit are kept here and in convert_positions(), because they
   // would change if converted into metres and back.

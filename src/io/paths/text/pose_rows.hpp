@@ -19,6 +19,13 @@ namespace clearway {
 Objection objection_to_count(std::string_view line, std::optional<std::size_t> count,
                              std::size_t most, const std::string& expected);
 
+/// The unit of positions that the header names, or else the option; not known where neither does. A
+/// header in "ft" does not contradict an option that says which foot it is. texts: the units in the
+/// header, in lower case, or empty. name: the file's. Throws InputError where they are not known,
+/// differ, exist only for some positions, or contradict the option.
+FileUnit unit_of_positions(std::span<const std::string> texts, const FileUnit& option,
+                           const std::string& name);
+
 /// Reads lines of text into poses, all in one known format.
 class PoseRows {
  public:

@@ -119,6 +119,11 @@ class TextTrajectory {
       fail({excerpt(line) +
             " is XML, which is no trajectory; clearway trajectory alignment makes one of LandXML"});
     }
+    if (!columns_ && line.starts_with('{')) {
+      fail({excerpt(line) +
+            " is JSON, which is no trajectory; clearway trajectory line makes one of a line in "
+            "GeoJSON"});
+    }
     if (!columns_) {
       fail({excerpt(line) + ": " + objection_to_header(names)});
     }

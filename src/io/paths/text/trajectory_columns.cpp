@@ -195,7 +195,7 @@ std::string objection_to_header(const ColumnNames& given) {
     return "latitude and longitude without angles; expected roll, pitch and heading beside them";
   }
   return "no rotation; expected the columns qx qy qz qw (or q_x, ...), r00 to r22, or roll pitch "
-         "heading";
+         "heading; clearway trajectory line makes poses of places without a rotation";
 }
 
 PoseColumns euroc_columns(std::size_t fields) {

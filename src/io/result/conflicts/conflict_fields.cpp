@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/query/ignored_points.hpp"
-#include "io/files/xxh64.hpp"
 #include "io/result/conflicts/json_text.hpp"
 
 namespace clearway {
@@ -94,27 +93,6 @@ std::vector<ConflictField> sample_fields(const ResultHeader& header) {
 
 namespace {
 
-std::string message_json(const Message& message) {
-  std::string numbers;
-  for (const auto& [name, value] : message.numbers) {
-    numbers += (numbers.empty() ? "" : ", ") + json_string(name) + ": " + json_number(value);
-  }
-  return "{\"code\": " + json_string(message.code) + ", \"message\": " + json_string(message.text) +
-         ", \"numbers\": {" + numbers + "}}";
-}
-
-std::string warnings_json(const std::vector<Message>& warnings) {
-  std::string out;
-  for (const Message& warning : warnings) out += (out.empty() ? "" : ", ") + message_json(warning);
-  return "[" + out + "]";
-}
-
-std::string names_json(const std::vector<std::string>& names) {
-  std::string out;
-  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + json_string(name);
-  return "[" + out + "]";
-}
-
 /// Most small groups that a file lists, the first ones along the path; nobody reads millions.
 constexpr std::size_t kMostSmallGroups = 1000;
 
@@ -133,28 +111,12 @@ std::string small_json(const std::vector<SmallGroup>& groups) {
   return "[" + out + "]";
 }
 
-class Members {
- public:
-  void add(std::string_view name, const std::string& json) {
-    text_ += (text_.empty() ? "  " : ",\n  ") + json_string(name) + ": " + json;
-  }
-  void add_count(std::string_view name, std::uint64_t count) { add(name, std::to_string(count)); }
-  void add_length(std::string_view name, double length) { add(name, json_number(length)); }
-  void add_hash(std::string_view name, std::uint64_t hash) {
-    add(name, json_string(hash_text(hash)));
-  }
-  std::string text() && { return std::move(text_); }
-
- private:
-  std::string text_;
-};
-
 }  // namespace
 
 std::string summary_json(const ConflictFile& file) {
   const ResultHeader& header = file.header;
   const Conflicts& conflicts = file.conflicts;
-  Members out;
+  JsonMembers out;
   out.add("kind", json_string("conflicts"));
   out.add("unit", json_string(symbol_of(file.unit())));
   out.add_length("radius", header.radius);
@@ -164,14 +126,14 @@ std::string summary_json(const ConflictFile& file) {
   if (header.budget) {
     std::vector<std::string> reasons;
     for (const Reason reason : file.answer.reasons()) reasons.emplace_back(name_of(reason));
-    out.add("reasons", names_json(reasons));
+    out.add("reasons", json_strings(reasons));
     out.add("margins", "{\"clear\": " + json_number(header.budget->clear()) +
                            ", \"conflict\": " + json_number(header.budget->conflict()) + "}");
     out.add_count("near_points", file.answer.near_points);
     out.add_count("certain_points", file.answer.certain.points);
   }
-  out.add("doubts", names_json(file.answer.doubts));
-  if (!file.answer.warned_of.empty()) out.add("warned_of", names_json(file.answer.warned_of));
+  out.add("doubts", json_strings(file.answer.doubts));
+  if (!file.answer.warned_of.empty()) out.add("warned_of", json_strings(file.answer.warned_of));
   if (header.ignores_points()) {
     out.add_count("ignored_points", header.ignored.points);
     const auto& colliding = file.answer.ignored_colliding;
@@ -184,7 +146,7 @@ std::string summary_json(const ConflictFile& file) {
   out.add_count("environment_points", header.environment_points);
   out.add_count("model_points", header.model_points);
   out.add_count("poses", header.poses);
-  if (!header.bodies.empty()) out.add("bodies", names_json(header.bodies));
+  if (!header.bodies.empty()) out.add("bodies", json_strings(header.bodies));
   out.add_hash("environment_hash", header.environment_hash);
   out.add_hash("model_hash", header.model_hash);
   out.add_hash("trajectory_hash", header.trajectory_hash);
@@ -199,7 +161,7 @@ std::string summary_json(const ConflictFile& file) {
   out.add("has_last_poses", conflicts.has_last_poses ? "true" : "false");
   out.add_length("longest_group", conflicts.longest_group);
   out.add_count("longest_group_points", conflicts.longest_group_points);
-  out.add("warnings", warnings_json(file.warnings));
+  out.add("warnings", json_messages(file.warnings));
   return std::move(out).text();
 }
 

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstdint>
 
+#include "io/files/text_writer.hpp"
+#include "io/files/xxh64.hpp"
+
 namespace clearway {
 namespace {
 
@@ -85,8 +88,47 @@ std::string json_number(double value) {
 
 std::string json_value(const FieldValue& value) { return std::visit(ValueText{}, value); }
 
+std::string csv_value(const FieldValue& value) {
+  if (std::holds_alternative<std::monostate>(value)) return "";
+  const auto* word = std::get_if<std::string_view>(&value);
+  return word != nullptr ? csv_cell(*word) : json_value(value);
+}
+
 std::string json_vector(const Vec3& v) {
   return "[" + json_number(v.x) + ", " + json_number(v.y) + ", " + json_number(v.z) + "]";
+}
+
+std::string json_strings(const std::vector<std::string>& texts) {
+  std::string out;
+  for (const std::string& text : texts) out += (out.empty() ? "" : ", ") + json_string(text);
+  return "[" + out + "]";
+}
+
+namespace {
+
+std::string message_json(const Message& message) {
+  std::string numbers;
+  for (const auto& [name, value] : message.numbers) {
+    numbers += (numbers.empty() ? "" : ", ") + json_string(name) + ": " + json_number(value);
+  }
+  return "{\"code\": " + json_string(message.code) + ", \"message\": " + json_string(message.text) +
+         ", \"numbers\": {" + numbers + "}}";
+}
+
+}  // namespace
+
+std::string json_messages(const std::vector<Message>& messages) {
+  std::string out;
+  for (const Message& message : messages) out += (out.empty() ? "" : ", ") + message_json(message);
+  return "[" + out + "]";
+}
+
+void JsonMembers::add(std::string_view name, const std::string& json) {
+  text_ += (text_.empty() ? "  " : ",\n  ") + json_string(name) + ": " + json;
+}
+
+void JsonMembers::add_hash(std::string_view name, std::uint64_t hash) {
+  add(name, json_string(hash_text(hash)));
 }
 
 }  // namespace clearway

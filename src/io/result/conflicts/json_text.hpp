@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
+#include "clearway/progress.hpp"
 #include "clearway/vec3.hpp"
 #include "io/result/conflicts/conflict_fields.hpp"
 
@@ -20,7 +24,31 @@ std::string json_number(double value);
 /// A field's value as JSON: null, a number or a string.
 std::string json_value(const FieldValue& value);
 
+/// A field's value as a cell of a CSV file, empty where it is absent.
+std::string csv_value(const FieldValue& value);
+
 /// A vector as JSON: [x, y, z].
 std::string json_vector(const Vec3& v);
+
+/// Texts as a JSON array of strings.
+std::string json_strings(const std::vector<std::string>& texts);
+
+/// Messages as a JSON array of objects with code, message and numbers.
+std::string json_messages(const std::vector<Message>& messages);
+
+/// The members of a JSON object, without its braces, each on a line that begins with two blanks.
+class JsonMembers {
+ public:
+  /// json: the value as JSON.
+  void add(std::string_view name, const std::string& json);
+  void add_count(std::string_view name, std::uint64_t count) { add(name, std::to_string(count)); }
+  void add_length(std::string_view name, double length) { add(name, json_number(length)); }
+  /// Adds a hash as a string of hexadecimal digits.
+  void add_hash(std::string_view name, std::uint64_t hash);
+  std::string text() && { return std::move(text_); }
+
+ private:
+  std::string text_;
+};
 
 }  // namespace clearway

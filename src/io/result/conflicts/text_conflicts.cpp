@@ -10,16 +10,6 @@
 #include "io/scans/scan_crs.hpp"
 
 namespace clearway {
-namespace {
-
-std::string csv_value(const FieldValue& value) {
-  if (std::holds_alternative<std::monostate>(value)) return "";
-  const auto* word = std::get_if<std::string_view>(&value);
-  return word != nullptr ? csv_cell(*word) : json_value(value);
-}
-
-}  // namespace
-
 void write_csv(const ConflictFile& conflicts, const File& file) {
   const Conflicts& found = conflicts.conflicts;
   TextWriter out(file);

@@ -267,17 +267,24 @@ std::optional<std::size_t> column_named(const TableHeader& header, std::string_v
   return find_one(header, {&name, 1});
 }
 
-std::optional<CoordinateColumns> coordinate_columns(const TableHeader& header) {
+std::optional<PlanColumns> plan_columns(const TableHeader& header) {
+  static constexpr std::string_view kZ[] = {"z"};
   auto x = column_named(header, "x");
   auto y = column_named(header, "y");
   if (!x && !y) {
     x = find_one(header, kEast);
     y = find_one(header, kNorth);
   }
-  auto z = column_named(header, "z");
-  if (!z && !has(header, std::array<std::string_view, 1>{"z"})) z = find_one(header, kHeight);
-  if (!x || !y || !z) return std::nullopt;
-  return CoordinateColumns{*x, *y, *z};
+  const Names heights = has(header, kZ) ? Names(kZ) : Names(kHeight);
+  const auto z = find_one(header, heights);
+  if (!x || !y || (!z && has(header, heights))) return std::nullopt;
+  return PlanColumns{*x, *y, z};
+}
+
+std::optional<CoordinateColumns> coordinate_columns(const TableHeader& header) {
+  const auto plan = plan_columns(header);
+  if (!plan || !plan->z) return std::nullopt;
+  return CoordinateColumns{plan->x, plan->y, *plan->z};
 }
 
 std::string other_table(const TableHeader& header) {

@@ -62,6 +62,16 @@ std::optional<std::size_t> column_named(const TableHeader& header, std::string_v
 /// is missing or named twice.
 std::optional<CoordinateColumns> coordinate_columns(const TableHeader& header);
 
+/// Indices of the columns of a line in plan, with or without heights.
+struct PlanColumns {
+  std::size_t x, y;
+  std::optional<std::size_t> z;
+};
+
+/// The columns of x and y, or of easting and northing, and that of z or a height where the table
+/// has one. Nullopt where x or y is missing or one of them is named twice.
+std::optional<PlanColumns> plan_columns(const TableHeader& header);
+
 /// What kind of table the names indicate if not one of points, for a message; otherwise empty.
 std::string other_table(const TableHeader& header);
 

@@ -1,14 +1,11 @@
 #include "search/checks/facts/scan_facts.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "core/geometry/sweep_bounds.hpp"
-#include "search/checks/facts/path_facts.hpp"
-#include "search/checks/question.hpp"
 
 namespace clearway {
 
@@ -23,150 +20,6 @@ std::optional<double> height_above_ground(const ScanPoints& points, const Box& b
     return here > 0;
   });
   return height;
-}
-
-namespace {
-
-/// The most blocks that are read for one box: a quarter of a million points.
-constexpr std::uint32_t kMostBlocks = 4096;
-
-/// The inverse of a pose, from the scan's frame into the model's. The pose may be rigid or scale
-/// uniformly.
-class Inverse {
- public:
-  explicit Inverse(const Pose& pose) : pose_(pose) {
-    const double* r = pose.rotation;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double squared = squared_length(r[k], r[3 + k], r[6 + k]);
-      for (std::size_t j = 0; j < 3; ++j) rows_[3 * k + j] = r[3 * j + k] / squared;
-    }
-  }
-
-  Vec3 operator()(const Vec3& p) const {
-    const Vec3 d = difference(p, pose_.position());
-    const auto& r = rows_;
-    return {r[0] * d.x + r[1] * d.y + r[2] * d.z, r[3] * d.x + r[4] * d.y + r[5] * d.z,
-            r[6] * d.x + r[7] * d.y + r[8] * d.z};
-  }
-
-  /// The box in the model's frame around a box of the scan.
-  Box operator()(const Box& box) const {
-    const Vec3 centre = (*this)(box.centre());
-    Box out{centre, centre};
-    for (int k = 0; k < 3; ++k) {
-      const double* row = rows_.data() + std::ptrdiff_t{3} * k;
-      double half = 0;
-      for (int j = 0; j < 3; ++j) half += std::abs(row[j]) * (box.hi[j] - box.lo[j]) / 2;
-      out.lo[k] -= half;
-      out.hi[k] += half;
-    }
-    return out;
-  }
-
- private:
-  const Pose& pose_;
-  std::array<double, 9> rows_{};
-};
-
-class Visit {
- public:
-  Visit(const PackedCloud& cloud, const Box& region, const Pose& pose,
-        const std::function<bool(const Vec3&)>& look,
-        std::unordered_map<std::uint32_t, ScanPoints::Chunks>& chunks)
-      : cloud_(cloud),
-        chunks_(chunks),
-        region_(region),
-        place_(moved(region, pose)),
-        inverse_(pose),
-        look_(look) {}
-
-  bool run() {
-    const std::span<const TreeNode> tree = cloud_.tree();
-    std::vector<std::uint32_t> open{0};
-    while (!open.empty() && !stopped_) {
-      const std::uint32_t node = open.back();
-      open.pop_back();
-      if (!may_matter(position_box(cloud_.quantisation(), tree[node].box))) continue;
-      if (tree[node].right != 0) {
-        open.push_back(tree[node].right);
-        open.push_back(node + 1);
-      } else {
-        look_into(tree[node].first_cell);
-      }
-    }
-    return blocks_ <= kMostBlocks;
-  }
-
- private:
-  bool may_matter(const Box& box) const {
-    return box.distance(place_) == 0 && inverse_(box).distance(region_) == 0;
-  }
-
-  /// The packed chunks of a cell, kept because reading them checks all bytes of the cell.
-  const ScanPoints::Chunks& chunks_of(std::uint32_t cell) {
-    const auto known = chunks_.find(cell);
-    return known != chunks_.end() ? known->second
-                                  : chunks_.emplace(cell, cloud_.peek(cell)).first->second;
-  }
-
-  void look_into(std::uint32_t cell) {
-    const Cell& here = cloud_.cells()[cell];
-    const StepRange range(position_box(cloud_.quantisation(), here.box), place_, 0);
-    const ScanPoints::Chunks* chunks = nullptr;
-    for (std::uint32_t first = 0; first < here.count && !stopped_; first += kBlockPoints) {
-      const std::uint64_t at =
-          std::uint64_t{cell} * cloud_.blocks_per_cell() + first / kBlockPoints;
-      if (!range.meets(cloud_.blocks()[at])) continue;
-      const QuantumBox block = decode_block_box(here.box, cloud_.blocks()[at]);
-      if (!may_matter(position_box(cloud_.quantisation(), block))) continue;
-      if (++blocks_ > kMostBlocks) {
-        stopped_ = true;
-        return;
-      }
-      if (chunks == nullptr) chunks = &chunks_of(cell);
-      look_at(*chunks, first, std::min<std::uint32_t>(kBlockPoints, here.count - first));
-    }
-  }
-
-  void look_at(const ScanPoints::Chunks& chunks, std::uint32_t first, std::uint32_t count) {
-    std::array<std::array<std::int32_t, kBlockPoints>, 3> quanta{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      chunks[k].decode(first, std::span(quanta[k]).first(count));
-    }
-    for (std::uint32_t i = 0; i < count && !stopped_; ++i) {
-      const Vec3 p =
-          inverse_(position(cloud_.quantisation(), quanta[0][i], quanta[1][i], quanta[2][i]));
-      if (region_.contains(p)) stopped_ = !look_(p);
-    }
-  }
-
-  const PackedCloud& cloud_;
-  std::unordered_map<std::uint32_t, ScanPoints::Chunks>& chunks_;
-  const Box& region_;
-  Box place_;
-  Inverse inverse_;
-  const std::function<bool(const Vec3&)>& look_;
-  std::uint32_t blocks_ = 0;
-  bool stopped_ = false;
-};
-
-}  // namespace
-
-bool ScanPoints::visit(const Box& region, const Pose& pose,
-                       const std::function<bool(const Vec3&)>& look) const {
-  return Visit(cloud_, region, pose, look, chunks_).run();
-}
-
-bool ScanPoints::has(const Box& region, const Pose& pose, std::uint64_t least) const {
-  std::uint64_t found = 0;
-  const bool all = visit(region, pose, [&](const Vec3&) { return ++found < least; });
-  return !all || found >= least;
-}
-
-double ScanPoints::bottom_of_scan(const Box& body, const Pose& pose) const {
-  const Box environment = position_box(cloud_.quantisation(), cloud_.tree()[0].box);
-  constexpr double kTilted = 1.5;
-  return body.lo.z - kTilted * std::max(0.0, moved(body, pose).lo.z - environment.lo.z);
 }
 
 namespace {

@@ -59,6 +59,14 @@ TEST_CASE("XML is refused with the command that makes a trajectory of it") {
   }
 }
 
+TEST_CASE("a line is refused with the command that makes a trajectory of it") {
+  const ReaderScratch scratch;
+  for (const char* text : {"x,y,z\n1,2,3\n4,5,6\n", "{\"type\": \"LineString\"}\n"}) {
+    CHECK_THROWS_WITH(read_trajectory(scratch.write("a", text)),
+                      Contains("clearway trajectory line"));
+  }
+}
+
 TEST_CASE("a long trajectory has its poses in the order of its lines") {
   const ReaderScratch scratch;
   const auto poses_of = [&](const std::string& text) {

@@ -173,3 +173,15 @@ TEST_CASE("a read-only disk: inputs are read from it, outputs are refused at onc
   CHECK(disk.files() == before);
   CHECK((bytes_of(disk / "made.h5") == bytes));
 }
+
+TEST_CASE("check names the folder as the place for another disk") {
+  if (!disks_can_be_made()) return;
+  const Place place;
+  const SmallDisk disk(40 * kPage);
+  const Outcome full =
+      place.run("check " + place.hall / "environment.las" + " --model " + place.hall / "model.ply" +
+                " --trajectory " + place.hall / "trajectory.txt" + " --radius 0.1 -o " +
+                quoted(disk / "site"));
+  check_failed(full, disk);
+  CHECK_THAT(full.err, Contains("give -o a folder on a disk with more"));
+}

@@ -1,4 +1,4 @@
-#include "cli/ignored/ignored_options.hpp"
+#include "cli/support/ignored_options.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cmath>

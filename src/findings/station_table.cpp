@@ -1,0 +1,411 @@
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "clearway/error.hpp"
+#include "clearway/stations.hpp"
+#include "clearway/unsearched.hpp"
+#include "core/geometry/point_box.hpp"
+#include "core/query/body_numbers.hpp"
+#include "core/trajectory/chainage.hpp"
+#include "core/trajectory/follow/path_stations.hpp"
+#include "core/util/format.hpp"
+#include "core/util/progress.hpp"
+#include "findings/certain_points.hpp"
+#include "findings/check_conflicts.hpp"
+#include "findings/overthrow.hpp"
+#include "findings/path_rows.hpp"
+#include "findings/touched_first.hpp"
+#include "findings/unseen_lattice.hpp"
+#include "io/files/input_error.hpp"
+#include "io/files/thread_limit.hpp"
+#include "io/result/answer.hpp"
+#include "io/result/result.hpp"
+#include "io/scans/requantize.hpp"
+
+namespace clearway {
+namespace {
+
+Message warning(const char* code, std::string text) {
+  return {Message::Severity::kWarning, code, std::move(text)};
+}
+
+/// One call of station_table(), step by step.
+class TableMaker {
+ public:
+  TableMaker(const Result& result, const std::vector<Pose>& poses, const StationOptions& options,
+             int threads, Progress& progress)
+      : result_(result),
+        reader_(result.reader()),
+        header_(reader_.header()),
+        poses_(poses),
+        options_(options),
+        threads_(threads),
+        progress_(progress),
+        rows_(chainage_of(poses), options.every),
+        bodies_(moving_bodies(kNoModel, poses, options.bodies)) {
+    for (const Body& body : options.bodies) boxes_.push_back(box_of(body.model.vertices));
+    if (!header_.bodies.empty()) return;
+    const auto box = options.model_box ? options.model_box : result.model_box();
+    if (box) boxes_.push_back(*box);
+  }
+
+  StationTable run() {
+    table_.bodies = header_.bodies;
+    if (table_.bodies.empty()) table_.bodies.emplace_back();
+    make_rows();
+    if (rows_.size() == 0) return std::move(table_);
+    add_distances();
+    add_overthrow();
+    judge();
+    return std::move(table_);
+  }
+
+ private:
+  inline static const Model kNoModel{};
+
+  /// Whether the frames and boxes of all bodies are known.
+  bool knows_bodies() const { return !boxes_.empty(); }
+
+  void make_rows() {
+    for (std::size_t row = 0; row < rows_.size(); ++row) {
+      StationRow& out = table_.rows.emplace_back();
+      out.chainage_from = rows_.from(row) + options_.chainage_start;
+      out.chainage_to = rows_.to(row) + options_.chainage_start;
+      out.station_from = station_at(rows_.from(row));
+      out.station_to = station_at(rows_.to(row));
+      out.overthrow.resize(table_.bodies.size());
+    }
+  }
+
+  std::optional<double> station_at(double chainage) const {
+    if (options_.station.empty()) return std::nullopt;
+    const std::vector<double>& all = rows_.chainage();
+    const auto next = std::ranges::upper_bound(all, chainage);
+    if (next == all.end()) return options_.station.back();
+    const auto i = static_cast<std::size_t>(next - all.begin());
+    const double part = (chainage - all[i - 1]) / (all[i] - all[i - 1]);
+    return options_.station[i - 1] + part * (options_.station[i] - options_.station[i - 1]);
+  }
+
+  void add_distances() {
+    if (!(header_.clearance > 0)) {
+      table_.warnings.push_back(
+          warning("no-clearances", reader_.name() +
+                                       ": has no clearances, so the table has no distances to the "
+                                       "left, to the right and above"));
+      return;
+    }
+    const bool sides = knows_bodies() && header_.has_clearance_xyz();
+    if (!sides) {
+      table_.warnings.push_back(
+          warning("sides-unknown",
+                  reader_.name() + ": without the " +
+                      (header_.bodies.empty() ? "model's box" : "bodies of the vehicle") +
+                      " the table cannot say which points are to the left, to the right or above"));
+    }
+    progress_.begin("distances", reader_.clearances(), "points");
+    RowStream<Clearances> stream(reader_);
+    for (Clearances rows; stream.read(rows);) {
+      throw_if_stopped(progress_);
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        FoundPlace found{rows.source[i], rows.pose[i], {}, rows.distance[i]};
+        if (!rows.xyz.empty()) found.xyz = rows.xyz[i];
+        if (!rows.body.empty()) found.body = rows.body[i];
+        StationRow& row = table_.rows[rows_.of_pose(found.pose)];
+        keep_least(found, row.least);
+        if (sides) keep_side(found, row);
+      }
+      progress_.advance(rows.size());
+    }
+    progress_.end();
+  }
+
+  static void keep_least(const FoundPlace& found, std::optional<FoundPlace>& least) {
+    if (!least || found.distance < least->distance) least = found;
+  }
+
+  void keep_side(const FoundPlace& found, StationRow& row) const {
+    const Pose* pose = bodies_[found.body].pose_at(found.pose);
+    if (pose == nullptr) return;
+    const Vec3 there = ahead_left_up(found.xyz, *pose, options_.forward, options_.up);
+    const Box box = turned(boxes_[found.body], options_.forward, options_.up);
+    if (there.y > box.hi.y) {
+      keep_least(found, row.left);
+    } else if (there.y < box.lo.y) {
+      keep_least(found, row.right);
+    } else if (there.z > box.hi.z) {
+      keep_least(found, row.above);
+    }
+  }
+
+  void add_overthrow() {
+    if (!knows_bodies()) return;
+    std::optional<PathStations> path;
+    try {
+      path.emplace(poses_, threads_);
+    } catch (const InputError& error) {
+      table_.warnings.push_back(
+          warning("no-overthrow", std::string("the overthrow is not known: ") + error.what()));
+      return;
+    }
+    progress_.begin("overthrow", bodies_.size(), "bodies");
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      throw_if_stopped(progress_);
+      const std::vector<Overthrow> found =
+          overthrow_of(*path, bodies_[b], boxes_[b], options_.forward, options_.up);
+      for (std::size_t k = 0; k < found.size(); ++k) {
+        const auto& poses = bodies_[b].path_pose;
+        Overthrow& all = table_.rows[rows_.of_pose(poses.empty() ? k : poses[k])].overthrow[b];
+        all.end = std::max(all.end, found[k].end);
+        all.middle = std::max(all.middle, found[k].middle);
+      }
+      progress_.advance(1);
+    }
+    progress_.end();
+  }
+
+  /// The rows of a pose, or of the way that begins with it, as a half-open range.
+  std::array<std::size_t, 2> rows_of(std::uint32_t pose) const {
+    const bool way = header_.between_poses && pose + std::size_t{1} < poses_.size();
+    return {rows_.of_pose(pose), rows_.of_pose(pose + (way ? 1 : 0)) + 1};
+  }
+
+  static void add(const std::array<std::size_t, 2>& range, RowSet& set) {
+    for (std::size_t row = range[0]; row < range[1]; ++row) set.add(row);
+  }
+
+  /// Adds the rows in a range on which a body may come within `distance` of a place; all of them
+  /// where the boxes of the bodies are not known.
+  void add_near(const Vec3& place, double distance, std::size_t from, std::size_t to, RowSet& set) {
+    if (from >= to || set.next_outside(from) >= to) return;
+    if (!knows_bodies()) return add({from, to}, set);
+    if (!reach_) reach_.emplace(bodies_, boxes_, rows_, header_.between_poses);
+    reach_->add_near(place, distance, from, to, set);
+  }
+
+  /// Adds the rows on which a point collides: those of its first and its last pose, and of those
+  /// between them the ones on which a body may touch it.
+  void add_touched(const Collisions& rows, std::size_t i, RowSet& set) {
+    const auto first = rows_of(rows.first_pose[i]);
+    add(first, set);
+    if (rows.last_pose.empty()) return;
+    const auto last = rows_of(rows.last_pose[i]);
+    add(last, set);
+    add_near(rows.xyz[i], header_.radius, first[1], last[0], set);
+  }
+
+  /// With an error budget, whether each colliding point is one of ten or more that hang together
+  /// and are certainly too close.
+  std::vector<bool> find_certain() {
+    std::vector<QuantumPoint> quanta;
+    std::vector<std::uint64_t> row_of;
+    std::uint64_t row = 0;
+    RowStream<Collisions> stream(reader_);
+    for (Collisions rows; stream.read(rows);) {
+      throw_if_stopped(progress_);
+      for (std::size_t i = 0; i < rows.size(); ++i, ++row) {
+        if (rows.certain[i] == 0) continue;
+        quanta.push_back(quanta_of(rows, i));
+        row_of.push_back(row);
+      }
+    }
+    std::vector<bool> out(reader_.collisions());
+    for (const std::uint32_t member :
+         members_of_certain_groups(quanta, header_.quantisation, header_.gap, progress_)) {
+      out[row_of[member]] = true;
+    }
+    return out;
+  }
+
+  QuantumPoint quanta_of(const Collisions& rows, std::size_t i) const {
+    QuantumPoint out{};
+    for (int k = 0; k < 3; ++k) {
+      const auto q = quantum_at(header_.quantisation, k, rows.xyz[i][k]);
+      if (!q) {
+        refuse(reader_.name(), "/collisions/xyz, source " + std::to_string(rows.source[i]) +
+                                   ": expected a whole multiple of the scale above the offset");
+      }
+      out.q[k] = *q;
+    }
+    return out;
+  }
+
+  void judge() {
+    RowSet conflict(rows_.size()), near(rows_.size()), unseen(rows_.size());
+    find_touched(conflict, near);
+    find_near(near);
+    find_unseen(unseen);
+    find_unsearched();
+    const bool in_doubt = counted_answer(reader_).is_in_doubt();
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      StationRow& row = table_.rows[i];
+      if (conflict.contains(i)) {
+        row.verdict = Verdict::kConflict;
+        continue;
+      }
+      if (near.contains(i)) row.reasons.push_back(Reason::kNear);
+      if (unseen.contains(i)) row.reasons.push_back(Reason::kNotScanned);
+      if (in_doubt) row.reasons.push_back(Reason::kQuestionInDoubt);
+      if (!row.reasons.empty() || !row.is_searched) row.verdict = Verdict::kUndecided;
+    }
+  }
+
+  void find_touched(RowSet& conflict, RowSet& near) {
+    const std::vector<bool> certain = header_.budget ? find_certain() : std::vector<bool>();
+    progress_.begin("contacts", reader_.collisions() + reader_.near(), "points");
+    RowStream<Collisions> stream(reader_);
+    std::uint64_t row = 0;
+    for (Collisions rows; stream.read(rows);) {
+      throw_if_stopped(progress_);
+      for (std::size_t i = 0; i < rows.size(); ++i, ++row) {
+        const bool counts = !header_.budget || certain[row];
+        add_touched(rows, i, counts ? conflict : near);
+        if (rows.last_pose.empty()) {
+          add_near(rows.xyz[i], header_.radius, rows_of(rows.first_pose[i])[1], rows_.size(), near);
+        }
+      }
+      progress_.advance(rows.size());
+    }
+    if (header_.last_pose || reader_.collisions() == 0) return;
+    table_.warnings.push_back(warning(
+        "no-last-poses", reader_.name() +
+                             ": has no last poses, so it does not say where a contact ends; "
+                             "stretches behind a first contact are undecided as long as a "
+                             "body's box is near the point. Run the search again"));
+  }
+
+  /// Adds the rows on which near points are near: that of their first pose, and later ones on which
+  /// a body may come as near again, because no search looks for their last poses. The same holds
+  /// for points that collide but are not certain to, where the budget keeps more space free than
+  /// the radius.
+  void find_near(RowSet& near) {
+    if (!header_.budget) return;
+    const double distance = header_.budget->near_radius(header_.radius);
+    RowStream<Collisions> colliding(reader_);
+    for (Collisions rows; colliding.read(rows);) {
+      throw_if_stopped(progress_);
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        add_near(rows.xyz[i], distance, 0, rows_.size(), near);
+      }
+    }
+    RowStream<Nearby> stream(reader_);
+    for (Nearby rows; stream.read(rows);) {
+      throw_if_stopped(progress_);
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        const auto first = rows_of(rows.first_pose[i]);
+        add(first, near);
+        add_near(rows.xyz[i], distance, first[1], rows_.size(), near);
+      }
+      progress_.advance(rows.size());
+    }
+  }
+
+  void find_unseen(RowSet& unseen) {
+    const auto& seen = reader_.findings().seen;
+    if (!seen || seen->listed_groups == 0) return;
+    const UnseenCubes cubes = result_.unseen();
+    const CubeLattice lattice = lattice_of_unseen(header_, *seen);
+    std::vector<std::uint64_t> sizes;
+    for (const std::uint32_t group : cubes.group) {
+      if (group >= sizes.size()) sizes.resize(group + std::size_t{1});
+      ++sizes[group];
+    }
+    const double distance =
+        header_.budget ? header_.budget->near_radius(header_.radius) : header_.radius;
+    for (std::size_t i = 0; i < cubes.size(); ++i) {
+      if (i % 4096 == 0) throw_if_stopped(progress_);
+      if (sizes[cubes.group[i]] < header_.seen_min) continue;
+      const auto first = rows_of(cubes.first_pose[i]);
+      add(first, unseen);
+      const Vec3 middle = middle_of_cube(lattice, header_.quantisation, cubes.cube[i]);
+      add_near(middle, distance, first[1], rows_.size(), unseen);
+    }
+  }
+
+  /// Finds the rows on which a body was not searched, or no pose was.
+  void find_unsearched() {
+    if (!header_.bodies.empty() && options_.bodies.empty()) {
+      const auto& searched = reader_.findings().searched;
+      const bool all = searched && searched->whole == searched->path;
+      for (StationRow& row : table_.rows) row.is_searched = all;
+      if (!all) {
+        table_.warnings.push_back(
+            warning("searched-unknown",
+                    reader_.name() +
+                        ": some bodies have no pose on a part of the path, and without the vehicle "
+                        "it is not known where; no stretch is called clear"));
+      }
+      return;
+    }
+    for (const UnsearchedStretch& gap : unsearched_stretches(poses_, options_.bodies)) {
+      const std::size_t from = rows_.of_pose(gap.first_pose), to = rows_.of_pose(gap.last_pose);
+      const std::size_t before = rows_.of_pose(gap.first_pose - (gap.first_pose > 0 ? 1 : 0));
+      const std::size_t after =
+          rows_.of_pose(std::min<std::size_t>(gap.last_pose + std::size_t{1}, poses_.size() - 1));
+      for (std::size_t row = before; row <= after; ++row) {
+        const bool meets =
+            std::max(gap.chainage_from, rows_.from(row)) < std::min(gap.chainage_to, rows_.to(row));
+        if (meets || (row >= from && row <= to)) table_.rows[row].is_searched = false;
+      }
+    }
+    if (poses_.size() == 1 && !options_.bodies.empty()) note_single_pose();
+    if (header_.between_poses && poses_.size() > 1) return;
+    RowSet with_pose(rows_.size());
+    for (std::size_t i = 0; i < poses_.size(); ++i) with_pose.add(rows_.of_pose(i));
+    for (std::size_t row = 0; row < rows_.size(); ++row) {
+      if (!with_pose.contains(row)) table_.rows[row].is_searched = false;
+    }
+  }
+
+  /// A path of one pose has no stretch between poses that could be unsearched.
+  void note_single_pose() {
+    for (const Body& body : options_.bodies) {
+      if (body.poses.empty()) table_.rows.front().is_searched = false;
+    }
+  }
+
+  const Result& result_;
+  const ResultReader& reader_;
+  const ResultHeader& header_;
+  const std::vector<Pose>& poses_;
+  const StationOptions& options_;
+  const int threads_;
+  Progress& progress_;
+  const PathRows rows_;
+  const std::vector<MovingBody> bodies_;
+  std::vector<Box> boxes_;  ///< one for each of bodies_, or none where they are not known
+  std::optional<BoxReach> reach_;
+  StationTable table_;
+};
+
+void check_options(const ResultReader& result, const std::vector<Pose>& poses,
+                   const StationOptions& options) {
+  ConflictOptions checked;
+  checked.chainage_start = options.chainage_start;
+  checked.forward = options.forward;
+  checked.up = options.up;
+  checked.bodies = options.bodies;
+  check_conflicts(result, poses, checked);
+  if (options.station.empty() || options.station.size() == poses.size()) return;
+  throw UsageError(counted(options.station.size(), "station") + " for " +
+                   counted(poses.size(), "pose") + "; expected one for each pose, or none");
+}
+
+}  // namespace
+
+StationTable station_table(const Result& result, const std::vector<Pose>& poses,
+                           const StationOptions& options) {
+  check_options(result.reader(), poses, options);
+  CallbackProgress progress(options.progress, options.stop);
+  const int threads =
+      options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
+  return ThreadLimit(threads).run(
+      [&] { return TableMaker(result, poses, options, threads, progress).run(); });
+}
+
+}  // namespace clearway

@@ -1,0 +1,60 @@
+#include "io/paths/poses_along.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "clearway/error.hpp"
+#include "core/util/format.hpp"
+#include "io/files/input_error.hpp"
+#include "io/scans/scan_crs.hpp"
+
+namespace clearway {
+
+std::vector<double> even_stations(double from, double to, double step) {
+  const double count = std::floor((to - from) / step) + 2;
+  if (!(count <= kMostPosesAlong)) {
+    throw UsageError(
+        "--step " + brief(step) + ": gives about " + brief(count) + " poses; expected at most " +
+        format_count(static_cast<std::uint64_t>(kMostPosesAlong)) + ", for example with --step " +
+        format_brief((to - from) / (kMostPosesAlong / 2)));
+  }
+  std::vector<double> stations;
+  stations.reserve(static_cast<std::size_t>(count));
+  for (std::size_t i = 0;; ++i) {
+    const double station = from + static_cast<double>(i) * step;
+    if (!(station < to - kSameStation)) break;
+    stations.push_back(station);
+  }
+  stations.push_back(to);
+  return stations;
+}
+
+void turn_round(std::vector<Pose>& poses, std::vector<double>& stations) {
+  std::ranges::reverse(poses);
+  std::ranges::reverse(stations);
+  for (Pose& pose : poses) {
+    for (int row = 0; row < 3; ++row) {
+      for (const int axis : {0, 1}) {
+        pose.rotation[3 * row + axis] = 0.0 - pose.rotation[3 * row + axis];
+      }
+    }
+  }
+}
+
+std::optional<std::int32_t> other_epsg(long code, const std::string& environment) {
+  if (environment.empty() || code == 0) return std::nullopt;
+  const ScanCrs scan = scan_crs_of(environment);
+  const std::int32_t other = scan.horizontal_epsg != 0 ? scan.horizontal_epsg : scan.epsg;
+  if (other == 0 || code == other || code == scan.epsg) return std::nullopt;
+  return other;
+}
+
+std::string other_crs_text(const std::string& name, long code, std::int32_t environment,
+                           const std::string& what) {
+  return name + ": the coordinates are in EPSG:" + std::to_string(code) +
+         ", and those of the environment in EPSG:" + std::to_string(environment) +
+         "; they were not converted, so transform the " + what + " first";
+}
+
+}  // namespace clearway

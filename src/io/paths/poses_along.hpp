@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clearway/pose.hpp"
+
+/// What alignments and lines share when poses are made along them.
+namespace clearway {
+
+/// Stations, as lengths, count as equal up to this many metres.
+inline constexpr double kSameStation = 1e-6;
+
+/// The greatest number of poses that are made along one alignment or line.
+inline constexpr double kMostPosesAlong = 1e7;
+
+/// The stations from + i step below `to`, and `to` itself, in metres. Throws UsageError for more
+/// than kMostPosesAlong.
+std::vector<double> even_stations(double from, double to, double step);
+
+/// Turns poses round for travel in the other direction: their order, and their axes x and y.
+/// stations: of the poses, or empty.
+void turn_round(std::vector<Pose>& poses, std::vector<double>& stations);
+
+/// The EPSG code of the environment where it is another system than that of `code`; nullopt where
+/// they agree or one of them is not known. code: 0 where it is not known. environment: well-known
+/// text, or empty.
+std::optional<std::int32_t> other_epsg(long code, const std::string& environment);
+
+/// The warning that coordinates of a file are in another system than the environment. what: the
+/// file's content, for the advice to transform it.
+std::string other_crs_text(const std::string& name, long code, std::int32_t environment,
+                           const std::string& what);
+
+}  // namespace clearway

@@ -1,0 +1,141 @@
+#include "io/result/conflicts/station_file.hpp"
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clearway/error.hpp"
+#include "io/files/file.hpp"
+#include "io/files/text_writer.hpp"
+#include "io/result/conflicts/conflict_fields.hpp"
+#include "io/result/conflicts/json_text.hpp"
+#include "io/scans/scan_crs.hpp"
+
+namespace clearway {
+namespace {
+
+/// A column of a row, whose name may hold that of a body.
+using StationField = std::pair<std::string, FieldValue>;
+
+FieldValue value_of(const std::optional<double>& number) {
+  return number ? FieldValue(*number) : FieldValue();
+}
+
+/// An overthrow to a tenth of a micrometre, which is finer than any path is known. Without this,
+/// roundings would show where it is 0.
+FieldValue overthrow_value(const std::optional<double>& metres) {
+  constexpr double kDigits = 1e7;
+  if (!metres) return {};
+  return std::round(*metres * kDigits) / kDigits + 0.0;  // the sum makes 0 of -0
+}
+
+void add_place(const char* name, const std::optional<FoundPlace>& place,
+               std::vector<StationField>& fields) {
+  fields.emplace_back(name, place ? FieldValue(place->distance) : FieldValue());
+  fields.emplace_back(std::string(name) + "_source",
+                      place ? FieldValue(place->source) : FieldValue());
+}
+
+/// The fields of a row, with the same names in the same order for every row of a table.
+std::vector<StationField> fields_of(const StationRow& row, const std::vector<std::string>& bodies) {
+  std::vector<StationField> fields{{"chainage_from", row.chainage_from},
+                                   {"chainage_to", row.chainage_to},
+                                   {"station_from", value_of(row.station_from)},
+                                   {"station_to", value_of(row.station_to)}};
+  add_place("least", row.least, fields);
+  add_place("left", row.left, fields);
+  add_place("right", row.right, fields);
+  add_place("above", row.above, fields);
+  fields.emplace_back("verdict", std::string_view(name_of(row.verdict)));
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const std::string prefix = bodies[b].empty() ? "" : bodies[b] + "_";
+    const Overthrow& overthrow = row.overthrow.at(b);
+    fields.emplace_back(prefix + "overthrow_end", overthrow_value(overthrow.end));
+    fields.emplace_back(prefix + "overthrow_middle", overthrow_value(overthrow.middle));
+  }
+  return fields;
+}
+
+void write_csv(const StationFile& stations, const File& file) {
+  TextWriter out(file);
+  const auto write = [&](const StationRow& row, auto text_of) {
+    const char* between = "";
+    for (const StationField& field : fields_of(row, stations.table.bodies)) {
+      out << between << text_of(field);
+      between = ",";
+    }
+    out << "\n";
+  };
+  StationRow header;
+  header.overthrow.resize(stations.table.bodies.size());
+  write(header, [](const StationField& field) { return csv_cell(field.first); });
+  for (const StationRow& row : stations.table.rows) {
+    write(row, [](const StationField& field) { return csv_value(field.second); });
+  }
+  out.flush();
+}
+
+std::string row_json(const StationRow& row, const std::vector<std::string>& bodies) {
+  std::string out;
+  for (const StationField& field : fields_of(row, bodies)) {
+    out += (out.empty() ? "" : ", ") + json_string(field.first) + ": " + json_value(field.second);
+  }
+  std::vector<std::string> reasons;
+  for (const Reason reason : row.reasons) reasons.emplace_back(name_of(reason));
+  return "{" + out + ", \"reasons\": " + json_strings(reasons) +
+         ", \"searched\": " + (row.is_searched ? "true" : "false") + "}";
+}
+
+void write_json(const StationFile& stations, const File& file) {
+  TextWriter out(file);
+  out << "{\n" << summary_json(stations) << ",\n  \"stations\": [";
+  const char* between = "\n    ";
+  for (const StationRow& row : stations.table.rows) {
+    out << between << row_json(row, stations.table.bodies);
+    between = ",\n    ";
+  }
+  out << (stations.table.rows.empty() ? "]\n}\n" : "\n  ]\n}\n");
+  out.flush();
+}
+
+}  // namespace
+
+StationFormat station_format_of(const std::filesystem::path& output) {
+  const std::string ending = file_ending(output);
+  if (ending == ".csv") return StationFormat::kCsv;
+  if (ending == ".json") return StationFormat::kJson;
+  throw UsageError(output.string() + ": unknown output format; the name must end in .csv or .json");
+}
+
+std::string summary_json(const StationFile& file) {
+  const ResultHeader& header = file.header;
+  JsonMembers out;
+  out.add("kind", json_string("stations"));
+  out.add("unit", json_string(symbol_of(units_of_wkt(header.crs_wkt).horizontal)));
+  out.add_length("radius", header.radius);
+  out.add_length("clearance", header.clearance);
+  out.add("between_poses", header.between_poses ? "true" : "false");
+  out.add("verdict", json_string(name_of(file.answer.verdict())));
+  out.add("doubts", json_strings(file.answer.doubts));
+  out.add_length("every", file.options.every);
+  out.add_length("chainage_start", file.options.chainage_start);
+  out.add_count("station_count", file.table.rows.size());
+  out.add_count("poses", header.poses);
+  if (!header.bodies.empty()) out.add("bodies", json_strings(header.bodies));
+  out.add_hash("environment_hash", header.environment_hash);
+  out.add_hash("model_hash", header.model_hash);
+  out.add_hash("trajectory_hash", header.trajectory_hash);
+  out.add("warnings", json_messages(file.table.warnings));
+  return std::move(out).text();
+}
+
+void write_stations(const StationFile& stations, StationFormat format,
+                    const std::filesystem::path& path) {
+  const File file = File::create(path);
+  if (format == StationFormat::kCsv) return write_csv(stations, file);
+  write_json(stations, file);
+}
+
+}  // namespace clearway

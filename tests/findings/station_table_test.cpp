@@ -1,0 +1,610 @@
+// The station table, against brute force over a result's clearances and over the query itself.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clearway/clearway.hpp"
+#include "cpu/brute_force.hpp"
+#include "findings/conflict_fixture.hpp"
+#include "findings/station_oracle.hpp"
+#include "io/result/answer.hpp"
+#include "io/result/conflicts/station_file.hpp"
+#include "support/store_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+constexpr Quantisation kTableSteps{{0.001, 0.001, 0.001}, {0, 0, 0}};
+
+/// Points, a query, and the result of its search.
+struct Searched {
+  Searched(const std::vector<Vec3>& places, Query asked) : query(std::move(asked)) {
+    std::vector<Quantum> quanta;
+    for (const Vec3& p : places) {
+      quanta.push_back({static_cast<std::int32_t>(std::lround(p.x * 1000)),
+                        static_cast<std::int32_t>(std::lround(p.y * 1000)),
+                        static_cast<std::int32_t>(std::lround(p.z * 1000))});
+      const Quantum& q = quanta.back();
+      points.push_back(position(kTableSteps, q[0], q[1], q[2]));
+    }
+    write_las(folder / "scan.las", quanta, kTableSteps);
+    convert({folder / "scan.las"}, folder / "scan.h5", {.cell_points = 64, .threads = 2});
+    query.first_pose = true;
+    search(Store(folder / "scan.h5"), query, folder / "out.h5",
+           {.device = Device::kCpu, .threads = 2});
+  }
+
+  StationTable table(double every, StationOptions options = {}) const {
+    options.every = every;
+    options.bodies = query.bodies;
+    options.threads = 2;
+    return station_table(result(), query.poses, options);
+  }
+  Result result() const { return Result(folder / "out.h5"); }
+
+  Query query;
+  std::vector<Vec3> points;
+  ScratchFolder folder;
+};
+
+/// Whether any point collides at a pose of the row, by trying all; or on a way that meets the row.
+std::vector<bool> touched_rows(const Searched& scene, double every) {
+  const std::vector<std::size_t> row_of = rows_of(scene.query.poses, every);
+  std::vector<bool> out(row_of.back() + 1);
+  for (const MovingBody& body : moving_bodies(scene.query)) {
+    for (std::size_t k = 0; k < body.poses.size(); ++k) {
+      const std::size_t at = body.path_pose.empty() ? k : body.path_pose[k];
+      const bool ways = scene.query.between_poses;
+      if (ways && k + 1 == body.poses.size()) break;
+      Query one(Model{body.model}, {body.poses[k]}, scene.query);
+      if (ways) one.poses.push_back(body.poses[k + 1]);
+      bool any = false;
+      for (const std::uint32_t first : brute_force_first_poses(scene.points, one)) {
+        any = any || first != HitSet::kNever;
+      }
+      if (!any) continue;
+      for (std::size_t row = row_of[at]; row <= row_of[at + (ways ? 1 : 0)]; ++row) out[row] = true;
+    }
+  }
+  return out;
+}
+
+/// Whether some colliding point has its first pose on the row or before, and its last one on it or
+/// behind.
+std::vector<bool> rows_between(const Searched& scene, double every) {
+  const std::vector<std::size_t> row_of = rows_of(scene.query.poses, every);
+  std::vector<bool> out(row_of.back() + 1);
+  const auto first = scene.result().first_pose(), last = scene.result().last_pose();
+  const std::size_t way = scene.query.between_poses ? 1 : 0;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    for (std::size_t row = row_of[first[i]]; row <= row_of[last[i] + way]; ++row) out[row] = true;
+  }
+  return out;
+}
+
+Verdict worst_of(const StationTable& table) {
+  Verdict worst = Verdict::kClear;
+  for (const StationRow& row : table.rows) {
+    if (row.verdict == Verdict::kConflict) return Verdict::kConflict;
+    if (row.verdict == Verdict::kUndecided) worst = Verdict::kUndecided;
+  }
+  return worst;
+}
+
+void check_scene(const Searched& scene, double every) {
+  CAPTURE(every);
+  const StationTable table = scene.table(every);
+  check_distances(table, expected_rows(scene.result(), scene.query, every));
+  const std::vector<bool> touched = touched_rows(scene, every),
+                          between = rows_between(scene, every);
+  REQUIRE(table.rows.size() == touched.size());
+  for (std::size_t i = 0; i < touched.size(); ++i) {
+    CAPTURE(i);
+    if (touched[i]) CHECK(table.rows[i].verdict == Verdict::kConflict);
+    if (!between[i]) CHECK(table.rows[i].verdict != Verdict::kConflict);
+  }
+  const bool any = scene.result().size() > 0;
+  CHECK((worst_of(table) == Verdict::kConflict) == any);
+}
+
+std::vector<Pose> straight_path(double length, double step = 0.5) {
+  std::vector<Pose> poses;
+  for (int i = 0; i * step <= length; ++i) poses.push_back(translation({i * step, 0, 0}));
+  return poses;
+}
+
+const std::vector<Vec3> kCar{{-1, -0.5, 0}, {-1, 0.5, 0}, {1, -0.5, 0}, {1, 0.5, 0}, {0, 0, 1}};
+
+}  // namespace
+
+TEST_CASE("rows of random scenes have the distances of all clearances, and every contact") {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    const Box room{{0, -3, 0}, {12, 3, 2}};
+    std::vector<Vec3> model = random_points(random, {{-0.6, -0.4, 0}, {0.6, 0.4, 0.8}}, 40);
+    QueryParameters asked{.radius = 0.12, .clearance = 0.5};
+    if (seed % 3 == 0) asked = {.radius = 0.12, .between_poses = true};
+    Query query(std::move(model), smooth_path(random, room, 50), asked);
+    const Searched scene(random_points(random, room, seed % 2 == 0 ? 60 : 600), query);
+    for (const double every : {0.3, 1.0, 2.7, 100.0}) check_scene(scene, every);
+  }
+}
+
+TEST_CASE("rows of a vehicle are seen from its bodies, and are not clear where one has no pose") {
+  std::size_t clear = 0, missing = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    const Box room{{0, -3, 0}, {20, 3, 2}};
+    std::vector<Pose> path;
+    for (int i = 0; i <= 80; ++i) {
+      const double turn = 0.01 * i;
+      path.push_back(
+          rotation({0, 0, 1}, turn, {25 * std::sin(turn), 25 * (1 - std::cos(turn)), 0}));
+    }
+    Query query({}, path, {.radius = 0.1, .clearance = 0.6});
+    const std::vector<Vec3> front = random_points(random, {{-0.6, -0.4, 0}, {0.6, 0.4, 0.8}}, 30);
+    const std::vector<Vec3> rear = random_points(random, {{-1.6, -0.5, 0}, {0.6, 0.5, 0.9}}, 30);
+    query.bodies.push_back(follow({"front", Model{front}, {}, {}}, path, BodyStation{1}));
+    query.bodies.push_back(follow({"rear", Model{rear}, {}, {}}, path, BodyPivots{-1, -3}));
+    const Searched scene(random_points(random, room, 25), query);
+    for (const double every : {0.7, 2.0}) check_scene(scene, every);
+    const StationTable table = scene.table(1);
+    CHECK(table.bodies == std::vector<std::string>{"front", "rear"});
+    for (const StationRow& row : table.rows) {
+      // The rear has poses from chainage 3 on, the front up to 1 m before the end.
+      const bool searched =
+          row.chainage_from >= 3.1 && row.chainage_to <= chainages(path).back() - 1.3;
+      if (searched) CHECK(row.is_searched);
+      if (row.chainage_from < 2.9) CHECK_FALSE(row.is_searched);
+      if (!row.is_searched) CHECK(row.verdict != Verdict::kClear);
+      clear += row.verdict == Verdict::kClear ? 1 : 0;
+      missing += row.is_searched ? 0 : 1;
+    }
+    StationOptions without;
+    without.every = 1;
+    const StationTable blind = station_table(scene.result(), path, without);
+    for (const StationRow& row : blind.rows) {
+      CHECK(row.verdict != Verdict::kClear);
+      CHECK_FALSE(row.left);
+      CHECK_FALSE(row.overthrow.at(1).end);
+    }
+    REQUIRE(blind.warnings.size() == 2);
+    CHECK(blind.warnings[0].code == "sides-unknown");
+    CHECK(blind.warnings[1].code == "searched-unknown");
+  }
+  CHECK(clear > 20);
+  CHECK(missing > 20);
+}
+
+TEST_CASE("a pose on a border belongs to the later row, and the last pose to the last row") {
+  const Searched scene({{50, 50, 0}},
+                       Query(kCar, straight_path(10), {.radius = 0.1, .clearance = 9}));
+  const StationTable table = scene.table(2);
+  REQUIRE(table.rows.size() == 5);
+  CHECK(table.rows[0].chainage_from == 0);
+  CHECK(table.rows[4].chainage_from == 8);
+  CHECK(table.rows[4].chainage_to == 10);
+  for (const double x : {2.0, 1.9, 10.0, 8.0, 7.9}) {
+    CAPTURE(x);
+    // The point above is nearest where the model's top stands below it.
+    const Searched below_it({{x, 0, 1.5}},
+                            Query(kCar, straight_path(10), {.radius = 0.1, .clearance = 9}));
+    const std::vector<StationRow> rows = below_it.table(2).rows;
+    const auto own = static_cast<std::size_t>(std::min(4.0, std::floor(std::round(2 * x) / 4)));
+    for (std::size_t i = 0; i < rows.size(); ++i) CHECK(rows[i].least.has_value() == (i == own));
+    CHECK(rows[own].above);
+    CHECK_FALSE(rows[own].left);
+  }
+  CHECK(scene.table(2.5).rows.size() == 4);
+  CHECK(scene.table(3).rows.size() == 4);
+  CHECK(scene.table(3).rows[3].chainage_to == 10);
+  CHECK(scene.table(10).rows.size() == 1);
+}
+
+TEST_CASE("sums of steps make no row of their own") {
+  const std::vector<Pose> path = straight_path(10, 0.1);  // as long as 9.99999999999998 m
+  const Searched scene({{50, 50, 0}}, Query(kCar, path, {.radius = 0.1}));
+  CHECK(scene.table(chainages(path).back() / 2 * (1 - 1e-12)).rows.size() == 2);
+  CHECK(scene.table(5).rows.size() == 2);
+}
+
+TEST_CASE("chainages begin where asked, and stations lie between those of the poses") {
+  const std::vector<Pose> path = straight_path(10);
+  const Searched scene({{4, 0.7, 0}}, Query(kCar, path, {.radius = 0.1, .clearance = 1}));
+  std::vector<double> station;
+  for (const double chainage : chainages(path)) station.push_back(1000 - 2 * chainage);
+  StationOptions options;
+  options.chainage_start = 130.25;
+  options.station = station;
+  const StationTable table = scene.table(3, options);
+  REQUIRE(table.rows.size() == 4);
+  CHECK(table.rows[1].chainage_from == 133.25);
+  CHECK(table.rows[3].chainage_to == 140.25);
+  CHECK(table.rows[1].station_from == 994.0);
+  CHECK(table.rows[1].station_to == 988.0);
+  CHECK(table.rows[3].station_to == 980.0);
+  CHECK(table.rows[1].left.has_value());  // at 3 m, where a corner is beside the point
+  CHECK(scene.table(0.7, options).rows[1].station_from.value() == Approx(998.6));
+  options.station = std::span<const double>(station).first(3);
+  CHECK_THROWS_WITH(scene.table(3, options), Contains("3 stations for 21 poses"));
+}
+
+TEST_CASE("lengths of stretches that make no sense are refused") {
+  const Searched scene({{4, 0.7, 0}}, Query(kCar, straight_path(10), {.radius = 0.1}));
+  const double infinite = std::numeric_limits<double>::infinity();
+  for (const double every : {0.0, -1.0, std::nan(""), infinite, 1e-5, 1e-300}) {
+    CAPTURE(every);
+    CHECK_THROWS_AS(scene.table(every), UsageError);
+  }
+  CHECK_THROWS_WITH(scene.table(1e-5), Contains("more than 100,000; expected at least 0.0001 m"));
+  CHECK(scene.table(1e-4).rows.size() == 100'000);
+  CHECK(scene.table(1e300).rows.size() == 1);
+}
+
+TEST_CASE("without clearances the distances are empty and a warning says so") {
+  const Searched scene({{4, 0.55, 0}}, Query(kCar, straight_path(10), {.radius = 0.1}));
+  const StationTable table = scene.table(2);
+  REQUIRE(table.warnings.size() == 1);
+  CHECK(table.warnings[0].code == "no-clearances");
+  for (const StationRow& row : table.rows) CHECK_FALSE((row.least || row.left || row.above));
+  CHECK(table.rows[1].verdict == Verdict::kConflict);
+  CHECK(table.rows[4].verdict == Verdict::kClear);
+}
+
+TEST_CASE("a path of one pose has one row without overthrow, and one without poses has none") {
+  const Searched scene({{1, 0.55, 0}},
+                       Query(kCar, straight_path(0), {.radius = 0.1, .clearance = 1}));
+  const StationTable table = scene.table(5);
+  REQUIRE(table.rows.size() == 1);
+  CHECK(table.rows[0].chainage_to == 0);
+  CHECK(table.rows[0].verdict == Verdict::kConflict);
+  CHECK(table.rows[0].left);
+  CHECK_FALSE(table.rows[0].overthrow.at(0).end);
+  const Searched none({{1, 0.55, 0}}, Query(kCar, {}, {.radius = 0.1}));
+  CHECK(none.table(5).rows.empty());
+}
+
+TEST_CASE("rows without a pose are not clear unless ways are searched") {
+  const std::vector<Pose> path = straight_path(10, 2.5);
+  const Searched poses({{50, 50, 0}}, Query(kCar, path, {.radius = 0.1}));
+  const Searched ways({{50, 50, 0}}, Query(kCar, path, {.radius = 0.1, .between_poses = true}));
+  std::size_t searched = 0;
+  for (const StationRow& row : poses.table(1).rows) searched += row.is_searched ? 1 : 0;
+  CHECK(searched == 5);
+  for (const StationRow& row : ways.table(1).rows) CHECK(row.is_searched);
+}
+
+TEST_CASE("a question in doubt leaves no row clear") {
+  const Searched far({{5000, 50, 0}}, Query(kCar, straight_path(10), {.radius = 0.1}));
+  for (const StationRow& row : far.table(2).rows) {
+    CHECK(row.verdict == Verdict::kUndecided);
+    CHECK(row.reasons == std::vector{Reason::kQuestionInDoubt});
+  }
+}
+
+TEST_CASE("a path that comes back later does not touch all the way") {
+  std::vector<Pose> path;  // 40 m out along x, aside, and back past where it began
+  for (int i = 0; i <= 80; ++i) path.push_back(translation({0.5 * i, 0, 0}));
+  for (int i = 1; i <= 80; ++i) path.push_back(translation({40 - 0.5 * i, 0.3, 0}));
+  const Searched scene({{1.0, 0.55, 0}}, Query(kCar, path, {.radius = 0.3}));
+  REQUIRE(scene.result().first_pose()[0] < 10);
+  REQUIRE(scene.result().last_pose()[0] > 150);
+  for (const StationRow& row : scene.table(5).rows) {
+    const bool near = row.chainage_from < 2.5 || row.chainage_to > 77;
+    CHECK((row.verdict == Verdict::kConflict) == near);
+  }
+}
+
+TEST_CASE("a result without last poses leaves open where a contact ends") {
+  Found found;
+  found.poses = straight_path(20, 1);
+  found.quanta = {{5000, 1200, 0}};
+  found.first_pose = {4};
+  const ScratchFolder folder;
+  StationOptions options;
+  options.every = 2;
+  const StationTable table = station_table(found.write(folder), found.poses, options);
+  REQUIRE(table.warnings.size() == 2);
+  CHECK(table.warnings[1].code == "no-last-poses");
+  std::string verdicts;
+  for (const StationRow& row : table.rows) verdicts += name_of(row.verdict)[1];
+  CHECK(verdicts == "llonllllll");  // cLear, cOnflict, uNdecided
+}
+
+namespace {
+
+/// A body whose poses are exact on a circle, with pivots that are `apart` metres apart.
+Body on_circle(double radius, double apart, double length, bool left, std::size_t poses,
+               double step) {
+  Body body{"wagon", Model{{{-length / 2, 0, 0}, {length / 2, 0, 0}}}, {}, {}};
+  const double middle = std::sqrt(radius * radius - apart * apart / 4);
+  const double sign = left ? 1 : -1;
+  for (std::size_t i = 0; i < poses; ++i) {
+    const double turn = static_cast<double>(i) * step / radius;
+    const double from = std::asin(length / 2 / radius) + 0.01;
+    if (turn < from || turn > static_cast<double>(poses - 1) * step / radius - from) continue;
+    const Vec3 at{middle * std::sin(turn), sign * (radius - middle * std::cos(turn)), 0};
+    body.poses.push_back(rotation({0, 0, 1}, sign * turn, at));
+    body.path_pose.push_back(static_cast<std::uint32_t>(i));
+  }
+  return body;
+}
+
+std::vector<Pose> circle(double radius, bool left, std::size_t poses, double step) {
+  const double sign = left ? 1 : -1;
+  std::vector<Pose> out;
+  for (std::size_t i = 0; i < poses; ++i) {
+    const double turn = static_cast<double>(i) * step / radius;
+    out.push_back(rotation({0, 0, 1}, sign * turn,
+                           {radius * std::sin(turn), sign * radius * (1 - std::cos(turn)), 0}));
+  }
+  return out;
+}
+
+/// The overthrow of one body on each row of a table of a path without any conflict.
+std::vector<Overthrow> overthrows(const std::vector<Pose>& path, const Body& body,
+                                  StationOptions options = {}) {
+  Found found;
+  found.poses = path;
+  found.bodies = {body};
+  const ScratchFolder folder;
+  options.bodies = found.bodies;
+  std::vector<Overthrow> out;
+  for (const StationRow& row : station_table(found.write(folder), path, options).rows) {
+    out.push_back(row.overthrow.at(0));
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("the overthrow on a circle is that of the closed form") {
+  std::size_t checked = 0;
+  for (const double radius : {40.0, 150.0, 800.0}) {
+    for (const bool left : {true, false}) {
+      for (const double step : {0.1, 0.25}) {
+        CAPTURE(radius, left, step);
+        const double apart = 19, length = 26.4;
+        const std::vector<Pose> path = circle(radius, left, 500, step);
+        const Body body = on_circle(radius, apart, length, left, path.size(), step);
+        const double inner = std::sqrt(radius * radius - apart * apart / 4);
+        const double middle = radius - inner;
+        const double end = std::sqrt(inner * inner + length * length / 4) - radius;
+        for (const Overthrow& row : overthrows(path, body)) {
+          if (!row.end || !row.middle) continue;
+          CHECK(std::abs(*row.end - end) < 1e-6);
+          CHECK(std::abs(*row.middle - middle) < 1e-6);
+          ++checked;
+        }
+      }
+    }
+  }
+  CHECK(checked > 100);
+}
+
+TEST_CASE("the overthrow is the same on pivots that follow, in reverse, and with y ahead") {
+  const double radius = 90, apart = 14, length = 20;
+  const double inner = std::sqrt(radius * radius - apart * apart / 4);
+  const double middle = radius - inner;
+  const double end = std::sqrt(inner * inner + length * length / 4) - radius;
+  const double half_way = radius * std::asin(apart / 2 / radius);  // along the path to a pivot
+  const std::vector<Pose> path = circle(radius, true, 600, 0.2);
+  const Model line{{{-length / 2, 0, 0}, {length / 2, 0, 0}}};
+  const auto check = [&](const std::vector<Pose>& on, const Body& body,
+                         StationOptions options = {}) {
+    std::size_t rows = 0;
+    for (const Overthrow& row : overthrows(on, body, options)) {
+      if (!row.end || !row.middle) continue;
+      CHECK(std::abs(*row.end - end) < 1e-6);
+      CHECK(std::abs(*row.middle - middle) < 1e-6);
+      ++rows;
+    }
+    CHECK(rows > 10);
+  };
+  const Body on_pivots = follow({"wagon", line, {}, {}}, path, BodyPivots{half_way, -half_way});
+  // Rows at the ends see an end of the body beyond the path's, so only the inner poses are taken.
+  Body inside = on_pivots;
+  inside.poses.clear();
+  inside.path_pose.clear();
+  for (std::size_t k = 30; k + 30 < on_pivots.poses.size(); ++k) {
+    inside.poses.push_back(on_pivots.poses[k]);
+    inside.path_pose.push_back(on_pivots.path_pose[k]);
+  }
+  check(path, inside);
+  const std::vector<Pose> back(path.rbegin(), path.rend());
+  Body reversed = inside;
+  std::ranges::reverse(reversed.poses);
+  std::ranges::reverse(reversed.path_pose);
+  for (std::uint32_t& pose : reversed.path_pose) {
+    pose = static_cast<std::uint32_t>(path.size()) - 1 - pose;
+  }
+  check(back, reversed);
+  Body sideways = inside;  // the same places, in a frame whose y points ahead
+  sideways.model = Model{{{0, -length / 2, 0}, {0, length / 2, 0}}};
+  for (Pose& pose : sideways.poses) {
+    const Pose own = pose;
+    for (int k = 0; k < 3; ++k) {
+      pose.rotation[3 * k] = -own.rotation[3 * k + 1];
+      pose.rotation[3 * k + 1] = own.rotation[3 * k];
+    }
+  }
+  StationOptions ahead;
+  ahead.forward = Axis::kPlusY;
+  check(path, sideways, ahead);
+}
+
+TEST_CASE("on a straight path the overthrow is the distance to either side") {
+  const std::vector<Pose> path = straight_path(30);
+  Body body{"trolley", Model{{{-2, -1, 0}, {2, 1, 1}}}, {}, {}};
+  for (std::uint32_t i = 0; i < path.size(); ++i) {
+    body.poses.push_back(translation({0.5 * i, -0.25, 0.1}));
+    body.path_pose.push_back(i);
+  }
+  for (const Overthrow& row : overthrows(path, body)) {
+    CHECK(row.end.value() == Approx(0.25));
+    CHECK(row.middle.value() == Approx(0.25));
+  }
+}
+
+namespace {
+
+/// A query with an error budget that keeps 0.1 m + U free, where U is about 0.06 m on either side.
+QueryParameters with_budget() {
+  return {.radius = 0.1, .clearance = 0.5, .error_registration = 0.02, .sigmas = 3};
+}
+
+std::vector<Vec3> post(double x, double y, std::size_t points) {
+  std::vector<Vec3> out;
+  for (std::size_t i = 0; i < points; ++i) out.push_back({x, y, 0.002 * static_cast<double>(i)});
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("with an error budget certain groups make conflicts and other points leave rows open") {
+  const std::vector<Pose> path = straight_path(60);
+  std::vector<Vec3> places;
+  const auto add = [&](const std::vector<Vec3>& more) {
+    places.insert(places.end(), more.begin(), more.end());
+  };
+  add(post(10, 0.51, 12));  // certainly too close, and ten or more
+  add(post(25, 0.51, 5));   // certainly too close, but few
+  add(post(40, 0.58, 12));  // too close, but not certainly
+  add(post(52, 0.63, 12));  // near
+  const Searched scene(places, Query(kCar, path, with_budget()));
+  const Result result = scene.result();
+  REQUIRE(result.near().size() == 12);
+  REQUIRE(result.answer().certain.points == 17);
+  const StationTable table = scene.table(1);
+  for (const StationRow& row : table.rows) {
+    CAPTURE(row.chainage_from);
+    const double at = row.chainage_from + 0.5;
+    const auto beside = [&](double x) { return std::abs(at - x) < 1; };
+    const auto far_from = [&](double x) { return std::abs(at - x) > 2.2; };
+    if (beside(10)) CHECK(row.verdict == Verdict::kConflict);
+    for (const double x : {25.0, 40.0, 52.0}) {
+      if (!beside(x)) continue;
+      CHECK(row.verdict == Verdict::kUndecided);
+      CHECK(row.reasons == std::vector{Reason::kNear});
+    }
+    if (far_from(10) && far_from(25) && far_from(40) && far_from(52)) {
+      CHECK(row.verdict == Verdict::kClear);
+    }
+  }
+  CHECK(worst_of(table) == result.answer().verdict());
+}
+
+TEST_CASE("the verdicts of the rows together are that of the result, with a budget") {
+  std::map<Verdict, int> met;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    std::vector<Vec3> places{{5, 3, 0}};
+    for (int i = 0; i < 3; ++i) {
+      const auto more = post(uniform(random, 2, 18), 0.5 + uniform(random, 0, 0.25),
+                             5 + static_cast<std::size_t>(below(random, 12)));
+      if (below(random, 3) > 0) places.insert(places.end(), more.begin(), more.end());
+    }
+    const Searched scene(places, Query(kCar, straight_path(20, 0.05), with_budget()));
+    const Verdict verdict = scene.result().answer().verdict();
+    ++met[verdict];
+    for (const double every : {0.5, 3.0, 50.0}) CHECK(worst_of(scene.table(every)) == verdict);
+  }
+  CHECK(met.size() == 3);
+}
+
+TEST_CASE("a row on which the model meets an unseen cube is not clear") {
+  // Beams from the start of the path to a wall; those that a board hides leave a wedge unseen.
+  std::vector<Quantum> quanta;
+  for (int i = -60; i <= 60; ++i) {
+    for (int j = -60; j <= 60; ++j) {
+      const int y = 40 * i + 12, z = 40 * j + 11;
+      const bool hidden = y > 100 && y < 700 && z > 0 && z < 700;
+      quanta.push_back(hidden ? Quantum{5000, y / 4, z / 4} : Quantum{20000, y, z});
+    }
+  }
+  const ScratchFolder folder;
+  write_las(folder / "scan.las", quanta, kTableSteps);
+  put_bytes(folder / "origins.csv", "first,x,y,z\n0,0,0,0\n");
+  ConvertOptions how;
+  how.origins = folder / "origins.csv";
+  convert({folder / "scan.las"}, folder / "scan.h5", how);
+  Random random(3);
+  std::vector<Vec3> car = random_points(random, {{-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}}, 300);
+  std::vector<Pose> path;
+  for (int i = 0; i <= 100; ++i) path.push_back(translation({7 + 0.1 * i, i < 60 ? 0.0 : -0.7, 0}));
+  Query query(std::move(car), path, {.radius = 0.1, .first_pose = true, .seen = true});
+  search(Store(folder / "scan.h5"), query, folder / "out.h5",
+         {.device = Device::kCpu, .threads = 2});
+  const Result result(folder / "out.h5");
+  REQUIRE(result.answer().verdict() == Verdict::kUndecided);
+  const UnseenGroups groups = find_unseen_groups(result, path);
+  REQUIRE(groups.middles.size() > 8);
+  StationOptions options;
+  options.every = 0.5;
+  const StationTable table = station_table(result, path, options);
+  CHECK(worst_of(table) == Verdict::kUndecided);
+  const std::vector<std::size_t> row_of = rows_of(path, 0.5);
+  std::size_t met = 0, clear = 0;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    Query one(Model{query.model}, {path[i]}, {.radius = 0.1});
+    bool any = false;
+    for (const std::uint32_t first : brute_force_first_poses(groups.middles, one)) {
+      any = any || first != HitSet::kNever;
+    }
+    met += any ? 1 : 0;
+    if (!any) continue;
+    CHECK(table.rows[row_of[i]].verdict == Verdict::kUndecided);
+    CHECK(table.rows[row_of[i]].reasons == std::vector{Reason::kNotScanned});
+  }
+  for (const StationRow& row : table.rows) clear += row.verdict == Verdict::kClear ? 1 : 0;
+  CHECK(met > 20);
+  CHECK(clear > 5);
+}
+
+TEST_CASE("a CSV and a JSON of the table have the fixed columns") {
+  Query query({}, straight_path(4, 1), {.radius = 0.1, .clearance = 1});
+  for (const char* name : {"a,b", "=1+1"}) {
+    Body body{name, Model{kCar}, query.poses, {0, 1, 2, 3, 4}};
+    if (name[0] == '=') {
+      for (Pose& pose : body.poses) pose.translation[2] += 3;
+    }
+    query.bodies.push_back(std::move(body));
+  }
+  const Searched scene({{1, 0.7, 0}, {50, 50, 0}}, query);
+  StationOptions options;
+  options.every = 2.5;
+  options.bodies = scene.query.bodies;
+  const Result result = scene.result();
+  const StationTable table = station_table(result, query.poses, options);
+  const Answer answer = counted_answer(result.reader());
+  const StationFile file{table, options, result.reader().header(), answer};
+  write_stations(file, StationFormat::kCsv, scene.folder / "s.csv");
+  write_stations(file, StationFormat::kJson, scene.folder / "s.json");
+  const auto least = nlohmann::json(table.rows[0].least->distance).dump();
+  CHECK(bytes_of(scene.folder / "s.csv") ==
+        "chainage_from,chainage_to,station_from,station_to,least,least_source,left,left_source,"
+        "right,right_source,above,above_source,verdict,\"a,b_overthrow_end\","
+        "\"a,b_overthrow_middle\",\"'=1+1_overthrow_end\",\"'=1+1_overthrow_middle\"\n"
+        "0,2.5,,," +
+            least + ",0," + least +
+            ",0,,,,,clear,0,0,0,0\n"
+            "2.5,4,,,,,,,,,,,clear,0,0,0,0\n");
+  const auto parsed = nlohmann::json::parse(bytes_of(scene.folder / "s.json"));
+  CHECK(parsed["kind"] == "stations");
+  CHECK(parsed["stations"].size() == 2);
+  CHECK(parsed["stations"][0]["left_source"] == 0);
+  CHECK(parsed["stations"][1]["left"].is_null());
+  CHECK(parsed["stations"][1]["a,b_overthrow_end"] == 0);
+  CHECK(parsed["station_count"] == 2);
+}

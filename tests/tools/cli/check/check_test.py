@@ -1,0 +1,428 @@
+#!/usr/bin/python3
+"""`clearway check`: from files to the finding, again, after a kill, with mistakes in each input.
+
+    check_test.py CLEARWAY
+"""
+
+import json
+import os
+import random
+import re
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+PROGRAM = os.path.abspath(sys.argv[1])
+FILES = ["site.h5", "result.h5", "conflicts.csv", "stations.csv", "report.html"]
+QUESTION = "--model model.ply --trajectory trajectory.txt --radius 0.1"
+
+
+def clearway(words, folder, **options):
+    words = shlex.split(words) if isinstance(words, str) else words
+    return subprocess.run([PROGRAM, *words], cwd=folder, capture_output=True, text=True,
+                          check=False, **options)
+
+
+def printed_commands(text):
+    return re.findall(r"^  (clearway .*)$", text, re.M)
+
+
+def bytes_of(folder, names=FILES):
+    return {name: (folder / name).read_bytes() for name in names}
+
+
+class Site(unittest.TestCase):
+    """A small hall whose scan is in a folder of its own, and a fresh copy of it for each test."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory(prefix="clearway-check-")
+        cls.addClassCleanup(cls.scratch.cleanup)
+        cls.master = Path(cls.scratch.name) / "master"
+        cls.master.mkdir()
+        made = clearway("scene hall --points 20000 --model-points 500 --poses 200 -o .", cls.master)
+        assert made.returncode == 0, made.stderr
+        (cls.master / "scans").mkdir()
+        (cls.master / "environment.las").rename(cls.master / "scans/environment.las")
+
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(dir=self.scratch.name)) / "work"
+        shutil.copytree(self.master, self.folder)
+
+    def check(self, words, exit_code=0, folder=None, **options):
+        done = clearway("check " + words, folder or self.folder, **options)
+        self.assertEqual(done.returncode, exit_code, f"{words}\n{done.stdout}\n{done.stderr}")
+        return done
+
+    def asked(self, words, exit_code=0, **options):
+        """A check of the scans with the usual question, into site/."""
+        return self.check(f"scans {QUESTION} -o site {words}", exit_code, **options)
+
+    def paste(self, commands, folder):
+        """Runs the commands as a shell takes them apart. Every one has to succeed."""
+        links = folder / "bin"
+        links.mkdir()
+        (links / "clearway").symlink_to(PROGRAM)
+        for command in commands:
+            done = subprocess.run(command, shell=True, cwd=folder, capture_output=True, text=True,
+                                  check=False,
+                                  env={**os.environ, "PATH": f"{links}:{os.environ['PATH']}"})
+            self.assertEqual(done.returncode, 0, f"{command}\n{done.stderr}")
+        shutil.rmtree(links)
+
+    def pasted_elsewhere(self, commands, output="site"):
+        """The files that the commands make of the same inputs in another place."""
+        other = Path(tempfile.mkdtemp(dir=self.scratch.name)) / "elsewhere"
+        shutil.copytree(self.master, other)
+        (other / output).mkdir(parents=True)
+        self.paste(commands, other)
+        return bytes_of(other / output)
+
+
+class Finding(Site):
+    def test_four_arguments_are_enough(self):
+        done = self.asked("")
+        self.assertEqual(sorted(path.name for path in (self.folder / "site").iterdir()),
+                         sorted([*FILES, "check.json"]))
+        for words in ("run --env site/site.h5 --first-pose --clearance 0.3 --profile 0.5 "
+                      f"{QUESTION} -o by_hand.h5",
+                      "conflicts by_hand.h5 --trajectory trajectory.txt --model model.ply "
+                      "-o by_hand.csv"):
+            by_hand = clearway(words, self.folder)
+            self.assertEqual(by_hand.returncode, 0, by_hand.stderr)
+        self.assertEqual((self.folder / "by_hand.h5").read_bytes(),
+                         (self.folder / "site/result.h5").read_bytes())
+        self.assertEqual((self.folder / "by_hand.csv").read_bytes(),
+                         (self.folder / "site/conflicts.csv").read_bytes())
+        verdict = clearway(f"run --env site/site.h5 --first-pose --clearance 0.3 --profile 0.5 "
+                           f"{QUESTION} -o again.h5", self.folder).stdout
+        self.assertEqual(done.stdout.splitlines()[-1], verdict.splitlines()[-1])
+        self.assertIn("taken by default: --clearance 0.3 (3 times the radius) and "
+                      "--profile 0.5 (5 times the radius)", done.stderr)
+
+    def test_the_printed_commands_give_the_same_bytes(self):
+        done = self.asked("")
+        commands = printed_commands(done.stdout)
+        self.assertEqual([shlex.split(command)[1] for command in commands],
+                         ["convert", "run", "conflicts", "stations", "report"])
+        made = bytes_of(self.folder / "site")
+        self.assertEqual(self.pasted_elsewhere(commands), made)
+        self.paste(commands, self.folder)  # where everything is there already
+        self.assertEqual(bytes_of(self.folder / "site"), made)
+
+    def test_names_that_a_shell_would_take_apart(self):
+        (self.folder / "it's a car.ply").write_bytes((self.folder / "model.ply").read_bytes())
+        shutil.copy(self.folder / "it's a car.ply", self.master)
+        self.addCleanup((self.master / "it's a car.ply").unlink)
+        output = "the $HOME; site"
+        done = clearway(["check", "scans", "--model", "it's a car.ply", "--trajectory",
+                         "trajectory.txt", "--radius", "10", "cm", "--model-above", "-0.5",
+                         "--title", 'A "site" & more', "--ignore-box", "-1,-2.5,-3,-0.5,9,9",
+                         "--ignore-box=1,2,3,4,5,6", "-o", output], self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("--clearance 30cm (", done.stderr)
+        self.assertIn("--profile 50cm (", done.stderr)
+        made = bytes_of(self.folder / output)
+        self.assertEqual(self.pasted_elsewhere(printed_commands(done.stdout), output), made)
+
+    def test_json(self):
+        done = self.asked("--json")
+        answer = json.loads(done.stdout)
+        self.assertEqual(answer["verdict"], "conflict")
+        self.assertEqual(answer["run"]["verdict"], "conflict")
+        self.assertEqual(len(answer["commands"]), 5)
+        self.assertFalse(answer["nothing_done"])
+        self.assertEqual(answer["files"]["result"], "site/result.h5")
+        again = json.loads(self.asked("--json").stdout)
+        self.assertTrue(again["nothing_done"])
+        self.assertEqual(again["commands"], answer["commands"])
+        self.assertEqual(set(again["reused"].values()), {True})
+
+    def test_exit_codes_are_those_of_run(self):
+        self.asked("", 0)
+        self.asked("--fail-on-collision", 1)
+        clear = self.check("scans --model box:0.2,0.2,0.2 --model-as points --trajectory "
+                           "trajectory.txt --radius 0.01 -o clear --fail-on-collision")
+        self.assertIn("clear", clear.stdout.splitlines()[-1])
+        lines = (self.folder / "trajectory.txt").read_text().splitlines()
+        far = []
+        for line in lines:
+            values = line.split()
+            values[3] = str(float(values[3]) + 5000)
+            far.append(" ".join(values))
+        (self.folder / "far.txt").write_text("\n".join(far) + "\n")
+        undecided = self.check("scans --model model.ply --trajectory far.txt --radius 0.1 -o far "
+                               "--fail-on-collision", 6)
+        self.assertIn("undecided", undecided.stdout.splitlines()[-1])
+        self.assertIn("nothing was scanned", undecided.stderr + undecided.stdout)
+        self.check("scans --model model.ply --trajectory far.txt --radius 0.1 -o far", 0)
+        self.check("scans --model model.ply --trajectory far.txt --radius 0.1 -o far --strict", 3)
+
+    def test_inputs_of_all_kinds(self):
+        whole = self.asked("")
+        verdict = whole.stdout.splitlines()[-1]
+        single = self.check(f"scans/environment.las {QUESTION} -o single")
+        self.assertEqual(single.stdout.splitlines()[-1], verdict)
+        self.assertEqual((self.folder / "single/result.h5").read_bytes(),
+                         (self.folder / "site/result.h5").read_bytes())
+        store = self.check(f"site/site.h5 {QUESTION} -o of_store")
+        self.assertEqual(store.stdout.splitlines()[-1], verdict)
+        self.assertEqual([shlex.split(c)[1] for c in printed_commands(store.stdout)],
+                         ["run", "conflicts", "stations", "report"])
+        self.assertFalse((self.folder / "of_store/site.h5").exists())
+        self.assertEqual((self.folder / "of_store/result.h5").read_bytes(),
+                         (self.folder / "site/result.h5").read_bytes())
+        (self.folder / "scans/post.ply").write_text(
+            "ply\nformat ascii 1.0\nelement vertex 2\nproperty double x\nproperty double y\n"
+            "property double z\nend_header\n1 2 1\n1 2 1.1\n")
+        mixed = self.check(f"scans {QUESTION} -o mixed")
+        info = json.loads(clearway("info mixed/site.h5 --json", self.folder).stdout)
+        self.assertEqual({source["name"] for source in info["sources"]},
+                         {"environment.las", "post.ply"})
+        self.assertTrue(mixed.stdout)
+
+    def test_other_questions(self):
+        wagon = {"bodies": [{"name": "front", "model": "model.ply"},
+                            {"name": "rear", "model": "model.ply", "at": -4}]}
+        (self.folder / "wagon.json").write_text(json.dumps(wagon))
+        self.asked("")
+        for words in ("--vehicle wagon.json", "--model model.ply --between-poses",
+                      "--model model.ply --error-scan 0.005 --error-model 0.01 --gap 0.2",
+                      "--model model.ply --forward=-x",
+                      "--model model.ply --clearance 0.2 --min-points 3 --split 0"):
+            with self.subTest(words):
+                done = self.check("site/site.h5 --trajectory trajectory.txt --radius 0.1 "
+                                  f"{words} -o other --force")
+                commands = printed_commands(done.stdout)
+                self.assertEqual("--gap" in commands[0], "--error" in words)
+                self.assertEqual("--clearance" in commands[0], "--between-poses" not in words)
+                made = bytes_of(self.folder / "other", FILES[1:])
+                self.paste(commands, self.folder)
+                self.assertEqual(bytes_of(self.folder / "other", FILES[1:]), made)
+        seen = self.check(f"scans {QUESTION} --origins origins.csv --seen -o seen")
+        self.assertIn("--seen", printed_commands(seen.stdout)[1])
+        self.assertIn("--origins origins.csv", printed_commands(seen.stdout)[0])
+
+
+class Again(Site):
+    def test_the_second_run_has_nothing_to_do(self):
+        first = self.asked("")
+        before = {name: (self.folder / "site" / name).stat().st_mtime_ns for name in FILES}
+        second = self.asked("")
+        self.assertIn("nothing was to be done", second.stderr)
+        self.assertEqual(second.stdout, first.stdout)
+        after = {name: (self.folder / "site" / name).stat().st_mtime_ns for name in FILES}
+        self.assertEqual(before, after)
+        self.assertIn("nothing was to be done", self.asked("--threads 1 --memory 1G").stderr)
+        (self.folder / "site/check.json").write_text("[[[")
+        self.assertNotIn("nothing was to be done", self.asked("").stderr)
+        self.assertIn("nothing was to be done", self.asked("").stderr)
+
+    def test_what_is_missing_or_changed_is_made_again(self):
+        self.asked("")
+        made = bytes_of(self.folder / "site")
+        (self.folder / "site/conflicts.csv").write_text("changed\n")
+        (self.folder / "site/report.html").unlink()
+        self.asked("")
+        now = bytes_of(self.folder / "site")
+        for name in ("site.h5", "result.h5", "conflicts.csv"):
+            self.assertEqual(now[name], made[name])
+        before = (self.folder / "site/conflicts.csv").stat().st_mtime_ns
+        self.asked("--title Other")
+        self.assertIn(b"Other", (self.folder / "site/report.html").read_bytes())
+        self.assertEqual(before, (self.folder / "site/conflicts.csv").stat().st_mtime_ns)
+
+    def test_another_question_needs_force_and_uses_the_store_again(self):
+        self.asked("")
+        made = bytes_of(self.folder / "site")
+        other = QUESTION.replace("0.1", "0.2")
+        refused = self.check(f"scans {other} -o site", 2)
+        self.assertIn("answers another question than this run: radius: 0.1 in the file",
+                      refused.stderr.replace(" m ", " "))
+        self.assertIn("--force answers this question in its place", refused.stderr)
+        self.assertNotIn("--resume", refused.stderr)
+        self.assertEqual(bytes_of(self.folder / "site"), made)
+        store = (self.folder / "site/site.h5").stat().st_mtime_ns
+        forced = self.check(f"scans {other} -o site --force")
+        self.assertEqual((self.folder / "site/site.h5").stat().st_mtime_ns, store)
+        self.assertIn("is the store of these inputs already", forced.stderr)
+        self.check(f"scans {other} -o fresh")
+        for name in ("result.h5", "conflicts.csv"):
+            self.assertEqual((self.folder / "site" / name).read_bytes(),
+                             (self.folder / "fresh" / name).read_bytes())
+        self.assertNotEqual((self.folder / "site/result.h5").read_bytes(), made["result.h5"])
+        self.assertIn("nothing was to be done", self.check(f"scans {other} -o site").stderr)
+        self.assertIn("nothing was to be done",
+                      self.check(f"scans {other} -o site --force").stderr)
+
+    def test_other_scans_need_force(self):
+        self.asked("")
+        (self.folder / "scans/post.xyz").write_text("1 2 1\n1 2 1.1\n")
+        refused = self.asked("", 2)
+        self.assertIn("site/site.h5: holds other scans than these", refused.stderr)
+        self.assertIn("--force", refused.stderr)
+        self.asked("--force")
+        fresh = self.check(f"scans {QUESTION} -o fresh")
+        self.assertTrue(fresh.stdout)
+        self.assertEqual((self.folder / "site/site.h5").read_bytes(),
+                         (self.folder / "fresh/site.h5").read_bytes())
+        self.assertIn("site/site.h5: holds other scans",
+                      self.asked("--cell-points 1000", 2).stderr)
+
+    def test_files_that_no_check_made_are_kept(self):
+        (self.folder / "site").mkdir()
+        (self.folder / "site/report.html").write_text("mine")
+        refused = self.asked("", 2)
+        self.assertIn("site/report.html: exists already, and no check has made it", refused.stderr)
+        self.assertEqual((self.folder / "site/report.html").read_text(), "mine")
+        self.asked("--force")
+        self.assertNotEqual((self.folder / "site/report.html").read_text(), "mine")
+
+    def test_what_was_made_by_hand_is_used(self):
+        (self.folder / "site").mkdir()
+        clearway("convert scans -o site/site.h5", self.folder)
+        clearway(f"run --env site/site.h5 {QUESTION} --first-pose --clearance 0.3 --profile 0.5 "
+                 "-o site/result.h5", self.folder)
+        before = [(self.folder / "site" / name).stat().st_mtime_ns for name in FILES[:2]]
+        done = self.asked("")
+        self.assertIn("is the finished result of this query already", done.stderr)
+        self.assertEqual([(self.folder / "site" / name).stat().st_mtime_ns for name in FILES[:2]],
+                         before)
+
+    def test_columns_are_remembered(self):
+        (self.folder / "wide.txt").write_text(
+            "".join(f"{i % 7} {i * 0.01} {i % 3} 1.5\n" for i in range(300)))
+        words = f"wide.txt --columns 2,3,4 {QUESTION} -o wide"
+        self.check(words)
+        self.assertIn("nothing was to be done", self.check(words).stderr)
+        self.assertIn("holds other scans",
+                      self.check(words.replace("2,3,4", "3,2,4"), 2).stderr)
+
+    def test_a_killed_check_goes_on(self):
+        whole = self.asked("")
+        made = bytes_of(self.folder / "site", FILES[:-1])
+        seconds = time.monotonic()
+        self.check(f"scans {QUESTION} -o timed")
+        seconds = time.monotonic() - seconds
+        chance = random.Random(5)
+        for attempt in range(6):
+            shutil.rmtree(self.folder / "site")
+            how = signal.SIGKILL if attempt % 2 else signal.SIGTERM
+            with subprocess.Popen([PROGRAM, *shlex.split(f"check scans {QUESTION} -o site")],
+                                  cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                  text=True) as process:
+                time.sleep(chance.uniform(0.05, 0.9) * seconds)
+                process.send_signal(how)
+                error = process.communicate()[1]
+            if how == signal.SIGTERM and process.returncode != 0:
+                self.assertIn(process.returncode, (5, -signal.SIGTERM), error)
+                if process.returncode == 5:
+                    self.assertIn("the same command goes on", error)
+            done = self.asked("")
+            self.assertEqual(bytes_of(self.folder / "site", FILES[:-1]), made)
+            self.assertEqual(done.stdout.splitlines()[-1], whole.stdout.splitlines()[-1])
+            self.assertEqual(list((self.folder / "site").glob("*.journal")), [])
+
+
+class Mistakes(Site):
+    def refused(self, words, exit_code, *said):
+        done = self.check(words, exit_code)
+        self.assertEqual(done.stdout, "")
+        for text in said:
+            self.assertIn(text, done.stderr)
+        for alien in ("--resume", "--env", "unknown option", "internal"):
+            self.assertNotIn(alien, done.stderr)
+        return done
+
+    def test_scans(self):
+        (self.folder / "empty").mkdir()
+        self.refused(f"empty {QUESTION} -o out", 3, "empty: holds no point file")
+        self.refused(f"nowhere {QUESTION} -o out", 4, "nowhere")
+        (self.folder / "scans/broken.las").write_bytes(b"LASF" + b"\0" * 500)
+        self.refused(f"scans {QUESTION} -o out", 3, "broken.las", "--skip-unreadable leaves out")
+        self.check(f"scans {QUESTION} -o out --skip-unreadable")
+        self.refused(f"trajectory.txt {QUESTION} -o out2", 3, "trajectory.txt: is a trajectory",
+                     "--trajectory takes it")
+        self.refused(f"scans {QUESTION} -o scans", 2, "is the folder of the scans")
+        self.refused(f"- {QUESTION} -o out2", 2, "expected scans in files or folders")
+        self.refused(f"out/site.h5 scans {QUESTION} -o out2", 2, "is a store", "give it alone")
+        self.refused(f"out/result.h5 {QUESTION} -o out2", 3, "out/result.h5: is a result", "not a scan or a store")
+
+    def test_model_and_trajectory(self):
+        self.refused("scans --model trajectory.txt --trajectory model.ply --radius 0.1 -o out", 3,
+                     "trajectory.txt: is a trajectory", "--trajectory takes it")
+        self.refused("scans --model model.ply --trajectory model.ply --radius 0.1 -o out", 3,
+                     "model.ply: is", "not a trajectory",
+                     "--model takes the vehicle")
+        self.refused("scans --model none.ply --trajectory trajectory.txt --radius 0.1 -o out", 4,
+                     "none.ply")
+        self.refused("scans --trajectory trajectory.txt --radius 0.1 -o out", 2, "--model")
+        self.asked("")
+        self.refused("scans --model site/site.h5 --trajectory trajectory.txt --radius 0.1 -o out",
+                     3, "not a model", "inputs that come first")
+        (self.folder / "broken.obj").write_text("v 0 0 0\nv 1 0 0\nf 1 2 9\n")
+        broken = self.refused("scans --model broken.obj --trajectory trajectory.txt --radius 0.1 "
+                              "-o early", 3, "broken.obj")
+        self.assertTrue(broken.stderr)
+        self.assertFalse((self.folder / "early/site.h5").exists(), "it was converted first")
+
+    def test_options(self):
+        self.refused(f"scans --model model.ply --trajectory trajectory.txt -o out", 2, "--radius")
+        self.refused(f"scans {QUESTION.replace('0.1', 'wide')} -o out", 2, "--radius", "wide")
+        self.refused(f"scans {QUESTION} -o out --forward z", 2, "same axis")
+        self.refused(f"scans {QUESTION} -o out --engine fast", 2, "--engine")
+        self.refused(f"scans {QUESTION} -o out --between-poses --clearance 0.3", 2, "clearance")
+        self.refused(f"scans {QUESTION} -o out --vehicle wagon.json", 2, "--vehicle", "--model")
+        self.assertFalse((self.folder / "out").exists())
+        (self.folder / "file").write_text("")
+        self.refused(f"scans {QUESTION} -o file", 4, "file: cannot make the folder")
+
+    def test_units(self):
+        corners = [(x, y, z) for x in (-2000, 2000) for y in (-900, 900) for z in (300, 1400)]
+        (self.folder / "mm.obj").write_text(
+            "".join(f"v {x} {y} {z}\n" for x, y, z in corners) + "f 1 2 4 3\nf 5 6 8 7\nf 1 5 7 3\n")
+        wrong = self.check("scans --model mm.obj --trajectory trajectory.txt --radius 0.1 -o wrong")
+        self.assertIn("unit", wrong.stderr)
+        right = self.check("scans --model mm.obj --model-unit mm --trajectory trajectory.txt "
+                           "--radius 0.1 -o right")
+        self.assertNotEqual(right.stdout.splitlines()[-1], wrong.stdout.splitlines()[-1])
+
+
+class Open(Site):
+    def browser(self, name):
+        folder = self.folder / "browser"
+        folder.mkdir()
+        script = folder / name
+        script.write_text(f"#!/bin/sh\nprintf '%s' \"$1\" > {self.folder}/opened\n")
+        script.chmod(0o755)
+        return {**os.environ, "PATH": str(folder)}
+
+    def opened(self):
+        for _ in range(100):
+            if (self.folder / "opened").exists() and (self.folder / "opened").read_text():
+                return (self.folder / "opened").read_text()
+            time.sleep(0.05)
+        return None
+
+    def test_the_page_is_opened(self):
+        for name in ("xdg-open", "open"):
+            with self.subTest(name):
+                self.asked("--open", env=self.browser(name))
+                self.assertEqual(self.opened(), "site/report.html")
+                shutil.rmtree(self.folder / "browser")
+                (self.folder / "opened").unlink()
+
+    def test_it_says_where_no_browser_is(self):
+        done = self.asked("--open", env={**os.environ, "PATH": str(self.folder)})
+        self.assertIn("neither xdg-open nor open", done.stderr)
+        self.assertIn("site/report.html", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[2:])

@@ -1,0 +1,228 @@
+// run --forward and --up: a model whose file has other axes gives the answer of the model that was
+// turned by hand, and what reads the result turns the file in the same way.
+#include <array>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "clearway/result.hpp"
+#include "support/store_fixture.hpp"
+#include "tools/cli/support/hall.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+using nlohmann::json;
+
+namespace {
+
+using Row = std::array<double, 3>;
+
+/// The unit vector that an axis such as "-y" names.
+Row unit_of(const std::string& axis) {
+  Row out{};
+  out[static_cast<std::size_t>(axis[1] - 'x')] = axis[0] == '-' ? -1 : 1;
+  return out;
+}
+
+Row across(const Row& a, const Row& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// The place in a file with these axes that stands for x ahead, y to the left and z up.
+Row in_file(const Row& p, const std::string& forward, const std::string& up) {
+  const Row ahead = unit_of(forward), above = unit_of(up), left = across(above, ahead);
+  Row out{};
+  for (std::size_t k = 0; k < 3; ++k) out[k] = p[0] * ahead[k] + p[1] * left[k] + p[2] * above[k];
+  return out;
+}
+
+/// A model without any symmetry in the hall, as it is and as files with other axes.
+struct Turned {
+  Turned() {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> x(-1.9, 2.1), y(-0.8, 0.9), z(0.3, 1.4);
+    for (int i = 0; i < 12; ++i) corners.push_back({x(random), y(random), z(random)});
+    put_bytes(work.folder / "upright.obj", mesh_of(corners));
+  }
+
+  static std::string mesh_of(const std::vector<Row>& corners) {
+    std::string text;
+    for (const Row& c : corners) {
+      char line[100];
+      std::snprintf(line, sizeof line, "v %.17g %.17g %.17g\n", c[0], c[1], c[2]);
+      text += line;
+    }
+    for (std::size_t i = 1; i + 2 <= corners.size(); ++i) {
+      text += "f " + std::to_string(i) + " " + std::to_string(i + 1) + " " + std::to_string(i + 2) +
+              "\n";
+    }
+    return text;
+  }
+
+  void write_turned(const std::string& name, const std::string& forward,
+                    const std::string& up) const {
+    std::vector<Row> turned;
+    for (const Row& c : corners) turned.push_back(in_file(c, forward, up));
+    put_bytes(work.folder / name, mesh_of(turned));
+  }
+
+  Outcome run(const std::string& model, const std::string& output,
+              const std::string& options) const {
+    return work.run("run --env " + (work.hall / "site.h5") + " --model " + work.path(model) +
+                    " --trajectory " + (work.hall / "trajectory.txt") +
+                    " --radius 0.3 --first-pose --clearance 0.6 --profile 1 --force -o " +
+                    work.path(output) + " " + options);
+  }
+  std::string conflicts(const std::string& result, const std::string& options,
+                        const std::string& output) const {
+    const Outcome listed = work.run("conflicts " + work.path(result) + " --trajectory " +
+                                    (work.hall / "trajectory.txt") + " --force -o " +
+                                    work.path(output) + " " + options);
+    INFO(listed.err);
+    REQUIRE(listed.exit_code == 0);
+    return work.bytes(output);
+  }
+
+  Work work;
+  std::vector<Row> corners;
+};
+
+}  // namespace
+
+TEST_CASE("each way to turn a model gives the result of the model turned by hand") {
+  const Turned turned;
+  REQUIRE(turned.run("upright.obj", "upright.h5", "").exit_code == 0);
+  const Result upright(turned.work.folder / "upright.h5");
+  REQUIRE(upright.size() > 0);
+  const std::string axes[] = {"+x", "-x", "+y", "-y", "+z", "-z"};
+  int ways = 0;
+  for (const std::string& forward : axes) {
+    for (const std::string& up : axes) {
+      if (forward[1] == up[1]) continue;
+      CAPTURE(forward, up);
+      ++ways;
+      turned.write_turned("turned.obj", forward, up);
+      const Outcome run =
+          turned.run("turned.obj", "turned.h5", "--forward " + forward + " --up " + up);
+      INFO(run.err);
+      REQUIRE(run.exit_code == 0);
+      const Outcome same = turned.work.run("compare " + turned.work.path("upright.h5") + " " +
+                                           turned.work.path("turned.h5"));
+      CHECK(same.exit_code == 0);
+      const Result result(turned.work.folder / "turned.h5");
+      CHECK(result.source() == upright.source());
+      CHECK(result.first_pose() == upright.first_pose());
+      CHECK(result.clearance().distance == upright.clearance().distance);
+      CHECK(result.profile().distance == upright.profile().distance);
+      const ModelAxes kept = result.model_axes();
+      CHECK(name_of(kept.forward) == forward);
+      CHECK(name_of(kept.up) == up);
+      const json info =
+          json::parse(turned.work.run("info " + turned.work.path("turned.h5") + " --json").out);
+      const bool turns = forward != "+x" || up != "+z";
+      CHECK(info.contains("model_axes") == turns);
+      if (turns) CHECK(info["model_axes"] == json{{"forward", forward}, {"up", up}});
+      // Without a turn the bytes are those of a run that names no axes.
+      CHECK((turned.work.bytes("turned.h5") == turned.work.bytes("upright.h5")) == !turns);
+    }
+  }
+  CHECK(ways == 24);
+}
+
+TEST_CASE("what reads the result of a turned model turns its file, and takes no other axes") {
+  const Turned turned;
+  const Work& work = turned.work;
+  turned.write_turned("turned.obj", "-y", "+x");
+  REQUIRE(turned.run("upright.obj", "upright.h5", "").exit_code == 0);
+  REQUIRE(turned.run("turned.obj", "turned.h5", "--forward=-y --up x").exit_code == 0);
+  const std::string expected =
+      turned.conflicts("upright.h5", "--model " + work.path("upright.obj"), "upright.csv");
+  CHECK(turned.conflicts("turned.h5", "--model " + work.path("turned.obj"), "turned.csv") ==
+        expected);
+  const std::string path = " --trajectory " + (work.hall / "trajectory.txt") + " ";
+  const std::string report = "report " + work.path("turned.h5") + " --env " +
+                             (work.hall / "site.h5") + path + "--force --json -o " +
+                             work.path("page.html") + " --model ";
+  const Outcome page = work.run(report + work.path("turned.obj"));
+  INFO(page.err);
+  REQUIRE(page.exit_code == 0);
+  CHECK(json::parse(page.out)["page"]["forward"] == 0);
+  CHECK(json::parse(page.out)["inputs"]["model"]["axes"] == json{"-y", "+x"});
+  const Outcome compared = work.run(
+      "compare " + work.path("upright.h5") + " " + work.path("turned.h5") + " --conflicts" + path +
+      "--model " + work.path("upright.obj") + " --model-b " + work.path("turned.obj"));
+  CHECK(compared.exit_code == 0);
+  for (const std::string axes : {"--forward +y", "--up z", "--forward x"}) {
+    CAPTURE(axes);
+    check_refused(work.run(report + work.path("turned.obj") + " " + axes), 2,
+                  "turned the model by --forward -y --up +x");
+    check_refused(work.run("conflicts " + work.path("turned.h5") + path + axes), 2,
+                  "leave out its own --forward and --up");
+    check_refused(work.run("compare " + work.path("upright.h5") + " " + work.path("turned.h5") +
+                           " --conflicts" + path + axes),
+                  2, "leave out its own --forward and --up");
+  }
+  check_refused(work.run(report + work.path("upright.obj")), 3, "is the result of another model");
+}
+
+TEST_CASE("axes along one line are refused before anything is read") {
+  const Turned turned;
+  const Outcome run = turned.run("none.obj", "out.h5", "--forward +z");
+  check_refused(run, 2, "forward and up lie along the same axis");
+  CHECK(turned.run("upright.obj", "out.h5", "--forward w").exit_code == 2);
+}
+
+TEST_CASE("the height of --model-above and the points of clearway model are of the turned model") {
+  const Turned turned;
+  const Work& work = turned.work;
+  turned.write_turned("turned.obj", "+z", "+y");
+  for (const std::string& options :
+       {std::string("--model-above 0.8"), std::string("--model-as points --model-above 0.8"),
+        std::string("--model-vertices")}) {
+    CAPTURE(options);
+    REQUIRE(turned.run("upright.obj", "upright.h5", options).exit_code == 0);
+    REQUIRE(turned.run("turned.obj", "turned.h5", options + " --forward z --up y").exit_code == 0);
+    CHECK(work.run("compare " + work.path("upright.h5") + " " + work.path("turned.h5")).exit_code ==
+          0);
+  }
+  REQUIRE(work.run("model " + work.path("upright.obj") + " --spacing 0.1 -o " +
+                   work.path("upright.ply"))
+              .exit_code == 0);
+  REQUIRE(work.run("model " + work.path("turned.obj") + " --forward z --up y --spacing 0.1 -o " +
+                   work.path("turned.ply"))
+              .exit_code == 0);
+  CHECK(work.bytes("upright.ply") == work.bytes("turned.ply"));
+}
+
+TEST_CASE("the axes hold for all bodies of a vehicle, and a merge keeps them") {
+  const Turned turned;
+  const Work& work = turned.work;
+  turned.write_turned("turned.obj", "+y", "+z");
+  const auto wagon = [&](const std::string& model) {
+    const std::string name = model + ".json";
+    put_bytes(work.folder / name, R"({"bodies": [{"name": "front", "model": ")" + model +
+                                      R"("}, {"name": "rear", "model": ")" + model +
+                                      R"(", "at": -3}]})");
+    return "--vehicle " + work.path(name) + " ";
+  };
+  const std::string run = "run --env " + (work.hall / "site.h5") + " --trajectory " +
+                          (work.hall / "trajectory.txt") + " --radius 0.3 --first-pose --force -o ";
+  REQUIRE(work.run(run + work.path("upright.h5") + " " + wagon("upright.obj")).exit_code == 0);
+  REQUIRE(
+      work.run(run + work.path("turned.h5") + " --forward y " + wagon("turned.obj")).exit_code ==
+      0);
+  CHECK(work.run("compare " + work.path("upright.h5") + " " + work.path("turned.h5")).exit_code ==
+        0);
+  CHECK(turned.conflicts("turned.h5", wagon("turned.obj"), "turned.csv") ==
+        turned.conflicts("upright.h5", wagon("upright.obj"), "upright.csv"));
+  for (const std::string part : {"1", "2"}) {
+    REQUIRE(work.run(run + work.path("part" + part + ".h5") + " --forward y --shard " + part +
+                     "/2 " + wagon("turned.obj"))
+                .exit_code == 0);
+  }
+  REQUIRE(work.run("merge " + work.path("part1.h5") + " " + work.path("part2.h5") + " -o " +
+                   work.path("merged.h5"))
+              .exit_code == 0);
+  CHECK(work.bytes("merged.h5") == work.bytes("turned.h5"));
+}

@@ -1,0 +1,494 @@
+#include <fcntl.h>
+#include <spawn.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <initializer_list>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "campaign/plan.hpp"
+#include "clearway/clearway.hpp"
+#include "cli/check/check_plan.hpp"
+#include "cli/check/check_record.hpp"
+#include "cli/check/step_options.hpp"
+#include "cli/commands.hpp"
+#include "cli/input_roles.hpp"
+#include "cli/steps.hpp"
+#include "cli/support/console.hpp"
+#include "cli/support/options.hpp"
+#include "cli/support/program.hpp"
+#include "cli/support/program_json.hpp"
+#include "cli/support/shell_words.hpp"
+#include "cli/vehicle/vehicle_inputs.hpp"
+#include "io/models/model_input.hpp"
+#include "io/result/journal.hpp"
+#include "io/result/result.hpp"
+#include "io/store/convert/convert.hpp"
+#include "io/store/file_kind.hpp"
+#include "search/check_query.hpp"
+
+namespace clearway::tool {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+using Words = std::vector<std::string>;
+
+constexpr const char* kGoesOn = "the same command goes on from what was finished";
+
+/// Whether a remedy is about an output that is there already.
+bool is_about_other_question(Remedy remedy) {
+  return remedy == Remedy::kOverwrite || remedy == Remedy::kReadOrOverwrite ||
+         remedy == Remedy::kResumeOrOverwrite || remedy == Remedy::kOverwriteNotResume ||
+         remedy == Remedy::kRestoreOptions || remedy == Remedy::kOtherPart;
+}
+
+/// Advice on an error of a step in terms of check's own options, where that of the step would be
+/// wrong.
+std::string advice_of_check(const Error& error) {
+  if (is_about_other_question(error.remedy())) {
+    return "; --force answers this question in its place, and keeps what still agrees, or -o names "
+           "another folder";
+  }
+  switch (error.remedy()) {
+    case Remedy::kResume:
+      return std::string("; ") + kGoesOn;
+    case Remedy::kCpuDevice:
+      return "; --device cpu does without a GPU; nvidia-smi lists the GPUs that can be used";
+    case Remedy::kStandardInput:
+      return "; write it into a file first";
+    case Remedy::kSampleMesh:
+      return "; if it is the vehicle, --model takes it";
+    default:
+      break;
+  }
+  const std::string what = error.what();
+  const bool full = what.find(" MiB free, expected about ") != std::string::npos ||
+                    what.find(std::strerror(ENOSPC)) != std::string::npos;
+  return full ? "; free some room, or give -o a folder on a disk with more" : "";
+}
+
+/// Calls a step. Errors whose advice is about options that check does not have get check's own.
+template <typename Call>
+auto in_terms_of_check(const Call& call) {
+  const auto text = [](const Error& error) { return error.what() + advice_of_check(error); };
+  const auto remedy = [](const Error& error) {
+    return advice_of_check(error).empty() ? error.remedy() : Remedy::kNone;
+  };
+  try {
+    return call();
+  } catch (const UsageError& error) {
+    throw UsageError(text(error), remedy(error), error.amount());
+  } catch (const InputError& error) {
+    throw InputError(text(error), remedy(error), error.amount());
+  } catch (const ResourceError& error) {
+    throw ResourceError(text(error), remedy(error), error.amount());
+  }
+}
+
+/// A step that writes one file and can be repeated: its options, and the words of its command line.
+template <typename Command>
+class Step {
+ public:
+  explicit Step(Words words) : words_(std::move(words)) {
+    add_options(app_, options_);
+    parse_words(app_, Words(words_.begin() + 1, words_.end()));
+  }
+
+  Command& options() { return options_; }
+  /// The whole command line, without the program's name.
+  const Words& words() const { return words_; }
+  /// The words without what changes no byte of the output.
+  Words essence() const { return without_speed(words_, app_); }
+
+ private:
+  Words words_;
+  CLI::App app_;
+  Command options_;
+};
+
+/// Opens a page in the browser of the user. Only says so where there is no program for it.
+void open_page(const fs::path& page) {
+  for (const char* program : {"xdg-open", "open"}) {
+    const std::string path = page.string();
+    char* const words[] = {const_cast<char*>(program), const_cast<char*>(path.c_str()), nullptr};
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    // What a browser says is not for the user of this command.
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    pid_t child = 0;
+    const int failed = ::posix_spawnp(&child, program, &actions, nullptr, words, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (failed == 0) return;
+  }
+  spdlog::warn("--open: neither xdg-open nor open can be started here; open {} in a browser",
+               page.string());
+}
+
+class Check {
+ public:
+  explicit Check(const CheckCommand& options) : options_(options), plan_(options) {}
+
+  Verdict run() {
+    log_messages_once();
+    parse_all();
+    prepare_folder();
+    record_.emplace(options_.folder);
+    claim_folder();
+    if (!plan_.has_store()) convert_scans();
+    const RunOutcome found = search();
+    made_for_ = question();
+    const std::string conflicts = make_table<ConflictsCommand>(kConflictsName, plan_.conflicts());
+    make_table<StationsCommand>(kStationsName, plan_.stations());
+    write_page();
+    record_->write();
+    tell(found, conflicts);
+    if (options_.open) open_page(plan_.file(kReportName));
+    return found.report.verdict();
+  }
+
+ private:
+  /// Parses the options of all steps, so that every mistake in them is found before the first step.
+  void parse_all() {
+    if (options_.command->get_option("--model")->empty() &&
+        options_.command->get_option("--vehicle")->empty()) {
+      throw CLI::RequiredError("--model");
+    }
+    if (!plan_.has_store()) Step<ConvertCommand>(plan_.convert(false));
+    Step<RunOptions> search(plan_.run(false));
+    Step<ConflictsCommand>(plan_.conflicts());
+    Step<StationsCommand>(plan_.stations());
+    Step<ReportCommand>(plan_.report(""));
+    in_terms_of_check([&] {
+      RunOptions& options = search.options();
+      model_options_of(options);
+      check_query(options.query, options.search);
+      if (!options.vehicle.empty()) check_vehicle_search(options.search);
+      check_roles(options);
+    });
+  }
+
+  /// Refuses files in the wrong place. Where input_roles.hpp names options of single commands,
+  /// check names its own.
+  void check_roles(const RunOptions& run) const {
+    if (run.vehicle.empty() && !names_box(run.model)) {
+      refuse_kinds(run.model, {FileKind::kStore},
+                   "a model (points of the vehicle in its own frame)",
+                   "stores and scans are the inputs that come first");
+    }
+    if (run.vehicle.empty()) check_is_model(run.model);
+    refuse_kinds(run.trajectory, {FileKind::kPoints, FileKind::kMesh, FileKind::kStore},
+                 "a trajectory (a list of poses)",
+                 "the inputs that come first are scans, and --model takes the vehicle");
+    check_is_trajectory(run.trajectory);
+    if (!options_.command->get_option("--columns")->empty()) return;
+    std::error_code unknown;
+    for (const fs::path& input : options_.inputs) {
+      if (!fs::is_regular_file(input, unknown)) continue;
+      refuse_kinds(input, {FileKind::kTrajectory}, "a scan",
+                   "--trajectory takes it, or --columns says that it holds points");
+      refuse_kinds(input, {FileKind::kResult, FileKind::kJournal}, "a scan or a store",
+                   "expected what was searched for it");
+    }
+  }
+
+  static void refuse_kinds(const fs::path& path, std::initializer_list<FileKind> kinds,
+                           const char* expected, const char* advice) {
+    const FileDescription file = describe_file(path);
+    if (std::ranges::find(kinds, file.kind) == kinds.end()) return;
+    throw InputError(path.string() + ": is " + file.words + ", not " + expected + "; " + advice);
+  }
+
+  void prepare_folder() {
+    std::error_code failed;
+    for (const fs::path& input : options_.inputs) {
+      std::error_code unknown;
+      if (input == "-") {
+        throw UsageError(
+            "-: expected scans in files or folders, because each step has to find them again; "
+            "clearway convert - makes a store of standard input, which this command takes");
+      }
+      if (fs::is_directory(input, unknown) && fs::equivalent(input, options_.folder, unknown)) {
+        throw UsageError(
+            options_.folder.string() +
+            ": is the folder of the scans; expected another one after -o, for example " +
+            (options_.folder / "check").string());
+      }
+    }
+    fs::create_directories(options_.folder, failed);
+    if (fs::is_directory(options_.folder)) return;
+    const std::string why = failed ? failed.message() : "it is no folder";
+    throw ResourceError(options_.folder.string() + ": cannot make the folder: " + why +
+                        "; -o names one that can be written");
+  }
+
+  /// Refuses to overwrite tables and pages that no check made. From here on the folder is one of a
+  /// check, also if it is interrupted before its end.
+  void claim_folder() {
+    for (const char* name : {kConflictsName, kStationsName, kReportName}) {
+      std::error_code unknown;
+      const fs::path file = plan_.file(name);
+      if (record_->exists() || options_.force || !fs::exists(file, unknown)) continue;
+      throw UsageError(file.string() +
+                       ": exists already, and no check has made it; --force overwrites it, or -o "
+                       "names another folder");
+    }
+    record_->write();
+  }
+
+  /// Reads trajectory and model once before a conversion, which may take long, so that a mistake in
+  /// them is found at once. What depends on the store is left to the search.
+  void try_inputs() const {
+    Step<RunOptions> step(plan_.run(false));
+    RunOptions& options = step.options();
+    options.lengths.convert(1);
+    try {
+      const std::vector<Pose> poses =
+          read_trajectory(options.trajectory, options.trajectory_options);
+      if (options.vehicle.empty()) {
+        read_model(options.model, model_options_of(options));
+      } else {
+        read_vehicle(
+            options.vehicle, poses,
+            {model_options_of(options), options.trajectory_options, options.search.threads});
+      }
+    } catch (const Error& error) {
+      const Remedy remedy = error.remedy();
+      if (remedy != Remedy::kNameCrs && remedy != Remedy::kDeclareLength) throw;
+    }
+  }
+
+  void convert_scans() {
+    Step<ConvertCommand> step(plan_.convert(false));
+    if (is_store_of_record(step)) {
+      spdlog::info("{}: is the store of these inputs already; nothing to do",
+                   plan_.environment().string());
+      return note_step(kStoreName, step.words(), true);
+    }
+    std::error_code unknown;
+    in_terms_of_check([&] {
+      if (!fs::exists(plan_.environment(), unknown)) try_inputs();
+      try {
+        const ConvertReport report = perform(step.options());
+        note_step(kStoreName, step.words(), report.was_finished);
+        return;
+      } catch (const UsageError& error) {
+        if (!is_about_other_question(error.remedy())) throw;
+        if (!options_.force && error.remedy() != Remedy::kOverwrite) throw;
+        if (!options_.force) {
+          throw UsageError(plan_.environment().string() +
+                               ": holds other scans than these, or they were converted with other "
+                               "options",
+                           Remedy::kOverwrite);
+        }
+      }
+      Step<ConvertCommand> replacing(plan_.convert(true));
+      perform(replacing.options());
+      note_step(kStoreName, replacing.words(), false);
+    });
+    record_->note_command(kStoreName, step.essence());
+  }
+
+  /// Whether the store was made of these inputs with the same --columns, which a store does not
+  /// keep, but the record does.
+  bool is_store_of_record(Step<ConvertCommand>& step) const {
+    ConvertOptions conversion = step.options().conversion;
+    if (conversion.columns.empty()) return false;
+    if (record_->command_of(kStoreName) != step.essence()) return false;
+    conversion.columns.clear();
+    ConsoleProgress progress;
+    return is_converted({conversion, step.options().inputs, step.options().output}, progress);
+  }
+
+  RunOutcome search() {
+    return in_terms_of_check([&] {
+      const std::string defaults = plan_.about_distances();
+      if (!defaults.empty()) spdlog::info("{}", defaults);
+      Step<RunOptions> step(plan_.run(false));
+      step.options().json = options_.json;
+      step.options().search.resume = has_begun();
+      try {
+        RunOutcome outcome = perform(step.options());
+        note_step(kResultName, step.words(), outcome.report.was_finished);
+        return outcome;
+      } catch (const UsageError& error) {
+        if (!is_about_other_question(error.remedy()) || !options_.force) throw;
+      }
+      Step<RunOptions> replacing(plan_.run(true));
+      replacing.options().json = options_.json;
+      RunOutcome outcome = perform(replacing.options());
+      note_step(kResultName, replacing.words(), false);
+      return outcome;
+    });
+  }
+
+  /// Whether there is a result, or a journal of one. A first search has nothing to resume.
+  bool has_begun() const {
+    const fs::path result = plan_.file(kResultName);
+    std::error_code unknown;
+    return fs::exists(result, unknown) || fs::exists(journal_of(result), unknown);
+  }
+
+  /// What all outputs depend on: the question, and the files of the vehicle and the path, whose
+  /// names and times outputs show.
+  ordered_json question() const {
+    const ResultReader result(plan_.file(kResultName));
+    ordered_json files = ordered_json::array();
+    for (const fs::path& input : input_files()) {
+      files.push_back({{"file", input.string()}, {"contents", contents_of(input)}});
+    }
+    return {{"question", campaign::question_of(result.header())}, {"inputs", files}};
+  }
+
+  std::vector<fs::path> input_files() const {
+    Step<RunOptions> step(plan_.run(false));
+    const RunOptions& options = step.options();
+    std::vector<fs::path> files{options.trajectory};
+    if (!options.vehicle.empty()) return vehicle_inputs(options.vehicle, std::move(files));
+    if (!names_box(options.model)) files.push_back(options.model);
+    return files;
+  }
+
+  ordered_json made_for(const Words& words) const {
+    ordered_json what = made_for_;
+    what["words"] = words;
+    return what;
+  }
+
+  /// Makes the table that a step writes, unless it is there. Returns what the step says of it.
+  template <typename Command>
+  std::string make_table(const char* name, const Words& words) {
+    Step<Command> step(words);
+    const ordered_json what = made_for(step.essence());
+    const ordered_json known = record_->find(name, what);
+    note_step(name, step.words(), known.is_string());
+    if (known.is_string()) return known.get<std::string>();
+    const auto outcome = in_terms_of_check([&] { return perform(step.options()); });
+    spdlog::info("{}: written", plan_.file(name).string());
+    record_->note(name, what, outcome.text);
+    return outcome.text;
+  }
+
+  void write_page() {
+    const ordered_json what = made_for(Step<ReportCommand>(plan_.report("")).essence());
+    const ordered_json known = record_->find(kReportName, what);
+    if (known.is_string()) {
+      return note_step(kReportName, plan_.report(known.get<std::string>()), true);
+    }
+    const std::string date = now_in_utc();
+    Step<ReportCommand> step(plan_.report(date));
+    in_terms_of_check([&] { return perform(step.options()); });
+    record_->note(kReportName, what, date);
+    note_step(kReportName, step.words(), false);
+  }
+
+  /// Keeps the command line of a step, for the user to repeat it.
+  void note_step(const char* name, const Words& words, bool was_there) {
+    commands_.push_back(shell_line(words));
+    reused_[name] = was_there;
+    nothing_done_ = nothing_done_ && was_there;
+  }
+
+  void tell(const RunOutcome& found, const std::string& conflicts) const {
+    if (nothing_done_) {
+      spdlog::info("{}: has the answer to this question already; nothing was to be done",
+                   options_.folder.string());
+    }
+    if (options_.json) {
+      spdlog::info("{}", found.sentence);
+      print(text_of_json(json_of(found)));
+      return;
+    }
+    std::string text = conflicts + "these commands did it, and each can be given again by hand:\n";
+    for (const std::string& command : commands_) text += "  " + command + "\n";
+    print(text + found.sentence + "\n");
+  }
+
+  ordered_json json_of(const RunOutcome& found) const {
+    ordered_json out = program_json({{"env", plan_.environment()},
+                                     {"result", plan_.file(kResultName)},
+                                     {"conflicts", plan_.file(kConflictsName)},
+                                     {"stations", plan_.file(kStationsName)},
+                                     {"report", plan_.file(kReportName)}});
+    out["verdict"] = name_of(found.report.verdict());
+    out["sentence"] = found.sentence;
+    out["nothing_done"] = nothing_done_;
+    out["reused"] = reused_;
+    out["commands"] = commands_;
+    out["run"] = found.json;
+    return out;
+  }
+
+  const CheckCommand& options_;
+  CheckPlan plan_;
+  std::optional<CheckRecord> record_;
+  ordered_json made_for_;
+  std::vector<std::string> commands_;
+  ordered_json reused_ = ordered_json::object();
+  bool nothing_done_ = true;
+};
+
+void add_check_options(CLI::App& command, CheckCommand& options) {
+  command
+      .add_option(
+          "INPUT", options.inputs,
+          "Scans as clearway convert takes them, folders of scans, or one store of clearway "
+          "convert")
+      ->required();
+  command.add_option("-o,--output", options.folder, "The folder for everything that is made")
+      ->type_name("DIR")
+      ->required();
+  offer_options_of_steps(command);
+  command.add_flag("--open", options.open, "Open the report in the browser")
+      ->group(title_of(OptionGroup::kPage));
+  command.add_flag(
+      "--force", options.force,
+      "Answer another question than the one that the folder has: replace what does not "
+      "agree, and keep the rest");
+  command.add_flag("--fail-on-collision", options.fail_on_collision,
+                   "Exit with code 1 where a point collides, and 6 where the verdict is undecided");
+  command.add_flag("--json", options.json, "Print one JSON object about the check");
+}
+
+}  // namespace
+
+void add_check(CLI::App& program, int& exit_code) {
+  const auto options = std::make_shared<CheckCommand>();
+  CLI::App* command = program.add_subcommand("check",
+                                             "From scans, a vehicle and its path to the finding: "
+                                             "convert, run, conflicts, stations, report");
+  add_check_options(*command, *options);
+  options->command = command;
+  command->footer(
+      "Writes into the folder: site.h5, the store; result.h5, with first poses, clearances and "
+      "profile;\n"
+      "conflicts.csv; stations.csv; report.html; and check.json, from which the command knows "
+      "what\n"
+      "is there.\n"
+      "The same command again makes only what is missing, also after it was interrupted. Another\n"
+      "question in the same folder needs --force, and uses the store again.\n"
+      "Prints the conflicts, the commands that it consists of, and the verdict of clearway run.\n"
+      "Example: clearway check scans/ --model car.obj --trajectory path.txt --radius 0.1 -o site/");
+  command->callback([options, &exit_code] {
+    run_stoppable(options->folder, kGoesOn, [&] {
+      const Verdict verdict = Check(*options).run();
+      if (options->fail_on_collision) exit_code = exit_code_of(verdict);
+    });
+  });
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,189 @@
+#include "cli/check/check_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <system_error>
+#include <utility>
+
+#include "clearway/error.hpp"
+#include "cli/check/step_options.hpp"
+#include "cli/steps.hpp"
+#include "core/util/format.hpp"
+#include "io/files/text_number.hpp"
+#include "io/store/file_kind.hpp"
+
+namespace clearway::tool {
+namespace {
+
+using Words = CheckPlan::Words;
+
+/// Clearances and profile are asked for up to so many times the radius, unless the user says
+/// otherwise.
+constexpr double kClearanceRadii = 3, kProfileRadii = 5;
+
+// How check deals with the options of its steps.
+const StepOptions kConvertOptions{{"--output", "--force", "--resume", "--json", "--help"},
+                                  {{"--lever-arm", "--origins-lever-arm"},
+                                   {"--trajectory-format", "--origins-format"},
+                                   {"--angles", "--origins-angles"},
+                                   {"--trajectory-crs", "--origins-crs"},
+                                   {"--trajectory-datum", "--origins-datum"},
+                                   {"--trajectory-unit", "--origins-unit"}}};
+// --gap is that of conflicts, and only a run with an error budget takes it.
+const StepOptions kRunOptions{{"--env", "--output", "--first-pose", "--tolerance", "--gap",
+                               "--shard", "--force", "--resume", "--fail-on-collision", "--json",
+                               "--help"}};
+// The run turns the model, and what reads its result knows that.
+const StepOptions kConflictsOptions{
+    {"--output", "--forward", "--up", "--date", "--force", "--json", "--help"}};
+// --show is about conflicts, which check prints.
+const StepOptions kStationsOptions{
+    {"--output", "--forward", "--up", "--show", "--force", "--json", "--help"}};
+const StepOptions kReportOptions{
+    {"--env", "--output", "--forward", "--up", "--force", "--json", "--help"}};
+
+Words operator+(Words a, const Words& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+template <typename Command>
+void offer(CLI::App& check, const StepOptions& how) {
+  Command unused;
+  CLI::App step;
+  add_options(step, unused);
+  offer_options(check, step, how);
+}
+
+/// The options of a step that the command has been given.
+template <typename Command>
+Words given(const CLI::App& check, const StepOptions& how) {
+  Command unused;
+  CLI::App step;
+  add_options(step, unused);
+  return given_words(check, step, how);
+}
+
+/// A length as text, times a factor in round numbers: "10cm" times 3 is "30cm".
+std::string times(const std::string& length, double factor) {
+  const char* at = length.data();
+  const char* const end = at + length.size();
+  double number = 0;
+  if (!parse_number(at, end, number)) return length;
+  return format_number(std::stod(fmt::format("{:.2g}", factor * number))) + std::string(at, end);
+}
+
+/// Whether the only input is a store.
+bool is_one_store(const std::vector<std::filesystem::path>& inputs) {
+  std::error_code unknown;
+  for (const std::filesystem::path& input : inputs) {
+    if (!std::filesystem::is_regular_file(input, unknown)) continue;
+    if (describe_file(input).kind != FileKind::kStore) continue;
+    if (inputs.size() == 1) return true;
+    throw UsageError(input.string() +
+                     ": is a store, which has its points already; give it alone, or scans alone");
+  }
+  return false;
+}
+
+Words again(bool replacing) { return {replacing ? "--force" : "--resume"}; }
+
+}  // namespace
+
+void offer_options_of_steps(CLI::App& check) {
+  offer<RunOptions>(check, kRunOptions);
+  offer<ConvertCommand>(check, kConvertOptions);
+  offer<ConflictsCommand>(check, kConflictsOptions);
+  offer<StationsCommand>(check, kStationsOptions);
+  offer<ReportCommand>(check, kReportOptions);
+  check.get_option("--clearance")
+      ->description(fmt::format(
+          "Distances of every point closer than this are found (default: {:g} times the radius)",
+          kClearanceRadii));
+  check.get_option("--profile")
+      ->description(
+          fmt::format("The least distance at every pose is found if it is below this (default: "
+                      "{:g} times the radius)",
+                      kProfileRadii));
+}
+
+CheckPlan::CheckPlan(const CheckCommand& options)
+    : options_(options), check_(*options.command), has_store_(is_one_store(options.inputs)) {}
+
+std::filesystem::path CheckPlan::environment() const {
+  return has_store_ ? options_.inputs.front() : file(kStoreName);
+}
+
+Words CheckPlan::convert(bool replacing) const {
+  Words words{"convert"};
+  for (const std::filesystem::path& input : options_.inputs) words.push_back(input.string());
+  return words + Words{"-o", file(kStoreName).string()} +
+         given<ConvertCommand>(check_, kConvertOptions) + again(replacing);
+}
+
+Words CheckPlan::run(bool replacing) const {
+  Words words = Words{"run", "--env", environment().string()} +
+                given<RunOptions>(check_, kRunOptions) + Words{"--first-pose"} + distances();
+  if (has_budget() && is_given("--gap")) words = words + Words{"--gap", value_of("--gap")};
+  return words + Words{"-o", file(kResultName).string()} + again(replacing);
+}
+
+Words CheckPlan::conflicts() const {
+  return Words{"conflicts", file(kResultName).string()} +
+         given<ConflictsCommand>(check_, kConflictsOptions) +
+         Words{"-o", file(kConflictsName).string(), "--force"};
+}
+
+Words CheckPlan::stations() const {
+  return Words{"stations", file(kResultName).string()} +
+         given<StationsCommand>(check_, kStationsOptions) +
+         Words{"-o", file(kStationsName).string(), "--force"};
+}
+
+Words CheckPlan::report(const std::string& date) const {
+  Words words = Words{"report", file(kResultName).string(), "--env", environment().string()} +
+                given<ReportCommand>(check_, kReportOptions);
+  if (!is_given("--date") && !date.empty()) words = words + Words{"--date", date};
+  return words + Words{"-o", file(kReportName).string(), "--force"};
+}
+
+std::string CheckPlan::about_distances() const {
+  std::string text;
+  const Words words = distances();
+  for (std::size_t i = 0; i + 1 < words.size(); i += 2) {
+    const double radii = words[i] == "--clearance" ? kClearanceRadii : kProfileRadii;
+    text += (text.empty() ? "" : " and ") +
+            fmt::format("{} {} ({:g} times the radius)", words[i], words[i + 1], radii);
+  }
+  return text.empty() ? "" : "taken by default: " + text;
+}
+
+bool CheckPlan::is_given(const char* name) const { return !check_.get_option(name)->empty(); }
+
+std::string CheckPlan::value_of(const char* name) const {
+  return is_given(name) ? check_.get_option(name)->results().back() : "";
+}
+
+bool CheckPlan::has_budget() const {
+  constexpr std::array kErrors{"--error-scan", "--error-registration", "--error-pose",
+                               "--error-angle", "--error-model"};
+  return std::ranges::any_of(kErrors, [this](const char* name) { return is_given(name); });
+}
+
+/// Clearances and profile that the user has not asked for. No search between poses has them, and
+/// only engine sweep.
+Words CheckPlan::distances() const {
+  const std::string engine = value_of("--engine");
+  const bool sweep = engine.empty() || engine == "auto" || engine == "sweep";
+  if (is_given("--between-poses") || !sweep) return {};
+  Words words;
+  const std::string radius = value_of("--radius");
+  if (!is_given("--clearance")) words = Words{"--clearance", times(radius, kClearanceRadii)};
+  if (!is_given("--profile")) words = words + Words{"--profile", times(radius, kProfileRadii)};
+  return words;
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace clearway::tool {
+
+// The files in the folder of a check.
+inline constexpr const char* kStoreName = "site.h5";
+inline constexpr const char* kResultName = "result.h5";
+inline constexpr const char* kConflictsName = "conflicts.csv";
+inline constexpr const char* kStationsName = "stations.csv";
+inline constexpr const char* kReportName = "report.html";
+
+/// The options of `clearway check` that are not those of a step.
+struct CheckCommand {
+  std::vector<std::filesystem::path> inputs;
+  std::filesystem::path folder;
+  bool force = false, fail_on_collision = false, json = false, open = false;
+  const CLI::App* command = nullptr;  ///< the command that has these options
+};
+
+/// Adds the options that check passes on to its steps.
+void offer_options_of_steps(CLI::App& check);
+
+/// The command lines of the steps of a check, without the program's name. They are what is done and
+/// what is shown, so that a user who repeats one gets the same file.
+class CheckPlan {
+ public:
+  /// The options outlive this object. Throws UsageError for a store among scans.
+  explicit CheckPlan(const CheckCommand& options);
+
+  using Words = std::vector<std::string>;
+
+  /// Whether the input is a store already, so that nothing is converted.
+  bool has_store() const { return has_store_; }
+  std::filesystem::path environment() const;
+  std::filesystem::path file(const char* name) const { return options_.folder / name; }
+
+  /// replacing: in the place of what is there and does not agree. Otherwise the step goes on with
+  /// what is there.
+  Words convert(bool replacing) const;
+  Words run(bool replacing) const;
+  Words conflicts() const;
+  Words stations() const;
+  /// date: for the page, where the user names none; empty: none.
+  Words report(const std::string& date) const;
+
+  /// A sentence on the distances that the user did not ask for but that are found; empty where
+  /// there are none.
+  std::string about_distances() const;
+
+ private:
+  bool is_given(const char* name) const;
+  std::string value_of(const char* name) const;
+  bool has_budget() const;
+  Words distances() const;
+
+  const CheckCommand& options_;
+  const CLI::App& check_;
+  bool has_store_;
+};
+
+}  // namespace clearway::tool

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// What `clearway check` remembers of the files in its folder, so that it makes none again that is
+/// still right. A record that is missing, damaged or of another release only costs time.
+namespace clearway::tool {
+
+inline constexpr const char* kRecordName = "check.json";
+
+/// The size and the hash of a file's bytes, by which its contents are known again.
+nlohmann::ordered_json contents_of(const std::filesystem::path& file);
+
+class CheckRecord {
+ public:
+  /// Reads the record in a folder.
+  explicit CheckRecord(std::filesystem::path folder);
+
+  /// Whether the folder has a record, which says that its files are those of a check.
+  bool exists() const;
+
+  /// What was noted about a file of the folder, provided that it was made for `what` and has not
+  /// changed since; otherwise null.
+  nlohmann::ordered_json find(const std::string& name, const nlohmann::ordered_json& what) const;
+
+  /// Notes that a file of the folder was made for `what`, with anything worth remembering.
+  void note(const std::string& name, const nlohmann::ordered_json& what,
+            const nlohmann::ordered_json& remembered);
+
+  /// What note_command() was told of a file; empty where nothing is known.
+  std::vector<std::string> command_of(const std::string& name) const;
+  /// Notes the words of the command that made a file.
+  void note_command(const std::string& name, const std::vector<std::string>& words);
+
+  /// Writes the file of the record, unless it is there with these contents. Throws ResourceError.
+  void write() const;
+
+ private:
+  std::filesystem::path folder_;
+  nlohmann::ordered_json read_, now_;
+};
+
+}  // namespace clearway::tool

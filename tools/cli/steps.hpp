@@ -1,0 +1,109 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "clearway/convert.hpp"
+#include "clearway/report.hpp"
+#include "clearway/search.hpp"
+#include "clearway/stations.hpp"
+#include "cli/conflicts/conflict_inputs.hpp"
+#include "cli/run_options.hpp"
+#include "cli/support/lengths.hpp"
+#include "io/result/conflicts/conflict_file.hpp"
+
+namespace CLI {
+class App;
+}
+
+/// The steps from scans to a report, as functions: what the commands of the same names do, without
+/// what these print on standard output. add_options() adds the options of a step to a command, and
+/// perform() does the step and logs what it did. The options outlive the command.
+namespace clearway::tool {
+
+/// The options of `clearway convert`.
+struct ConvertCommand {
+  std::vector<std::filesystem::path> inputs;
+  std::filesystem::path output;
+  ConvertOptions conversion;
+  LengthOptions lengths;
+  std::string layout = "adaptive";
+  double scale = 0;
+  bool json = false;
+};
+
+void add_options(CLI::App& command, ConvertCommand& options);
+ConvertReport perform(ConvertCommand& options);
+
+/// What a run found.
+struct RunOutcome {
+  SearchReport report;
+  std::string sentence;         ///< the verdict in words
+  nlohmann::ordered_json json;  ///< the report as JSON, where options.json asks for it
+};
+
+inline void add_options(CLI::App& command, RunOptions& options) {
+  add_run_options(command, options);
+}
+RunOutcome perform(RunOptions& options);
+
+/// The options of `clearway conflicts`.
+struct ConflictsCommand : ConflictCommand {
+  std::filesystem::path result, trajectory, model, vehicle;
+  std::vector<std::filesystem::path> outputs;
+  ModelOptions model_options;
+  std::string date = ConflictFile::kNoDate;
+  std::uint64_t show = 20;
+  bool force = false;
+  bool json = false;
+};
+
+/// The conflicts in words.
+struct ConflictsOutcome {
+  std::string text;     ///< a table of the worst conflicts
+  std::string json;     ///< the summary as one JSON object
+  std::string verdict;  ///< the verdict of the result, where the table alone does not tell it
+};
+
+void add_options(CLI::App& command, ConflictsCommand& options);
+ConflictsOutcome perform(ConflictsCommand& options);
+
+/// The options of `clearway stations`.
+struct StationsCommand : ConflictCommand {
+  std::filesystem::path result, trajectory, model, vehicle;
+  std::vector<std::filesystem::path> outputs;
+  ModelOptions model_options;
+  double every = StationOptions{}.every;
+  std::uint64_t show = 20;
+  bool force = false;
+  bool json = false;
+};
+
+/// The stretches of the path in words.
+struct StationsOutcome {
+  std::string text;  ///< a table of the first stretches
+  std::string json;  ///< the summary as one JSON object
+};
+
+void add_options(CLI::App& command, StationsCommand& options);
+StationsOutcome perform(StationsCommand& options);
+
+/// The options of `clearway report`.
+struct ReportCommand : ConflictCommand {
+  std::filesystem::path result, environment, model, vehicle, trajectory, output;
+  ModelOptions model_options;
+  ReportOptions report;
+  std::vector<ParsedLength> classes;
+  bool json = false;
+  const CLI::App* command = nullptr;  ///< the command that has these options
+};
+
+/// The time in UTC, as a report shows the date of its making.
+std::string now_in_utc();
+
+void add_options(CLI::App& command, ReportCommand& options);
+ReportSummary perform(ReportCommand& options);
+
+}  // namespace clearway::tool
