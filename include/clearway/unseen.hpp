@@ -43,18 +43,17 @@ struct UnseenGroup {
 };
 
 /// How much is unseen in each place of the vehicle's cross-section, seen along its path: cells of a
-/// grid that looks forward, so that left is positive.
+/// grid that looks forward, so that left is positive, row by row from below, and within a row
+/// towards the left.
 struct UnseenFront {
   double cell = 0;  ///< side of a cell, metres: a multiple of a cube's side
   std::uint32_t columns = 0, rows = 0;
   double left = 0, up = 0;  ///< the least corner of the first cell, metres from the path
-  /// Length of the unseen stretches of each cell, metres: the volume of the unseen cubes that the
-  /// model first reaches there, divided by the area of the cell. Row by row from below, and within
-  /// a row towards the left.
-  std::vector<double> length;
-  /// About the length of all that a cell sweeps, metres: the path, the length of the model, and
-  /// before and behind it the radius at which cubes count as swept.
-  double way = 0;
+  /// How far each cell is swept, metres: the volume of the cubes that the model first reaches
+  /// there, divided by the area of the cell.
+  std::vector<double> swept;
+  /// How far each cell is unseen, metres: likewise of the unseen cubes, so at most `swept`.
+  std::vector<double> unseen;
 };
 
 /// Where the model passes through space that no beam of the scanner reached.

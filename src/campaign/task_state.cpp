@@ -208,9 +208,9 @@ std::string open_words(const ordered_json& facts, const std::string& unit) {
   }
   const ordered_json seen = facts.value("seen", ordered_json());
   if (!seen.is_null() && seen["listed_groups"] > 0) {
-    text +=
-        (text.empty() ? "" : ", ") +
-        ("not scanned on " + format_brief(seen["not_scanned_length"].get<double>()) + " " + unit);
+    const auto length = seen["not_scanned_length"].get<double>();
+    text += (text.empty() ? "" : ", ") +
+            (length > 0 ? "not scanned on " + format_brief(length) + " " + unit : "not scanned");
   }
   return text;
 }

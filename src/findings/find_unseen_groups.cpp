@@ -5,9 +5,12 @@
 #include <span>
 
 #include "clearway/unseen.hpp"
+#include "core/geometry/axes.hpp"
+#include "core/geometry/inside.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/query/body_numbers.hpp"
+#include "core/seen/cross_sections.hpp"
 #include "core/seen/cubes.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "findings/touched_first.hpp"
@@ -266,57 +269,65 @@ class GroupSearch {
     }
   }
 
-  /// Shares the unseen cubes among the cells of the cross-section. Each is taken for an upright
-  /// square, so that cubes that lie askew to the path do not make a pattern.
+  /// Finds what of the cells of the cross-section is swept, and what of that is unseen.
   void find_front() {
-    constexpr double kMostCells = 24;  // of a side, so that a number fits into each
+    constexpr std::int32_t kMostCells = 24;  // of a side, so that a number fits into each
+    SweptCells swept;
+    RowStream<SweptCells> stream(result_.reader());
+    for (SweptCells rows; stream.read(rows);) append_rows(rows, swept);
+    CrossSections sections(seen_.cube);
+    for (std::size_t i = 0; i < size(); ++i) {
+      sections.add(pulled_back(poses_[cubes_.first_pose[i]], middles_[i]));
+    }
+    const SweptCells unseen = sections.cells();
+    std::array<std::int32_t, 2> least{kMost, kMost}, greatest{-kMost, -kMost};
+    each_front_cell(swept, [&](std::int32_t left, std::int32_t up, std::uint64_t) {
+      least = {std::min(least[0], left), std::min(least[1], up)};
+      greatest = {std::max(greatest[0], left), std::max(greatest[1], up)};
+    });
+    if (greatest[0] < least[0]) return;
     UnseenFront& front = out_.front;
-    const double side = seen_.cube, around = radius() + side;
-    Box box = kNothing;
-    if (model_box_.lo.x <= model_box_.hi.x) {
-      box = model_box_.grown(around);
-      front.way = model_box_.hi.x - model_box_.lo.x + 2 * radius();
-    }
-    front.way += out_.path_length;
-    for (const Vec3& there : seen_from_path_) {
-      if (is_finite(there)) box.extend(there);
-    }
-    if (!(box.lo.y <= box.hi.y)) return;
-    const double widest = std::max(box.hi.y - box.lo.y, box.hi.z - box.lo.z);
-    front.cell = side * std::max(1.0, std::ceil(widest / side / kMostCells));
-    const auto first = [&](double from) { return std::floor(from / front.cell - 0.5); };
-    const auto last = [&](double to) { return std::floor(to / front.cell + 0.5); };
-    front.left = first(box.lo.y) * front.cell;
-    front.up = first(box.lo.z) * front.cell;
-    front.columns = static_cast<std::uint32_t>(last(box.hi.y) - first(box.lo.y)) + 1;
-    front.rows = static_cast<std::uint32_t>(last(box.hi.z) - first(box.lo.z)) + 1;
-    front.length.assign(std::size_t{front.columns} * front.rows, 0);
-    for (const Vec3& there : seen_from_path_) {
-      if (is_finite(there)) share(there, front);
-    }
+    const std::int32_t widest = std::max(greatest[0] - least[0], greatest[1] - least[1]) + 1;
+    const std::int32_t side = (widest + kMostCells - 1) / kMostCells;
+    const auto in_cells = [&](std::int32_t i) { return (i >= 0 ? i : i - side + 1) / side; };
+    front.cell = seen_.cube * side;
+    front.columns = static_cast<std::uint32_t>(in_cells(greatest[0]) - in_cells(least[0])) + 1;
+    front.rows = static_cast<std::uint32_t>(in_cells(greatest[1]) - in_cells(least[1])) + 1;
+    front.left = in_cells(least[0]) * front.cell;
+    front.up = in_cells(least[1]) * front.cell;
+    const auto lengths = [&](const SweptCells& cells) {
+      std::vector<std::uint64_t> parts(std::size_t{front.columns} * front.rows);
+      each_front_cell(cells, [&](std::int32_t left, std::int32_t up, std::uint64_t more) {
+        const auto column = static_cast<std::size_t>(in_cells(left) - in_cells(least[0]));
+        const auto row = static_cast<std::size_t>(in_cells(up) - in_cells(least[1]));
+        parts[row * front.columns + column] += more;
+      });
+      const double volume = 8 * half(0) * half(1) * half(2) / double{CrossSections::kParts};
+      std::vector<double> out;
+      out.reserve(parts.size());
+      for (const std::uint64_t part : parts) {
+        out.push_back(static_cast<double>(part) * volume / (front.cell * front.cell));
+      }
+      return out;
+    };
+    front.swept = lengths(swept);
+    front.unseen = lengths(unseen);
   }
 
-  /// Adds a cube to the cells that its square covers.
-  void share(const Vec3& there, UnseenFront& front) const {
-    const double volume = 8 * half(0) * half(1) * half(2), area = front.cell * front.cell;
-    const double side = seen_.cube;
-    const auto overlap = [&](double middle, double least, std::uint32_t n) {
-      const double from = least + n * front.cell;
-      return std::max(0.0, std::min(from + front.cell, middle + 0.5 * side) -
-                               std::max(from, middle - 0.5 * side)) /
-             side;
-    };
-    const auto first = [&](double middle, double least) {
-      return static_cast<std::uint32_t>(
-          std::max(0.0, std::floor((middle - 0.5 * side - least) / front.cell)));
-    };
-    const std::uint32_t left = first(there.y, front.left), up = first(there.z, front.up);
-    // A square is at most as wide as a cell, so that it covers two of them.
-    for (std::uint32_t row = up; row < std::min(up + 3, front.rows); ++row) {
-      for (std::uint32_t column = left; column < std::min(left + 3, front.columns); ++column) {
-        front.length[std::size_t{row} * front.columns + column] +=
-            volume / area * overlap(there.y, front.left, column) * overlap(there.z, front.up, row);
-      }
+  /// Calls visit(left, up, parts) for the cells that are seen along the model's forward axis.
+  template <typename Visit>
+  void each_front_cell(const SweptCells& cells, const Visit& visit) const {
+    const int ahead = line_of(options_.forward), up = line_of(options_.up);
+    const bool up_is_last = up == 2 || (up == 1 && ahead == 2);
+    const bool turns_up = is_negative(options_.up);
+    const bool turns_left = is_negative(axis_to_left({options_.forward, options_.up}));
+    // Cell i reaches from i to i + 1, so that turned round it is cell -1 - i.
+    const auto turned_round = [](bool turns, std::int32_t i) { return turns ? -1 - i : i; };
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const auto& [axis, a, b] = cells.cell[i];
+      if (axis != ahead) continue;
+      visit(turned_round(turns_left, up_is_last ? a : b),
+            turned_round(turns_up, up_is_last ? b : a), cells.parts[i]);
     }
   }
 
@@ -334,11 +345,8 @@ class GroupSearch {
     }
   }
 
-  double radius() const {
-    return header_.budget ? header_.budget->near_radius(header_.radius) : header_.radius;
-  }
-
   static constexpr std::uint32_t kNotListed = 0xFFFFFFFF;
+  static constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
 
   const Result& result_;
   const ResultHeader& header_;

@@ -1,7 +1,6 @@
 #include "findings/unseen_lattice.hpp"
 
 #include <cmath>
-#include <cstddef>
 
 namespace clearway {
 
@@ -24,13 +23,7 @@ CubeLattice lattice_of_unseen(const ResultHeader& header, const SeenSummary& see
 
 Vec3 middle_of_cube(const CubeLattice& lattice, const Quantisation& quantisation,
                     const std::array<std::int32_t, 3>& cube) {
-  Vec3 out{};
-  for (int k = 0; k < 3; ++k) {
-    const auto side = static_cast<double>(lattice.side[k]);
-    const double q = side * cube[static_cast<std::size_t>(k)] + 0.5 * side;
-    out[k] = q * quantisation.scale[k] + quantisation.offset[k];
-  }
-  return out;
+  return middle_of(lattice, quantisation, Cube{{cube[0], cube[1], cube[2]}});
 }
 
 }  // namespace clearway

@@ -490,9 +490,11 @@ void write_seen(JsonText& json, const ReportFacts& facts) {
   const UnseenFront& front = unseen.front;
   json.end(']').key("front").begin('{').field("cell", front.cell);
   json.field("columns", std::uint64_t{front.columns}).field("rows", std::uint64_t{front.rows});
-  json.field("left", front.left).field("up", front.up).field("way", front.way);
-  json.key("length").begin('[');
-  for (const double length : front.length) json.value(length);
+  json.field("left", front.left).field("up", front.up);
+  json.key("swept").begin('[');
+  for (const double length : front.swept) json.value(length);
+  json.end(']').key("unseen").begin('[');
+  for (const double length : front.unseen) json.value(length);
   json.end(']').end('}').end('}');
 }
 

@@ -51,20 +51,29 @@ void warn_of_ignored(const PartSet& set, const MergeOptions& options, MergeRepor
   }
 }
 
-/// The cubes that the beams of no part saw.
-UnseenCubes unseen_of_all(const PartSet& set) {
-  UnseenCubes all;
+template <typename Rows>
+Rows rows_of(const ResultReader& part) {
+  Rows rows;
+  RowStream<Rows> stream(part);
+  for (Rows some; stream.read(some);) append_rows(some, rows);
+  return rows;
+}
+
+/// The cubes that the beams of no part saw, and the cells that all parts sweep alike.
+MergedSpace space_of_all(const PartSet& set) {
+  MergedSpace out;
+  UnseenCubes& all = out.unseen;
   bool first = true;
   for (const ResultReader& part : set.parts()) {
     const SeenSummary &own = *part.findings().seen, &other = *set.parts().front().findings().seen;
-    if (own.swept != other.swept || own.cube != other.cube) {
+    SweptCells swept = rows_of<SweptCells>(part);
+    if (own.swept != other.swept || own.cube != other.cube || (!first && swept != out.swept)) {
       throw InputError(part.name() + ": sweeps other cubes than " + set.parts().front().name());
     }
-    UnseenCubes rows;
-    RowStream<UnseenCubes> stream(part);
-    for (UnseenCubes some; stream.read(some);) append_rows(some, rows);
+    UnseenCubes rows = rows_of<UnseenCubes>(part);
     if (first) {
       all = std::move(rows);
+      out.swept = std::move(swept);
       first = false;
       continue;
     }
@@ -78,7 +87,7 @@ UnseenCubes unseen_of_all(const PartSet& set) {
     }
     all = std::move(both);
   }
-  return all;
+  return out;
 }
 
 /// Warns of groups of unseen cubes that are too small to be listed, which only the merge knows.
@@ -130,14 +139,15 @@ MergeReport merge(const std::vector<std::filesystem::path>& parts,
       report.certain = certain_points_in(set.parts(), progress);
       findings.certain = report.certain;
     }
-    std::optional<UnseenCubes> unseen;
+    std::optional<MergedSpace> space;
     if (set.header().seen) {
-      unseen = unseen_of_all(set);
+      check_merge_memory(set, options.memory_bytes);
+      space = space_of_all(set);
       SeenSummary& seen = findings.seen.emplace(*set.parts().front().findings().seen);
-      group_unseen(set.header(), *unseen, seen);
+      group_unseen(set.header(), space->unseen, seen);
       report.seen = seen;
     }
-    merge_parts(set, unseen, pending.partial(), options.memory_bytes, findings, progress, report);
+    merge_parts(set, space, pending.partial(), options.memory_bytes, findings, progress, report);
     pending.publish();
     warn_of_ignored(set, options, report);
     warn_of_unseen(set, options, report);

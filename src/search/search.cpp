@@ -384,8 +384,11 @@ class Search {
       warn_of_small_groups(space.summary, query_, log_);
     }
     report_.seen = space.summary;
-    found.write_bytes -= std::min(found.write_bytes / 2, space.unseen.size() * kUnseenRowBytes);
+    const std::uint64_t rows =
+        space.unseen.size() * kUnseenRowBytes + space.swept.size() * kSweptRowBytes;
+    found.write_bytes -= std::min(found.write_bytes / 2, rows);
     found.result.unseen = std::move(space.unseen);
+    found.result.swept = std::move(space.swept);
   }
 
   /// memory_bytes: what the search so far leaves.

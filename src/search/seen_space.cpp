@@ -1,6 +1,8 @@
 #include "search/seen_space.hpp"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/spin_mutex.h>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +16,7 @@
 #include <vector>
 
 #include "clearway/error.hpp"
+#include "core/geometry/inside.hpp"
 #include "core/query/body_numbers.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/seen/brick_cloud.hpp"
@@ -105,6 +108,39 @@ void sweep(const BrickCloud& cloud, const Query& query, std::uint64_t memory_byt
   };
   taken = collect_pages(cloud, query, memory_bytes, kind, nullptr, IgnoredPoints::Search::kOthers,
                         "swept space", collect, progress);
+}
+
+/// How much of the swept cubes lies in each cell of the cross-sections.
+SweptCells cross_sections_of(const BrickCloud& cloud, const SweptCubes& swept,
+                             const CubeLattice& lattice, const Quantisation& quantisation,
+                             double side, const Query& query, int threads, Progress& progress) {
+  CrossSections all(side);
+  tbb::spin_mutex mutex;
+  in_threads(threads, [&] {
+    const ParallelScope scope;
+    const auto add = piece_of(scope, [&](const tbb::blocked_range<std::size_t>& cells) {
+      throw_if_stopped(progress);
+      CrossSections some(side);
+      for (std::size_t cell = cells.begin(); cell < cells.end(); ++cell) {
+        const SweptBrick& brick = swept.bricks[cell];
+        std::size_t next = 0;
+        for (std::uint32_t word = 0; word < kBrickWords; ++word) {
+          for (std::uint64_t open = brick.words[word]; open != 0; open &= open - 1, ++next) {
+            const auto bit = static_cast<std::uint32_t>(std::countr_zero(open));
+            const Cube cube = cloud.bricks()[cell].cube(64 * word + bit);
+            some.add(pulled_back(query.poses[brick.first_poses[next]],
+                                 middle_of(lattice, quantisation, cube)));
+          }
+        }
+      }
+      const tbb::spin_mutex::scoped_lock lock(mutex);
+      all.add(some);
+    });
+    scope.begin();
+    constexpr std::size_t kBricksAtOnce = 256;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, swept.bricks.size(), kBricksAtOnce), add);
+  });
+  return all.cells();
 }
 
 /// What is known of a cell's beams before they are followed.
@@ -283,7 +319,6 @@ void check_seen_space(const StoreReader& store, const QueryParameters& query) {
 SeenSpace find_seen_space(const StoreReader& store, const Query& query, const SeenSearch& how,
                           Progress& progress) {
   check_seen_space(store, query);
-  const Stopwatch sweeping;
   const CubeLattice lattice = cube_lattice(store, query.seen_cube);
   const Query cubes = query_of_cubes(query, how.radius);
   SeenSpace space;
@@ -297,6 +332,8 @@ SeenSpace find_seen_space(const StoreReader& store, const Query& query, const Se
   sweep(cloud, cubes, how.memory_bytes - share, share, *how.kind(cloud, cubes), progress, swept,
         space.taken);
   space.summary.swept = swept.cubes;
+  space.swept = cross_sections_of(cloud, swept, lattice, store.quantisation(), space.summary.cube,
+                                  query, how.threads, progress);
   space.sweep_seconds = clock.seconds();
 
   std::vector<Brick> bricks;
@@ -309,8 +346,8 @@ SeenSpace find_seen_space(const StoreReader& store, const Query& query, const Se
     cell_of_brick.push_back(cell);
     words.insert(words.end(), brick.words.begin(), brick.words.end());
   }
-  std::uint64_t bytes =
-      cloud.allocated_bytes() + swept.bytes() + BrickMap::bytes_for(bricks.size());
+  std::uint64_t bytes = cloud.allocated_bytes() + swept.bytes() +
+                        space.swept.size() * kSweptRowBytes + BrickMap::bytes_for(bricks.size());
   if (bytes > how.memory_bytes) refuse_more(bytes, how.memory_bytes);
   BrickMap map(lattice, std::move(bricks), std::move(words));
   const Stopwatch following;

@@ -10,6 +10,7 @@
 #include "clearway/seen.hpp"
 #include "core/query/search_result.hpp"
 #include "core/seen/beams.hpp"
+#include "core/seen/cross_sections.hpp"
 #include "core/seen/cubes.hpp"
 #include "core/util/messages.hpp"
 #include "core/util/progress.hpp"
@@ -23,6 +24,7 @@ namespace clearway {
 /// The space that a query sweeps, as far as it is known.
 struct SeenSpace {
   UnseenCubes unseen;
+  SweptCells swept;  ///< how much of the swept cubes lies in each cell of the cross-sections
   SeenSummary summary;
   BeamCounts left_out;   ///< beams that were not followed
   CollectedPages taken;  ///< what the search for swept cubes took
@@ -39,6 +41,9 @@ void check_seen_space(const StoreReader& store, const QueryParameters& query);
 
 /// Bytes of a row of UnseenCubes.
 inline constexpr std::uint64_t kUnseenRowBytes = 5 * sizeof(std::uint32_t) + 2 * sizeof(double);
+
+/// Bytes of a row of SweptCells.
+inline constexpr std::uint64_t kSweptRowBytes = 3 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
 
 /// How a search for seen space is done.
 struct SeenSearch {

@@ -335,7 +335,7 @@ TableSummary write_tables(const StoreReader& store, const SearchResult& answer,
       header.clearance > 0 ? cells_of(store, answer.clearances) : SetCells();
   const SetCells near = answer.near ? cells_of(store, *answer.near) : SetCells();
   ResultWriter writer(path, header, collisions.entries, clearances.entries, near.entries,
-                      answer.unseen ? answer.unseen->size() : 0);
+                      answer.unseen ? answer.unseen->size() : 0, answer.swept.size());
   progress.begin("write", collisions.entries + clearances.entries + near.entries, "points");
   ResultWriting writing(store, answer, header, memory_bytes, writer, progress);
   writing.write_collisions(collisions, summary);
@@ -345,7 +345,10 @@ TableSummary write_tables(const StoreReader& store, const SearchResult& answer,
                   summary);
   }
   if (answer.near) writing.write_near(near, summary);
-  if (answer.unseen) writer.append(*answer.unseen);
+  if (answer.unseen) {
+    writer.append(*answer.unseen);
+    writer.append(answer.swept);
+  }
   writer.finish(findings);
   progress.end();
   return summary;

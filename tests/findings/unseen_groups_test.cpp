@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "clearway/clearway.hpp"
 #include "support/scenes.hpp"
@@ -107,49 +108,91 @@ std::vector<RoadBeam> behind_a_board() {
 }  // namespace
 
 TEST_CASE("the cross-section holds the volume of the unseen cubes where the model reaches them") {
-  for (const double side : {0.2, 0.1}) {
-    CAPTURE(side);
-    UnseenRoad road(behind_a_board());
-    if (side != 0.2) road.query.seen_cube = side;
-    const bool turned = side == 0.1;
-    if (turned) {  // a car that is turned on its way, so that cubes lie askew in its cross-section
-      for (Pose& pose : road.query.poses) {
-        const Vec3 at = pose.position();
-        pose = rotation({0, 0, 1}, 0.5, at);
-      }
+  const auto side = GENERATE(0.2, 0.1);
+  const bool turned = side == 0.1;  // on its way, so that cubes lie askew in its cross-section
+  // Along which axis the model is seen, and which two axes point left and up there.
+  struct View {
+    Axis forward, up;
+    int left_axis, left_sign, up_axis, up_sign;
+  };
+  const auto view = GENERATE(
+      View{Axis::kPlusX, Axis::kPlusZ, 1, 1, 2, 1}, View{Axis::kMinusX, Axis::kPlusZ, 1, -1, 2, 1},
+      View{Axis::kPlusY, Axis::kMinusZ, 0, 1, 2, -1}, View{Axis::kMinusZ, Axis::kPlusX, 1, 1, 0, 1},
+      View{Axis::kPlusZ, Axis::kMinusY, 0, -1, 1, -1});
+  CAPTURE(side, static_cast<int>(view.forward), static_cast<int>(view.up));
+  UnseenRoad road(behind_a_board());
+  if (side != 0.2) road.query.seen_cube = side;
+  if (turned) {
+    for (Pose& pose : road.query.poses) {
+      const Vec3 at = pose.position();
+      pose = rotation({0, 0, 1}, 0.5, at);
     }
-    const UnseenFront front = road.groups().front;
-    REQUIRE(front.cell == Approx(side));
-    REQUIRE(front.length.size() == std::size_t{front.columns} * front.rows);
-    const UnseenCubes cubes = road.cubes();
-    REQUIRE(cubes.size() > 100);
-    std::vector<double> expected(front.length.size());
-    const double c = turned ? std::cos(0.5) : 1, s = turned ? std::sin(0.5) : 0;
-    for (std::size_t i = 0; i < cubes.size(); ++i) {
-      const Vec3 from = UnseenRoad::middle(cubes.cube[i], side) -
-                        road.query.poses[cubes.first_pose[i]].position();
-      const double left = -s * from.x + c * from.y, up = from.z;
-      for (std::size_t cell = 0; cell < expected.size(); ++cell) {
-        const double y = front.left + static_cast<double>(cell % front.columns) * front.cell;
-        const double z = front.up + static_cast<double>(cell / front.columns) * front.cell;
-        const auto common = [&](double middle, double least) {
-          return std::max(0.0, std::min(middle + side / 2, least + front.cell) -
-                                   std::max(middle - side / 2, least));
-        };
-        // The cube is as long as it is wide and stands for its volume.
-        expected[cell] += common(left, y) * common(up, z) * side / (front.cell * front.cell);
-      }
-    }
-    double all = 0;
-    for (std::size_t cell = 0; cell < expected.size(); ++cell) {
-      CAPTURE(cell);
-      CHECK(front.length[cell] == Approx(expected[cell]).margin(1e-9));
-      all += front.length[cell];
-    }
-    CHECK(all * front.cell * front.cell ==
-          Approx(static_cast<double>(cubes.size()) * side * side * side));
-    if (!turned) CHECK(front.way == Approx(7 + 0.6 + 2 * 0.1));
   }
+  ConflictOptions options;
+  options.forward = view.forward;
+  options.up = view.up;
+  const UnseenFront front = road.groups(options).front;
+  REQUIRE(front.cell == Approx(side));
+  REQUIRE(front.unseen.size() == std::size_t{front.columns} * front.rows);
+  REQUIRE(front.swept.size() == front.unseen.size());
+  const UnseenCubes cubes = road.cubes();
+  REQUIRE(cubes.size() > 100);
+  std::vector<double> expected(front.unseen.size()), rounding(front.unseen.size());
+  const double c = turned ? std::cos(0.5) : 1, s = turned ? std::sin(0.5) : 0;
+  for (std::size_t i = 0; i < cubes.size(); ++i) {
+    const Vec3 from =
+        UnseenRoad::middle(cubes.cube[i], side) - road.query.poses[cubes.first_pose[i]].position();
+    const Vec3 there{c * from.x + s * from.y, -s * from.x + c * from.y, from.z};
+    const double left = view.left_sign * there[view.left_axis];
+    const double up = view.up_sign * there[view.up_axis];
+    for (std::size_t cell = 0; cell < expected.size(); ++cell) {
+      const double y = front.left + static_cast<double>(cell % front.columns) * front.cell;
+      const double z = front.up + static_cast<double>(cell / front.columns) * front.cell;
+      const auto common = [&](double middle, double least) {
+        return std::max(0.0, std::min(middle + side / 2, least + front.cell) -
+                                 std::max(middle - side / 2, least));
+      };
+      // The cube is as long as it is wide and stands for its volume.
+      const double part = common(left, y) * common(up, z) * side / (front.cell * front.cell);
+      expected[cell] += part;
+      if (part > 0) rounding[cell] += side / 64;  // half a step at each of the two axes
+    }
+  }
+  double all = 0, swept = 0;
+  for (std::size_t cell = 0; cell < expected.size(); ++cell) {
+    CAPTURE(cell);
+    CHECK(front.unseen[cell] == Approx(expected[cell]).margin(rounding[cell] + 1e-9));
+    CHECK(front.unseen[cell] <= front.swept[cell]);
+    all += front.unseen[cell];
+    swept += front.swept[cell];
+  }
+  const double volume = side * side * side / (front.cell * front.cell);
+  CHECK(all == Approx(static_cast<double>(cubes.size()) * volume));
+  const auto seen = Result(road.folder / "out.h5").answer().seen;
+  CHECK(swept == Approx(static_cast<double>(seen->swept) * volume));
+  CHECK(swept > all);
+}
+
+TEST_CASE("where no beam went, all that the cross-section sweeps is unseen") {
+  const std::vector<RoadBeam> nowhere{{{0, 50, 0}, {0, 51, 0}}};
+  UnseenRoad seen(behind_a_board()), blind(nowhere);
+  const UnseenFront some = seen.groups().front, all = blind.groups().front;
+  CHECK(all.swept == some.swept);
+  CHECK(all.unseen == all.swept);
+  CHECK(some.unseen != some.swept);
+  CHECK(std::pair(all.left, all.up) == std::pair(some.left, some.up));
+}
+
+TEST_CASE("a wide model has cells of several cubes, and their sums stay") {
+  UnseenRoad narrow(behind_a_board()), wide(behind_a_board());
+  for (const double y : {-3.1, 3.1}) wide.query.model.vertices.push_back({0, y, 0.1});
+  const UnseenFront front = wide.groups().front;
+  CHECK(front.cell == Approx(2 * 0.2));
+  CHECK(front.columns <= 24);
+  double swept = 0;
+  for (const double length : front.swept) swept += length;
+  const auto seen = Result(wide.folder / "out.h5").answer().seen;
+  CHECK(swept * front.cell * front.cell == Approx(static_cast<double>(seen->swept) * 0.008));
 }
 
 TEST_CASE("a hidden wedge is one group on its side, with its stretch of the path") {
@@ -193,7 +236,7 @@ TEST_CASE("a hidden wedge is one group on its side, with its stretch of the path
   CHECK(small.stretches.empty());
   CHECK(small.small_groups == 1);
   CHECK(small.small_cubes == cubes.size());
-  CHECK(small.front.length == found.front.length);
+  CHECK(small.front.unseen == found.front.unseen);
 }
 
 TEST_CASE("a group is behind a conflict where a colliding point is in it or touches it") {
@@ -259,5 +302,5 @@ TEST_CASE("a result without seen space has no groups, and another path is refuse
   road.query.seen = false;
   const UnseenGroups none = road.groups();
   CHECK(none.listed.empty());
-  CHECK(none.front.length.empty());
+  CHECK(none.front.swept.empty());
 }

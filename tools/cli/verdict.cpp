@@ -83,6 +83,14 @@ std::string ignored_clause(const Answer& answer) {
   return text + format_count(*answer.ignored_colliding) + " of which would collide";
 }
 
+/// " on 3.2 of 68.0 m", or " on 3.2 m of the path" where its length is not known. What would round
+/// to 0 is less than 0.1, because it is not nothing. Empty for a path that stands still.
+std::string part_of_path(double part, double path, const std::string& unit) {
+  const std::string length = part < 0.05 ? "less than 0.1" : fmt::format("{:.1f}", part);
+  if (path > 0) return fmt::format(" on {} of {:.1f} {}", length, path, unit);
+  return part > 0 ? " on " + length + " " + unit + " of the path" : "";
+}
+
 /// A clause about seen space, such as "; not scanned on 3.2 of 68 m"; empty where it was not asked
 /// for, and for a shard, whose beams are only some.
 std::string seen_clause(const Answer& answer, const PathWords& path, const std::string& unit) {
@@ -90,11 +98,15 @@ std::string seen_clause(const Answer& answer, const PathWords& path, const std::
   const SeenSummary& seen = *answer.seen;
   const double length = path.chainage.empty() ? 0 : path.chainage.back();
   if (seen.listed_groups > 0) {
+    const std::uint64_t small = seen.groups - seen.listed_groups;
+    const std::string others =
+        small == 0 ? ""
+                   : fmt::format(" and {} of fewer than {} cubes", counted(small, "group"),
+                                 answer.parameters.seen_min);
     return fmt::format(
-        "; not scanned on {:.1f} of {:.1f} {}: no beam passed through {} of {} cubes "
-        "that the model sweeps, in {}",
-        seen.not_scanned_length, length, unit, format_count(seen.unseen), format_count(seen.swept),
-        counted(seen.listed_groups, "place"));
+        "; not scanned{}: no beam passed through {} of {} cubes that the model sweeps, in {}{}",
+        part_of_path(seen.not_scanned_length, length, unit), format_count(seen.unseen),
+        format_count(seen.swept), counted(seen.listed_groups, "place"), others);
   }
   if (seen.unseen > 0) {
     return fmt::format(

@@ -15,6 +15,7 @@
 #include "clearway/query.hpp"
 #include "clearway/seen.hpp"
 #include "core/query/body_numbers.hpp"
+#include "core/seen/cross_sections.hpp"
 #include "core/util/zeroed_array.hpp"
 
 namespace clearway {
@@ -253,6 +254,7 @@ struct SearchResult {
   std::uint64_t ignored_points = 0;
   /// Set after a search for seen space, if that was asked for
   std::optional<UnseenCubes> unseen = {};
+  SweptCells swept = {};  ///< of the same search
   /// Set after a search for them, if first poses were asked for
   std::optional<LastPoses> last_poses = {};
   /// With an error budget: the points that do not collide but are closer than the margin plus it,

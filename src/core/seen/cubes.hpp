@@ -40,6 +40,18 @@ struct Cube {
   }
 };
 
+/// The middle of a cube, which by definition is fl(fl((side * i + side / 2) * scale) + offset).
+CLEARWAY_HD inline Vec3 middle_of(const CubeLattice& lattice, const Quantisation& quantisation,
+                                  const Cube& cube) {
+  Vec3 out{};
+  for (int k = 0; k < 3; ++k) {
+    const double q = static_cast<double>(lattice.side[k] * cube.i[k]) +
+                     0.5 * static_cast<double>(lattice.side[k]);
+    out[k] = rounded_sum(rounded_product(q, quantisation.scale[k]), quantisation.offset[k]);
+  }
+  return out;
+}
+
 /// A beam from the scanner to the point that it measured, quanta of the store.
 struct Beam {
   std::int64_t origin[3];

@@ -37,11 +37,19 @@ void check_table(const ResultReader& result, Progress& progress) {
   }
 }
 
+/// Reads a table that has no points, which checks its values and hashes.
+template <typename Rows>
+void check_hashes_of(const ResultReader& result, Progress& progress) {
+  RowStream<Rows> stream(result);
+  for (Rows rows; stream.read(rows);) progress.advance(rows.size());
+}
+
 }  // namespace
 
 std::optional<std::string> verify_result(const ResultReader& result, Progress& progress) {
   progress.begin("verify",
-                 result.collisions() + result.clearances() + result.profile_rows() + result.near(),
+                 result.collisions() + result.clearances() + result.profile_rows() + result.near() +
+                     result.rows<UnseenCubes>() + result.rows<SweptCells>(),
                  "rows");
   std::optional<std::string> fault;
   try {
@@ -49,8 +57,8 @@ std::optional<std::string> verify_result(const ResultReader& result, Progress& p
     check_table<Clearances>(result, progress);
     check_table<ProfileRows>(result, progress);
     check_table<Nearby>(result, progress);
-    RowStream<UnseenCubes> unseen(result);
-    for (UnseenCubes rows; unseen.read(rows);) progress.advance(rows.size());
+    check_hashes_of<UnseenCubes>(result, progress);
+    check_hashes_of<SweptCells>(result, progress);
   } catch (const InputError& error) {
     fault = error.what();
   }

@@ -133,8 +133,9 @@ class EncodedRows {
   std::uint64_t last_source() const { return last_source_; }
 
  private:
-  static constexpr bool kHasSources =
-      !std::is_same_v<Rows, ProfileRows> && !std::is_same_v<Rows, UnseenCubes>;
+  static constexpr bool kHasSources = !std::is_same_v<Rows, ProfileRows> &&
+                                      !std::is_same_v<Rows, UnseenCubes> &&
+                                      !std::is_same_v<Rows, SweptCells>;
 
   void check_ascending(std::span<const std::uint64_t> sources) {
     for (std::size_t i = 0; i < sources.size(); ++i) {

@@ -247,13 +247,17 @@ std::uint64_t cached_bytes(const ResultReader& part) {
 std::uint64_t needed_bytes(const PartSet& set, std::size_t batch_rows) {
   std::uint64_t bytes = kFixedBytes + 4 * batch_rows * row_bytes<ProfileRows>();
   const std::uint64_t point_bytes = std::max(row_bytes<Collisions>(), row_bytes<Clearances>());
+  std::uint64_t space_bytes = 0;
   for (const ResultReader& part : set.parts()) {
     const std::uint64_t rows = std::max({part.collisions(), part.clearances(), part.near()});
     bytes += kFileBytes + cached_bytes<Collisions>(part) + cached_bytes<Clearances>(part) +
              cached_bytes<ProfileRows>(part) + cached_bytes<Nearby>(part) +
              std::min<std::uint64_t>(batch_rows, rows) * point_bytes;
+    space_bytes = std::max(space_bytes, part.rows<UnseenCubes>() * row_bytes<UnseenCubes>() +
+                                            part.rows<SweptCells>() * row_bytes<SweptCells>());
   }
-  return bytes;
+  // The cubes of all parts so far, those of one more, and what both have in common.
+  return bytes + 3 * space_bytes;
 }
 
 /// Number of rows of each part that merging holds at once, a power of two, chosen so that it takes
@@ -301,17 +305,17 @@ void for_each_row(const PartSet& set, std::deque<Cursor>& cursors, Visit visit) 
 
 class PartMerge {
  public:
-  PartMerge(const PartSet& set, const std::optional<UnseenCubes>& unseen,
+  PartMerge(const PartSet& set, const std::optional<MergedSpace>& space,
             const std::filesystem::path& path, std::size_t batch_rows,
             const ResultFindings& findings, Progress& progress, TableSummary& summary)
       : set_(set),
-        unseen_(unseen),
+        space_(space),
         findings_(findings),
         batch_rows_(batch_rows),
         progress_(progress),
         summary_(summary),
         writer_(path, set.header(), set.collisions(), set.clearances(), set.near(),
-                unseen ? unseen->size() : 0) {}
+                space ? space->unseen.size() : 0, space ? space->swept.size() : 0) {}
 
   void run() {
     summary_ = {};
@@ -320,7 +324,10 @@ class PartMerge {
     if (Table<Clearances>::is_in(set_.header())) merge_points<Clearances>();
     if (Table<ProfileRows>::is_in(set_.header())) merge_profile();
     if (Table<Nearby>::is_in(set_.header())) merge_points<Nearby>();
-    if (unseen_) writer_.append(*unseen_);
+    if (space_) {
+      writer_.append(space_->unseen);
+      writer_.append(space_->swept);
+    }
     writer_.finish(findings_);
     progress_.end();
   }
@@ -384,7 +391,7 @@ class PartMerge {
   }
 
   const PartSet& set_;
-  const std::optional<UnseenCubes>& unseen_;
+  const std::optional<MergedSpace>& space_;
   const ResultFindings& findings_;
   const std::size_t batch_rows_;
   Progress& progress_;
@@ -394,10 +401,14 @@ class PartMerge {
 
 }  // namespace
 
-void merge_parts(const PartSet& set, const std::optional<UnseenCubes>& unseen,
+void check_merge_memory(const PartSet& set, std::uint64_t memory_bytes) {
+  batch_rows_of(set, memory_bytes);
+}
+
+void merge_parts(const PartSet& set, const std::optional<MergedSpace>& space,
                  const std::filesystem::path& path, std::uint64_t memory_bytes,
                  const ResultFindings& findings, Progress& progress, TableSummary& summary) {
-  PartMerge(set, unseen, path, batch_rows_of(set, memory_bytes), findings, progress, summary).run();
+  PartMerge(set, space, path, batch_rows_of(set, memory_bytes), findings, progress, summary).run();
 }
 
 }  // namespace clearway

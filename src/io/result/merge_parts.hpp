@@ -38,12 +38,21 @@ class PartSet {
   ResultHeader header_;
 };
 
+/// What all parts together know of seen space.
+struct MergedSpace {
+  UnseenCubes unseen;  ///< the cubes that the beams of no part saw
+  SweptCells swept;    ///< the same in all parts, because each sweeps the whole query
+};
+
+/// Throws ResourceError where merging takes more memory than this.
+void check_merge_memory(const PartSet& set, std::uint64_t memory_bytes);
+
 /// Writes the result of all parts to `path`, with a few rows of each part in memory, and sets
-/// `summary` to what its tables say in short. unseen: the cubes that the beams of no part saw,
-/// where seen space is asked for. findings: those of the whole result. Every row is read once and
-/// checked against its part's hash. Throws InputError for damaged parts and for a point that is in
-/// two of them, ResourceError for a full disk or too little memory, and Interrupted.
-void merge_parts(const PartSet& set, const std::optional<UnseenCubes>& unseen,
+/// `summary` to what its tables say in short. space: only where seen space is asked for. findings:
+/// those of the whole result. Every row is read once and checked against its part's hash. Throws
+/// InputError for damaged parts and for a point that is in two of them, ResourceError for a full
+/// disk or too little memory, and Interrupted.
+void merge_parts(const PartSet& set, const std::optional<MergedSpace>& space,
                  const std::filesystem::path& path, std::uint64_t memory_bytes,
                  const ResultFindings& findings, Progress& progress, TableSummary& summary);
 

@@ -17,25 +17,25 @@ namespace clearway {
 
 /// Writes the datasets that docs/design/result-format.md lists and the header asks for to a file of
 /// its own, which the caller publishes. Its bytes depend on header and rows alone. Collisions come
-/// first, then clearances, then the profile, then near points, then unseen cubes. append() and
-/// write() throw std::logic_error for rows out of this order, for a table that the header does not
-/// ask for, for more rows than promised, for sources that do not ascend (except in the profile) and
-/// for columns of unequal lengths, where a column that the header does not ask for must be empty. A
-/// failing disk throws ResourceError.
+/// first, then clearances, then the profile, then near points, then unseen cubes, then
+/// swept cells. append() and write() throw std::logic_error for rows out of this order, for a table
+/// that the header does not ask for, for more rows than promised, for sources that do not ascend
+/// (except in the profile) and for columns of unequal lengths, where a column that the header does
+/// not ask for must be empty. A failing disk throws ResourceError.
 ///
 /// Instead of appending rows, threads may encode them kEncodedRows at a time; only the last rows of
 /// a table may be fewer. The encoded rows are then hashed in order and written in order. One thread
 /// at a time may hash and one at a time may write; the two may differ.
 ///
-/// `Rows` is Collisions, Clearances, ProfileRows, Nearby or UnseenCubes.
+/// `Rows` is Collisions, Clearances, ProfileRows, Nearby, UnseenCubes or SweptCells.
 class ResultWriter {
  public:
-  /// Creates the file at `path`. collisions, clearances, near, unseen: number of rows that will be
-  /// written.
+  /// Creates the file at `path`. collisions, clearances, near, unseen, swept: number of rows that
+  /// will be written.
   /// The profile has one row per pose.
   ResultWriter(const std::filesystem::path& path, const ResultHeader& header,
                std::uint64_t collisions, std::uint64_t clearances = 0, std::uint64_t near = 0,
-               std::uint64_t unseen = 0);
+               std::uint64_t unseen = 0, std::uint64_t swept = 0);
   ~ResultWriter();
 
   /// Appends any number of rows.
@@ -69,7 +69,7 @@ enum class Parts { kRefused, kAccepted };
 /// header().poses, bodies below their number, and distances at most what was asked for and below 0
 /// only for models with solids.
 ///
-/// `Rows` is Collisions, Clearances, ProfileRows, Nearby or UnseenCubes.
+/// `Rows` is Collisions, Clearances, ProfileRows, Nearby, UnseenCubes or SweptCells.
 class ResultReader {
  public:
   explicit ResultReader(const std::filesystem::path& path, Parts parts = Parts::kRefused);

@@ -34,7 +34,11 @@ inline constexpr const char* kUnseenGroup = "unseen";  // exists where seen spac
 inline constexpr const char* kUnseenHash = "unseen_hash";
 inline constexpr const char* kCube = "cube";
 inline constexpr const char* kGroupOfCube = "group";
-inline constexpr const char* kStep = "step";  // only in parts
+inline constexpr const char* kStep = "step";         // only in parts
+inline constexpr const char* kSweptGroup = "swept";  // exists where kUnseenGroup does
+inline constexpr const char* kSweptHash = "swept_hash";
+inline constexpr const char* kCell = "cell";
+inline constexpr const char* kParts = "parts";
 // Attributes with what is known of seen space.
 inline constexpr const char* kCubeSide = "unseen_cube_side";
 inline constexpr const char* kSweptCubes = "swept_cubes";

@@ -281,7 +281,8 @@ struct ResultReader::State {
                TableReader<Clearances>(file, name, header),
                TableReader<ProfileRows>(file, name, header),
                TableReader<Nearby>(file, name, header),
-               TableReader<UnseenCubes>(file, name, header)) {
+               TableReader<UnseenCubes>(file, name, header),
+               TableReader<SweptCells>(file, name, header)) {
     if (header.profile > 0 && table<ProfileRows>().rows() != header.poses) {
       throw InputError(name + ": /profile has " + std::to_string(table<ProfileRows>().rows()) +
                        " rows, expected one for each of " + std::to_string(header.poses) +
@@ -299,7 +300,7 @@ struct ResultReader::State {
   ResultHeader header;
   ResultFindings findings;
   std::tuple<TableReader<Collisions>, TableReader<Clearances>, TableReader<ProfileRows>,
-             TableReader<Nearby>, TableReader<UnseenCubes>>
+             TableReader<Nearby>, TableReader<UnseenCubes>, TableReader<SweptCells>>
       tables;
 };
 
@@ -357,6 +358,7 @@ template std::uint64_t ResultReader::rows<Clearances>() const;
 template std::uint64_t ResultReader::rows<ProfileRows>() const;
 template std::uint64_t ResultReader::rows<Nearby>() const;
 template std::uint64_t ResultReader::rows<UnseenCubes>() const;
+template std::uint64_t ResultReader::rows<SweptCells>() const;
 template std::uint64_t ResultReader::recorded_hash<Collisions>() const;
 template void ResultReader::read(std::uint64_t, std::size_t, Collisions&,
                                  RowHashes<Collisions>*) const;
@@ -369,6 +371,9 @@ template void ResultReader::check_hashes<Nearby>(const RowHashes<Nearby>&) const
 template void ResultReader::read(std::uint64_t, std::size_t, UnseenCubes&,
                                  RowHashes<UnseenCubes>*) const;
 template void ResultReader::check_hashes<UnseenCubes>(const RowHashes<UnseenCubes>&) const;
+template void ResultReader::read(std::uint64_t, std::size_t, SweptCells&,
+                                 RowHashes<SweptCells>*) const;
+template void ResultReader::check_hashes<SweptCells>(const RowHashes<SweptCells>&) const;
 template void ResultReader::check_hashes<Collisions>(const RowHashes<Collisions>&) const;
 template void ResultReader::check_hashes<Clearances>(const RowHashes<Clearances>&) const;
 template void ResultReader::check_hashes<ProfileRows>(const RowHashes<ProfileRows>&) const;

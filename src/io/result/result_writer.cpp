@@ -199,7 +199,7 @@ ResultFindings without_doubts(ResultFindings findings) {
 
 struct ResultWriter::State {
   State(const std::filesystem::path& path, const ResultHeader& result, std::uint64_t collisions,
-        std::uint64_t clearances, std::uint64_t near, std::uint64_t unseen)
+        std::uint64_t clearances, std::uint64_t near, std::uint64_t unseen, std::uint64_t swept)
       : name(path.string()),
         header(result),
         is_empty(collisions == 0),
@@ -210,6 +210,7 @@ struct ResultWriter::State {
     begin<ProfileRows>(header.poses);
     begin<Nearby>(near);
     begin<UnseenCubes>(unseen);
+    begin<SweptCells>(swept);
     write_result_header(file, header);
     std::uint64_t bytes = 0;
     each([&](auto& table) { bytes += table.bytes(); });
@@ -272,15 +273,15 @@ struct ResultWriter::State {
   std::uint64_t synced = 0;  ///< bytes of the file that are on their way to the disk
   std::tuple<std::optional<TableWriter<Collisions>>, std::optional<TableWriter<Clearances>>,
              std::optional<TableWriter<ProfileRows>>, std::optional<TableWriter<Nearby>>,
-             std::optional<TableWriter<UnseenCubes>>>
+             std::optional<TableWriter<UnseenCubes>>, std::optional<TableWriter<SweptCells>>>
       tables;
 };
 
 ResultWriter::ResultWriter(const std::filesystem::path& path, const ResultHeader& header,
                            std::uint64_t collisions, std::uint64_t clearances, std::uint64_t near,
-                           std::uint64_t unseen)
+                           std::uint64_t unseen, std::uint64_t swept)
     : state_(hdf5::naming(path.string(), [&] {
-        return std::make_unique<State>(path, header, collisions, clearances, near, unseen);
+        return std::make_unique<State>(path, header, collisions, clearances, near, unseen, swept);
       })) {}
 
 ResultWriter::~ResultWriter() {
@@ -334,6 +335,7 @@ template void ResultWriter::append(const Clearances&);
 template void ResultWriter::append(const ProfileRows&);
 template void ResultWriter::append(const Nearby&);
 template void ResultWriter::append(const UnseenCubes&);
+template void ResultWriter::append(const SweptCells&);
 template EncodedRows<Collisions> ResultWriter::new_rows() const;
 template EncodedRows<Clearances> ResultWriter::new_rows() const;
 template EncodedRows<Nearby> ResultWriter::new_rows() const;

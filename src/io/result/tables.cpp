@@ -123,6 +123,27 @@ void check_groups(const RowsRead& read, const char* dataset,
   }
 }
 
+void check_cells(const RowsRead& read, const char* dataset,
+                 std::span<const std::array<std::int32_t, 3>> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i][0] < 0 || values[i][0] > 2) read.refuse_row(dataset, i, "an axis from 0 to 2");
+  }
+}
+
+void check_parts(const RowsRead& read, const char* dataset, std::span<const std::uint64_t> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] == 0) read.refuse_row(dataset, i, "1 part of a cube or more");
+  }
+}
+
+void Table<SweptCells>::check(const RowsRead& read, const Rows& rows) {
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (!may_follow(rows.cell[i - 1], rows.cell[i])) {
+      read.refuse_row(kOrderDataset, i, kExpectedOrder);
+    }
+  }
+}
+
 void Table<UnseenCubes>::check(const RowsRead& read, const Rows& rows) {
   for (std::size_t i = 1; i < rows.size(); ++i) {
     if (!may_follow(rows.cube[i - 1], rows.cube[i])) {

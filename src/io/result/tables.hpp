@@ -10,6 +10,7 @@
 
 #include "clearway/result.hpp"
 #include "clearway/vec3.hpp"
+#include "core/seen/cross_sections.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/result_header.hpp"
 #include "io/result/result_names.hpp"
@@ -68,6 +69,11 @@ void check_clearances(const RowsRead& read, const char* dataset, std::span<const
 void check_steps(const RowsRead& read, const char* dataset, std::span<const double>);
 /// Groups of unseen cubes: from 1 on, and 0 in parts.
 void check_groups(const RowsRead& read, const char* dataset, std::span<const std::uint32_t>);
+/// Cells of cross-sections along one of three axes.
+void check_cells(const RowsRead& read, const char* dataset,
+                 std::span<const std::array<std::int32_t, 3>>);
+/// Parts of cubes, 1 or more.
+void check_parts(const RowsRead& read, const char* dataset, std::span<const std::uint64_t>);
 void check_chainages(const RowsRead& read, const char* dataset, std::span<const double>);
 /// For values that only the check of whole rows can judge.
 template <typename T>
@@ -219,6 +225,30 @@ struct Table<UnseenCubes> {
   }
   static constexpr const char* kExpectedOrder = "a cube after the one of the row before";
   /// Throws InputError for cubes that do not ascend.
+  static void check(const RowsRead& read, const Rows& rows);
+};
+
+template <>
+struct Table<SweptCells> {
+  using Rows = SweptCells;
+  static constexpr const char* kGroup = result_names::kSweptGroup;
+  static constexpr const char* kHash = result_names::kSweptHash;
+  static bool is_in(const ResultHeader& header) { return header.seen; }
+
+  static constexpr std::tuple kColumns{
+      Column<Rows, std::array<std::int32_t, 3>>{result_names::kCell, &Rows::cell, in_every_result,
+                                                check_cells},
+      Column<Rows, std::uint64_t>{result_names::kParts, &Rows::parts, in_every_result,
+                                  check_parts}};
+
+  static constexpr auto kOrder = &Rows::cell;
+  static constexpr const char* kOrderDataset = result_names::kCell;
+  static bool may_follow(const std::array<std::int32_t, 3>& before,
+                         const std::array<std::int32_t, 3>& after) {
+    return before < after;
+  }
+  static constexpr const char* kExpectedOrder = "a cell after the one of the row before";
+  /// Throws InputError for cells that do not ascend.
   static void check(const RowsRead& read, const Rows& rows);
 };
 

@@ -1,15 +1,22 @@
 // The vehicle's cross-section, seen along its path: how much was not scanned in each place of it.
 
+const kNotSwept = "#d1d5db";
 const kFrontMargin = { left: 62, right: 16, top: 30, bottom: 46 };
 
-/** Metres in a cell, in so few letters that they fit. */
-function cellWords(metresOfCell) {
-  if (metresOfCell < 0.05) return "";
-  return metresOfCell < 9.95 ? metresOfCell.toFixed(1) : count(metresOfCell);
+/** Cells that are swept on less than this share of the greatest length are drawn small. */
+const kLittleSwept = 0.1;
+
+/** What is unseen of what is swept in a cell, from 0 to 1; null where nothing is swept. */
+const frontShare = (front, i) => front.swept[i] > 0 ? front.unseen[i] / front.swept[i] : null;
+
+/** A share in percent, so that neither nothing nor everything is said of a part. */
+function percentWords(share) {
+  const percent = Math.round(100 * share);
+  return String(percent === 0 && share > 0 ? "<1" : percent === 100 && share < 1 ? ">99" : percent);
 }
 
-/** From white to dark, so that grey says the same. share: of the greatest length. */
-const frontRgb = (share) => mix([238, 233, 250], [59, 7, 100], share);
+/** From white to dark, so that grey says the same. */
+const frontRgb = (share) => mix([255, 255, 255], [59, 7, 100], share);
 
 /** Draws the grid with its numbers and axes, and the outline of the vehicle over it. */
 function drawFront(canvas) {
@@ -18,20 +25,22 @@ function drawFront(canvas) {
   const pixels = Math.min((width - (marginLeft + right) * scale) / front.columns,
                           (canvas.height - (top + bottom) * scale) / front.rows);
   const x0 = (width - pixels * front.columns + (marginLeft - right) * scale) / 2, y0 = top * scale;
-  const most = Math.max(...front.length);
+  const most = Math.max(...front.swept);
   context.fillStyle = "#fff";
   context.fillRect(0, 0, width, canvas.height);
-  context.fillStyle = kBackground;
+  context.fillStyle = kNotSwept;
   context.fillRect(x0, y0, pixels * front.columns, pixels * front.rows);
-  front.length.forEach((length, i) => {
-    if (length < 0.001) return;  // of what the rounding of a cube's border leaves
+  front.swept.forEach((swept, i) => {
+    const share = frontShare(front, i);
+    if (share === null) return;
     const column = i % front.columns, row = Math.floor(i / front.columns);
     const x = x0 + (front.columns - 1 - column) * pixels, y = y0 + (front.rows - 1 - row) * pixels;
-    const share = length / most;
+    const small = swept < kLittleSwept * most, inset = small ? 0.3 * pixels : 0;
     context.fillStyle = `rgb(${frontRgb(share).map(Math.round).join(",")})`;
-    context.fillRect(x, y, pixels + 0.5, pixels + 0.5);
-    const words = cellWords(length);
-    if (!words) return;
+    context.fillRect(x + inset, y + inset, pixels - 2 * inset + (small ? 0 : 0.5),
+                     pixels - 2 * inset + (small ? 0 : 0.5));
+    if (small || share === 0) return;
+    const words = percentWords(share);
     context.fillStyle = share > 0.45 ? "#fff" : "#111827";
     setFont(context, Math.min(0.44 * pixels, 1.5 * pixels / words.length), "600");
     context.textAlign = "center";
@@ -90,45 +99,48 @@ function drawFrontAxes(context, x0, y0, pixels, scale) {
   haloText(context, `height above the path (${unitSymbol})`, x0, y0 - 10 * scale, "left");
 }
 
-/** Five steps of the scale, with their lengths. */
+/** Five steps of the scale, with their shares. */
 function frontScale() {
-  const { front } = seenFacts(), most = Math.max(...front.length);
-  return make("div", { class: "scale", "aria-hidden": "true" }, [0.1, 0.25, 0.5, 0.75, 1].map((share) =>
+  return make("div", { class: "scale", "aria-hidden": "true" }, [0, 0.25, 0.5, 0.75, 1].map((share) =>
       make("span", { style: `background:rgb(${frontRgb(share).map(Math.round).join(",")});` +
                             `color:${share > 0.45 ? "#fff" : "#111827"}` },
-           `${+(most * share).toPrecision(2)} ${unitSymbol}`)));
+           `${100 * share} %`)));
 }
 
 /** Where most is unseen, for those who do not see the picture. */
 function frontWords() {
   const { front } = seenFacts();
-  const most = Math.max(...front.length), at = front.length.indexOf(most);
+  const most = Math.max(...front.unseen), at = front.unseen.indexOf(most);
+  if (!(most > 0)) return "Everything that the vehicle sweeps was scanned.";
   const y = front.left + (at % front.columns + 0.5) * front.cell;
   const z = front.up + (Math.floor(at / front.columns) + 0.5) * front.cell;
-  const half = (of) => front.length.reduce((sum, length, i) => sum + (of(i) ? length : 0), 0);
-  const all = half(() => true), columns = front.columns;
-  const left = half((i) => front.left + (i % columns + 0.5) * front.cell > 0);
+  const sum = (of) => front.unseen.reduce((all, length, i) => all + (of(i) ? length : 0), 0);
+  const all = sum(() => true), columns = front.columns;
+  const left = sum((i) => front.left + (i % columns + 0.5) * front.cell > 0);
   const share = (part) => `${Math.round(100 * part / all)} %`;
   return `Of all that was not scanned, ${share(left)} lies left of the path and ` +
       `${share(all - left)} right of it. Most is unseen ${metres(Math.abs(y), 2)} ` +
       `${y < 0 ? "right" : "left"} of the path and ${metres(Math.abs(z), 2)} ` +
-      `${z < 0 ? "below" : "above"} it: ${shortLength(+most.toPrecision(2))} of about ` +
-      `${shortLength(+front.way.toPrecision(3))} that this place sweeps.`;
+      `${z < 0 ? "below" : "above"} it: ${shortLength(+most.toPrecision(2))} of ` +
+      `${shortLength(+front.swept[at].toPrecision(2))} that the vehicle sweeps in this cell.`;
 }
 
 function buildFront() {
   const { front } = seenFacts();
+  if (!(front.columns > 0)) return;
   const canvas = make("canvas", { width: 1400, role: "img", id: "front-canvas", "aria-label":
       `The vehicle's cross-section, looking forward. ${frontWords()}` });
   const { left, right, top, bottom } = kFrontMargin, scale = canvas.width / 1000;
   const high = (canvas.width - (left + right) * scale) * front.rows / front.columns;
   canvas.height = Math.round(clamp(high + (top + bottom) * scale, 500, 1200));
+  const most = Math.max(...front.swept);
+  const little = front.swept.some((length) => length > 0 && length < kLittleSwept * most);
   byId("unseen-front").append(make("figure", {}, canvas,
       make("figcaption", {}, make("strong", {}, "The vehicle, seen from behind. "),
-           "A number says for how many metres nothing was scanned at this place of the cross-section, " +
-           `of about ${shortLength(+front.way.toPrecision(3))} that it sweeps (the path and the length of ` +
-           `the vehicle with the distance to keep before and behind it). Darker is more. A cell is ${shortLength(front.cell)} wide; cells without a ` +
-           `number are below 0.05 ${unitSymbol}. The line is the vehicle's outline. ${frontWords()}`)),
+           "A number says how many percent of the space that the vehicle sweeps at this place of its " +
+           "cross-section were not scanned. Darker is more, white is all scanned, and grey is not swept. " +
+           (little ? "Small squares are places that the vehicle sweeps on less than a tenth of the way. " : "") +
+           `A cell is ${shortLength(front.cell)} wide. The line is the vehicle's outline. ${frontWords()}`)),
       frontScale());
   drawFront(canvas);
 }

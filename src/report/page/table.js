@@ -257,8 +257,11 @@ function conflictsNote(found) {
         `far above it, along the ${whose}'s own axes.`;
   }
   if (found.list.some((c) => c.class)) {
-    text += " A conflict is certain where ten or more of its points that hang together are too close " +
-        `even with the errors (closer than ${shortLength(page.facts.query.radius - page.facts.margins.conflict)}); ` +
+    const sure = page.facts.query.radius - page.facts.margins.conflict;
+    text += sure <= 0 && !isSolid()
+        ? " No conflict is certain, because the errors exceed the margin; "
+        : " A conflict is certain where ten or more of its points that hang together are too close even with " +
+          `the errors (${sure < 0 ? `more than ${shortLength(-sure)} inside` : `closer than ${shortLength(sure)}`}); ` +
         "the others are possible.";
   }
   if (found.small_groups > 0) {

@@ -22,9 +22,12 @@ function selectGroup(group) {
   tell("group");
 }
 
-/** "3.2 of 68.0 m". */
-const notScannedWords = () => `${seenFacts().not_scanned_length.toFixed(1)} of ` +
-    `${page.facts.inputs.trajectory.length.toFixed(1)} ${unitSymbol}`;
+/** "3.2 of 68.0 m". What would round to 0 is less than 0.1, because it is not nothing. */
+function notScannedWords() {
+  const part = seenFacts().not_scanned_length;
+  return `${part < 0.05 ? "less than 0.1" : part.toFixed(1)} of ` +
+      `${page.facts.inputs.trajectory.length.toFixed(1)} ${unitSymbol}`;
+}
 
 /** On how much of the path nobody knows what is there; empty where that was not asked. */
 function scannedSentence() {
@@ -34,7 +37,8 @@ function scannedSentence() {
   if (seen.swept === 0) return "The vehicle sweeps no cube, so nothing is known of seen space.";
   if (isNotScanned()) {
     const largest = unseenGroups()[0];
-    return `Not scanned on ${notScannedWords()} of the path: no beam of the scanner passed through ` +
+    const where = page.facts.inputs.trajectory.length > 0 ? ` on ${notScannedWords()} of the path` : "";
+    return `Not scanned${where}: no beam of the scanner passed through ` +
         `${count(seen.unseen)} of the ${count(seen.swept)} ${cubes}, so anything may stand there. ` +
         `They lie in ${plural(seen.listed_groups, "place")}` + (seen.listed_groups > 1
             ? `, of which ${groupName(largest)} is the largest. ` : `, ${groupName(largest)}. `) +

@@ -57,7 +57,8 @@ function conflictTiles() {
 /** On how much of the path nobody knows what is there; nothing where that is none of it. */
 function scannedTiles() {
   if (!isNotScanned()) return [];
-  return [tile(notScannedWords(), "of the path not scanned",
+  return [tile(page.facts.inputs.trajectory.length > 0 ? notScannedWords() : plural(seenFacts().listed_groups, "place"),
+               page.facts.inputs.trajectory.length > 0 ? "of the path not scanned" : "not scanned",
                () => byId("unseen").scrollIntoView())];
 }
 
@@ -226,6 +227,43 @@ function basisOfVerdict() {
                                       make("ul", {}, texts.map((text) => make("li", {}, text))));
   return make("div", { class: "columns basis", id: "basis" },
               list("What this verdict rests on", rests), list("What it does not cover", open));
+}
+
+/** The error that adds most to the distance to keep, and what makes it smaller. */
+function largestError({ budget: b, query }) {
+  const measured = "a better measurement makes it smaller";
+  const all = [
+    [b.sigmas * b.scan, "the error of single points", measured],
+    [b.sigmas * b.registration, "the error of the registration", measured],
+    [b.sigmas * b.pose, "the error of the poses", measured],
+    [b.sigmas * b.angle * b.lever, "the error of the angles", measured],
+    [b.model, "the error of the model", "a better model makes it smaller"],
+    [b.motion + b.chord, "what lies between two poses",
+     query.between_poses ? "more poses make it smaller" : "--between-poses or more poses make it smaller"],
+    [b.spacing, "the spacing of the model's points", "--model-as surface searches the mesh as it is"],
+  ];
+  const [size, name, help] = all.reduce((most, one) => one[0] > most[0] ? one : most);
+  return size > 0 ? ` Of the errors, ${name} is the largest, with ${shortLength(+size.toPrecision(3))}: ${help}.` : "";
+}
+
+/** For each reason of an undecided verdict, where to look and what would decide it. */
+function whatDecides() {
+  const { facts } = page, possible = conflictList().filter(isPossible).length;
+  if (facts.verdict !== "undecided") return "";
+  const where = possible > 0
+      ? `the ${plural(possible, "possible conflict")} in the table below` : "the points in plan and 3-D view";
+  const words = {
+    "near": () => `Points are near: look at ${where}, or make the errors smaller.${largestError(facts)}`,
+    "few": () => "Points are certainly too close, but no ten of them hang together: look whether they are " +
+        "noise, or scan the place more densely.",
+    "errors-exceed-margin": () => "The errors exceed the margin, so that a surface can be near but never a certain " +
+        "conflict: make the errors smaller, or search a closed mesh with --model-as solid.",
+    "not-scanned": () => `Places were not scanned: see ${groupName(unseenGroups()[0])}` +
+        `${unseenGroups().length > 1 ? " and others" : ""} below, each with what to do about it.`,
+    "question-in-doubt": () => "The question is in doubt: mend what the warnings name, and run it again.",
+  };
+  return make("div", { class: "basis", id: "decides" }, make("h3", {}, "What would decide it"),
+              make("ul", {}, facts.reasons.map((reason) => make("li", {}, words[reason]()))));
 }
 
 /** The error budget as a table: what was given, what follows, and the two margins. */
@@ -439,6 +477,7 @@ function buildVerdict() {
          make("div", { class: "tiles" }, scannedTiles(), conflict ? conflictTiles() : clearTiles())),
     warned.length > 0 ? make("ul", { class: "warnings", "aria-label": "Warnings" },
                              warned.map((text) => make("li", {}, text))) : "",
+    whatDecides(),
     basisOfVerdict(),
     make("div", { class: "columns" }, facts.budget ? make("div", {}, questionTable(), budgetTable()) : questionTable(),
          make("div", {}, legend(),

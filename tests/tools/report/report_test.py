@@ -328,10 +328,11 @@ class ReportTest(PageChecks, unittest.TestCase):
         [group] = seen["list"]
         self.assertEqual([group["cubes"], group["shown"]], [seen["unseen"]] * 2)
         front = seen["front"]
-        self.assertEqual(len(front["length"]), front["columns"] * front["rows"])
-        self.assertAlmostEqual(sum(front["length"]) * front["cell"] ** 2,
-                               seen["unseen"] * seen["cube"] ** 3, 6)
-        right = sum(length for i, length in enumerate(front["length"])
+        for kind in ("swept", "unseen"):
+            self.assertEqual(len(front[kind]), front["columns"] * front["rows"])
+            self.assertAlmostEqual(sum(front[kind]) * front["cell"] ** 2,
+                                   seen[kind] * seen["cube"] ** 3, 6)
+        right = sum(length for i, length in enumerate(front["unseen"])
                     if front["left"] + (i % front["columns"] + 1) * front["cell"] <= -0.2)
         self.assertEqual(right, 0)  # the board stands on the left
         page = self.open(path)
@@ -340,6 +341,7 @@ class ReportTest(PageChecks, unittest.TestCase):
         words = f"{seen['not_scanned_length']:.1f} of 7.0 m"
         for sentence in (f"Not scanned on {words} of the path", "1 place, U1", words + "\n",
                          "from a file of origins", "wires, glass, mirrors",
+                         "What would decide it", "Places were not scanned: see U1 below",
                          "but parts of the way were not scanned, so that is no answer"):
             self.assertIn(sentence, text)
         self.assertEqual(page.run("page.unseen.count"), seen["unseen"])
@@ -356,9 +358,13 @@ class ReportTest(PageChecks, unittest.TestCase):
             drawFront(document.createElement('canvas'));
             CanvasRenderingContext2D.prototype.fillText = draw;
             return out; })()""")
-        for length in front["length"]:
-            if length >= 0.05:
-                self.assertIn(page.run(f"cellWords({length})"), drawn)
+        shares = [unseen / swept for swept, unseen in zip(front["swept"], front["unseen"])
+                  if swept >= 0.1 * max(front["swept"]) and unseen > 0]
+        self.assertGreater(len(shares), 3)
+        for share in shares:
+            self.assertIn(page.run(f"percentWords({share})"), drawn)
+        self.assertEqual([page.run(f"percentWords({share})") for share in
+                          (0, 0.001, 0.5, 0.999, 1)], ["0", "<1", "50", ">99", "100"])
         self.assertGreater(page.run(f"({BLANK})('#front-canvas')"), 20)
         page.run("document.querySelector('#unseen-table tbody tr').click()")
         self.assertEqual(page.run("[page.group.id, page.poses.index[page.pose]]"),
@@ -429,6 +435,23 @@ class ReportTest(PageChecks, unittest.TestCase):
             return [+r.getAttribute('y'), +r.getAttribute('height')]; })()""")
         self.assertAlmostEqual(band[0], page.run(f"profileY({radius + margins['clear']})"), 6)
         self.assertAlmostEqual(sum(band), page.run(f"profileY({radius - margins['conflict']})"), 6)
+        self.assertIsNone(page.run("byId('decides')"))  # a conflict is decided
+        self.check_quiet(page)
+
+    def test_an_undecided_page_says_what_would_decide_it(self):
+        result = self.hall.search("exceed", "--radius", 0.02, "--first-pose", "--between-poses",
+                                  "--error-scan", 0.002, "--error-registration", 0.03)
+        path, facts = self.hall.report(result, "exceed")
+        self.assertEqual([facts["verdict"], facts["reasons"]],
+                         ["undecided", ["near", "errors-exceed-margin"]])
+        page = self.open(path)
+        self.check_words(page, facts)
+        text = page.run("byId('decides').innerText")
+        for words in ("possible conflicts in the table below", "the error of the registration is the largest, with 0.09 m",
+                      "search a closed mesh with --model-as solid"):
+            self.assertIn(words, text)
+        self.assertIn("No conflict is certain, because the errors exceed the margin",
+                      page.run("byId('conflicts').innerText"))
         self.check_quiet(page)
 
     def test_street(self):
