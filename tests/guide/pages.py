@@ -38,6 +38,7 @@ SNIPPETS_ELSEWHERE = {
 
 # (page, beginning of the text): why it is not the output of the commands above it.
 SAMPLES = {
+    ("README.md", "2 conflicts of 6,128"): "of the demo, tools/demo.sh",
     ("docs/guide/results.md", "conflict: 1,204"): "of a trajectory with names and times",
 }
 
