@@ -19,13 +19,13 @@ struct NumberedPoint {
 };
 
 /// A cube of a regular grid.
-struct Cube {
+struct GridCube {
   std::int64_t x, y, z;
-  friend bool operator==(const Cube&, const Cube&) = default;
+  friend bool operator==(const GridCube&, const GridCube&) = default;
 };
 
-struct CubeHash {
-  std::size_t operator()(const Cube& c) const {
+struct GridCubeHash {
+  std::size_t operator()(const GridCube& c) const {
     std::uint64_t hash = 0;
     for (const std::int64_t one : {c.x, c.y, c.z}) {
       hash = (hash ^ static_cast<std::uint64_t>(one)) * 0x9e3779b97f4a7c15U;
@@ -41,11 +41,11 @@ class Places {
  public:
   explicit Places(double gap) : gap_(gap), edge_(std::max(gap, kShortestEdge)) {}
 
-  Cube cube_of(const Vec3& p) const { return {along(p.x), along(p.y), along(p.z)}; }
+  GridCube cube_of(const Vec3& p) const { return {along(p.x), along(p.y), along(p.z)}; }
 
   /// Marks the cubes around a place of b, so that the points of a there are kept.
   void want(const Vec3& p) {
-    each_beside(p, [&](const Cube& cube) { points_.try_emplace(cube); });
+    each_beside(p, [&](const GridCube& cube) { points_.try_emplace(cube); });
   }
   void add(const NumberedPoint& point) {
     const auto cube = points_.find(cube_of(point.xyz));
@@ -55,7 +55,7 @@ class Places {
   /// nothing where no point is.
   std::optional<std::uint32_t> near(const Vec3& p) const {
     std::optional<std::uint32_t> found;
-    each_beside(p, [&](const Cube& cube) {
+    each_beside(p, [&](const GridCube& cube) {
       const auto there = points_.find(cube);
       if (there == points_.end()) return;
       for (const NumberedPoint& other : there->second) {
@@ -71,15 +71,15 @@ class Places {
   std::int64_t along(double at) const { return static_cast<std::int64_t>(std::floor(at / edge_)); }
   template <typename Visit>
   void each_beside(const Vec3& p, Visit visit) const {
-    const Cube own = cube_of(p);
+    const GridCube own = cube_of(p);
     for (int i = 0; i < 27; ++i) {
-      visit(Cube{own.x + i % 3 - 1, own.y + i / 3 % 3 - 1, own.z + i / 9 - 1});
+      visit(GridCube{own.x + i % 3 - 1, own.y + i / 3 % 3 - 1, own.z + i / 9 - 1});
     }
   }
 
   static constexpr double kShortestEdge = 1e-3;  // so that the index of a cube fits its integers
   double gap_, edge_;
-  std::unordered_map<Cube, std::vector<NumberedPoint>, CubeHash> points_;
+  std::unordered_map<GridCube, std::vector<NumberedPoint>, GridCubeHash> points_;
 };
 
 /// Calls visit(point) for each row of a result.
