@@ -100,9 +100,11 @@ def points_of(las):
 
 
 def poses_of(path):
-    """Rotations and places of a file of 4 x 4 matrices."""
-    poses = np.loadtxt(path).reshape(-1, 4, 4)[:, :3]
-    return poses[:, :, :3], poses[:, :, 3]
+    """The table of a followed body: rotations, places, and the poses of the path."""
+    rows = rows_of(path)
+    turns = np.array([[[float(r[f"r{i}{j}"]) for j in range(3)] for i in range(3)] for r in rows])
+    places = np.array([[float(r[axis]) for axis in "xyz"] for r in rows])
+    return turns, places, np.array([int(r["path_pose"]) for r in rows])
 
 
 def distances_to_box(local):
@@ -198,16 +200,14 @@ def main():
         clearway("stations", "out.h5", "--vehicle", "wagon.json", "--trajectory", "line.csv",
                  "--every", EVERY, "-o", "stations.csv")
         clearway("trajectory", "follow", "line.csv", "--pivots", f"{HALF_PIVOTS},{-HALF_PIVOTS}",
-                 "-o", "wagon.txt")
+                 "-o", "wagon.csv")
         rows = rows_of(folder / "stations.csv")
         check_overthrow(rows)
-        turns, places = poses_of(folder / "wagon.txt")
+        turns, places, path_pose = poses_of(folder / "wagon.csv")
         path = np.array([[float(r[axis]) for axis in "xyz"] for r in rows_of(folder / "line.csv")])
         chainage = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
-        first = int(np.searchsorted(chainage, HALF_PIVOTS))  # the first pose that the wagon has
-        assert len(places) == len(path) - 2 * first, (len(places), len(path), first)
         found = brute_force(points_of(folder / "environment.las"), turns, places,
-                            chainage[first:first + len(places)])
+                            chainage[path_pose])
         check_distances(rows, found)
 
 

@@ -292,7 +292,8 @@ TEST_CASE("a cloud in feet has the same ground in metres") {
   }
 }
 
-TEST_CASE("no points, no ground; damaged cells are not passed over, others not read") {
+TEST_CASE(
+    "there is no ground without points, and damaged cells are refused only where they are read") {
   const std::vector<GroundPlace> places = places_along_x();
   CHECK(find_ground(MemoryCloud({}, kSteps), places, {.left = 0.9}).places.empty());
   const auto points = surface([](double, double) { return 5.0; });
