@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <utility>
 
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
@@ -10,6 +12,15 @@
 #include "io/scans/scan_crs.hpp"
 
 namespace clearway {
+
+std::vector<Pose> PosesAlong::hand_over(std::vector<Message>* told, PoseLabels* labels) {
+  if (labels != nullptr) *labels = {.station = std::move(stations)};
+  if (told != nullptr) {
+    told->insert(told->end(), std::make_move_iterator(remarks.begin()),
+                 std::make_move_iterator(remarks.end()));
+  }
+  return std::move(poses);
+}
 
 std::vector<double> even_stations(double from, double to, double step) {
   const double count = std::floor((to - from) / step) + 2;

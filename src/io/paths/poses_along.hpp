@@ -6,9 +6,21 @@
 #include <vector>
 
 #include "clearway/pose.hpp"
+#include "clearway/trajectory.hpp"
+#include "io/paths/remarks.hpp"
 
 /// What alignments and lines share when poses are made along them.
 namespace clearway {
+
+/// Poses that were made along an alignment or a line, and remarks on its file.
+struct PosesAlong : Remarks {
+  std::vector<Pose> poses;       ///< in the order of travel, metres
+  std::vector<double> stations;  ///< of each pose, metres; empty where the file has none
+
+  /// Moves the poses out, the remarks behind those of `told`, and the stations into `labels`; both
+  /// may be null.
+  std::vector<Pose> hand_over(std::vector<Message>* told, PoseLabels* labels);
+};
 
 /// Stations, as lengths, count as equal up to this many metres.
 inline constexpr double kSameStation = 1e-6;

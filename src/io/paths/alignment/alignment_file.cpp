@@ -235,13 +235,7 @@ AlignmentFile read_alignment_file(const std::filesystem::path& path,
 
 std::vector<Pose> read_alignment(const std::filesystem::path& path, const AlignmentOptions& options,
                                  std::vector<Message>* remarks, PoseLabels* labels) {
-  AlignmentFile found = read_alignment_file(path, options);
-  if (labels != nullptr) *labels = {.station = std::move(found.stations)};
-  if (remarks != nullptr) {
-    remarks->insert(remarks->end(), std::make_move_iterator(found.remarks.begin()),
-                    std::make_move_iterator(found.remarks.end()));
-  }
-  return std::move(found.poses);
+  return read_alignment_file(path, options).hand_over(remarks, labels);
 }
 
 }  // namespace clearway

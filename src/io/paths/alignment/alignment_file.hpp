@@ -6,14 +6,12 @@
 
 #include "clearway/alignment.hpp"
 #include "clearway/pose.hpp"
-#include "io/paths/remarks.hpp"
+#include "io/paths/poses_along.hpp"
 
 namespace clearway {
 
 /// The poses along an alignment and how its file was understood.
-struct AlignmentFile : Remarks {
-  std::vector<Pose> poses;         ///< in the order of travel, metres
-  std::vector<double> stations;    ///< the internal station of each pose, metres
+struct AlignmentFile : PosesAlong {
   std::string alignment, profile;  ///< names of what was read; profile is empty where there is none
   std::string unit;                ///< unit of the file, as LandXML names it
   double metres_per_unit = 1;

@@ -429,13 +429,7 @@ LineFile read_line_file(const std::filesystem::path& path, const LineOptions& gi
 
 std::vector<Pose> read_line(const std::filesystem::path& path, const LineOptions& options,
                             std::vector<Message>* remarks, PoseLabels* labels) {
-  LineFile found = read_line_file(path, options);
-  if (labels != nullptr) *labels = {.station = std::move(found.stations)};
-  if (remarks != nullptr) {
-    remarks->insert(remarks->end(), std::make_move_iterator(found.remarks.begin()),
-                    std::make_move_iterator(found.remarks.end()));
-  }
-  return std::move(found.poses);
+  return read_line_file(path, options).hand_over(remarks, labels);
 }
 
 }  // namespace clearway

@@ -8,7 +8,7 @@
 
 #include "clearway/line.hpp"
 #include "clearway/pose.hpp"
-#include "io/paths/remarks.hpp"
+#include "io/paths/poses_along.hpp"
 
 namespace clearway {
 
@@ -22,9 +22,7 @@ struct GroundFinding {
 };
 
 /// The poses along a line and how its file was understood.
-struct LineFile : Remarks {
-  std::vector<Pose> poses;              ///< in the order of travel, metres
-  std::vector<double> stations;         ///< of each pose, metres; empty where the file has none
+struct LineFile : PosesAlong {
   std::string format;                   ///< "csv" or "geojson"
   std::size_t vertices = 0;             ///< of the line, without those that are repeated
   std::size_t arcs = 0;                 ///< vertices that were rounded
