@@ -3,7 +3,7 @@
 # A page that is followed from top to bottom runs in one folder, which is empty or has the files that
 # stand_ins.py makes. Of any other page each block runs by itself, in a folder with these files.
 FOLLOWED_FROM_NOTHING = {"docs/guide/tutorial.md", "docs/guide/campaigns.md"}
-FOLLOWED = {"docs/guide/vehicles.md"}
+FOLLOWED = {"docs/guide/section.md", "docs/guide/vehicles.md"}
 
 # (page, beginning of the command): why the test does not run it.
 NOT_RUN = {
@@ -44,6 +44,7 @@ SAMPLES = {
 # (page, beginning of a snippet): the file that the page tells the reader to write.
 WRITTEN = {
     ("docs/guide/campaigns.md", "{"): "campaign.json",
+    ("docs/guide/section.md", "y,z"): "load.csv",
     ("docs/guide/vehicles.md", '{"bodies"'): "wagon.json",
 }
 

@@ -39,12 +39,13 @@ std::vector<Rows> rows_of_bands(const Section& section, const SectionHeights& he
   constexpr double kMostBands = 1e6;
   const double first = std::ceil((lattice.k_from * g - heights.base) / band - kSameBorder);
   const double end = std::floor((lattice.k_to * g - heights.base) / band + kSameBorder);
+  const UnitFactor times(band);  // of ten bands of 0.1 the sum is 1
   std::vector<Rows> rows;
   if (end - first > kMostBands) {
     throw UsageError("bands of height " + format_number(band) + "; expected at most a million");
   }
   for (double i = std::max(0.0, first); i < end; ++i) {
-    const double from = heights.base + i * band, to = heights.base + (i + 1) * band;
+    const double from = heights.base + times(i), to = heights.base + times(i + 1);
     rows.push_back({from, to, std::floor(from / g + kSameBorder), std::ceil(to / g - kSameBorder)});
   }
   if (rows.empty()) {
