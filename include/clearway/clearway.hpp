@@ -22,6 +22,7 @@
 #include "clearway/report.hpp"      // IWYU pragma: export
 #include "clearway/result.hpp"      // IWYU pragma: export
 #include "clearway/search.hpp"      // IWYU pragma: export
+#include "clearway/section.hpp"     // IWYU pragma: export
 #include "clearway/seen.hpp"        // IWYU pragma: export
 #include "clearway/shard.hpp"       // IWYU pragma: export
 #include "clearway/stations.hpp"    // IWYU pragma: export

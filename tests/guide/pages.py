@@ -3,7 +3,7 @@
 # A page that is followed from top to bottom runs in one folder, which is empty or has the files that
 # stand_ins.py makes. Of any other page each block runs by itself, in a folder with these files.
 FOLLOWED_FROM_NOTHING = {"docs/guide/tutorial.md", "docs/guide/campaigns.md"}
-FOLLOWED = {"docs/guide/vehicles.md"}
+FOLLOWED = {"docs/guide/section.md", "docs/guide/vehicles.md"}
 
 # (page, beginning of the command): why the test does not run it.
 NOT_RUN = {
@@ -47,6 +47,7 @@ WRITTEN = {
     ("docs/guide/campaigns.md", "{"): "campaign.json",
     ("docs/guide/vehicles.md", '{"bodies": [\n  {"name": "body"'): "wagon.json",
     ("docs/guide/vehicles.md", '{"bodies": [\n  {"name": "tractor"'): "road.json",
+    ("docs/guide/section.md", "y,z"): "load.csv",
 }
 
 # (page, beginning of the command): the exit code, where it is not 0.

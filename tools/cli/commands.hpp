@@ -22,6 +22,7 @@ void add_verify(CLI::App& program, int& exit_code);
 void add_model(CLI::App& program);
 void add_report(CLI::App& program);
 void add_scene(CLI::App& program);
+void add_section(CLI::App& program, int& exit_code);
 void add_trajectory(CLI::App& program);
 void add_campaign(CLI::App& program, int& exit_code);
 

@@ -19,6 +19,7 @@
 #include "io/result/answer.hpp"
 #include "io/result/journal.hpp"
 #include "io/result/result.hpp"
+#include "io/section/section_file.hpp"
 #include "io/store/file_kind.hpp"
 #include "io/store/inspect_points.hpp"
 #include "io/store/store_metadata.hpp"
@@ -75,6 +76,34 @@ ordered_json describe(const StoreReader& store) {
                            {"sources", sources_json(m)},
                            {"warnings", warnings_json(store_warnings(m))}};
   if (m.origins) description["origins"] = origins_json(*m.origins);
+  return description;
+}
+
+ordered_json describe(const SectionData& section) {
+  const SectionParameters& asked = section.parameters;
+  const SectionWindow& w = *asked.window;
+  ordered_json description{{"kind", "section"},
+                           {"x_range", {asked.rear, asked.front}},
+                           {"pivots", nullptr},
+                           {"window", {w.y_from, w.y_to, w.z_from, w.z_to}},
+                           {"cell", asked.cell},
+                           {"bin", asked.bin},
+                           {"margin", asked.margin},
+                           {"between_poses", asked.between_poses},
+                           {"blocked", section.cells().size()},
+                           {"bins", section.bins.size()},
+                           {"rounding", section.rounding},
+                           {"motion", nullptr},
+                           {"environment_points", section.environment_points},
+                           {"ignored_points", section.ignored_points},
+                           {"poses", section.poses},
+                           {"length_unit", section.length_unit},
+                           {"crs_wkt", section.crs_wkt},
+                           {"environment_hash", hash_text(section.environment_hash)},
+                           {"trajectory_hash", hash_text(section.trajectory_hash)},
+                           {"warnings", warnings_json(section.warnings)}};
+  if (asked.pivots) description["pivots"] = {asked.pivots->front, asked.pivots->rear};
+  if (section.motion) description["motion"] = *section.motion;
   return description;
 }
 
@@ -242,6 +271,8 @@ ordered_json describe(const std::filesystem::path& file) {
       return describe(JournalReader(file));
     case FileKind::kResult:
       return describe(ResultReader(file, Parts::kAccepted));
+    case FileKind::kSection:
+      return describe(read_section(file));
     case FileKind::kStore:
     case FileKind::kOtherHdf5:
       return describe(StoreReader(file));
@@ -321,7 +352,8 @@ void run_info(const InfoOptions& options) {
 void add_info(CLI::App& program) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* command = program.add_subcommand(
-      "info", "Print what is in a file: store, result, journal, scan, model or trajectory");
+      "info",
+      "Print what is in a file: store, result, section, journal, scan, model or trajectory");
   command->add_option("FILE", options->file, "Any file that Clearway reads or writes")
       ->type_name("FILE")
       ->required();

@@ -17,6 +17,8 @@ std::string use_of(FileKind kind, const std::filesystem::path& path) {
       return "; --env takes it";
     case FileKind::kResult:
       return "; clearway info and clearway export read it";
+    case FileKind::kSection:
+      return "; clearway section check and clearway section export read it";
     case FileKind::kJournal:
       return "; the run that it belongs to goes on with --resume";
     case FileKind::kTrajectory:
@@ -38,7 +40,8 @@ std::string use_of(FileKind kind, const std::filesystem::path& path) {
 }
 
 bool is_one_of_ours(FileKind kind) {
-  return kind == FileKind::kStore || kind == FileKind::kResult || kind == FileKind::kJournal;
+  return kind == FileKind::kStore || kind == FileKind::kResult || kind == FileKind::kSection ||
+         kind == FileKind::kJournal;
 }
 
 }  // namespace

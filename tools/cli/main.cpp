@@ -21,6 +21,7 @@ void add_commands(CLI::App& program, int& exit_code) {
   add_verify(program, exit_code);
   add_model(program);
   add_report(program);
+  add_section(program, exit_code);
   add_scene(program);
   add_trajectory(program);
   add_campaign(program, exit_code);

@@ -13,6 +13,7 @@
 #include "io/files/hdf5.hpp"
 #include "io/result/check_results.hpp"
 #include "io/result/journal.hpp"
+#include "io/section/section_file.hpp"
 #include "io/store/verify_store.hpp"
 #include "stream/search_journal.hpp"
 
@@ -51,6 +52,10 @@ Findings findings_of(const std::filesystem::path& file) {
         return {{*fault}};
       return {};
     }
+    if (hdf5::holds(file, "section")) {
+      read_section(file);
+      return {};
+    }
     return {verify_store(StoreReader(file), progress)};
   } catch (const InputError& fault) {
     return {{fault.what()}};
@@ -85,8 +90,8 @@ bool run_verify(const VerifyOptions& options) {
 void add_verify(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<VerifyOptions>();
   CLI::App* command = program.add_subcommand(
-      "verify", "Re-read and check everything in a store, a result or a journal");
-  command->add_option("FILE", options->file, "Store, result or journal")
+      "verify", "Re-read and check everything in a store, a result, a section or a journal");
+  command->add_option("FILE", options->file, "Store, result, section or journal")
       ->type_name("FILE")
       ->required();
   command->add_flag("--json", options->json, "Print one JSON object");
@@ -94,7 +99,7 @@ void add_verify(CLI::App& program, int& exit_code) {
       "Names every damaged cell (at most 20), or the first damaged record of a journal.\n"
       "A killed run can leave a torn tail: such a journal is sound, and the tail is named.\n"
       "Exit code 0: sound.\n"
-      "Exit code 1: damaged, or not a complete store or result.\n"
+      "Exit code 1: damaged, or not a complete store, result or section.\n"
       "Exit code 4: the file cannot be opened.\n"
       "Example: clearway verify site.h5");
   command->callback([options, &exit_code] { exit_code = run_verify(*options) ? 0 : 1; });

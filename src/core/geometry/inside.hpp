@@ -24,24 +24,40 @@ CLEARWAY_HD inline SolidTriangle transform(const Pose& pose, const SolidTriangle
   return transform(pose, static_cast<const Triangle&>(t));
 }
 
-/// Pulls e back: returns x with transform(pose, x) = e, up to roundings; not finite if the rotation
-/// has no inverse.
-CLEARWAY_HD inline Vec3 pulled_back(const Pose& pose, const Vec3& e) {
-  const double* const r = pose.rotation;
-  const auto minor = [r](int a, int b, int c, int d) {
-    return rounded_sum(rounded_product(r[a], r[b]), -rounded_product(r[c], r[d]));
-  };
-  const Vec3 rows[3] = {{minor(4, 8, 5, 7), minor(2, 7, 1, 8), minor(1, 5, 2, 4)},
-                        {minor(5, 6, 3, 8), minor(0, 8, 2, 6), minor(2, 3, 0, 5)},
-                        {minor(3, 7, 4, 6), minor(1, 6, 0, 7), minor(0, 4, 1, 3)}};
-  const Vec3 first_column{r[0], r[3], r[6]};
-  const double determinant = rounded_dot(rows[0], first_column);
-  const Vec3 from_origin = difference(e, pose.position());
-  Vec3 x;
-  for (int k = 0; k < 3; ++k) {
-    x[k] = rounded_quotient(rounded_dot(rows[k], from_origin), determinant);
+/// A pose as its inverse uses it, for many points: the cofactors of its rotation and its
+/// determinant.
+struct PullBack {
+  Vec3 rows[3];
+  double determinant;
+  Vec3 position;
+
+  PullBack() = default;
+  CLEARWAY_HD explicit PullBack(const Pose& pose) : position(pose.position()) {
+    const double* const r = pose.rotation;
+    const auto minor = [r](int a, int b, int c, int d) {
+      return rounded_sum(rounded_product(r[a], r[b]), -rounded_product(r[c], r[d]));
+    };
+    rows[0] = {minor(4, 8, 5, 7), minor(2, 7, 1, 8), minor(1, 5, 2, 4)};
+    rows[1] = {minor(5, 6, 3, 8), minor(0, 8, 2, 6), minor(2, 3, 0, 5)};
+    rows[2] = {minor(3, 7, 4, 6), minor(1, 6, 0, 7), minor(0, 4, 1, 3)};
+    determinant = rounded_dot(rows[0], {r[0], r[3], r[6]});
   }
-  return x;
+
+  /// Pulls e back: returns x with transform(pose, x) = e, up to roundings; not finite if the
+  /// rotation has no inverse.
+  CLEARWAY_HD Vec3 apply(const Vec3& e) const {
+    const Vec3 from_origin = difference(e, position);
+    Vec3 x;
+    for (int k = 0; k < 3; ++k) {
+      x[k] = rounded_quotient(rounded_dot(rows[k], from_origin), determinant);
+    }
+    return x;
+  }
+};
+
+/// Pulls e back by one pose, as PullBack does.
+CLEARWAY_HD inline Vec3 pulled_back(const Pose& pose, const Vec3& e) {
+  return PullBack(pose).apply(e);
 }
 
 /// Places as whole numbers: steps of a power of two from the corner of a box that holds all solids.

@@ -50,6 +50,30 @@ CLEARWAY_HD inline void lower_to(std::uint32_t* value, std::uint32_t to) {
 #endif
 }
 
+/// Lowers a value that other threads, of the host or of a device, lower at the same time. Returns
+/// the value before.
+CLEARWAY_HD inline std::uint32_t lower_shared(std::uint32_t* value, std::uint32_t to) {
+#ifdef __CUDA_ARCH__
+  return atomicMin(value, to);
+#else
+  const std::atomic_ref shared(*value);
+  std::uint32_t before = shared.load(std::memory_order_relaxed);
+  while (to < before && !shared.compare_exchange_weak(before, to, std::memory_order_relaxed)) {
+  }
+  return before;
+#endif
+}
+
+/// Reads a value that other threads, of the host or of a device, lower at the same time. It may be
+/// greater than what another thread has made it.
+CLEARWAY_HD inline std::uint32_t shared_value(const std::uint32_t* value) {
+#ifdef __CUDA_ARCH__
+  return *reinterpret_cast<const volatile std::uint32_t*>(value);
+#else
+  return std::atomic_ref(*const_cast<std::uint32_t*>(value)).load(std::memory_order_relaxed);
+#endif
+}
+
 /// Index of the lowest set bit, of which there must be one.
 CLEARWAY_HD inline std::uint32_t lowest_bit(std::uint64_t bits) {
 #ifdef __CUDA_ARCH__

@@ -24,6 +24,7 @@ constexpr std::size_t kLookedAt = 1 << 16;  ///< bytes that are examined
 FileDescription describe_hdf5(const std::filesystem::path& path) {
   try {
     if (hdf5::holds(path, "collisions")) return {FileKind::kResult, "a result"};
+    if (hdf5::holds(path, "section")) return {FileKind::kSection, "a section"};
     if (hdf5::holds(path, "cells")) return {FileKind::kStore, "a store"};
   } catch (const Error&) {
     // The file is damaged or from another program, which cannot be distinguished here.

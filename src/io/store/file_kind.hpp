@@ -11,6 +11,7 @@ enum class FileKind {
   kEmpty,
   kStore,
   kResult,
+  kSection,
   kOtherHdf5,
   kJournal,
   kPoints,      ///< a scan or a model, in a format recognised by its first bytes

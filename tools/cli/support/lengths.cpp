@@ -128,6 +128,22 @@ CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name,
       ->type_name("A,B");
 }
 
+CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name,
+                                std::optional<std::array<double, 4>>& lengths,
+                                const std::string& description) {
+  return command
+      .add_option_function<std::string>(
+          name,
+          [this, &lengths, name](const std::string& text) {
+            const auto parsed = parse_lengths<4>(
+                name, text, "four numbers of metres, for example -4,4,0,6, or with units");
+            lengths.emplace();
+            for (std::size_t k = 0; k < 4; ++k) set((*lengths)[k], parsed[k]);
+          },
+          description)
+      ->type_name("A,B,C,D");
+}
+
 void LengthOptions::set(double& length, const ParsedLength& parsed) {
   length = parsed.value;
   if (parsed.has_unit) with_unit_.emplace_back(&length, parsed);

@@ -67,6 +67,11 @@ class LengthOptions {
   CLI::Option* add(CLI::App& command, const std::string& name,
                    std::optional<std::array<double, 2>>& lengths, const std::string& description);
 
+  /// Adds an option for four lengths, which may be 0 or negative and need not be given. This object
+  /// and `lengths` outlive the command.
+  CLI::Option* add(CLI::App& command, const std::string& name,
+                   std::optional<std::array<double, 4>>& lengths, const std::string& description);
+
   /// Converts the lengths that were given with a unit into units of `metres` metres.
   void convert(double metres) const;
   /// Converts the lengths that were given with a unit into the unit of a store. Where the store

@@ -1,0 +1,188 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "clearway/box.hpp"
+#include "clearway/follow.hpp"
+#include "clearway/outline.hpp"
+#include "clearway/pose.hpp"
+#include "clearway/progress.hpp"
+#include "clearway/store.hpp"
+
+/// The section of a route: which cells of the cross-section are blocked for a load of a given
+/// length, from which pose on. It answers for every outline what is the largest load that passes.
+namespace clearway {
+
+/// The part of the cross-section that is looked at, in the frame of the load: y to the left, z up.
+struct SectionWindow {
+  double y_from = 0, y_to = 0, z_from = 0, z_to = 0;
+  friend bool operator==(const SectionWindow&, const SectionWindow&) = default;
+};
+
+/// What is asked of a route. Lengths are in the environment's unit.
+struct SectionParameters {
+  /// The load occupies x from rear to front in its own frame.
+  double rear = 0, front = 0;
+  /// The window of the cross-section; none: y from -4 to 4 m, z from 0 to 6 m.
+  std::optional<SectionWindow> window = {};
+  double cell = 0;  ///< side of a cell; 0: 0.02 m
+  double bin = 0;   ///< length of the stretches for which cells are told apart; 0: 5 m
+  /// The greatest distance that a later check may keep: points as far before the rear and behind
+  /// the front count too.
+  double margin = 0;
+  /// Whether the way from each pose to the next counts, too, by letting the load grow.
+  bool between_poses = false;
+  /// The places of the load that lie on the path, as for a body on pivots; none: the load has the
+  /// poses of the path.
+  std::optional<BodyPivots> pivots = {};
+  std::vector<std::uint8_t> ignore_classes = {};  ///< classes whose points are left out
+  std::vector<Box> ignore_boxes = {};             ///< closed boxes whose points are left out
+};
+
+/// How a section is found. The file's bytes depend on none of these options.
+struct SectionOptions {
+  int threads = 0;  ///< 0: all cores
+  std::uint64_t memory_bytes = std::uint64_t{4} << 30;
+  bool overwrite = false;
+  bool strict = false;  ///< any warning ends with InputError, and nothing is written
+  /// Warnings from reading the path, which the user has already seen. The section keeps them, and
+  /// `strict` counts them.
+  std::vector<Message> input_warnings = {};
+  ProgressCallback progress = nullptr;
+  MessageCallback message = nullptr;
+  StopFlag stop = nullptr;
+};
+
+/// What is known of a section besides its cells.
+struct SectionFacts {
+  SectionParameters parameters;          ///< with the defaults filled in
+  std::uint64_t environment_points = 0;  ///< points of the environment
+  std::uint64_t ignored_points = 0;      ///< points of it that were left out
+  std::uint64_t poses = 0;               ///< poses of the path
+  std::uint64_t load_poses = 0;          ///< poses of the load
+  /// Upper bound on the rounding of a place in the frame of the load.
+  double rounding = 0;
+  /// Between poses: how far the load moves along x, and across, from a pose to the next.
+  std::optional<std::array<double, 2>> motion = {};
+  std::vector<Message> warnings = {};
+  std::string crs_wkt = {};      ///< coordinate reference system of the environment, or empty
+  std::string length_unit = {};  ///< as Store::length_unit() names it
+};
+
+/// Cells that are blocked. A cell holds y from j to j + 1 and z from k to k + 1 cells.
+struct SectionCells {
+  std::vector<std::uint32_t> bin = {};  ///< number of the bin; empty for those of the whole path
+  std::vector<std::int32_t> j = {}, k = {};
+  std::vector<std::uint32_t> first_pose = {};  ///< the first pose of the path that blocks the cell
+
+  std::size_t size() const { return j.size(); }
+  friend bool operator==(const SectionCells&, const SectionCells&) = default;
+};
+
+/// A section as it is found and kept.
+struct SectionData : SectionFacts {
+  std::vector<double> chainage = {};     ///< of each pose of the path
+  std::vector<std::uint32_t> bins = {};  ///< numbers of the bins in which the load has a pose
+  SectionCells bin_cells = {};           ///< ascending by bin, k, j
+  /// Hashes of the points of the environment, in whatever store, and of the path.
+  std::uint64_t environment_hash = 0, trajectory_hash = 0;
+
+  /// The cells of the whole path, ascending by k, j.
+  SectionCells cells() const;
+};
+
+/// How a section was found.
+struct SectionReport {
+  std::uint64_t blocked = 0;          ///< cells that are blocked anywhere
+  std::uint64_t blocked_in_bins = 0;  ///< sum over the bins
+  std::uint64_t bins = 0;             ///< bins in which the load has a pose
+  double rounding = 0;
+  std::optional<std::array<double, 2>> motion = {};
+  std::vector<Message> warnings = {};
+  std::uint64_t needed_host_bytes = 0;
+  double seconds = 0, search_seconds = 0;
+};
+
+/// Finds the section of a path in a store and writes it to a file. Throws UsageError for an empty
+/// range or window, for poses that scale or are singular, and for an output that exists; InputError
+/// for a damaged store; ResourceError where the memory is too little, with the coarser bin that
+/// fits; Interrupted when asked to stop. docs/design/section.md has the definitions.
+SectionReport find_section(const Store& store, const std::vector<Pose>& path,
+                           const SectionParameters& parameters, const std::filesystem::path& output,
+                           const SectionOptions& options = {});
+
+/// Whether a load passes.
+enum class SectionVerdict { kPasses, kStopped, kUnknown };
+
+const char* name_of(SectionVerdict verdict);  ///< "passes", "stopped" or "unknown"
+
+/// A place that stops a load.
+struct SectionStop {
+  std::uint32_t bin = 0;               ///< number of the bin
+  std::uint32_t first_pose = 0;        ///< the first pose of the bin that stops the load
+  double chainage = 0;                 ///< of that pose
+  std::array<std::int32_t, 2> cell{};  ///< j, k: of that pose, the least k, and then the least j
+};
+
+struct SectionCheck {
+  SectionVerdict verdict = SectionVerdict::kUnknown;
+  std::string reason = {};               ///< why it is unknown, as a clause; otherwise empty
+  std::optional<SectionStop> stop = {};  ///< the first place where the load is stopped
+  std::vector<SectionStop> stops = {};   ///< the first place in each bin that stops it, ascending
+};
+
+/// A section in a file.
+class Section {
+ public:
+  /// Throws InputError where the file is not an intact section, and ResourceError where it cannot
+  /// be read.
+  explicit Section(const std::filesystem::path& path);
+  explicit Section(SectionData data);
+
+  const SectionData& data() const { return data_; }
+  const SectionCells& cells() const { return cells_; }  ///< those of the whole path
+
+  /// Whether a load with this outline, and with the length for which the section was found, passes
+  /// at a distance of more than `margin` from every point. Throws UsageError for a margin that is
+  /// negative or not finite, and for an outline that outline_model() refuses.
+  SectionCheck check(std::span<const OutlinePoint> outline, double margin) const;
+
+  /// For each cell of the window, row by row, whether it is free with this margin; false everywhere
+  /// where the section is in doubt or the margin exceeds that of the section.
+  std::vector<bool> free_cells(double margin) const;
+
+ private:
+  SectionData data_;
+  SectionCells cells_;
+};
+
+/// The tables of a section.
+enum class SectionTable { kBands, kStations, kBoxes, kCells, kBinCells };
+
+const char* name_of(SectionTable table);  ///< "bands", "stations", "boxes", "cells", "bin-cells"
+
+/// The heights for which widths are listed.
+struct SectionHeights {
+  double band = 0;  ///< height of a band; 0: 0.1 m
+  double base = 0;  ///< where the first band begins
+};
+
+/// Writes a table of a section as CSV. Throws UsageError where the table needs the middle, y = 0,
+/// and the window lacks it, for a band that is not above 0, and for an output that exists.
+void export_section(const Section& section, SectionTable table, const std::filesystem::path& output,
+                    const SectionHeights& heights = {}, bool overwrite = false);
+
+/// Writes the outline of the largest load as a closed polyline in a DXF file: for each band its
+/// widths to the left and to the right, narrower by more than the section's rounding. Throws as
+/// export_section() does, and UsageError where no load passes or a band is open.
+void export_section_outline(const Section& section, const std::filesystem::path& output,
+                            const SectionHeights& heights = {}, bool overwrite = false);
+
+}  // namespace clearway

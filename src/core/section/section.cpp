@@ -1,0 +1,276 @@
+#include "clearway/section.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "clearway/answer.hpp"
+#include "clearway/error.hpp"
+#include "core/section/section_lattice.hpp"
+#include "core/section/section_map.hpp"
+#include "core/util/format.hpp"
+
+namespace clearway {
+
+const char* name_of(SectionVerdict verdict) {
+  switch (verdict) {
+    case SectionVerdict::kPasses:
+      return "passes";
+    case SectionVerdict::kStopped:
+      return "stopped";
+    case SectionVerdict::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+const char* name_of(SectionTable table) {
+  switch (table) {
+    case SectionTable::kBands:
+      return "bands";
+    case SectionTable::kStations:
+      return "stations";
+    case SectionTable::kBoxes:
+      return "boxes";
+    case SectionTable::kCells:
+      return "cells";
+    case SectionTable::kBinCells:
+      break;
+  }
+  return "bin-cells";
+}
+
+SectionCells SectionData::cells() const {
+  const SectionCells& all = bin_cells;
+  std::vector<std::size_t> order(all.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
+    if (all.k[a] != all.k[b]) return all.k[a] < all.k[b];
+    if (all.j[a] != all.j[b]) return all.j[a] < all.j[b];
+    return all.first_pose[a] < all.first_pose[b];
+  });
+  SectionCells out;
+  for (const std::size_t i : order) {
+    if (out.size() > 0 && out.k.back() == all.k[i] && out.j.back() == all.j[i]) continue;
+    out.j.push_back(all.j[i]);
+    out.k.push_back(all.k[i]);
+    out.first_pose.push_back(all.first_pose[i]);
+  }
+  return out;
+}
+
+namespace {
+
+/// A closed rectangle of the cross-section.
+struct Square {
+  double y_from, y_to, z_from, z_to;
+
+  bool contains(const OutlinePoint& p) const {
+    return y_from <= p.y && p.y <= y_to && z_from <= p.z && p.z <= z_to;
+  }
+  double distance(const OutlinePoint& p) const {
+    return std::hypot(std::max({y_from - p.y, 0.0, p.y - y_to}),
+                      std::max({z_from - p.z, 0.0, p.z - z_to}));
+  }
+  double distance(const Square& other) const {
+    return std::hypot(std::max({y_from - other.y_to, 0.0, other.y_from - y_to}),
+                      std::max({z_from - other.z_to, 0.0, other.z_from - z_to}));
+  }
+};
+
+double distance(const OutlinePoint& p, const OutlinePoint& a, const OutlinePoint& b) {
+  const double y = b.y - a.y, z = b.z - a.z;
+  const double squared = y * y + z * z;
+  const double along =
+      squared > 0 ? std::clamp(((p.y - a.y) * y + (p.z - a.z) * z) / squared, 0.0, 1.0) : 0;
+  return std::hypot(p.y - (a.y + along * y), p.z - (a.z + along * z));
+}
+
+/// Whether the segment from a to b has a place in the square (Liang and Barsky 1984).
+bool crosses(const Square& square, const OutlinePoint& a, const OutlinePoint& b) {
+  double from = 0, to = 1;
+  const auto clip = [&](double at, double way, double lo, double hi) {
+    if (way == 0) return lo <= at && at <= hi;
+    const double first = (lo - at) / way, second = (hi - at) / way;
+    from = std::max(from, std::min(first, second));
+    to = std::min(to, std::max(first, second));
+    return from <= to;
+  };
+  return clip(a.y, b.y - a.y, square.y_from, square.y_to) &&
+         clip(a.z, b.z - a.z, square.z_from, square.z_to);
+}
+
+/// A polygon with its inside.
+class Load {
+ public:
+  explicit Load(std::span<const OutlinePoint> outline)
+      : outline_(outline), box_{outline[0].y, outline[0].y, outline[0].z, outline[0].z} {
+    for (const OutlinePoint& p : outline) {
+      box_ = {std::min(box_.y_from, p.y), std::max(box_.y_to, p.y), std::min(box_.z_from, p.z),
+              std::max(box_.z_to, p.z)};
+    }
+  }
+
+  const Square& box() const { return box_; }
+
+  /// The distance to a square; `far` where it is certainly no smaller.
+  double distance(const Square& square, double far) const {
+    if (box_.distance(square) >= far) return far;
+    double least = far;
+    for (std::size_t i = 0; i < outline_.size(); ++i) {
+      const OutlinePoint &a = outline_[i], &b = outline_[(i + 1) % outline_.size()];
+      if (crosses(square, a, b)) return 0;
+      least = std::min(least, square.distance(a));
+      for (const double y : {square.y_from, square.y_to}) {
+        for (const double z : {square.z_from, square.z_to}) {
+          least = std::min(least, clearway::distance({y, z}, a, b));
+        }
+      }
+    }
+    return contains({square.y_from, square.z_from}) ? 0 : least;
+  }
+
+ private:
+  /// Whether p is inside, by the edges that a ray along y crosses.
+  bool contains(const OutlinePoint& p) const {
+    bool inside = false;
+    for (std::size_t i = 0; i < outline_.size(); ++i) {
+      const OutlinePoint &a = outline_[i], &b = outline_[(i + 1) % outline_.size()];
+      if ((a.z > p.z) == (b.z > p.z)) continue;
+      if (a.y + (p.z - a.z) * (b.y - a.y) / (b.z - a.z) > p.y) inside = !inside;
+    }
+    return inside;
+  }
+
+  std::span<const OutlinePoint> outline_;
+  Square box_;
+};
+
+/// Why the section says nothing, as a clause; empty where it does.
+std::string doubt_about(const SectionData& section) {
+  for (const Message& warning : section.warnings) {
+    if (is_doubt(warning.code)) return "the section is in doubt (" + warning.code + ")";
+  }
+  return "";
+}
+
+void check_margin(double margin) {
+  if (std::isfinite(margin) && margin >= 0) return;
+  throw UsageError("a margin of " + format_number(margin) + "; expected 0 or more");
+}
+
+/// Whether each cell of the whole path, in its order, stops the load.
+std::vector<bool> stopping(const SectionCells& cells, double g, const Load& load, double reach) {
+  std::vector<bool> stops(cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const double j = cells.j[i], k = cells.k[i];
+    stops[i] = load.distance({j * g, (j + 1) * g, k * g, (k + 1) * g}, reach) < reach;
+  }
+  return stops;
+}
+
+/// Index of a cell among those of the whole path, which have all cells of the bins.
+std::size_t index_of(const SectionCells& cells, std::int32_t j, std::int32_t k) {
+  std::size_t first = 0, end = cells.size();
+  while (end - first > 1) {
+    const std::size_t middle = first + (end - first) / 2;
+    const bool before = k < cells.k[middle] || (k == cells.k[middle] && j < cells.j[middle]);
+    (before ? end : first) = middle;
+  }
+  return first;
+}
+
+}  // namespace
+
+Section::Section(SectionData data) : data_(std::move(data)), cells_(data_.cells()) {}
+
+SectionCheck Section::check(std::span<const OutlinePoint> outline, double margin) const {
+  check_margin(margin);
+  outline_model(outline, 0, 1);  // refuses what is no outline
+  const Load load(outline);
+  const double g = data_.parameters.cell;
+  const double grown = data_.motion ? margin + (*data_.motion)[1] / 2 : margin;
+  const double reach = grown + data_.rounding;
+  const std::vector<bool> stops = stopping(cells_, g, load, reach);
+
+  SectionCheck check;
+  const SectionCells& all = data_.bin_cells;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!stops[index_of(cells_, all.j[i], all.k[i])]) continue;
+    if (check.stops.empty() || check.stops.back().bin != all.bin[i]) {
+      check.stops.push_back({all.bin[i], kNotBlocked, 0, {}});
+    }
+    SectionStop& stop = check.stops.back();
+    // Cells are ascending by k and j, so the first of a pose is the one to report.
+    if (all.first_pose[i] >= stop.first_pose) continue;
+    stop = {all.bin[i], all.first_pose[i], data_.chainage[all.first_pose[i]], {all.j[i], all.k[i]}};
+  }
+  if (!check.stops.empty()) {
+    check.verdict = SectionVerdict::kStopped;
+    check.stop = check.stops.front();
+    return check;
+  }
+  const SectionLattice lattice = lattice_of(data_);
+  const double edge = data_.motion ? reach : margin;
+  const Square& box = load.box();
+  check.reason = doubt_about(data_);
+  if (margin > data_.parameters.margin) {
+    check.reason = "the section was found for margins up to " +
+                   format_number(data_.parameters.margin) + " only";
+  } else if (box.y_from - edge < lattice.j_from * g || box.y_to + edge > lattice.j_to * g ||
+             box.z_from - edge < lattice.k_from * g || box.z_to + edge > lattice.k_to * g) {
+    check.reason = "the load with its margin leaves the window of the section";
+  }
+  check.verdict = check.reason.empty() ? SectionVerdict::kPasses : SectionVerdict::kUnknown;
+  return check;
+}
+
+std::vector<bool> Section::free_cells(double margin) const {
+  check_margin(margin);
+  const SectionLattice lattice = lattice_of(data_);
+  const auto columns = static_cast<std::int64_t>(lattice.columns);
+  const auto rows = static_cast<std::int64_t>(lattice.rows);
+  std::vector<bool> free(lattice.cells());
+  if (margin > data_.parameters.margin || !doubt_about(data_).empty()) return free;
+  const double g = lattice.cell, squared_cell = g * g, squared_margin = margin * margin;
+  // For each difference of rows the greatest difference of columns at which a cell is too close.
+  std::vector<std::int64_t> reach{0};
+  const auto too_close = [&](std::int64_t column, std::int64_t row) {
+    const auto a = static_cast<double>(std::max<std::int64_t>(column - 1, 0));
+    const auto b = static_cast<double>(std::max<std::int64_t>(row - 1, 0));
+    return (a * a + b * b) * squared_cell < squared_margin;
+  };
+  for (std::int64_t row = 0; row < rows && (row == 0 || too_close(0, row)); ++row) {
+    std::int64_t column = 0;
+    while (column + 1 < columns && too_close(column + 1, row)) ++column;
+    if (row == 0) {
+      reach[0] = column;
+    } else {
+      reach.push_back(column);
+    }
+  }
+  std::vector<bool> taken(free.size());
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    const std::int64_t j = cells_.j[i] - static_cast<std::int64_t>(lattice.j_from);
+    const std::int64_t k = cells_.k[i] - static_cast<std::int64_t>(lattice.k_from);
+    const auto up = static_cast<std::int64_t>(reach.size()) - 1;
+    for (std::int64_t row = std::max<std::int64_t>(k - up, 0); row <= std::min(k + up, rows - 1);
+         ++row) {
+      const std::int64_t across = reach[static_cast<std::size_t>(std::abs(row - k))];
+      const auto from = taken.begin() + row * columns + std::max<std::int64_t>(j - across, 0);
+      const auto to = taken.begin() + row * columns + std::min(j + across, columns - 1) + 1;
+      std::fill(from, to, true);
+    }
+  }
+  for (std::int64_t k = 0; k < rows; ++k) {
+    for (std::int64_t j = 0; j < columns; ++j) {
+      const std::int64_t border = std::min({j, columns - 1 - j, k, rows - 1 - k});
+      const auto i = static_cast<std::size_t>(k * columns + j);
+      free[i] = !taken[i] && static_cast<double>(border) * g >= margin;
+    }
+  }
+  return free;
+}
+
+}  // namespace clearway

@@ -1,0 +1,184 @@
+#include "core/section/section_tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "clearway/error.hpp"
+#include "core/section/section_lattice.hpp"
+#include "core/section/section_map.hpp"
+#include "core/util/format.hpp"
+
+namespace clearway {
+namespace {
+
+/// Shares of a cell below which the border of a band counts as that of a cell, because sums of
+/// heights are rounded.
+constexpr double kSameBorder = 1e-6;
+
+/// A band, and the rows of cells that it touches.
+struct Rows {
+  double z_from, z_to;
+  double k_from, k_to;  ///< k_from <= k < k_to
+};
+
+std::vector<Rows> rows_of_bands(const Section& section, const SectionHeights& heights) {
+  const SectionLattice lattice = lattice_of(section.data());
+  const double g = lattice.cell;
+  double band = heights.band;
+  if (band == 0) band = section.data().length_unit.ends_with("foot") ? 0.1 / 0.3048 : 0.1;
+  if (!(std::isfinite(band) && band > 0 && std::isfinite(heights.base))) {
+    throw UsageError("bands of height " + format_number(band) + " from " +
+                     format_number(heights.base) + "; expected a height above 0, and a base");
+  }
+  if (lattice.j_from >= 0 || lattice.j_to <= 0) {
+    throw UsageError(
+        "the window of the section lacks the middle, y = 0, so that it has no widths "
+        "to the left and to the right; expected a window on both sides of it");
+  }
+  constexpr double kMostBands = 1e6;
+  const double first = std::ceil((lattice.k_from * g - heights.base) / band - kSameBorder);
+  const double end = std::floor((lattice.k_to * g - heights.base) / band + kSameBorder);
+  const UnitFactor times(band);  // of ten bands of 0.1 the sum is 1
+  std::vector<Rows> rows;
+  if (end - first > kMostBands) {
+    throw UsageError("bands of height " + format_number(band) + "; expected at most a million");
+  }
+  for (double i = std::max(0.0, first); i < end; ++i) {
+    const double from = heights.base + times(i), to = heights.base + times(i + 1);
+    rows.push_back({from, to, std::floor(from / g + kSameBorder), std::ceil(to / g - kSameBorder)});
+  }
+  if (rows.empty()) {
+    throw UsageError(
+        "no band of height " + format_number(band) + " from " + format_number(heights.base) +
+        " upwards lies in the window, which ends at z = " + format_number(lattice.k_to * g));
+  }
+  return rows;
+}
+
+/// Narrows a side to a cell.
+void narrow(std::optional<HalfWidth>& side, double width, std::uint32_t pose) {
+  if (!side || width < side->width) {
+    side = {width, pose};
+  } else if (width == side->width) {
+    side->first_pose = std::min(side->first_pose, pose);
+  }
+}
+
+/// The bands of cells first .. end - 1, which are ascending by k.
+std::vector<SectionBand> bands_of(const SectionCells& cells, std::size_t first, std::size_t end,
+                                  const std::vector<Rows>& rows, double g) {
+  std::vector<SectionBand> bands;
+  const auto at = [&](double k) {
+    const auto begin = cells.k.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto last = cells.k.begin() + static_cast<std::ptrdiff_t>(end);
+    return static_cast<std::size_t>(
+        std::lower_bound(begin, last, k, [](std::int32_t a, double b) { return a < b; }) -
+        cells.k.begin());
+  };
+  for (const Rows& row : rows) {
+    SectionBand band{row.z_from, row.z_to, {}, {}};
+    const std::size_t stop = at(row.k_to);
+    for (std::size_t i = at(row.k_from); i < stop; ++i) {
+      const double j = cells.j[i];
+      if (j >= 0) {
+        narrow(band.left, g * j, cells.first_pose[i]);
+      } else {
+        narrow(band.right, g * (-j - 1), cells.first_pose[i]);
+      }
+    }
+    bands.push_back(band);
+  }
+  return bands;
+}
+
+}  // namespace
+
+double kept_beside(const SectionFacts& section) {
+  return section.rounding + (section.motion ? (*section.motion)[1] / 2 : 0);
+}
+
+std::optional<double> symmetric_width(const SectionFacts& section, const SectionBand& band) {
+  if (!band.left && !band.right) return std::nullopt;
+  double least = band.left ? band.left->width : band.right->width;
+  if (band.right) least = std::min(least, band.right->width);
+  return std::max(0.0, 2 * least - 2 * kept_beside(section));
+}
+
+std::vector<SectionBand> section_bands(const Section& section, const SectionHeights& heights) {
+  return bands_of(section.cells(), 0, section.cells().size(), rows_of_bands(section, heights),
+                  section.data().parameters.cell);
+}
+
+std::vector<SectionStretch> section_stations(const Section& section,
+                                             const SectionHeights& heights) {
+  const std::vector<Rows> rows = rows_of_bands(section, heights);
+  const SectionCells& cells = section.data().bin_cells;
+  std::vector<SectionStretch> stretches;
+  std::size_t first = 0;
+  for (const std::uint32_t bin : section.data().bins) {
+    std::size_t end = first;
+    while (end < cells.size() && cells.bin[end] == bin) ++end;
+    stretches.push_back({bin, bands_of(cells, first, end, rows, section.data().parameters.cell)});
+    first = end;
+  }
+  return stretches;
+}
+
+std::vector<SectionBand> section_boxes(const Section& section, const SectionHeights& heights) {
+  std::vector<SectionBand> boxes = section_bands(section, heights);
+  for (std::size_t i = 1; i < boxes.size(); ++i) {
+    const SectionBand& below = boxes[i - 1];
+    boxes[i].z_from = boxes[0].z_from;
+    if (below.left) narrow(boxes[i].left, below.left->width, below.left->first_pose);
+    if (below.right) narrow(boxes[i].right, below.right->width, below.right->first_pose);
+  }
+  return boxes;
+}
+
+namespace {
+
+/// Adds the corners of one side from the base upwards. away: 1 to the left, -1 to the right.
+void add_side(const std::vector<SectionBand>& bands, const std::vector<double>& widths, double away,
+              double inset, std::vector<OutlinePoint>& side) {
+  for (std::size_t i = 0; i < widths.size(); ++i) {
+    const double y = away * (widths[i] - inset);
+    if (i > 0 && widths[i] == widths[i - 1]) continue;
+    if (i == 0) {
+      side.push_back({y, bands[0].z_from + inset});
+      continue;
+    }
+    const double step = widths[i] < widths[i - 1] ? -inset : inset;
+    side.push_back({side.back().y, bands[i].z_from + step});
+    side.push_back({y, bands[i].z_from + step});
+  }
+  side.push_back({side.back().y, bands[widths.size() - 1].z_to - inset});
+}
+
+}  // namespace
+
+std::vector<OutlinePoint> largest_outline(const Section& section, const SectionHeights& heights) {
+  const std::vector<SectionBand> bands = section_bands(section, heights);
+  const SectionLattice lattice = lattice_of(section.data());
+  const double inset =
+      2 * section.data().rounding + (kept_beside(section.data()) - section.data().rounding);
+  std::vector<double> left, right;
+  for (const SectionBand& band : bands) {
+    const double to_left = band.left ? band.left->width : lattice.j_to * lattice.cell;
+    const double to_right = band.right ? band.right->width : -lattice.j_from * lattice.cell;
+    if (to_left <= 2 * inset || to_right <= 2 * inset) break;
+    left.push_back(to_left);
+    right.push_back(to_right);
+  }
+  if (left.empty() || bands[0].z_to - bands[0].z_from <= 2 * inset) {
+    throw UsageError("no load stands at z = " + format_number(bands[0].z_from) +
+                     ", where the middle is blocked; expected a base above the ground");
+  }
+  std::vector<OutlinePoint> outline, other;
+  add_side(bands, right, -1, inset, outline);
+  add_side(bands, left, 1, inset, other);
+  outline.insert(outline.end(), other.rbegin(), other.rend());
+  return outline;
+}
+
+}  // namespace clearway

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "clearway/section.hpp"
+
+/// Tables of widths that follow from the cells of a section.
+namespace clearway {
+
+/// The way from the middle, y = 0, to the nearest blocked cell on one side.
+struct HalfWidth {
+  double width;              ///< to the cell's border
+  std::uint32_t first_pose;  ///< the first pose that blocks a cell there
+};
+
+/// The room between two heights; a side without a value is open up to the border of the window.
+struct SectionBand {
+  double z_from, z_to;
+  std::optional<HalfWidth> left, right;
+};
+
+/// The bands of a bin, or of the whole path.
+struct SectionStretch {
+  std::uint32_t bin = 0;
+  std::vector<SectionBand> bands;
+};
+
+/// What a load may not use of each half-width: rounding, and between poses half of the motion
+/// across.
+double kept_beside(const SectionFacts& section);
+
+/// The width of a load that is as wide to the left as to the right; none where both sides are open.
+std::optional<double> symmetric_width(const SectionFacts& section, const SectionBand& band);
+
+/// The bands that lie in the window, from the base upwards. Throws UsageError where the window
+/// lacks the middle or has no whole band, and for heights that are not finite or not above 0.
+std::vector<SectionBand> section_bands(const Section& section, const SectionHeights& heights);
+
+/// The bands of each bin in which the load has a pose, ascending. Throws as section_bands().
+std::vector<SectionStretch> section_stations(const Section& section, const SectionHeights& heights);
+
+/// For each band, the room from the base up to its top, of which z_from is the base. Throws as
+/// section_bands().
+std::vector<SectionBand> section_boxes(const Section& section, const SectionHeights& heights);
+
+/// The outline of the largest load that stands on the base, inset by more than kept_beside(),
+/// counter-clockwise when looking forward with y to the left. Open sides end at the window. Throws
+/// as section_bands(), and where no load stands on the base.
+std::vector<OutlinePoint> largest_outline(const Section& section, const SectionHeights& heights);
+
+}  // namespace clearway

@@ -1,0 +1,210 @@
+#include "cpu/section_search.hpp"
+
+#include <bit>
+#include <cmath>
+
+#include "core/util/macros.hpp"
+
+namespace clearway {
+
+/// Up to a block of points, axis by axis.
+struct SectionSearch::Points {
+  std::uint32_t count = 0;
+  alignas(64) double at[3][kBlockPoints];
+};
+
+namespace {
+
+/// What is known of the points of a list at the poses of a node.
+struct Covered {
+  alignas(64) std::int32_t column_from[kBlockPoints], column_to[kBlockPoints];
+  alignas(64) std::int32_t row_from[kBlockPoints], row_to[kBlockPoints];
+  /// Whether the bound of x' meets the range.
+  alignas(64) std::int32_t is_in_range[kBlockPoints];
+};
+
+/// The cells of an axis under a range of places, counted from the first cell of the window: the
+/// first is greater than the last where there are none. Ends that are NaN become those of the
+/// window.
+struct AxisCells {
+  double cell, first, last, most;
+
+  AxisCells(double side, double from, double to)
+      : cell(side), first(from), last(to - 1), most(to - from) {}
+
+  CLEARWAY_IN_CLONE void cover(double place_from, double place_to, std::int32_t& from,
+                               std::int32_t& to) const {
+    double a = std::floor(place_from / cell) - first;
+    double b = std::floor(place_to / cell) - first;
+    a = a > 0 ? a : 0;
+    a = a < most ? a : most;
+    b = b > -1 ? b : b <= -1 ? -1 : most - 1;
+    b = b < most - 1 ? b : most - 1;
+    from = static_cast<std::int32_t>(a);
+    to = static_cast<std::int32_t>(b);
+  }
+};
+
+/// The bounds of SectionPoseNode::bounds() of each point of a list.
+CLEARWAY_SIMD_CLONES
+void cover_points(const SectionPoseNode& node, const SectionLattice& lattice, double slack,
+                  const double (*at)[kBlockPoints], std::uint32_t count, Covered& out) {
+  double from[3][kBlockPoints], to[3][kBlockPoints];
+  for (int a = 0; a < 3; ++a) {
+    const double* const row = node.row[a];
+    const double* const spread = node.spread[a];
+    const double shift_from = node.shift_from[a] - slack, shift_to = node.shift_to[a] + slack;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const double x = at[0][i] - node.position[0], y = at[1][i] - node.position[1],
+                   z = at[2][i] - node.position[2];
+      const double middle = row[0] * x + row[1] * y + row[2] * z;
+      const double reach =
+          spread[0] * std::fabs(x) + spread[1] * std::fabs(y) + spread[2] * std::fabs(z);
+      from[a][i] = middle - reach + shift_from;
+      to[a][i] = middle + reach + shift_to;
+    }
+  }
+  const AxisCells across(lattice.cell, lattice.j_from, lattice.j_to);
+  const AxisCells up(lattice.cell, lattice.k_from, lattice.k_to);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const bool misses = to[0][i] < lattice.x_from || from[0][i] > lattice.x_to;
+    out.is_in_range[i] = misses ? 0 : 1;
+    across.cover(from[1][i], to[1][i], out.column_from[i], out.column_to[i]);
+    up.cover(from[2][i], to[2][i], out.row_from[i], out.row_to[i]);
+  }
+}
+
+/// The cells of the places of points, counted from the window's first: SectionLattice::find() of
+/// each. A point that blocks nothing gets the column -1.
+CLEARWAY_SIMD_CLONES
+void place_points(const PullBack& pose, const SectionLattice& lattice,
+                  const double (*at)[kBlockPoints], std::uint32_t count, std::int32_t* columns,
+                  std::int32_t* rows) {
+  double place[3][kBlockPoints];
+  for (int a = 0; a < 3; ++a) {
+    const Vec3 row = pose.rows[a];
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const double x = at[0][i] - pose.position.x, y = at[1][i] - pose.position.y,
+                   z = at[2][i] - pose.position.z;
+      place[a][i] = (row.x * x + row.y * y + row.z * z) / pose.determinant;
+    }
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double j = std::floor(place[1][i] / lattice.cell);
+    const double k = std::floor(place[2][i] / lattice.cell);
+    const bool is_in = (place[0][i] >= lattice.x_from) & (place[0][i] <= lattice.x_to) &
+                       (j >= lattice.j_from) & (j < lattice.j_to) & (k >= lattice.k_from) &
+                       (k < lattice.k_to);
+    const double column = is_in ? j - lattice.j_from : -1.0;
+    const double row = is_in ? k - lattice.k_from : 0.0;
+    columns[i] = static_cast<std::int32_t>(column);
+    rows[i] = static_cast<std::int32_t>(row);
+  }
+}
+
+}  // namespace
+
+bool SectionSearch::may_block(const SectionPoseNode& node, const Box& points) const {
+  const Vec3 half = 0.5 * points.size();
+  const PlaceBounds bounds = node.bounds(points.centre(), half, slack_);
+  if (bounds.to[0] < lattice_.x_from || bounds.from[0] > lattice_.x_to) return false;
+  SectionRect rect{};
+  if (!lattice_.cover(bounds.from[1], bounds.to[1], bounds.from[2], bounds.to[2], rect)) {
+    return false;
+  }
+  return node.bin == SectionPoseNode::kManyBins ||
+         !maps_[node.bin].is_blocked_by(rect, node.first_pose);
+}
+
+std::vector<std::uint32_t> SectionSearch::bins_in_reach(std::uint32_t cell) const {
+  const Box box = position_box(cloud_.quantisation(), cloud_.cells()[cell].box);
+  const std::span nodes = poses_.nodes();
+  std::vector<std::uint32_t> bins, open{0};
+  while (!open.empty()) {
+    const std::uint32_t at = open.back();
+    open.pop_back();
+    if (!may_block(nodes[at], box)) continue;
+    if (nodes[at].bin != SectionPoseNode::kManyBins) {
+      bins.push_back(at);
+      continue;
+    }
+    open.push_back(nodes[at].right);
+    open.push_back(at + 1);
+  }
+  return bins;
+}
+
+void SectionSearch::search(std::uint32_t cell,
+                           const std::array<PackedChunk<std::int32_t>, 3>& coordinates,
+                           std::span<const std::uint64_t> searched,
+                           std::span<const std::uint32_t> bins, std::uint32_t first,
+                           std::uint32_t end) const {
+  const Cell& of = cloud_.cells()[cell];
+  const Quantisation& quantisation = cloud_.quantisation();
+  const std::span boxes = cloud_.blocks().subspan(std::size_t{cell} * cloud_.blocks_per_cell());
+  Points points;
+  for (std::uint32_t block = first; block < end; ++block) {
+    const std::uint64_t all = searched.empty() ? ~std::uint64_t{0} : searched[block];
+    if (all == 0) continue;
+    const Box box = position_box(quantisation, decode_block_box(of.box, boxes[block]));
+    points.count = 0;
+    for (const std::uint32_t bin : bins) {
+      if (!may_block(poses_.nodes()[bin], box)) continue;
+      if (points.count == 0) {
+        std::array<std::int32_t, kBlockPoints> q{};
+        const std::uint32_t count = std::min(kBlockPoints, of.count - block * kBlockPoints);
+        for (int axis = 0; axis < 3; ++axis) {
+          coordinates[static_cast<std::size_t>(axis)].decode(block * kBlockPoints,
+                                                             std::span(q).first(count));
+          points.count = 0;
+          for (std::uint32_t i = 0; i < count; ++i) {
+            if ((all >> i & 1) == 0) continue;
+            points.at[axis][points.count++] = coordinate(quantisation, axis, q[i]);
+          }
+        }
+      }
+      visit(bin, points);
+    }
+  }
+}
+
+void SectionSearch::visit(std::uint32_t at, const Points& points) const {
+  const SectionPoseNode& node = poses_.nodes()[at];
+  const SectionMapRef map = maps_[node.bin];
+  Covered covered;
+  cover_points(node, lattice_, slack_, points.at, points.count, covered);
+  Points left;
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    if (covered.is_in_range[i] == 0 || covered.column_from[i] > covered.column_to[i] ||
+        covered.row_from[i] > covered.row_to[i]) {
+      continue;
+    }
+    const SectionRect rect{static_cast<std::uint32_t>(covered.column_from[i]),
+                           static_cast<std::uint32_t>(covered.column_to[i]),
+                           static_cast<std::uint32_t>(covered.row_from[i]),
+                           static_cast<std::uint32_t>(covered.row_to[i])};
+    if (map.is_blocked_by(rect, node.first_pose)) continue;
+    for (int axis = 0; axis < 3; ++axis) left.at[axis][left.count] = points.at[axis][i];
+    ++left.count;
+  }
+  if (left.count == 0) return;
+  if (node.is_leaf()) return visit_poses(node, left);
+  visit(at + 1, left);
+  visit(node.right, left);
+}
+
+void SectionSearch::visit_poses(const SectionPoseNode& node, const Points& points) const {
+  const SectionMapRef map = maps_[node.bin];
+  std::int32_t columns[kBlockPoints], rows[kBlockPoints];
+  for (std::uint32_t pose = node.first; pose < node.first + node.count; ++pose) {
+    place_points(poses_.pull_back(pose), lattice_, points.at, points.count, columns, rows);
+    const std::uint32_t path_pose = poses_.path_pose(pose);
+    for (std::uint32_t i = 0; i < points.count; ++i) {
+      if (columns[i] < 0) continue;
+      map.block(static_cast<std::uint32_t>(columns[i]), static_cast<std::uint32_t>(rows[i]),
+                path_pose);
+    }
+  }
+}
+
+}  // namespace clearway

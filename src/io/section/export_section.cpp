@@ -1,0 +1,198 @@
+#include <string>
+
+#include "clearway/section.hpp"
+#include "core/section/section_tables.hpp"
+#include "core/util/format.hpp"
+#include "io/files/pending_file.hpp"
+#include "io/files/text_writer.hpp"
+#include "io/section/section_file.hpp"
+
+namespace clearway {
+
+Section::Section(const std::filesystem::path& path) : Section(read_section(path)) {}
+
+namespace {
+
+/// What a reader of widths has to know, in lines that begin with "#".
+void write_preamble(TextWriter& out, const Section& section) {
+  const SectionData& data = section.data();
+  const SectionParameters& asked = data.parameters;
+  out << "# Widths from y = 0 to the border of the nearest blocked cell of "
+      << format_number(asked.cell) << ", for a load from x = " << format_number(asked.rear)
+      << " to " << format_number(asked.front) << "\n# A load must be narrower by more than "
+      << format_number(kept_beside(data))
+      << " on each side, and stay as far from the ends of its bands; symmetric_width has that "
+         "taken off\n";
+  if (data.motion) {
+    out << "# Of this, " << format_number((*data.motion)[1] / 2)
+        << " is half of the motion across between two poses\n";
+  }
+  out << "# open: nothing blocks that side up to the border of the window\n";
+  for (const Message& warning : data.warnings) {
+    std::string line = warning.text;
+    for (char& c : line) {
+      if (c == '\n' || c == '\r') c = ' ';
+    }
+    out << "# warning " << warning.code << ": " << line << "\n";
+  }
+}
+
+void write_half(TextWriter& out, const SectionData& section, const std::optional<HalfWidth>& half) {
+  if (!half) {
+    out << "open,,";
+    return;
+  }
+  out << half->width << "," << half->first_pose << "," << section.chainage[half->first_pose];
+}
+
+void write_symmetric(TextWriter& out, const SectionData& section, const SectionBand& band) {
+  const auto width = symmetric_width(section, band);
+  if (width) {
+    out << *width;
+  } else {
+    out << "open";
+  }
+  out << "\n";
+}
+
+void write_band(TextWriter& out, const SectionData& section, const SectionBand& band) {
+  out << band.z_from << "," << band.z_to << ",";
+  write_half(out, section, band.left);
+  out << ",";
+  write_half(out, section, band.right);
+  out << ",";
+  write_symmetric(out, section, band);
+}
+
+constexpr const char* kBandColumns =
+    "z_from,z_to,left,left_pose,left_station,right,right_pose,right_station,symmetric_width\n";
+
+void write_stations(TextWriter& out, const Section& section, const SectionHeights& heights) {
+  const SectionData& data = section.data();
+  const double bin = data.parameters.bin;
+  out << "bin,chainage_from,chainage_to," << kBandColumns;
+  for (const SectionStretch& stretch : section_stations(section, heights)) {
+    for (const SectionBand& band : stretch.bands) {
+      out << stretch.bin << "," << stretch.bin * bin << "," << (stretch.bin + 1.0) * bin << ",";
+      write_band(out, data, band);
+    }
+  }
+}
+
+void write_boxes(TextWriter& out, const Section& section, const SectionHeights& heights) {
+  const auto side = [&out](const std::optional<HalfWidth>& half) {
+    if (half) {
+      out << half->width << ",";
+    } else {
+      out << "open,";
+    }
+  };
+  out << "top,left,right,symmetric_width\n";
+  for (const SectionBand& box : section_boxes(section, heights)) {
+    out << box.z_to << ",";
+    side(box.left);
+    side(box.right);
+    write_symmetric(out, section.data(), box);
+  }
+}
+
+void write_cells(TextWriter& out, const SectionCells& cells) {
+  const bool bins = !cells.bin.empty();
+  out << (bins ? "bin,j,k,first_pose\n" : "j,k,first_pose\n");
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (bins) out << cells.bin[i] << ",";
+    out << cells.j[i] << "," << cells.k[i] << "," << cells.first_pose[i] << "\n";
+  }
+}
+
+}  // namespace
+
+void export_section(const Section& section, SectionTable table, const std::filesystem::path& output,
+                    const SectionHeights& heights, bool overwrite) {
+  PendingFile pending(output, overwrite);
+  {
+    const File file = File::create(pending.partial());
+    TextWriter out(file);
+    switch (table) {
+      case SectionTable::kBands:
+        write_preamble(out, section);
+        out << kBandColumns;
+        for (const SectionBand& band : section_bands(section, heights)) {
+          write_band(out, section.data(), band);
+        }
+        break;
+      case SectionTable::kStations:
+        write_preamble(out, section);
+        write_stations(out, section, heights);
+        break;
+      case SectionTable::kBoxes:
+        write_preamble(out, section);
+        write_boxes(out, section, heights);
+        break;
+      case SectionTable::kCells:
+        write_cells(out, section.cells());
+        break;
+      case SectionTable::kBinCells:
+        if (section.data().bin_cells.size() == 0) {
+          out << "bin,j,k,first_pose\n";
+        } else {
+          write_cells(out, section.data().bin_cells);
+        }
+    }
+    out.flush();
+  }
+  pending.publish();
+}
+
+namespace {
+
+/// A pair of a DXF file: a code and its value, a line each.
+template <typename Value>
+void write_pair(TextWriter& out, int code, const Value& value) {
+  out << code << "\n" << value << "\n";
+}
+
+/// Writes a closed polyline in the form of AutoCAD's release 12, which every program reads. y of
+/// the load runs to the left, so looking forward it is drawn with the opposite sign.
+void write_dxf(TextWriter& out, const std::vector<OutlinePoint>& outline, bool feet) {
+  write_pair(out, 999,
+             feet ? "Outline of the largest load, feet" : "Outline of the largest load, metres");
+  write_pair(out, 0, "SECTION");
+  write_pair(out, 2, "HEADER");
+  write_pair(out, 9, "$ACADVER");
+  write_pair(out, 1, "AC1009");
+  write_pair(out, 0, "ENDSEC");
+  write_pair(out, 0, "SECTION");
+  write_pair(out, 2, "ENTITIES");
+  write_pair(out, 0, "POLYLINE");
+  write_pair(out, 8, "LARGEST_LOAD");
+  write_pair(out, 66, 1);
+  write_pair(out, 70, 1);
+  for (const OutlinePoint& corner : outline) {
+    write_pair(out, 0, "VERTEX");
+    write_pair(out, 8, "LARGEST_LOAD");
+    write_pair(out, 10, -corner.y);
+    write_pair(out, 20, corner.z);
+    write_pair(out, 30, 0);
+  }
+  write_pair(out, 0, "SEQEND");
+  write_pair(out, 0, "ENDSEC");
+  write_pair(out, 0, "EOF");
+}
+
+}  // namespace
+
+void export_section_outline(const Section& section, const std::filesystem::path& output,
+                            const SectionHeights& heights, bool overwrite) {
+  const std::vector<OutlinePoint> outline = largest_outline(section, heights);
+  PendingFile pending(output, overwrite);
+  {
+    const File file = File::create(pending.partial());
+    TextWriter out(file);
+    write_dxf(out, outline, section.data().length_unit.ends_with("foot"));
+    out.flush();
+  }
+  pending.publish();
+}
+
+}  // namespace clearway

@@ -1,0 +1,363 @@
+#include "search/section.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "clearway/error.hpp"
+#include "core/geometry/rigid.hpp"
+#include "core/trajectory/chainage.hpp"
+#include "core/trajectory/trajectory_doubts.hpp"
+#include "core/util/format.hpp"
+#include "core/util/messages.hpp"
+#include "core/util/stopwatch.hpp"
+#include "core/util/tsan_annotations.hpp"
+#include "cpu/section_search.hpp"
+#include "io/files/pending_file.hpp"
+#include "io/paths/content_hash.hpp"
+#include "io/section/section_file.hpp"
+#include "io/store/store_reader.hpp"
+#include "search/check_query.hpp"
+#include "search/checks/checks.hpp"
+#include "search/checks/facts/path_facts.hpp"
+#include "search/checks/question.hpp"
+#include "search/ignored.hpp"
+#include "search/threads.hpp"
+
+namespace clearway {
+
+void block_cells(const PackedCloud& cloud, const IgnoredPoints& ignored, const SectionPoses& poses,
+                 const SectionLattice& lattice, double slack, int threads, SectionMaps& maps,
+                 Progress& progress) {
+  constexpr std::uint32_t kBlocksAtOnce = 32;
+  const SectionSearch search(cloud, poses, lattice, slack, maps);
+  progress.begin("section", cloud.point_count(), "points");
+  in_threads(threads, [&] {
+    const ParallelScope all_cells;
+    const auto search_cell = piece_of(all_cells, [&](std::size_t i) {
+      throw_if_stopped(progress);
+      const auto cell = static_cast<std::uint32_t>(i);
+      const std::uint32_t count = cloud.cells()[cell].count;
+      std::vector<std::uint32_t> bins;
+      if (!ignored.any() || !ignored.skips(cell)) bins = search.bins_in_reach(cell);
+      if (!bins.empty()) {
+        const auto coordinates = cloud.coordinates(cell);
+        std::vector<std::uint64_t> searched;
+        if (ignored.any() && ignored.touches(cell)) {
+          searched.resize(cloud.blocks_per_cell());
+          ignored.mask(cell, searched, [&] { return coordinates; });
+        }
+        const auto blocks = static_cast<std::uint32_t>(divide_up(count, kBlockPoints));
+        const ParallelScope of_cell;
+        const auto search_blocks = piece_of(of_cell, [&](std::uint32_t part) {
+          const std::uint32_t first = part * kBlocksAtOnce;
+          search.search(cell, coordinates, searched, bins, first,
+                        std::min(first + kBlocksAtOnce, blocks));
+        });
+        of_cell.begin();
+        tbb::parallel_for(std::uint32_t{0},
+                          static_cast<std::uint32_t>(divide_up(blocks, kBlocksAtOnce)),
+                          search_blocks);
+      }
+      progress.advance(count);
+    });
+    all_cells.begin();
+    tbb::parallel_for(std::size_t{0}, cloud.cells().size(), search_cell);
+  });
+  progress.end();
+}
+
+void add_cells_of_bin(const SectionLattice& lattice, const std::uint32_t* firsts,
+                      std::uint32_t number, SectionCells& cells) {
+  const auto j0 = static_cast<std::int32_t>(lattice.j_from);
+  const auto k0 = static_cast<std::int32_t>(lattice.k_from);
+  for (std::uint32_t row = 0; row < lattice.rows; ++row) {
+    const std::uint32_t* const of_row = firsts + std::uint64_t{row} * lattice.columns;
+    for (std::uint32_t column = 0; column < lattice.columns; ++column) {
+      if (of_row[column] == kNotBlocked) continue;
+      cells.bin.push_back(number);
+      cells.j.push_back(j0 + static_cast<std::int32_t>(column));
+      cells.k.push_back(k0 + static_cast<std::int32_t>(row));
+      cells.first_pose.push_back(of_row[column]);
+    }
+  }
+}
+
+namespace {
+
+SectionParameters with_defaults(SectionParameters asked, double metre) {
+  if (!asked.window) asked.window = SectionWindow{-4 * metre, 4 * metre, 0, 6 * metre};
+  if (asked.cell == 0) asked.cell = 0.02 * metre;
+  if (asked.bin == 0) asked.bin = 5 * metre;
+  QueryParameters ignored;
+  ignored.ignore_classes = std::move(asked.ignore_classes);
+  ignored.ignore_boxes = std::move(asked.ignore_boxes);
+  sort_ignored(ignored);
+  asked.ignore_classes = std::move(ignored.ignore_classes);
+  asked.ignore_boxes = std::move(ignored.ignore_boxes);
+  return asked;
+}
+
+/// Throws UsageError for poses whose inverse would change lengths.
+void check_rigid(std::span<const Pose> poses) {
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Stretch stretch = stretch_of(poses[i]);
+    const bool finite = std::ranges::all_of(poses[i].translation,
+                                            [](double value) { return std::isfinite(value); });
+    if (finite && stretch.least >= 1 - kRigidTolerance && stretch.greatest <= 1 + kRigidTolerance) {
+      continue;
+    }
+    throw UsageError("pose " + std::to_string(i) + " stretches lengths by " +
+                     format_brief(stretch.least) + " to " + format_brief(stretch.greatest) +
+                     "; a section is measured in the frame of the load, so expected rotations "
+                     "whose singular values are within 1e-4 of 1, and finite positions");
+  }
+}
+
+/// The ignored points of a section as a query has them.
+QueryParameters ignored_by(const SectionParameters& asked) {
+  QueryParameters query;
+  query.ignore_classes = asked.ignore_classes;
+  query.ignore_boxes = asked.ignore_boxes;
+  return query;
+}
+
+/// One call of find_section(), step by step.
+class Finder {
+ public:
+  Finder(const Store& store, const std::vector<Pose>& path, const SectionParameters& parameters,
+         const std::filesystem::path& output, const SectionOptions& options)
+      : store_(store.reader()),
+        unit_name_(store.length_unit()),
+        path_(path),
+        options_(options),
+        progress_(options_.progress, options_.stop),
+        log_(options_.message, data_.warnings),
+        pending_(output, options.overwrite) {
+    data_.parameters = with_defaults(parameters, metre_of(store_));
+  }
+
+  SectionReport run() {
+    section_lattice(data_.parameters, 0);  // refuses what is asked before anything is computed
+    check_rigid(path_);
+    place_load();
+    describe();
+    warn();
+    if (options_.strict) refuse_warnings(data_.warnings);
+    const Stopwatch searching;
+    if (!load_.poses.empty()) find();
+    report_.search_seconds = searching.seconds();
+    publish();
+    report_.seconds = total_.seconds();
+    return std::move(report_);
+  }
+
+ private:
+  /// The poses of the load, and the poses of the path that they belong to.
+  void place_load() {
+    for (const Message& told : options_.input_warnings) {
+      if (told.severity == Message::Severity::kWarning) data_.warnings.push_back(told);
+    }
+    if (data_.parameters.pivots && !path_.empty()) {
+      std::vector<Message> doubts;
+      load_ = follow({"load", {}, {}, {}}, path_, *data_.parameters.pivots, &doubts);
+      for (Message& doubt : doubts) log_.add(std::move(doubt));
+      check_rigid(load_.poses);
+    } else {
+      load_.poses = path_;
+      load_.path_pose.resize(path_.size());
+      for (std::uint32_t i = 0; i < path_.size(); ++i) load_.path_pose[i] = i;
+    }
+    if (!data_.parameters.between_poses) return;
+    for (std::size_t i = 1; i < load_.path_pose.size(); ++i) {
+      if (load_.path_pose[i] == load_.path_pose[i - 1] + 1) continue;
+      throw UsageError("the load has no pose between poses " +
+                       std::to_string(load_.path_pose[i - 1]) + " and " +
+                       std::to_string(load_.path_pose[i]) +
+                       " of the path, so that its way there is not known: search at poses, or "
+                       "split the path");
+    }
+  }
+
+  void describe() {
+    if (path_.size() >= kNotBlocked) throw UsageError("a path of 2^32 poses or more");
+    SectionMotion motion;
+    if (data_.parameters.between_poses) {
+      motion = section_motion(load_.poses, data_.parameters);
+      data_.motion = {motion.along, motion.across};
+    }
+    lattice_ = section_lattice(data_.parameters, motion.along);
+    data_.rounding =
+        section_rounding(largest_coordinate(store_), load_.poses, data_.parameters, lattice_);
+    data_.environment_points = store_.point_count();
+    data_.poses = path_.size();
+    data_.load_poses = load_.poses.size();
+    data_.crs_wkt = store_.metadata().crs_wkt;
+    data_.length_unit = unit_name_;
+    data_.chainage = chainage_of(path_);
+    data_.environment_hash = store_.metadata().points_hash;
+    data_.trajectory_hash = hash_of_trajectory(path_);
+  }
+
+  /// Warns of what the section may have misread. Nothing of it changes the section.
+  void warn() {
+    for (Message& warning : store_warnings(store_.metadata())) log_.add(std::move(warning));
+    if (path_.empty()) log_.warn("no-poses", "the trajectory has no poses: nothing blocks a load");
+    const QueryParameters ignoring = ignored_by(data_.parameters);
+    const IgnoredPointCounts ignored = count_ignored(store_, ignoring, options_.threads);
+    data_.ignored_points = ignored.points;
+    if (store_.point_count() == 0) {
+      log_.warn("no-points", "the environment has no points: nothing blocks a load");
+      return;
+    }
+    warn_of_ignored(store_, ignoring, ignored, log_);
+    if (load_.poses.empty()) return;
+    warn_of_steps();
+    warn_of_place();
+  }
+
+  void warn_of_place() {
+    const LengthUnit unit = store_.metadata().unit;
+    if (unit == LengthUnit::kDegrees) {
+      log_.warn("degrees", "the environment's coordinates are degrees: lengths mean nothing there");
+      return;
+    }
+    Query load;
+    const SectionWindow& w = *data_.parameters.window;
+    const Box box{{data_.parameters.rear, w.y_from, w.z_from},
+                  {data_.parameters.front, w.y_to, w.z_to}};
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      load.model.vertices.push_back(box.corner(corner));
+    }
+    load.poses = load_.poses;
+    load.radius = data_.parameters.margin;
+    const Question question(store_, unit, load, load_.path_pose, data_.chainage);
+    check_reach(question, PathCover(question), log_);
+    // A load is longer than it is wide, whatever the window is.
+    const double length = std::max(box.hi.x - box.lo.x, metre_of(store_));
+    load.model.vertices.clear();
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      load.model.vertices.push_back(
+          Box{{box.lo.x, -length / 4, 0}, {box.lo.x + length, length / 4, length / 4}}.corner(
+              corner));
+    }
+    check_heading(Question(store_, unit, load, load_.path_pose, data_.chainage),
+                  options_.input_warnings, log_);
+  }
+
+  /// Between the poses of a long step there are places that the load passes at no pose.
+  void warn_of_steps() {
+    const SectionParameters& asked = data_.parameters;
+    const LengthUnit unit = store_.metadata().unit;
+    if (data_.motion && (*data_.motion)[1] > asked.cell) {
+      log_.warn("motion-exceeds-cell",
+                "from a pose to the next the load moves by up to " +
+                    length_text((*data_.motion)[1], unit) + " across, and the cells are " +
+                    length_text(asked.cell, unit) +
+                    ": a check keeps half of that motion as a distance, so it stops loads that "
+                    "pass. Poses that are closer together keep less",
+                {{"along", (*data_.motion)[0]}, {"across", (*data_.motion)[1]}});
+    }
+    const std::vector<double> steps = step_lengths(load_.poses);
+    const double length = lattice_.x_to - lattice_.x_from;
+    const auto longest = std::ranges::max_element(steps);
+    if (asked.between_poses || longest == steps.end() || *longest <= length) return;
+    const auto at = static_cast<std::size_t>(longest - steps.begin());
+    log_.warn("large-steps",
+              "the longest step, from pose " + std::to_string(load_.path_pose[at]) + ", is " +
+                  length_text(*longest, unit) + " and the load is " +
+                  length_text(asked.front - asked.rear, unit) +
+                  " long: what lies between two poses may block nothing",
+              {{"step", *longest}, {"length", length}});
+  }
+
+  /// Throws ResourceError where the maps do not fit the memory.
+  void check_memory(std::size_t bins) {
+    const std::uint64_t of_bin = SectionMaps::bytes_of_bin(lattice_);
+    const std::uint64_t fixed = store_.allocated_bytes() +
+                                2 * path_.size() * (sizeof(Pose) + sizeof(double)) +
+                                2 * load_.poses.size() * sizeof(SectionPoseNode);
+    report_.needed_host_bytes = fixed + bins * of_bin;
+    if (report_.needed_host_bytes <= options_.memory_bytes) return;
+    const std::string sizes = "a section of " + counted(bins, "bin") + " of " +
+                              format_brief(data_.parameters.bin) + " with " +
+                              format_count(lattice_.cells()) + " cells each takes " +
+                              format_size(report_.needed_host_bytes) + " of memory, and " +
+                              format_size(options_.memory_bytes) + " are allowed";
+    throw ResourceError(sizes + coarser_bin(fixed, of_bin), Remedy::kMoreMemory,
+                        static_cast<double>(report_.needed_host_bytes));
+  }
+
+  /// A sentence with a length of bins of which so few are needed that they fit the memory.
+  std::string coarser_bin(std::uint64_t fixed, std::uint64_t of_bin) const {
+    const std::uint64_t most =
+        options_.memory_bytes > fixed ? (options_.memory_bytes - fixed) / of_bin : 0;
+    if (most == 0) return "; larger cells or a smaller window take less";
+    double bin = std::max(data_.parameters.bin, data_.chainage.back() / static_cast<double>(most));
+    bin = std::ceil(bin);
+    while (section_bins(data_.chainage, load_.path_pose, bin).size() > most) {
+      bin = std::ceil(bin * 1.01);
+    }
+    return "; bins of " + format_number(bin) + " fit";
+  }
+
+  void find() {
+    const std::vector<SectionBin> bins =
+        section_bins(data_.chainage, load_.path_pose, data_.parameters.bin);
+    check_memory(bins.size());
+    const SectionPoses poses(load_.poses, load_.path_pose, bins);
+    SectionMaps maps(lattice_, bins.size());
+    const IgnoredPoints ignored(store_, ignored_by(data_.parameters));
+    block_cells(store_, ignored, poses, lattice_, data_.rounding, options_.threads, maps,
+                progress_);
+    for (std::size_t bin = 0; bin < bins.size(); ++bin) {
+      const auto number = static_cast<std::uint32_t>(bins[bin].number);
+      data_.bins.push_back(number);
+      add_cells_of_bin(lattice_, maps.firsts(bin), number, data_.bin_cells);
+    }
+  }
+
+  void publish() {
+    report_.blocked = data_.cells().size();
+    report_.blocked_in_bins = data_.bin_cells.size();
+    report_.bins = data_.bins.size();
+    if (report_.blocked == 0 && data_.environment_points > data_.ignored_points &&
+        !load_.poses.empty()) {
+      log_.warn("nothing-blocked",
+                "no point blocks a cell of the window: it is free, or nothing was scanned where "
+                "the load passes");
+      if (options_.strict) refuse_warnings(data_.warnings);
+    }
+    report_.rounding = data_.rounding;
+    report_.motion = data_.motion;
+    report_.warnings = data_.warnings;
+    write_section(data_, pending_.partial());
+    pending_.publish();
+  }
+
+  const StoreReader& store_;
+  const std::string unit_name_;
+  const std::vector<Pose>& path_;
+  const SectionOptions options_;
+  CallbackProgress progress_;
+  SectionData data_;
+  MessageLog log_;
+  PendingFile pending_;
+  Body load_;
+  SectionLattice lattice_{};
+  SectionReport report_;
+  Stopwatch total_;
+};
+
+}  // namespace
+
+SectionReport find_section(const Store& store, const std::vector<Pose>& path,
+                           const SectionParameters& parameters, const std::filesystem::path& output,
+                           const SectionOptions& options) {
+  return Finder(store, path, parameters, output, options).run();
+}
+
+}  // namespace clearway

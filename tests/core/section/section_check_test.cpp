@@ -1,0 +1,242 @@
+// What follows from the cells of a section: verdicts on outlines, free cells, widths.
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <set>
+
+#include "clearway/error.hpp"
+#include "clearway/section.hpp"
+#include "core/section/section_lattice.hpp"
+#include "core/section/section_tables.hpp"
+#include "support/scenes.hpp"
+
+using namespace clearway;
+using Catch::Contains;
+
+namespace {
+
+/// A section with cells of 0.5, a window of 8 x 5 and bins of 5 along a path of 20 poses, 1 apart.
+SectionData section_of(const std::vector<std::array<int, 4>>& cells) {
+  SectionData data;
+  data.parameters = {.rear = -1,
+                     .front = 1,
+                     .window = SectionWindow{-4, 4, 0, 5},
+                     .cell = 0.5,
+                     .bin = 5,
+                     .margin = 1};
+  data.rounding = 1e-9;
+  data.environment_points = 1000;
+  data.poses = data.load_poses = 20;
+  for (int i = 0; i < 20; ++i) data.chainage.push_back(i);
+  data.bins = {0, 1, 2, 3};
+  for (const auto& [bin, j, k, pose] : cells) {
+    data.bin_cells.bin.push_back(static_cast<std::uint32_t>(bin));
+    data.bin_cells.j.push_back(j);
+    data.bin_cells.k.push_back(k);
+    data.bin_cells.first_pose.push_back(static_cast<std::uint32_t>(pose));
+  }
+  return data;
+}
+
+std::vector<OutlinePoint> box(double y_from, double y_to, double z_from, double z_to) {
+  return {{y_from, z_from}, {y_to, z_from}, {y_to, z_to}, {y_from, z_to}};
+}
+
+}  // namespace
+
+TEST_CASE("a load is stopped by the first cell that is closer than its margin") {
+  // Cells from y = 2 to 2.5, z = 1 to 1.5, and from y = -3 to -2.5, z = 3 to 3.5.
+  const Section section(section_of({{0, 4, 2, 3}, {1, -6, 6, 7}, {2, -6, 6, 11}, {2, 4, 2, 12}}));
+  CHECK(section.cells().size() == 2);
+  const auto verdict = [&](double half, double margin) {
+    return section.check(box(-half, half, 0.1, 3), margin).verdict;
+  };
+  CHECK(verdict(1.9, 0) == SectionVerdict::kPasses);
+  CHECK(verdict(1.9, 0.1 - 1e-8) == SectionVerdict::kPasses);
+  CHECK(verdict(1.9, 0.1) == SectionVerdict::kStopped);
+  CHECK(verdict(2, 0) == SectionVerdict::kStopped);
+  CHECK(verdict(3.5, 0) == SectionVerdict::kStopped);
+
+  const SectionCheck check = section.check(box(-3, 1.95, 0.1, 3), 0.2);
+  REQUIRE(check.stop);
+  CHECK(check.stop->first_pose == 3);
+  CHECK(check.stop->chainage == 3);
+  CHECK(check.stop->cell == std::array<std::int32_t, 2>{4, 2});
+  REQUIRE(check.stops.size() == 3);
+  CHECK(check.stops[1].first_pose == 7);
+  CHECK(check.stops[1].cell == std::array<std::int32_t, 2>{-6, 6});
+  CHECK(check.stops[2].bin == 2);
+  CHECK(check.stops[2].first_pose == 11);
+}
+
+TEST_CASE("of the cells of a pose the lowest is reported, and then the rightmost") {
+  const Section section(section_of({{0, 5, 2, 3}, {0, 0, 3, 2}, {0, 2, 3, 2}, {0, -3, 4, 2}}));
+  const SectionCheck check = section.check(box(-2, 3, 0.6, 3), 0);
+  REQUIRE(check.stop);
+  CHECK(check.stop->first_pose == 2);
+  CHECK(check.stop->cell == std::array<std::int32_t, 2>{0, 3});
+}
+
+TEST_CASE("a load that leaves the window or asks for more than the margin is unknown") {
+  const Section section(section_of({{0, 7, 9, 3}}));
+  const auto check = [&](std::vector<OutlinePoint> outline, double margin) {
+    return section.check(outline, margin);
+  };
+  CHECK(check(box(-4, 1, 0, 3), 0).verdict == SectionVerdict::kPasses);
+  CHECK_THAT(check(box(-4, 1, 0, 3), 0.01).reason, Contains("leaves the window"));
+  CHECK_THAT(check(box(-1, 1, -0.1, 3), 0).reason, Contains("leaves the window"));
+  CHECK(check(box(-1, 1, 1, 3), 1).verdict == SectionVerdict::kPasses);
+  CHECK_THAT(check(box(-1, 1, 1.5, 3), 1.01).reason, Contains("margins up to 1 only"));
+  // What is known to stop a load stops it, even where not all of the load is known.
+  CHECK(check(box(-4, 5, 0, 6), 2).verdict == SectionVerdict::kStopped);
+  CHECK_THROWS_WITH(check(box(-1, 1, 1, 3), -1), Contains("expected 0 or more"));
+  CHECK_THROWS_WITH(check({{0, 0}, {1, 1}}, 0), Contains("corners"));
+  CHECK_THROWS_WITH(check({{0, 0}, {1, 1}, {1, 0}, {0, 1}}, 0), Contains("cross or touch"));
+}
+
+TEST_CASE("a section in doubt lets no load pass") {
+  for (const char* code : {"no-points", "no-poses", "all-ignored", "out-of-reach"}) {
+    SectionData data = section_of({});
+    data.warnings.push_back({Message::Severity::kWarning, code, "text"});
+    const Section section(std::move(data));
+    const SectionCheck check = section.check(box(-1, 1, 1, 3), 0);
+    CHECK(check.verdict == SectionVerdict::kUnknown);
+    CHECK_THAT(check.reason, Contains(code));
+    for (const bool free : section.free_cells(0)) CHECK_FALSE(free);
+  }
+}
+
+TEST_CASE("between poses the motion across is kept as a distance, too") {
+  SectionData data = section_of({{0, 4, 2, 3}});
+  data.motion = {0.3, 0.2};
+  data.parameters.between_poses = true;
+  const Section section(std::move(data));
+  CHECK(section.check(box(-1, 1.85, 0.5, 3), 0).verdict == SectionVerdict::kPasses);
+  CHECK(section.check(box(-1, 1.95, 0.5, 3), 0).verdict == SectionVerdict::kStopped);
+  CHECK(section.check(box(-1, 1, 0.05, 3), 0).verdict == SectionVerdict::kUnknown);
+}
+
+TEST_CASE("an outline's distance to a cell counts its inside, edges and corners") {
+  const Section section(section_of({{0, 0, 4, 3}}));  // y = 0 to 0.5, z = 2 to 2.5
+  const auto stopped = [&](const std::vector<OutlinePoint>& outline, double margin) {
+    return section.check(outline, margin).verdict == SectionVerdict::kStopped;
+  };
+  CHECK(stopped(box(-3, 3, 1, 4), 0));         // the cell is inside
+  CHECK(stopped(box(0.1, 0.2, 2.1, 2.2), 0));  // the load is inside the cell
+  CHECK(stopped(box(-1, 1, 2.2, 2.3), 0));     // they cross
+  const std::vector<OutlinePoint> slant{{1, 1.5}, {1.5, 1.5}, {1.5, 2}};
+  CHECK_FALSE(stopped(slant, 0.7));  // nearest to the corner (0.5, 2): sqrt(0.5) = 0.7071
+  CHECK(stopped(slant, 0.71));
+  const std::vector<OutlinePoint> around{{-1, 1}, {2, 1}, {2, 4}, {1, 4}, {1, 1.6}, {-1, 1.6}};
+  CHECK_FALSE(stopped(around, 0.39));
+  CHECK(stopped(around, 0.41));
+}
+
+TEST_CASE("free cells are those of the definition") {
+  Random random(7);
+  for (int i = 0; i < 200; ++i) {
+    std::set<std::pair<int, int>> blocked;  // (k, j)
+    for (std::uint64_t n = below(random, 12); n > 0; --n) {
+      blocked.insert(
+          {static_cast<int>(below(random, 10)), static_cast<int>(below(random, 16)) - 8});
+    }
+    std::vector<std::array<int, 4>> cells;
+    for (const auto& [k, j] : blocked) cells.push_back({0, j, k, 1});
+    const Section section(section_of(cells));
+    const double margin =
+        below(random, 3) == 0 ? 0.5 * static_cast<double>(below(random, 3)) : uniform(random, 0, 1);
+    const double g = 0.5;
+    const std::vector<bool> free = section.free_cells(margin);
+    REQUIRE(free.size() == 160);
+    for (int k = 0; k < 10; ++k) {
+      for (int j = -8; j < 8; ++j) {
+        bool expected = blocked.count({k, j}) == 0;
+        for (const auto& [bk, bj] : blocked) {
+          const double a = std::max(std::abs(bj - j) - 1, 0), b = std::max(std::abs(bk - k) - 1, 0);
+          if ((a * a + b * b) * (g * g) < margin * margin) expected = false;
+        }
+        const int n = std::min({j + 8, 7 - j, k, 9 - k});
+        if (!(n * g >= margin)) expected = false;
+        CHECK(free[static_cast<std::size_t>(16 * k + j + 8)] == expected);
+      }
+    }
+  }
+}
+
+TEST_CASE("bands have the widths to the nearest blocked cells") {
+  const Section section(
+      section_of({{0, 4, 2, 3}, {1, -6, 2, 7}, {1, 3, 3, 8}, {2, -6, 2, 11}, {3, 3, 3, 15}}));
+  const auto bands = section_bands(section, {.band = 1, .base = 0});
+  REQUIRE(bands.size() == 5);
+  CHECK_FALSE(bands[0].left);
+  CHECK_FALSE(bands[0].right);
+  CHECK_FALSE(symmetric_width(section.data(), bands[0]));
+  REQUIRE(bands[1].left);
+  CHECK(bands[1].z_from == 1);
+  CHECK(bands[1].z_to == 2);
+  CHECK(bands[1].left->width == 1.5);
+  CHECK(bands[1].left->first_pose == 8);
+  REQUIRE(bands[1].right);
+  CHECK(bands[1].right->width == 2.5);
+  CHECK(bands[1].right->first_pose == 7);
+  CHECK(*symmetric_width(section.data(), bands[1]) == Approx(3 - 2e-9).epsilon(0).margin(1e-12));
+
+  const auto boxes = section_boxes(section, {.band = 1, .base = 0});
+  CHECK_FALSE(boxes[0].left);
+  for (std::size_t i = 1; i < 5; ++i) {
+    CHECK(boxes[i].left->width == 1.5);
+    CHECK(boxes[i].right->width == 2.5);
+    CHECK(boxes[i].z_from == 0);
+  }
+
+  const auto stations = section_stations(section, {.band = 0.5, .base = 1});
+  REQUIRE(stations.size() == 4);
+  CHECK(stations[0].bands.size() == 8);
+  CHECK(stations[0].bands[0].left->width == 2);
+  CHECK_FALSE(stations[0].bands[1].left);
+  CHECK(stations[3].bands[1].left->first_pose == 15);
+  CHECK_FALSE(stations[3].bands[0].right);
+}
+
+TEST_CASE("a band of cells does not reach into the next row by rounding") {
+  SectionData data = section_of({{0, 3, 15, 1}});
+  data.parameters.cell = 0.02;
+  data.parameters.window = SectionWindow{-1, 1, 0, 1};
+  const Section section(std::move(data));
+  const auto bands = section_bands(section, {.band = 0.1});
+  REQUIRE(bands.size() == 10);
+  for (std::size_t i = 0; i < 10; ++i) CHECK(bands[i].left.has_value() == (i == 3));
+}
+
+TEST_CASE("widths need the middle and a band in the window") {
+  SectionData data = section_of({});
+  data.parameters.window = SectionWindow{0.5, 4, 0, 5};
+  CHECK_THROWS_WITH(section_bands(Section(data), {}), Contains("lacks the middle"));
+  const Section section(section_of({}));
+  CHECK_THROWS_WITH(section_bands(section, {.band = 0.1, .base = 5}), Contains("no band"));
+  CHECK_THROWS_WITH(section_bands(section, {.band = -1}), Contains("above 0"));
+  CHECK(section_bands(section, {.band = 2, .base = -1}).size() == 2);  // from 1 to 3 and to 5
+}
+
+TEST_CASE("the largest outline passes, and no wider one does") {
+  Random random(11);
+  for (int i = 0; i < 100; ++i) {
+    std::set<std::array<int, 3>> blocked;  // bin, k, j
+    for (std::uint64_t n = below(random, 30); n > 0; --n) {
+      blocked.insert({static_cast<int>(below(random, 4)), static_cast<int>(below(random, 10)),
+                      static_cast<int>(below(random, 16)) - 8});
+    }
+    std::vector<std::array<int, 4>> cells;
+    for (const auto& [bin, k, j] : blocked) cells.push_back({bin, j, k, 5 * bin});
+    const Section section(section_of(cells));
+    std::vector<OutlinePoint> outline;
+    try {
+      outline = largest_outline(section, {.band = 0.5, .base = 0});
+    } catch (const UsageError& error) {
+      CHECK_THAT(error.what(), Contains("the middle is blocked"));
+      continue;
+    }
+    CHECK(section.check(outline, 0).verdict == SectionVerdict::kPasses);
+    for (const OutlinePoint& corner : outline) CHECK(std::abs(corner.y) < 4);
+  }
+}

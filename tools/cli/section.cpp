@@ -1,0 +1,408 @@
+#include "clearway/section.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "clearway/error.hpp"
+#include "clearway/outline.hpp"
+#include "clearway/store.hpp"
+#include "clearway/trajectory.hpp"
+#include "cli/commands.hpp"
+#include "cli/ignored/ignored_options.hpp"
+#include "cli/input_roles.hpp"
+#include "cli/support/console.hpp"
+#include "cli/support/lengths.hpp"
+#include "cli/support/options.hpp"
+#include "cli/support/program.hpp"
+#include "cli/support/program_json.hpp"
+#include "cli/support/trajectory_options.hpp"
+#include "core/util/format.hpp"
+#include "io/files/pending_file.hpp"
+#include "search/threads.hpp"
+
+namespace clearway::tool {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct FindCommand {
+  std::filesystem::path environment, trajectory, output;
+  std::optional<std::array<double, 2>> x_range, pivots;
+  std::optional<std::array<double, 4>> window;
+  SectionParameters asked;
+  SectionOptions search;
+  LengthOptions lengths;
+  TrajectoryOptions trajectory_options;
+  bool json = false;
+};
+
+ordered_json motion_json(const std::optional<std::array<double, 2>>& motion) {
+  return motion ? ordered_json(*motion) : ordered_json(nullptr);
+}
+
+ordered_json json_of(const SectionReport& report, const FindCommand& options) {
+  ordered_json out = program_json({{"env", options.environment},
+                                   {"trajectory", options.trajectory},
+                                   {"output", options.output}});
+  out["blocked"] = report.blocked;
+  out["blocked_in_bins"] = report.blocked_in_bins;
+  out["bins"] = report.bins;
+  out["rounding"] = report.rounding;
+  out["motion"] = motion_json(report.motion);
+  out["needed_host_bytes"] = report.needed_host_bytes;
+  out["seconds"] = {{"total", report.seconds}, {"search", report.search_seconds}};
+  out["warnings"] = warnings_json(report.warnings);
+  return out;
+}
+
+SectionParameters parameters_of(const FindCommand& options) {
+  SectionParameters asked = options.asked;
+  asked.rear = (*options.x_range)[0];
+  asked.front = (*options.x_range)[1];
+  if (options.window) {
+    const auto& [y_from, y_to, z_from, z_to] = *options.window;
+    asked.window = SectionWindow{y_from, y_to, z_from, z_to};
+  }
+  if (options.pivots) asked.pivots = BodyPivots{(*options.pivots)[0], (*options.pivots)[1]};
+  return asked;
+}
+
+std::vector<Pose> read_path(FindCommand& options, const Store& store) {
+  std::vector<Message>& told = options.search.input_warnings;
+  options.trajectory_options.default_crs = store.crs_wkt();
+  const std::size_t before = told.size();
+  std::vector<Pose> path = read_trajectory(options.trajectory, options.trajectory_options, &told);
+  if (options.lengths.all_have_units() &&
+      names_unit(options.trajectory_options.metres_per_unit,
+                 std::span<const Message>(told).subspan(before))) {
+    if (auto note = note_on_feet(store)) told.push_back(std::move(*note));
+  }
+  for (const Message& message : told) log_message(message);
+  return path;
+}
+
+void run_find(FindCommand& options) {
+  ConsoleProgress progress;
+  watch_call(options.search, progress);
+  refuse_overwriting(options.output, {options.environment, options.trajectory});
+  check_is_trajectory(options.trajectory);
+  check_is_store(options.environment);
+  const Store store(options.environment);
+  if (auto warning = options.lengths.convert_for(store)) {
+    options.search.input_warnings.push_back(std::move(*warning));
+  }
+  set_environment_unit(store, options.trajectory_options);
+  const std::vector<Pose> path =
+      in_threads(options.search.threads, [&] { return read_path(options, store); });
+  const SectionReport report =
+      find_section(store, path, parameters_of(options), options.output, options.search);
+  const std::string unit = symbol_of_unit(store.length_unit());
+  if (report.motion) {
+    spdlog::info("from a pose to the next the load moves by up to {} {} along and {} {} across",
+                 format_brief((*report.motion)[0]), unit, format_brief((*report.motion)[1]), unit);
+  }
+  const std::string doubts =
+      report.warnings.empty() ? "" : ", but see the " + counted(report.warnings.size(), "warning");
+  const std::string sentence =
+      fmt::format("{} of the cross-section {} blocked somewhere on the path, in {} of it{}",
+                  counted(report.blocked, "cell"), report.blocked == 1 ? "is" : "are",
+                  counted(report.bins, "stretch", "stretches"), doubts);
+  spdlog::info("{}: {}; {:.2f} s", options.output.string(), sentence, report.seconds);
+  print(options.json ? text_of_json(json_of(report, options)) : sentence + "\n");
+}
+
+void add_question(CLI::App& command, FindCommand& options) {
+  const GroupScope group(command, OptionGroup::kAsked);
+  options.lengths
+      .add(command, "--x-range", options.x_range,
+           "Rear and front of the load along the vehicle, from its origin")
+      ->group(title_of(OptionGroup::kInputs))
+      ->type_name("REAR,FRONT")
+      ->required();
+  options.lengths
+      .add(command, "--pivots", options.pivots,
+           "Two places of the load lie on the path, so many metres ahead or behind; "
+           "without it the load has the poses of the path")
+      ->type_name("FRONT,REAR");
+  options.lengths
+      .add(command, "--window", options.window,
+           "The part of the cross-section: y to the left from and to, z up from and to (default: "
+           "-4,4,0,6 m)")
+      ->type_name("Y0,Y1,Z0,Z1");
+  options.lengths.add(command, "--cell", options.asked.cell, "Side of a cell (default: 0.02 m)");
+  options.lengths.add(command, "--bin", options.asked.bin,
+                      "Length of the stretches of the path that are told apart (default: 5 m)");
+  options.lengths.add(command, "--margin", options.asked.margin,
+                      "The greatest margin that clearway section check may ask for (default: 0)",
+                      LengthRange::kFromZero);
+  command.add_flag("--between-poses", options.asked.between_poses,
+                   "Count the way from each pose to the next, too: the load grows by its motion");
+}
+
+void add_ignored(CLI::App& command, FindCommand& options) {
+  const GroupScope group(command, OptionGroup::kIgnored);
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--ignore-class",
+          [&options](const std::vector<std::string>& lists) {
+            options.asked.ignore_classes = parse_classes(lists);
+          },
+          "Leave out the points of these classes, for example 2,7 or 3-5")
+      ->allow_extra_args(false)
+      ->type_name("N,...");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--ignore-box",
+          [&options](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) {
+              options.asked.ignore_boxes.push_back(parse_box(text));
+            }
+          },
+          "Leave out the points in this box of the environment: least x, y and z, then greatest")
+      ->allow_extra_args(false)
+      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+}
+
+void add_find(CLI::App& section) {
+  const auto options = std::make_shared<FindCommand>();
+  CLI::App* command = section.add_subcommand(
+      "find", "Find which cells of the cross-section are blocked for a load of this length");
+  command->add_option("--env", options->environment, "The environment: a store of clearway convert")
+      ->type_name("FILE")
+      ->required();
+  command->add_option("--trajectory", options->trajectory, kTrajectoryHelp)
+      ->type_name("FILE")
+      ->required();
+  command->add_option("-o,--output", options->output, "The section, an HDF5 file")
+      ->type_name("FILE")
+      ->required();
+  add_question(*command, *options);
+  add_ignored(*command, *options);
+  add_trajectory_options(*command, options->trajectory_options, options->lengths);
+  add_threads_option(*command, options->search.threads);
+  add_memory_option(*command, options->search.memory_bytes);
+  command->add_flag("--force", options->search.overwrite, "Overwrite an existing section");
+  command->add_flag("--strict", options->search.strict,
+                    "Treat warnings as errors: no section is written (exit code 3)");
+  command->add_flag("--json", options->json, "Print one JSON object");
+  command->footer(
+      "The load may have any outline; only its rear and front are given here. Every point that it\n"
+      "passes blocks a cell, and clearway section check and export answer from the file.\n"
+      "A part of the scan without points looks free: clearway run --seen tells what was scanned.\n"
+      "Example: clearway section find --env site.h5 --trajectory path.txt --x-range=-15,15 "
+      "--pivots 10,-10 -o section.h5");
+  command->callback(
+      [options] { run_stoppable(options->output, kStartsAgain, [&] { run_find(*options); }); });
+}
+
+struct CheckCommand {
+  std::filesystem::path section, outline;
+  OutlineOptions how;
+  double margin = 0;
+  LengthOptions lengths;
+  bool json = false;
+};
+
+ordered_json stop_json(const SectionStop& stop) {
+  return {{"bin", stop.bin},
+          {"first_pose", stop.first_pose},
+          {"chainage", stop.chainage},
+          {"cell", stop.cell}};
+}
+
+ordered_json json_of(const SectionCheck& check, const Section& section,
+                     const CheckCommand& options) {
+  ordered_json out = program_json({{"section", options.section}, {"outline", options.outline}});
+  out["margin"] = options.margin;
+  out["verdict"] = name_of(check.verdict);
+  out["reason"] = check.reason.empty() ? ordered_json(nullptr) : ordered_json(check.reason);
+  out["first_pose"] = out["chainage"] = out["cell"] = nullptr;
+  if (check.stop) {
+    out["first_pose"] = check.stop->first_pose;
+    out["chainage"] = check.stop->chainage;
+    out["cell"] = check.stop->cell;
+  }
+  auto stops = ordered_json::array();
+  for (const SectionStop& stop : check.stops) stops.push_back(stop_json(stop));
+  out["stops"] = std::move(stops);
+  out["warnings"] = warnings_json(section.data().warnings);
+  return out;
+}
+
+/// Where a cell is, such as "1.24 m to the left at a height of 3.1 m".
+std::string place_text(const SectionStop& stop, double cell, const std::string& unit) {
+  const bool left = stop.cell[0] >= 0;
+  const double j = stop.cell[0];
+  const double aside = cell * (left ? j : -j - 1);
+  return fmt::format("{} {} to the {} at a height of {} {}", format_brief(aside), unit,
+                     left ? "left" : "right", format_brief(cell * stop.cell[1]), unit);
+}
+
+std::string sentence_of(const SectionCheck& check, const Section& section,
+                        const CheckCommand& options) {
+  const std::string unit = symbol_of_unit(section.data().length_unit);
+  const std::size_t warned = section.data().warnings.size();
+  const std::string doubts = warned == 0 ? "" : ". The section has " + counted(warned, "warning");
+  const std::string margin =
+      options.margin > 0 ? " with a margin of " + format_brief(options.margin) + " " + unit : "";
+  switch (check.verdict) {
+    case SectionVerdict::kPasses:
+      return "passes: the load passes everywhere on the path" + margin + doubts;
+    case SectionVerdict::kStopped:
+      return fmt::format(
+          "stopped: the load is stopped{} at pose {}, {} {} along the path, {}, and "
+          "in {} in all{}",
+          margin, check.stop->first_pose, format_brief(check.stop->chainage), unit,
+          place_text(*check.stop, section.data().parameters.cell, unit),
+          counted(check.stops.size(), "stretch", "stretches"), doubts);
+    case SectionVerdict::kUnknown:
+      break;
+  }
+  return "unknown: " + check.reason + doubts;
+}
+
+int run_check(const CheckCommand& options) {
+  const Section section(options.section);
+  const double metres =
+      options.lengths.convert_for(options.section.string(), section.data().crs_wkt);
+  std::vector<OutlinePoint> outline = read_outline(options.outline, options.how);
+  if (options.how.unit.is_known()) {
+    for (OutlinePoint& p : outline) p = {p.y / metres, p.z / metres};
+  }
+  SectionCheck check;
+  try {
+    check = section.check(outline, options.margin);
+  } catch (const UsageError& error) {
+    throw UsageError(options.outline.string() + ": " + error.what());
+  }
+  for (const Message& warning : section.data().warnings) log_message(warning);
+  const std::string sentence = sentence_of(check, section, options);
+  if (options.json) {
+    spdlog::info("{}", sentence);
+    print(text_of_json(json_of(check, section, options)));
+  } else {
+    print(sentence + "\n");
+  }
+  return check.verdict == SectionVerdict::kPasses    ? kDone
+         : check.verdict == SectionVerdict::kStopped ? 1
+                                                     : 6;
+}
+
+void add_check(CLI::App& section, int& exit_code) {
+  const auto options = std::make_shared<CheckCommand>();
+  CLI::App* command = section.add_subcommand(
+      "check", "Say whether a load with this outline passes, and where it is stopped");
+  command->add_option("SECTION", options->section, "Section of clearway section find")
+      ->type_name("FILE")
+      ->required();
+  command
+      ->add_option("--outline", options->outline,
+                   "The outline of the load as text: y,z of each corner in a line, or with "
+                   "--mirror height,half_width")
+      ->type_name("FILE")
+      ->required();
+  options->lengths.add(*command, "--margin", options->margin,
+                       "Distance to keep on all sides; at most that of the section (default: 0)",
+                       LengthRange::kFromZero);
+  command->add_flag("--mirror", options->how.mirror,
+                    "The file has height,half_width of the one half of a symmetric outline");
+  add_model_unit(*command, "--unit", options->how.unit);
+  command->add_flag("--json", options->json, "Print one JSON object");
+  command->footer(
+      "Exit code 0: the load passes.\n"
+      "Exit code 1: it is stopped.\n"
+      "Exit code 6: unknown, because the load with its margin leaves the window, the margin "
+      "exceeds\n"
+      "that of the section, or the section is in doubt.\n"
+      "Example: clearway section check section.h5 --outline load.csv --margin 0.1");
+  command->callback([options, &exit_code] { exit_code = run_check(*options); });
+}
+
+struct ExportCommand {
+  std::filesystem::path section, output;
+  std::optional<SectionTable> table;
+  bool outline = false;
+  SectionHeights heights;
+  LengthOptions lengths;
+  bool force = false;
+};
+
+void run_export(ExportCommand& options) {
+  refuse_overwriting(options.output, {options.section});
+  const Section section(options.section);
+  options.lengths.convert_for(options.section.string(), section.data().crs_wkt);
+  for (const Message& warning : section.data().warnings) log_message(warning);
+  if (!options.table) {
+    export_section_outline(section, options.output, options.heights, options.force);
+  } else {
+    export_section(section, *options.table, options.output, options.heights, options.force);
+  }
+}
+
+void add_export_of_section(CLI::App& section) {
+  constexpr std::array kTables{SectionTable::kBands, SectionTable::kStations, SectionTable::kBoxes,
+                               SectionTable::kCells, SectionTable::kBinCells};
+  const auto options = std::make_shared<ExportCommand>();
+  CLI::App* command = section.add_subcommand(
+      "export", "Write the widths of a section as a table, or the largest outline as DXF");
+  command->add_option("SECTION", options->section, "Section of clearway section find")
+      ->type_name("FILE")
+      ->required();
+  command->add_option("-o,--output", options->output, "The table, a CSV file; or the outline, DXF")
+      ->type_name("FILE")
+      ->required();
+  std::vector<std::string> names;
+  for (const SectionTable table : kTables) names.emplace_back(name_of(table));
+  CLI::Option* table =
+      command
+          ->add_option_function<std::string>(
+              "--table",
+              [options, kTables](const std::string& name) {
+                for (const SectionTable known : kTables) {
+                  if (name == name_of(known)) options->table = known;
+                }
+              },
+              "bands: widths for each height. stations: and for each stretch of the path. boxes: "
+              "widths from the base up to each height. cells, bin-cells: the blocked cells")
+          ->type_name("NAME")
+          ->check(CLI::IsMember(names));
+  command
+      ->add_flag("--outline", options->outline,
+                 "Write the outline of the largest load that stands on the base, as DXF")
+      ->excludes(table);
+  options->lengths.add(*command, "--band", options->heights.band,
+                       "Height of a band (default: 0.1 m)");
+  options->lengths.add(*command, "--base", options->heights.base,
+                       "Height at which the first band begins (default: 0)", LengthRange::kAny);
+  command->add_flag("--force", options->force, "Overwrite an existing output");
+  command->footer(
+      "Widths end at the border of the nearest blocked cell, so a load has to be narrower.\n"
+      "Example: clearway section export section.h5 --table bands --base 0.5 -o bands.csv");
+  command->callback([options] {
+    if (!options->table && !options->outline) {
+      throw UsageError(
+          "expected --table with the name of a table, for example --table bands, or --outline");
+    }
+    run_stoppable(options->output, kStartsAgain, [&] { run_export(*options); });
+  });
+}
+
+}  // namespace
+
+void add_section(CLI::App& program, int& exit_code) {
+  CLI::App* command = program.add_subcommand(
+      "section", "Find the largest load that passes on a path, and where a load is stopped");
+  command->require_subcommand(1);
+  add_find(*command);
+  add_check(*command, exit_code);
+  add_export_of_section(*command);
+}
+
+}  // namespace clearway::tool
