@@ -245,6 +245,13 @@ std::string place_text(const SectionStop& stop, double cell, const std::string& 
                      left ? "left" : "right", format_brief(cell * stop.cell[1]), unit);
 }
 
+/// On how much of the path the load was looked at.
+std::string extent_text(const SectionData& section) {
+  if (section.load_poses == section.poses) return "everywhere on the path";
+  return "at " + format_count(section.load_poses) + " of " + counted(section.poses, "pose") +
+         " of the path, as its pivots are off the path at the others";
+}
+
 std::string sentence_of(const SectionCheck& check, const Section& section,
                         const CheckCommand& options) {
   const std::string unit = symbol_of_unit(section.data().length_unit);
@@ -254,7 +261,7 @@ std::string sentence_of(const SectionCheck& check, const Section& section,
       options.margin > 0 ? " with a margin of " + format_brief(options.margin) + " " + unit : "";
   switch (check.verdict) {
     case SectionVerdict::kPasses:
-      return "passes: the load passes everywhere on the path" + margin + doubts;
+      return "passes: the load passes " + extent_text(section.data()) + margin + doubts;
     case SectionVerdict::kStopped:
       return fmt::format(
           "stopped: the load is stopped{} at pose {}, {} {} along the path, {}, and "
