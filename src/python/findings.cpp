@@ -204,9 +204,9 @@ void add_find_conflicts(py::module_& module) {
       "result"_a, "poses"_a, py::kw_only(), "gap"_a = ConflictOptions{}.gap,
       "min_points"_a = ConflictOptions{}.min_points, "split"_a = ConflictOptions{}.split,
       "chainage_start"_a = 0.0, "forward"_a = "+x", "up"_a = "+z", "model_box"_a = py::none(),
-      "model"_a = py::none(), "bodies"_a = py::tuple(),
-      "labels"_a = py::none(), "memory_bytes"_a = ConflictOptions{}.memory_bytes, "threads"_a = 0,
-      "progress"_a = py::none(), "stop"_a = py::none(),
+      "model"_a = py::none(), "bodies"_a = py::tuple(), "labels"_a = py::none(),
+      "memory_bytes"_a = ConflictOptions{}.memory_bytes, "threads"_a = 0, "progress"_a = py::none(),
+      "stop"_a = py::none(),
       R"(find_conflicts(result, poses, *, gap=0.3, min_points=10, split=25.0, chainage_start=0.0, forward='+x', up='+z', model_box=None, model=None, bodies=(), labels=None, memory_bytes=4294967296, threads=0, progress=None, stop=None)
 --
 
@@ -312,8 +312,8 @@ void add_station_table(py::module_& module) {
       },
       "result"_a, "poses"_a, py::kw_only(), "every"_a = StationOptions{}.every,
       "chainage_start"_a = 0.0, "forward"_a = "+x", "up"_a = "+z", "model_box"_a = py::none(),
-      "bodies"_a = py::tuple(), "labels"_a = py::none(), "threads"_a = 0,
-      "progress"_a = py::none(), "stop"_a = py::none(),
+      "bodies"_a = py::tuple(), "labels"_a = py::none(), "threads"_a = 0, "progress"_a = py::none(),
+      "stop"_a = py::none(),
       R"(station_table(result, poses, *, every=5.0, chainage_start=0.0, forward='+x', up='+z', model_box=None, bodies=(), labels=None, threads=0, progress=None, stop=None)
 --
 

@@ -73,9 +73,9 @@ void add_write_report(py::module_& module) {
          std::optional<double> model_above, std::uint64_t model_left_out,
          std::vector<double> classes, std::uint64_t max_points, double gap,
          std::uint64_t min_points, double split, double chainage_start, const std::string& forward,
-         const std::string& up, std::uint64_t memory_bytes, int threads, const PoseLabels* labels, double every,
-         const py::object& warnings, const std::vector<PlacedBody>& bodies, bool overwrite,
-         py::object progress, py::object stop) {
+         const std::string& up, std::uint64_t memory_bytes, int threads, const PoseLabels* labels,
+         double every, const py::object& warnings, const std::vector<PlacedBody>& bodies,
+         bool overwrite, py::object progress, py::object stop) {
         ReportOptions options{std::move(title),
                               std::move(project),
                               std::move(client),
@@ -115,8 +115,7 @@ void add_write_report(py::module_& module) {
       "min_points"_a = ConflictOptions{}.min_points, "split"_a = ConflictOptions{}.split,
       "chainage_start"_a = 0.0, "forward"_a = "+x", "up"_a = "+z",
       "memory_bytes"_a = ConflictOptions{}.memory_bytes, "threads"_a = 0, "labels"_a = py::none(),
-      "every"_a = 0.0,
-      "warnings"_a = py::tuple(), "bodies"_a = py::tuple(), "overwrite"_a = false,
+      "every"_a = 0.0, "warnings"_a = py::tuple(), "bodies"_a = py::tuple(), "overwrite"_a = false,
       "progress"_a = py::none(), "stop"_a = py::none(), kWriteReport);
 }
 

@@ -8,8 +8,8 @@
 
 #include "clearway/trajectory.hpp"
 #include "cli/commands.hpp"
-#include "cli/support/ignored_options.hpp"
 #include "cli/support/console.hpp"
+#include "cli/support/ignored_options.hpp"
 #include "cli/support/program_json.hpp"
 #include "cli/verdict.hpp"
 #include "core/geometry/point_box.hpp"

@@ -20,8 +20,8 @@ Mesh front_loader();
 /// height of the rails' tops.
 Mesh train_wagon();
 
-/// A lorry with a high load, 12 m long, 2.9 m wide and 4 m high, without its wheels. Its origin lies
-/// on the ground, amid its length.
+/// A lorry with a high load, 12 m long, 2.9 m wide and 4 m high, without its wheels. Its origin
+/// lies on the ground, amid its length.
 Mesh lorry();
 
 }  // namespace clearway::scene
