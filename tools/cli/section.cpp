@@ -302,7 +302,7 @@ int run_check(const CheckCommand& options) {
                                                      : 6;
 }
 
-void add_check(CLI::App& section, int& exit_code) {
+void add_section_check(CLI::App& section, int& exit_code) {
   const auto options = std::make_shared<CheckCommand>();
   CLI::App* command = section.add_subcommand(
       "check", "Say whether a load with this outline passes, and where it is stopped");
@@ -408,7 +408,7 @@ void add_section(CLI::App& program, int& exit_code) {
       "section", "Find the largest load that passes on a path, and where a load is stopped");
   command->require_subcommand(1);
   add_find(*command);
-  add_check(*command, exit_code);
+  add_section_check(*command, exit_code);
   add_export_of_section(*command);
 }
 
