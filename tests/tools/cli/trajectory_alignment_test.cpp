@@ -1,5 +1,4 @@
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -150,7 +149,7 @@ TEST_CASE("trajectory alignment warns of a store in another coordinate system") 
   CHECK(missing.exit_code == 4);
 }
 
-TEST_CASE("poses along 14 km are made in time") {
+TEST_CASE("poses are made along 14 km") {
   const Track track;
   LandFile file;
   file.attributes = "name=\"a\" staStart=\"0\"";
@@ -166,9 +165,6 @@ TEST_CASE("poses along 14 km are made in time") {
       "<Profile><ProfAlign name=\"p\"><PVI>0 10</PVI><ParaCurve length=\"900\">7000 "
       "12</ParaCurve><PVI>14000 10</PVI></ProfAlign></Profile>";
   put_bytes(track.input, file.text());
-  const auto start = std::chrono::steady_clock::now();
   REQUIRE(track.make("").exit_code == 0);
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   CHECK(read_trajectory(track.folder / "out.csv").size() == 140'001);
-  CHECK(took.count() < 20);  // 0.3 s on an idle core; sanitizers and other tests take their part
 }
