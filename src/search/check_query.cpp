@@ -18,9 +18,10 @@
 
 namespace clearway {
 
+double metre_in_units_of(double metres) { return metres > 0 ? 1 / metres : 1; }
+
 double metre_of(const StoreReader& store) {
-  const double metres = metres_of(store.metadata().unit);
-  return metres > 0 ? 1 / metres : 1;
+  return metre_in_units_of(metres_of(store.metadata().unit));
 }
 
 namespace {

@@ -9,6 +9,9 @@ class StoreReader;
 /// The length of a metre in the store's unit; 1 where the unit is unknown or is no length.
 double metre_of(const StoreReader& store);
 
+/// The length of a metre in units of so many metres; 1 where they are not known, which is 0.
+double metre_in_units_of(double metres);
+
 /// The engine that searches with these options, where kAuto stands for kSweep: kSweep, kGrid or
 /// kKdtree.
 Engine chosen_engine(const SearchOptions& options);

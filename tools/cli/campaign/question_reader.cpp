@@ -104,7 +104,7 @@ campaign::RunFacts QuestionReader::facts_of(const PlannedRun& run) {
   static_cast<QueryParameters&>(header) = options.query;
   header.float_precision = options.search.float_precision;
   sort_ignored(header);
-  choose_gap(header, store.metres > 0 ? 1 / store.metres : 1);
+  choose_gap(header, metre_in_units_of(store.metres));
   if (!header.ignore_classes.empty() && header.classes_hash == 0) {
     throw InputError(file_.string() + ": query.ignore_classes: the points of " +
                      run.environment.file.string() + " have no classes");
