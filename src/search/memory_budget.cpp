@@ -64,7 +64,7 @@ PageBudget::PageBudget(const PackedCloud& cloud, const Query& asked, const Query
       least_write_bytes_(write_bytes),
       ignored_(cloud, asked, search),
       masked_(asked.ignores_points()),
-      trees_(kind.whose_trees(searched), kind.needs().threads - kind.needs().waiting_threads),
+      trees_(kind.trees_of(kind.whose_trees(searched))),
       building_bytes_(tree_building_bytes(asked)),
       kept_bytes_(program_bytes(kind.needs().threads) + input_bytes(cloud, asked) + thinned_bytes +
                   (write_bytes ? search_result_bytes(cloud, asked) : 0)) {}

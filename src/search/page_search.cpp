@@ -45,7 +45,9 @@ Found search_kdtree(const StoreReader& store, const Query& query, const ShardCel
   KdTreeStatistics counted;
   HitSet hits = run_kdtree(store, query, how, progress, &counted);
   report.seconds.compute = report.seconds.search = compute.seconds();
-  return {{std::move(hits), ClearanceSet(), {}, counted.ignored_points},
+  return {{.hits = std::move(hits),
+           .clearances = ClearanceSet(),
+           .ignored_points = counted.ignored_points},
           options.memory_bytes - kept - result};
 }
 
@@ -92,6 +94,19 @@ void report_stages(const StageTimes& stages, SearchSeconds& seconds) {
   seconds.search = stages.total;
 }
 
+/// The threads that pay: fewer than the kind has where there is little to search on the CPU,
+/// because to wake another thread takes as long as a few thousand points.
+int useful_threads(const PackedCloud& cloud, const Query& query,
+                   std::span<const PlannedCell> cells, const PageEngineNeeds& needs) {
+  constexpr std::uint64_t kPointsOfThread = std::uint64_t{1} << 14, kMostPoses = 64;
+  if (needs.on_gpu) return needs.threads;
+  std::uint64_t points = 0;
+  for (const PlannedCell& cell : cells) points += cloud.cells()[cell.cell].count;
+  const std::uint64_t poses = std::clamp<std::uint64_t>(query.poses.size(), 1, kMostPoses);
+  return static_cast<int>(std::clamp<std::uint64_t>(
+      points * poses / kPointsOfThread, 1, static_cast<std::uint64_t>(needs.threads)));
+}
+
 /// Begins to take the engines down, and waits until that is done where memory is too scarce to
 /// write the result at the same time.
 Found ended(const StoreReader& store, const PageEngineKind& kind, PageEngines engines, Found found,
@@ -108,9 +123,8 @@ Found ended(const StoreReader& store, const PageEngineKind& kind, PageEngines en
 }  // namespace
 
 Found search_pages(const StoreReader& store, const Query& query, std::uint64_t memory_bytes,
-                   PageEngineKind& kind, const ShardCells* only,
-                   const std::function<SearchJournal*()>& open_journal, Progress& progress,
-                   SearchReport& report, const MessageLog& log) {
+                   PageEngineKind& kind, const ShardCells* only, const SearchSteps& steps,
+                   Progress& progress, SearchReport& report, const MessageLog& log) {
   const SearchedQuery searched(query, report, log);
   throw_if_stopped(progress);
   PageBudget budget(store, query, searched.get(), searched.allocated_bytes(), memory_bytes, kind,
@@ -119,10 +133,11 @@ Found search_pages(const StoreReader& store, const Query& query, std::uint64_t m
   report_plan(budget, kind, report, log);
 
   throw_if_stopped(progress);
+  if (steps.planned) steps.planned(budget.needed_bytes());
   const Stopwatch making;
   PageEngines engines = kind.make(budget.layout());
   report.seconds.engine = making.seconds();
-  SearchJournal* const journal = open_journal();
+  SearchJournal* const journal = steps.open_journal ? steps.open_journal() : nullptr;
   std::vector<PlannedCell>& cells = budget.cells();
   if (journal != nullptr) {
     std::erase_if(cells,
@@ -137,8 +152,9 @@ Found search_pages(const StoreReader& store, const Query& query, std::uint64_t m
     lanes.push_back(engine.get());
   }
   StageTimes stages;
+  const int threads = useful_threads(store, query, cells, kind.needs());
   SearchResult result =
-      run_pages(store, cells, pages, lanes, query, kind.needs().threads, progress, stages, journal);
+      run_pages(store, cells, pages, lanes, query, threads, progress, stages, journal);
   report_stages(stages, report.seconds);
   kind.report_search({lanes.data(), lanes.size()}, report, log);
   return ended(store, kind, std::move(engines), {std::move(result), budget.write_bytes()},

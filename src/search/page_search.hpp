@@ -22,14 +22,20 @@ struct Found {
   EngineEnd engine_end = {};
 };
 
+/// What search_pages() asks its caller for; either may be empty.
+struct SearchSteps {
+  /// Called with the bytes that the search takes, once it is planned.
+  std::function<void(std::uint64_t)> planned = {};
+  /// Returns the journal, or null; called once the engines are made.
+  std::function<SearchJournal*()> open_journal = {};
+};
+
 /// Plans the query, or those of its cells that `only` contains, within memory_bytes, makes the
-/// engines, and searches. Asks for the journal once the engines are made, and searches only the
-/// cells that it does not have. Throws ResourceError naming the smallest budget that works, before
-/// the journal is asked for.
+/// engines, and searches the cells that the journal does not have. Throws ResourceError naming the
+/// smallest budget that works, before the journal is asked for.
 Found search_pages(const StoreReader& store, const Query& query, std::uint64_t memory_bytes,
-                   PageEngineKind& kind, const ShardCells* only,
-                   const std::function<SearchJournal*()>& open_journal, Progress& progress,
-                   SearchReport& report, const MessageLog& log);
+                   PageEngineKind& kind, const ShardCells* only, const SearchSteps& steps,
+                   Progress& progress, SearchReport& report, const MessageLog& log);
 
 /// What a search that hands its pages to the caller took.
 struct CollectedPages {

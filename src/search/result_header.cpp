@@ -53,12 +53,13 @@ void choose_gap(QueryParameters& query, double metre) {
   if (query.has_budget() && query.gap == 0) query.gap = kUsualGap * metre;
 }
 
-ResultHeader result_header(const StoreReader& store, const Query& query,
-                           const SearchOptions& options) {
+ResultHeader result_header(
+    const StoreReader& store, const Query& query, const SearchOptions& options,
+    const std::function<IgnoredPointCounts(const QueryParameters& sorted)>& ignored_by) {
   const StoreMetadata& metadata = store.metadata();
   QueryParameters asked = query;
   sort_ignored(asked);
-  IgnoredPointCounts ignored = count_ignored(store, asked, options.threads);
+  IgnoredPointCounts ignored = ignored_by(asked);
   choose_gap(asked, metre_of(store));
   const bool by_class = !asked.ignore_classes.empty();
   ResultHeader header{

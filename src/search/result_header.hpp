@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "clearway/query.hpp"
 #include "clearway/search.hpp"
 #include "io/result/result.hpp"
@@ -11,9 +13,11 @@ namespace clearway {
 /// of a metre in the environment's unit.
 void choose_gap(QueryParameters& query, double metre);
 
-/// The header of the result of a search. For a shard, the part is still missing.
-ResultHeader result_header(const StoreReader& store, const Query& query,
-                           const SearchOptions& options);
+/// The header of the result of a search. ignored: how many points the query leaves out, which is
+/// asked with its lists sorted. For a shard, the part is still missing.
+ResultHeader result_header(
+    const StoreReader& store, const Query& query, const SearchOptions& options,
+    const std::function<IgnoredPointCounts(const QueryParameters& sorted)>& ignored);
 
 }  // namespace clearway
 

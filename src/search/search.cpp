@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "clearway/error.hpp"
+#include "clearway/session.hpp"
 #include "core/query/search_result.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
@@ -27,6 +28,7 @@
 #include "search/result_header.hpp"
 #include "search/run_journal.hpp"
 #include "search/seen_space.hpp"
+#include "search/session_state.hpp"
 #include "search/shard_cells.hpp"
 #include "search/threads.hpp"
 #include "stream/gather_rows.hpp"
@@ -54,56 +56,101 @@ class StageOf final : public Progress {
   std::string_view name_;
 };
 
-/// One call of search(), step by step.
+/// The file that a result goes to, and the journal beside it.
+struct OutputFile {
+  OutputFile(const std::filesystem::path& path, const SearchOptions& options, MessageLog& log)
+      : pending(path, true), journal(pending, path, options, log) {}
+
+  PendingFile pending;
+  RunJournal journal;
+};
+
+/// One question, step by step.
 class Search {
  public:
-  Search(const Store& store, const Query& query, const std::filesystem::path& output,
-         const SearchOptions& options)
-      : store_(store.reader()),
+  /// output: where the result is written; none for an answer in memory. All references outlive it.
+  Search(SessionState& session, const Query& query, const SearchOptions& options,
+         const std::optional<std::filesystem::path>& output)
+      : session_(session),
+        store_(session.store().reader()),
         query_(query),
         options_(options),
         progress_(options_.progress, options_.stop),
         log_(options_.message, report_.warnings),
-        pending_(output, true),
-        journal_(pending_, output, options_, log_),
-        header_(result_header(store_, query_, options_)) {
+        memory_(session.memory()) {
+    if (output) file_.emplace(*output, options_, log_);
+    header_ = result_header(store_, query_, options_, [&](const QueryParameters& sorted) {
+      return session_.ignored(sorted, options_.threads);
+    });
     // The part that a shard is turns out later.
-    if (!options.overwrite && !options.resume && !options.shard) {
-      journal_.refuse_existing(header_);
-      pending_.refuse_existing();
+    if (file_ && !options.overwrite && !options.resume && !options.shard) {
+      file_->journal.refuse_existing(header_);
+      file_->pending.refuse_existing();
     }
     end_gpus_ = options_.end_gpus;
     // The GPUs are needed for further searches.
     if (query_.first_pose || query_.has_budget() || query_.seen) options_.end_gpus = false;
-    if (!options_.started) options_.started = start_devices(options_, &store);
+    options_.started = session_.start(options_);
   }
 
+  /// Answers into the file.
   SearchReport run() {
-    check();
-    static_cast<Answer&>(report_) = answer_of(header_);
-    report_sizes(store_, query_, report_);
-    report_.doubts = doubts_among(report_.warnings);
-    report_.warned_of = codes_beside_doubts(report_.warnings);
+    begin();
     divide();
-    if (journal_.already_done(store_, header_, progress_)) {
-      report_finished(ResultReader(journal_.output(), Parts::kAccepted), report_);
+    if (file_->journal.already_done(store_, header_, progress_)) {
+      report_finished(ResultReader(file_->journal.output(), Parts::kAccepted), report_);
     } else {
       resolve_device();
-      Found found = find();
-      if (query_.first_pose) find_last_poses(found);
-      if (header_.budget) judge(found);
-      if (query_.seen) find_unseen(found);
+      Found found = find_all();
+      session_.models().forget_all();
       publish(found);
       const Stopwatch ending;
       found.engine_end.clear();
       report_.seconds.end_wait = ending.seconds();
     }
-    warn_of_colliding_ignored(report_, options_.model_is_cut, store_.metadata().unit, log_);
-    report_.seconds.total = total_.seconds();
+    end();
+    return std::move(report_);
+  }
+
+  /// Answers into `tables`, with all that a file of the same answer would need.
+  SearchReport answer(ResultTables& tables, ResultHeader& header, ResultFindings& found_besides) {
+    begin();
+    Found found = find_all();
+    found.engine_end.clear();
+    const Stopwatch write;
+    tables = tables_of(store_, std::move(found.result), header_, found.write_bytes, progress_,
+                       chainage(), options_.threads);
+    static_cast<TableSummary&>(report_) = summary_of(tables);
+    report_.ignored_looked_at = found.result.ignored_points;
+    report_.seconds.write = write.seconds();
+    found_besides = findings();
+    header = std::move(header_);
+    end();
     return std::move(report_);
   }
 
  private:
+  void begin() {
+    check();
+    static_cast<Answer&>(report_) = answer_of(header_);
+    report_sizes(store_, query_, report_);
+    report_.doubts = doubts_among(report_.warnings);
+    report_.warned_of = codes_beside_doubts(report_.warnings);
+  }
+
+  Found find_all() {
+    Found found = find();
+    if (query_.first_pose) find_last_poses(found);
+    if (header_.budget) judge(found);
+    if (query_.seen) find_unseen(found);
+    return found;
+  }
+
+  void end() {
+    warn_of_colliding_ignored(report_, options_.model_is_cut, store_.metadata().unit, log_);
+    report_.seconds.total = total_.seconds();
+  }
+
   /// Checks the query and warns before anything is searched, also where the result exists already.
   void check() {
     for (const Message& told : options_.input_warnings) {
@@ -157,7 +204,7 @@ class Search {
 
   /// Where a run is resumed, device kAuto continues with the device of that run.
   void resolve_device() {
-    const Device earlier = journal_.earlier_device();
+    const Device earlier = file_->journal.earlier_device();
     if (options_.device == Device::kAuto && options_.gpus.empty() && earlier != Device::kAuto) {
       options_.device = earlier;
       if (earlier == Device::kCpu) options_.device_memory_bytes = 0;
@@ -168,21 +215,32 @@ class Search {
   Found find() {
     options_.threads = threads_or_all(options_.threads);
     const bool gpu = gpu_pays() && may_take_gpus(options_);
-    check_threads(options_.threads);
-    if (gpu && !options_.started) options_.started = std::make_shared<DeviceStart>(options_);
-    choose_engine(store_, query_, journal_.earlier_engine(), gpu, options_, report_, log_);
+    if (gpu && !options_.started) options_.started = session_.start_surely(options_);
+    choose_engine(store_, query_, file_ ? file_->journal.earlier_engine() : Engine::kAuto, gpu,
+                  options_, report_, log_);
+    // A question with further searches has all the memory, because these need some of their own.
+    if (query_.ignores_points() || query_.has_budget() || query_.seen) take_memory(~0ULL);
     report_.engine = options_.engine;
     count_ignored_that_collide(gpu && options_.engine != Engine::kKdtree);
     Found found =
         options_.engine == Engine::kKdtree
-            ? search_kdtree(store_, query_, only(), options_, &open_journal(), progress_, report_)
+            ? find_by_kdtree()
             : find_on_pages(gpu);
     report_.needed_host_bytes = std::max(report_.needed_host_bytes, ignored_.needed_host_bytes);
     report_.peak_device_bytes = std::max(report_.peak_device_bytes, ignored_.peak_device_bytes);
-    report_.resumed_cells = journal_.earlier().cells;
-    report_.resumed_poses = journal_.earlier().poses;
+    if (file_) {
+      report_.resumed_cells = file_->journal.earlier().cells;
+      report_.resumed_poses = file_->journal.earlier().poses;
+    }
     return found;
   }
+
+  Found find_by_kdtree() {
+    take_memory(kdtree_needed_bytes(store_, query_, options_));
+    return search_kdtree(store_, query_, only(), options_, open_journal(), progress_, report_);
+  }
+
+  void take_memory(std::uint64_t bytes) { memory_.take(bytes, progress_); }
 
   /// A second search, of the ignored points alone. It comes first because it leaves nothing in
   /// memory. The journal does not keep it, so a run that is resumed repeats it.
@@ -256,15 +314,17 @@ class Search {
     if (device == Device::kCpu || !fallback_allowed(options_)) open_journal();
     const std::unique_ptr<PageEngineKind> kind = kind_on(device, query_, options_);
     return search_pages(
-        store_, query_, options_.memory_bytes, *kind, only(), [this] { return &open_journal(); },
+        store_, query_, options_.memory_bytes, *kind, only(),
+        {.planned = [this](std::uint64_t bytes) { take_memory(bytes); },
+         .open_journal = [this] { return open_journal(); }},
         progress_, report_, log_);
   }
 
   /// The cells that have entries of a set.
   template <typename Set>
-  ShardCells cells_with(const Set& set) const {
+  ShardCells cells_with(const Set& set, const SearchResult& result) const {
     SetCells with;
-    in_threads(options_.threads, [&] { with = cells_of(store_, set); });
+    ThreadLimit(options_.threads).run([&] { with = cells_of(store_, set, result.cells); });
     std::vector<bool> in(store_.cells().size());
     for (const std::uint32_t cell : with.cells) in[cell] = true;
     return ShardCells(std::move(in));
@@ -274,8 +334,12 @@ class Search {
   void find_last_poses(Found& found) {
     found.engine_end.clear();
     options_.end_gpus = end_gpus_ && !header_.budget && !query_.seen;
-    const ShardCells cells = cells_with(found.result.hits);
-    if (found.result.hits.count() == 0) return;
+    if (query_.poses.size() == 1) {  // the last pose is the first one
+      found.result.last_poses.emplace(query_, HitSet(store_.entry_count(), true));
+      return;
+    }
+    const ShardCells cells = cells_with(found.result.hits, found.result);
+    if (cells.empty()) return;
     Found other = search_further(found, backwards(query_), &cells, "last poses");
     found.result.last_poses.emplace(query_, std::move(other.result.hits));
   }
@@ -286,7 +350,7 @@ class Search {
     const ErrorBudget& budget = *header_.budget;
     find_certain(found, budget.certain_radius(query_.radius));
     find_near(found, budget.near_radius(query_.radius));
-    in_threads(options_.threads, [&] {
+    ThreadLimit(options_.threads).run([&] {
       const HitSet& certain = *found.result.certain;
       CertainGroup group(store_.quantisation(), header_.gap, progress_);
       for (const std::uint32_t cell : cells_of(store_, certain).cells) {
@@ -332,8 +396,8 @@ class Search {
   void find_certain(Found& found, double radius) {
     const HitSet& hits = found.result.hits;
     HitSet& certain = found.result.certain.emplace(store_.entry_count(), false);
-    if (hits.count() == 0) return;
-    const ShardCells cells = cells_with(hits);
+    const ShardCells cells = cells_with(hits, found.result);
+    if (cells.empty()) return;
     if (!(radius < query_.radius)) {
       for (std::uint64_t word = 0; word < store_.entry_count() / 64; ++word) {
         if (const std::uint64_t bits = hits.word(word)) certain.mark_word(word, bits);
@@ -455,8 +519,7 @@ class Search {
     const auto search_on = [&](Device device) {
       return search_pages(
           store_, further_, further_options_.memory_bytes,
-          *kind_on(device, further_, further_options_), cells,
-          []() -> SearchJournal* { return nullptr; }, progress, report, log);
+          *kind_on(device, further_, further_options_), cells, {}, progress, report, log);
     };
     Found other = [&] {
       if (report_.engine == Engine::kKdtree) {
@@ -490,31 +553,32 @@ class Search {
   }
   std::unique_ptr<PageEngineKind> kind_for([[maybe_unused]] Device device, const PackedCloud& cloud,
                                            const Query& query, const SearchOptions& options) {
+    std::unique_ptr<PageEngineKind> kind = [&]() -> std::unique_ptr<PageEngineKind> {
 #ifdef CLEARWAY_CUDA
-    if (device == Device::kCuda) {
-      const OpenGpus open = [this] { return open_gpus(); };
-      if (!query.bodies.empty()) return cuda_body_kind(cloud, query, options, open);
-      return cuda_kind(cloud, query, options, open);
-    }
+      if (device == Device::kCuda) {
+        const OpenGpus open = [this] { return open_gpus(); };
+        if (!query.bodies.empty()) return cuda_body_kind(cloud, query, options, open);
+        return cuda_kind(cloud, query, options, open);
+      }
 #endif
-    if (!query.bodies.empty()) return cpu_body_kind(cloud, query, options);
-    if (options.engine == Engine::kGrid) {
-      return std::make_unique<CpuGridKind>(cloud, query, options);
-    }
-    return cpu_sweep_kind(cloud, query, options);
+      if (!query.bodies.empty()) return cpu_body_kind(cloud, query, options);
+      if (options.engine == Engine::kGrid) {
+        return std::make_unique<CpuGridKind>(cloud, query, options);
+      }
+      return cpu_sweep_kind(cloud, query, options);
+    }();
+    kind->keep_models_in(session_.models());
+    return kind;
   }
 
   /// The GPUs, opened when the search first needs them; their start was begun earlier, in the
   /// background. Throws NoGpu where none can be used.
   DeviceChoice open_gpus() {
     if (gpus_) return usable(*gpus_);
-    const Stopwatch waiting;
-    options_.started->wait();
-    DeviceChoice choice = choose_device(options_, log_);
-    report_.seconds.context_wait = waiting.seconds();
-    report_.seconds.context = std::max(options_.started->seconds(), waiting.seconds());
-    gpus_ = choice;
-    return usable(choice);
+    double& waited = report_.seconds.context_wait;
+    gpus_ = session_.gpus(options_, log_, waited);
+    report_.seconds.context = waited > 0 ? std::max(options_.started->seconds(), waited) : 0;
+    return usable(*gpus_);
   }
 
   DeviceChoice usable(const DeviceChoice& choice) {
@@ -523,27 +587,30 @@ class Search {
     return choice;
   }
 
-  SearchJournal& open_journal() {
-    if (open_ == nullptr) {
-      open_ = &journal_.open(store_, query_, header_, report_.engine, report_.device);
+  /// The journal of the output file; null for an answer in memory.
+  SearchJournal* open_journal() {
+    if (file_ && open_ == nullptr) {
+      open_ = &file_->journal.open(store_, query_, header_, report_.engine, report_.device);
     }
-    return *open_;
+    return open_;
+  }
+
+  std::vector<double> chainage() const {
+    return query_.profile > 0 ? chainage_of(query_.poses) : std::vector<double>();
   }
 
   void publish(const Found& found) {
     const Stopwatch write;
     describe_part();
     try {
-      const std::vector<double> chainage =
-          query_.profile > 0 ? chainage_of(query_.poses) : std::vector<double>();
       static_cast<TableSummary&>(report_) =
-          write_result(store_, found.result, header_, pending_.partial(), found.write_bytes,
-                       progress_, chainage, options_.threads, findings());
-      pending_.publish();
+          write_result(store_, found.result, header_, file_->pending.partial(), found.write_bytes,
+                       progress_, chainage(), options_.threads, findings());
+      file_->pending.publish();
     } catch (const ResourceError& error) {
       throw ResourceError(error.what(), Remedy::kResume);
     }
-    journal_.remove_after_publication();
+    file_->journal.remove_after_publication();
     const StoreReader::Touched touched = touched_.value_or(store_.touched());
     report_.cells_read = touched.cells;
     report_.ignored_looked_at = found.result.ignored_points;
@@ -578,14 +645,15 @@ class Search {
   }
 
   const Stopwatch total_;
+  SessionState& session_;
   const StoreReader& store_;
   const Query& query_;
   SearchOptions options_;  ///< as far as resolved
   SearchReport report_;
   CallbackProgress progress_;
   MessageLog log_;
-  PendingFile pending_;
-  RunJournal journal_;
+  SharedMemory::Share memory_;
+  std::optional<OutputFile> file_;
   ResultHeader header_;
   std::optional<ShardCells> shard_;
   CollidingIgnored ignored_;
@@ -625,14 +693,107 @@ void check_search(const QueryParameters& query, const std::filesystem::path& out
   if (!options.overwrite && !options.resume && !is_result(output)) pending.refuse_existing();
 }
 
-SearchReport search(const Store& store, const Query& query, const std::filesystem::path& output,
-                    const SearchOptions& options) {
+namespace {
+
+void check_question(const Query& query, const SearchOptions& options) {
   check_query(query, options);
   check_bodies(query, options);
   if (query.model.is_surface()) check_surface(query, options);
   if (query.model.is_solid()) check_solid(query);
+}
+
+}  // namespace
+
+SearchReport search(const Store& store, const Query& query, const std::filesystem::path& output,
+                    const SearchOptions& options) {
+  check_question(query, options);
   refuse_overwriting(output, {store.path()});
-  return Search(store, query, output, options).run();
+  SessionState session(store, options, KeptModels::Kept::kOneField);
+  return Search(session, query, options, output).run();
+}
+
+// --- Session ---
+
+struct SessionAnswer::Tables : ResultTables {
+  ResultHeader header;
+  ResultFindings findings;
+};
+
+SessionAnswer::SessionAnswer() : tables_(std::make_shared<Tables>()) {}
+SessionAnswer::~SessionAnswer() = default;
+SessionAnswer::SessionAnswer(const SessionAnswer&) = default;
+SessionAnswer::SessionAnswer(SessionAnswer&&) noexcept = default;
+SessionAnswer& SessionAnswer::operator=(const SessionAnswer&) = default;
+SessionAnswer& SessionAnswer::operator=(SessionAnswer&&) noexcept = default;
+
+const Collisions& SessionAnswer::collisions() const { return tables_->collisions; }
+const Clearances& SessionAnswer::clearances() const { return tables_->clearances; }
+const Profile& SessionAnswer::profile() const { return tables_->profile; }
+const Nearby& SessionAnswer::near() const { return tables_->near; }
+const UnseenCubes& SessionAnswer::unseen() const { return tables_->unseen; }
+
+void SessionAnswer::save(const std::filesystem::path& output, bool overwrite) const {
+  PendingFile pending(output, overwrite);
+  write_tables(*tables_, tables_->header, tables_->findings, pending.partial());
+  pending.publish();
+}
+
+struct Session::State {
+  State(const std::filesystem::path& path, const SessionOptions& machine)
+      : store(path),
+        options(machine),
+        for_search(search_options(machine)),
+        session(store, for_search, KeptModels::Kept::kForSession) {
+    if (may_take_gpus(for_search) && !fallback_allowed(for_search)) {
+      session.start_surely(for_search);
+    }
+  }
+
+  static SearchOptions search_options(const SessionOptions& machine) {
+    SearchOptions options;
+    options.device = machine.device;
+    options.gpus = machine.gpus;
+    options.threads = machine.threads;
+    options.memory_bytes = machine.memory_bytes;
+    options.device_memory_bytes = machine.device_memory_bytes;
+    return options;
+  }
+
+  const Store store;
+  const SessionOptions options;
+  const SearchOptions for_search;
+  SessionState session;
+};
+
+Session::Session(const std::filesystem::path& store, const SessionOptions& options)
+    : state_(std::make_unique<State>(store, options)) {}
+Session::~Session() = default;
+Session::Session(Session&&) noexcept = default;
+Session& Session::operator=(Session&&) noexcept = default;
+
+const Store& Session::store() const { return state_->store; }
+const SessionOptions& Session::options() const { return state_->options; }
+void Session::forget_models() const { state_->session.models().forget_all(); }
+std::uint64_t Session::kept_bytes() const { return state_->session.models().allocated_bytes(); }
+
+SessionAnswer Session::search(const Query& query, const QuestionOptions& asked) const {
+  SearchOptions options = state_->for_search;
+  options.engine = asked.engine;
+  options.strict = asked.strict;
+  options.input_warnings = asked.input_warnings;
+  options.model_is_cut = asked.model_is_cut;
+  options.progress = asked.progress;
+  options.message = asked.message;
+  options.stop = asked.stop;
+  check_question(query, options);
+  state_->store.reader().check_unchanged();
+  SessionAnswer answer;
+  const auto tables = std::make_shared<SessionAnswer::Tables>();
+  static_cast<SearchReport&>(answer) =
+      Search(state_->session, query, options, std::nullopt)
+          .answer(*tables, tables->header, tables->findings);
+  answer.tables_ = tables;
+  return answer;
 }
 
 }  // namespace clearway

@@ -40,18 +40,17 @@ template <typename Element>
 class WorkFilter {
  public:
   WorkFilter(const PackedCloud& cloud, const Query& query, const QueryTrees& trees, int threads)
-      : field_(trees.of<Element>(), search_radius(query),
-               {.reach = std::max(query.clearance, query.profile),
-                .most_bytes = kFieldBytes,
-                .by_need = true,
-                .solids = trees.solids_of<Element>()},
-               threads),
-        filter_(query, trees.motion, trees.of<Element>(), field_, cloud, threads) {}
+      : field_(trees.model->field<Element>(search_radius(query),
+                                           {.reach = std::max(query.clearance, query.profile),
+                                            .most_bytes = kFieldBytes,
+                                            .by_need = true},
+                                           threads)),
+        filter_(query, trees.motion, trees.of<Element>(), *field_, cloud, threads) {}
 
   const SweepFilterOf<Element>& get() const { return filter_; }
 
  private:
-  ModelField field_;
+  std::shared_ptr<const ModelField> field_;
   SweepFilterOf<Element> filter_;
 };
 

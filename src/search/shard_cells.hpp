@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -42,6 +43,7 @@ class ShardCells {
   explicit ShardCells(std::vector<bool> cells) : own_(std::move(cells)) {}
 
   bool contains(std::uint32_t cell) const { return own_[cell]; }
+  bool empty() const { return std::ranges::find(own_, true) == own_.end(); }
   const ResultPart& part() const { return part_; }
   /// The estimated work of the part divided by the mean of all parts.
   double share() const { return share_; }

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -49,17 +50,20 @@ void for_each_entry(const StoreReader& store, const Set& set, std::uint32_t cell
   });
 }
 
+/// The cells that have entries. among: the cells that may have any, ascending; nullopt for all.
 template <typename Set>
-SetCells cells_of(const StoreReader& store, const Set& set) {
-  const auto cells = static_cast<std::uint32_t>(store.cells().size());
+SetCells cells_of(const StoreReader& store, const Set& set,
+                  const std::optional<std::vector<std::uint32_t>>& among = {}) {
+  const auto cells = static_cast<std::uint32_t>(among ? among->size() : store.cells().size());
+  const auto cell_at = [&](std::uint32_t i) { return among ? (*among)[i] : i; };
   std::vector<std::uint32_t> counts(cells);
   using Range = tbb::blocked_range<std::uint32_t>;
   {
     const ParallelScope scope;
     const auto count = piece_of(scope, [&](const Range& range) {
-      for (std::uint32_t cell = range.begin(); cell != range.end(); ++cell) {
-        for_each_word(store, set, cell, [&](std::uint64_t, std::uint64_t bits) {
-          counts[cell] += static_cast<std::uint32_t>(std::popcount(bits));
+      for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
+        for_each_word(store, set, cell_at(i), [&](std::uint64_t, std::uint64_t bits) {
+          counts[i] += static_cast<std::uint32_t>(std::popcount(bits));
         });
       }
     });
@@ -67,10 +71,10 @@ SetCells cells_of(const StoreReader& store, const Set& set) {
     tbb::parallel_for(Range(0, cells, 16), count);
   }
   SetCells out;
-  for (std::uint32_t cell = 0; cell < cells; ++cell) {
-    if (counts[cell] == 0) continue;
-    out.cells.push_back(cell);
-    out.entries += counts[cell];
+  for (std::uint32_t i = 0; i < cells; ++i) {
+    if (counts[i] == 0) continue;
+    out.cells.push_back(cell_at(i));
+    out.entries += counts[i];
   }
   return out;
 }

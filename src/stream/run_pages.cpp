@@ -336,7 +336,13 @@ SearchResult run_pages(const PackedCloud& cloud, std::span<const PlannedCell> ce
   SearchResult answer{HitSet(cloud.entry_count(), query.first_pose),
                       ClearanceSet(query.clearance > 0 ? cloud.entry_count() : 0),
                       query.profile > 0 ? ProfileSet(query.poses.size()) : ProfileSet()};
-  if (journal != nullptr) journal->restore(answer);
+  if (journal != nullptr) {
+    journal->restore(answer);
+  } else {
+    std::vector<std::uint32_t>& searched = answer.cells.emplace();
+    for (const PlannedCell& cell : cells) searched.push_back(cell.cell);
+    std::ranges::sort(searched);
+  }
   const IgnoredPoints ignored(cloud, query);
   const CollectPage keep = [&](std::span<const PlannedCell> of, const PageResult& found) {
     collect_page(cloud, of, found, answer);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -59,60 +60,69 @@ void set_touched_columns(const RowMeaning& meaning, std::span<const Row> rows, C
 
 }  // namespace
 
-std::shared_ptr<WritePiece<Collisions>> encode_rows(const ResultWriter& writer,
-                                                    const RowMeaning& meaning,
-                                                    std::span<const CollisionRow> rows) {
-  auto out = std::make_shared<WritePiece<Collisions>>(writer.new_rows<Collisions>());
-  Collisions columns;
-  for_each_strip(rows, [&](std::span<const CollisionRow> strip) {
-    set_touched_columns(meaning, strip, columns);
-    if (meaning.header.last_pose) {
-      set_column(columns.last_pose, strip, [](const auto& row) { return row.last_pose; });
-    }
-    if (meaning.header.budget) {
-      set_column(columns.certain, strip, [](const auto& row) { return row.certain; });
-    }
+namespace {
+
+/// Sets the columns of rows that ascend by source index.
+void set_columns(const RowMeaning& meaning, std::span<const CollisionRow> rows,
+                 Collisions& columns) {
+  set_touched_columns(meaning, rows, columns);
+  if (meaning.header.last_pose) {
+    set_column(columns.last_pose, rows, [](const auto& row) { return row.last_pose; });
+  }
+  if (meaning.header.budget) {
+    set_column(columns.certain, rows, [](const auto& row) { return row.certain; });
+  }
+}
+
+void set_columns(const RowMeaning& meaning, std::span<const NearRow> rows, Nearby& columns) {
+  set_touched_columns(meaning, rows, columns);
+}
+
+void set_columns(const RowMeaning& meaning, std::span<const ClearanceRow> rows,
+                 Clearances& columns) {
+  set_column(columns.source, rows, [](const auto& row) { return row.source; });
+  set_column(columns.xyz, rows,
+             [&](const auto& row) { return xyz_of(meaning.quantisation, row.q); });
+  set_column(columns.distance, rows, [](const auto& row) { return row.distance; });
+  set_column(columns.pose, rows, [&](const auto& row) { return meaning.numbers.pose_of(row.pose); });
+  if (!meaning.header.bodies.empty()) {
+    set_column(columns.body, rows,
+               [&](const auto& row) { return meaning.numbers.body_of(row.pose); });
+  }
+}
+
+template <typename Rows, typename Row>
+std::shared_ptr<WritePiece<Rows>> encode(const ResultWriter& writer, const RowMeaning& meaning,
+                                         std::span<const Row> rows) {
+  auto out = std::make_shared<WritePiece<Rows>>(writer.new_rows<Rows>());
+  Rows columns;
+  for_each_strip(rows, [&](std::span<const Row> strip) {
+    set_columns(meaning, strip, columns);
     out->rows.add(columns);
     summarise(columns, out->summary);
   });
   out->rows.seal();
   return out;
+}
+
+}  // namespace
+
+std::shared_ptr<WritePiece<Collisions>> encode_rows(const ResultWriter& writer,
+                                                    const RowMeaning& meaning,
+                                                    std::span<const CollisionRow> rows) {
+  return encode<Collisions>(writer, meaning, rows);
 }
 
 std::shared_ptr<WritePiece<Nearby>> encode_rows(const ResultWriter& writer,
                                                 const RowMeaning& meaning,
                                                 std::span<const NearRow> rows) {
-  auto out = std::make_shared<WritePiece<Nearby>>(writer.new_rows<Nearby>());
-  Nearby columns;
-  for_each_strip(rows, [&](std::span<const NearRow> strip) {
-    set_touched_columns(meaning, strip, columns);
-    out->rows.add(columns);
-    summarise(columns, out->summary);
-  });
-  out->rows.seal();
-  return out;
+  return encode<Nearby>(writer, meaning, rows);
 }
 
 std::shared_ptr<WritePiece<Clearances>> encode_rows(const ResultWriter& writer,
                                                     const RowMeaning& meaning,
                                                     std::span<const ClearanceRow> rows) {
-  const Quantisation& quantisation = meaning.quantisation;
-  const BodyNumbers numbers = meaning.numbers;
-  auto out = std::make_shared<WritePiece<Clearances>>(writer.new_rows<Clearances>());
-  Clearances columns;
-  for_each_strip(rows, [&](std::span<const ClearanceRow> strip) {
-    set_column(columns.source, strip, [](const auto& row) { return row.source; });
-    set_column(columns.xyz, strip, [&](const auto& row) { return xyz_of(quantisation, row.q); });
-    set_column(columns.distance, strip, [](const auto& row) { return row.distance; });
-    set_column(columns.pose, strip, [&](const auto& row) { return numbers.pose_of(row.pose); });
-    if (!meaning.header.bodies.empty()) {
-      set_column(columns.body, strip, [&](const auto& row) { return numbers.body_of(row.pose); });
-    }
-    out->rows.add(columns);
-    summarise(columns, out->summary);
-  });
-  out->rows.seal();
-  return out;
+  return encode<Clearances>(writer, meaning, rows);
 }
 
 namespace {
@@ -126,13 +136,15 @@ Vec3 position_of(const StoreReader& store, std::uint64_t entry) {
   return position(store.quantisation(), q[0][i], q[1][i], q[2][i]);
 }
 
-/// Appends and summarises the nearest points of all poses. chainage: that of every pose, metres.
-/// is_part: whether this is a part of a result, for which the squares are written, too. Throws
-/// InputError for a damaged cell, ResourceError for a full disk, Interrupted when the progress asks
-/// to stop.
-void write_profile(const StoreReader& store, const ProfileSet& profile,
-                   std::span<const double> chainage, bool is_part, ResultWriter& writer,
-                   Progress& progress, TableSummary& summary) {
+/// Takes the rows of some poses at a time, of which the first is `first_pose`.
+using TakeProfile = std::function<void(const ProfileRows& rows, std::uint64_t first_pose)>;
+
+/// Hands out the nearest points of all poses. chainage: that of every pose, metres. is_part:
+/// whether this is a part of a result, which has the squares, too. Throws InputError for a damaged
+/// cell, Interrupted when the progress asks to stop.
+void for_profile(const StoreReader& store, const ProfileSet& profile,
+                 std::span<const double> chainage, bool is_part, Progress& progress,
+                 const TakeProfile& take) {
   constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
   ProfileRows rows;
   for (std::uint64_t first = 0; first < profile.poses(); first += kPoses) {
@@ -148,8 +160,7 @@ void write_profile(const StoreReader& store, const ProfileSet& profile,
       rows.chainage.push_back(chainage[pose]);
       if (is_part) rows.squared.push_back(point.squared);
     }
-    writer.append(rows);
-    summarise(rows, summary, first);
+    take(rows, first);
   }
 }
 
@@ -170,6 +181,9 @@ std::uint64_t thread_bytes(const StoreReader& store) {
   return CellRows::most_bytes(store) + 8 * SourceParts(store).count();
 }
 
+/// The number of rows for which another thread pays.
+constexpr std::uint64_t kRowsOfThread = std::uint64_t{1} << 14;
+
 /// How a table is written in the given memory.
 struct WritePlan {
   std::size_t rows;    ///< greatest number of rows of a pass
@@ -179,8 +193,9 @@ struct WritePlan {
 };
 
 template <typename Row>
-WritePlan plan_of(const StoreReader& store, std::uint64_t memory_bytes) {
-  const int threads = tbb::this_task_arena::max_concurrency();
+WritePlan plan_of(const StoreReader& store, std::uint64_t table_rows, std::uint64_t memory_bytes) {
+  const int threads = static_cast<int>(
+      std::min<std::uint64_t>(tbb::this_task_arena::max_concurrency(), 1 + table_rows / kRowsOfThread));
   const std::uint64_t left = std::max(memory_bytes, least_write_bytes(store)) - kWriterBytes;
   const std::uint64_t for_thread = thread_bytes(store);
   WritePlan plan{};
@@ -236,20 +251,33 @@ void write_set(const StoreReader& store, const Set& set, const SetCells& in, con
   }
 }
 
-/// Writes one result, table by table.
-class ResultWriting {
+/// Where the cells with rows of each table of points are.
+struct TableCells {
+  TableCells(const StoreReader& store, const SearchResult& answer, const ResultHeader& header)
+      : collisions(cells_of(store, answer.hits, answer.cells)),
+        clearances(header.clearance > 0 ? cells_of(store, answer.clearances, answer.cells)
+                                        : SetCells()),
+        near(answer.near ? cells_of(store, *answer.near) : SetCells()) {}
+
+  SetCells collisions, clearances, near;
+};
+
+/// Brings the points of a result into the order of their source indices, and hands out the rows of
+/// each table in passes, with the plan by which they were gathered.
+class ResultRows {
  public:
-  ResultWriting(const StoreReader& store, const SearchResult& answer, const ResultHeader& header,
-                std::uint64_t memory_bytes, ResultWriter& writer, Progress& progress)
+  ResultRows(const StoreReader& store, const SearchResult& answer, const ResultHeader& header,
+             std::uint64_t memory_bytes, Progress& progress)
       : store_(store),
         answer_(answer),
         meaning_{store.quantisation(), header, BodyNumbers(header.bodies.size())},
         memory_bytes_(memory_bytes),
-        writer_(writer),
         progress_(progress) {}
 
-  void write_collisions(const SetCells& in, TableSummary& summary) {
-    const WritePlan plan = plan_of<CollisionRow>(store_, memory_bytes_);
+  const RowMeaning& meaning() const { return meaning_; }
+
+  template <typename Take>
+  void for_collisions(const SetCells& in, Take take) {
     const HitSet& hits = answer_.hits;
     const bool first_pose = hits.has_first_pose();
     const LastPoses* last_poses = answer_.last_poses ? &*answer_.last_poses : nullptr;
@@ -264,18 +292,11 @@ class ResultWriting {
         return CollisionRow{source, {q[0][i], q[1][i], q[2][i]}, touched, last, is_certain};
       };
     };
-    const auto encode_rows = [&](std::span<const CollisionRow> rows) {
-      return clearway::encode_rows(writer_, meaning_, rows);
-    };
-    const auto keep = [&](const auto& piece) { add_summary(piece.summary, summary); };
-    write_set<CollisionRow>(
-        store_, hits, in, plan, progress_, rows_of, [&](std::span<const CollisionRow> rows) {
-          write_rows<Collisions>(writer_, rows, plan.pieces, progress_, encode_rows, keep);
-        });
+    gather<CollisionRow>(hits, in, rows_of, take);
   }
 
-  void write_near(const SetCells& in, TableSummary& summary) {
-    const WritePlan plan = plan_of<NearRow>(store_, memory_bytes_);
+  template <typename Take>
+  void for_near(const SetCells& in, Take take) {
     const HitSet& near = *answer_.near;
     const bool first_pose = near.has_first_pose();
     const auto rows_of = [&](std::uint32_t cell) {
@@ -285,18 +306,11 @@ class ResultWriting {
             source, {q[0][i], q[1][i], q[2][i]}, first_pose ? near.first_pose(entry) : 0};
       };
     };
-    const auto encode_rows = [&](std::span<const NearRow> rows) {
-      return clearway::encode_rows(writer_, meaning_, rows);
-    };
-    const auto keep = [&](const auto& piece) { add_summary(piece.summary, summary); };
-    write_set<NearRow>(
-        store_, near, in, plan, progress_, rows_of, [&](std::span<const NearRow> rows) {
-          write_rows<Nearby>(writer_, rows, plan.pieces, progress_, encode_rows, keep);
-        });
+    gather<NearRow>(near, in, rows_of, take);
   }
 
-  void write_clearances(const SetCells& in, TableSummary& summary) {
-    const WritePlan plan = plan_of<ClearanceRow>(store_, memory_bytes_);
+  template <typename Take>
+  void for_clearances(const SetCells& in, Take take) {
     const ClearanceSet& clearances = answer_.clearances;
     const auto rows_of = [&](std::uint32_t cell) {
       return [&, q = store_.coordinates(cell)](std::uint64_t source, std::uint64_t entry,
@@ -306,22 +320,21 @@ class ResultWriting {
             source, signed_root(clearance.squared), {q[0][i], q[1][i], q[2][i]}, clearance.pose};
       };
     };
-    const auto encode_rows = [&](std::span<const ClearanceRow> rows) {
-      return clearway::encode_rows(writer_, meaning_, rows);
-    };
-    const auto keep = [&](const auto& piece) { add_summary(piece.summary, summary); };
-    write_set<ClearanceRow>(
-        store_, clearances, in, plan, progress_, rows_of, [&](std::span<const ClearanceRow> rows) {
-          write_rows<Clearances>(writer_, rows, plan.pieces, progress_, encode_rows, keep);
-        });
+    gather<ClearanceRow>(clearances, in, rows_of, take);
   }
 
  private:
+  template <typename Row, typename Set, typename RowsOf, typename Take>
+  void gather(const Set& set, const SetCells& in, RowsOf rows_of, Take take) {
+    const WritePlan plan = plan_of<Row>(store_, in.entries, memory_bytes_);
+    write_set<Row>(store_, set, in, plan, progress_, rows_of,
+                   [&](std::span<const Row> rows) { take(rows, plan); });
+  }
+
   const StoreReader& store_;
   const SearchResult& answer_;
   const RowMeaning meaning_;
   std::uint64_t memory_bytes_;
-  ResultWriter& writer_;
   Progress& progress_;
 };
 
@@ -330,21 +343,37 @@ TableSummary write_tables(const StoreReader& store, const SearchResult& answer,
                           std::uint64_t memory_bytes, Progress& progress,
                           std::span<const double> chainage, const ResultFindings& findings) {
   TableSummary summary;
-  const SetCells collisions = cells_of(store, answer.hits);
-  const SetCells clearances =
-      header.clearance > 0 ? cells_of(store, answer.clearances) : SetCells();
-  const SetCells near = answer.near ? cells_of(store, *answer.near) : SetCells();
-  ResultWriter writer(path, header, collisions.entries, clearances.entries, near.entries,
+  const TableCells in(store, answer, header);
+  ResultWriter writer(path, header, in.collisions.entries, in.clearances.entries, in.near.entries,
                       answer.unseen ? answer.unseen->size() : 0, answer.swept.size());
-  progress.begin("write", collisions.entries + clearances.entries + near.entries, "points");
-  ResultWriting writing(store, answer, header, memory_bytes, writer, progress);
-  writing.write_collisions(collisions, summary);
-  writing.write_clearances(clearances, summary);
+  progress.begin("write", in.collisions.entries + in.clearances.entries + in.near.entries,
+                 "points");
+  ResultRows rows(store, answer, header, memory_bytes, progress);
+  const auto write = [&]<typename Rows, typename Row>(std::span<const Row> some,
+                                                      const WritePlan& plan, Rows*) {
+    write_rows<Rows>(
+        writer, some, plan.pieces, progress,
+        [&](std::span<const Row> piece) { return encode_rows(writer, rows.meaning(), piece); },
+        [&](const auto& piece) { add_summary(piece.summary, summary); });
+  };
+  rows.for_collisions(in.collisions, [&](std::span<const CollisionRow> some, const auto& plan) {
+    write(some, plan, static_cast<Collisions*>(nullptr));
+  });
+  rows.for_clearances(in.clearances, [&](std::span<const ClearanceRow> some, const auto& plan) {
+    write(some, plan, static_cast<Clearances*>(nullptr));
+  });
   if (header.profile > 0) {
-    write_profile(store, answer.profile, chainage, header.part.has_value(), writer, progress,
-                  summary);
+    for_profile(store, answer.profile, chainage, header.part.has_value(), progress,
+                [&](const ProfileRows& some, std::uint64_t first_pose) {
+                  writer.append(some);
+                  summarise(some, summary, first_pose);
+                });
   }
-  if (answer.near) writing.write_near(near, summary);
+  if (answer.near) {
+    rows.for_near(in.near, [&](std::span<const NearRow> some, const auto& plan) {
+      write(some, plan, static_cast<Nearby*>(nullptr));
+    });
+  }
   if (answer.unseen) {
     writer.append(*answer.unseen);
     writer.append(answer.swept);
@@ -365,6 +394,69 @@ TableSummary write_result(const StoreReader& store, const SearchResult& answer,
   return ThreadLimit(threads).run([&] {
     return write_tables(store, answer, header, path, memory_bytes, progress, chainage, findings);
   });
+}
+
+ResultTables tables_of(const StoreReader& store, SearchResult answer, const ResultHeader& header,
+                       std::uint64_t memory_bytes, Progress& progress,
+                       std::span<const double> chainage, int threads) {
+  ResultTables tables;
+  const auto keep = [&]<typename Rows, typename Row>(const RowMeaning& meaning,
+                                                     std::span<const Row> rows, Rows& to) {
+    Rows columns;
+    for_each_strip(rows, [&](std::span<const Row> strip) {
+      set_columns(meaning, strip, columns);
+      append_rows(columns, to);
+    });
+  };
+  if (threads == 0) threads = tbb::this_task_arena::max_concurrency();
+  ThreadLimit(threads).run([&] {
+    const TableCells in(store, answer, header);
+    ResultRows rows(store, answer, header, memory_bytes, progress);
+    rows.for_collisions(in.collisions, [&](std::span<const CollisionRow> some, const auto&) {
+      keep(rows.meaning(), some, tables.collisions);
+    });
+    rows.for_clearances(in.clearances, [&](std::span<const ClearanceRow> some, const auto&) {
+      keep(rows.meaning(), some, tables.clearances);
+    });
+    if (header.profile > 0) {
+      for_profile(store, answer.profile, chainage, false, progress,
+                  [&](const ProfileRows& some, std::uint64_t) { append_rows(some, tables.profile); });
+    }
+    if (answer.near) {
+      rows.for_near(in.near, [&](std::span<const NearRow> some, const auto&) {
+        keep(rows.meaning(), some, tables.near);
+      });
+    }
+  });
+  if (answer.unseen) {
+    tables.unseen = std::move(*answer.unseen);
+    tables.swept = std::move(answer.swept);
+  }
+  return tables;
+}
+
+TableSummary summary_of(const ResultTables& tables) {
+  TableSummary summary;
+  summarise(tables.collisions, summary);
+  summarise(tables.clearances, summary);
+  summarise(tables.profile, summary);
+  summarise(tables.near, summary);
+  return summary;
+}
+
+void write_tables(const ResultTables& tables, const ResultHeader& header,
+                  const ResultFindings& findings, const std::filesystem::path& path) {
+  ResultWriter writer(path, header, tables.collisions.size(), tables.clearances.size(),
+                      tables.near.size(), tables.unseen.size(), tables.swept.size());
+  writer.append(tables.collisions);
+  if (header.clearance > 0) writer.append(tables.clearances);
+  if (header.profile > 0) writer.append(tables.profile);
+  if (header.budget) writer.append(tables.near);
+  if (header.seen) {
+    writer.append(tables.unseen);
+    writer.append(tables.swept);
+  }
+  writer.finish(findings);
 }
 
 std::uint64_t least_write_bytes(const StoreReader& store) {

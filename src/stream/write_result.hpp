@@ -116,6 +116,30 @@ TableSummary write_result(const StoreReader& store, const SearchResult& answer,
                           std::span<const double> chainage = {}, int threads = 0,
                           const ResultFindings& findings = {});
 
+/// The tables of a result in memory. A table that the query does not ask for is empty.
+struct ResultTables {
+  Collisions collisions;
+  Clearances clearances;
+  ProfileRows profile;
+  Nearby near;
+  UnseenCubes unseen;
+  SweptCells swept;
+};
+
+/// The tables that write_result() would write, in memory. Takes at most `memory_bytes`, but no less
+/// than least_write_bytes(), besides the tables themselves. Throws InputError for a damaged cell,
+/// Interrupted when the progress asks to stop.
+ResultTables tables_of(const StoreReader& store, SearchResult answer, const ResultHeader& header,
+                       std::uint64_t memory_bytes, Progress& progress,
+                       std::span<const double> chainage, int threads);
+
+/// What tables say in short.
+TableSummary summary_of(const ResultTables& tables);
+
+/// Writes a file with the bytes that write_result() writes for the same tables. Throws as it does.
+void write_tables(const ResultTables& tables, const ResultHeader& header,
+                  const ResultFindings& findings, const std::filesystem::path& path);
+
 /// The least memory in which write_result() works, bytes.
 std::uint64_t least_write_bytes(const StoreReader& store);
 

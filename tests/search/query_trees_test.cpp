@@ -24,10 +24,10 @@ TEST_CASE("trees built with several threads are those of one") {
   query.between_poses = GENERATE(false, true);
   const QueryTrees one(query, 1), many(query, 4);
 
-  REQUIRE(one.model.size() == many.model.size());
-  bool same = one.model.spacing() == many.model.spacing();
-  for (std::uint32_t i = 0; i < one.model.size(); ++i) {
-    const Vec3 &a = one.model.element(i), &b = many.model.element(i);
+  REQUIRE(one.of<Vec3>().size() == many.of<Vec3>().size());
+  bool same = one.of<Vec3>().spacing() == many.of<Vec3>().spacing();
+  for (std::uint32_t i = 0; i < one.of<Vec3>().size(); ++i) {
+    const Vec3 &a = one.of<Vec3>().element(i), &b = many.of<Vec3>().element(i);
     same &= a.x == b.x && a.y == b.y && a.z == b.z;
   }
   CHECK(same);

@@ -61,7 +61,7 @@ class HitSet {
   /// Removes the marks of `count` words of 64 entries each, but not their first poses. Must not be
   /// called while others mark.
   void clear_words(std::uint64_t first, std::uint64_t count) {
-    std::fill_n(words_.begin() + static_cast<std::ptrdiff_t>(first), count, 0);
+    std::fill_n(&words_[first], count, 0);
   }
 
   /// Removes the marks of the entries 64 * word + i of all set bits i, and their first poses. Must
@@ -88,17 +88,18 @@ class HitSet {
 
   std::uint64_t count() const {
     std::uint64_t total = 0;
-    for (const std::uint64_t word : words_)
-      total += static_cast<std::uint64_t>(__builtin_popcountll(word));
+    for (std::uint64_t i = 0; i < words_.size(); ++i) {
+      total += static_cast<std::uint64_t>(std::popcount(words_[i]));
+    }
     return total;
   }
 
   std::uint64_t allocated_bytes() const {
-    return words_.capacity() * sizeof(std::uint64_t) + earliness_.allocated_bytes();
+    return words_.allocated_bytes() + earliness_.allocated_bytes();
   }
 
  private:
-  std::vector<std::uint64_t> words_;
+  ZeroedArray<std::uint64_t> words_;
   ZeroedArray<std::uint32_t> earliness_;  ///< kNever - first pose, so that zeros mean never
   bool has_first_pose_;
 };
@@ -250,6 +251,9 @@ struct SearchResult {
   HitSet hits;
   ClearanceSet clearances;  ///< no entries unless asked for
   ProfileSet profile = {};  ///< no poses unless asked for
+  /// The cells of the cloud that were searched, ascending, so that whoever reads a result of few
+  /// cells need not look at all; nullopt where any cell may have something.
+  std::optional<std::vector<std::uint32_t>> cells = {};
   /// Number of ignored points in the cells that were searched, without those of a journal.
   std::uint64_t ignored_points = 0;
   /// Set after a search for seen space, if that was asked for

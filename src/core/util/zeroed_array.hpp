@@ -1,8 +1,9 @@
 #pragma once
 
+#include <sys/mman.h>
+
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
 #include <new>
 #include <type_traits>
@@ -17,20 +18,29 @@ class ZeroedArray {
 
  public:
   ZeroedArray() = default;
-  explicit ZeroedArray(std::uint64_t size)
-      : numbers_(static_cast<Number*>(std::calloc(size, sizeof(Number)))), size_(size) {
-    if (numbers_ == nullptr && size > 0) throw std::bad_alloc();
-  }
+  explicit ZeroedArray(std::uint64_t size) : numbers_(map(size), {size}), size_(size) {}
 
   Number& operator[](std::size_t i) { return numbers_.get()[i]; }
   const Number& operator[](std::size_t i) const { return numbers_.get()[i]; }
+  std::uint64_t size() const { return size_; }
   std::uint64_t allocated_bytes() const { return size_ * sizeof(Number); }
 
  private:
-  struct Free {
-    void operator()(Number* numbers) const { std::free(numbers); }
+  struct Unmap {
+    std::uint64_t size = 0;
+    void operator()(Number* numbers) const { ::munmap(numbers, size * sizeof(Number)); }
   };
-  std::unique_ptr<Number, Free> numbers_;
+
+  /// Pages straight from the system. std::calloc would clear memory that was used before.
+  static Number* map(std::uint64_t size) {
+    if (size == 0) return nullptr;
+    void* const pages = ::mmap(nullptr, size * sizeof(Number), PROT_READ | PROT_WRITE,
+                               MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (pages == MAP_FAILED) throw std::bad_alloc();
+    return static_cast<Number*>(pages);
+  }
+
+  std::unique_ptr<Number, Unmap> numbers_;
   std::uint64_t size_ = 0;
 };
 

@@ -93,6 +93,12 @@ std::uint64_t File::size_bytes() const {
   return static_cast<std::uint64_t>(status_of(descriptor_, name_).st_size);
 }
 
+File::Stamp File::stamp() const {
+  const struct stat status = status_of(descriptor_, name_);
+  return {static_cast<std::uint64_t>(status.st_size), status.st_mtim.tv_sec,
+          status.st_mtim.tv_nsec};
+}
+
 bool File::is_regular() const { return S_ISREG(status_of(descriptor_, name_).st_mode); }
 
 bool File::is_at(const std::filesystem::path& path) const {

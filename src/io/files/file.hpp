@@ -34,6 +34,14 @@ class File {
   const std::string& name() const { return name_; }
   std::uint64_t size_bytes() const;
   bool is_regular() const;
+
+  /// The size and the time of the last change, by which one sees whether a file was written to.
+  struct Stamp {
+    std::uint64_t size_bytes = 0;
+    std::int64_t seconds = 0, nanoseconds = 0;
+    friend bool operator==(const Stamp&, const Stamp&) = default;
+  };
+  Stamp stamp() const;
   /// Whether the path names this very file.
   bool is_at(const std::filesystem::path& path) const;
   /// Number of names (hard links) of the file.

@@ -413,10 +413,20 @@ std::uint64_t StoreReader::fingerprint() const {
   return hash.digest();
 }
 
+void StoreReader::check_unchanged() const {
+  if (map_.file().is_at(name()) && map_.file().stamp() == stamp_) return;
+  refuse(name(),
+         "the file was replaced or changed since it was opened, so its points are no longer known; "
+         "open it again");
+}
+
 StoreReader::Touched StoreReader::touched() const {
   Touched touched;
+  const auto is_set = [](std::uint8_t& flag) {
+    return std::atomic_ref(flag).load(std::memory_order_relaxed) != 0;
+  };
   for (std::size_t cell = 0; cell < checked_.size(); ++cell) {
-    if (checked_[cell] == 0 && read_[cell] == 0) continue;
+    if (!is_set(checked_[cell]) && !is_set(read_[cell])) continue;
     ++touched.cells;
     touched.bytes += packed_bytes(static_cast<std::uint32_t>(cell));
   }

@@ -89,6 +89,10 @@ class StoreReader final : public PackedCloud {
   /// Bytes of memory that the index occupies.
   std::uint64_t allocated_bytes() const override;
 
+  /// Throws InputError where the path no longer names the file that was opened, or that file was
+  /// written to or shortened since.
+  void check_unchanged() const;
+
  private:
   std::span<const std::byte> checked_chunk(std::uint32_t cell, int dataset) const;
   void check_hash(std::uint32_t cell, int dataset, std::span<const std::byte> bytes) const;
@@ -102,6 +106,7 @@ class StoreReader final : public PackedCloud {
                                    std::uint64_t byte) const;
 
   MappedFile map_;
+  const File::Stamp stamp_ = map_.file().stamp();
   StoreIndex index_;
   std::vector<Cell> cells_;
   std::vector<TreeNode> tree_;

@@ -250,12 +250,7 @@ BodyKind::BodyKind(const PackedCloud& cloud, const Query& query, std::vector<Que
       cloud_(cloud),
       query_(query),
       queries_(std::move(queries)),
-      kinds_(std::move(kinds)) {
-  const int threads = needs_.threads - needs_.waiting_threads;
-  for (std::size_t body = 1; body < queries_.size(); ++body) {
-    trees_.push_back(std::make_unique<QueryTrees>(queries_[body], threads));
-  }
-}
+      kinds_(std::move(kinds)) {}
 
 /// Index sizes for all bodies together.
 std::vector<PageEngineKind::IndexSize> BodyKind::index_sizes() const {
@@ -268,6 +263,9 @@ std::vector<PageEngineKind::IndexSize> BodyKind::index_sizes() const {
 }
 
 const PoseReach& BodyKind::build_index(const QueryTrees& trees, std::uint64_t most_bytes) {
+  for (std::size_t body = trees_.size() + 1; body < queries_.size(); ++body) {
+    trees_.push_back(std::make_unique<QueryTrees>(trees_of(queries_[body])));
+  }
   reaches_.clear();
   first_nodes_.clear();
   std::uint32_t nodes = 0;

@@ -7,7 +7,7 @@ namespace clearway {
 
 const PoseReach& GridKind::build_index(const QueryTrees& trees, std::uint64_t) {
   scene_.emplace(query_, trees.motion, cloud_, scene_options_);
-  return reach_.emplace(query_, trees.motion, trees.model, cloud_);
+  return reach_.emplace(query_, trees.motion, trees.of<Vec3>(), cloud_);
 }
 
 void GridKind::report_statistics(const GridStatistics& s, const MessageLog& log) const {

@@ -63,6 +63,13 @@ class PageEngineKind {
 
   const PageEngineNeeds& needs() const { return needs_; }
 
+  /// Takes the indexes of models from `models`, which outlives the kind, and keeps them there.
+  void keep_models_in(KeptModels& models) { models_ = &models; }
+  /// The trees of a query that this kind searches, which outlives them.
+  QueryTrees trees_of(const Query& query) const {
+    return QueryTrees(query, needs_.threads - needs_.waiting_threads, models_);
+  }
+
   /// Index sizes from the best to the least. With a smaller index the search is slower, but its
   /// answer is the same.
   virtual std::vector<IndexSize> index_sizes() const { return {IndexSize{}}; }
@@ -111,6 +118,9 @@ class PageEngineKind {
 
  protected:
   PageEngineNeeds needs_;
+
+ private:
+  KeptModels* models_ = nullptr;
 };
 
 }  // namespace clearway

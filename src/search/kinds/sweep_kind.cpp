@@ -42,17 +42,17 @@ const PoseReach& SweepKindOf<Element>::build_index(const QueryTrees& trees,
                                                    std::uint64_t most_bytes) {
   filter_.reset();
   field_.reset();
-  const ModelTreeOf<StoredElement<Element>>& model = trees.of<Element>();
-  field_.emplace(model, search_radius(query_),
-                 ModelFieldOptions{.voxel = options_.field_voxel,
-                                   .fineness = fineness_for_query(),
-                                   .cheaply_finer = !(query_.tolerance > 0),
-                                   .reach = std::max(query_.clearance, query_.profile),
-                                   .most_bytes = most_bytes,
-                                   .by_need = !this->needs().on_gpu,
-                                   .solids = trees.solids_of<Element>()},
-                 options_.threads);
-  return filter_.emplace(query_, trees.motion, model, *field_, cloud_, options_.threads);
+  field_ = trees.model->field<Element>(
+      search_radius(query_),
+      ModelFieldOptions{.voxel = options_.field_voxel,
+                        .fineness = trees.of_session ? fineness_ : fineness_for_query(),
+                        .cheaply_finer = !(query_.tolerance > 0),
+                        .reach = std::max(query_.clearance, query_.profile),
+                        .most_bytes = most_bytes,
+                        .by_need = !this->needs().on_gpu},
+      options_.threads);
+  return filter_.emplace(query_, trees.motion, trees.of<Element>(), *field_, cloud_,
+                         options_.threads);
 }
 
 /// The fineness of the field, which is coarser for few poses, because they need few exact tests. It

@@ -38,7 +38,7 @@ class SweepKindOf : public PageEngineKind {
   const PackedCloud& cloud_;
   const Query& query_;
   const SearchOptions& options_;
-  std::optional<ModelField> field_;
+  std::shared_ptr<const ModelField> field_;
   std::optional<SweepFilterOf<Element>> filter_;
 
  private:

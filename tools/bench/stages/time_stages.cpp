@@ -103,8 +103,8 @@ nlohmann::ordered_json time_stages(const StageOptions& options) {
   const bool on_device = cuda_device_count() > 0;
   if (on_device) open_cuda_device(0);
 #endif
-  const ModelField field(trees.model, query.radius, {.fineness = 3}, options.threads);
-  const SweepFilter filter(query, trees.motion, trees.model, field, store);
+  const ModelField field(trees.of<Vec3>(), query.radius, {.fineness = 3}, options.threads);
+  const SweepFilter filter(query, trees.motion, trees.of<Vec3>(), field, store);
   const std::vector<PlannedCell> cells = plan(store, filter);
   const std::uint64_t cell_bytes = 6 * std::uint64_t{store.cell_points()} + 4096;
   const SlotLayout layout{options.slots,

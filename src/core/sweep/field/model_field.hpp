@@ -24,6 +24,8 @@ struct ModelFieldOptions {
   bool by_need = false;
   /// Solids of the surface, or null; they must outlive the field
   const SolidParts* solids = nullptr;
+
+  friend bool operator==(const ModelFieldOptions&, const ModelFieldOptions&) = default;
 };
 
 /// Bounds on d_M, the distance from any position in the model's frame to the nearest point of the

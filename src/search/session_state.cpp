@@ -1,0 +1,94 @@
+#include "search/session_state.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "clearway/error.hpp"
+#include "core/util/stopwatch.hpp"
+#include "search/ignored.hpp"
+#include "search/threads.hpp"
+
+namespace clearway {
+
+SharedMemory::Share::~Share() {
+  if (taken_ == 0) return;
+  {
+    const std::lock_guard lock(memory_.mutex_);
+    memory_.in_use_ -= taken_;
+  }
+  memory_.given_back_.notify_all();
+}
+
+void SharedMemory::Share::take(std::uint64_t bytes, const Progress& progress) {
+  constexpr std::chrono::milliseconds kLook{50};  // how often the wish to stop is looked at
+  if (taken_ > 0 || bytes == 0) return;
+  const std::uint64_t wanted = std::min(bytes, memory_.bytes_);
+  std::unique_lock lock(memory_.mutex_);
+  while (memory_.in_use_ + wanted > memory_.bytes_) {
+    throw_if_stopped(progress);
+    memory_.given_back_.wait_for(lock, kLook);
+  }
+  memory_.in_use_ += wanted;
+  taken_ = wanted;
+}
+
+namespace {
+
+/// The share of a session's memory that models of earlier questions may keep.
+constexpr std::uint64_t kModelsShare = 4;
+
+}  // namespace
+
+SessionState::SessionState(const Store& store, const SearchOptions& options,
+                           KeptModels::Kept kept)
+    : store_(store),
+      options_(options),
+      models_(kept, options.memory_bytes / kModelsShare),
+      memory_(options.memory_bytes) {
+  check_threads(threads_or_all(options.threads));
+}
+
+std::shared_ptr<const DeviceStart> SessionState::start(const SearchOptions& options) {
+  const std::lock_guard lock(mutex_);
+  if (options.started) started_ = options.started;
+  if (!started_) started_ = start_devices(options, &store_);
+  return started_;
+}
+
+std::shared_ptr<const DeviceStart> SessionState::start_surely(const SearchOptions& options) {
+  const std::lock_guard lock(mutex_);
+  if (!started_) started_ = std::make_shared<DeviceStart>(options);
+  return started_;
+}
+
+bool SessionState::has_gpus() const {
+  const std::lock_guard lock(mutex_);
+  return gpus_.has_value();
+}
+
+DeviceChoice SessionState::gpus(const SearchOptions& options, const MessageLog& log,
+                                double& waited) {
+  const std::lock_guard lock(mutex_);
+  if (!gpus_) {
+    const Stopwatch waiting;
+    started_->wait();
+    gpus_ = choose_device(options, log);
+    waited = waiting.seconds();
+  }
+  return *gpus_;
+}
+
+IgnoredPointCounts SessionState::ignored(const QueryParameters& query, int threads) {
+  QueryParameters lists;
+  lists.ignore_classes = query.ignore_classes;
+  lists.ignore_boxes = query.ignore_boxes;
+  const std::lock_guard lock(mutex_);
+  if (ignored_of_ != lists) {
+    ignored_of_.reset();
+    ignored_ = count_ignored(store_.reader(), lists, threads);
+    ignored_of_ = std::move(lists);
+  }
+  return ignored_;
+}
+
+}  // namespace clearway

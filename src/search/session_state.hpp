@@ -1,0 +1,87 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "clearway/ignored.hpp"
+#include "clearway/query.hpp"
+#include "clearway/search.hpp"
+#include "core/util/messages.hpp"
+#include "core/util/progress.hpp"
+#include "clearway/store.hpp"
+#include "search/devices.hpp"
+#include "search/kept_models.hpp"
+
+namespace clearway {
+
+/// Memory that questions of several threads share.
+class SharedMemory {
+ public:
+  explicit SharedMemory(std::uint64_t bytes) : bytes_(bytes) {}
+
+  /// Bytes that a question has until it ends.
+  class Share {
+   public:
+    explicit Share(SharedMemory& memory) : memory_(memory) {}
+    ~Share();
+    Share(const Share&) = delete;
+    Share& operator=(const Share&) = delete;
+
+    /// Waits until so many bytes are free, and takes them; or all bytes, where more are asked for.
+    /// Does nothing after the first time. Throws Interrupted when the progress asks to stop.
+    void take(std::uint64_t bytes, const Progress& progress);
+
+   private:
+    SharedMemory& memory_;
+    std::uint64_t taken_ = 0;
+  };
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable given_back_;
+  const std::uint64_t bytes_;
+  std::uint64_t in_use_ = 0;
+};
+
+/// What searches of one store share: the models' indexes, the GPUs, the memory. A single search has
+/// one of its own. Thread safe.
+class SessionState {
+ public:
+  /// options: those of the machine. Checks that the threads can be started. Throws ResourceError.
+  SessionState(const Store& store, const SearchOptions& options, KeptModels::Kept kept);
+
+  const Store& store() const { return store_; }
+  KeptModels& models() { return models_; }
+  SharedMemory& memory() { return memory_; }
+  bool is_session() const { return models_.is_session(); }
+
+  /// The start of the GPUs, which is begun where that has not been done; null where none is
+  /// started, as by start_devices().
+  std::shared_ptr<const DeviceStart> start(const SearchOptions& options);
+  /// As start(), but always starts what the options name.
+  std::shared_ptr<const DeviceStart> start_surely(const SearchOptions& options);
+  /// Whether GPUs were chosen, so that a search need not wait for their start.
+  bool has_gpus() const;
+  /// The GPUs, chosen at the first call. started: the start that is waited for. waited: gets the
+  /// seconds of the waiting.
+  DeviceChoice gpus(const SearchOptions& options, const MessageLog& log, double& waited);
+
+  /// How many points a query leaves out of the store: count_ignored(), remembered.
+  IgnoredPointCounts ignored(const QueryParameters& query, int threads);
+
+ private:
+  const Store& store_;
+  const SearchOptions options_;
+  KeptModels models_;
+  SharedMemory memory_;
+  mutable std::mutex mutex_;
+  std::shared_ptr<const DeviceStart> started_;
+  std::optional<DeviceChoice> gpus_;
+  std::optional<QueryParameters> ignored_of_;  ///< the lists that ignored_ is about
+  IgnoredPointCounts ignored_;
+};
+
+}  // namespace clearway
