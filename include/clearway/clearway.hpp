@@ -24,6 +24,7 @@
 #include "clearway/search.hpp"      // IWYU pragma: export
 #include "clearway/section.hpp"     // IWYU pragma: export
 #include "clearway/seen.hpp"        // IWYU pragma: export
+#include "clearway/session.hpp"     // IWYU pragma: export
 #include "clearway/shard.hpp"       // IWYU pragma: export
 #include "clearway/stations.hpp"    // IWYU pragma: export
 #include "clearway/store.hpp"       // IWYU pragma: export

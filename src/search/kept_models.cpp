@@ -54,8 +54,10 @@ std::uint64_t ModelIndex::allocated_bytes() const {
   return bytes;
 }
 
-std::shared_ptr<ModelIndex> KeptModels::index_of(const Model& model, int threads) {
-  const std::uint64_t hash = hash_of_model(model);
+std::shared_ptr<ModelIndex> KeptModels::index_of(const Model& model,
+                                                 std::optional<std::uint64_t> known_hash,
+                                                 int threads) {
+  const std::uint64_t hash = known_hash ? *known_hash : hash_of_model(model);
   const auto is_same = [&](const KeptModel& one) {
     return one.hash == hash && one.vertices == model.vertices.size() &&
            one.triangles == model.triangles.size();
@@ -72,8 +74,7 @@ std::shared_ptr<ModelIndex> KeptModels::index_of(const Model& model, int threads
     if (auto kept = take()) return kept;
   }
   // Made without the lock, so that questions about other models go on.
-  auto made =
-      std::make_shared<ModelIndex>(model, threads, is_session() ? kFieldsOfSession : 1);
+  auto made = std::make_shared<ModelIndex>(model, threads, is_session() ? kFieldsOfSession : 1);
   const std::lock_guard lock(mutex_);
   if (auto kept = take()) return kept;  // another thread was faster
   models_.push_front({hash, model.vertices.size(), model.triangles.size(), made});

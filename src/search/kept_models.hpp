@@ -4,6 +4,7 @@
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "clearway/model.hpp"
@@ -78,8 +79,10 @@ class KeptModels {
   /// one that was asked for last.
   KeptModels(Kept kept, std::uint64_t most_bytes) : kept_(kept), most_bytes_(most_bytes) {}
 
-  /// The index of a model, which is made unless it is kept.
-  std::shared_ptr<ModelIndex> index_of(const Model& model, int threads);
+  /// The index of a model, which is made unless it is kept. hash: hash_of_model(), where it is
+  /// known.
+  std::shared_ptr<ModelIndex> index_of(const Model& model, std::optional<std::uint64_t> hash,
+                                       int threads);
 
   bool is_session() const { return kept_ == Kept::kForSession; }
   void forget_all();

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "clearway/query.hpp"
 #include "core/trajectory/motion_tree.hpp"
@@ -14,10 +15,11 @@ namespace clearway {
 /// query starts.
 struct QueryTrees {
   /// The query outlives the trees. kept: the models whose trees are made already; null: the trees
-  /// are made. clock: started just before, for model_seconds.
+  /// are made. hash: that of the model, where it is known. clock: started just before, for
+  /// model_seconds.
   explicit QueryTrees(const Query& query, int threads = 1, KeptModels* kept = nullptr,
-                      const Stopwatch& clock = {})
-      : model(kept != nullptr ? kept->index_of(query.model, threads)
+                      std::optional<std::uint64_t> hash = {}, const Stopwatch& clock = {})
+      : model(kept != nullptr ? kept->index_of(query.model, hash, threads)
                               : std::make_shared<ModelIndex>(query.model, threads, 1)),
         of_session(kept != nullptr && kept->is_session()),
         model_seconds(clock.seconds()),

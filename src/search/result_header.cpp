@@ -55,6 +55,7 @@ void choose_gap(QueryParameters& query, double metre) {
 
 ResultHeader result_header(
     const StoreReader& store, const Query& query, const SearchOptions& options,
+    std::span<const std::uint64_t> model_hashes,
     const std::function<IgnoredPointCounts(const QueryParameters& sorted)>& ignored_by) {
   const StoreMetadata& metadata = store.metadata();
   QueryParameters asked = query;
@@ -67,7 +68,7 @@ ResultHeader result_header(
       metadata.input_points,
       metadata.points_hash,
       points_of(query),
-      query.bodies.empty() ? hash_of_model(query.model) : hash_of_bodies(query.bodies),
+      query.bodies.empty() ? model_hashes.front() : hash_of_bodies(query.bodies, model_hashes),
       query.poses.size(),
       hash_of_trajectory(query.poses),
       query.tolerance > 0 ? name_of(chosen_engine(options)) : "",

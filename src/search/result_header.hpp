@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <span>
 
 #include "clearway/query.hpp"
 #include "clearway/search.hpp"
@@ -14,9 +16,11 @@ namespace clearway {
 void choose_gap(QueryParameters& query, double metre);
 
 /// The header of the result of a search. ignored: how many points the query leaves out, which is
-/// asked with its lists sorted. For a shard, the part is still missing.
+/// asked with its lists sorted. model_hashes: hash_of_model() of the model, or of each body's. For
+/// a shard, the part is still missing.
 ResultHeader result_header(
     const StoreReader& store, const Query& query, const SearchOptions& options,
+    std::span<const std::uint64_t> model_hashes,
     const std::function<IgnoredPointCounts(const QueryParameters& sorted)>& ignored);
 
 }  // namespace clearway

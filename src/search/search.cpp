@@ -13,6 +13,7 @@
 #include "core/util/stopwatch.hpp"
 #include "findings/certain_points.hpp"
 #include "io/files/pending_file.hpp"
+#include "io/paths/content_hash.hpp"
 #include "io/result/answer.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/query_warnings.hpp"
@@ -79,9 +80,12 @@ class Search {
         log_(options_.message, report_.warnings),
         memory_(session.memory()) {
     if (output) file_.emplace(*output, options_, log_);
-    header_ = result_header(store_, query_, options_, [&](const QueryParameters& sorted) {
-      return session_.ignored(sorted, options_.threads);
-    });
+    for (const MovingBody& body : moving_bodies(query_)) {
+      model_hashes_.push_back(hash_of_model(body.model));
+    }
+    header_ = result_header(
+        store_, query_, options_, model_hashes_,
+        [&](const QueryParameters& sorted) { return session_.ignored(sorted, options_.threads); });
     // The part that a shard is turns out later.
     if (file_ && !options.overwrite && !options.resume && !options.shard) {
       file_->journal.refuse_existing(header_);
@@ -159,13 +163,24 @@ class Search {
     check_sizes(query_);
     if (query_.seen) check_seen_space(store_, query_);
     ThreadLimit(threads_or_all(options_.threads)).run([&] {
-      warn_of_query(store_, query_, options_.input_warnings, log_);
+      const auto looks_of = [&](const Model& model) {
+        return session_.looks().of(model, hash_of(model), query_.radius);
+      };
+      warn_of_query(store_, query_, looks_of, options_.input_warnings, log_);
     });
     if (options_.float_precision) warn_of_floats(store_, query_, log_);
     warn_of_ignored(store_, header_, header_.ignored, log_);
     tell_of_large_errors();
     if (query_.seen) warn_of_large_cubes(store_, query_, swept_radius(), log_);
     if (options_.strict) refuse_warnings(report_.warnings);
+  }
+
+  /// The hash of one of the query's own models.
+  std::uint64_t hash_of(const Model& model) const {
+    const std::vector<MovingBody> bodies = moving_bodies(query_);
+    const auto is_it = [&](const MovingBody& body) { return &body.model == &model; };
+    const auto body = std::ranges::find_if(bodies, is_it);
+    return model_hashes_[static_cast<std::size_t>(body - bodies.begin())];
   }
 
   /// The distance from the model at which a place counts as swept.
@@ -222,10 +237,7 @@ class Search {
     if (query_.ignores_points() || query_.has_budget() || query_.seen) take_memory(~0ULL);
     report_.engine = options_.engine;
     count_ignored_that_collide(gpu && options_.engine != Engine::kKdtree);
-    Found found =
-        options_.engine == Engine::kKdtree
-            ? find_by_kdtree()
-            : find_on_pages(gpu);
+    Found found = options_.engine == Engine::kKdtree ? find_by_kdtree() : find_on_pages(gpu);
     report_.needed_host_bytes = std::max(report_.needed_host_bytes, ignored_.needed_host_bytes);
     report_.peak_device_bytes = std::max(report_.peak_device_bytes, ignored_.peak_device_bytes);
     if (file_) {
@@ -313,11 +325,10 @@ class Search {
     // A journal that does not match is refused before anything is planned.
     if (device == Device::kCpu || !fallback_allowed(options_)) open_journal();
     const std::unique_ptr<PageEngineKind> kind = kind_on(device, query_, options_);
-    return search_pages(
-        store_, query_, options_.memory_bytes, *kind, only(),
-        {.planned = [this](std::uint64_t bytes) { take_memory(bytes); },
-         .open_journal = [this] { return open_journal(); }},
-        progress_, report_, log_);
+    return search_pages(store_, query_, options_.memory_bytes, *kind, only(),
+                        {.planned = [this](std::uint64_t bytes) { take_memory(bytes); },
+                         .open_journal = [this] { return open_journal(); }},
+                        progress_, report_, log_);
   }
 
   /// The cells that have entries of a set.
@@ -517,9 +528,9 @@ class Search {
     const MessageLog log(silent, report.warnings);
     StageOf progress(progress_, name);
     const auto search_on = [&](Device device) {
-      return search_pages(
-          store_, further_, further_options_.memory_bytes,
-          *kind_on(device, further_, further_options_), cells, {}, progress, report, log);
+      return search_pages(store_, further_, further_options_.memory_bytes,
+                          *kind_on(device, further_, further_options_), cells, {}, progress, report,
+                          log);
     };
     Found other = [&] {
       if (report_.engine == Engine::kKdtree) {
@@ -567,7 +578,8 @@ class Search {
       }
       return cpu_sweep_kind(cloud, query, options);
     }();
-    kind->keep_models_in(session_.models());
+    kind->keep_models_in(session_.models(),
+                         query.tolerance > 0 ? std::vector<std::uint64_t>() : model_hashes_);
     return kind;
   }
 
@@ -654,6 +666,8 @@ class Search {
   MessageLog log_;
   SharedMemory::Share memory_;
   std::optional<OutputFile> file_;
+  /// hash_of_model() of the model, or of the model of each body.
+  std::vector<std::uint64_t> model_hashes_;
   ResultHeader header_;
   std::optional<ShardCells> shard_;
   CollidingIgnored ignored_;
@@ -789,9 +803,8 @@ SessionAnswer Session::search(const Query& query, const QuestionOptions& asked) 
   state_->store.reader().check_unchanged();
   SessionAnswer answer;
   const auto tables = std::make_shared<SessionAnswer::Tables>();
-  static_cast<SearchReport&>(answer) =
-      Search(state_->session, query, options, std::nullopt)
-          .answer(*tables, tables->header, tables->findings);
+  static_cast<SearchReport&>(answer) = Search(state_->session, query, options, std::nullopt)
+                                           .answer(*tables, tables->header, tables->findings);
   answer.tables_ = tables;
   return answer;
 }

@@ -234,7 +234,8 @@ class Finder {
     }
     load.poses = load_.poses;
     load.radius = data_.parameters.margin;
-    const Question question(store_, unit, load, load_.path_pose, data_.chainage);
+    const ModelLooks looks(load.model, load.radius);
+    const Question question(store_, unit, load, looks, load_.path_pose, data_.chainage);
     check_reach(question, PathCover(question), log_);
     // A load is longer than it is wide, whatever the window is.
     const double length = std::max(box.hi.x - box.lo.x, metre_of(store_));
@@ -244,7 +245,8 @@ class Finder {
           Box{{box.lo.x, -length / 4, 0}, {box.lo.x + length, length / 4, length / 4}}.corner(
               corner));
     }
-    check_heading(Question(store_, unit, load, load_.path_pose, data_.chainage),
+    const ModelLooks of_length(load.model, load.radius);
+    check_heading(Question(store_, unit, load, of_length, load_.path_pose, data_.chainage),
                   options_.input_warnings, log_);
   }
 

@@ -9,9 +9,10 @@
 #include "clearway/ignored.hpp"
 #include "clearway/query.hpp"
 #include "clearway/search.hpp"
+#include "clearway/store.hpp"
 #include "core/util/messages.hpp"
 #include "core/util/progress.hpp"
-#include "clearway/store.hpp"
+#include "search/checks/facts/model_looks.hpp"
 #include "search/devices.hpp"
 #include "search/kept_models.hpp"
 
@@ -55,6 +56,7 @@ class SessionState {
 
   const Store& store() const { return store_; }
   KeptModels& models() { return models_; }
+  KeptLooks& looks() { return looks_; }
   SharedMemory& memory() { return memory_; }
   bool is_session() const { return models_.is_session(); }
 
@@ -76,6 +78,7 @@ class SessionState {
   const Store& store_;
   const SearchOptions options_;
   KeptModels models_;
+  KeptLooks looks_;
   SharedMemory memory_;
   mutable std::mutex mutex_;
   std::shared_ptr<const DeviceStart> started_;

@@ -22,14 +22,21 @@ std::uint64_t hash_of_trajectory(std::span<const Pose> poses) {
 }
 
 std::uint64_t hash_of_bodies(std::span<const Body> bodies) {
+  std::vector<std::uint64_t> models;
+  for (const Body& body : bodies) models.push_back(hash_of_model(body.model));
+  return hash_of_bodies(bodies, models);
+}
+
+std::uint64_t hash_of_bodies(std::span<const Body> bodies, std::span<const std::uint64_t> models) {
   Xxh64Stream hash;
   const auto add = [&hash](std::uint64_t number) {
     hash.update(std::as_bytes(std::span(&number, 1)));
   };
-  for (const Body& body : bodies) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
     add(body.name.size());
     hash.update(std::as_bytes(std::span(body.name)));
-    add(hash_of_model(body.model));
+    add(models[i]);
     add(body.path_pose.size());
     hash.update(std::as_bytes(std::span(body.path_pose)));
     add(hash_of_trajectory(body.poses));

@@ -1,14 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 #include <vector>
 
 #include "clearway/error.hpp"
 #include "core/geometry/point_box.hpp"
-#include "core/geometry/solid_parts.hpp"
 #include "core/util/format.hpp"
 #include "search/checks/checks.hpp"
-#include "search/checks/facts/model_views.hpp"
+#include "search/checks/facts/model_looks.hpp"
 #include "search/checks/facts/path_facts.hpp"
 #include "search/checks/facts/scan_facts.hpp"
 #include "search/checks/question.hpp"
@@ -108,8 +106,8 @@ void warn_of_origin(const Question& question, MessageLog& log) {
 }
 
 void warn_of_same(const Question& question, MessageLog& log) {
-  if (question.query.model.vertices.size() != question.cloud.point_count()) return;
-  if (question.query.model.vertices.size() == 1) return;
+  if (question.points.size() != question.cloud.point_count()) return;
+  if (question.points.size() == 1) return;
   for (int k = 0; k < 3; ++k) {
     const double noise =
         2 * question.cloud.quantisation().scale[k] + 1e-6 * std::abs(question.environment.hi[k]);
@@ -117,9 +115,9 @@ void warn_of_same(const Question& question, MessageLog& log) {
     if (std::abs(question.model.hi[k] - question.environment.hi[k]) > noise) return;
   }
   log.warn("model-is-environment",
-           "the model has " + format_count(question.query.model.vertices.size()) +
+           "the model has " + format_count(question.points.size()) +
                " points, as many as the environment, and the same box: is it the scan itself?",
-           {{"points", static_cast<double>(question.query.model.vertices.size())}});
+           {{"points", static_cast<double>(question.points.size())}});
 }
 
 /// Warns where poses scale the model. Poses that are not rigid were allowed, perhaps for another
@@ -189,7 +187,7 @@ constexpr double kOpen = 0.4;
 
 /// The scan's points in the model's box at the first pose, in the model's frame, except those in
 /// the model's solids, which collide.
-std::vector<Vec3> points_in_box(const Question& question, const Query& asked) {
+std::vector<Vec3> points_in_box(const Question& question) {
   std::vector<Vec3> inside;
   try {
     ScanPoints(question.cloud)
@@ -200,8 +198,8 @@ std::vector<Vec3> points_in_box(const Question& question, const Query& asked) {
   } catch (const InputError&) {
     inside.clear();  // a damaged cell is reported by the search, where it matters
   }
-  if (asked.model.is_solid() && !inside.empty()) {
-    const SolidParts solids(asked.model);
+  if (question.query.model.is_solid() && !inside.empty()) {
+    const SolidParts& solids = question.looks.solids(question.query.model);
     std::erase_if(inside, [&](const Vec3& p) { return solids.ref().contains(p); });
   }
   return inside;
@@ -210,7 +208,7 @@ std::vector<Vec3> points_in_box(const Question& question, const Query& asked) {
 /// Keeps the points that have model points in all six directions.
 void keep_enclosed(const Question& question, double distance, std::vector<Vec3>& points) {
   for (int axis = 0; axis < 3 && points.size() >= kFewInside; ++axis) {
-    const ModelView view(question.query.model.vertices, question.model, axis, 2 * distance);
+    const ModelView& view = question.looks.view(question.points, axis);
     std::erase_if(points, [&](const Vec3& p) { return !view.encloses(p, distance); });
   }
 }
@@ -223,7 +221,7 @@ std::uint64_t untouched(const Question& question, const std::vector<Vec3>& point
     some.push_back(points[i]);
   }
   const std::size_t measured = some.size();
-  for (const Vec3& m : question.query.model.vertices) {
+  for (const Vec3& m : question.points) {
     std::erase_if(some, [&](const Vec3& p) { return collides(m, p, question.query.radius); });
     if (some.empty()) break;
   }
@@ -240,8 +238,8 @@ int axis_of_motion(const Question& question) {
 
 }  // namespace
 
-void check_inside(const Question& question, const Query& asked, MessageLog& log) {
-  const std::vector<Vec3> in_box = points_in_box(question, asked);
+void check_inside(const Question& question, MessageLog& log) {
+  const std::vector<Vec3> in_box = points_in_box(question);
   std::vector<Vec3> enclosed = in_box;
   keep_enclosed(question, question.query.radius, enclosed);
   if (enclosed.size() < kFewInside) return;
@@ -259,9 +257,7 @@ void check_inside(const Question& question, const Query& asked, MessageLog& log)
 void check_open_model(const Question& question, MessageLog& log) {
   if (Sides(question.model).middle == 0) return;
   const int axis = axis_of_motion(question);
-  const ModelView view(question.query.model.vertices, question.model, axis,
-                       2 * question.query.radius);
-  const double share = view.open_share();
+  const double share = question.looks.view(question.points, axis).open_share();
   if (share < kOpen) return;
   log.warn("open-model",
            "seen along its " + std::string(1, "xyz"[axis]) +
@@ -271,114 +267,10 @@ void check_open_model(const Question& question, MessageLog& log) {
            {{"share", share}});
 }
 
-namespace {
-
-constexpr std::size_t kModelSample = 512;
-constexpr std::size_t kMeasuredPoints = 16;
-constexpr std::size_t kMarks = (1 << 19) - 1;
-/// The share of points that may stand alone, such as antennas.
-constexpr double kSomeAlone = 0.01;
-
-/// Finds which points of a sample of the model have no other model point within the radius, in one
-/// pass over the model. The surroundings of the sample are in a table of cubes as wide as the
-/// radius.
-class Neighbours {
- public:
-  Neighbours(const std::vector<Vec3>& model, double radius)
-      : model_(model), radius_(radius), per_radius_(1 / radius) {
-    for (const std::uint32_t i : spread_poses(model.size(), kModelSample))
-      sample_.push_back(model[i]);
-    alone_.assign(sample_.size(), true);
-    fill();
-  }
-
-  /// The points of the sample that stand alone. Stops early where they are as few as is allowed,
-  /// and may then return too many.
-  std::vector<Vec3> find() {
-    std::size_t left = sample_.size();
-    const auto enough = static_cast<std::size_t>(kSomeAlone * static_cast<double>(left));
-    for (const Vec3& p : model_) {
-      const std::uint64_t place = key(cube(p.x), cube(p.y), cube(p.z));
-      if (!marked_[place % marked_.size()]) continue;
-      const auto near = cubes_.find(place);
-      if (near == cubes_.end()) continue;
-      for (const std::uint32_t i : near->second) {
-        if (!alone_[i] || sample_[i] == p || !collides(p, sample_[i], radius_)) continue;
-        alone_[i] = false;
-        --left;
-      }
-      if (left <= enough) break;
-    }
-    std::vector<Vec3> out;
-    for (std::size_t i = 0; i < sample_.size(); ++i) {
-      if (alone_[i]) out.push_back(sample_[i]);
-    }
-    return out;
-  }
-
-  std::size_t size() const { return sample_.size(); }
-
- private:
-  std::int64_t cube(double x) const {
-    constexpr double kMost = 1e15;
-    const double cubes = std::clamp(x * per_radius_, -kMost, kMost);
-    const auto whole = static_cast<std::int64_t>(cubes);
-    return whole - (cubes < static_cast<double>(whole) ? 1 : 0);
-  }
-
-  /// A key of a cube. Different cubes may share one, because their points are compared by distance
-  /// anyway.
-  static std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z) {
-    return static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15u ^
-           static_cast<std::uint64_t>(y) * 0xc2b2ae3d27d4eb4fu ^
-           static_cast<std::uint64_t>(z) * 0x165667b19e3779f9u;
-  }
-
-  void fill() {
-    for (std::uint32_t i = 0; i < sample_.size(); ++i) {
-      const Vec3& p = sample_[i];
-      for (int n = 0; n < 27; ++n) {
-        const std::uint64_t place =
-            key(cube(p.x) + n % 3 - 1, cube(p.y) + n / 3 % 3 - 1, cube(p.z) + n / 9 - 1);
-        marked_[place % marked_.size()] = true;
-        auto& cube_of = cubes_[place];
-        if (cube_of.empty() || cube_of.back() != i) cube_of.push_back(i);
-      }
-    }
-  }
-
-  const std::vector<Vec3>& model_;
-  double radius_, per_radius_;
-  std::vector<Vec3> sample_;
-  std::vector<bool> alone_;
-  /// Marks cubes by their key modulo kMarks, which rules out most points.
-  std::vector<bool> marked_ = std::vector<bool>(kMarks);
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cubes_;
-};
-
-/// The largest distance from a sample of `alone` to the nearest other model point.
-double largest_spacing(const std::vector<Vec3>& model, const std::vector<Vec3>& alone) {
-  std::vector<Vec3> some;
-  for (const std::uint32_t i : spread_poses(alone.size(), kMeasuredPoints))
-    some.push_back(alone[i]);
-  std::vector<double> nearest(some.size(), kInfinity);
-  for (const Vec3& p : model) {
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      if (!(p == some[i])) nearest[i] = std::min(nearest[i], squared_distance(p, some[i]));
-    }
-  }
-  return std::sqrt(*std::max_element(nearest.begin(), nearest.end()));
-}
-
-}  // namespace
-
 void check_model_spacing(const Question& question, MessageLog& log) {
   if (Sides(question.model).longest == 0) return;  // the model is a single place
-  Neighbours neighbours(question.query.model.vertices, question.query.radius);
-  const std::vector<Vec3> alone = neighbours.find();
-  const double share = static_cast<double>(alone.size()) / static_cast<double>(neighbours.size());
-  if (share <= kSomeAlone) return;
-  const double largest = largest_spacing(question.query.model.vertices, alone);
+  const auto [share, largest] = question.looks.alone(question.points);
+  if (largest == 0) return;
   log.warn("model-spacing",
            share_text(share) + " of the model's points are farther than the radius of " +
                length_text(question.query.radius, question.unit) +

@@ -82,7 +82,7 @@ struct Deviation {
 /// The deviations that are larger than `least`. Adds the number of all steps to `steps`.
 std::vector<Deviation> deviations_above(const Question& question, double least,
                                         std::uint64_t& steps) {
-  const double reach = farthest_from_origin(question.query.model.vertices);
+  const double reach = farthest_from_origin(question.points);
   std::vector<Deviation> out;
   for (const auto& run : runs_of(question)) {
     const auto distances = chord_deviations(poses_of(question, run), reach);

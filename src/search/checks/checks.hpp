@@ -32,9 +32,8 @@ void check_surroundings(const Question& question, const PathLooks& looks, bool f
 void check_model(const Question& question, MessageLog& log);
 
 /// Warns where the model stands over something at the first pose: "inside-model". Reads the points
-/// there. asked: the question's query before its surface was sampled; points in its solids collide
-/// and are not counted.
-void check_inside(const Question& question, const Query& asked, MessageLog& log);
+/// there; those in the model's solids collide and are not counted.
+void check_inside(const Question& question, MessageLog& log);
 
 /// Warns where things can pass through the model: "open-model".
 void check_open_model(const Question& question, MessageLog& log);

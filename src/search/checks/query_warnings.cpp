@@ -14,7 +14,6 @@
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
-#include "io/models/sample_mesh.hpp"
 #include "search/checks/checks.hpp"
 #include "search/checks/question.hpp"
 #include "search/checks/told_stretches.hpp"
@@ -165,28 +164,13 @@ void note_sizes(const Question& question, MessageLog& log) {
            length_text(question.query.radius, question.unit));
 }
 
-/// What the checks that look at a model from outside see: its own points, samples as close as the
-/// radius, or samples farther apart than that.
-enum class ModelForm { kPoints, kSurface, kCoarseSurface };
-
-/// The query with a model of samples of the surface, as close as the radius where these are not too
-/// many.
-Query sampled(const Query& query, ModelForm& view) {
-  constexpr double kMostSamples = 1e5;
-  const TriangleMesh mesh{query.model.vertices, query.model.triangles};
-  const double spacing = std::max(spacing_for(mesh, kMostSamples), query.radius);
-  view = spacing > query.radius ? ModelForm::kCoarseSurface : ModelForm::kSurface;
-  return {sample_mesh(mesh, spacing, "the model"), query.poses, query};
-}
-
-/// asked: the query before its surface was sampled.
-void check_model_itself(const Question& question, const Query& asked, ModelForm view,
-                        MessageLog& log) {
-  const bool close = view != ModelForm::kCoarseSurface;  // otherwise gaps are those between samples
-  if (close) check_inside(question, asked, log);
+void check_model_itself(const Question& question, MessageLog& log) {
+  const ModelForm form = question.looks.form();
+  const bool close = form != ModelForm::kCoarseSurface;  // otherwise gaps are those between samples
+  if (close) check_inside(question, log);
   check_model(question, log);
   if (close) check_open_model(question, log);
-  if (view == ModelForm::kPoints) check_model_spacing(question, log);
+  if (form == ModelForm::kPoints) check_model_spacing(question, log);
 }
 
 /// Checks what was scanned below and beside the model. Reads points.
@@ -206,21 +190,19 @@ void check_what_is_around(const Question& question, const PathCover& cover, bool
 
 /// Checks one body by itself. Whether its warnings matter depends on the other bodies.
 void warn_of_body(const StoreReader& store, const Body& body, const Query& query,
-                  std::span<const double> chainage, std::span<const Message> told,
-                  StepChecks& steps, MessageLog& log) {
+                  const ModelLooks& looks, std::span<const double> chainage,
+                  std::span<const Message> told, StepChecks& steps, MessageLog& log) {
   if (body.poses.empty()) {
     log.warn("no-poses", "has no poses: it cannot collide");
     return;
   }
-  ModelForm form = ModelForm::kPoints;
   const Query own(body.model, body.poses, query);
-  const Query points = own.model.is_surface() ? sampled(own, form) : own;
-  const Question question(store, store.metadata().unit, points, body.path_pose, chainage);
+  const Question question(store, store.metadata().unit, own, looks, body.path_pose, chainage);
   note_sizes(question, log);
   const PathCover cover(question);
   check_reach(question, cover, log);
   check_what_is_around(question, cover, true, log);
-  check_model_itself(question, own, form, log);
+  check_model_itself(question, log);
   check_radius(question, log);
   steps.check(question, log);
   check_heading(question, told, log);
@@ -257,7 +239,7 @@ void tell_missing_poses(const Query& query, std::span<const Message> told, Messa
 
 /// path: the vehicle's path, with a model of one point.
 void warn_of_bodies(const StoreReader& store, const Question& path, const Query& query,
-                    std::span<const Message> before, MessageLog& log) {
+                    const LooksOf& looks_of, std::span<const Message> before, MessageLog& log) {
   tell_missing_poses(query, before, log);
   std::vector<BodyMessages> told;
   StepChecks steps(path);
@@ -269,16 +251,17 @@ void warn_of_bodies(const StoreReader& store, const Question& path, const Query&
     };
     std::vector<Message> unused;
     MessageLog own(keep, unused);
-    warn_of_body(store, body, query, chainage, before, steps, own);
+    warn_of_body(store, body, query, *looks_of(body.model), chainage, before, steps, own);
   }
   tell_of_bodies(told, log);
   steps.check_path(path, log);
 }
 
-/// Warns about a query without bodies. query: its model as points. asked: the query before its
-/// surface was sampled.
-void warn_of_points(const StoreReader& store, const Query& query, const Query& asked,
-                    ModelForm view, std::span<const Message> told, MessageLog& log) {
+}  // namespace
+
+void warn_of_query(const StoreReader& store, const Query& query, const LooksOf& looks_of,
+                   std::span<const Message> told, MessageLog& log) {
+  for (Message& warning : store_warnings(store.metadata())) log.add(std::move(warning));
   const LengthUnit unit = store.metadata().unit;
   if (query.poses.empty()) {
     log.warn("no-poses", "the trajectory has no poses: nothing can collide");
@@ -294,33 +277,31 @@ void warn_of_points(const StoreReader& store, const Query& query, const Query& a
   }
   if (!query.bodies.empty()) {
     const Query points({Vec3{}}, query.poses, query);
-    const Question path(store, unit, points);
+    const ModelLooks looks(points.model, points.radius);
+    const Question path(store, unit, points, looks);
     warn_of_flat_scan(path, log);
-    warn_of_bodies(store, path, query, told, log);
+    warn_of_bodies(store, path, query, looks_of, told, log);
     return;
   }
-  const Question question(store, unit, query);
+  const std::shared_ptr<const ModelLooks> looks = looks_of(query.model);
+  const Question question(store, unit, query, *looks);
   note_sizes(question, log);
   warn_of_flat_scan(question, log);
   const PathCover cover(question);
   check_reach(question, cover, log);
   check_what_is_around(question, cover, false, log);
-  check_model_itself(question, asked, view, log);
+  check_model_itself(question, log);
   check_radius(question, log);
   StepChecks().check(question, log);
   check_heading(question, told, log);
 }
 
-}  // namespace
-
 void warn_of_query(const StoreReader& store, const Query& query, std::span<const Message> told,
                    MessageLog& log) {
-  for (Message& warning : store_warnings(store.metadata())) log.add(std::move(warning));
-  if (!query.model.is_surface())
-    return warn_of_points(store, query, query, ModelForm::kPoints, told, log);
-  ModelForm view{};
-  const Query points = sampled(query, view);
-  warn_of_points(store, points, query, view, told, log);
+  const auto make = [&](const Model& model) {
+    return std::make_shared<const ModelLooks>(model, query.radius);
+  };
+  warn_of_query(store, query, make, told, log);
 }
 
 void warn_of_floats(const StoreReader& store, const Query& query, MessageLog& log) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -8,6 +10,7 @@
 #include "clearway/query.hpp"
 #include "core/util/messages.hpp"
 #include "io/store/store_reader.hpp"
+#include "search/checks/facts/model_looks.hpp"
 
 namespace clearway {
 
@@ -28,6 +31,13 @@ void tell_of_bodies(const std::vector<BodyMessages>& bodies, MessageLog& log);
 /// has told already, such as which poses a body lacks; it is not told again.
 void warn_of_query(const StoreReader& store, const Query& query, std::span<const Message> told,
                    MessageLog& log);
+
+/// Gives what is known of a model for the radius of the query.
+using LooksOf = std::function<std::shared_ptr<const ModelLooks>(const Model&)>;
+
+/// The same, where models may have been looked at before.
+void warn_of_query(const StoreReader& store, const Query& query, const LooksOf& looks_of,
+                   std::span<const Message> told, MessageLog& log);
 
 /// Warns where single precision alone decides and its numbers are too far apart at these
 /// coordinates to tell distances such as the radius: "coarse-floats".

@@ -9,19 +9,17 @@
 namespace clearway {
 
 Question::Question(const PackedCloud& environment_points, LengthUnit length_unit,
-                   const Query& asked)
-    : Question(environment_points, length_unit, asked, {}, {}) {}
-
-Question::Question(const PackedCloud& environment_points, LengthUnit length_unit,
-                   const Query& asked, std::span<const std::uint32_t> numbers,
-                   std::span<const double> chainages)
+                   const Query& asked, const ModelLooks& of_model,
+                   std::span<const std::uint32_t> numbers, std::span<const double> chainages)
     : cloud(environment_points),
       unit(length_unit),
       query(asked),
+      looks(of_model),
+      points(of_model.points(asked.model)),
       path_pose(numbers),
       path_chainage(chainages),
       environment(position_box(cloud.quantisation(), cloud.tree()[0].box)),
-      model(box_of(query.model.vertices)),
+      model(of_model.box()),
       // An international foot also stands for a US survey foot: the checks need no more digits.
       metre(unit == LengthUnit::kFoot || unit == LengthUnit::kUsSurveyFoot ? 1 / kMetresPerFoot
                                                                            : 1) {}

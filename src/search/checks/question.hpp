@@ -10,17 +10,18 @@
 #include "core/geometry/sweep_bounds.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "io/scans/point_reader.hpp"
+#include "search/checks/facts/model_looks.hpp"
 
 namespace clearway {
 
 /// The query, the environment and derived sizes that the checks of a query look at. Owns nothing.
 struct Question {
   /// The environment and the model have at least one point, and the trajectory at least one pose.
-  Question(const PackedCloud& environment, LengthUnit length_unit, const Query& asked);
-  /// The question about a body. path_pose: the one of Body. path_chainage: chainage of all poses of
-  /// the path that the body follows.
+  /// looks: those of the query's model and radius. For a body, path_pose is the one of Body, and
+  /// path_chainage the chainage of all poses of the path that it follows.
   Question(const PackedCloud& environment, LengthUnit length_unit, const Query& asked,
-           std::span<const std::uint32_t> path_pose, std::span<const double> path_chainage);
+           const ModelLooks& looks, std::span<const std::uint32_t> path_pose = {},
+           std::span<const double> path_chainage = {});
 
   /// The number by which users know a pose.
   std::uint32_t number_of(std::uint32_t pose) const {
@@ -32,13 +33,16 @@ struct Question {
   const PackedCloud& cloud;
   LengthUnit unit;
   const Query& query;
+  const ModelLooks& looks;
+  /// The points that the checks look at: ModelLooks::points().
+  const std::vector<Vec3>& points;
   std::span<const std::uint32_t> path_pose;
   /// Chainage of the path's poses for a body; empty otherwise, since it then follows from the
   /// poses.
   std::span<const double> path_chainage;
   /// The box around all points.
   Box environment;
-  /// The model's box in its own frame.
+  /// The box of `points`, in the model's own frame.
   Box model;
   /// The length of a metre in the environment's unit.
   double metre;

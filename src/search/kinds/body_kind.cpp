@@ -264,7 +264,7 @@ std::vector<PageEngineKind::IndexSize> BodyKind::index_sizes() const {
 
 const PoseReach& BodyKind::build_index(const QueryTrees& trees, std::uint64_t most_bytes) {
   for (std::size_t body = trees_.size() + 1; body < queries_.size(); ++body) {
-    trees_.push_back(std::make_unique<QueryTrees>(trees_of(queries_[body])));
+    trees_.push_back(std::make_unique<QueryTrees>(trees_of(queries_[body], body)));
   }
   reaches_.clear();
   first_nodes_.clear();

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <future>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -64,10 +65,17 @@ class PageEngineKind {
   const PageEngineNeeds& needs() const { return needs_; }
 
   /// Takes the indexes of models from `models`, which outlives the kind, and keeps them there.
-  void keep_models_in(KeptModels& models) { models_ = &models; }
-  /// The trees of a query that this kind searches, which outlives them.
-  QueryTrees trees_of(const Query& query) const {
-    return QueryTrees(query, needs_.threads - needs_.waiting_threads, models_);
+  /// hashes: hash_of_model() of the query's model, or of each body's; none: they are computed.
+  void keep_models_in(KeptModels& models, std::vector<std::uint64_t> hashes) {
+    models_ = &models;
+    model_hashes_ = std::move(hashes);
+  }
+  /// The trees of a query that this kind searches, which outlives them. body: the body whose query
+  /// it is.
+  QueryTrees trees_of(const Query& query, std::size_t body = 0) const {
+    std::optional<std::uint64_t> hash;
+    if (body < model_hashes_.size()) hash = model_hashes_[body];
+    return QueryTrees(query, needs_.threads - needs_.waiting_threads, models_, hash);
   }
 
   /// Index sizes from the best to the least. With a smaller index the search is slower, but its
@@ -121,6 +129,7 @@ class PageEngineKind {
 
  private:
   KeptModels* models_ = nullptr;
+  std::vector<std::uint64_t> model_hashes_;
 };
 
 }  // namespace clearway
