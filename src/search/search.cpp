@@ -144,6 +144,7 @@ class Search {
     report_sizes(store_, query_, report_);
     report_.doubts = doubts_among(report_.warnings);
     report_.warned_of = codes_beside_doubts(report_.warnings);
+    report_.seconds.check = total_.seconds();
   }
 
   Found find_all() {

@@ -311,6 +311,7 @@ TEST_CASE("too little memory is refused with the number that would do") {
   Random random(8);
   const Query query{scene.models[1], smooth_path(random, kRoom, 3), {0.1}};
   const Session session(
-      scene.store(), {.device = Device::kCpu, .threads = 1, .memory_bytes = std::uint64_t{1} << 20});
+      scene.store(),
+      {.device = Device::kCpu, .threads = 1, .memory_bytes = std::uint64_t{1} << 20});
   CHECK_THROWS_WITH(session.search(query), Contains("of memory is too little"));
 }
