@@ -267,6 +267,7 @@ TEST_CASE("an answer in memory has the columns and the verdict of the file") {
   CHECK(bytes_of(scene.folder / "saved.h5") == bytes_of(output));
   CHECK_THROWS_AS(answer.save(scene.folder / "saved.h5"), UsageError);
   answer.save(scene.folder / "saved.h5", true);
+  CHECK_THROWS_AS(answer.save(scene.store(), true), UsageError);
 }
 
 TEST_CASE("a question that fails or is stopped leaves the session usable") {
