@@ -138,6 +138,11 @@ struct SectionCheck {
   std::vector<SectionStop> stops = {};   ///< the first place in each bin that stops it, ascending
 };
 
+/// The whole cells of a window: columns j_from .. j_to - 1 and rows k_from .. k_to - 1.
+struct SectionGrid {
+  std::int32_t j_from = 0, j_to = 0, k_from = 0, k_to = 0;
+};
+
 /// A section in a file.
 class Section {
  public:
@@ -147,6 +152,9 @@ class Section {
   explicit Section(SectionData data);
 
   const SectionData& data() const { return data_; }
+  SectionGrid grid() const;  ///< the cells of the window
+  /// The file that was read; empty for a section that was made of its data.
+  const std::filesystem::path& path() const { return path_; }
   const SectionCells& cells() const { return cells_; }  ///< those of the whole path
 
   /// Whether a load with this outline, and with the length for which the section was found, passes
@@ -154,13 +162,14 @@ class Section {
   /// negative or not finite, and for an outline that outline_model() refuses.
   SectionCheck check(std::span<const OutlinePoint> outline, double margin) const;
 
-  /// For each cell of the window, row by row, whether it is free with this margin; false everywhere
+  /// For each cell of grid(), row by row, whether it is free with this margin; false everywhere
   /// where the section is in doubt or the margin exceeds that of the section.
   std::vector<bool> free_cells(double margin) const;
 
  private:
   SectionData data_;
   SectionCells cells_;
+  std::filesystem::path path_;
 };
 
 /// The tables of a section.

@@ -357,6 +357,7 @@ class Finder {
 SectionReport find_section(const Store& store, const std::vector<Pose>& path,
                            const SectionParameters& parameters, const std::filesystem::path& output,
                            const SectionOptions& options) {
+  refuse_overwriting(output, {store.path()});
   return Finder(store, path, parameters, output, options).run();
 }
 

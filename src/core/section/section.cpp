@@ -185,6 +185,12 @@ std::size_t index_of(const SectionCells& cells, std::int32_t j, std::int32_t k) 
 
 Section::Section(SectionData data) : data_(std::move(data)), cells_(data_.cells()) {}
 
+SectionGrid Section::grid() const {
+  const SectionLattice lattice = lattice_of(data_);
+  return {static_cast<std::int32_t>(lattice.j_from), static_cast<std::int32_t>(lattice.j_to),
+          static_cast<std::int32_t>(lattice.k_from), static_cast<std::int32_t>(lattice.k_to)};
+}
+
 SectionCheck Section::check(std::span<const OutlinePoint> outline, double margin) const {
   check_margin(margin);
   outline_model(outline, 0, 1);  // refuses what is no outline

@@ -9,9 +9,13 @@
 
 namespace clearway {
 
-Section::Section(const std::filesystem::path& path) : Section(read_section(path)) {}
+Section::Section(const std::filesystem::path& path) : Section(read_section(path)) { path_ = path; }
 
 namespace {
+
+void refuse_replacing(const Section& section, const std::filesystem::path& output) {
+  if (!section.path().empty()) refuse_overwriting(output, {section.path()});
+}
 
 /// What a reader of widths has to know, in lines that begin with "#".
 void write_preamble(TextWriter& out, const Section& section) {
@@ -109,6 +113,7 @@ void write_cells(TextWriter& out, const SectionCells& cells) {
 
 void export_section(const Section& section, SectionTable table, const std::filesystem::path& output,
                     const SectionHeights& heights, bool overwrite) {
+  refuse_replacing(section, output);
   PendingFile pending(output, overwrite);
   {
     const File file = File::create(pending.partial());
@@ -184,6 +189,7 @@ void write_dxf(TextWriter& out, const std::vector<OutlinePoint>& outline, bool f
 
 void export_section_outline(const Section& section, const std::filesystem::path& output,
                             const SectionHeights& heights, bool overwrite) {
+  refuse_replacing(section, output);
   const std::vector<OutlinePoint> outline = largest_outline(section, heights);
   PendingFile pending(output, overwrite);
   {
