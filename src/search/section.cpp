@@ -53,6 +53,7 @@ void block_cells(const PackedCloud& cloud, const IgnoredPoints& ignored, const S
         const auto blocks = static_cast<std::uint32_t>(divide_up(count, kBlockPoints));
         const ParallelScope of_cell;
         const auto search_blocks = piece_of(of_cell, [&](std::uint32_t part) {
+          throw_if_stopped(progress);
           const std::uint32_t first = part * kBlocksAtOnce;
           search.search(cell, coordinates, searched, bins, first,
                         std::min(first + kBlocksAtOnce, blocks));

@@ -25,6 +25,7 @@
 #include "cli/support/trajectory_options.hpp"
 #include "core/util/format.hpp"
 #include "io/files/pending_file.hpp"
+#include "io/scans/length_unit.hpp"
 #include "search/threads.hpp"
 
 namespace clearway::tool {
@@ -202,6 +203,19 @@ void add_find(CLI::App& section) {
       [options] { run_stoppable(options->output, kStartsAgain, [&] { run_find(*options); }); });
 }
 
+/// Converts the lengths that were given with a unit into the unit of a section, and returns the
+/// metres of that unit; 1, and a warning where a length names a unit, where it is not known.
+double convert_for(const LengthOptions& lengths, const Section& section,
+                   const std::filesystem::path& file) {
+  const LengthUnit unit = length_unit_of(section.data().length_unit);
+  if (unit == LengthUnit::kUnknown) {
+    return lengths.convert_for(file.string(), section.data().crs_wkt);
+  }
+  const double metres = unit == LengthUnit::kDegrees ? 1 : metres_of(unit);
+  lengths.convert(metres);
+  return metres;
+}
+
 struct CheckCommand {
   std::filesystem::path section, outline;
   OutlineOptions how;
@@ -275,14 +289,26 @@ std::string sentence_of(const SectionCheck& check, const Section& section,
   return "unknown: " + check.reason + doubts;
 }
 
+/// The outline in the unit of the section, which has so many metres. Where no unit is named, the
+/// file is in that unit.
+std::vector<OutlinePoint> read_load(const CheckCommand& options, const Section& section,
+                                    double metres) {
+  std::vector<OutlinePoint> outline = read_outline(options.outline, {.mirror = options.how.mirror});
+  const FileUnit& unit = options.how.unit;
+  if (!unit.is_known()) return outline;
+  if (length_unit_of(section.data().length_unit) == LengthUnit::kUnknown &&
+      (is_foot(unit.metres()) || unit.metres() == kMetresPerInch)) {
+    spdlog::warn("{}", unit_assumed_text("corners of the outline", unit.metres()));
+  }
+  const UnitFactor factor(unit.metres_in(metres), metres);
+  for (OutlinePoint& p : outline) p = {factor(p.y), factor(p.z)};
+  return outline;
+}
+
 int run_check(const CheckCommand& options) {
   const Section section(options.section);
-  const double metres =
-      options.lengths.convert_for(options.section.string(), section.data().crs_wkt);
-  std::vector<OutlinePoint> outline = read_outline(options.outline, options.how);
-  if (options.how.unit.is_known()) {
-    for (OutlinePoint& p : outline) p = {p.y / metres, p.z / metres};
-  }
+  const double metres = convert_for(options.lengths, section, options.section);
+  const std::vector<OutlinePoint> outline = read_load(options, section, metres);
   SectionCheck check;
   try {
     check = section.check(outline, options.margin);
@@ -344,7 +370,7 @@ struct ExportCommand {
 void run_export(ExportCommand& options) {
   refuse_overwriting(options.output, {options.section});
   const Section section(options.section);
-  options.lengths.convert_for(options.section.string(), section.data().crs_wkt);
+  convert_for(options.lengths, section, options.section);
   for (const Message& warning : section.data().warnings) log_message(warning);
   if (!options.table) {
     export_section_outline(section, options.output, options.heights, options.force);
