@@ -5,10 +5,13 @@ Usage: PYTHONPATH=BUILD/python section_test.py PROGRAM
 """
 
 import math
+import re
+import shutil
 import subprocess
 import sys
 import threading
 import unittest
+from pathlib import Path
 
 import clearway
 import numpy as np
@@ -209,6 +212,19 @@ class Sections(SceneTest):
         self.assertIn("POLYLINE", (self.folder / "a.dxf").read_text())
         with self.assertRaisesRegex(clearway.UsageError, "a.dxf"):
             clearway.export_section_outline(section, self.folder / "a.dxf", band=0.2, base=-0.4)
+
+    def test_the_snippet_of_the_guide(self):
+        page = Path(__file__).parents[2] / "docs" / "guide" / "section.md"
+        snippet = re.search(r"^```python\n(.*?)^```$", page.read_text(encoding="utf-8"),
+                            re.M | re.S)[1]
+        folder = self.folder / "guide"
+        folder.mkdir()
+        shutil.copy(self.folder / "site.h5", folder)
+        np.savetxt(folder / "path.txt", self.poses[:, :3, :].reshape(-1, 12), "%.17g")
+        (folder / "load.csv").write_text("y,z\n-0.6,0.4\n0.6,0.4\n0.6,1.4\n-0.6,1.4\n")
+        done = subprocess.run([sys.executable, "-c", snippet], cwd=folder, check=True,
+                              capture_output=True, text=True)
+        self.assertEqual(done.stdout, "stopped \n")
 
     def test_refusals_name_the_argument(self):
         for named in ({"window": (1, 2, 3)}, {"window": "all"}, {"cell": -1}, {"bin": math.nan},

@@ -351,7 +351,7 @@ class Finding(Sections):
         self.assertEqual(self.verdict(wide, "--unit m", "out.h5")["verdict"], "passes")
         self.assertEqual(self.verdict(wide, "", "out.h5")["verdict"], "passes")
         self.assertEqual(self.verdict(wide, "--unit m --margin 0.1m", "out.h5")["verdict"], "stopped")
-        self.assertEqual(self.verdict(wide, "--margin 0.1m", "out.h5")["verdict"], "passes")
+        self.assertEqual(self.verdict(wide, "--margin 0.05m", "out.h5")["verdict"], "passes")
         self.ok("section export out.h5 --table bands --band 1ft --base 1ft -o t.csv --force")
         first = [line for line in (self.folder / "t.csv").read_text().splitlines()
                  if line[0].isdigit()][0]
