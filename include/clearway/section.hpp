@@ -83,6 +83,8 @@ struct SectionCells {
   std::vector<std::uint32_t> first_pose = {};  ///< the first pose of the path that blocks the cell
 
   std::size_t size() const { return j.size(); }
+  /// Makes room for so many cells of bins.
+  void reserve(std::size_t cells);
   friend bool operator==(const SectionCells&, const SectionCells&) = default;
 };
 

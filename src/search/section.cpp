@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -275,12 +276,18 @@ class Finder {
               {{"step", *longest}, {"length", length}});
   }
 
+  /// Bytes that writing the cells takes: those of one bin at a time, and which are in any bin.
+  std::uint64_t bytes_to_write() const {
+    constexpr std::uint64_t kCellBytes = 4 * sizeof(std::uint32_t), kChunkBytes = 1 << 18;
+    return lattice_.cells() * kCellBytes + lattice_.cells() / 8 + kChunkBytes;
+  }
+
   /// Throws ResourceError where the maps do not fit the memory.
   void check_memory(std::size_t bins) {
     const std::uint64_t of_bin = SectionMaps::bytes_of_bin(lattice_);
     const std::uint64_t fixed = store_.allocated_bytes() +
                                 2 * path_.size() * (sizeof(Pose) + sizeof(double)) +
-                                2 * load_.poses.size() * sizeof(SectionPoseNode);
+                                2 * load_.poses.size() * sizeof(SectionPoseNode) + bytes_to_write();
     report_.needed_host_bytes = fixed + bins * of_bin;
     if (report_.needed_host_bytes <= options_.memory_bytes) return;
     const std::string sizes = "a section of " + counted(bins, "bin") + " of " +
@@ -310,20 +317,39 @@ class Finder {
         section_bins(data_.chainage, load_.path_pose, data_.parameters.bin);
     check_memory(bins.size());
     const SectionPoses poses(load_.poses, load_.path_pose, bins);
-    SectionMaps maps(lattice_, bins.size());
+    maps_.emplace(lattice_, bins.size());
     const IgnoredPoints ignored(store_, ignored_by(data_.parameters));
-    block_cells(store_, ignored, poses, lattice_, data_.rounding, options_.threads, maps,
+    block_cells(store_, ignored, poses, lattice_, data_.rounding, options_.threads, *maps_,
                 progress_);
-    for (std::size_t bin = 0; bin < bins.size(); ++bin) {
-      const auto number = static_cast<std::uint32_t>(bins[bin].number);
-      data_.bins.push_back(number);
-      add_cells_of_bin(lattice_, maps.firsts(bin), number, data_.bin_cells);
+    for (const SectionBin& bin : bins) {
+      data_.bins.push_back(static_cast<std::uint32_t>(bin.number));
     }
+    count_blocked();
+  }
+
+  /// Counts the blocked cells of each bin, and those of the whole path.
+  void count_blocked() {
+    std::vector<bool> anywhere(lattice_.cells());
+    for (std::size_t bin = 0; bin < data_.bins.size(); ++bin) {
+      const std::uint32_t* const firsts = maps_->firsts(bin);
+      std::uint64_t count = 0;
+      for (std::size_t cell = 0; cell < anywhere.size(); ++cell) {
+        if (firsts[cell] == kNotBlocked) continue;
+        ++count;
+        if (anywhere[cell]) continue;
+        anywhere[cell] = true;
+        ++report_.blocked;
+      }
+      blocked_.counts.push_back(count);
+    }
+    blocked_.add = [this](std::size_t bin, SectionCells& cells) {
+      cells.reserve(blocked_.counts[bin]);
+      add_cells_of_bin(lattice_, maps_->firsts(bin), data_.bins[bin], cells);
+    };
   }
 
   void publish() {
-    report_.blocked = data_.cells().size();
-    report_.blocked_in_bins = data_.bin_cells.size();
+    report_.blocked_in_bins = blocked_.total();
     report_.bins = data_.bins.size();
     if (report_.blocked == 0 && data_.environment_points > data_.ignored_points &&
         !load_.poses.empty()) {
@@ -335,7 +361,7 @@ class Finder {
     report_.rounding = data_.rounding;
     report_.motion = data_.motion;
     report_.warnings = data_.warnings;
-    write_section(data_, pending_.partial());
+    write_section(data_, blocked_, pending_.partial());
     pending_.publish();
   }
 
@@ -349,6 +375,8 @@ class Finder {
   PendingFile pending_;
   Body load_;
   SectionLattice lattice_{};
+  std::optional<SectionMaps> maps_;
+  SectionRows blocked_;
   SectionReport report_;
   Stopwatch total_;
 };

@@ -41,6 +41,13 @@ const char* name_of(SectionTable table) {
   return "bin-cells";
 }
 
+void SectionCells::reserve(std::size_t cells) {
+  bin.reserve(cells);
+  j.reserve(cells);
+  k.reserve(cells);
+  first_pose.reserve(cells);
+}
+
 SectionCells SectionData::cells() const {
   const SectionCells& all = bin_cells;
   std::vector<std::size_t> order(all.size());

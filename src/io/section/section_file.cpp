@@ -1,7 +1,10 @@
 #include "io/section/section_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <span>
 #include <string>
 
 #include "clearway/error.hpp"
@@ -67,18 +70,16 @@ std::vector<double> rows_of(const std::vector<Box>& boxes) {
   return rows;
 }
 
-/// How many cells each bin has.
-std::vector<std::uint64_t> cells_of_bins(const SectionData& section) {
-  std::vector<std::uint64_t> counts(section.bins.size());
-  std::size_t at = 0;
-  for (const std::uint32_t bin : section.bin_cells.bin) {
-    while (section.bins[at] != bin) ++at;
-    ++counts[at];
-  }
-  return counts;
+/// The hash of each column of cells, in their order in the file.
+using CellHashes = std::array<std::uint64_t, 3>;
+
+CellHashes hashes_of(const SectionCells& cells) {
+  const auto hash = [](const auto& column) { return xxh64(std::as_bytes(std::span(column))); };
+  return {hash(cells.j), hash(cells.k), hash(cells.first_pose)};
 }
 
-std::uint64_t hash_of(const SectionData& section, const std::vector<std::uint64_t>& counts) {
+std::uint64_t hash_of(const SectionData& section, const std::vector<std::uint64_t>& counts,
+                      const CellHashes& cells) {
   ColumnHashes hashes;
   hashes.add(numbers_of(section));
   hashes.add(counts_of(section));
@@ -87,9 +88,7 @@ std::uint64_t hash_of(const SectionData& section, const std::vector<std::uint64_
   hashes.add(section.chainage);
   hashes.add(section.bins);
   hashes.add(counts);
-  hashes.add(section.bin_cells.j);
-  hashes.add(section.bin_cells.k);
-  hashes.add(section.bin_cells.first_pose);
+  for (const std::uint64_t column : cells) hashes.add_digest(column);
   return hashes.digest();
 }
 
@@ -97,6 +96,48 @@ template <typename Number>
 void write_column(const hdf5::Id& group, const char* name, const std::vector<Number>& values,
                   std::uint64_t columns = 0) {
   hdf5::write_dataset(group, name, std::span<const Number>(values), columns);
+}
+
+/// Writes a column of cells in whole chunks, and returns its hash.
+template <typename Number>
+std::uint64_t write_cells(const hdf5::Id& group, const char* name, const SectionRows& rows,
+                          std::vector<Number> SectionCells::*column) {
+  hdf5::Rows<Number> dataset(group, name, rows.total(), 0);
+  const std::uint64_t chunk = dataset.chunk_rows();
+  Xxh64Stream hash;
+  SectionCells cells;
+  std::vector<Number> pending;
+  std::uint64_t written = 0;
+  const auto write = [&](std::span<const Number> values) {
+    dataset.write(written, values);
+    hash.update(std::as_bytes(values));
+    written += values.size();
+  };
+  for (std::size_t bin = 0; bin < rows.counts.size(); ++bin) {
+    cells = {};
+    rows.add(bin, cells);
+    std::span<const Number> left(cells.*column);
+    while (!left.empty()) {
+      const auto taken =
+          static_cast<std::size_t>(std::min<std::uint64_t>(left.size(), chunk - pending.size()));
+      pending.insert(pending.end(), left.begin(),
+                     left.begin() + static_cast<std::ptrdiff_t>(taken));
+      left = left.subspan(taken);
+      if (pending.size() < chunk) continue;
+      write(pending);
+      pending.clear();
+    }
+  }
+  write(pending);
+  dataset.close();
+  return hash.digest();
+}
+
+CellHashes write_cells(const hdf5::Id& file, const char* name, const SectionRows& rows) {
+  const hdf5::Id group = hdf5::create_group(file, name);
+  return {write_cells(group, names::kJ, rows, &SectionCells::j),
+          write_cells(group, names::kK, rows, &SectionCells::k),
+          write_cells(group, names::kFirstPose, rows, &SectionCells::first_pose)};
 }
 
 template <typename Number>
@@ -197,8 +238,12 @@ void spread_bins(SectionData& section, const std::vector<std::uint64_t>& counts,
 
 }  // namespace
 
-void write_section(const SectionData& section, const std::filesystem::path& path) {
-  const std::vector<std::uint64_t> counts = cells_of_bins(section);
+std::uint64_t SectionRows::total() const {
+  return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+}
+
+void write_section(const SectionData& section, const SectionRows& blocked,
+                   const std::filesystem::path& path) {
   hdf5::naming(path.string(), [&] {
     hdf5::Id file = hdf5::create_file(path);
     hdf5::write_attribute(file, "format", names::kFormat);
@@ -214,14 +259,11 @@ void write_section(const SectionData& section, const std::filesystem::path& path
       write_column(hdf5::create_group(file, names::kPath), names::kChainage, section.chainage);
       const hdf5::Id bins = hdf5::create_group(file, names::kBins);
       write_column(bins, names::kNumber, section.bins);
-      write_column(bins, names::kCount, counts);
-      const hdf5::Id cells = hdf5::create_group(file, names::kCells);
-      write_column(cells, names::kJ, section.bin_cells.j);
-      write_column(cells, names::kK, section.bin_cells.k);
-      write_column(cells, names::kFirstPose, section.bin_cells.first_pose);
+      write_column(bins, names::kCount, blocked.counts);
     }
+    const CellHashes hashes = write_cells(file, names::kCells, blocked);
     write_warnings(file, section.warnings);
-    hdf5::write_number(file, "section_hash", hash_of(section, counts));
+    hdf5::write_number(file, "section_hash", hash_of(section, blocked.counts, hashes));
     hdf5::write_number(file, "complete", std::uint8_t{1});
     hdf5::check(H5Fflush(file.get(), H5F_SCOPE_LOCAL), "write the section");
     file.close("close the section");
@@ -256,7 +298,8 @@ SectionData read_section(const std::filesystem::path& path) {
     section.bin_cells.k = read_column<std::int32_t>(cells, names::kK, name);
     section.bin_cells.first_pose = read_column<std::uint32_t>(cells, names::kFirstPose, name);
     section.warnings = read_warnings(file, name);
-    if (hash_of(section, counts) != hdf5::read_number<std::uint64_t>(file, "section_hash", name)) {
+    if (hash_of(section, counts, hashes_of(section.bin_cells)) !=
+        hdf5::read_number<std::uint64_t>(file, "section_hash", name)) {
       refuse(name, "its cells are damaged (their hash is not the one recorded)");
     }
     check_cells(section, counts, name);
