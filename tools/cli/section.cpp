@@ -57,6 +57,11 @@ ordered_json json_of(const SectionReport& report, const FindCommand& options) {
   out["bins"] = report.bins;
   out["rounding"] = report.rounding;
   out["motion"] = motion_json(report.motion);
+  if (report.seen) {
+    out["seen"] = {{"cube", report.seen->cube},
+                   {"unknown", report.seen->unknown},
+                   {"unknown_in_bins", report.seen->unknown_in_bins}};
+  }
   out["needed_host_bytes"] = report.needed_host_bytes;
   out["seconds"] = {{"total", report.seconds}, {"search", report.search_seconds}};
   out["warnings"] = warnings_json(report.warnings);
@@ -111,10 +116,14 @@ void run_find(FindCommand& options) {
   }
   const std::string doubts =
       report.warnings.empty() ? "" : ", but see the " + counted(report.warnings.size(), "warning");
+  const std::string unknown =
+      !report.seen ? ""
+                   : ", and " + format_count(report.seen->unknown) +
+                         " more are not known, because no beam of the scanner crossed them";
   const std::string sentence =
-      fmt::format("{} of the cross-section {} blocked somewhere on the path, in {} of it{}",
+      fmt::format("{} of the cross-section {} blocked somewhere on the path, in {} of it{}{}",
                   counted(report.blocked, "cell"), report.blocked == 1 ? "is" : "are",
-                  counted(report.bins, "stretch", "stretches"), doubts);
+                  counted(report.bins, "stretch", "stretches"), unknown, doubts);
   spdlog::info("{}: {}; {:.2f} s", options.output.string(), sentence, report.seconds);
   print(options.json ? text_of_json(json_of(report, options)) : sentence + "\n");
 }
@@ -143,6 +152,14 @@ void add_question(CLI::App& command, FindCommand& options) {
   options.lengths.add(command, "--margin", options.asked.margin,
                       "The greatest margin that clearway section check may ask for (default: 0)",
                       LengthRange::kFromZero);
+  command.add_flag(
+      "--seen", options.asked.seen,
+      "Tell cells that no beam of the scanner crossed from free ones; the store has to "
+      "know where its scanner stood");
+  options.lengths.add(
+      command, "--seen-cube", options.asked.seen_cube,
+      "With --seen: side of the cubes of space in which beams are followed (default: "
+      "0.2 m)");
   command.add_flag("--between-poses", options.asked.between_poses,
                    "Count the way from each pose to the next, too: the load grows by its motion");
 }
@@ -196,7 +213,7 @@ void add_find(CLI::App& section) {
   command->footer(
       "The load may have any outline; only its rear and front are given here. Every point that it\n"
       "passes blocks a cell, and clearway section check and export answer from the file.\n"
-      "A part of the scan without points looks free: clearway run --seen tells what was scanned.\n"
+      "A part of the scan without points looks free unless --seen asks what the beams crossed.\n"
       "Example: clearway section find --env site.h5 --trajectory path.txt --x-range=-15,15 "
       "--pivots 10,-10 -o section.h5");
   command->callback(
@@ -246,6 +263,11 @@ ordered_json json_of(const SectionCheck& check, const Section& section,
   auto stops = ordered_json::array();
   for (const SectionStop& stop : check.stops) stops.push_back(stop_json(stop));
   out["stops"] = std::move(stops);
+  if (section.data().unknown) {
+    auto unknowns = ordered_json::array();
+    for (const SectionStop& place : check.unknowns) unknowns.push_back(stop_json(place));
+    out["unknowns"] = std::move(unknowns);
+  }
   out["warnings"] = warnings_json(section.data().warnings);
   return out;
 }
@@ -353,7 +375,7 @@ void add_section_check(CLI::App& section, int& exit_code) {
       "Exit code 1: it is stopped.\n"
       "Exit code 6: unknown, because the load with its margin leaves the window, the margin "
       "exceeds\n"
-      "that of the section, or the section is in doubt.\n"
+      "that of the section, the section is in doubt, or no beam crossed what the load needs.\n"
       "Example: clearway section check section.h5 --outline load.csv --margin 0.1");
   command->callback([options, &exit_code] { exit_code = run_check(*options); });
 }
@@ -380,8 +402,10 @@ void run_export(ExportCommand& options) {
 }
 
 void add_export_of_section(CLI::App& section) {
-  constexpr std::array kTables{SectionTable::kBands, SectionTable::kStations, SectionTable::kBoxes,
-                               SectionTable::kCells, SectionTable::kBinCells};
+  constexpr std::array kTables{SectionTable::kBands,          SectionTable::kStations,
+                               SectionTable::kBoxes,          SectionTable::kCells,
+                               SectionTable::kBinCells,       SectionTable::kUnknownCells,
+                               SectionTable::kUnknownBinCells};
   const auto options = std::make_shared<ExportCommand>();
   CLI::App* command = section.add_subcommand(
       "export", "Write the widths of a section as a table, or the largest outline as DXF");
@@ -403,7 +427,9 @@ void add_export_of_section(CLI::App& section) {
                 }
               },
               "bands: widths for each height. stations: and for each stretch of the path. boxes: "
-              "widths from the base up to each height. cells, bin-cells: the blocked cells")
+              "widths from the base up to each height. cells, bin-cells: the blocked cells. "
+              "unknown-cells, unknown-bin-cells: with section find --seen, those that no beam "
+              "crossed")
           ->type_name("NAME")
           ->check(CLI::IsMember(names));
   command

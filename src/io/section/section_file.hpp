@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "clearway/section.hpp"
@@ -21,9 +22,9 @@ struct SectionRows {
 };
 
 /// Writes a section to a new file (docs/design/section.md, "The file"). section: without its cells.
-/// Throws ResourceError.
+/// unknown: with seen space, the cells that are not known. Throws ResourceError.
 void write_section(const SectionData& section, const SectionRows& blocked,
-                   const std::filesystem::path& path);
+                   const std::optional<SectionRows>& unknown, const std::filesystem::path& path);
 
 /// Reads a section and checks all of it. Throws InputError where it is not an intact, complete
 /// section of this version, ResourceError where it cannot be read.
