@@ -20,11 +20,14 @@ namespace {
 
 using namespace py::literals;
 
-constexpr Named<SectionTable> kSectionTables[] = {{"bands", SectionTable::kBands},
-                                                  {"stations", SectionTable::kStations},
-                                                  {"boxes", SectionTable::kBoxes},
-                                                  {"cells", SectionTable::kCells},
-                                                  {"bin-cells", SectionTable::kBinCells}};
+constexpr Named<SectionTable> kSectionTables[] = {
+    {"bands", SectionTable::kBands},
+    {"stations", SectionTable::kStations},
+    {"boxes", SectionTable::kBoxes},
+    {"cells", SectionTable::kCells},
+    {"bin-cells", SectionTable::kBinCells},
+    {"unknown-cells", SectionTable::kUnknownCells},
+    {"unknown-bin-cells", SectionTable::kUnknownBinCells}};
 
 /// Cells of a section that Python has.
 struct CellColumns {
@@ -75,6 +78,10 @@ void add_section_parameters(py::module_& module) {
                     "The classes whose points were left out: a list of int.")
       .def_readonly("ignore_boxes", &Asked::ignore_boxes,
                     "The boxes whose points were left out: a list of Box.")
+      .def_readonly("seen", &Asked::seen,
+                    "Whether cells that no beam of the scanner crossed are told apart.")
+      .def_readonly("seen_cube", &Asked::seen_cube,
+                    "The side of the cubes of space in which beams were followed; 0 without seen.")
       .def("__repr__", [](const Asked& asked) {
         return py::str("<SectionParameters: x from {} to {}, cells of {}, bins of {}, margin {}>")
             .format(asked.rear, asked.front, asked.cell, asked.bin, asked.margin);
@@ -82,6 +89,14 @@ void add_section_parameters(py::module_& module) {
 }
 
 void add_section_report(py::module_& module) {
+  using Counts = SectionSeenCounts;
+  py::class_<Counts>(module, "SectionSeenCounts",
+                     "How many cells of a section no beam of the scanner crossed.")
+      .def_readonly("cube", &Counts::cube, "The side of the cubes of space, metres.")
+      .def_readonly("unknown", &Counts::unknown,
+                    "How many cells are not known somewhere on the path, and not blocked before.")
+      .def_readonly("unknown_in_bins", &Counts::unknown_in_bins,
+                    "How many cells are not known in each stretch, added up.");
   py::class_<SectionReport>(module, "SectionReport", "How find_section() found a section.")
       .def_readonly("blocked", &SectionReport::blocked,
                     "How many cells of the cross-section are blocked somewhere on the path.")
@@ -95,6 +110,9 @@ void add_section_report(py::module_& module) {
       .def_readonly("motion", &SectionReport::motion,
                     "How far the load moves along x, and across, from a pose to the next, metres; "
                     "None unless between_poses was given.")
+      .def_readonly(
+          "seen", &SectionReport::seen,
+          "How many cells are not known: SectionSeenCounts, or None unless seen was given.")
       .def_property_readonly(
           "warnings", [](const SectionReport& r) { return to_list(r.warnings); },
           "What the section may have misread: a list of Message.")
@@ -113,7 +131,7 @@ void add_section_report(py::module_& module) {
 void add_section_checks(py::module_& module) {
   using Stop = SectionStop;
   using Check = SectionCheck;
-  py::class_<Stop>(module, "SectionStop", "A place that stops a load.")
+  py::class_<Stop>(module, "SectionStop", "A place that stops a load, or that is not known.")
       .def_readonly("bin", &Stop::bin, "The number of the stretch of the path.")
       .def_readonly("first_pose", &Stop::first_pose,
                     "The first pose of the stretch that stops the load.")
@@ -143,6 +161,10 @@ void add_section_checks(py::module_& module) {
       .def_readonly("stops", &Check::stops,
                     "The first place of each stretch that stops the load: a list of SectionStop "
                     "along the path.")
+      .def_readonly(
+          "unknowns", &Check::unknowns,
+          "The first place of each stretch where the load needs a cell that no beam of the "
+          "scanner crossed: a list of SectionStop, empty without seen space.")
       .def("__repr__", [](const Check& c) {
         std::string shown = std::string("<") + name_of(c.verdict);
         if (!c.reason.empty()) shown += ": " + c.reason;
@@ -186,6 +208,11 @@ void add_section_cells(py::module_& module) {
       });
 }
 
+py::object end_of(const std::optional<HalfWidth>& half) {
+  if (!half) return py::none();
+  return py::str(half->is_blocked ? "blocked" : "not-known");
+}
+
 void add_section_widths(py::module_& module) {
   using Band = SectionBand;
   py::class_<Band>(module, "SectionBand", "The room between two heights of the cross-section.")
@@ -193,15 +220,21 @@ void add_section_widths(py::module_& module) {
       .def_readonly("z_to", &Band::z_to, "Where the band ends, metres.")
       .def_property_readonly(
           "left", [](const Band& b) { return b.left ? py::cast(b.left->width) : py::none(); },
-          "Metres from the middle, y = 0, to the border of the nearest blocked cell on the left; "
-          "None where nothing blocks that side of the window.")
+          "Metres from the middle, y = 0, to the border of the nearest cell on the left that is "
+          "blocked or not known; None where nothing blocks that side of the window.")
       .def_property_readonly(
           "left_pose",
           [](const Band& b) { return b.left ? py::cast(b.left->first_pose) : py::none(); },
           "The first pose at which a cell there is blocked, or None.")
       .def_property_readonly(
           "right", [](const Band& b) { return b.right ? py::cast(b.right->width) : py::none(); },
-          "Metres from the middle to the border of the nearest blocked cell on the right, or None.")
+          "Metres from the middle to the border of the nearest such cell on the right, or None.")
+      .def_property_readonly(
+          "left_end", [](const Band& b) { return end_of(b.left); },
+          "What the width on the left ends at: 'blocked' or 'not-known' cells, or None.")
+      .def_property_readonly(
+          "right_end", [](const Band& b) { return end_of(b.right); },
+          "What the width on the right ends at, or None.")
       .def_property_readonly(
           "right_pose",
           [](const Band& b) { return b.right ? py::cast(b.right->first_pose) : py::none(); },
@@ -301,6 +334,22 @@ void add_section_class(py::module_& module) {
           "bin_cells", [](const Section& s) { return CellColumns{s.data().bin_cells}; },
           "The cells that are blocked in each stretch: SectionCells, ascending by bin, k and j.")
       .def(
+          "unknown_cells",
+          [](const Section& s) -> py::object {
+            if (!s.data().unknown) return py::none();
+            return py::cast(CellColumns{s.unknown_cells()});
+          },
+          "The cells that no beam of the scanner crossed somewhere on the path, and that nothing "
+          "blocks at that pose or before: SectionCells, or None without seen space.")
+      .def(
+          "unknown_bin_cells",
+          [](const Section& s) -> py::object {
+            if (!s.data().unknown) return py::none();
+            return py::cast(CellColumns{*s.data().unknown});
+          },
+          "The cells that are not known in each stretch: SectionCells, ascending by bin, k and j, "
+          "or None without seen space.")
+      .def(
           "check",
           [](const Section& s, const py::object& outline, double margin) {
             const std::vector<OutlinePoint> corners = outline_of(outline, "outline");
@@ -321,7 +370,8 @@ margin: the distance to keep on all sides; at most that of find_section().)")
 Say of each cell of the window whether it is free: an array of rows x columns of bool.
 
 Element [k - grid.k_from, j - grid.j_from] is about the cell (j, k). All are False where the section
-is in doubt, or where the margin is above that of find_section().
+is in doubt, or where the margin is above that of find_section(). Cells that are not known are not
+free.
 
 margin: the distance to keep on all sides.)")
       .def(
@@ -398,13 +448,16 @@ void add_find_section(py::module_& module) {
       [](SharedStore& store, const py::object& poses, const py::object& output, double rear,
          double front, std::optional<std::array<double, 4>> window, double cell, double bin,
          double margin, bool between_poses, std::optional<std::array<double, 2>> pivots,
-         std::vector<std::uint8_t> ignore_classes, std::vector<Box> ignore_boxes, int threads,
-         std::uint64_t memory_bytes, bool overwrite, bool strict, const py::object& input_warnings,
-         py::object progress, py::object message, py::object stop) {
+         std::vector<std::uint8_t> ignore_classes, std::vector<Box> ignore_boxes, bool seen,
+         double seen_cube, int threads, std::uint64_t memory_bytes, bool overwrite, bool strict,
+         const py::object& input_warnings, py::object progress, py::object message,
+         py::object stop) {
         SectionParameters asked =
             section_parameters(rear, front, window, cell, bin, margin, between_poses, pivots);
         asked.ignore_classes = std::move(ignore_classes);
         asked.ignore_boxes = std::move(ignore_boxes);
+        asked.seen = seen;
+        asked.seen_cube = seen_cube;
         SectionOptions options;
         options.threads = threads;
         options.memory_bytes = memory_bytes;
@@ -423,10 +476,11 @@ void add_find_section(py::module_& module) {
       "store"_a, "poses"_a, "output"_a, "rear"_a, "front"_a, py::kw_only(), "window"_a = py::none(),
       "cell"_a = 0.0, "bin"_a = 0.0, "margin"_a = 0.0, "between_poses"_a = false,
       "pivots"_a = py::none(), "ignore_classes"_a = py::tuple(), "ignore_boxes"_a = py::tuple(),
-      "threads"_a = 0, "memory_bytes"_a = SectionOptions{}.memory_bytes, "overwrite"_a = false,
-      "strict"_a = false, "input_warnings"_a = py::tuple(), "progress"_a = py::none(),
-      "message"_a = py::none(), "stop"_a = py::none(),
-      R"(find_section(store, poses, output, rear, front, *, window=None, cell=0.0, bin=0.0, margin=0.0, between_poses=False, pivots=None, ignore_classes=(), ignore_boxes=(), threads=0, memory_bytes=4294967296, overwrite=False, strict=False, input_warnings=(), progress=None, message=None, stop=None)
+      "seen"_a = false, "seen_cube"_a = 0.0, "threads"_a = 0,
+      "memory_bytes"_a = SectionOptions{}.memory_bytes, "overwrite"_a = false, "strict"_a = false,
+      "input_warnings"_a = py::tuple(), "progress"_a = py::none(), "message"_a = py::none(),
+      "stop"_a = py::none(),
+      R"(find_section(store, poses, output, rear, front, *, window=None, cell=0.0, bin=0.0, margin=0.0, between_poses=False, pivots=None, ignore_classes=(), ignore_boxes=(), seen=False, seen_cube=0.0, threads=0, memory_bytes=4294967296, overwrite=False, strict=False, input_warnings=(), progress=None, message=None, stop=None)
 --
 
 Find which cells of the cross-section are blocked for a load of a given length along a path.
@@ -446,6 +500,8 @@ margin: the greatest margin that Section.check() may be asked for.
 between_poses: counts the way from each pose to the next, too, because the load grows by its motion.
 pivots: (front, rear), two places of the load that lie on the path; None: the load has its poses.
 ignore_classes, ignore_boxes: points to leave out, as Query takes them.
+seen: tells cells that no beam of the scanner crossed from free ones; needs a store with origins.
+seen_cube: side of the cubes of space in which beams are followed; 0: 0.2 m.
 threads: how many threads work; 0: as many as there are cores.
 memory_bytes: how many bytes of working memory may be taken.
 overwrite: replaces an existing section.
@@ -473,7 +529,8 @@ void add_section_exports(py::module_& module) {
 Write a table of a section as CSV, as clearway section export does.
 
 section: the Section.
-table: 'bands', 'stations', 'boxes', 'cells' or 'bin-cells'.
+table: 'bands', 'stations', 'boxes', 'cells' or 'bin-cells'; with seen space also 'unknown-cells'
+    or 'unknown-bin-cells'.
 output: the file to write.
 band: height of a band; 0: 0.1 m.
 base: where the first band begins.

@@ -61,6 +61,7 @@ from ._clearway import (
     SectionGrid,
     SectionParameters,
     SectionReport,
+    SectionSeenCounts,
     SectionStop,
     SectionStretch,
     SeenSummary,

@@ -435,12 +435,19 @@ class SectionParameters:
     pivots: Final[tuple[float, float] | None]
     ignore_classes: Final[list[int]]
     ignore_boxes: Final[list[Box]]
+    seen: Final[bool]
+    seen_cube: Final[float]
+class SectionSeenCounts:
+    cube: Final[float]
+    unknown: Final[int]
+    unknown_in_bins: Final[int]
 class SectionReport:
     blocked: Final[int]
     blocked_in_bins: Final[int]
     bins: Final[int]
     rounding: Final[float]
     motion: Final[list[float] | None]
+    seen: Final[SectionSeenCounts | None]
     warnings: Final[list[Message]]
     needed_host_bytes: Final[int]
     seconds: Final[float]
@@ -455,6 +462,7 @@ class SectionCheck:
     reason: Final[str | None]
     stop: Final[SectionStop | None]
     stops: Final[list[SectionStop]]
+    unknowns: Final[list[SectionStop]]
 class SectionCells:
     bin: Final[_Poses | None]
     j: Final[NDArray[np.int32]]
@@ -473,6 +481,8 @@ class SectionBand:
     left_pose: Final[int | None]
     right: Final[float | None]
     right_pose: Final[int | None]
+    left_end: Final[Literal["blocked", "not-known"] | None]
+    right_end: Final[Literal["blocked", "not-known"] | None]
 class SectionStretch:
     bin: Final[int]
     chainage_from: Final[float]
@@ -496,6 +506,8 @@ class Section:
     def grid(self) -> SectionGrid: ...
     def cells(self) -> SectionCells: ...
     def bin_cells(self) -> SectionCells: ...
+    def unknown_cells(self) -> SectionCells | None: ...
+    def unknown_bin_cells(self) -> SectionCells | None: ...
     def check(self, outline: ArrayLike, margin: float = 0.0) -> SectionCheck: ...
     def free_cells(self, margin: float = 0.0) -> _Flags: ...
     def bands(self, band: float = 0.0, base: float = 0.0) -> list[SectionBand]: ...
@@ -603,13 +615,16 @@ def find_section(
     store: Store, poses: ArrayLike, output: _AnyPath, rear: float, front: float, *,
     window: tuple[float, float, float, float] | None = None, cell: float = 0.0, bin: float = 0.0,
     margin: float = 0.0, between_poses: bool = False, pivots: tuple[float, float] | None = None,
-    ignore_classes: Sequence[int] = (), ignore_boxes: Sequence[Box] = (), threads: int = 0,
+    ignore_classes: Sequence[int] = (), ignore_boxes: Sequence[Box] = (), seen: bool = False,
+    seen_cube: float = 0.0, threads: int = 0,
     memory_bytes: int = 4294967296, overwrite: bool = False, strict: bool = False,
     input_warnings: Iterable[Message] = (), progress: _Progress | None = None,
     message: _Tell | None = None, stop: _Stop | None = None,
 ) -> SectionReport: ...
 def export_section(
-    section: Section, table: Literal["bands", "stations", "boxes", "cells", "bin-cells"],
+    section: Section,
+    table: Literal["bands", "stations", "boxes", "cells", "bin-cells", "unknown-cells",
+                   "unknown-bin-cells"],
     output: _AnyPath, *, band: float = 0.0, base: float = 0.0, overwrite: bool = False,
 ) -> None: ...
 def export_section_outline(
