@@ -364,6 +364,163 @@ class Finding(Sections):
                          self.verdict(edge, "", "out.h5"))
 
 
+class Seen(Sections):
+    """A tube that is scanned from its axis, every few metres."""
+
+    ASKED = ("--window=-3,3,-0.5,4 --cell 0.05 --margin 0.2 --seen --seen-cube 0.25")
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.write_seen("seen", 120000)
+        cls.find_seen("seen")
+
+    @classmethod
+    def write_seen(cls, name, count, more=None):
+        points = tube(np.random.default_rng(8), count, 20)
+        stands = np.repeat(np.arange(-3, 24, 1.0), -(-count // 27))[:count]
+        away = points[:, 0] - stands  # at most 3 m along the tube, so that beams cross it
+        points[:, 0] = stands + np.clip(away % 6 - 3, -3, 3)
+        if more is not None:
+            points, stands = more(points, stands)
+        cls.write_scan(f"{name}.xyz", points)
+        first = np.flatnonzero(np.diff(stands, prepend=np.nan) != 0)
+        rows = "".join(f"{i},{stands[i]},0,1.5\n" for i in first)
+        (cls.folder / f"{name}.csv").write_text("first,x,y,z\n" + rows)
+        cls.ok(f"convert {name}.xyz --unit m --origins {name}.csv -o {name}.h5")
+
+    @classmethod
+    def find_seen(cls, name, more="", output=None):
+        output = output or f"{name}-section.h5"
+        return json.loads(cls.ok(
+            f"section find --env {name}.h5 --trajectory path.txt --x-range=-1,1 {cls.ASKED} "
+            f"-o {output} --force --json {more}").stdout)
+
+    def cells(self, section, table="unknown-cells"):
+        self.ok(f"section export {section} --table {table} -o cells.csv --force")
+        lines = (self.folder / "cells.csv").read_text().splitlines()
+        self.assertEqual(lines[0], "bin,j,k,first_pose" if "bin-" in table else "j,k,first_pose")
+        return [tuple(map(int, line.split(","))) for line in lines[1:]]
+
+    def test_what_the_beams_crossed_is_free_and_the_rest_is_not_known(self):
+        section = "seen-section.h5"
+        self.assertEqual(self.verdict(RECTANGLE, "--margin 0.2", section)["verdict"], "passes")
+        outside = "-2.9,3.3\n2.9,3.3\n2.9,3.8\n-2.9,3.8\n"
+        answer = self.verdict(outside, "", section)
+        self.assertEqual((answer["verdict"], answer["first_pose"], answer["stops"]),
+                         ("unknown", None, []))
+        self.assertRegex(answer["reason"], "no beam .* first at pose 0, 0 along the path")
+        self.assertEqual([p["bin"] for p in answer["unknowns"]], [0, 1, 2, 3, 4])
+        self.ok(f"section find --env seen.h5 --trajectory path.txt --x-range=-1,1 --force "
+                f"{self.ASKED.split('--seen')[0]} -o plain.h5")
+        plain = self.verdict(outside, "", "plain.h5")
+        self.assertEqual(plain["verdict"], "passes")
+        self.assertNotIn("unknowns", plain)
+        self.assertNotIn("seen", json.loads(self.find("--json", env="seen.h5").stdout))
+        unknown = {cell[:2] for cell in self.cells(section)}
+        self.assertIn((50, 70), unknown)   # y 2.5, z 3.5: behind the walls
+        self.assertNotIn((0, 30), unknown)  # the axis
+        blocked = {cell[:2]: cell[2] for cell in self.cells(section, "cells")}
+        self.assertEqual(blocked, {c[:2]: c[2] for c in self.cells("plain.h5", "cells")})
+
+    def test_what_hides_behind_a_board_is_not_known(self):
+        def with_board(points, stands):
+            part = 1.2 / np.maximum(points[:, 1], 1.2)  # of the beam, to the plane of the board
+            at = stands + part * (points[:, 0] - stands)
+            hits = (part < 1) & (np.abs(at - 10) < 1.5)
+            points[hits] = np.stack([at, np.full(len(at), 1.2),
+                                     1.5 + part * (points[:, 2] - 1.5)], 1)[hits]
+            return points, stands
+        self.write_seen("board", 120000, with_board)
+        found = self.find_seen("board")
+        # At y = 1.6 the board hides what lies from x = 9.1 to 10.9.
+        cells = {cell[:2]: cell[2] for cell in self.cells("board-section.h5")}
+        free = {cell[:2] for cell in self.cells("seen-section.h5")}
+        hidden = (32, 30)  # y = 1.6, z = 1.5
+        self.assertNotIn(hidden, free)
+        # From the pose on at which the load, with its margin, reaches the first hidden cubes.
+        self.assertIn(hidden, cells)
+        self.assertTrue(14 <= cells[hidden] <= 17, cells[hidden])
+        outline = "1.4,1.3\n1.7,1.3\n1.7,1.7\n1.4,1.7\n"
+        answer = self.verdict(outline, "", "board-section.h5")
+        self.assertEqual(answer["verdict"], "unknown")
+        self.assertTrue(25 <= answer["unknowns"][0]["cell"][1] <= 34)
+        self.assertEqual(self.verdict(outline, "", "seen-section.h5")["verdict"], "passes")
+        self.assertGreater(found["seen"]["unknown"], 0)
+
+    def test_the_file(self):
+        found = self.find_seen("seen", "--threads 1", "a.h5")
+        self.find_seen("seen", "--threads 3", "b.h5")
+        self.assertEqual((self.folder / "a.h5").read_bytes(), (self.folder / "b.h5").read_bytes())
+        self.assertEqual(found["seen"]["cube"], 0.25)
+        self.assertEqual(found["seen"]["unknown"], len(self.cells("a.h5")))
+        self.assertEqual(found["seen"]["unknown_in_bins"],
+                         len(self.cells("a.h5", "unknown-bin-cells")))
+        info = json.loads(self.ok("info a.h5 --json").stdout)
+        self.assertEqual((info["seen_cube"], info["unknown"]), (0.25, found["seen"]["unknown"]))
+        self.ok("verify a.h5")
+        bytes_ = (self.folder / "a.h5").read_bytes()
+        refused = 0
+        for at in range(0, len(bytes_), max(1, len(bytes_) // 150)):
+            changed = bytearray(bytes_)
+            changed[at] ^= 0x55
+            (self.folder / "changed.h5").write_bytes(changed)
+            done = self.run_("verify changed.h5")
+            self.assertIn(done.returncode, (0, 1, 3, 4), done)
+            refused += done.returncode != 0
+        self.assertGreater(refused, 50)
+
+    def test_tables_say_where_widths_end(self):
+        self.ok("section export seen-section.h5 --table bands --band 0.5 --base 0.5 -o t.csv --force")
+        text = (self.folder / "t.csv").read_text()
+        self.assertIn("no beam of the scanner crossed", text)
+        lines = [line for line in text.splitlines() if not line.startswith("#")]
+        self.assertTrue(lines[0].endswith("symmetric_width,left_end,right_end"))
+        ends = {line.split(",")[-1] for line in lines[1:]} | {line.split(",")[-2] for line in lines[1:]}
+        self.assertLessEqual(ends, {"blocked", "not-known", ""})
+        self.assertIn("not-known", ends)
+        for table in ("boxes", "stations"):
+            self.ok(f"section export seen-section.h5 --table {table} --band 0.5 -o t.csv --force")
+            self.assertIn(",left_end,right_end\n", (self.folder / "t.csv").read_text())
+        self.ok("section export section.h5 --table bands -o t.csv --force")
+        self.assertNotIn("_end", (self.folder / "t.csv").read_text())
+        self.refused(self.run_("section export section.h5 --table unknown-cells -o no.csv"),
+                     "without seen space", 2)
+
+    def test_refusals(self):
+        for more, text, env in (("--seen", "where its scanner stood", "site.h5"),
+                                ("--seen-cube 0.1", "expected seen space", "seen.h5"),
+                                ("--seen --seen-cube 0", "--seen-cube", "seen.h5"),
+                                ("--seen --seen-cube 1e-7", "at least", "seen.h5"),
+                                ("--seen --seen-cube 1e9", "below 2", "seen.h5")):
+            with self.subTest(more):
+                self.refused(self.find(more, 2, env=env), text, 2)
+        done = self.find("--seen --seen-cube 0.02 --memory 4M", 4, env="seen.h5")
+        self.assertRegex(done.stderr, "larger cubes|larger cells|bins of")
+        done = self.run_("section find --env seen.h5 --trajectory path.txt --x-range=-1,1 --force "
+                         "--cell 0.05 --bin 0.5 --seen --memory 6M -o out.h5")
+        self.assertEqual(done.returncode, 4)
+        fits = re.search(r"bins of ([\d.]+) fit", done.stderr)
+        found = json.loads(self.find(f"--cell 0.05 --bin {fits[1]} --seen --memory 6M --json",
+                                     env="seen.h5").stdout)
+        self.assertLessEqual(found["needed_host_bytes"], 6 << 20)
+        (self.folder / "empty.csv").write_text("x,y,z,qx,qy,qz,qw\n")
+        nothing = self.run_("section find --env seen.h5 --trajectory empty.csv --x-range=-1,1 "
+                            "--seen -o out.h5 --force --json")
+        if nothing.returncode == 0:
+            self.assertEqual(json.loads(nothing.stdout)["seen"]["unknown"], 0)
+            self.assertEqual(self.verdict(RECTANGLE, "", "out.h5")["verdict"], "unknown")
+
+    def test_fewer_beams_know_less(self):
+        self.write_seen("fewer", 120000, lambda points, stands: (points[::3], stands[::3]))
+        self.find_seen("fewer")
+        more = {c[:3] for c in self.cells("fewer-section.h5", "unknown-bin-cells")}
+        less = {c[:3] for c in self.cells("seen-section.h5", "unknown-bin-cells")}
+        blocked = {c[:3] for c in self.cells("seen-section.h5", "bin-cells")}
+        self.assertEqual(less - more - blocked, set())
+        self.assertGreater(len(more), len(less))
+
+
 class Exports(Sections):
     def rows(self, table, more="--band 0.5"):
         self.ok(f"section export section.h5 --table {table} {more} -o t.csv --force")
