@@ -44,6 +44,11 @@ struct SectionParameters {
   std::optional<BodyPivots> pivots = {};
   std::vector<std::uint8_t> ignore_classes = {};  ///< classes whose points are left out
   std::vector<Box> ignore_boxes = {};             ///< closed boxes whose points are left out
+  /// Whether cells that no beam of the scanner crossed are told apart as not known. The store has
+  /// to know where its scanner stood.
+  bool seen = false;
+  /// Side of the cubes of space in which beams are followed; 0: 0.2 m.
+  double seen_cube = 0;
 };
 
 /// How a section is found. The file's bytes depend on none of these options.
@@ -76,13 +81,17 @@ struct SectionFacts {
   std::string length_unit = {};  ///< as Store::length_unit() names it
 };
 
-/// Cells that are blocked. A cell holds y from j to j + 1 and z from k to k + 1 cells.
+/// Cells that are blocked, or not known. A cell holds y from j to j + 1 and z from k to k + 1
+/// cells.
 struct SectionCells {
   std::vector<std::uint32_t> bin = {};  ///< number of the bin; empty for those of the whole path
   std::vector<std::int32_t> j = {}, k = {};
-  std::vector<std::uint32_t> first_pose = {};  ///< the first pose of the path that blocks the cell
+  /// The first pose of the path at which the cell is blocked, or not known.
+  std::vector<std::uint32_t> first_pose = {};
 
   std::size_t size() const { return j.size(); }
+  /// Makes room for so many cells of bins.
+  void reserve(std::size_t cells);
   friend bool operator==(const SectionCells&, const SectionCells&) = default;
 };
 
@@ -90,12 +99,25 @@ struct SectionCells {
 struct SectionData : SectionFacts {
   std::vector<double> chainage = {};     ///< of each pose of the path
   std::vector<std::uint32_t> bins = {};  ///< numbers of the bins in which the load has a pose
-  SectionCells bin_cells = {};           ///< ascending by bin, k, j
+  SectionCells bin_cells = {};           ///< blocked cells, ascending by bin, k, j
+  /// With seen space: cells that are not known, ascending by bin, k, j. A cell that is blocked at
+  /// that pose of the bin or before is not among them.
+  std::optional<SectionCells> unknown = {};
   /// Hashes of the points of the environment, in whatever store, and of the path.
   std::uint64_t environment_hash = 0, trajectory_hash = 0;
 
-  /// The cells of the whole path, ascending by k, j.
+  /// The blocked cells of the whole path, ascending by k, j.
   SectionCells cells() const;
+  /// The cells of the whole path that are not known, ascending by k, j, but for those that are
+  /// blocked at that pose or before; none without seen space.
+  SectionCells unknown_cells() const;
+};
+
+/// How many cells no beam of the scanner crossed.
+struct SectionSeenCounts {
+  double cube = 0;                    ///< side of the cubes of space, as it was asked for
+  std::uint64_t unknown = 0;          ///< cells that are not known anywhere on the path
+  std::uint64_t unknown_in_bins = 0;  ///< sum over the bins
 };
 
 /// How a section was found.
@@ -105,15 +127,17 @@ struct SectionReport {
   std::uint64_t bins = 0;             ///< bins in which the load has a pose
   double rounding = 0;
   std::optional<std::array<double, 2>> motion = {};
+  std::optional<SectionSeenCounts> seen = {};  ///< where seen space was asked for
   std::vector<Message> warnings = {};
   std::uint64_t needed_host_bytes = 0;
   double seconds = 0, search_seconds = 0;
 };
 
 /// Finds the section of a path in a store and writes it to a file. Throws UsageError for an empty
-/// range or window, for poses that scale or are singular, and for an output that exists; InputError
-/// for a damaged store; ResourceError where the memory is too little, with the coarser bin that
-/// fits; Interrupted when asked to stop. docs/design/section.md has the definitions.
+/// range or window, for poses that scale or are singular, for seen space in a store without
+/// origins, and for an output that exists; InputError for a damaged store; ResourceError where the
+/// memory is too little, with the coarser bin that fits; Interrupted when asked to stop.
+/// docs/design/section.md has the definitions.
 SectionReport find_section(const Store& store, const std::vector<Pose>& path,
                            const SectionParameters& parameters, const std::filesystem::path& output,
                            const SectionOptions& options = {});
@@ -123,7 +147,7 @@ enum class SectionVerdict { kPasses, kStopped, kUnknown };
 
 const char* name_of(SectionVerdict verdict);  ///< "passes", "stopped" or "unknown"
 
-/// A place that stops a load.
+/// A place that stops a load, or that is not known.
 struct SectionStop {
   std::uint32_t bin = 0;               ///< number of the bin
   std::uint32_t first_pose = 0;        ///< the first pose of the bin that stops the load
@@ -136,6 +160,14 @@ struct SectionCheck {
   std::string reason = {};               ///< why it is unknown, as a clause; otherwise empty
   std::optional<SectionStop> stop = {};  ///< the first place where the load is stopped
   std::vector<SectionStop> stops = {};   ///< the first place in each bin that stops it, ascending
+  /// The first place in each bin where the load needs a cell that is not known, ascending; empty
+  /// without seen space.
+  std::vector<SectionStop> unknowns = {};
+};
+
+/// The whole cells of a window: columns j_from .. j_to - 1 and rows k_from .. k_to - 1.
+struct SectionGrid {
+  std::int32_t j_from = 0, j_to = 0, k_from = 0, k_to = 0;
 };
 
 /// A section in a file.
@@ -147,26 +179,42 @@ class Section {
   explicit Section(SectionData data);
 
   const SectionData& data() const { return data_; }
-  const SectionCells& cells() const { return cells_; }  ///< those of the whole path
+  SectionGrid grid() const;  ///< the cells of the window
+  /// The file that was read; empty for a section that was made of its data.
+  const std::filesystem::path& path() const { return path_; }
+  const SectionCells& cells() const { return cells_; }  ///< blocked cells of the whole path
+  /// The cells of the whole path that are not known; empty without seen space.
+  const SectionCells& unknown_cells() const { return unknown_; }
 
   /// Whether a load with this outline, and with the length for which the section was found, passes
   /// at a distance of more than `margin` from every point. Throws UsageError for a margin that is
   /// negative or not finite, and for an outline that outline_model() refuses.
   SectionCheck check(std::span<const OutlinePoint> outline, double margin) const;
 
-  /// For each cell of the window, row by row, whether it is free with this margin; false everywhere
+  /// For each cell of grid(), row by row, whether it is free with this margin; false everywhere
   /// where the section is in doubt or the margin exceeds that of the section.
   std::vector<bool> free_cells(double margin) const;
 
  private:
   SectionData data_;
-  SectionCells cells_;
+  SectionCells cells_, unknown_;
+  SectionCells ever_unknown_;  ///< the cells that are not known in any bin, blocked before or not
+  std::filesystem::path path_;
 };
 
 /// The tables of a section.
-enum class SectionTable { kBands, kStations, kBoxes, kCells, kBinCells };
+enum class SectionTable {
+  kBands,
+  kStations,
+  kBoxes,
+  kCells,
+  kBinCells,
+  kUnknownCells,    ///< cells of the whole path that are not known; only with seen space
+  kUnknownBinCells  ///< those of each bin
+};
 
-const char* name_of(SectionTable table);  ///< "bands", "stations", "boxes", "cells", "bin-cells"
+/// "bands", "stations", "boxes", "cells", "bin-cells", "unknown-cells" or "unknown-bin-cells".
+const char* name_of(SectionTable table);
 
 /// The heights for which widths are listed.
 struct SectionHeights {
@@ -174,8 +222,10 @@ struct SectionHeights {
   double base = 0;  ///< where the first band begins
 };
 
-/// Writes a table of a section as CSV. Throws UsageError where the table needs the middle, y = 0,
-/// and the window lacks it, for a band that is not above 0, and for an output that exists.
+/// Writes a table of a section as CSV. With seen space, tables of widths have two more columns,
+/// which say whether a width ends at a blocked cell or at one that is not known. Throws UsageError
+/// where the table needs the middle, y = 0, and the window lacks it, where it needs seen space, for
+/// a band that is not above 0, and for an output that exists.
 void export_section(const Section& section, SectionTable table, const std::filesystem::path& output,
                     const SectionHeights& heights = {}, bool overwrite = false);
 

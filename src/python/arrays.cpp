@@ -110,6 +110,19 @@ std::vector<Vec3> points_of(const Doubles& array, const char* name) {
   return points;
 }
 
+std::vector<OutlinePoint> outline_of(const py::handle& object, const char* name) {
+  const py::array array = numbers(object, name);
+  if (array.ndim() == 1 && array.size() == 0) return {};
+  if (array.ndim() != 2 || array.shape(1) != 2) refuse_shape(name, "n x 2 numbers", array);
+  const Doubles doubles(array);
+  require_finite(all_of(doubles), 2, name, "corner");
+  std::vector<OutlinePoint> corners(static_cast<std::size_t>(doubles.shape(0)));
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    corners[i] = {doubles.data()[2 * i], doubles.data()[2 * i + 1]};
+  }
+  return corners;
+}
+
 std::vector<Pose> poses_of(const Doubles& array, const char* name) {
   const std::span<const double> numbers = all_of(array);
   const auto of_one = static_cast<std::size_t>(4 * array.shape(1));

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "clearway/outline.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/vec3.hpp"
 #include "python/python.hpp"
@@ -33,6 +34,9 @@ Doubles poses_array(const py::handle& object, const char* name);
 /// Copies of an array's points or poses. Throw InputError for numbers that are not finite.
 std::vector<Vec3> points_of(const Doubles& array, const char* name);
 std::vector<Pose> poses_of(const Doubles& array, const char* name);
+
+/// The corners of an outline from an array of n x 2 numbers. Throws as points_array().
+std::vector<OutlinePoint> outline_of(const py::handle& object, const char* name);
 
 /// Throws InputError for a pose that scales, shears or mirrors.
 void require_rigid(const std::vector<Pose>& poses);

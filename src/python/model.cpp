@@ -255,10 +255,8 @@ Make a closed box that stands on z = 0, with its middle over the origin. Returns
 length, width, height: its sides along x, y and z, metres.)");
   module.def(
       "outline_model",
-      [](const std::vector<std::array<double, 2>>& outline, double rear, double front) {
-        std::vector<OutlinePoint> corners;
-        for (const auto& [y, z] : outline) corners.push_back({y, z});
-        return outline_model(corners, rear, front);
+      [](const py::object& outline, double rear, double front) {
+        return outline_model(outline_of(outline, "outline"), rear, front);
       },
       "outline"_a, "rear"_a, "front"_a,
       R"(outline_model(outline, rear, front)

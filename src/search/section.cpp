@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -25,6 +26,8 @@
 #include "search/checks/facts/path_facts.hpp"
 #include "search/checks/question.hpp"
 #include "search/ignored.hpp"
+#include "search/section_seen.hpp"
+#include "search/seen_space.hpp"
 #include "search/threads.hpp"
 
 namespace clearway {
@@ -53,6 +56,7 @@ void block_cells(const PackedCloud& cloud, const IgnoredPoints& ignored, const S
         const auto blocks = static_cast<std::uint32_t>(divide_up(count, kBlockPoints));
         const ParallelScope of_cell;
         const auto search_blocks = piece_of(of_cell, [&](std::uint32_t part) {
+          throw_if_stopped(progress);
           const std::uint32_t first = part * kBlocksAtOnce;
           search.search(cell, coordinates, searched, bins, first,
                         std::min(first + kBlocksAtOnce, blocks));
@@ -71,13 +75,15 @@ void block_cells(const PackedCloud& cloud, const IgnoredPoints& ignored, const S
 }
 
 void add_cells_of_bin(const SectionLattice& lattice, const std::uint32_t* firsts,
-                      std::uint32_t number, SectionCells& cells) {
+                      std::uint32_t number, SectionCells& cells, const std::uint32_t* without) {
   const auto j0 = static_cast<std::int32_t>(lattice.j_from);
   const auto k0 = static_cast<std::int32_t>(lattice.k_from);
   for (std::uint32_t row = 0; row < lattice.rows; ++row) {
-    const std::uint32_t* const of_row = firsts + std::uint64_t{row} * lattice.columns;
+    const std::uint64_t first = std::uint64_t{row} * lattice.columns;
+    const std::uint32_t* const of_row = firsts + first;
     for (std::uint32_t column = 0; column < lattice.columns; ++column) {
       if (of_row[column] == kNotBlocked) continue;
+      if (without != nullptr && of_row[column] == without[first + column]) continue;
       cells.bin.push_back(number);
       cells.j.push_back(j0 + static_cast<std::int32_t>(column));
       cells.k.push_back(k0 + static_cast<std::int32_t>(row));
@@ -92,6 +98,7 @@ SectionParameters with_defaults(SectionParameters asked, double metre) {
   if (!asked.window) asked.window = SectionWindow{-4 * metre, 4 * metre, 0, 6 * metre};
   if (asked.cell == 0) asked.cell = 0.02 * metre;
   if (asked.bin == 0) asked.bin = 5 * metre;
+  if (asked.seen && asked.seen_cube == 0) asked.seen_cube = 0.2 * metre;
   QueryParameters ignored;
   ignored.ignore_classes = std::move(asked.ignore_classes);
   ignored.ignore_boxes = std::move(asked.ignore_boxes);
@@ -142,6 +149,10 @@ class Finder {
 
   SectionReport run() {
     section_lattice(data_.parameters, 0);  // refuses what is asked before anything is computed
+    if (data_.parameters.seen) check_cubes();
+    if (!data_.parameters.seen && data_.parameters.seen_cube != 0) {
+      throw UsageError("a cube of seen space: expected seen space to be asked for");
+    }
     check_rigid(path_);
     place_load();
     describe();
@@ -200,6 +211,18 @@ class Finder {
     data_.chainage = chainage_of(path_);
     data_.environment_hash = store_.metadata().points_hash;
     data_.trajectory_hash = hash_of_trajectory(path_);
+  }
+
+  /// Throws UsageError where the store cannot tell seen space.
+  void check_cubes() const {
+    QueryParameters seen;
+    seen.seen = true;
+    seen.seen_cube = data_.parameters.seen_cube;
+    if (!(std::isfinite(seen.seen_cube) && seen.seen_cube > 0)) {
+      throw UsageError("cubes of seen space of " + format_number(seen.seen_cube) +
+                       "; expected sides of a length above 0");
+    }
+    check_seen_space(store_, seen);
   }
 
   /// Warns of what the section may have misread. Nothing of it changes the section.
@@ -276,12 +299,19 @@ class Finder {
               {{"step", *longest}, {"length", length}});
   }
 
+  /// Bytes that writing the cells takes: those of one bin at a time, and which are in any bin.
+  std::uint64_t bytes_to_write() const {
+    constexpr std::uint64_t kCellBytes = 4 * sizeof(std::uint32_t), kChunkBytes = 1 << 18;
+    return lattice_.cells() * kCellBytes + lattice_.cells() / 8 + kChunkBytes;
+  }
+
   /// Throws ResourceError where the maps do not fit the memory.
-  void check_memory(std::size_t bins) {
-    const std::uint64_t of_bin = SectionMaps::bytes_of_bin(lattice_);
-    const std::uint64_t fixed = store_.allocated_bytes() +
-                                2 * path_.size() * (sizeof(Pose) + sizeof(double)) +
-                                2 * load_.poses.size() * sizeof(SectionPoseNode);
+  void check_memory(std::size_t bins, std::uint64_t of_cubes) {
+    const std::uint64_t of_map = SectionMaps::bytes_of_bin(lattice_);
+    const std::uint64_t of_bin = data_.parameters.seen ? 2 * of_map : of_map;
+    const std::uint64_t fixed =
+        store_.allocated_bytes() + 2 * path_.size() * (sizeof(Pose) + sizeof(double)) +
+        2 * load_.poses.size() * sizeof(SectionPoseNode) + bytes_to_write() + of_cubes;
     report_.needed_host_bytes = fixed + bins * of_bin;
     if (report_.needed_host_bytes <= options_.memory_bytes) return;
     const std::string sizes = "a section of " + counted(bins, "bin") + " of " +
@@ -309,22 +339,85 @@ class Finder {
   void find() {
     const std::vector<SectionBin> bins =
         section_bins(data_.chainage, load_.path_pose, data_.parameters.bin);
-    check_memory(bins.size());
     const SectionPoses poses(load_.poses, load_.path_pose, bins);
-    SectionMaps maps(lattice_, bins.size());
-    const IgnoredPoints ignored(store_, ignored_by(data_.parameters));
-    block_cells(store_, ignored, poses, lattice_, data_.rounding, options_.threads, maps,
-                progress_);
-    for (std::size_t bin = 0; bin < bins.size(); ++bin) {
-      const auto number = static_cast<std::uint32_t>(bins[bin].number);
-      data_.bins.push_back(number);
-      add_cells_of_bin(lattice_, maps.firsts(bin), number, data_.bin_cells);
+    std::optional<SectionSeen> seen;
+    if (data_.parameters.seen) {
+      seen.emplace(store_, data_.parameters, load_.poses, poses, lattice_, data_.rounding,
+                   options_.memory_bytes / 4);
     }
+    check_memory(bins.size(), seen ? seen->needed_bytes() : 0);
+    maps_.emplace(lattice_, bins.size());
+    const IgnoredPoints ignored(store_, ignored_by(data_.parameters));
+    block_cells(store_, ignored, poses, lattice_, data_.rounding, options_.threads, *maps_,
+                progress_);
+    for (const SectionBin& bin : bins) {
+      data_.bins.push_back(static_cast<std::uint32_t>(bin.number));
+    }
+    count_blocked();
+    if (seen) find_unknown(*seen);
+  }
+
+  /// Blocks a copy of the maps by the cubes that no beam saw, too: cells whose first pose falls are
+  /// not known.
+  void find_unknown(const SectionSeen& seen) {
+    taken_ = maps_;
+    warn_of_beams(seen.block(options_.threads, *taken_, progress_), log_);
+    if (options_.strict) refuse_warnings(data_.warnings);
+    unknown_.emplace();
+    for (std::size_t bin = 0; bin < data_.bins.size(); ++bin) {
+      const std::uint32_t *const blocked = maps_->firsts(bin), *const taken = taken_->firsts(bin);
+      std::uint64_t count = 0;
+      for (std::uint64_t cell = 0; cell < lattice_.cells(); ++cell) {
+        if (taken[cell] != blocked[cell]) ++count;
+      }
+      unknown_->counts.push_back(count);
+    }
+    unknown_->add = [this](std::size_t bin, SectionCells& cells) {
+      cells.reserve(unknown_->counts[bin]);
+      add_cells_of_bin(lattice_, taken_->firsts(bin), data_.bins[bin], cells, maps_->firsts(bin));
+    };
+    report_.seen =
+        SectionSeenCounts{data_.parameters.seen_cube, count_unknown_anywhere(), unknown_->total()};
+  }
+
+  /// How many cells of the whole path are not known, and not blocked at that pose or before.
+  std::uint64_t count_unknown_anywhere() const {
+    std::uint64_t count = 0;
+    for (std::uint64_t cell = 0; cell < lattice_.cells(); ++cell) {
+      std::uint32_t blocked = kNotBlocked, unknown = kNotBlocked;
+      for (std::size_t bin = 0; bin < data_.bins.size(); ++bin) {
+        const std::uint32_t first = maps_->firsts(bin)[cell], taken = taken_->firsts(bin)[cell];
+        blocked = std::min(blocked, first);
+        if (taken != first) unknown = std::min(unknown, taken);
+      }
+      if (unknown < blocked) ++count;
+    }
+    return count;
+  }
+
+  /// Counts the blocked cells of each bin, and those of the whole path.
+  void count_blocked() {
+    std::vector<bool> anywhere(lattice_.cells());
+    for (std::size_t bin = 0; bin < data_.bins.size(); ++bin) {
+      const std::uint32_t* const firsts = maps_->firsts(bin);
+      std::uint64_t count = 0;
+      for (std::size_t cell = 0; cell < anywhere.size(); ++cell) {
+        if (firsts[cell] == kNotBlocked) continue;
+        ++count;
+        if (anywhere[cell]) continue;
+        anywhere[cell] = true;
+        ++report_.blocked;
+      }
+      blocked_.counts.push_back(count);
+    }
+    blocked_.add = [this](std::size_t bin, SectionCells& cells) {
+      cells.reserve(blocked_.counts[bin]);
+      add_cells_of_bin(lattice_, maps_->firsts(bin), data_.bins[bin], cells);
+    };
   }
 
   void publish() {
-    report_.blocked = data_.cells().size();
-    report_.blocked_in_bins = data_.bin_cells.size();
+    report_.blocked_in_bins = blocked_.total();
     report_.bins = data_.bins.size();
     if (report_.blocked == 0 && data_.environment_points > data_.ignored_points &&
         !load_.poses.empty()) {
@@ -333,10 +426,14 @@ class Finder {
                 "the load passes");
       if (options_.strict) refuse_warnings(data_.warnings);
     }
+    if (data_.parameters.seen && !unknown_) {  // a path without poses
+      unknown_.emplace();
+      report_.seen = SectionSeenCounts{data_.parameters.seen_cube, 0, 0};
+    }
     report_.rounding = data_.rounding;
     report_.motion = data_.motion;
     report_.warnings = data_.warnings;
-    write_section(data_, pending_.partial());
+    write_section(data_, blocked_, unknown_, pending_.partial());
     pending_.publish();
   }
 
@@ -350,6 +447,10 @@ class Finder {
   PendingFile pending_;
   Body load_;
   SectionLattice lattice_{};
+  std::optional<SectionMaps> maps_;   ///< blocked cells
+  std::optional<SectionMaps> taken_;  ///< with seen space: blocked cells and those not known
+  SectionRows blocked_;
+  std::optional<SectionRows> unknown_;
   SectionReport report_;
   Stopwatch total_;
 };
@@ -359,6 +460,7 @@ class Finder {
 SectionReport find_section(const Store& store, const std::vector<Pose>& path,
                            const SectionParameters& parameters, const std::filesystem::path& output,
                            const SectionOptions& options) {
+  refuse_overwriting(output, {store.path()});
   return Finder(store, path, parameters, output, options).run();
 }
 

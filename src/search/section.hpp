@@ -19,8 +19,10 @@ void block_cells(const PackedCloud& cloud, const IgnoredPoints& ignored, const S
                  const SectionLattice& lattice, double slack, int threads, SectionMaps& maps,
                  Progress& progress);
 
-/// Adds the blocked cells of a bin, ascending by k and j.
+/// Adds the blocked cells of a bin, ascending by k and j. without: the firsts of another map, whose
+/// cells with the same first pose are left out; null for none.
 void add_cells_of_bin(const SectionLattice& lattice, const std::uint32_t* firsts,
-                      std::uint32_t number, SectionCells& cells);
+                      std::uint32_t number, SectionCells& cells,
+                      const std::uint32_t* without = nullptr);
 
 }  // namespace clearway

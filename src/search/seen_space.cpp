@@ -305,6 +305,13 @@ CubeLattice cube_lattice(const StoreReader& store, double asked) {
   return lattice;
 }
 
+BeamCounts follow_all_beams(const StoreReader& store, int threads, BrickMap& map,
+                            Progress& progress) {
+  SeenSearch how;
+  how.threads = threads;
+  return follow_beams(store, how, 0, map, progress);
+}
+
 void check_seen_space(const StoreReader& store, const QueryParameters& query) {
   if (!store.has_origins()) {
     throw UsageError(

@@ -10,6 +10,7 @@
 #include "clearway/seen.hpp"
 #include "core/query/search_result.hpp"
 #include "core/seen/beams.hpp"
+#include "core/seen/brick_map.hpp"
 #include "core/seen/cross_sections.hpp"
 #include "core/seen/cubes.hpp"
 #include "core/util/messages.hpp"
@@ -68,6 +69,11 @@ struct SeenSearch {
 /// ResourceError where memory is too little, Interrupted.
 SeenSpace find_seen_space(const StoreReader& store, const Query& query, const SeenSearch& how,
                           Progress& progress);
+
+/// Follows all beams of a store on the CPU, and clears the bits of the cubes that they see. The
+/// store has origins. Throws InputError for a damaged cell, Interrupted.
+BeamCounts follow_all_beams(const StoreReader& store, int threads, BrickMap& map,
+                            Progress& progress);
 
 /// Numbers the groups of the unseen cubes, completes the summary, and removes chainage and
 /// steps, which only parts keep. The summary knows the number of swept cubes.

@@ -33,6 +33,7 @@ SNIPPETS_ELSEWHERE = {
     ("docs/guide/library.md", "cmake_minimum_required"): "the test installed_library builds with it",
     ("docs/guide/library.md", "#include"): "the test installed_library compiles it, and runs the one with main",
     ("docs/guide/python.md", ""): "the test python_guide runs it",
+    ("docs/guide/section.md", "import clearway"): "the test python_section runs it",
     ("docs/guide/campaigns.md", '"vehicles"'): "a part of a campaign's file, with folders of models",
 }
 

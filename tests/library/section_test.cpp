@@ -139,7 +139,7 @@ TEST_CASE("a section's bytes depend on neither threads nor memory") {
 TEST_CASE("too little memory is refused with a bin that fits") {
   Tube tube(8);
   tube.asked.bin = 0.5;
-  const SectionOptions little{.threads = 1, .memory_bytes = 400'000, .overwrite = true};
+  const SectionOptions little{.threads = 1, .memory_bytes = 900'000, .overwrite = true};
   std::string message;
   try {
     tube.find(little);

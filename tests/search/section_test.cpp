@@ -142,6 +142,24 @@ std::vector<Pose> square_path(Random& random, std::size_t count) {
   return poses;
 }
 
+/// Lets the range and the window end where poses see a point, to the last bit.
+void end_at_a_point(Random& random, Scene& scene) {
+  const std::vector<Vec3> points = positions_of(scene.quanta, scene.quantisation);
+  const auto place = [&] {
+    const std::uint32_t pose = scene.path_pose[below(random, scene.path_pose.size())];
+    return place_of(scene.path[pose], points[below(random, points.size())]);
+  };
+  SectionParameters& asked = scene.asked;
+  asked.margin = 0;
+  const double ends[] = {place()[0], place()[0]};
+  asked.rear = std::min(ends[0], ends[1]);
+  asked.front = std::max(ends[0], ends[1]);
+  SectionWindow& w = *asked.window;
+  const auto [x, y, z] = place();
+  if (y < w.y_to) w.y_from = std::max(y, w.y_to - 8);
+  if (z > w.z_from) w.z_to = std::min(z, w.z_from + 8);
+}
+
 Scene random_scene(Random& random) {
   Scene scene;
   const Box box{{-6, -5, -2}, {6, 5, 3}};
@@ -184,6 +202,7 @@ Scene random_scene(Random& random) {
   if (below(random, 4) == 0) scene.ignored.push_back({{-2, -2, -2}, {2, 3, 1}});
   const Vec3 utm{521234.25, 5412345.5, 312.75};
   if (below(random, 3) == 0) shift(scene, utm);
+  if (below(random, 4) == 0 && !scene.quanta.empty()) end_at_a_point(random, scene);
   return scene;
 }
 

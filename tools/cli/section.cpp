@@ -25,6 +25,7 @@
 #include "cli/support/trajectory_options.hpp"
 #include "core/util/format.hpp"
 #include "io/files/pending_file.hpp"
+#include "io/scans/length_unit.hpp"
 #include "search/threads.hpp"
 
 namespace clearway::tool {
@@ -56,6 +57,11 @@ ordered_json json_of(const SectionReport& report, const FindCommand& options) {
   out["bins"] = report.bins;
   out["rounding"] = report.rounding;
   out["motion"] = motion_json(report.motion);
+  if (report.seen) {
+    out["seen"] = {{"cube", report.seen->cube},
+                   {"unknown", report.seen->unknown},
+                   {"unknown_in_bins", report.seen->unknown_in_bins}};
+  }
   out["needed_host_bytes"] = report.needed_host_bytes;
   out["seconds"] = {{"total", report.seconds}, {"search", report.search_seconds}};
   out["warnings"] = warnings_json(report.warnings);
@@ -110,10 +116,14 @@ void run_find(FindCommand& options) {
   }
   const std::string doubts =
       report.warnings.empty() ? "" : ", but see the " + counted(report.warnings.size(), "warning");
+  const std::string unknown =
+      !report.seen ? ""
+                   : ", and " + format_count(report.seen->unknown) +
+                         " more are not known, because no beam of the scanner crossed them";
   const std::string sentence =
-      fmt::format("{} of the cross-section {} blocked somewhere on the path, in {} of it{}",
+      fmt::format("{} of the cross-section {} blocked somewhere on the path, in {} of it{}{}",
                   counted(report.blocked, "cell"), report.blocked == 1 ? "is" : "are",
-                  counted(report.bins, "stretch", "stretches"), doubts);
+                  counted(report.bins, "stretch", "stretches"), unknown, doubts);
   spdlog::info("{}: {}; {:.2f} s", options.output.string(), sentence, report.seconds);
   print(options.json ? text_of_json(json_of(report, options)) : sentence + "\n");
 }
@@ -142,6 +152,14 @@ void add_question(CLI::App& command, FindCommand& options) {
   options.lengths.add(command, "--margin", options.asked.margin,
                       "The greatest margin that clearway section check may ask for (default: 0)",
                       LengthRange::kFromZero);
+  command.add_flag(
+      "--seen", options.asked.seen,
+      "Tell cells that no beam of the scanner crossed from free ones; the store has to "
+      "know where its scanner stood");
+  options.lengths.add(
+      command, "--seen-cube", options.asked.seen_cube,
+      "With --seen: side of the cubes of space in which beams are followed (default: "
+      "0.2 m)");
   command.add_flag("--between-poses", options.asked.between_poses,
                    "Count the way from each pose to the next, too: the load grows by its motion");
 }
@@ -195,11 +213,24 @@ void add_find(CLI::App& section) {
   command->footer(
       "The load may have any outline; only its rear and front are given here. Every point that it\n"
       "passes blocks a cell, and clearway section check and export answer from the file.\n"
-      "A part of the scan without points looks free: clearway run --seen tells what was scanned.\n"
+      "A part of the scan without points looks free unless --seen asks what the beams crossed.\n"
       "Example: clearway section find --env site.h5 --trajectory path.txt --x-range=-15,15 "
       "--pivots 10,-10 -o section.h5");
   command->callback(
       [options] { run_stoppable(options->output, kStartsAgain, [&] { run_find(*options); }); });
+}
+
+/// Converts the lengths that were given with a unit into the unit of a section, and returns the
+/// metres of that unit; 1, and a warning where a length names a unit, where it is not known.
+double convert_for(const LengthOptions& lengths, const Section& section,
+                   const std::filesystem::path& file) {
+  const LengthUnit unit = length_unit_of(section.data().length_unit);
+  if (unit == LengthUnit::kUnknown) {
+    return lengths.convert_for(file.string(), section.data().crs_wkt);
+  }
+  const double metres = unit == LengthUnit::kDegrees ? 1 : metres_of(unit);
+  lengths.convert(metres);
+  return metres;
 }
 
 struct CheckCommand {
@@ -232,6 +263,11 @@ ordered_json json_of(const SectionCheck& check, const Section& section,
   auto stops = ordered_json::array();
   for (const SectionStop& stop : check.stops) stops.push_back(stop_json(stop));
   out["stops"] = std::move(stops);
+  if (section.data().unknown) {
+    auto unknowns = ordered_json::array();
+    for (const SectionStop& place : check.unknowns) unknowns.push_back(stop_json(place));
+    out["unknowns"] = std::move(unknowns);
+  }
   out["warnings"] = warnings_json(section.data().warnings);
   return out;
 }
@@ -275,14 +311,26 @@ std::string sentence_of(const SectionCheck& check, const Section& section,
   return "unknown: " + check.reason + doubts;
 }
 
+/// The outline in the unit of the section, which has so many metres. Where no unit is named, the
+/// file is in that unit.
+std::vector<OutlinePoint> read_load(const CheckCommand& options, const Section& section,
+                                    double metres) {
+  std::vector<OutlinePoint> outline = read_outline(options.outline, {.mirror = options.how.mirror});
+  const FileUnit& unit = options.how.unit;
+  if (!unit.is_known()) return outline;
+  if (length_unit_of(section.data().length_unit) == LengthUnit::kUnknown &&
+      (is_foot(unit.metres()) || unit.metres() == kMetresPerInch)) {
+    spdlog::warn("{}", unit_assumed_text("corners of the outline", unit.metres()));
+  }
+  const UnitFactor factor(unit.metres_in(metres), metres);
+  for (OutlinePoint& p : outline) p = {factor(p.y), factor(p.z)};
+  return outline;
+}
+
 int run_check(const CheckCommand& options) {
   const Section section(options.section);
-  const double metres =
-      options.lengths.convert_for(options.section.string(), section.data().crs_wkt);
-  std::vector<OutlinePoint> outline = read_outline(options.outline, options.how);
-  if (options.how.unit.is_known()) {
-    for (OutlinePoint& p : outline) p = {p.y / metres, p.z / metres};
-  }
+  const double metres = convert_for(options.lengths, section, options.section);
+  const std::vector<OutlinePoint> outline = read_load(options, section, metres);
   SectionCheck check;
   try {
     check = section.check(outline, options.margin);
@@ -327,7 +375,7 @@ void add_section_check(CLI::App& section, int& exit_code) {
       "Exit code 1: it is stopped.\n"
       "Exit code 6: unknown, because the load with its margin leaves the window, the margin "
       "exceeds\n"
-      "that of the section, or the section is in doubt.\n"
+      "that of the section, the section is in doubt, or no beam crossed what the load needs.\n"
       "Example: clearway section check section.h5 --outline load.csv --margin 0.1");
   command->callback([options, &exit_code] { exit_code = run_check(*options); });
 }
@@ -344,7 +392,7 @@ struct ExportCommand {
 void run_export(ExportCommand& options) {
   refuse_overwriting(options.output, {options.section});
   const Section section(options.section);
-  options.lengths.convert_for(options.section.string(), section.data().crs_wkt);
+  convert_for(options.lengths, section, options.section);
   for (const Message& warning : section.data().warnings) log_message(warning);
   if (!options.table) {
     export_section_outline(section, options.output, options.heights, options.force);
@@ -354,8 +402,10 @@ void run_export(ExportCommand& options) {
 }
 
 void add_export_of_section(CLI::App& section) {
-  constexpr std::array kTables{SectionTable::kBands, SectionTable::kStations, SectionTable::kBoxes,
-                               SectionTable::kCells, SectionTable::kBinCells};
+  constexpr std::array kTables{SectionTable::kBands,          SectionTable::kStations,
+                               SectionTable::kBoxes,          SectionTable::kCells,
+                               SectionTable::kBinCells,       SectionTable::kUnknownCells,
+                               SectionTable::kUnknownBinCells};
   const auto options = std::make_shared<ExportCommand>();
   CLI::App* command = section.add_subcommand(
       "export", "Write the widths of a section as a table, or the largest outline as DXF");
@@ -377,7 +427,9 @@ void add_export_of_section(CLI::App& section) {
                 }
               },
               "bands: widths for each height. stations: and for each stretch of the path. boxes: "
-              "widths from the base up to each height. cells, bin-cells: the blocked cells")
+              "widths from the base up to each height. cells, bin-cells: the blocked cells. "
+              "unknown-cells, unknown-bin-cells: with section find --seen, those that no beam "
+              "crossed")
           ->type_name("NAME")
           ->check(CLI::IsMember(names));
   command

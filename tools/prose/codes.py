@@ -9,7 +9,8 @@ ENDINGS = (".cpp", ".hpp", ".cu", ".cuh")
 # Literals of this form that are no codes: names of formats, units, clocks, encodings, rails and programs, and the
 # reasons of a verdict, which docs/guide/results.md explains.
 OTHERS = {
-    "bin-cells", "inside-rail", "left-rail", "not-scanned", "outside-rail", "question-in-doubt", "right-rail",
+    "bin-cells", "inside-rail", "left-rail", "not-known", "not-scanned", "outside-rail", "question-in-doubt", "right-rail",
+    "unknown-bin-cells", "unknown-cells",
     "ft-us", "int-ft", "international-feet", "international-foot", "intl-ft", "pose-wxyz",
     "pose-xyzw", "unix-none", "us-ft", "us-survey-feet", "us-survey-foot", "utf-8", "week-seconds", "xdg-open",
 }

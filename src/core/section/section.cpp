@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "clearway/answer.hpp"
 #include "clearway/error.hpp"
@@ -35,14 +36,67 @@ const char* name_of(SectionTable table) {
       return "boxes";
     case SectionTable::kCells:
       return "cells";
+    case SectionTable::kUnknownCells:
+      return "unknown-cells";
+    case SectionTable::kUnknownBinCells:
+      return "unknown-bin-cells";
     case SectionTable::kBinCells:
       break;
   }
   return "bin-cells";
 }
 
-SectionCells SectionData::cells() const {
-  const SectionCells& all = bin_cells;
+void SectionCells::reserve(std::size_t cells) {
+  bin.reserve(cells);
+  j.reserve(cells);
+  k.reserve(cells);
+  first_pose.reserve(cells);
+}
+
+namespace {
+
+/// A box of columns and rows around cells.
+struct CellBox {
+  std::int64_t j_from, j_to, k_from, k_to;
+
+  explicit CellBox(const SectionCells& cells) {
+    const auto [least_j, most_j] = std::ranges::minmax(cells.j);
+    const auto [least_k, most_k] = std::ranges::minmax(cells.k);
+    j_from = least_j;
+    j_to = std::int64_t{most_j} + 1;
+    k_from = least_k;
+    k_to = std::int64_t{most_k} + 1;
+  }
+  std::uint64_t cells() const {
+    return static_cast<std::uint64_t>(j_to - j_from) * static_cast<std::uint64_t>(k_to - k_from);
+  }
+};
+
+/// The cells of the whole path, ascending by k, j, by an entry for each cell of a box around them.
+SectionCells of_whole_path(const SectionCells& all, const CellBox& box) {
+  const std::int64_t columns = box.j_to - box.j_from;
+  std::vector<std::uint32_t> first(box.cells(), kNotBlocked);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::uint32_t& of_cell =
+        first[static_cast<std::size_t>((all.k[i] - box.k_from) * columns + all.j[i] - box.j_from)];
+    of_cell = std::min(of_cell, all.first_pose[i]);
+  }
+  SectionCells out;
+  for (std::size_t cell = 0; cell < first.size(); ++cell) {
+    if (first[cell] == kNotBlocked) continue;
+    const auto at = static_cast<std::int64_t>(cell);
+    out.j.push_back(static_cast<std::int32_t>(box.j_from + at % columns));
+    out.k.push_back(static_cast<std::int32_t>(box.k_from + at / columns));
+    out.first_pose.push_back(first[cell]);
+  }
+  return out;
+}
+
+/// The cells of the whole path, ascending by k, j.
+SectionCells of_whole_path(const SectionCells& all) {
+  if (all.size() == 0) return {};
+  const CellBox box(all);
+  if (box.cells() <= 4 * all.size()) return of_whole_path(all, box);
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
@@ -58,6 +112,34 @@ SectionCells SectionData::cells() const {
     out.first_pose.push_back(all.first_pose[i]);
   }
   return out;
+}
+
+/// Those of all unknown cells of the whole path that are not blocked early enough.
+SectionCells unknown_beside(const SectionCells& blocked, const SectionCells& all) {
+  SectionCells out;
+  std::size_t at = 0;  // in the blocked cells, which are in the same order
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    while (at < blocked.size() &&
+           std::pair(blocked.k[at], blocked.j[at]) < std::pair(all.k[i], all.j[i])) {
+      ++at;
+    }
+    if (at < blocked.size() && blocked.k[at] == all.k[i] && blocked.j[at] == all.j[i] &&
+        blocked.first_pose[at] <= all.first_pose[i]) {
+      continue;
+    }
+    out.j.push_back(all.j[i]);
+    out.k.push_back(all.k[i]);
+    out.first_pose.push_back(all.first_pose[i]);
+  }
+  return out;
+}
+
+}  // namespace
+
+SectionCells SectionData::cells() const { return of_whole_path(bin_cells); }
+
+SectionCells SectionData::unknown_cells() const {
+  return unknown ? unknown_beside(cells(), of_whole_path(*unknown)) : SectionCells{};
 }
 
 namespace {
@@ -160,14 +242,14 @@ void check_margin(double margin) {
   throw UsageError("a margin of " + format_number(margin) + "; expected 0 or more");
 }
 
-/// Whether each cell of the whole path, in its order, stops the load.
-std::vector<bool> stopping(const SectionCells& cells, double g, const Load& load, double reach) {
-  std::vector<bool> stops(cells.size());
+/// Whether each cell of the whole path, in its order, is closer to the load than `reach`.
+std::vector<bool> needed(const SectionCells& cells, double g, const Load& load, double reach) {
+  std::vector<bool> near(cells.size());
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const double j = cells.j[i], k = cells.k[i];
-    stops[i] = load.distance({j * g, (j + 1) * g, k * g, (k + 1) * g}, reach) < reach;
+    near[i] = load.distance({j * g, (j + 1) * g, k * g, (k + 1) * g}, reach) < reach;
   }
-  return stops;
+  return near;
 }
 
 /// Index of a cell among those of the whole path, which have all cells of the bins.
@@ -181,9 +263,38 @@ std::size_t index_of(const SectionCells& cells, std::int32_t j, std::int32_t k) 
   return first;
 }
 
+/// The first place in each bin at which a load needs a cell. all: cells of the bins. cells: those
+/// of the whole path. near: whether the load needs them.
+std::vector<SectionStop> first_places(const SectionCells& all, const SectionCells& cells,
+                                      const std::vector<bool>& near,
+                                      const std::vector<double>& chainage) {
+  std::vector<SectionStop> places;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!near[index_of(cells, all.j[i], all.k[i])]) continue;
+    if (places.empty() || places.back().bin != all.bin[i]) {
+      places.push_back({all.bin[i], kNotBlocked, 0, {}});
+    }
+    SectionStop& place = places.back();
+    // Cells are ascending by k and j, so the first of a pose is the one to report.
+    if (all.first_pose[i] >= place.first_pose) continue;
+    place = {all.bin[i], all.first_pose[i], chainage[all.first_pose[i]], {all.j[i], all.k[i]}};
+  }
+  return places;
+}
+
 }  // namespace
 
-Section::Section(SectionData data) : data_(std::move(data)), cells_(data_.cells()) {}
+Section::Section(SectionData data) : data_(std::move(data)), cells_(data_.cells()) {
+  if (!data_.unknown) return;
+  ever_unknown_ = of_whole_path(*data_.unknown);
+  unknown_ = unknown_beside(cells_, ever_unknown_);
+}
+
+SectionGrid Section::grid() const {
+  const SectionLattice lattice = lattice_of(data_);
+  return {static_cast<std::int32_t>(lattice.j_from), static_cast<std::int32_t>(lattice.j_to),
+          static_cast<std::int32_t>(lattice.k_from), static_cast<std::int32_t>(lattice.k_to)};
+}
 
 SectionCheck Section::check(std::span<const OutlinePoint> outline, double margin) const {
   check_margin(margin);
@@ -192,19 +303,12 @@ SectionCheck Section::check(std::span<const OutlinePoint> outline, double margin
   const double g = data_.parameters.cell;
   const double grown = data_.motion ? margin + (*data_.motion)[1] / 2 : margin;
   const double reach = grown + data_.rounding;
-  const std::vector<bool> stops = stopping(cells_, g, load, reach);
-
   SectionCheck check;
-  const SectionCells& all = data_.bin_cells;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (!stops[index_of(cells_, all.j[i], all.k[i])]) continue;
-    if (check.stops.empty() || check.stops.back().bin != all.bin[i]) {
-      check.stops.push_back({all.bin[i], kNotBlocked, 0, {}});
-    }
-    SectionStop& stop = check.stops.back();
-    // Cells are ascending by k and j, so the first of a pose is the one to report.
-    if (all.first_pose[i] >= stop.first_pose) continue;
-    stop = {all.bin[i], all.first_pose[i], data_.chainage[all.first_pose[i]], {all.j[i], all.k[i]}};
+  check.stops =
+      first_places(data_.bin_cells, cells_, needed(cells_, g, load, reach), data_.chainage);
+  if (data_.unknown) {
+    check.unknowns = first_places(*data_.unknown, ever_unknown_,
+                                  needed(ever_unknown_, g, load, reach), data_.chainage);
   }
   if (!check.stops.empty()) {
     check.verdict = SectionVerdict::kStopped;
@@ -221,6 +325,10 @@ SectionCheck Section::check(std::span<const OutlinePoint> outline, double margin
   } else if (box.y_from - edge < lattice.j_from * g || box.y_to + edge > lattice.j_to * g ||
              box.z_from - edge < lattice.k_from * g || box.z_to + edge > lattice.k_to * g) {
     check.reason = "the load with its margin leaves the window of the section";
+  } else if (check.reason.empty() && !check.unknowns.empty()) {
+    check.reason = "no beam of the scanner crossed a place that the load needs, first at pose " +
+                   std::to_string(check.unknowns.front().first_pose) + ", " +
+                   format_brief(check.unknowns.front().chainage) + " along the path";
   }
   check.verdict = check.reason.empty() ? SectionVerdict::kPasses : SectionVerdict::kUnknown;
   return check;
@@ -251,9 +359,7 @@ std::vector<bool> Section::free_cells(double margin) const {
     }
   }
   std::vector<bool> taken(free.size());
-  for (std::size_t i = 0; i < cells_.size(); ++i) {
-    const std::int64_t j = cells_.j[i] - static_cast<std::int64_t>(lattice.j_from);
-    const std::int64_t k = cells_.k[i] - static_cast<std::int64_t>(lattice.k_from);
+  const auto take = [&](std::int64_t j, std::int64_t k) {
     const auto up = static_cast<std::int64_t>(reach.size()) - 1;
     for (std::int64_t row = std::max<std::int64_t>(k - up, 0); row <= std::min(k + up, rows - 1);
          ++row) {
@@ -261,6 +367,12 @@ std::vector<bool> Section::free_cells(double margin) const {
       const auto from = taken.begin() + row * columns + std::max<std::int64_t>(j - across, 0);
       const auto to = taken.begin() + row * columns + std::min(j + across, columns - 1) + 1;
       std::fill(from, to, true);
+    }
+  };
+  for (const SectionCells* const cells : {&cells_, &unknown_}) {
+    for (std::size_t i = 0; i < cells->size(); ++i) {
+      take(cells->j[i] - static_cast<std::int64_t>(lattice.j_from),
+           cells->k[i] - static_cast<std::int64_t>(lattice.k_from));
     }
   }
   for (std::int64_t k = 0; k < rows; ++k) {

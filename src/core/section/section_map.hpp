@@ -63,6 +63,32 @@ struct SectionMapRef {
     }
   }
 
+  /// Blocks all cells of a rectangle at a pose.
+  CLEARWAY_HD void block(const SectionRect& rect, std::uint32_t pose) const {
+    for (std::uint32_t row = rect.row_from; row <= rect.row_to; ++row) {
+      std::uint32_t* const of_row = entry + std::uint64_t{row} * shape->columns[0];
+      for (std::uint32_t column = rect.column_from; column <= rect.column_to; ++column) {
+        if (shared_value(of_row + column) > pose) lower_shared(of_row + column, pose);
+      }
+    }
+    SectionRect above = rect;
+    for (int level = 1; level < shape->levels; ++level) {
+      above = {above.column_from >> 2, above.column_to >> 2, above.row_from >> 2,
+               above.row_to >> 2};
+      bool falls = false;
+      for (std::uint32_t row = above.row_from; row <= above.row_to; ++row) {
+        for (std::uint32_t column = above.column_from; column <= above.column_to; ++column) {
+          std::uint32_t* const at =
+              entry + shape->start[level] + std::uint64_t{row} * shape->columns[level] + column;
+          if (shared_value(at) <= pose) continue;
+          const std::uint32_t greatest = greatest_below(level, column, row);
+          falls = lower_shared(at, greatest) > greatest || falls;
+        }
+      }
+      if (!falls) return;
+    }
+  }
+
  private:
   /// Looks at the entries of a level, and below those that do not tell at their parts in `rect`.
   CLEARWAY_HD bool is_blocked_at(int level, const SectionRect& here, const SectionRect& rect,

@@ -57,18 +57,19 @@ std::vector<Rows> rows_of_bands(const Section& section, const SectionHeights& he
 }
 
 /// Narrows a side to a cell.
-void narrow(std::optional<HalfWidth>& side, double width, std::uint32_t pose) {
-  if (!side || width < side->width) {
-    side = {width, pose};
-  } else if (width == side->width) {
-    side->first_pose = std::min(side->first_pose, pose);
+void narrow(std::optional<HalfWidth>& side, const HalfWidth& by) {
+  if (!side || by.width < side->width) {
+    side = by;
+  } else if (by.width == side->width) {
+    side->first_pose = std::min(side->first_pose, by.first_pose);
+    side->is_blocked = side->is_blocked || by.is_blocked;
   }
 }
 
-/// The bands of cells first .. end - 1, which are ascending by k.
-std::vector<SectionBand> bands_of(const SectionCells& cells, std::size_t first, std::size_t end,
-                                  const std::vector<Rows>& rows, double g) {
-  std::vector<SectionBand> bands;
+/// Narrows bands by cells first .. end - 1, which are ascending by k. is_blocked: whether the cells
+/// are blocked, and not unknown.
+void narrow(const SectionCells& cells, std::size_t first, std::size_t end, bool is_blocked,
+            const std::vector<Rows>& rows, double g, std::vector<SectionBand>& bands) {
   const auto at = [&](double k) {
     const auto begin = cells.k.begin() + static_cast<std::ptrdiff_t>(first);
     const auto last = cells.k.begin() + static_cast<std::ptrdiff_t>(end);
@@ -76,19 +77,23 @@ std::vector<SectionBand> bands_of(const SectionCells& cells, std::size_t first, 
         std::lower_bound(begin, last, k, [](std::int32_t a, double b) { return a < b; }) -
         cells.k.begin());
   };
-  for (const Rows& row : rows) {
-    SectionBand band{row.z_from, row.z_to, {}, {}};
-    const std::size_t stop = at(row.k_to);
-    for (std::size_t i = at(row.k_from); i < stop; ++i) {
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const std::size_t stop = at(rows[r].k_to);
+    for (std::size_t i = at(rows[r].k_from); i < stop; ++i) {
       const double j = cells.j[i];
       if (j >= 0) {
-        narrow(band.left, g * j, cells.first_pose[i]);
+        narrow(bands[r].left, {g * j, cells.first_pose[i], is_blocked});
       } else {
-        narrow(band.right, g * (-j - 1), cells.first_pose[i]);
+        narrow(bands[r].right, {g * (-j - 1), cells.first_pose[i], is_blocked});
       }
     }
-    bands.push_back(band);
   }
+}
+
+/// Bands that nothing narrows.
+std::vector<SectionBand> open_bands(const std::vector<Rows>& rows) {
+  std::vector<SectionBand> bands;
+  for (const Rows& row : rows) bands.push_back({row.z_from, row.z_to, {}, {}});
   return bands;
 }
 
@@ -106,22 +111,30 @@ std::optional<double> symmetric_width(const SectionFacts& section, const Section
 }
 
 std::vector<SectionBand> section_bands(const Section& section, const SectionHeights& heights) {
-  return bands_of(section.cells(), 0, section.cells().size(), rows_of_bands(section, heights),
-                  section.data().parameters.cell);
+  const std::vector<Rows> rows = rows_of_bands(section, heights);
+  const double g = section.data().parameters.cell;
+  std::vector<SectionBand> bands = open_bands(rows);
+  narrow(section.cells(), 0, section.cells().size(), true, rows, g, bands);
+  narrow(section.unknown_cells(), 0, section.unknown_cells().size(), false, rows, g, bands);
+  return bands;
 }
 
 std::vector<SectionStretch> section_stations(const Section& section,
                                              const SectionHeights& heights) {
   const std::vector<Rows> rows = rows_of_bands(section, heights);
-  const SectionCells& cells = section.data().bin_cells;
   std::vector<SectionStretch> stretches;
-  std::size_t first = 0;
-  for (const std::uint32_t bin : section.data().bins) {
-    std::size_t end = first;
-    while (end < cells.size() && cells.bin[end] == bin) ++end;
-    stretches.push_back({bin, bands_of(cells, first, end, rows, section.data().parameters.cell)});
-    first = end;
-  }
+  for (const std::uint32_t bin : section.data().bins) stretches.push_back({bin, open_bands(rows)});
+  const auto narrow_by = [&](const SectionCells& cells, bool is_blocked) {
+    std::size_t first = 0;
+    for (SectionStretch& stretch : stretches) {
+      std::size_t end = first;
+      while (end < cells.size() && cells.bin[end] == stretch.bin) ++end;
+      narrow(cells, first, end, is_blocked, rows, section.data().parameters.cell, stretch.bands);
+      first = end;
+    }
+  };
+  narrow_by(section.data().bin_cells, true);
+  if (section.data().unknown) narrow_by(*section.data().unknown, false);
   return stretches;
 }
 
@@ -130,8 +143,8 @@ std::vector<SectionBand> section_boxes(const Section& section, const SectionHeig
   for (std::size_t i = 1; i < boxes.size(); ++i) {
     const SectionBand& below = boxes[i - 1];
     boxes[i].z_from = boxes[0].z_from;
-    if (below.left) narrow(boxes[i].left, below.left->width, below.left->first_pose);
-    if (below.right) narrow(boxes[i].right, below.right->width, below.right->first_pose);
+    if (below.left) narrow(boxes[i].left, *below.left);
+    if (below.right) narrow(boxes[i].right, *below.right);
   }
   return boxes;
 }

@@ -9,10 +9,12 @@
 /// Tables of widths that follow from the cells of a section.
 namespace clearway {
 
-/// The way from the middle, y = 0, to the nearest blocked cell on one side.
+/// The way from the middle, y = 0, to the nearest cell on one side that is blocked or not known.
 struct HalfWidth {
-  double width;              ///< to the cell's border
-  std::uint32_t first_pose;  ///< the first pose that blocks a cell there
+  double width;  ///< to the cell's border
+  std::uint32_t
+      first_pose;          ///< the first pose that blocks a cell there, or at which it is not known
+  bool is_blocked = true;  ///< whether a cell there is blocked; otherwise they are not known
 };
 
 /// The room between two heights; a side without a value is open up to the border of the window.

@@ -183,7 +183,7 @@ class BrickCollector {
     throw ResourceError("the model sweeps more than " + format_count(bricks_.size()) +
                             " blocks of 8 x 8 x 8 cubes, which take more than " +
                             format_size(most_bytes_) + " of memory; larger cubes take less",
-                        Remedy::kMoreMemory, static_cast<double>(2 * needed));
+                        Remedy::kMoreMemory);
   }
 
   const CubeLattice& lattice_;

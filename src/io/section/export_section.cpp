@@ -1,5 +1,6 @@
 #include <string>
 
+#include "clearway/error.hpp"
 #include "clearway/section.hpp"
 #include "core/section/section_tables.hpp"
 #include "core/util/format.hpp"
@@ -9,9 +10,13 @@
 
 namespace clearway {
 
-Section::Section(const std::filesystem::path& path) : Section(read_section(path)) {}
+Section::Section(const std::filesystem::path& path) : Section(read_section(path)) { path_ = path; }
 
 namespace {
+
+void refuse_replacing(const Section& section, const std::filesystem::path& output) {
+  if (!section.path().empty()) refuse_overwriting(output, {section.path()});
+}
 
 /// What a reader of widths has to know, in lines that begin with "#".
 void write_preamble(TextWriter& out, const Section& section) {
@@ -26,6 +31,11 @@ void write_preamble(TextWriter& out, const Section& section) {
   if (data.motion) {
     out << "# Of this, " << format_number((*data.motion)[1] / 2)
         << " is half of the motion across between two poses\n";
+  }
+  if (data.unknown) {
+    out << "# Cells that no beam of the scanner crossed end a width as blocked ones do: left_end "
+           "and "
+           "right_end say blocked or not-known\n";
   }
   out << "# open: nothing blocks that side up to the border of the window\n";
   for (const Message& warning : data.warnings) {
@@ -52,7 +62,17 @@ void write_symmetric(TextWriter& out, const SectionData& section, const SectionB
   } else {
     out << "open";
   }
+  if (section.unknown) {
+    for (const std::optional<HalfWidth>& half : {band.left, band.right}) {
+      out << "," << (!half ? "" : half->is_blocked ? "blocked" : "not-known");
+    }
+  }
   out << "\n";
+}
+
+/// The end of a line of names.
+const char* names_of_ends(const SectionData& section) {
+  return section.unknown ? ",left_end,right_end\n" : "\n";
 }
 
 void write_band(TextWriter& out, const SectionData& section, const SectionBand& band) {
@@ -65,12 +85,12 @@ void write_band(TextWriter& out, const SectionData& section, const SectionBand& 
 }
 
 constexpr const char* kBandColumns =
-    "z_from,z_to,left,left_pose,left_station,right,right_pose,right_station,symmetric_width\n";
+    "z_from,z_to,left,left_pose,left_station,right,right_pose,right_station,symmetric_width";
 
 void write_stations(TextWriter& out, const Section& section, const SectionHeights& heights) {
   const SectionData& data = section.data();
   const double bin = data.parameters.bin;
-  out << "bin,chainage_from,chainage_to," << kBandColumns;
+  out << "bin,chainage_from,chainage_to," << kBandColumns << names_of_ends(data);
   for (const SectionStretch& stretch : section_stations(section, heights)) {
     for (const SectionBand& band : stretch.bands) {
       out << stretch.bin << "," << stretch.bin * bin << "," << (stretch.bin + 1.0) * bin << ",";
@@ -87,7 +107,7 @@ void write_boxes(TextWriter& out, const Section& section, const SectionHeights& 
       out << "open,";
     }
   };
-  out << "top,left,right,symmetric_width\n";
+  out << "top,left,right,symmetric_width" << names_of_ends(section.data());
   for (const SectionBand& box : section_boxes(section, heights)) {
     out << box.z_to << ",";
     side(box.left);
@@ -96,8 +116,7 @@ void write_boxes(TextWriter& out, const Section& section, const SectionHeights& 
   }
 }
 
-void write_cells(TextWriter& out, const SectionCells& cells) {
-  const bool bins = !cells.bin.empty();
+void write_cells(TextWriter& out, const SectionCells& cells, bool bins) {
   out << (bins ? "bin,j,k,first_pose\n" : "j,k,first_pose\n");
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (bins) out << cells.bin[i] << ",";
@@ -109,6 +128,14 @@ void write_cells(TextWriter& out, const SectionCells& cells) {
 
 void export_section(const Section& section, SectionTable table, const std::filesystem::path& output,
                     const SectionHeights& heights, bool overwrite) {
+  refuse_replacing(section, output);
+  const bool of_unknown =
+      table == SectionTable::kUnknownCells || table == SectionTable::kUnknownBinCells;
+  if (of_unknown && !section.data().unknown) {
+    throw UsageError(
+        "the section was found without seen space, so that nothing says which cells "
+        "are not known");
+  }
   PendingFile pending(output, overwrite);
   {
     const File file = File::create(pending.partial());
@@ -116,7 +143,7 @@ void export_section(const Section& section, SectionTable table, const std::files
     switch (table) {
       case SectionTable::kBands:
         write_preamble(out, section);
-        out << kBandColumns;
+        out << kBandColumns << names_of_ends(section.data());
         for (const SectionBand& band : section_bands(section, heights)) {
           write_band(out, section.data(), band);
         }
@@ -130,14 +157,16 @@ void export_section(const Section& section, SectionTable table, const std::files
         write_boxes(out, section, heights);
         break;
       case SectionTable::kCells:
-        write_cells(out, section.cells());
+        write_cells(out, section.cells(), false);
         break;
       case SectionTable::kBinCells:
-        if (section.data().bin_cells.size() == 0) {
-          out << "bin,j,k,first_pose\n";
-        } else {
-          write_cells(out, section.data().bin_cells);
-        }
+        write_cells(out, section.data().bin_cells, true);
+        break;
+      case SectionTable::kUnknownCells:
+        write_cells(out, section.unknown_cells(), false);
+        break;
+      case SectionTable::kUnknownBinCells:
+        write_cells(out, *section.data().unknown, true);
     }
     out.flush();
   }
@@ -184,6 +213,7 @@ void write_dxf(TextWriter& out, const std::vector<OutlinePoint>& outline, bool f
 
 void export_section_outline(const Section& section, const std::filesystem::path& output,
                             const SectionHeights& heights, bool overwrite) {
+  refuse_replacing(section, output);
   const std::vector<OutlinePoint> outline = largest_outline(section, heights);
   PendingFile pending(output, overwrite);
   {

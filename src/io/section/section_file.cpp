@@ -1,7 +1,11 @@
 #include "io/section/section_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <optional>
+#include <span>
 #include <string>
 
 #include "clearway/error.hpp"
@@ -18,15 +22,18 @@ namespace {
 
 namespace names {
 constexpr const char* kFormat = "clearway section";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 1, kVersionWithSeen = 2;
 
 constexpr const char* kCells = "section";  // the group by which the file is recognised
 constexpr const char* kJ = "j";
 constexpr const char* kK = "k";
 constexpr const char* kFirstPose = "first_pose";
+constexpr const char* kLength = "length";
 constexpr const char* kBins = "bins";
 constexpr const char* kNumber = "number";
 constexpr const char* kCount = "cells";
+constexpr const char* kUnknown = "unknown";  // a group, and how many of its cells each bin has
+constexpr const char* kSeenCube = "seen_cube";
 constexpr const char* kPath = "path";
 constexpr const char* kChainage = "chainage";
 constexpr const char* kIgnored = "ignored";
@@ -67,18 +74,23 @@ std::vector<double> rows_of(const std::vector<Box>& boxes) {
   return rows;
 }
 
-/// How many cells each bin has.
-std::vector<std::uint64_t> cells_of_bins(const SectionData& section) {
-  std::vector<std::uint64_t> counts(section.bins.size());
-  std::size_t at = 0;
-  for (const std::uint32_t bin : section.bin_cells.bin) {
-    while (section.bins[at] != bin) ++at;
-    ++counts[at];
-  }
-  return counts;
+template <typename Column>
+std::uint64_t hash_of_column(const Column& column) {
+  return xxh64(std::as_bytes(std::span(column)));
 }
 
-std::uint64_t hash_of(const SectionData& section, const std::vector<std::uint64_t>& counts) {
+std::uint64_t sum_of(const std::vector<std::uint64_t>& counts) {
+  return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+}
+
+/// How many rows each bin has, and the hashes of their columns in the order of the file.
+struct CellSums {
+  std::vector<std::uint64_t> counts;
+  std::vector<std::uint64_t> hashes;
+};
+
+std::uint64_t hash_of(const SectionData& section, const CellSums& blocked,
+                      const std::optional<CellSums>& unknown) {
   ColumnHashes hashes;
   hashes.add(numbers_of(section));
   hashes.add(counts_of(section));
@@ -86,10 +98,15 @@ std::uint64_t hash_of(const SectionData& section, const std::vector<std::uint64_
   hashes.add(rows_of(section.parameters.ignore_boxes));
   hashes.add(section.chainage);
   hashes.add(section.bins);
-  hashes.add(counts);
-  hashes.add(section.bin_cells.j);
-  hashes.add(section.bin_cells.k);
-  hashes.add(section.bin_cells.first_pose);
+  const auto add = [&hashes](const CellSums& cells) {
+    hashes.add(cells.counts);
+    for (const std::uint64_t column : cells.hashes) hashes.add_digest(column);
+  };
+  add(blocked);
+  if (unknown) {
+    hashes.add(std::vector<double>{section.parameters.seen_cube});
+    add(*unknown);
+  }
   return hashes.digest();
 }
 
@@ -97,6 +114,106 @@ template <typename Number>
 void write_column(const hdf5::Id& group, const char* name, const std::vector<Number>& values,
                   std::uint64_t columns = 0) {
   hdf5::write_dataset(group, name, std::span<const Number>(values), columns);
+}
+
+/// Writes a column of cells in whole chunks, and returns its hash. of_bin: the column's numbers of
+/// a bin.
+template <typename Number, typename OfBin>
+std::uint64_t write_cells(const hdf5::Id& group, const char* name,
+                          const std::vector<std::uint64_t>& counts, OfBin of_bin) {
+  hdf5::Rows<Number> dataset(group, name, sum_of(counts), 0);
+  const std::uint64_t chunk = dataset.chunk_rows();
+  Xxh64Stream hash;
+  std::vector<Number> pending;
+  std::uint64_t written = 0;
+  const auto write = [&] {
+    dataset.write(written, pending);
+    hash.update(std::as_bytes(std::span<const Number>(pending)));
+    written += pending.size();
+    pending.clear();
+  };
+  for (std::size_t bin = 0; bin < counts.size(); ++bin) {
+    const std::vector<Number> numbers = of_bin(bin);
+    for (std::size_t at = 0; at < numbers.size();) {
+      const auto taken = static_cast<std::size_t>(
+          std::min<std::uint64_t>(numbers.size() - at, chunk - pending.size()));
+      const auto from = numbers.begin() + static_cast<std::ptrdiff_t>(at);
+      pending.insert(pending.end(), from, from + static_cast<std::ptrdiff_t>(taken));
+      at += taken;
+      if (pending.size() == chunk) write();
+    }
+  }
+  write();
+  dataset.close();
+  return hash.digest();
+}
+
+CellSums write_cells(const hdf5::Id& file, const SectionRows& rows) {
+  const hdf5::Id group = hdf5::create_group(file, names::kCells);
+  const auto write = [&]<typename Number>(const char* name,
+                                          std::vector<Number> SectionCells::*column) {
+    return write_cells<Number>(group, name, rows.counts, [&](std::size_t bin) {
+      SectionCells cells;
+      rows.add(bin, cells);
+      return std::move(cells.*column);
+    });
+  };
+  return {rows.counts,
+          {write(names::kJ, &SectionCells::j), write(names::kK, &SectionCells::k),
+           write(names::kFirstPose, &SectionCells::first_pose)}};
+}
+
+/// Cells side by side in a row that have one first pose: the first of them, and their number.
+struct CellRuns {
+  SectionCells first;
+  std::vector<std::uint32_t> length;
+
+  void add(const SectionCells& cells, std::size_t i) {
+    if (!length.empty() && first.k.back() == cells.k[i] &&
+        first.first_pose.back() == cells.first_pose[i] &&
+        std::int64_t{first.j.back()} + length.back() == cells.j[i]) {
+      ++length.back();
+      return;
+    }
+    first.j.push_back(cells.j[i]);
+    first.k.push_back(cells.k[i]);
+    first.first_pose.push_back(cells.first_pose[i]);
+    length.push_back(1);
+  }
+};
+
+CellRuns runs_of(const SectionRows& rows, std::size_t bin) {
+  SectionCells cells;
+  rows.add(bin, cells);
+  CellRuns runs;
+  for (std::size_t i = 0; i < cells.size(); ++i) runs.add(cells, i);
+  return runs;
+}
+
+std::vector<std::uint64_t> count_runs(const SectionRows& rows) {
+  std::vector<std::uint64_t> counts;
+  for (std::size_t bin = 0; bin < rows.counts.size(); ++bin) {
+    counts.push_back(runs_of(rows, bin).length.size());
+  }
+  return counts;
+}
+
+/// Writes cells that are not known as runs.
+CellSums write_runs(const hdf5::Id& file, const SectionRows& rows,
+                    const std::vector<std::uint64_t>& counts) {
+  const hdf5::Id group = hdf5::create_group(file, names::kUnknown);
+  const auto write = [&]<typename Number>(const char* name,
+                                          std::vector<Number> SectionCells::*column) {
+    return write_cells<Number>(group, name, counts, [&](std::size_t bin) {
+      return std::move(runs_of(rows, bin).first.*column);
+    });
+  };
+  return {counts,
+          {write(names::kJ, &SectionCells::j), write(names::kK, &SectionCells::k),
+           write(names::kFirstPose, &SectionCells::first_pose),
+           write_cells<std::uint32_t>(group, names::kLength, counts, [&](std::size_t bin) {
+             return std::move(runs_of(rows, bin).length);
+           })}};
 }
 
 template <typename Number>
@@ -137,14 +254,14 @@ void read_header(const hdf5::Id& file, const std::string& name, SectionData& sec
   }
 }
 
-/// Throws InputError where the cells cannot be those of such a section. The hash is right, so only
-/// a file that was made on purpose comes here.
-void check_cells(const SectionData& section, const std::vector<std::uint64_t>& counts,
-                 const std::string& name) {
-  const auto require = [&name](bool holds, const char* what) {
-    if (!holds) refuse(name, std::string(what));
-  };
-  const SectionLattice lattice = [&] {
+void require(bool holds, const std::string& name, const char* what) {
+  if (!holds) refuse(name, std::string(what));
+}
+
+/// The lattice of a section that was read. Throws InputError where its facts cannot be right. Their
+/// hash is, so only a file that was made on purpose comes here.
+SectionLattice check_facts(const SectionData& section, const std::string& name) {
+  SectionLattice lattice = [&] {
     try {
       return section_lattice(section.parameters,
                              section.motion.value_or(std::array<double, 2>{})[0]);
@@ -152,36 +269,44 @@ void check_cells(const SectionData& section, const std::vector<std::uint64_t>& c
       refuse(name, error.what());
     }
   }();
-  require(std::isfinite(section.rounding) && section.rounding > 0,
+  require(std::isfinite(section.rounding) && section.rounding > 0, name,
           "the rounding is no number above 0");
   require(section.chainage.size() == section.poses && section.poses < kNotBlocked &&
               std::ranges::is_sorted(section.chainage) &&
               std::ranges::all_of(section.chainage, [](double s) { return std::isfinite(s); }),
-          "the chainage is not that of the poses");
+          name, "the chainage is not that of the poses");
   require(
-      section.bins.size() == counts.size() && section.bins.size() <= section.load_poses &&
+      section.bins.size() <= section.load_poses &&
           std::ranges::adjacent_find(section.bins, std::greater_equal<>()) == section.bins.end(),
-      "the bins are not ascending");
-  const SectionCells& cells = section.bin_cells;
+      name, "the bins are not ascending");
+  return lattice;
+}
+
+/// Throws InputError where cells cannot be those of such a section.
+void check_cells(const SectionData& section, const SectionLattice& lattice,
+                 const SectionCells& cells, const std::vector<std::uint64_t>& counts,
+                 const std::string& name) {
+  require(counts.size() == section.bins.size(), name, "the bins have other cells than are counted");
   std::uint64_t total = 0;
   for (const std::uint64_t count : counts) {
-    require(count <= cells.j.size() - total, "the bins have other cells than those in the file");
+    require(count <= cells.j.size() - total, name,
+            "the bins have other cells than those in the file");
     total += count;
   }
   require(total == cells.j.size() && total == cells.k.size() && total == cells.first_pose.size(),
-          "the columns of the cells have different lengths");
+          name, "the columns of the cells have different lengths");
   for (std::size_t i = 0; i < total; ++i) {
     require(cells.j[i] >= lattice.j_from && cells.j[i] < lattice.j_to &&
                 cells.k[i] >= lattice.k_from && cells.k[i] < lattice.k_to,
-            "a cell is outside the window");
-    require(cells.first_pose[i] < section.poses, "a cell is blocked at a pose that is not there");
+            name, "a cell is outside the window");
+    require(cells.first_pose[i] < section.poses, name,
+            "a cell is blocked at a pose that is not there");
   }
 }
 
 /// The bin of each cell, and the order of the cells in each bin.
-void spread_bins(SectionData& section, const std::vector<std::uint64_t>& counts,
-                 const std::string& name) {
-  SectionCells& cells = section.bin_cells;
+void spread_bins(const SectionData& section, const std::vector<std::uint64_t>& counts,
+                 const std::string& name, SectionCells& cells) {
   std::size_t at = 0;
   for (std::size_t bin = 0; bin < counts.size(); ++bin) {
     for (std::uint64_t i = 0; i < counts[bin]; ++i, ++at) {
@@ -195,14 +320,59 @@ void spread_bins(SectionData& section, const std::vector<std::uint64_t>& counts,
   }
 }
 
+/// Reads the columns that blocked cells and runs have, without their bins. of_counts: the dataset
+/// that says how many rows each bin has.
+CellSums read_cells(const hdf5::Id& file, const char* group_name, const char* of_counts,
+                    const std::string& name, SectionCells& cells) {
+  const hdf5::Id group = hdf5::open_group(file, group_name, name);
+  cells.j = read_column<std::int32_t>(group, names::kJ, name);
+  cells.k = read_column<std::int32_t>(group, names::kK, name);
+  cells.first_pose = read_column<std::uint32_t>(group, names::kFirstPose, name);
+  return {read_column<std::uint64_t>(hdf5::open_group(file, names::kBins, name), of_counts, name),
+          {hash_of_column(cells.j), hash_of_column(cells.k), hash_of_column(cells.first_pose)}};
+}
+
+/// The cells of runs. counts: how many runs each bin has; becomes how many cells each has.
+SectionCells cells_of_runs(const CellRuns& runs, const SectionLattice& lattice,
+                           const std::string& name, std::vector<std::uint64_t>& counts) {
+  constexpr std::uint64_t kMostCells = std::uint64_t{1} << 31;
+  require(runs.length.size() == runs.first.size(), name,
+          "the columns of the cells have different lengths");
+  const std::uint64_t total =
+      std::accumulate(runs.length.begin(), runs.length.end(), std::uint64_t{0});
+  require(total <= kMostCells, name, "more than 2^31 cells are not known");
+  SectionCells cells;
+  cells.reserve(total);
+  std::size_t run = 0;
+  for (std::uint64_t& count : counts) {
+    const std::size_t end = run + count;
+    for (count = 0; run < end; ++run) {
+      const std::uint32_t length = runs.length[run];
+      require(length > 0 && static_cast<double>(runs.first.j[run]) + length <= lattice.j_to, name,
+              "cells that are not known are outside the window");
+      for (std::uint32_t i = 0; i < length; ++i) {
+        cells.j.push_back(runs.first.j[run] + static_cast<std::int32_t>(i));
+        cells.k.push_back(runs.first.k[run]);
+        cells.first_pose.push_back(runs.first.first_pose[run]);
+      }
+      count += length;
+    }
+  }
+  return cells;
+}
+
 }  // namespace
 
-void write_section(const SectionData& section, const std::filesystem::path& path) {
-  const std::vector<std::uint64_t> counts = cells_of_bins(section);
+std::uint64_t SectionRows::total() const { return sum_of(counts); }
+
+void write_section(const SectionData& section, const SectionRows& blocked,
+                   const std::optional<SectionRows>& unknown, const std::filesystem::path& path) {
+  std::vector<std::uint64_t> runs;
+  if (unknown) runs = count_runs(*unknown);
   hdf5::naming(path.string(), [&] {
     hdf5::Id file = hdf5::create_file(path);
     hdf5::write_attribute(file, "format", names::kFormat);
-    hdf5::write_number(file, "version", names::kVersion);
+    hdf5::write_number(file, "version", unknown ? names::kVersionWithSeen : names::kVersion);
     hdf5::write_attribute<double>(file, "numbers", numbers_of(section));
     hdf5::write_attribute<std::uint64_t>(file, "counts", counts_of(section));
     hdf5::write_attribute(file, "crs_wkt", section.crs_wkt);
@@ -214,14 +384,17 @@ void write_section(const SectionData& section, const std::filesystem::path& path
       write_column(hdf5::create_group(file, names::kPath), names::kChainage, section.chainage);
       const hdf5::Id bins = hdf5::create_group(file, names::kBins);
       write_column(bins, names::kNumber, section.bins);
-      write_column(bins, names::kCount, counts);
-      const hdf5::Id cells = hdf5::create_group(file, names::kCells);
-      write_column(cells, names::kJ, section.bin_cells.j);
-      write_column(cells, names::kK, section.bin_cells.k);
-      write_column(cells, names::kFirstPose, section.bin_cells.first_pose);
+      write_column(bins, names::kCount, blocked.counts);
+      if (unknown) write_column(bins, names::kUnknown, runs);
+    }
+    const CellSums cells = write_cells(file, blocked);
+    std::optional<CellSums> others;
+    if (unknown) {
+      hdf5::write_number(file, names::kSeenCube, section.parameters.seen_cube);
+      others = write_runs(file, *unknown, runs);
     }
     write_warnings(file, section.warnings);
-    hdf5::write_number(file, "section_hash", hash_of(section, counts));
+    hdf5::write_number(file, "section_hash", hash_of(section, cells, others));
     hdf5::write_number(file, "complete", std::uint8_t{1});
     hdf5::check(H5Fflush(file.get(), H5F_SCOPE_LOCAL), "write the section");
     file.close("close the section");
@@ -237,9 +410,10 @@ SectionData read_section(const std::filesystem::path& path) {
       refuse(name, "is not a section; expected a file of clearway section find");
     }
     const auto version = hdf5::read_number<std::uint32_t>(file, "version", name);
-    if (version != names::kVersion) {
+    if (version != names::kVersion && version != names::kVersionWithSeen) {
       refuse(name, "is a section of version " + std::to_string(version) + "; expected version " +
-                       std::to_string(names::kVersion));
+                       std::to_string(names::kVersion) + " or " +
+                       std::to_string(names::kVersionWithSeen));
     }
     if (!hdf5::has_attribute(file, "complete", name)) {
       refuse(name, "not complete: the command that wrote it was interrupted");
@@ -250,17 +424,31 @@ SectionData read_section(const std::filesystem::path& path) {
         read_column<double>(hdf5::open_group(file, names::kPath, name), names::kChainage, name);
     const hdf5::Id bins = hdf5::open_group(file, names::kBins, name);
     section.bins = read_column<std::uint32_t>(bins, names::kNumber, name);
-    const auto counts = read_column<std::uint64_t>(bins, names::kCount, name);
-    const hdf5::Id cells = hdf5::open_group(file, names::kCells, name);
-    section.bin_cells.j = read_column<std::int32_t>(cells, names::kJ, name);
-    section.bin_cells.k = read_column<std::int32_t>(cells, names::kK, name);
-    section.bin_cells.first_pose = read_column<std::uint32_t>(cells, names::kFirstPose, name);
+    const CellSums blocked =
+        read_cells(file, names::kCells, names::kCount, name, section.bin_cells);
+    std::optional<CellSums> unknown;
+    CellRuns runs;
+    if (version == names::kVersionWithSeen) {
+      section.parameters.seen = true;
+      section.parameters.seen_cube = hdf5::read_number<double>(file, names::kSeenCube, name);
+      unknown = read_cells(file, names::kUnknown, names::kUnknown, name, runs.first);
+      runs.length = read_column<std::uint32_t>(hdf5::open_group(file, names::kUnknown, name),
+                                               names::kLength, name);
+      unknown->hashes.push_back(hash_of_column(runs.length));
+    }
     section.warnings = read_warnings(file, name);
-    if (hash_of(section, counts) != hdf5::read_number<std::uint64_t>(file, "section_hash", name)) {
+    if (hash_of(section, blocked, unknown) !=
+        hdf5::read_number<std::uint64_t>(file, "section_hash", name)) {
       refuse(name, "its cells are damaged (their hash is not the one recorded)");
     }
-    check_cells(section, counts, name);
-    spread_bins(section, counts, name);
+    const SectionLattice lattice = check_facts(section, name);
+    check_cells(section, lattice, section.bin_cells, blocked.counts, name);
+    spread_bins(section, blocked.counts, name, section.bin_cells);
+    if (unknown) {
+      check_cells(section, lattice, runs.first, unknown->counts, name);
+      section.unknown = cells_of_runs(runs, lattice, name, unknown->counts);
+      spread_bins(section, unknown->counts, name, *section.unknown);
+    }
     return section;
   });
 }

@@ -424,6 +424,96 @@ class Conflicts:
     longest_group: Final[float]
     longest_group_points: Final[int]
     def __len__(self) -> int: ...
+class SectionParameters:
+    rear: Final[float]
+    front: Final[float]
+    window: Final[tuple[float, float, float, float]]
+    cell: Final[float]
+    bin: Final[float]
+    margin: Final[float]
+    between_poses: Final[bool]
+    pivots: Final[tuple[float, float] | None]
+    ignore_classes: Final[list[int]]
+    ignore_boxes: Final[list[Box]]
+    seen: Final[bool]
+    seen_cube: Final[float]
+class SectionSeenCounts:
+    cube: Final[float]
+    unknown: Final[int]
+    unknown_in_bins: Final[int]
+class SectionReport:
+    blocked: Final[int]
+    blocked_in_bins: Final[int]
+    bins: Final[int]
+    rounding: Final[float]
+    motion: Final[list[float] | None]
+    seen: Final[SectionSeenCounts | None]
+    warnings: Final[list[Message]]
+    needed_host_bytes: Final[int]
+    seconds: Final[float]
+    search_seconds: Final[float]
+class SectionStop:
+    bin: Final[int]
+    first_pose: Final[int]
+    chainage: Final[float]
+    cell: Final[tuple[int, int]]
+class SectionCheck:
+    verdict: Final[Literal["passes", "stopped", "unknown"]]
+    reason: Final[str | None]
+    stop: Final[SectionStop | None]
+    stops: Final[list[SectionStop]]
+    unknowns: Final[list[SectionStop]]
+class SectionCells:
+    bin: Final[_Poses | None]
+    j: Final[NDArray[np.int32]]
+    k: Final[NDArray[np.int32]]
+    first_pose: Final[_Poses]
+    def __len__(self) -> int: ...
+class SectionGrid:
+    j_from: Final[int]
+    j_to: Final[int]
+    k_from: Final[int]
+    k_to: Final[int]
+class SectionBand:
+    z_from: Final[float]
+    z_to: Final[float]
+    left: Final[float | None]
+    left_pose: Final[int | None]
+    right: Final[float | None]
+    right_pose: Final[int | None]
+    left_end: Final[Literal["blocked", "not-known"] | None]
+    right_end: Final[Literal["blocked", "not-known"] | None]
+class SectionStretch:
+    bin: Final[int]
+    chainage_from: Final[float]
+    chainage_to: Final[float]
+    bands: Final[list[SectionBand]]
+class Section:
+    def __init__(self, path: _AnyPath) -> None: ...
+    def parameters(self) -> SectionParameters: ...
+    def environment_points(self) -> int: ...
+    def ignored_points(self) -> int: ...
+    def poses(self) -> int: ...
+    def load_poses(self) -> int: ...
+    def rounding(self) -> float: ...
+    def motion(self) -> list[float] | None: ...
+    def warnings(self) -> list[Message]: ...
+    def crs_wkt(self) -> str: ...
+    def length_unit(self) -> str: ...
+    path: Final[_Path]
+    def chainage(self) -> _Doubles: ...
+    def bins(self) -> _Poses: ...
+    def grid(self) -> SectionGrid: ...
+    def cells(self) -> SectionCells: ...
+    def bin_cells(self) -> SectionCells: ...
+    def unknown_cells(self) -> SectionCells | None: ...
+    def unknown_bin_cells(self) -> SectionCells | None: ...
+    def check(self, outline: ArrayLike, margin: float = 0.0) -> SectionCheck: ...
+    def free_cells(self, margin: float = 0.0) -> _Flags: ...
+    def bands(self, band: float = 0.0, base: float = 0.0) -> list[SectionBand]: ...
+    def boxes(self, band: float = 0.0, base: float = 0.0) -> list[SectionBand]: ...
+    def stations(self, band: float = 0.0, base: float = 0.0) -> list[SectionStretch]: ...
+    def symmetric_width(self, band: SectionBand) -> float | None: ...
 class ReportSummary:
     clear: Final[bool]
     verdict: Final[Literal["clear", "conflict", "undecided"]]
@@ -521,6 +611,26 @@ def station_table(
     bodies: Sequence[Body] = (), labels: PoseLabels | None = None, threads: int = 0,
     progress: _Progress | None = None, stop: _Stop | None = None,
 ) -> StationTable: ...
+def find_section(
+    store: Store, poses: ArrayLike, output: _AnyPath, rear: float, front: float, *,
+    window: tuple[float, float, float, float] | None = None, cell: float = 0.0, bin: float = 0.0,
+    margin: float = 0.0, between_poses: bool = False, pivots: tuple[float, float] | None = None,
+    ignore_classes: Sequence[int] = (), ignore_boxes: Sequence[Box] = (), seen: bool = False,
+    seen_cube: float = 0.0, threads: int = 0,
+    memory_bytes: int = 4294967296, overwrite: bool = False, strict: bool = False,
+    input_warnings: Iterable[Message] = (), progress: _Progress | None = None,
+    message: _Tell | None = None, stop: _Stop | None = None,
+) -> SectionReport: ...
+def export_section(
+    section: Section,
+    table: Literal["bands", "stations", "boxes", "cells", "bin-cells", "unknown-cells",
+                   "unknown-bin-cells"],
+    output: _AnyPath, *, band: float = 0.0, base: float = 0.0, overwrite: bool = False,
+) -> None: ...
+def export_section_outline(
+    section: Section, output: _AnyPath, *, band: float = 0.0, base: float = 0.0,
+    overwrite: bool = False,
+) -> None: ...
 def write_report(
     result: Result, store: Store, model: ArrayLike | Model | None, poses: ArrayLike, output: _AnyPath, *,
     title: str = "", project: str = "", client: str = "", author: str = "", date: str = "",

@@ -162,12 +162,13 @@ _CHECKS = {
                      "width", "corner_radius", "track"), _above_0),
     **dict.fromkeys(("unit", "metres_per_unit"), _or_name(_at_least_0)),
     "environment_unit": _or_name(_above_0),
-    **dict.fromkeys(("clearance", "profile", "tolerance", "spacing", "field_voxel", "grid_cell", "gap", "max_gap", "split", "journal_interval_seconds", "sigmas", "seen_cube", "every"),
+    **dict.fromkeys(("clearance", "profile", "tolerance", "spacing", "field_voxel", "grid_cell", "gap", "max_gap", "split", "journal_interval_seconds", "sigmas", "seen_cube", "every",
+                     "cell", "bin", "margin", "band"),
                     _at_least_0),
     **dict.fromkeys(("error_scan", "error_registration", "error_pose", "error_angle",
                      "error_model"), _or_none(_at_least_0)),
     **dict.fromkeys(("above", "at", "chainage_start", "model_above", "station_from",
-                     "station_to", "height", "rear", "front"), _finite),
+                     "station_to", "height", "rear", "front", "base"), _finite),
     **dict.fromkeys(("threads",), _threads),
     **dict.fromkeys(("memory_bytes", "device_memory_bytes", "max_points", "min_points",
                      "model_left_out"), _bytes),
@@ -179,7 +180,7 @@ _CHECKS = {
                      "default_crs", "datum", "engine", "device", "forward", "up", "title",
                      "project", "client", "author", "date", "result_name", "environment_name",
                      "model_name", "trajectory_name", "alignment", "cant", "order",
-                     "environment_crs"), _text),
+                     "environment_crs", "table"), _text),
     **dict.fromkeys(("path", "file", "output", "origins", "origins_path"), _path),
     **dict.fromkeys(("inputs", "parts"), _paths),
     **dict.fromkeys(("model", "poses", "points", "triangles", "path_pose", "lo", "hi",
@@ -193,6 +194,7 @@ _CHECKS = {
     "classes": _each(_finite),
     "gpus": _each(_whole(2**31 - 1)),
     "shard": _tuple_of(2, _whole(2**32 - 1), "a pair (i, n)"),
+    "window": _tuple_of(4, _finite, "four numbers, y from and to, and z from and to"),
     "pivots": _tuple_of(2, _finite, "two numbers, the front pivot and the rear one"),
     "lever_arm": _tuple_of(3, _finite, "three numbers x, y and z"),
     "ignore_classes": _each(_whole(255)),
@@ -203,10 +205,12 @@ _CHECKS = {
     **dict.fromkeys(("store", "ground"), _kind(_clearway.Store)),
     "result": _kind(_clearway.Result),
     "query": _kind(_clearway.Query),
+    "section": _kind(_clearway.Section),
 }
 # Poses, where elsewhere it is a file; a name, where elsewhere it is a length.
 _OF_CALL = {("follow", "path"): _anything, ("unsearched_stretches", "path"): _anything,
-            ("read_alignment", "profile"): _text, ("box_model", "height"): _above_0}
+            ("read_alignment", "profile"): _text, ("box_model", "height"): _above_0,
+            ("Section.symmetric_width", "band"): _kind(_clearway.SectionBand)}
 
 
 def _check_of(call, name):

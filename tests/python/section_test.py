@@ -1,0 +1,314 @@
+#!/usr/bin/python3
+"""Sections from Python: against numpy and against the command line's file.
+
+Usage: PYTHONPATH=BUILD/python section_test.py PROGRAM
+"""
+
+import math
+import re
+import shutil
+import subprocess
+import sys
+import threading
+import unittest
+from pathlib import Path
+
+import clearway
+import numpy as np
+from scene import SceneTest
+
+PROGRAM = None
+REAR, FRONT, MARGIN = -0.8, 1.1, 0.2
+WINDOW = (-1.5, 1.5, -0.9, 0.9)
+CELL, BIN = 0.1, 1.0
+
+
+def blocked_cells(points, poses, cell=CELL, bin_length=BIN, margin=MARGIN):
+    """{(bin, k, j): first pose} by all pairs."""
+    steps = np.linalg.norm(np.diff(poses[:, :3, 3], axis=0), axis=1)
+    chainage = np.concatenate([[0], np.cumsum(steps)])
+    low = [math.floor(WINDOW[0] / cell), math.floor(WINDOW[2] / cell)]
+    high = [math.ceil(WINDOW[1] / cell), math.ceil(WINDOW[3] / cell)]
+    first = {}
+    for i in range(len(poses)):
+        places = (points - poses[i, :3, 3]) @ np.linalg.inv(poses[i, :3, :3]).T
+        near = places[(places[:, 0] >= REAR - margin) & (places[:, 0] <= FRONT + margin)]
+        numbers = np.floor(near[:, 1:] / cell)
+        inside = ((numbers >= low) & (numbers < high)).all(axis=1)
+        for j, k in {tuple(map(int, n)) for n in numbers[inside]}:
+            first.setdefault((math.floor(chainage[i] / bin_length), k, j), i)
+    return first
+
+
+def whole_path(first):
+    cells = {}
+    for (_, k, j), pose in first.items():
+        cells[k, j] = min(pose, cells.get((k, j), pose))
+    return cells
+
+
+def rows(cells):
+    """Cells as {(bin, k, j) or (k, j): first pose}; also asserts their order."""
+    columns = [cells.k, cells.j] if cells.bin is None else [cells.bin, cells.k, cells.j]
+    keys = list(zip(*(map(int, c) for c in columns)))
+    assert keys == sorted(set(keys))
+    return dict(zip(keys, map(int, cells.first_pose)))
+
+
+class Sections(SceneTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        turn = np.deg2rad(1) * np.arange(len(cls.poses))
+        cls.poses[:, 0, 0] = cls.poses[:, 1, 1] = np.cos(turn)
+        cls.poses[:, 1, 0], cls.poses[:, 0, 1] = np.sin(turn), -np.sin(turn)
+        cls.poses[:, 1:3, 3] = 0.00037, 0.00041  # so that no place is on the border of a cell
+
+    def find(self, name="section.h5", **options):
+        asked = {"window": WINDOW, "cell": CELL, "bin": BIN, "margin": MARGIN, "overwrite": True}
+        store = clearway.Store(self.folder / "site.h5")
+        return clearway.find_section(store, self.poses, self.folder / name, REAR, FRONT,
+                                     **{**asked, **options})
+
+    def section(self, **options):
+        self.find(**options)
+        return clearway.Section(self.folder / "section.h5")
+
+    def test_cells_are_those_of_all_pairs(self):
+        report = self.find()
+        section = clearway.Section(str(self.folder / "section.h5"))
+        first = blocked_cells(self.points, self.poses)
+        self.assertGreater(len(first), 500)
+        self.assertEqual(rows(section.bin_cells()), first)
+        self.assertEqual(rows(section.cells()), whole_path(first))
+        self.assertIsNone(section.cells().bin)
+        self.assertEqual((report.blocked, report.blocked_in_bins, report.bins),
+                         (len(section.cells()), len(first), len(section.bins())))
+        self.assertEqual([c.dtype for c in (section.cells().j, section.cells().first_pose)],
+                         [np.int32, np.uint32])
+        self.assertIn(f"{report.blocked} blocked cells", repr(section))
+        self.assertIn("cells are blocked", repr(report))
+
+    def test_facts(self):
+        section = self.section(pivots=(0.5, -0.3), ignore_boxes=[clearway.Box((0, 0, 0), (1, 1, 1))])
+        asked = section.parameters()
+        self.assertEqual((asked.rear, asked.front, asked.window, asked.cell, asked.bin,
+                          asked.margin, asked.between_poses, asked.pivots, asked.ignore_classes),
+                         (REAR, FRONT, WINDOW, CELL, BIN, MARGIN, False, (0.5, -0.3), []))
+        self.assertEqual(asked.ignore_boxes, [clearway.Box((0, 0, 0), (1, 1, 1))])
+        ignored = ((self.points >= 0) & (self.points <= 1)).all(axis=1).sum()
+        self.assertEqual((section.environment_points(), section.ignored_points()),
+                         (len(self.points), ignored))
+        self.assertLess(section.load_poses(), section.poses())
+        self.assertEqual(section.poses(), len(self.poses))
+        self.assertTrue(0 < section.rounding() < 1e-9)
+        self.assertIsNone(section.motion())
+        self.assertEqual(section.path, self.folder / "section.h5")
+        self.assertEqual(section.length_unit(), "unknown")
+        np.testing.assert_allclose(section.chainage(), 0.2 * np.arange(len(self.poses)), rtol=1e-12)
+        between = self.section(between_poses=True)
+        self.assertAlmostEqual(between.motion()[0], 0.2, delta=0.05)
+        self.assertGreater(between.motion()[1], 0)
+        plain = self.section(window=None, cell=0, bin=0).parameters()
+        self.assertEqual((plain.window, plain.cell, plain.bin), ((-4, 4, 0, 6), 0.02, 5))
+
+    def test_free_cells(self):
+        section = self.section(ignore_boxes=[clearway.Box((-9, -0.7, -0.5), (9, 0.9, 0.6))])
+        grid = section.grid()
+        self.assertEqual((grid.j_from, grid.j_to, grid.k_from, grid.k_to), (-15, 15, -9, 9))
+        blocked = np.zeros((18, 30), bool)
+        cells = section.cells()
+        blocked[cells.k - grid.k_from, cells.j - grid.j_from] = True
+        for margin in (0, 0.15, 0.2):
+            free = section.free_cells(margin)
+            self.assertEqual((free.shape, free.dtype), ((18, 30), bool))
+            expected = ~blocked
+            for k, j in np.argwhere(~blocked):
+                border = min(j, 29 - j, k, 17 - k)
+                a = np.maximum(np.abs(np.argwhere(blocked) - (k, j)) - 1, 0)
+                near = ((a ** 2).sum(axis=1) * (CELL * CELL) < margin * margin).any()
+                expected[k, j] = not near and border * CELL >= margin
+            np.testing.assert_array_equal(free, expected)
+            self.assertTrue(free.any())
+        self.assertFalse(section.free_cells(0.3).any())  # more than the section was found for
+
+    def test_checks_of_outlines(self):
+        middle = [clearway.Box((-9, -0.7, -0.5), (9, 0.9, 0.6))]
+        section = self.section(ignore_boxes=middle)
+        passes = section.check([(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)])
+        self.assertEqual((passes.verdict, passes.reason, passes.stop, passes.stops),
+                         ("passes", None, None, []))
+        wide = np.array([(-1.4, -0.1), (1.4, -0.1), (1.4, 0.1), (-1.4, 0.1)])
+        stopped = section.check(wide, 0.05)
+        self.assertEqual((stopped.verdict, stopped.reason), ("stopped", None))
+        near = {key: pose for key, pose in rows(section.bin_cells()).items()
+                if max(-0.1 - (key[1] + 1) * CELL, key[1] * CELL - 0.1) < 0.05 - 1e-9
+                and max(-1.4 - (key[2] + 1) * CELL, key[2] * CELL - 1.4) < 0.05 - 1e-9}
+        least = min(near.values())
+        self.assertEqual(stopped.stop.first_pose, least)
+        at = min(key for key, pose in near.items() if pose == least)
+        self.assertEqual((stopped.stop.bin, stopped.stop.cell), (at[0], (at[2], at[1])))
+        self.assertEqual(stopped.stop.chainage, section.chainage()[least])
+        self.assertEqual([s.bin for s in stopped.stops], sorted({key[0] for key in near}))
+        self.assertIn("stopped at pose", repr(stopped))
+        self.assertEqual(section.check(wide, 0.5).verdict, "stopped")
+        unknown = self.section(ignore_boxes=middle, margin=0.01).check(
+            [(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1)], 0.02)
+        self.assertEqual(unknown.verdict, "unknown")
+        self.assertRegex(unknown.reason, "margins up to 0.01 only")
+        for bad, error in (([], "0 corners"), ([(0, 0), (1, 1)], "3"), ("text", "outline: "),
+                           ([(0, 0), (1, 1), (1, 0), (0, 1)], "cross"), ([1, 2, 3], "n x 2"),
+                           ([(0, 0), (1, math.nan), (1, 1)], "outline: corner 1")):
+            with self.subTest(bad), self.assertRaisesRegex((clearway.Error, TypeError), error):
+                section.check(bad)
+        for margin in (-1, math.inf, "a", None):
+            with self.assertRaisesRegex((clearway.UsageError, TypeError), "^margin: "):
+                section.check(wide, margin)
+
+    def test_widths(self):
+        section = self.section(ignore_boxes=[clearway.Box((-9, -0.7, -0.5), (9, 0.9, 0.6))])
+        whole = rows(section.cells())
+        bands = section.bands(band=0.3, base=-0.3)
+        self.assertEqual(len(bands), 4)
+        for band, start in zip(bands, (-3, 0, 3, 6)):
+            inside = {key: pose for key, pose in whole.items() if start <= key[0] < start + 3}
+            left = min(j for _, j in inside if j >= 0)
+            right = min(-j - 1 for _, j in inside if j < 0)
+            self.assertAlmostEqual(band.left, left * CELL)
+            self.assertAlmostEqual(band.right, right * CELL)
+            self.assertEqual(band.left_pose, min(p for (_, j), p in inside.items() if j == left))
+            width = section.symmetric_width(band)
+            self.assertAlmostEqual(width, 2 * min(left, right) * CELL)
+        self.assertEqual([b.left for b in section.boxes(0.3, -0.3)],
+                         list(np.minimum.accumulate([b.left for b in bands])))
+        stretches = section.stations(0.3, -0.3)
+        self.assertEqual([s.bin for s in stretches], list(section.bins()))
+        self.assertEqual(min(s.bands[0].left for s in stretches if s.bands[0].left is not None),
+                         bands[0].left)
+        with self.assertRaisesRegex(clearway.UsageError, "^band: "):
+            section.bands(band=-1)
+
+    def test_the_command_line_writes_the_same_bytes(self):
+        self.find(between_poses=True, pivots=(0.5, -0.3))
+        np.savetxt(self.folder / "path.txt", self.poses[:, :3, :].reshape(-1, 12), "%.17g")
+        subprocess.run([PROGRAM, "section", "find", "--env", "site.h5", "--trajectory", "path.txt",
+                        f"--x-range={REAR},{FRONT}", "--pivots=0.5,-0.3", "--between-poses",
+                        f"--window={','.join(map(str, WINDOW))}", "--cell", str(CELL), "--bin",
+                        str(BIN), "--margin", str(MARGIN), "-o", "other.h5", "--force"],
+                       cwd=self.folder, check=True, capture_output=True)
+        self.assertEqual((self.folder / "section.h5").read_bytes(),
+                         (self.folder / "other.h5").read_bytes())
+        section = clearway.Section(self.folder / "section.h5")
+        for table in ("bands", "stations", "boxes", "cells", "bin-cells"):
+            clearway.export_section(section, table, self.folder / "a.csv", band=0.2, base=-0.2,
+                                    overwrite=True)
+            subprocess.run([PROGRAM, "section", "export", "section.h5", "--table", table, "--band",
+                            "0.2", "--base=-0.2", "-o", "b.csv", "--force"], cwd=self.folder,
+                           check=True, capture_output=True)
+            self.assertEqual((self.folder / "a.csv").read_bytes(),
+                             (self.folder / "b.csv").read_bytes())
+        section = self.section(ignore_boxes=[clearway.Box((-9, -0.7, -0.5), (9, 0.9, 0.6))])
+        clearway.export_section_outline(section, self.folder / "a.dxf", band=0.2, base=-0.4)
+        self.assertIn("POLYLINE", (self.folder / "a.dxf").read_text())
+        with self.assertRaisesRegex(clearway.UsageError, "a.dxf"):
+            clearway.export_section_outline(section, self.folder / "a.dxf", band=0.2, base=-0.4)
+
+    def test_the_snippet_of_the_guide(self):
+        page = Path(__file__).parents[2] / "docs" / "guide" / "section.md"
+        snippet = re.search(r"^```python\n(.*?)^```$", page.read_text(encoding="utf-8"),
+                            re.M | re.S)[1]
+        folder = self.folder / "guide"
+        folder.mkdir()
+        shutil.copy(self.folder / "site.h5", folder)
+        np.savetxt(folder / "path.txt", self.poses[:, :3, :].reshape(-1, 12), "%.17g")
+        (folder / "load.csv").write_text("y,z\n-0.6,0.4\n0.6,0.4\n0.6,1.4\n-0.6,1.4\n")
+        done = subprocess.run([sys.executable, "-c", snippet], cwd=folder, check=True,
+                              capture_output=True, text=True)
+        self.assertEqual(done.stdout, "stopped \n")
+
+    def test_refusals_name_the_argument(self):
+        for named in ({"window": (1, 2, 3)}, {"window": "all"}, {"cell": -1}, {"bin": math.nan},
+                      {"margin": "a"}, {"pivots": (1,)}, {"ignore_classes": [300]},
+                      {"between_poses": 3}, {"threads": -1}, {"input_warnings": "x"}):
+            with self.subTest(named), self.assertRaisesRegex((clearway.UsageError, TypeError),
+                                                             rf"^{next(iter(named))}"):
+                self.find(**named)
+        store = clearway.Store(self.folder / "site.h5")
+        with self.assertRaisesRegex(TypeError, "did you mean 'overwrite'"):
+            self.find(force=True)
+        with self.assertRaisesRegex(clearway.UsageError, "its rear, and then its front"):
+            clearway.find_section(store, self.poses, self.folder / "no.h5", 1, -1)
+        with self.assertRaisesRegex(clearway.UsageError, "^poses: "):
+            clearway.find_section(store, np.eye(4), self.folder / "no.h5", -1, 1)
+        with self.assertRaisesRegex(clearway.UsageError, "stretches lengths"):
+            clearway.find_section(store, 2 * np.eye(4)[None, :3], self.folder / "no.h5", -1, 1)
+        with self.assertRaisesRegex(clearway.UsageError, "is an input too"):
+            clearway.find_section(store, self.poses, self.folder / "site.h5", -1, 1, overwrite=True)
+        with self.assertRaisesRegex(clearway.ResourceError, "bins of .* fit|larger cells") as caught:
+            self.find(memory_bytes=3_000_000, bin=0.2, cell=0.01)
+        self.assertEqual(caught.exception.remedy, "more_memory")
+        self.assertFalse((self.folder / "no.h5").exists())
+        with self.assertRaisesRegex(clearway.InputError, "is not a section"):
+            clearway.Section(self.folder / "site.h5")
+        with self.assertRaisesRegex(TypeError, "^section: expected a clearway.Section"):
+            clearway.export_section(store, "bands", self.folder / "a.csv")
+        section = self.section()
+        with self.assertRaisesRegex(clearway.UsageError, "^table 'rows': expected one of bands"):
+            clearway.export_section(section, "rows", self.folder / "no.csv")
+        with self.assertRaisesRegex(clearway.UsageError, "is an input too"):
+            clearway.export_section(section, "cells", self.folder / "section.h5", overwrite=True)
+
+    def test_warnings_and_strict(self):
+        told = []
+        far = self.poses + np.array([[0, 0, 0, 500.0]] + 3 * [[0] * 4])
+        store = clearway.Store(self.folder / "site.h5")
+        report = clearway.find_section(store, far, self.folder / "far.h5", REAR, FRONT,
+                                       message=told.append)
+        codes = [w.code for w in report.warnings]
+        self.assertIn("out-of-reach", codes)
+        self.assertEqual([m.code for m in told if m.severity == "warning"], codes)
+        section = clearway.Section(self.folder / "far.h5")
+        self.assertEqual([w.code for w in section.warnings()], codes)
+        check = section.check([(-0.5, 1), (0.5, 1), (0, 2)])
+        self.assertEqual(check.verdict, "unknown")
+        self.assertIn("out-of-reach", check.reason)
+        self.assertFalse(section.free_cells().any())
+        with self.assertRaisesRegex(clearway.InputError, "strict"):
+            clearway.find_section(store, far, self.folder / "no.h5", REAR, FRONT, strict=True)
+        with self.assertRaisesRegex(clearway.InputError, "strict"):
+            self.find(input_warnings=report.warnings, strict=True)
+        self.assertFalse((self.folder / "no.h5").exists())
+        nothing = clearway.find_section(store, np.empty((0, 4, 4)), self.folder / "none.h5", -1, 1)
+        self.assertEqual([w.code for w in nothing.warnings], ["no-poses"])
+        empty = clearway.Section(self.folder / "none.h5")
+        self.assertEqual((len(empty.cells()), empty.bin_cells().bin, len(empty.bins())), (0, None, 0))
+
+    def test_stopping_and_threads(self):
+        stop = threading.Event()
+        stop.set()
+        with self.assertRaises(clearway.Interrupted):
+            self.find("stopped.h5", stop=stop)
+        self.assertFalse((self.folder / "stopped.h5").exists())
+        seen = []
+
+        def progress(update):
+            seen.append(update.stage)
+            raise LookupError("mine")
+
+        with self.assertRaisesRegex(LookupError, "mine"):
+            self.find("raised.h5", progress=progress)
+        self.assertEqual(seen[0], "section")
+        found = []
+        workers = [threading.Thread(target=lambda i=i: found.append(self.find(f"{i}.h5").blocked))
+                   for i in range(4)]
+        for worker in workers:
+            worker.start()
+        for worker in workers:
+            worker.join()
+        self.assertEqual(len(set(found)), 1)
+        self.assertEqual(len({(self.folder / f"{i}.h5").read_bytes() for i in range(4)}), 1)
+
+
+if __name__ == "__main__":
+    PROGRAM = sys.argv.pop(1)
+    unittest.main()
