@@ -10,11 +10,13 @@
 #include <vector>
 
 #include "clearway/box.hpp"
+#include "clearway/conflicts.hpp"
 #include "clearway/follow.hpp"
 #include "clearway/outline.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/store.hpp"
+#include "clearway/vec3.hpp"
 
 /// The section of a route: which cells of the cross-section are blocked for a load of a given
 /// length, from which pose on. It answers for every outline what is the largest load that passes.
@@ -123,12 +125,30 @@ enum class SectionVerdict { kPasses, kStopped, kUnknown };
 
 const char* name_of(SectionVerdict verdict);  ///< "passes", "stopped" or "unknown"
 
+/// What reaches into a load, or into its margin, from one side on one stretch of the path. Each
+/// cell that stops the load counts on the side where the load would have to give way least; all
+/// cells count on one side where that takes less than giving way on several.
+struct SectionIntrusion {
+  Side side = Side::kUnknown;  ///< left, right, above or below, looking forward
+  /// How much narrower on this side, or lower, or higher from below, the load would have to be at
+  /// the place of the deepest cell. A load that gives way by the depths of all intrusions of a
+  /// stretch passes there.
+  double depth = 0;
+  std::uint64_t cells = 0;             ///< cells that stop the load on this side
+  std::uint32_t first_pose = 0;        ///< the first pose of the bin that blocks the deepest cell
+  double chainage = 0;                 ///< of that pose
+  std::array<std::int32_t, 2> cell{};  ///< j, k of the deepest cell: the least k, then the least j
+  /// The rectangle around the cells.
+  double y_from = 0, y_to = 0, z_from = 0, z_to = 0;
+};
+
 /// A place that stops a load.
 struct SectionStop {
   std::uint32_t bin = 0;               ///< number of the bin
   std::uint32_t first_pose = 0;        ///< the first pose of the bin that stops the load
   double chainage = 0;                 ///< of that pose
   std::array<std::int32_t, 2> cell{};  ///< j, k: of that pose, the least k, and then the least j
+  std::vector<SectionIntrusion> intrusions = {};  ///< of the bin: left, right, above, below
 };
 
 struct SectionCheck {
@@ -162,6 +182,27 @@ class Section {
   SectionData data_;
   SectionCells cells_;
 };
+
+/// The point of the environment that blocks a cell.
+struct SectionWitness {
+  std::uint64_t source = 0;  ///< source index of the point
+  Vec3 xyz{};                ///< its position
+  std::uint8_t point_class = 0;  ///< its class; 0 where the environment has no classes
+};
+
+/// A cell, and a pose of the path that blocks it.
+struct SectionPlace {
+  std::uint32_t pose = 0;
+  std::array<std::int32_t, 2> cell{};  ///< j, k
+};
+
+/// The point with the least source index that lies in each of these cells at its pose, found by a
+/// search of these poses over the store; none where no point does. store and path are those of the
+/// section. Throws InputError where they are not, or where the store is damaged.
+std::vector<std::optional<SectionWitness>> section_witnesses(const SectionData& section,
+                                                             const Store& store,
+                                                             const std::vector<Pose>& path,
+                                                             std::span<const SectionPlace> places);
 
 /// The tables of a section.
 enum class SectionTable { kBands, kStations, kBoxes, kCells, kBinCells };

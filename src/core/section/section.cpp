@@ -7,6 +7,7 @@
 
 #include "clearway/answer.hpp"
 #include "clearway/error.hpp"
+#include "core/section/section_intrusions.hpp"
 #include "core/section/section_lattice.hpp"
 #include "core/section/section_map.hpp"
 #include "core/util/format.hpp"
@@ -170,8 +171,9 @@ std::vector<bool> stopping(const SectionCells& cells, double g, const Load& load
   return stops;
 }
 
-/// Index of a cell among those of the whole path, which have all cells of the bins.
-std::size_t index_of(const SectionCells& cells, std::int32_t j, std::int32_t k) {
+}  // namespace
+
+std::size_t index_of_cell(const SectionCells& cells, std::int32_t j, std::int32_t k) {
   std::size_t first = 0, end = cells.size();
   while (end - first > 1) {
     const std::size_t middle = first + (end - first) / 2;
@@ -181,23 +183,30 @@ std::size_t index_of(const SectionCells& cells, std::int32_t j, std::int32_t k) 
   return first;
 }
 
-}  // namespace
+double reach_of(const SectionFacts& section, double margin) {
+  return (section.motion ? margin + (*section.motion)[1] / 2 : margin) + section.rounding;
+}
+
+std::vector<bool> stopping_cells(const Section& section, std::span<const OutlinePoint> outline,
+                                 double margin) {
+  check_margin(margin);
+  outline_model(outline, 0, 1);  // refuses what is no outline
+  return stopping(section.cells(), section.data().parameters.cell, Load(outline),
+                  reach_of(section.data(), margin));
+}
 
 Section::Section(SectionData data) : data_(std::move(data)), cells_(data_.cells()) {}
 
 SectionCheck Section::check(std::span<const OutlinePoint> outline, double margin) const {
-  check_margin(margin);
-  outline_model(outline, 0, 1);  // refuses what is no outline
+  const std::vector<bool> stops = stopping_cells(*this, outline, margin);
   const Load load(outline);
   const double g = data_.parameters.cell;
-  const double grown = data_.motion ? margin + (*data_.motion)[1] / 2 : margin;
-  const double reach = grown + data_.rounding;
-  const std::vector<bool> stops = stopping(cells_, g, load, reach);
+  const double reach = reach_of(data_, margin);
 
   SectionCheck check;
   const SectionCells& all = data_.bin_cells;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (!stops[index_of(cells_, all.j[i], all.k[i])]) continue;
+    if (!stops[index_of_cell(cells_, all.j[i], all.k[i])]) continue;
     if (check.stops.empty() || check.stops.back().bin != all.bin[i]) {
       check.stops.push_back({all.bin[i], kNotBlocked, 0, {}});
     }
@@ -207,6 +216,7 @@ SectionCheck Section::check(std::span<const OutlinePoint> outline, double margin
     stop = {all.bin[i], all.first_pose[i], data_.chainage[all.first_pose[i]], {all.j[i], all.k[i]}};
   }
   if (!check.stops.empty()) {
+    find_intrusions(*this, outline, reach, stops, check.stops);
     check.verdict = SectionVerdict::kStopped;
     check.stop = check.stops.front();
     return check;
