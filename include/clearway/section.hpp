@@ -125,9 +125,9 @@ enum class SectionVerdict { kPasses, kStopped, kUnknown };
 
 const char* name_of(SectionVerdict verdict);  ///< "passes", "stopped" or "unknown"
 
-/// What reaches into a load, or into its margin, from one side on one stretch of the path. Each
-/// cell that stops the load counts on the side where the load would have to give way least; all
-/// cells count on one side where that takes less than giving way on several.
+/// What reaches into a load, or into its margin, from one side on one stretch of the path. The
+/// sides are the fewest on which the load can give way, and nowhere by more than a cell deeper than
+/// it has to. Each cell that stops the load counts on that one of them where it reaches in least.
 struct SectionIntrusion {
   Side side = Side::kUnknown;  ///< left, right, above or below, looking forward
   /// How much narrower on this side, or lower, or higher from below, the load would have to be at

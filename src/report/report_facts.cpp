@@ -487,6 +487,10 @@ std::string json_of(const ReportFacts& facts) {
   write_classes(json, facts);
   write_conflicts(json, facts);
   write_stations(json, facts);
+  if (facts.section != nullptr) {
+    json.key("section");
+    facts.section->write_facts(json);
+  }
   write_page_facts(json, facts);
   json.end('}');
   return json.text();

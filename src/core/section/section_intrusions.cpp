@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -70,8 +71,47 @@ class GivingWay {
   std::map<std::int32_t, Extent> rows_, columns_;
 };
 
-std::size_t least_of(const std::array<double, kSideCount>& depths) {
-  return static_cast<std::size_t>(std::ranges::min_element(depths) - depths.begin());
+using Depths = std::array<double, kSideCount>;
+
+/// Sides as bits, in the order of kSides.
+using SideSet = unsigned;
+constexpr SideSet kAllSides = (1U << kSideCount) - 1;
+
+/// The side of a set where a cell reaches in least.
+std::size_t least_side(const Depths& depths, SideSet sides) {
+  std::size_t least = kSideCount;
+  for (std::size_t s = 0; s < kSideCount; ++s) {
+    if ((sides >> s & 1) == 0) continue;
+    if (least == kSideCount || depths[s] < depths[least]) least = s;
+  }
+  return least;
+}
+
+/// The fewest sides on which a load can give way for all cells, and nowhere by more than a cell
+/// deeper than it has to; of several the one with the least sum.
+SideSet sides_for(std::span<const Depths> cells, double cell) {
+  struct Choice {
+    double deepest = 0, sum = 0;
+  };
+  std::array<Choice, kAllSides + 1> choices;
+  for (SideSet sides = 1; sides <= kAllSides; ++sides) {
+    Depths deepest{};
+    for (const Depths& depths : cells) {
+      const std::size_t side = least_side(depths, sides);
+      deepest[side] = std::max(deepest[side], depths[side]);
+    }
+    for (const double depth : deepest) {
+      choices[sides].deepest = std::max(choices[sides].deepest, depth);
+      choices[sides].sum += depth;
+    }
+  }
+  SideSet best = kAllSides;
+  for (SideSet sides = 1; sides <= kAllSides; ++sides) {
+    if (choices[sides].deepest > choices[kAllSides].deepest + cell) continue;
+    const int fewer = std::popcount(best) - std::popcount(sides);
+    if (fewer > 0 || (fewer == 0 && choices[sides].sum < choices[best].sum)) best = sides;
+  }
+  return best;
 }
 
 /// Takes a cell, given by its index, into the intrusion of a side.
@@ -99,22 +139,15 @@ void add_cell(const SectionData& section, std::size_t i, double depth, SectionIn
 /// The intrusions of cells of one bin, which are given by their indices.
 std::vector<SectionIntrusion> intrusions_of(const SectionData& section,
                                             std::span<const std::size_t> cells, GivingWay& way) {
-  std::array<double, kSideCount> of_side{}, alone{};
+  std::vector<Depths> depths;
   for (const std::size_t i : cells) {
-    const auto depths = way.depths(section.bin_cells.j[i], section.bin_cells.k[i]);
-    const std::size_t least = least_of(depths);
-    of_side[least] = std::max(of_side[least], depths[least]);
-    for (std::size_t s = 0; s < kSideCount; ++s) alone[s] = std::max(alone[s], depths[s]);
+    depths.push_back(way.depths(section.bin_cells.j[i], section.bin_cells.k[i]));
   }
-  double together = 0;
-  for (const double depth : of_side) together += depth;
-  const std::size_t single = least_of(alone);
-  const bool on_one_side = alone[single] <= together;
+  const SideSet sides = sides_for(depths, section.parameters.cell);
   std::array<SectionIntrusion, kSideCount> found;
-  for (const std::size_t i : cells) {
-    const auto depths = way.depths(section.bin_cells.j[i], section.bin_cells.k[i]);
-    const std::size_t side = on_one_side ? single : least_of(depths);
-    add_cell(section, i, depths[side], found[side]);
+  for (std::size_t n = 0; n < cells.size(); ++n) {
+    const std::size_t side = least_side(depths[n], sides);
+    add_cell(section, cells[n], depths[n][side], found[side]);
   }
   std::vector<SectionIntrusion> out;
   for (std::size_t s = 0; s < kSideCount; ++s) {
