@@ -126,8 +126,9 @@ enum class SectionVerdict { kPasses, kStopped, kUnknown };
 const char* name_of(SectionVerdict verdict);  ///< "passes", "stopped" or "unknown"
 
 /// What reaches into a load, or into its margin, from one side on one stretch of the path. The
-/// sides are the fewest on which the load can give way, and nowhere by more than a cell deeper than
-/// it has to. Each cell that stops the load counts on that one of them where it reaches in least.
+/// sides are those on which the load has to give way least, in sum, so that something of it is
+/// left; they are left and right where nothing would be left. Each cell that stops the load counts
+/// on that one of them where it reaches in least.
 struct SectionIntrusion {
   Side side = Side::kUnknown;  ///< left, right, above or below, looking forward
   /// How much narrower on this side, or lower, or higher from below, the load would have to be at

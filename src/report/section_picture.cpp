@@ -44,7 +44,12 @@ struct Mark {
   double chainage_from = 0, chainage_to = 0;
   double x = 0, y = 0;  ///< of its label
 
-  std::string label() const { return list_of(stops); }
+  /// The obstacle's name, or the numbers of the stretches that it stops.
+  std::string label() const {
+    constexpr std::size_t kLongestName = 24;
+    const std::string& name = deepest->obstacle;
+    return !name.empty() && name.size() <= kLongestName ? name : list_of(stops);
+  }
 };
 
 bool is_same_obstacle(const ShownIntrusion& a, const ShownIntrusion& b) {
@@ -79,8 +84,8 @@ class Picture {
     draw_load();
     draw_axes();
     draw_marks();
-    double bottom = top_ + height_ + 52;
-    if (whole_) bottom = draw_list(draw_legend(bottom));
+    double bottom = draw_legend(top_ + height_ + 52);
+    if (whole_) bottom = draw_list(bottom);
     std::swap(body, out_);
     return head(bottom) + body.text() + "</svg>\n";
   }
@@ -443,7 +448,7 @@ class Picture {
         legend_item(x, y, patterned("section-stops"), "stops the load");
         legend_item(x, y, R"(<rect x="2" y="-1" width="20" height="18" rx="9" fill="#fff" )"
                           R"(stroke="#111827" stroke-width="1.5"/>)",
-                    "numbers of stretches, deepest place");
+                    "what it is, or the numbers of the stretches, and its deepest place");
       }
     }
     return y + 34;
@@ -457,19 +462,19 @@ class Picture {
       std::string words = std::string(name_of(in.side)) + ", chainage " +
                           format_brief(mark.chainage_from);
       if (mark.chainage_to != mark.chainage_from) words += " to " + format_brief(mark.chainage_to);
-      words += " " + unit + ": " + format_brief(std::ceil(in.depth * 100 - 1e-6) / 100) + " " +
-               unit + " into the load, z = " + format_brief(in.z_from) + " to " +
+      words += " " + unit + (mark.stops.size() == 1 ? ", stretch " : ", stretches ") +
+               list_of(mark.stops) + ": " + format_brief(std::ceil(in.depth * 100 - 1e-6) / 100) +
+               " " + unit + " into the load, z = " + format_brief(in.z_from) + " to " +
                format_brief(in.z_to) + " " + unit;
-      if (!mark.deepest->obstacle.empty()) words += ": " + mark.deepest->obstacle;
       if (mark.deepest->witness) {
         words += ", point " + std::to_string(mark.deepest->witness->source);
       }
-      text(110, y, mark.label(), "section-end section-strong");
-      text(122, y, words);
+      text(190, y, mark.label(), "section-end section-strong");
+      text(202, y, words);
       y += 19;
     }
     if (more_marks_ > 0) {
-      text(122, y, "and " + counted(more_marks_, "place") + " less deep");
+      text(202, y, "and " + counted(more_marks_, "place") + " less deep");
       y += 19;
     }
     return y + 4;

@@ -70,6 +70,37 @@ std::string box_words(const BoxLoad& box, const SectionData& section) {
   return wide + " and " + format_brief(box.height) + " " + unit + " high";
 }
 
+/// Where a band is blocked in the very middle.
+std::string first_stop_words(const SectionData& data, const SectionBand& band) {
+  const auto& side = band.left && (!band.right || band.left->width <= band.right->width)
+                         ? band.left
+                         : band.right;
+  return "first at pose " + std::to_string(side->first_pose) + ", " +
+         format_brief(data.chainage[side->first_pose]) + " " + section_unit(data) +
+         " along the path";
+}
+
+/// The lowest heights at which the middle is free everywhere.
+std::string free_heights_words(const Section& section, const SectionHeights& heights) {
+  const SectionData& data = section.data();
+  const std::string unit = section_unit(data);
+  std::optional<double> from, to, width;
+  for (const SectionBand& band : section_bands(section, heights)) {
+    const auto here = symmetric_width(data, band);
+    if (here && *here == 0) {
+      if (from) break;
+      continue;
+    }
+    if (!from) from = band.z_from;
+    to = band.z_to;
+    if (here && (!width || *here < *width)) width = here;
+  }
+  if (!from) return "The middle is blocked at every height of the window";
+  return "The middle is free from z = " + format_brief(*from) + " to " + format_brief(*to) + " " +
+         unit + ", for a load " +
+         (width ? format_brief(*width) + " " + unit + " wide" : "as wide as the window");
+}
+
 }  // namespace
 
 std::string widths_sentence(const Section& section, const SectionHeights& heights) {
@@ -89,14 +120,8 @@ std::string widths_sentence(const Section& section, const SectionHeights& height
   }
   const std::string stands = "a load that stands at z = " + format_brief(base) + " " + unit;
   if (loads.empty()) {
-    const SectionBand& band = boxes[0];
-    const auto& side = band.left && (!band.right || band.left->width <= band.right->width)
-                           ? band.left
-                           : band.right;
-    return "nothing passes: " + stands + " is stopped in the very middle, first at pose " +
-           std::to_string(side->first_pose) + ", " +
-           format_brief(data.chainage[side->first_pose]) + " " + unit +
-           " along the path. Begin the load above the ground, or leave out what does not count";
+    return "nothing passes: " + stands + " is stopped in the very middle, " +
+           first_stop_words(data, boxes[0]) + ". " + free_heights_words(section, heights);
   }
   const auto area = [&](const BoxLoad& box) {
     const SectionWindow& window = *data.parameters.window;

@@ -87,29 +87,35 @@ std::size_t least_side(const Depths& depths, SideSet sides) {
   return least;
 }
 
-/// The fewest sides on which a load can give way for all cells, and nowhere by more than a cell
-/// deeper than it has to; of several the one with the least sum.
-SideSet sides_for(std::span<const Depths> cells, double cell) {
-  struct Choice {
-    double deepest = 0, sum = 0;
-  };
-  std::array<Choice, kAllSides + 1> choices;
+/// The size of an outline across and up.
+struct Size {
+  double across, up;
+};
+
+Size size_of(std::span<const OutlinePoint> outline) {
+  const auto [right, left] = std::ranges::minmax(outline, {}, &OutlinePoint::y);
+  const auto [low, high] = std::ranges::minmax(outline, {}, &OutlinePoint::z);
+  return {left.y - right.y, high.z - low.z};
+}
+
+/// The sides on which a load has to give way least, in sum, so that something of it is left; of
+/// equal ones the fewest. Left and right where nothing would be left on any sides.
+SideSet sides_for(std::span<const Depths> cells, const Size& load) {
+  constexpr SideSet kLeftAndRight = 3;
+  SideSet best = kLeftAndRight;
+  double least = std::numeric_limits<double>::infinity();
   for (SideSet sides = 1; sides <= kAllSides; ++sides) {
     Depths deepest{};
     for (const Depths& depths : cells) {
       const std::size_t side = least_side(depths, sides);
       deepest[side] = std::max(deepest[side], depths[side]);
     }
-    for (const double depth : deepest) {
-      choices[sides].deepest = std::max(choices[sides].deepest, depth);
-      choices[sides].sum += depth;
-    }
-  }
-  SideSet best = kAllSides;
-  for (SideSet sides = 1; sides <= kAllSides; ++sides) {
-    if (choices[sides].deepest > choices[kAllSides].deepest + cell) continue;
-    const int fewer = std::popcount(best) - std::popcount(sides);
-    if (fewer > 0 || (fewer == 0 && choices[sides].sum < choices[best].sum)) best = sides;
+    const double across = deepest[0] + deepest[1], up = deepest[2] + deepest[3];
+    if (across >= load.across || up >= load.up) continue;
+    const double sum = across + up;
+    if (sum > least || (sum == least && std::popcount(sides) >= std::popcount(best))) continue;
+    least = sum;
+    best = sides;
   }
   return best;
 }
@@ -138,12 +144,13 @@ void add_cell(const SectionData& section, std::size_t i, double depth, SectionIn
 
 /// The intrusions of cells of one bin, which are given by their indices.
 std::vector<SectionIntrusion> intrusions_of(const SectionData& section,
-                                            std::span<const std::size_t> cells, GivingWay& way) {
+                                            std::span<const std::size_t> cells, const Size& load,
+                                            GivingWay& way) {
   std::vector<Depths> depths;
   for (const std::size_t i : cells) {
     depths.push_back(way.depths(section.bin_cells.j[i], section.bin_cells.k[i]));
   }
-  const SideSet sides = sides_for(depths, section.parameters.cell);
+  const SideSet sides = sides_for(depths, load);
   std::array<SectionIntrusion, kSideCount> found;
   for (std::size_t n = 0; n < cells.size(); ++n) {
     const std::size_t side = least_side(depths[n], sides);
@@ -171,7 +178,7 @@ void find_intrusions(const Section& section, std::span<const OutlinePoint> outli
     for (; i < all.size() && all.bin[i] == stop.bin; ++i) {
       if (stops_load[index_of_cell(section.cells(), all.j[i], all.k[i])]) cells.push_back(i);
     }
-    stop.intrusions = intrusions_of(section.data(), cells, way);
+    stop.intrusions = intrusions_of(section.data(), cells, size_of(outline), way);
   }
 }
 

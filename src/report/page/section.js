@@ -198,13 +198,6 @@ function readPicture(event) {
   tell("stretch");
 }
 
-/** What the colours mean. */
-function sectionScaleWords() {
-  const { colours, length } = section.facts, n = colours.length;
-  return colours.map((colour, i) => make("span", { style: `background:${colour};color:${i < 3 ? "#fff" : "#111827"}` },
-      `${(i * length / n).toFixed(0)} – ${((i + 1) * length / n).toFixed(0)} ${unitSymbol}`));
-}
-
 function buildSection() {
   if (!section.facts) {
     byId("section")?.remove();
@@ -216,7 +209,6 @@ function buildSection() {
   byId("section-tools").append(
       button("Whole path", () => chooseStretch(null), { id: "section-whole" }), ...mapTools(),
       make("span", { class: "hint" }, "Click the map to see a stretch. Arrow keys move the cursor, Escape shows the whole path."));
-  byId("section-scale").append(...sectionScaleWords());
   section.band = Math.max(0, section.facts.bands.findIndex((b) => b.z_to > 1));
   drawMap();
   drawStretch(null);

@@ -89,7 +89,7 @@ function mapAxes() {
              make("text", { x: mapX(c), y: height - bottom + 18, class: "middle" }, String(c)));
   }
   out.push(make("text", { x: width - right, y: height - 4, class: "end" }, `chainage (${unitSymbol})`),
-           make("text", { x: left, y: top - 9, class: "strong" }, `height (${unitSymbol}), ${kMapSides[sectionMap.side]}`),
+           make("text", { x: left, y: top - 9, class: "strong" }, `height (${unitSymbol}), ${kMapSides[sectionMap.side]}${section.stops ? "; hatched where the load is stopped" : ""}`),
            make("rect", { x: left, y: top, width: width - left - right, height: height - top - bottom, fill: "none", stroke: "#111827" }));
   return out;
 }
@@ -121,15 +121,16 @@ function drawMap() {
   const x2 = mapX(to), inner = { x: left, y: top, height: height - top - bottom };
   const pattern = make("pattern", { id: "section-no-pose", width: 8, height: 8, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" },
                        make("rect", { width: 8, height: 8, fill: "#f3f4f6" }), make("line", { x1: 0, y1: 0, x2: 0, y2: 8, stroke: "#9ca3af", "stroke-width": 2 }));
-  const stops = make("pattern", { id: "section-map-stops", width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(-45)" },
-                     make("rect", { width: 6, height: 6, fill: "#c2410c" }), make("line", { x1: 0, y1: 0, x2: 0, y2: 6, stroke: "#ffedd5", "stroke-width": 2 }));
+  const stops = make("pattern", { id: "section-map-stops", width: 9, height: 9, patternUnits: "userSpaceOnUse", patternTransform: "rotate(-45)" },
+                     make("line", { x1: 0, y1: 0, x2: 0, y2: 9, stroke: "#fff", "stroke-width": 4 }),
+                     make("line", { x1: 0, y1: 0, x2: 0, y2: 9, stroke: "#c2410c", "stroke-width": 2.4 }));
   const svg = make("svg", { viewBox: `0 0 ${width} ${height}`, width, height, tabindex: 0, role: "application", "aria-label":
                             "Widths by chainage and height. Arrow keys move the cursor, Enter shows the stretch, Escape the whole path." },
       make("defs", {}, pattern, stops),
       make("rect", { ...inner, width: width - left - right, fill: "url(#section-no-pose)" }),
       make("image", { ...inner, width: x2 - left, preserveAspectRatio: "none", style: "image-rendering: pixelated",
                       href: addressOf(canvas), "clip-path": "inset(0)" }),
-      make("path", { d: mapStops(), fill: "url(#section-map-stops)", stroke: "#7c2d12", "stroke-width": 0.6 }),
+      make("path", { d: mapStops(), fill: "url(#section-map-stops)", stroke: "#c2410c", "stroke-width": 1.2 }),
       mapAxes(), mapBars(),
       make("rect", { id: "section-cursor", fill: "none", stroke: "#00735c", "stroke-width": 2.5, "pointer-events": "none" }));
   const focused = holder.contains(document.activeElement);

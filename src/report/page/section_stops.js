@@ -32,16 +32,18 @@ function stopRows(stop, number, columns) {
     chooseStretch(index);
     byId("section").scrollIntoView();
   };
-  return stop.intrusions.map((intrusion, i) => make("tr", { tabindex: i === 0 ? 0 : null, "data-stop": number, onclick: show,
+  const cells = [...stop.intrusions.map((intrusion, i) => make("tr", { tabindex: i === 0 ? 0 : null, "data-stop": number, onclick: show,
       onkeydown: (event) => {
         if (event.key !== "Enter" && event.key !== " ") return;
         event.preventDefault();
         show();
       } },
-      i === 0 && [make("td", { class: "number", rowspan: rows }, String(number)),
-                  make("td", { class: "number", rowspan: rows }, rangeWords(stretchRange(index)))],
-      columns.map(([, cell, isNumber]) => make("td", { class: isNumber ? "number" : null }, cell(intrusion))),
-      i === 0 && make("td", { rowspan: rows, class: "remedy" }, `${stop.remedy}.`)));
+      i === 0 && [make("td", { class: "number", rowspan: rows + 1 }, String(number)),
+                  make("td", { class: "number", rowspan: rows + 1 }, rangeWords(stretchRange(index)))],
+      columns.map(([, cell, isNumber]) => make("td", { class: isNumber ? "number" : null }, cell(intrusion))))),
+      make("tr", { class: "remedy", onclick: show }, make("td", { colspan: columns.length }, `${stop.remedy}.`,
+          stop.obstacles.length > 0 ? ` There: ${stop.obstacles.join(", ")}.` : ""))];
+  return cells;
 }
 
 /** Named obstacles with the stretches that they stop, deepest first. */
@@ -94,12 +96,12 @@ function buildStops() {
   const columns = stopColumns();
   byId("stops-note").append(make("p", {}, `${plural(check.stops.length, "stretch", "stretches")} of ${sectionBins().length} ` +
       `with a pose of the load. A long load meets one obstacle in many stretches, as it passes it from its front to its rear. ` +
-      "Everything up to the border in the last column has to go, or the load has to give way by so much. " +
+      "Below each stretch stands what lets the load pass there. " +
       "y is to the left of the path, and z above it."));
   byId("stops-obstacles").append(obstaclesTable());
   byId("stops-table").append(make("h3", {}, "By stretch"), make("div", { class: "scroll tall" },
       make("table", { class: "list", "aria-label": "Stretches that stop the load" },
-          make("thead", {}, make("tr", {}, ["No.", `Chainage (${unitSymbol})`, ...columns.map(([title]) => title), "What lets the load pass"]
+          make("thead", {}, make("tr", {}, ["No.", `Chainage (${unitSymbol})`, ...columns.map(([title]) => title)]
               .map((title) => make("th", { scope: "col" }, title)))),
           make("tbody", {}, check.stops.flatMap((stop, i) => stopRows(stop, i + 1, columns))))));
 }
