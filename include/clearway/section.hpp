@@ -133,7 +133,7 @@ struct SectionIntrusion {
   Side side = Side::kUnknown;  ///< left, right, above or below, looking forward
   /// How much narrower on this side, or lower, or higher from below, the load would have to be at
   /// the place of the deepest cell. A load that gives way by the depths of all intrusions of a
-  /// stretch passes there.
+  /// stretch passes there; at the round corners of a margin less may be enough.
   double depth = 0;
   std::uint64_t cells = 0;             ///< cells that stop the load on this side
   std::uint32_t first_pose = 0;        ///< the first pose of the bin that blocks the deepest cell
