@@ -351,16 +351,17 @@ class Picture {
   }
 
   static double half_width(const Mark& mark) {
-    return 7 + kLetter / 2 * static_cast<double>(mark.label().size());
+    return 8 + 0.56 * kLetter * static_cast<double>(mark.label().size());
   }
 
   /// Puts each label near its cell, where no other label is.
   void place_marks() {
     for (std::size_t i = 0; i < marks_.size(); ++i) {
       const auto [x, y] = place_of(marks_[i]);
-      for (int attempt = 0; attempt < 200; ++attempt) {
-        const double angle = -0.9 + 2.4 * attempt, far = 26 + 2.2 * attempt;
-        marks_[i].x = x + far * std::cos(angle);
+      constexpr int kMostAttempts = 1500;
+      for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+        const double angle = -0.9 + 2.4 * attempt, far = 26 + 0.4 * attempt;
+        marks_[i].x = x + 1.5 * far * std::cos(angle);
         marks_[i].y = y + far * std::sin(angle);
         if (is_free(i)) break;
       }
@@ -454,6 +455,12 @@ class Picture {
     return y + 34;
   }
 
+  /// A depth with two digits, rounded up.
+  static std::string depth_words(double depth) {
+    const double hundredths = std::ceil(depth * 100 - 1e-6);
+    return hundredths < 1 ? "less than 0.01" : format_brief(hundredths / 100);
+  }
+
   /// One line for each mark: where, how deep, and what it is.
   double draw_list(double y) {
     const std::string unit = view_.unit();
@@ -463,8 +470,8 @@ class Picture {
                           format_brief(mark.chainage_from);
       if (mark.chainage_to != mark.chainage_from) words += " to " + format_brief(mark.chainage_to);
       words += " " + unit + (mark.stops.size() == 1 ? ", stretch " : ", stretches ") +
-               list_of(mark.stops) + ": " + format_brief(std::ceil(in.depth * 100 - 1e-6) / 100) +
-               " " + unit + " into the load, z = " + format_brief(in.z_from) + " to " +
+               list_of(mark.stops) + ": reaches " + depth_words(in.depth) + " " + unit +
+               " too far, z = " + format_brief(in.z_from) + " to " +
                format_brief(in.z_to) + " " + unit;
       if (mark.deepest->witness) {
         words += ", point " + std::to_string(mark.deepest->witness->source);

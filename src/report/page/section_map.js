@@ -14,7 +14,7 @@ const mapY = (z) => {
 /** The whole path. */
 function mapRange() {
   const { length, bin } = section.facts, last = sectionBins().at(-1) ?? 0;
-  return [0, Math.max(length, last * bin + bin / 100, 1e-3)];
+  return [0, Math.max(length, (last + 1) * bin)];
 }
 
 /** The width that is white. */
@@ -37,7 +37,7 @@ function mapImage() {
   const canvas = new OffscreenCanvas(columns, bands.length), context = canvas.getContext("2d");
   const pixels = context.createImageData(columns, bands.length), least = new Map();
   bins.forEach((number, index) => {
-    const column = Math.min(columns - 1, Math.floor(number * bin / (to - from) * columns + 1e-9));
+    const column = columns < kMostMapColumns ? number : Math.min(columns - 1, Math.floor(number * bin / (to - from) * columns));
     bands.forEach((_, band) => {
       const room = roomAt(index, band)[sectionMap.side], at = (bands.length - 1 - band) * columns + column;
       if (!least.has(at) || (room ?? Infinity) < (least.get(at) ?? Infinity)) least.set(at, room);
@@ -45,7 +45,7 @@ function mapImage() {
   });
   for (const [at, room] of least) pixels.data.set([...mapRgb(room), 255], 4 * at);
   context.putImageData(pixels, 0, 0);
-  return { canvas, to: columns * bin * ((to - from) / (columns * bin) > 1 ? (to - from) / (columns * bin) : 1) };
+  return { canvas, to: columns < kMostMapColumns ? columns * bin : to };
 }
 
 /** A small picture as an address, without waiting for an encoder. */
@@ -126,10 +126,11 @@ function drawMap() {
                      make("line", { x1: 0, y1: 0, x2: 0, y2: 9, stroke: "#c2410c", "stroke-width": 2.4 }));
   const svg = make("svg", { viewBox: `0 0 ${width} ${height}`, width, height, tabindex: 0, role: "application", "aria-label":
                             "Widths by chainage and height. Arrow keys move the cursor, Enter shows the stretch, Escape the whole path." },
-      make("defs", {}, pattern, stops),
+      make("defs", {}, pattern, stops, make("clipPath", { id: "section-map-inside" },
+          make("rect", { ...inner, width: width - left - right }))),
       make("rect", { ...inner, width: width - left - right, fill: "url(#section-no-pose)" }),
       make("image", { ...inner, width: x2 - left, preserveAspectRatio: "none", style: "image-rendering: pixelated",
-                      href: addressOf(canvas), "clip-path": "inset(0)" }),
+                      href: addressOf(canvas), "clip-path": "url(#section-map-inside)" }),
       make("path", { d: mapStops(), fill: "url(#section-map-stops)", stroke: "#c2410c", "stroke-width": 1.2 }),
       mapAxes(), mapBars(),
       make("rect", { id: "section-cursor", fill: "none", stroke: "#00735c", "stroke-width": 2.5, "pointer-events": "none" }));

@@ -11,12 +11,15 @@ function obstacleWords({ obstacle, witness }) {
   return [obstacle, classWords(witness), point].filter(Boolean).join(", ");
 }
 
+/** How far something reaches into the load or its margin, rounded up. */
+const depthCell = (depth) => depth < 0.0005 ? "< 0.001" : (Math.ceil(depth * 1000 - 1e-6) / 1000).toFixed(3);
+
 /** Title, cell of an intrusion, whether it is a number. */
 function stopColumns() {
   const known = section.facts.check.stops.some((stop) => stop.intrusions.some((i) => i.witness));
   return [
     ["Side", (i) => kSideWords[i.side], false],
-    [`Into the load (${unitSymbol})`, (i) => (Math.ceil(i.depth * 1000 - 1e-6) / 1000).toFixed(3), true],
+    [`Too far (${unitSymbol})`, (i) => depthCell(i.depth), true],
     [`Deepest at chainage (${unitSymbol})`, (i) => i.chainage.toFixed(2), true],
     ["Pose", (i) => String(i.first_pose), true],
     [`y (${unitSymbol})`, (i) => `${signed(i.y_from)} – ${signed(i.y_to)}`, true],
@@ -81,7 +84,7 @@ function obstaclesTable() {
               make("th", { scope: "col" }, title)))),
           make("tbody", {}, named.map(({ name, stops, deepest }) => make("tr", {}, make("td", {}, name),
               make("td", {}, numberRanges(stops)),
-              make("td", {}, deepest ? `${metres(deepest.depth, 2)} into the load, ${kSideWords[deepest.side]}, at chainage ` +
+              make("td", {}, deepest ? `${depthCell(deepest.depth)} ${unitSymbol} too far, ${kSideWords[deepest.side]}, at chainage ` +
                    `${station(deepest.chainage)}, z = ${signed(deepest.z_from)} to ${signed(deepest.z_to)} ${unitSymbol}`
                    : "others reach deeper there")))))));
 }
@@ -96,7 +99,7 @@ function buildStops() {
   const columns = stopColumns();
   byId("stops-note").append(make("p", {}, `${plural(check.stops.length, "stretch", "stretches")} of ${sectionBins().length} ` +
       `with a pose of the load. A long load meets one obstacle in many stretches, as it passes it from its front to its rear. ` +
-      "Below each stretch stands what lets the load pass there. " +
+      "Too far is how much of the load and its margin it takes. Below each stretch stands what lets the load pass there. " +
       "y is to the left of the path, and z above it."));
   byId("stops-obstacles").append(obstaclesTable());
   byId("stops-table").append(make("h3", {}, "By stretch"), make("div", { class: "scroll tall" },
