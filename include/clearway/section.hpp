@@ -186,8 +186,8 @@ class Section {
 
 /// The point of the environment that blocks a cell.
 struct SectionWitness {
-  std::uint64_t source = 0;  ///< source index of the point
-  Vec3 xyz{};                ///< its position
+  std::uint64_t source = 0;      ///< source index of the point
+  Vec3 xyz{};                    ///< its position
   std::uint8_t point_class = 0;  ///< its class; 0 where the environment has no classes
 };
 

@@ -171,8 +171,7 @@ class PageFile {
   std::uint64_t bytes_ = 0;
 };
 
-void write_place(PageFile& file, std::string_view name, PageKind kind,
-                 const PageContent& content) {
+void write_place(PageFile& file, std::string_view name, PageKind kind, const PageContent& content) {
   const bool is_report = kind == PageKind::kReport;
   if (name == "TITLE") file.write(markup_text(content.title));
   if (name == "STYLE") file.write(page_parts::kStyle);
@@ -194,8 +193,7 @@ void write_place(PageFile& file, std::string_view name, PageKind kind,
 std::uint64_t write_page(const std::filesystem::path& path, PageKind kind,
                          const PageContent& content) {
   PageFile file(path);
-  std::string_view rest =
-      kind == PageKind::kReport ? page_parts::kHtml : page_parts::kSectionHtml;
+  std::string_view rest = kind == PageKind::kReport ? page_parts::kHtml : page_parts::kSectionHtml;
   constexpr std::string_view kOpen = "{{", kClose = "}}";
   while (true) {
     const std::size_t open = rest.find(kOpen), close = rest.find(kClose);

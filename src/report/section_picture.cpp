@@ -52,12 +52,15 @@ struct Mark {
   }
 };
 
-bool is_same_obstacle(const ShownIntrusion& a, const ShownIntrusion& b) {
+/// Whether two intrusions get one mark: they have the same name, or none and lie close together, in
+/// the environment or in the picture.
+bool have_one_mark(const ShownIntrusion& a, const ShownIntrusion& b, double close_cells) {
   if (a.intrusion.side != b.intrusion.side) return false;
   if (!a.obstacle.empty() || !b.obstacle.empty()) return a.obstacle == b.obstacle;
   constexpr double kClose = 3;
-  if (a.witness && b.witness) return length(a.witness->xyz - b.witness->xyz) < kClose;
-  return false;
+  if (a.witness && b.witness && length(a.witness->xyz - b.witness->xyz) < kClose) return true;
+  return std::hypot(a.intrusion.cell[0] - b.intrusion.cell[0],
+                    a.intrusion.cell[1] - b.intrusion.cell[1]) < close_cells;
 }
 
 class Picture {
@@ -95,13 +98,15 @@ class Picture {
     TextBuffer out;
     const std::string size = " viewBox=\"0 0 " + px(kWidth) + " " + px(bottom) + "\" width=\"" +
                              px(kWidth) + "\" height=\"" + px(bottom) + "\"";
-    out << R"(<svg xmlns="http://www.w3.org/2000/svg" id="section-svg")" << size
-        << " data-left=\"" << left_ << "\" data-top=\"" << top_ << "\" data-scale=\"" << scale_
+    out << R"(<svg xmlns="http://www.w3.org/2000/svg" id="section-svg")" << size << " data-left=\""
+        << left_ << "\" data-top=\"" << top_ << "\" data-scale=\"" << scale_
         << "\" role=\"img\" aria-label=\"" << markup_text(view_.sentence()) << "\">\n"
-        << "<style>#section-svg text{font:13px system-ui,\"DejaVu Sans\",Arial,sans-serif;fill:#374151}"
+        << "<style>#section-svg text{font:13px system-ui,\"DejaVu "
+           "Sans\",Arial,sans-serif;fill:#374151}"
            "#section-svg .section-title{font-size:16px;font-weight:600;fill:#111827}"
            "#section-svg .section-strong{font-weight:600;fill:#111827}"
-           "#section-svg .section-end{text-anchor:end}#section-svg .section-middle{text-anchor:middle}"
+           "#section-svg .section-end{text-anchor:end}#section-svg "
+           ".section-middle{text-anchor:middle}"
            "</style>\n";
     const double hatch = 8 / scale_;
     const auto pattern = [&](const char* name, double side, int turn) {
@@ -114,17 +119,14 @@ class Picture {
         << "'/></pattern>";
     pattern("section-stops", hatch / 2, -45);
     out << "<rect width='" << hatch / 2 << "' height='" << hatch / 2
-        << "' fill='#c2410c'/><path d='M0 0v" << hatch / 2
-        << "' stroke='#ffedd5' stroke-width='" << 1.4 / scale_ << "'/></pattern></defs>\n";
-    out << "<rect width=\"" << px(kWidth) << "\" height=\"" << px(bottom)
-        << "\" fill=\"#fff\"/>\n";
+        << "' fill='#c2410c'/><path d='M0 0v" << hatch / 2 << "' stroke='#ffedd5' stroke-width='"
+        << 1.4 / scale_ << "'/></pattern></defs>\n";
+    out << "<rect width=\"" << px(kWidth) << "\" height=\"" << px(bottom) << "\" fill=\"#fff\"/>\n";
     return out.text();
   }
 
   double x_of(double y) const { return left_ + (lattice_.j_to - y / lattice_.cell) * scale_; }
-  double y_of(double z) const {
-    return top_ + (lattice_.k_to - z / lattice_.cell) * scale_;
-  }
+  double y_of(double z) const { return top_ + (lattice_.k_to - z / lattice_.cell) * scale_; }
 
   void text(double x, double y, std::string_view words, const char* kind = "") {
     out_ << "<text x=\"" << px(x) << "\" y=\"" << px(y) << "\"";
@@ -203,9 +205,8 @@ class Picture {
     out_ << "<rect x=\"" << px(left_) << "\" y=\"" << px(top_) << "\" width=\"" << px(width_)
          << "\" height=\"" << px(height_) << "\" fill=\"#fff\"/>\n";
     draw_grid();
-    out_ << "<g id=\"section-cells\" shape-rendering=\"crispEdges\" transform=\"matrix("
-         << -scale_ << " 0 0 " << -scale_ << " " << left_ + width_ << " " << top_ + height_
-         << ")\">\n";
+    out_ << "<g id=\"section-cells\" shape-rendering=\"crispEdges\" transform=\"matrix(" << -scale_
+         << " 0 0 " << -scale_ << " " << left_ + width_ << " " << top_ + height_ << ")\">\n";
     const SectionCells unknown = not_known_anywhere();
     if (unknown.size() > 0) {
       out_ << "<path class=\"unknown\" fill=\"url(#section-unknown)\" d=\""
@@ -215,8 +216,8 @@ class Picture {
       const std::string path =
           runs(cells, [&](std::size_t i) { return colour_of(cells.first_pose[i]) == colour; });
       if (path.empty()) continue;
-      out_ << "<path fill=\"" << kSectionColours[static_cast<std::size_t>(colour)] << "\" d=\"" << path
-           << "\"/>\n";
+      out_ << "<path fill=\"" << kSectionColours[static_cast<std::size_t>(colour)] << "\" d=\""
+           << path << "\"/>\n";
     }
     const std::vector<bool>& stopping = view_.stopping();
     if (!stopping.empty()) {
@@ -247,16 +248,17 @@ class Picture {
     const std::string path = outline_path();
     const double band = 2 * view_.picture().margin / lattice_.cell * scale_;
     if (band > 0) {
-      out_ << R"(<clipPath id="section-outside"><path clip-rule="evenodd" d="M)" << px(left_)
-           << " " << px(top_) << "h" << px(width_) << "v" << px(height_) << "h-" << px(width_)
-           << "z" << path << "\"/></clipPath>\n"
-           << "<path class='section-margin' clip-path='url(#section-outside)' fill='none' stroke='#7c3aed' "
+      out_ << R"(<clipPath id="section-outside"><path clip-rule="evenodd" d="M)" << px(left_) << " "
+           << px(top_) << "h" << px(width_) << "v" << px(height_) << "h-" << px(width_) << "z"
+           << path << "\"/></clipPath>\n"
+           << "<path class='section-margin' clip-path='url(#section-outside)' fill='none' "
+              "stroke='#7c3aed' "
               "stroke-opacity='0.35' stroke-linejoin='round' stroke-width=\""
            << px(band) << "\" d=\"" << path << "\"/>\n";
     }
     out_ << R"(<path fill="none" stroke="#fff" stroke-width="5" d=")" << path << "\"/>\n"
-         << R"(<path class="section-outline" fill="none" stroke="#5b21b6" stroke-width="2.6" d=")" << path
-         << "\"/>\n";
+         << R"(<path class="section-outline" fill="none" stroke="#5b21b6" stroke-width="2.6" d=")"
+         << path << "\"/>\n";
   }
 
   /// Whole steps of 1, 2 or 5 times a power of ten from `from` to `to`, about `most` of them.
@@ -281,8 +283,8 @@ class Picture {
   }
 
   void line(double x1, double y1, double x2, double y2, const char* how) {
-    out_ << "<path " << how << " d=\"M" << px(x1) << " " << px(y1) << "L" << px(x2) << " "
-         << px(y2) << "\"/>\n";
+    out_ << "<path " << how << " d=\"M" << px(x1) << " " << px(y1) << "L" << px(x2) << " " << px(y2)
+         << "\"/>\n";
   }
 
   void draw_grid() {
@@ -324,8 +326,10 @@ class Picture {
     const std::vector<ShownStop>& stops = view_.stops();
     for (std::size_t s = 0; s < stops.size(); ++s) {
       for (const ShownIntrusion& in : stops[s].intrusions) {
-        const auto known = std::ranges::find_if(
-            marks_, [&](const Mark& mark) { return is_same_obstacle(*mark.deepest, in); });
+        constexpr double kClosePixels = 40;
+        const auto known = std::ranges::find_if(marks_, [&](const Mark& mark) {
+          return have_one_mark(*mark.deepest, in, kClosePixels / scale_);
+        });
         Mark& mark = known == marks_.end() ? marks_.emplace_back() : *known;
         const double chainage = in.intrusion.chainage;
         if (mark.deepest == nullptr) mark.chainage_from = mark.chainage_to = chainage;
@@ -392,11 +396,15 @@ class Picture {
       const auto [x, y] = place_of(mark);
       line(x, y, mark.x, mark.y, R"(stroke="#fff" stroke-width="4")");
       line(x, y, mark.x, mark.y, R"(stroke="#111827" stroke-width="1.5")");
+    }
+    for (const Mark& mark : marks_) {
+      const auto [x, y] = place_of(mark);
       out_ << "<circle cx=\"" << px(x) << "\" cy=\"" << px(y)
            << R"(" r="4" fill="#fff" stroke="#111827" stroke-width="2"/>)"
            << "<rect x=\"" << px(mark.x - half_width(mark)) << "\" y=\"" << px(mark.y - 10)
            << "\" width=\"" << px(2 * half_width(mark))
-           << R"(" height="20" rx="10" fill="#fff" stroke="#111827" stroke-width="1.5"/>)" << "\n";
+           << R"(" height="20" rx="10" fill="#fff" stroke="#111827" stroke-width="1.5"/>)"
+           << "\n";
       text(mark.x, mark.y + 4.5, mark.label(), "section-middle section-strong");
     }
     out_ << "</g>\n";
@@ -423,8 +431,9 @@ class Picture {
     const double length = data.chainage.empty() ? 0 : data.chainage.back();
     const auto at = [&](int part) { return format_brief(length * part / kColours); };
     for (int colour = 0; colour < kColours && length > 0; ++colour) {
-      const std::string words = colour == 0 ? "blocked first at chainage 0 to " + at(1) + " " + view_.unit()
-                                            : at(colour) + " to " + at(colour + 1);
+      const std::string words = colour == 0
+                                    ? "blocked first at chainage 0 to " + at(1) + " " + view_.unit()
+                                    : at(colour) + " to " + at(colour + 1);
       legend_item(x, y, box(kSectionColours[static_cast<std::size_t>(colour)]), words);
     }
     x = 16;
@@ -441,14 +450,16 @@ class Picture {
     if (view_.check()) {
       legend_item(x, y, R"(<path d="M0 8h24" stroke="#5b21b6" stroke-width="3"/>)", "load");
       if (view_.picture().margin > 0) {
-        legend_item(x, y, R"(<path d="M0 8h24" stroke="#7c3aed" stroke-opacity="0.35" )"
-                          R"(stroke-width="10"/>)",
+        legend_item(x, y,
+                    R"(<path d="M0 8h24" stroke="#7c3aed" stroke-opacity="0.35" )"
+                    R"(stroke-width="10"/>)",
                     "its margin, " + format_brief(view_.picture().margin) + " " + view_.unit());
       }
       if (!view_.stops().empty()) {
         legend_item(x, y, patterned("section-stops"), "stops the load");
-        legend_item(x, y, R"(<rect x="2" y="-1" width="20" height="18" rx="9" fill="#fff" )"
-                          R"(stroke="#111827" stroke-width="1.5"/>)",
+        legend_item(x, y,
+                    R"(<rect x="2" y="-1" width="20" height="18" rx="9" fill="#fff" )"
+                    R"(stroke="#111827" stroke-width="1.5"/>)",
                     "what it is, or the numbers of the stretches, and its deepest place");
       }
     }
@@ -466,13 +477,13 @@ class Picture {
     const std::string unit = view_.unit();
     for (const Mark& mark : marks_) {
       const SectionIntrusion& in = mark.deepest->intrusion;
-      std::string words = std::string(name_of(in.side)) + ", chainage " +
-                          format_brief(mark.chainage_from);
+      std::string words =
+          std::string(name_of(in.side)) + ", chainage " + format_brief(mark.chainage_from);
       if (mark.chainage_to != mark.chainage_from) words += " to " + format_brief(mark.chainage_to);
       words += " " + unit + (mark.stops.size() == 1 ? ", stretch " : ", stretches ") +
                list_of(mark.stops) + ": reaches " + depth_words(in.depth) + " " + unit +
-               " too far, z = " + format_brief(in.z_from) + " to " +
-               format_brief(in.z_to) + " " + unit;
+               " too far, z = " + format_brief(in.z_from) + " to " + format_brief(in.z_to) + " " +
+               unit;
       if (mark.deepest->witness) {
         words += ", point " + std::to_string(mark.deepest->witness->source);
       }

@@ -37,11 +37,13 @@ void check_not_known(const SectionCells& cells, const SectionLattice& lattice) {
 void check_obstacles(const SectionPicture& picture) {
   if (picture.obstacles.empty()) return;
   if (picture.store == nullptr || picture.path == nullptr) {
-    throw UsageError("names of obstacles need the store and the path of the section, because they "
-                     "belong to points");
+    throw UsageError(
+        "names of obstacles need the store and the path of the section, because they "
+        "belong to points");
   }
   const Box all = picture.store->box();
-  const double slack = picture.store->metres_per_unit() > 0 ? 0.01 / picture.store->metres_per_unit() : 0.01;
+  const double slack =
+      picture.store->metres_per_unit() > 0 ? 0.01 / picture.store->metres_per_unit() : 0.01;
   for (const NamedObstacle& obstacle : picture.obstacles) {
     const Box box = obstacle.box;
     bool inside = true;
@@ -89,7 +91,8 @@ SectionView::SectionView(const Section& section, const SectionPicture& picture)
   stopping_ = stopping_cells(section, picture.outline, picture.margin);
   for (const SectionStop& stop : check_->stops) {
     ShownStop shown{.stop = stop};
-    for (const SectionIntrusion& intrusion : stop.intrusions) shown.intrusions.push_back({intrusion});
+    for (const SectionIntrusion& intrusion : stop.intrusions)
+      shown.intrusions.push_back({intrusion});
     stops_.push_back(std::move(shown));
   }
   if (picture.store != nullptr && picture.path != nullptr) find_obstacles();
@@ -136,9 +139,8 @@ void SectionView::find_obstacles() {
     }
     for (; next < places.size() && stop_of[next] == s; ++next) named(witnesses[next]);
     for (const auto& [name, times] : names) stops_[s].obstacles.push_back(name);
-    std::ranges::stable_sort(stops_[s].obstacles, [&](const auto& a, const auto& b) {
-      return names[a] > names[b];
-    });
+    std::ranges::stable_sort(stops_[s].obstacles,
+                             [&](const auto& a, const auto& b) { return names[a] > names[b]; });
   }
 }
 
@@ -199,8 +201,8 @@ std::string outwards(double value) {
 
 /// How wide, or for what comes from above or below how high, an outline is.
 double size_across(std::span<const OutlinePoint> outline, Side side) {
-  const auto axis = side == Side::kLeft || side == Side::kRight ? &OutlinePoint::y
-                                                                : &OutlinePoint::z;
+  const auto axis =
+      side == Side::kLeft || side == Side::kRight ? &OutlinePoint::y : &OutlinePoint::z;
   const auto [least, most] = std::ranges::minmax(outline, {}, axis);
   return most.*axis - least.*axis;
 }
@@ -210,8 +212,8 @@ std::string remedy_of(const SectionIntrusion& in, double cell, const std::string
                       bool gives_way) {
   const std::string to = outwards(cleared_to(in, cell)) + " " + unit;
   const std::string depth = outwards(in.depth) + " " + unit;
-  const std::string heights = " between z = " + format_brief(in.z_from) + " and " +
-                              format_brief(in.z_to) + " " + unit;
+  const std::string heights =
+      " between z = " + format_brief(in.z_from) + " and " + format_brief(in.z_to) + " " + unit;
   switch (in.side) {
     case Side::kLeft:
     case Side::kRight:
@@ -336,7 +338,8 @@ void SectionView::write_facts(JsonText& json) const {
   json.begin('{').field("name", picture_.section_name).field("sentence", sentence());
   json.field("caution", caution());
   write_question(json);
-  json.field("columns", std::uint64_t{lattice_.columns}).field("rows", std::uint64_t{lattice_.rows});
+  json.field("columns", std::uint64_t{lattice_.columns})
+      .field("rows", std::uint64_t{lattice_.rows});
   json.field("j_from", lattice_.j_from).field("k_from", lattice_.k_from);
   json.key("colours").begin('[');
   for (const char* colour : kSectionColours) json.value(colour);

@@ -59,9 +59,7 @@ class SectionView {
   std::string remedy(const ShownStop& stop) const;
 
   /// Chainage at which a bin begins.
-  double chainage_of_bin(double number) const {
-    return number * section_.data().parameters.bin;
-  }
+  double chainage_of_bin(double number) const { return number * section_.data().parameters.bin; }
 
   /// Writes the object "section" of the facts.
   void write_facts(JsonText& json) const;

@@ -33,8 +33,7 @@ std::string extent_words(const SectionData& section) {
 
 }  // namespace
 
-std::string verdict_sentence(const SectionCheck& check, const SectionData& section,
-                             double margin) {
+std::string verdict_sentence(const SectionCheck& check, const SectionData& section, double margin) {
   const std::string unit = section_unit(section);
   const std::size_t warned = section.warnings.size();
   const std::string doubts = warned == 0 ? "" : ". The section has " + counted(warned, "warning");
@@ -47,8 +46,7 @@ std::string verdict_sentence(const SectionCheck& check, const SectionData& secti
       return "stopped: the load is stopped" + kept + " at pose " +
              std::to_string(check.stop->first_pose) + ", " + format_brief(check.stop->chainage) +
              " " + unit + " along the path, " + cell_words(check.stop->cell, section) +
-             ", and in " + counted(check.stops.size(), "stretch", "stretches") + " in all" +
-             doubts;
+             ", and in " + counted(check.stops.size(), "stretch", "stretches") + " in all" + doubts;
     case SectionVerdict::kUnknown:
       break;
   }
@@ -72,9 +70,8 @@ std::string box_words(const BoxLoad& box, const SectionData& section) {
 
 /// Where a band is blocked in the very middle.
 std::string first_stop_words(const SectionData& data, const SectionBand& band) {
-  const auto& side = band.left && (!band.right || band.left->width <= band.right->width)
-                         ? band.left
-                         : band.right;
+  const auto& side =
+      band.left && (!band.right || band.left->width <= band.right->width) ? band.left : band.right;
   return "first at pose " + std::to_string(side->first_pose) + ", " +
          format_brief(data.chainage[side->first_pose]) + " " + section_unit(data) +
          " along the path";

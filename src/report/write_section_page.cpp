@@ -45,10 +45,8 @@ SectionPageSummary write_section_page(const Section& section, const std::filesys
   json.end('}');
   SectionPageSummary summary{.check = view.check(), .sentence = view.sentence()};
   summary.facts = json.text();
-  PageContent content{.title = title,
-                      .facts = summary.facts,
-                      .section = section_svg(view, false),
-                      .columns = {}};
+  PageContent content{
+      .title = title, .facts = summary.facts, .section = section_svg(view, false), .columns = {}};
   view.add_columns(content.columns);
   summary.bytes = write_page(file.partial(), PageKind::kSection, content);
   file.publish();

@@ -52,8 +52,8 @@ struct Found {
 /// One call of section_witnesses().
 class WitnessSearch {
  public:
-  WitnessSearch(const SectionData& section, const StoreReader& store,
-                const std::vector<Pose>& path, std::span<const SectionPlace> places)
+  WitnessSearch(const SectionData& section, const StoreReader& store, const std::vector<Pose>& path,
+                std::span<const SectionPlace> places)
       : store_(store),
         lattice_(lattice_of(section)),
         slack_(2 * section.rounding),
@@ -122,8 +122,7 @@ class WitnessSearch {
 
   /// The box of a block, widened by two of its steps, because block boxes are rounded.
   Box box_of_block(std::uint32_t cell, std::uint32_t block, const Box& of_cell) const {
-    const BlockBox& steps =
-        store_.blocks()[std::uint64_t{cell} * store_.blocks_per_cell() + block];
+    const BlockBox& steps = store_.blocks()[std::uint64_t{cell} * store_.blocks_per_cell() + block];
     Box box;
     for (int k = 0; k < 3; ++k) {
       const double step = (of_cell.hi[k] - of_cell.lo[k]) / static_cast<double>(kBlockBoxSteps);
@@ -140,8 +139,8 @@ class WitnessSearch {
     const std::uint32_t end = std::min(first + kBlockPoints, store_.cells()[cell].count);
     for (std::uint32_t index = first; index < end; ++index) {
       if ((searched >> (index - first) & 1) == 0) continue;
-      const Vec3 point = position(store_.quantisation(), chunks[0][index], chunks[1][index],
-                                  chunks[2][index]);
+      const Vec3 point =
+          position(store_.quantisation(), chunks[0][index], chunks[1][index], chunks[2][index]);
       for (const std::size_t i : here) {
         std::uint32_t column, row;
         if (!lattice_.find(looks_[i]->frame.apply(point), column, row)) continue;
@@ -160,8 +159,8 @@ class WitnessSearch {
     const auto chunks = store_.coordinates(found.cell);
     SectionWitness witness;
     witness.source = found.source;
-    witness.xyz = position(store_.quantisation(), chunks[0][found.index],
-                           chunks[1][found.index], chunks[2][found.index]);
+    witness.xyz = position(store_.quantisation(), chunks[0][found.index], chunks[1][found.index],
+                           chunks[2][found.index]);
     if (store_.has_classes()) witness.point_class = store_.classes(found.cell)[found.index];
     return witness;
   }
@@ -184,9 +183,10 @@ void check_hash(const char* what, std::uint64_t given, std::uint64_t of_section,
 
 }  // namespace
 
-std::vector<std::optional<SectionWitness>> section_witnesses(
-    const SectionData& section, const Store& store, const std::vector<Pose>& path,
-    std::span<const SectionPlace> places) {
+std::vector<std::optional<SectionWitness>> section_witnesses(const SectionData& section,
+                                                             const Store& store,
+                                                             const std::vector<Pose>& path,
+                                                             std::span<const SectionPlace> places) {
   check_hash("environment", store.reader().metadata().points_hash, section.environment_hash,
              Remedy::kSameEnvironment);
   check_hash("trajectory", hash_of_trajectory(path), section.trajectory_hash,

@@ -167,7 +167,8 @@ struct Road {
     Random random(3);
     for (int i = 0; i < 60; ++i) {
       const double angle = 0.01 * i;
-      path.push_back(rotation({0, 0, 1}, angle, {50 * std::sin(angle), 50 * (1 - std::cos(angle)), 0}));
+      path.push_back(
+          rotation({0, 0, 1}, angle, {50 * std::sin(angle), 50 * (1 - std::cos(angle)), 0}));
     }
     for (int i = 0; i < 4000; ++i) {
       points.push_back({uniform(random, -2, 30), uniform(random, -4, 9), uniform(random, 0, 3)});

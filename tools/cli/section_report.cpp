@@ -98,8 +98,8 @@ std::string ending_of(const std::filesystem::path& path) {
 /// Throws UsageError where an output is neither a page nor a picture, or is an input.
 void check_outputs(const ReportOfSection& options) {
   std::vector<std::filesystem::path> inputs{options.section};
-  for (const auto& input : {options.load.outline, options.site.environment,
-                            options.site.trajectory, options.conflicts}) {
+  for (const auto& input : {options.load.outline, options.site.environment, options.site.trajectory,
+                            options.conflicts}) {
     if (!input.empty()) inputs.push_back(input);
   }
   for (const std::filesystem::path& output : options.outputs) {

@@ -68,8 +68,7 @@ Columns columns_of(const InputBuffer& input, std::string_view line) {
   return columns;
 }
 
-NamedObstacle obstacle_of(const InputBuffer& input, std::string_view line,
-                          const Columns& columns) {
+NamedObstacle obstacle_of(const InputBuffer& input, std::string_view line, const Columns& columns) {
   const std::vector<std::string> fields = fields_of_line(input, line);
   if (fields.size() != columns.count) {
     refuse_line(input.name(), input.line(),
