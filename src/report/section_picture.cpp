@@ -81,7 +81,7 @@ class Picture {
     TextBuffer body;
     std::swap(body, out_);
     for (std::size_t i = 0; i < title.size(); ++i) {
-      text(16, 24 + 19 * static_cast<double>(i), title[i], i == 0 ? "section-title" : "");
+      text(16, 24 + 19 * static_cast<double>(i), title[i], i == 0 ? "section_title" : "");
     }
     draw_cells();
     draw_load();
@@ -103,10 +103,10 @@ class Picture {
         << "\" role=\"img\" aria-label=\"" << markup_text(view_.sentence()) << "\">\n"
         << "<style>#section-svg text{font:13px system-ui,\"DejaVu "
            "Sans\",Arial,sans-serif;fill:#374151}"
-           "#section-svg .section-title{font-size:16px;font-weight:600;fill:#111827}"
-           "#section-svg .section-strong{font-weight:600;fill:#111827}"
-           "#section-svg .section-end{text-anchor:end}#section-svg "
-           ".section-middle{text-anchor:middle}"
+           "#section-svg .section_title{font-size:16px;font-weight:600;fill:#111827}"
+           "#section-svg .section_strong{font-weight:600;fill:#111827}"
+           "#section-svg .section_end{text-anchor:end}#section-svg "
+           ".section_middle{text-anchor:middle}"
            "</style>\n";
     const double hatch = 8 / scale_;
     const auto pattern = [&](const char* name, double side, int turn) {
@@ -114,10 +114,10 @@ class Picture {
           << "' height='" << side << "' patternTransform='rotate(" << turn << ")'>";
     };
     out << "<defs>";
-    pattern("section-unknown", hatch, 45);
+    pattern("section_unknown", hatch, 45);
     out << "<path d='M0 0v" << hatch << "' stroke='#6b7280' stroke-width='" << 3 / scale_
         << "'/></pattern>";
-    pattern("section-stops", hatch / 2, -45);
+    pattern("section_stops", hatch / 2, -45);
     out << "<rect width='" << hatch / 2 << "' height='" << hatch / 2
         << "' fill='#c2410c'/><path d='M0 0v" << hatch / 2 << "' stroke='#ffedd5' stroke-width='"
         << 1.4 / scale_ << "'/></pattern></defs>\n";
@@ -209,7 +209,7 @@ class Picture {
          << " 0 0 " << -scale_ << " " << left_ + width_ << " " << top_ + height_ << ")\">\n";
     const SectionCells unknown = not_known_anywhere();
     if (unknown.size() > 0) {
-      out_ << "<path class=\"unknown\" fill=\"url(#section-unknown)\" d=\""
+      out_ << "<path class=\"unknown\" fill=\"url(#section_unknown)\" d=\""
            << runs(unknown, [](std::size_t) { return true; }) << "\"/>\n";
     }
     for (int colour = 0; colour < kColours; ++colour) {
@@ -221,7 +221,7 @@ class Picture {
     }
     const std::vector<bool>& stopping = view_.stopping();
     if (!stopping.empty()) {
-      out_ << "<path class=\"stops\" fill=\"url(#section-stops)\" d=\""
+      out_ << "<path class=\"stops\" fill=\"url(#section_stops)\" d=\""
            << runs(cells, [&](std::size_t i) { return stopping[i]; }) << "\"/>\n";
     }
     out_ << "</g>\n";
@@ -248,16 +248,16 @@ class Picture {
     const std::string path = outline_path();
     const double band = 2 * view_.picture().margin / lattice_.cell * scale_;
     if (band > 0) {
-      out_ << R"(<clipPath id="section-outside"><path clip-rule="evenodd" d="M)" << px(left_) << " "
+      out_ << R"(<clipPath id="section_outside"><path clip-rule="evenodd" d="M)" << px(left_) << " "
            << px(top_) << "h" << px(width_) << "v" << px(height_) << "h-" << px(width_) << "z"
            << path << "\"/></clipPath>\n"
-           << "<path class='section-margin' clip-path='url(#section-outside)' fill='none' "
+           << "<path class='section_margin' clip-path='url(#section_outside)' fill='none' "
               "stroke='#7c3aed' "
               "stroke-opacity='0.35' stroke-linejoin='round' stroke-width=\""
            << px(band) << "\" d=\"" << path << "\"/>\n";
     }
     out_ << R"(<path fill="none" stroke="#fff" stroke-width="5" d=")" << path << "\"/>\n"
-         << R"(<path class="section-outline" fill="none" stroke="#5b21b6" stroke-width="2.6" d=")"
+         << R"(<path class="section_outline" fill="none" stroke="#5b21b6" stroke-width="2.6" d=")"
          << path << "\"/>\n";
   }
 
@@ -309,17 +309,17 @@ class Picture {
     const double bottom = top_ + height_;
     for (const double y : y_ticks()) {
       line(x_of(y), bottom, x_of(y), bottom + 5, kInk);
-      text(x_of(y), bottom + 19, signed_words(y), "section-middle");
+      text(x_of(y), bottom + 19, signed_words(y), "section_middle");
     }
     for (const double z : z_ticks()) {
       line(left_ - 5, y_of(z), left_, y_of(z), kInk);
-      text(left_ - 9, y_of(z) + 4, signed_words(z), "section-end");
+      text(left_ - 9, y_of(z) + 4, signed_words(z), "section_end");
     }
-    text(left_, bottom + 40, "\u2190 left of the path", "section-strong");
+    text(left_, bottom + 40, "\u2190 left of the path", "section_strong");
     text(left_ + width_ / 2, bottom + 40, "y (" + view_.unit() + "), looking forward",
-         "section-middle section-strong");
-    text(left_ + width_, bottom + 40, "right of the path \u2192", "section-end section-strong");
-    text(left_, top_ - 9, "height z (" + view_.unit() + ")", "section-strong");
+         "section_middle section_strong");
+    text(left_ + width_, bottom + 40, "right of the path \u2192", "section_end section_strong");
+    text(left_, top_ - 9, "height z (" + view_.unit() + ")", "section_strong");
   }
 
   void find_marks() {
@@ -405,7 +405,7 @@ class Picture {
            << "\" width=\"" << px(2 * half_width(mark))
            << R"(" height="20" rx="10" fill="#fff" stroke="#111827" stroke-width="1.5"/>)"
            << "\n";
-      text(mark.x, mark.y + 4.5, mark.label(), "section-middle section-strong");
+      text(mark.x, mark.y + 4.5, mark.label(), "section_middle section_strong");
     }
     out_ << "</g>\n";
   }
@@ -445,7 +445,7 @@ class Picture {
     };
     legend_item(x, y, box("#fff"), "no point");
     if (view_.picture().not_known.size() > 0) {
-      legend_item(x, y, patterned("section-unknown"), "not known");
+      legend_item(x, y, patterned("section_unknown"), "not known");
     }
     if (view_.check()) {
       legend_item(x, y, R"(<path d="M0 8h24" stroke="#5b21b6" stroke-width="3"/>)", "load");
@@ -456,7 +456,7 @@ class Picture {
                     "its margin, " + format_brief(view_.picture().margin) + " " + view_.unit());
       }
       if (!view_.stops().empty()) {
-        legend_item(x, y, patterned("section-stops"), "stops the load");
+        legend_item(x, y, patterned("section_stops"), "stops the load");
         legend_item(x, y,
                     R"(<rect x="2" y="-1" width="20" height="18" rx="9" fill="#fff" )"
                     R"(stroke="#111827" stroke-width="1.5"/>)",
@@ -487,7 +487,7 @@ class Picture {
       if (mark.deepest->witness) {
         words += ", point " + std::to_string(mark.deepest->witness->source);
       }
-      text(190, y, mark.label(), "section-end section-strong");
+      text(190, y, mark.label(), "section_end section_strong");
       text(202, y, words);
       y += 19;
     }

@@ -5,7 +5,8 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <map>
+
+#include "core/section/section_lattice.hpp"
 
 namespace clearway {
 namespace {
@@ -46,29 +47,38 @@ Extent extent_in(std::span<const OutlinePoint> outline, double OutlinePoint::*al
 /// How much a load has to give way for cells, on each side.
 class GivingWay {
  public:
-  GivingWay(std::span<const OutlinePoint> outline, double cell, double reach)
-      : outline_(outline), cell_(cell), reach_(reach) {}
+  GivingWay(std::span<const OutlinePoint> outline, const SectionLattice& lattice, double reach)
+      : cell_(lattice.cell),
+        reach_(reach),
+        j_from_(static_cast<std::int64_t>(lattice.j_from)),
+        k_from_(static_cast<std::int64_t>(lattice.k_from)),
+        across_(lattice.rows),
+        up_(lattice.columns) {
+    const auto fill = [&](std::vector<Extent>& extents, double first, double OutlinePoint::*along,
+                          double OutlinePoint::*across) {
+      for (std::size_t i = 0; i < extents.size(); ++i) {
+        const double at = first + static_cast<double>(i);
+        extents[i] =
+            extent_in(outline, along, across, at * cell_ - reach, (at + 1) * cell_ + reach);
+      }
+    };
+    fill(across_, lattice.k_from, &OutlinePoint::z, &OutlinePoint::y);
+    fill(up_, lattice.j_from, &OutlinePoint::y, &OutlinePoint::z);
+  }
 
-  /// In the order of kSides.
-  std::array<double, kSideCount> depths(std::int32_t j, std::int32_t k) {
-    const auto across = remembered(rows_, k, &OutlinePoint::z, &OutlinePoint::y);
-    const auto up = remembered(columns_, j, &OutlinePoint::y, &OutlinePoint::z);
+  /// In the order of kSides, for a cell of the window that stops the load.
+  std::array<double, kSideCount> depths(double j, double k) const {
+    const Extent& across =
+        across_[static_cast<std::size_t>(static_cast<std::int64_t>(k) - k_from_)];
+    const Extent& up = up_[static_cast<std::size_t>(static_cast<std::int64_t>(j) - j_from_)];
     return {across.to - (j * cell_ - reach_), (j + 1) * cell_ + reach_ - across.from,
             up.to - (k * cell_ - reach_), (k + 1) * cell_ + reach_ - up.from};
   }
 
  private:
-  Extent remembered(std::map<std::int32_t, Extent>& known, std::int32_t number,
-                    double OutlinePoint::*along, double OutlinePoint::*across) const {
-    const auto found = known.find(number);
-    if (found != known.end()) return found->second;
-    return known[number] = extent_in(outline_, along, across, number * cell_ - reach_,
-                                     (number + 1.0) * cell_ + reach_);
-  }
-
-  std::span<const OutlinePoint> outline_;
   double cell_, reach_;
-  std::map<std::int32_t, Extent> rows_, columns_;
+  std::int64_t j_from_, k_from_;
+  std::vector<Extent> across_, up_;  ///< of the strip of each row, and of each column
 };
 
 using Depths = std::array<double, kSideCount>;
@@ -102,15 +112,24 @@ Size size_of(std::span<const OutlinePoint> outline) {
 /// equal ones the fewest. Left and right where nothing would be left on any sides.
 SideSet sides_for(std::span<const Depths> cells, const Size& load) {
   constexpr SideSet kLeftAndRight = 3;
+  std::array<Depths, kAllSides + 1> deepest{};
+  std::array<std::size_t, kAllSides + 1> nearest{};
+  for (const Depths& depths : cells) {
+    for (SideSet sides = 1; sides <= kAllSides; ++sides) {
+      // The set without its last side has been looked at already.
+      const auto last = static_cast<std::size_t>(std::bit_width(sides) - 1);
+      const SideSet others = sides ^ 1U << last;
+      const bool is_last = others == 0 || depths[last] < depths[nearest[others]];
+      nearest[sides] = is_last ? last : nearest[others];
+      double& most = deepest[sides][nearest[sides]];
+      most = std::max(most, depths[nearest[sides]]);
+    }
+  }
   SideSet best = kLeftAndRight;
   double least = std::numeric_limits<double>::infinity();
   for (SideSet sides = 1; sides <= kAllSides; ++sides) {
-    Depths deepest{};
-    for (const Depths& depths : cells) {
-      const std::size_t side = least_side(depths, sides);
-      deepest[side] = std::max(deepest[side], depths[side]);
-    }
-    const double across = deepest[0] + deepest[1], up = deepest[2] + deepest[3];
+    const Depths& of = deepest[sides];
+    const double across = of[0] + of[1], up = of[2] + of[3];
     if (across >= load.across || up >= load.up) continue;
     const double sum = across + up;
     if (sum > least || (sum == least && std::popcount(sides) >= std::popcount(best))) continue;
@@ -124,7 +143,7 @@ SideSet sides_for(std::span<const Depths> cells, const Size& load) {
 void add_cell(const SectionData& section, std::size_t i, double depth, SectionIntrusion& side) {
   const SectionCells& all = section.bin_cells;
   const double g = section.parameters.cell, y = all.j[i] * g, z = all.k[i] * g;
-  const double y_to = (all.j[i] + 1) * g, z_to = (all.k[i] + 1) * g;
+  const double y_to = (all.j[i] + 1.0) * g, z_to = (all.k[i] + 1.0) * g;
   if (side.cells == 0) {
     side.y_from = y;
     side.y_to = y_to;
@@ -145,7 +164,7 @@ void add_cell(const SectionData& section, std::size_t i, double depth, SectionIn
 /// The intrusions of cells of one bin, which are given by their indices.
 std::vector<SectionIntrusion> intrusions_of(const SectionData& section,
                                             std::span<const std::size_t> cells, const Size& load,
-                                            GivingWay& way) {
+                                            const GivingWay& way) {
   std::vector<Depths> depths;
   for (const std::size_t i : cells) {
     depths.push_back(way.depths(section.bin_cells.j[i], section.bin_cells.k[i]));
@@ -169,7 +188,7 @@ std::vector<SectionIntrusion> intrusions_of(const SectionData& section,
 void find_intrusions(const Section& section, std::span<const OutlinePoint> outline, double reach,
                      const std::vector<bool>& stops_load, std::vector<SectionStop>& stops) {
   const SectionCells& all = section.data().bin_cells;
-  GivingWay way(outline, section.data().parameters.cell, reach);
+  const GivingWay way(outline, lattice_of(section.data()), reach);
   std::vector<std::size_t> cells;
   std::size_t i = 0;
   for (SectionStop& stop : stops) {

@@ -78,9 +78,9 @@ function stretchCells(index) {
   const { transform } = byId("section-cells").attributes, bits = bitsOf(section.cells, index);
   const unknown = bitsOf(section.unknown, index);
   return make("g", { id: "section-stretch", "shape-rendering": "crispEdges", transform: transform.value },
-      unknown && make("path", { class: "unknown", fill: "url(#section-unknown)", d: pathOfCells(unknown) }),
+      unknown && make("path", { class: "unknown", fill: "url(#section_unknown)", d: pathOfCells(unknown) }),
       make("path", { fill: colourAt(stretchRange(index)[0]), d: pathOfCells(bits) }),
-      section.stops && make("path", { class: "stops", fill: "url(#section-stops)", d: pathOfCells(bits, section.stops) }));
+      section.stops && make("path", { class: "stops", fill: "url(#section_stops)", d: pathOfCells(bits, section.stops) }));
 }
 
 /** The deepest places of the intrusions of one stretch, with how deep they are. */

@@ -234,7 +234,7 @@ class SectionPageTest(unittest.TestCase):
                          "its margin, 0.1 m"):
             self.assertIn(expected, words)
         self.assertTrue(any(w.startswith("conflict ") for w in words))
-        outline = next(e for e in root.iter(f"{SVG}path") if e.get("class") == "section-outline")
+        outline = next(e for e in root.iter(f"{SVG}path") if e.get("class") == "section_outline")
         scale, left = float(root.get("data-scale")), float(root.get("data-left"))
         # y to the left: the corner at y = -1.3 is right of the one at y = 1.3.
         first, second = re.findall(r"[ML]([\d.]+)", outline.get("d"))[:2]
