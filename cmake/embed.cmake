@@ -1,5 +1,6 @@
 # Writes OUTPUT, a source that holds the page's files: the HTML, and the styles and scripts put
-# together in the order given. HTML; STYLES, SCRIPTS: lists joined by "|".
+# together in the order given. HTML, SECTION_HTML; STYLES, SCRIPTS, SECTION_SCRIPTS: lists joined
+# by "|".
 function(embed name files)
   set(bytes "")
   string(REPLACE "|" ";" files "${files}")
@@ -26,6 +27,8 @@ namespace clearway {
 embed(Html "${HTML}")
 embed(Style "${STYLES}")
 embed(Script "${SCRIPTS}")
+embed(SectionHtml "${SECTION_HTML}")
+embed(SectionScript "${SECTION_SCRIPTS}")
 file(WRITE ${OUTPUT} "${text}
 }  // namespace clearway
 ")

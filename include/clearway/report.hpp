@@ -10,9 +10,11 @@
 #include "clearway/body.hpp"
 #include "clearway/conflicts.hpp"
 #include "clearway/model.hpp"
+#include "clearway/outline.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/result.hpp"
+#include "clearway/section.hpp"
 #include "clearway/store.hpp"
 #include "clearway/trajectory.hpp"
 
@@ -49,6 +51,10 @@ struct ReportOptions {
   bool overwrite = false;
   /// Bodies of the search, for the result of a vehicle; then the model is empty.
   std::vector<Body> bodies = {};
+  /// A section of the same path through the same environment, which the page shows; or null. It
+  /// must outlive the call.
+  const Section* section = nullptr;
+  std::string section_name = {};  ///< name of its file; if empty, it is left out
 };
 
 struct ReportSummary {
@@ -67,5 +73,60 @@ struct ReportSummary {
 ReportSummary write_report(const Result& result, const Store& store, const Model& model,
                            const std::vector<Pose>& poses, const std::filesystem::path& output,
                            const ReportOptions& options = {});
+
+/// An obstacle that is known by a name, such as a conflict.
+struct NamedObstacle {
+  std::string name;
+  Box box{};  ///< around its points, in the environment's unit
+};
+
+/// Reads the conflicts of a CSV file that `clearway conflicts` wrote. They are called "conflict 1"
+/// and so on, or as a column `name` says that was added by hand. Throws InputError, which names the
+/// line.
+std::vector<NamedObstacle> read_obstacles(const std::filesystem::path& path);
+
+/// What is drawn and told of a section.
+struct SectionPicture {
+  /// The outline of a load, whose passing is judged and drawn, with the distance that it keeps; or
+  /// empty.
+  std::vector<OutlinePoint> outline = {};
+  double margin = 0;
+  SectionHeights heights = {};  ///< the bands of height whose widths are shown
+  /// Store and path of the section, both or none, which must outlive the call. With them the points
+  /// that stop the load are found.
+  const Store* store = nullptr;
+  const std::vector<Pose>* path = nullptr;
+  std::vector<NamedObstacle> obstacles = {};  ///< names for these points; needs store and path
+  std::string section_name = {}, outline_name = {};  ///< names of the files for the reader
+};
+
+struct SectionPageOptions : SectionPicture {
+  std::string title = {};  ///< if empty, made of the names
+  /// Texts for the head of the page, shown as they are; empty ones are left out.
+  std::string project = {}, client = {}, author = {};
+  std::string date = {};               ///< shown as it is
+  std::vector<Message> warnings = {};  ///< shown besides those of the section
+  bool overwrite = false;
+};
+
+struct SectionPageSummary {
+  std::optional<SectionCheck> check = {};  ///< none without an outline
+  std::string sentence = {};               ///< the answer in a sentence
+  std::uint64_t bytes = 0;                 ///< size of the page
+  std::string facts = {};                  ///< one JSON object with what the page says
+};
+
+/// Writes a page about a section as one self-contained HTML file: the answer, the picture of the
+/// cross-section, the widths along the path, and the places that stop a load. Throws InputError
+/// where store or path are not those of the section, where obstacles lie outside of the store, or
+/// where the store is damaged; UsageError as Section::check() and export_section() do, for
+/// obstacles without store and path, and for an existing output; ResourceError.
+SectionPageSummary write_section_page(const Section& section, const std::filesystem::path& output,
+                                      const SectionPageOptions& options = {});
+
+/// Writes the picture of a section, looking forward, as an SVG file. Throws as
+/// write_section_page() does.
+void write_section_picture(const Section& section, const std::filesystem::path& output,
+                           const SectionPicture& picture = {}, bool overwrite = false);
 
 }  // namespace clearway

@@ -10,11 +10,13 @@
 #include <vector>
 
 #include "clearway/box.hpp"
+#include "clearway/conflicts.hpp"
 #include "clearway/follow.hpp"
 #include "clearway/outline.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/store.hpp"
+#include "clearway/vec3.hpp"
 
 /// The section of a route: which cells of the cross-section are blocked for a load of a given
 /// length, from which pose on. It answers for every outline what is the largest load that passes.
@@ -147,12 +149,31 @@ enum class SectionVerdict { kPasses, kStopped, kUnknown };
 
 const char* name_of(SectionVerdict verdict);  ///< "passes", "stopped" or "unknown"
 
+/// What reaches into a load, or into its margin, from one side on one stretch of the path. The
+/// sides are those on which the load has to give way least, in sum, so that something of it is
+/// left; they are left and right where nothing would be left. Each cell that stops the load counts
+/// on that one of them where it reaches in least.
+struct SectionIntrusion {
+  Side side = Side::kUnknown;  ///< left, right, above or below, looking forward
+  /// How much narrower on this side, or lower, or higher from below, the load would have to be at
+  /// the place of the deepest cell. A load that gives way by the depths of all intrusions of a
+  /// stretch passes there; at the round corners of a margin less may be enough.
+  double depth = 0;
+  std::uint64_t cells = 0;             ///< cells that stop the load on this side
+  std::uint32_t first_pose = 0;        ///< the first pose of the bin that blocks the deepest cell
+  double chainage = 0;                 ///< of that pose
+  std::array<std::int32_t, 2> cell{};  ///< j, k of the deepest cell: the least k, then the least j
+  /// The rectangle around the cells.
+  double y_from = 0, y_to = 0, z_from = 0, z_to = 0;
+};
+
 /// A place that stops a load, or that is not known.
 struct SectionStop {
   std::uint32_t bin = 0;               ///< number of the bin
   std::uint32_t first_pose = 0;        ///< the first pose of the bin that stops the load
   double chainage = 0;                 ///< of that pose
   std::array<std::int32_t, 2> cell{};  ///< j, k: of that pose, the least k, and then the least j
+  std::vector<SectionIntrusion> intrusions = {};  ///< of the bin: left, right, above, below
 };
 
 struct SectionCheck {
@@ -201,6 +222,27 @@ class Section {
   SectionCells ever_unknown_;  ///< the cells that are not known in any bin, blocked before or not
   std::filesystem::path path_;
 };
+
+/// The point of the environment that blocks a cell.
+struct SectionWitness {
+  std::uint64_t source = 0;      ///< source index of the point
+  Vec3 xyz{};                    ///< its position
+  std::uint8_t point_class = 0;  ///< its class; 0 where the environment has no classes
+};
+
+/// A cell, and a pose of the path that blocks it.
+struct SectionPlace {
+  std::uint32_t pose = 0;
+  std::array<std::int32_t, 2> cell{};  ///< j, k
+};
+
+/// The point with the least source index that lies in each of these cells at its pose, found by a
+/// search of these poses over the store; none where no point does. store and path are those of the
+/// section. Throws InputError where they are not, or where the store is damaged.
+std::vector<std::optional<SectionWitness>> section_witnesses(const SectionData& section,
+                                                             const Store& store,
+                                                             const std::vector<Pose>& path,
+                                                             std::span<const SectionPlace> places);
 
 /// The tables of a section.
 enum class SectionTable {

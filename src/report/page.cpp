@@ -171,14 +171,17 @@ class PageFile {
   std::uint64_t bytes_ = 0;
 };
 
-void write_place(PageFile& file, std::string_view name, const std::string& title,
-                 const std::string& facts, const std::vector<PageColumn>& columns) {
-  if (name == "TITLE") file.write(markup_text(title));
+void write_place(PageFile& file, std::string_view name, PageKind kind, const PageContent& content) {
+  const bool is_report = kind == PageKind::kReport;
+  if (name == "TITLE") file.write(markup_text(content.title));
   if (name == "STYLE") file.write(page_parts::kStyle);
-  if (name == "SCRIPT") file.write(page_parts::kScript);
-  if (name == "FACTS") file.write(facts);
+  if (name == "SCRIPT") {
+    file.write(is_report ? page_parts::kScript : page_parts::kSectionScript);
+  }
+  if (name == "FACTS") file.write(content.facts);
+  if (name == "SECTION") file.write(content.section);
   if (name != "COLUMNS") return;
-  for (const PageColumn& column : columns) {
+  for (const PageColumn& column : content.columns) {
     file.write(R"(<script type="text/plain" data-column=")" + column.name + R"(">)");
     file.write(column.base64);
     file.write("</script>\n");
@@ -187,16 +190,16 @@ void write_place(PageFile& file, std::string_view name, const std::string& title
 
 }  // namespace
 
-std::uint64_t write_page(const std::filesystem::path& path, const std::string& title,
-                         const std::string& facts, const std::vector<PageColumn>& columns) {
+std::uint64_t write_page(const std::filesystem::path& path, PageKind kind,
+                         const PageContent& content) {
   PageFile file(path);
-  std::string_view rest = page_parts::kHtml;
+  std::string_view rest = kind == PageKind::kReport ? page_parts::kHtml : page_parts::kSectionHtml;
   constexpr std::string_view kOpen = "{{", kClose = "}}";
   while (true) {
     const std::size_t open = rest.find(kOpen), close = rest.find(kClose);
     if (open == std::string_view::npos) break;
     file.write(rest.substr(0, open));
-    write_place(file, rest.substr(open + 2, close - open - 2), title, facts, columns);
+    write_place(file, rest.substr(open + 2, close - open - 2), kind, content);
     rest.remove_prefix(close + kClose.size());
   }
   file.write(rest);

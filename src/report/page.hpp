@@ -59,15 +59,26 @@ void append_columns(const std::string& name, const std::vector<PagePoint>& point
 /// The files of src/report/page, which the build puts into the program.
 namespace clearway::page_parts {
 
-extern const std::string_view kHtml, kStyle, kScript;
+extern const std::string_view kHtml, kStyle, kScript, kSectionHtml, kSectionScript;
 
 }  // namespace clearway::page_parts
 
 namespace clearway {
 
-/// Writes the page: what the browser runs, the facts (JSON) and the columns. Returns the size of
-/// the page in bytes. Throws ResourceError.
-std::uint64_t write_page(const std::filesystem::path& path, const std::string& title,
-                         const std::string& facts, const std::vector<PageColumn>& columns);
+/// What a page is about, which decides on its parts.
+enum class PageKind { kReport, kSection };
+
+/// What is put into the parts of a page.
+struct PageContent {
+  std::string title;
+  std::string facts;    ///< JSON
+  std::string section;  ///< the picture of a section, an SVG element; or empty
+  std::vector<PageColumn> columns;
+};
+
+/// Writes the page: what the browser runs, and the content. Returns the size of the page in bytes.
+/// Throws ResourceError.
+std::uint64_t write_page(const std::filesystem::path& path, PageKind kind,
+                         const PageContent& content);
 
 }  // namespace clearway

@@ -22,73 +22,11 @@
 #include "io/result/result.hpp"
 #include "io/store/store_metadata.hpp"
 #include "io/store/store_reader.hpp"
+#include "report/facts_text.hpp"
 #include "report/shown_poses.hpp"
 
 namespace clearway {
 namespace {
-
-/// Writes JSON, one value after the other. "<" is escaped, so that the text may stand in a page.
-class JsonText {
- public:
-  JsonText& begin(char bracket) {
-    separate();
-    text_ += bracket;
-    first_ = true;
-    return *this;
-  }
-  JsonText& end(char bracket) {
-    text_ += bracket;
-    first_ = false;
-    return *this;
-  }
-  JsonText& key(std::string_view name) {
-    value(name);
-    text_ += ':';
-    first_ = true;  // no comma between a key and its value
-    return *this;
-  }
-  JsonText& value(std::string_view text) {
-    separate();
-    for (const char c : json_string(text)) {
-      if (c == '<') {
-        text_ += "\\u003c";
-      } else {
-        text_ += c;
-      }
-    }
-    return *this;
-  }
-  JsonText& value(const char* text) { return value(std::string_view(text)); }
-  JsonText& value(bool flag) { return raw(flag ? "true" : "false"); }
-  JsonText& value(std::unsigned_integral auto number) { return raw(std::to_string(number)); }
-  JsonText& value(double number) { return raw(std::isfinite(number) ? digits(number) : "null"); }
-  JsonText& value(const Vec3& p) { return begin('[').value(p.x).value(p.y).value(p.z).end(']'); }
-  template <typename Value>
-  JsonText& value(const std::optional<Value>& value_or_none) {
-    return value_or_none ? value(*value_or_none) : raw("null");
-  }
-  template <typename Value>
-  JsonText& field(std::string_view name, const Value& of) {
-    return key(name).value(of);
-  }
-  /// Appends a string that is already JSON.
-  JsonText& raw(std::string_view json) {
-    separate();
-    text_ += json;
-    return *this;
-  }
-
-  const std::string& text() const { return text_; }
-
- private:
-  static std::string digits(double number) { return format_number(number); }
-  void separate() {
-    if (!first_) text_ += ',';
-    first_ = false;
-  }
-  std::string text_;
-  bool first_ = true;
-};
 
 constexpr const char* kClassNames[] = {"hit", "near", "watch"};
 
@@ -549,6 +487,10 @@ std::string json_of(const ReportFacts& facts) {
   write_classes(json, facts);
   write_conflicts(json, facts);
   write_stations(json, facts);
+  if (facts.section != nullptr) {
+    json.key("section");
+    facts.section->write_facts(json);
+  }
   write_page_facts(json, facts);
   json.end('}');
   return json.text();

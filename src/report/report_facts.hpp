@@ -12,6 +12,7 @@
 #include "report/drawn_bodies.hpp"
 #include "report/environment_sample.hpp"
 #include "report/path_places.hpp"
+#include "report/section_view.hpp"
 #include "report/shown_points.hpp"
 
 namespace clearway {
@@ -43,6 +44,7 @@ struct ReportFacts {
   std::vector<UnsearchedStretch> unsearched;
   SearchedLength searched;
   const Conflicts* conflicts = nullptr;    ///< null where the result has no first poses
+  const SectionView* section = nullptr;    ///< null where none was given
   const StationTable* stations = nullptr;  ///< null where the result has no first poses
   double every = 0;                        ///< length of its stretches
   const UnseenGroups& unseen;              ///< empty where seen space was not asked for

@@ -26,6 +26,7 @@
 #include "report/page.hpp"
 #include "report/path_places.hpp"
 #include "report/report_facts.hpp"
+#include "report/section_view.hpp"
 #include "report/shown_points.hpp"
 #include "report/shown_poses.hpp"
 #include "search/checks/query_warnings.hpp"
@@ -55,6 +56,15 @@ void check_model(const Result& result, const Model& model, const ReportOptions& 
   check_hash(result, "model", hash_of_model(model), header.model_hash, Remedy::kSameModel);
 }
 
+/// Throws InputError where a section is that of another environment or path than the result's.
+void check_section(const ResultHeader& header, const SectionData& section) {
+  const bool same_store = section.environment_hash == header.environment_hash;
+  if (same_store && section.trajectory_hash == header.trajectory_hash) return;
+  throw InputError(std::string("the section was found for another ") +
+                       (same_store ? "trajectory" : "environment") + " than the result",
+                   same_store ? Remedy::kSameTrajectory : Remedy::kSameEnvironment);
+}
+
 /// Throws InputError where store, model or bodies, or poses are not those of the result.
 void check_report_inputs(const Result& result, const Store& store, const Model& model,
                          const std::vector<Pose>& poses, const ReportOptions& options) {
@@ -70,6 +80,7 @@ void check_report_inputs(const Result& result, const Store& store, const Model& 
   check_model(result, model, options);
   check_hash(result, "trajectory", hash_of_trajectory(poses), header.trajectory_hash,
              Remedy::kSameTrajectory);
+  if (options.section != nullptr) check_section(header, options.section->data());
 }
 
 constexpr std::size_t kMostModelPoints = 200'000;
@@ -160,7 +171,11 @@ class Report {
         bodies_(drawn_bodies(model, poses, options)),
         model_box_(box_around(bodies_)),
         path_(bodies_),
-        lattice_(lattice_for(page_box(path_), kStep)) {}
+        lattice_(lattice_for(page_box(path_), kStep)) {
+    if (options.section == nullptr) return;
+    picture_.section_name = options.section_name;
+    section_.emplace(*options.section, picture_);
+  }
 
   ReportSummary write(const std::filesystem::path& path) {
     ReportSummary summary;
@@ -176,11 +191,16 @@ class Report {
     environment_lattice_.origin = lattice_.origin;
     environment_ =
         sample_environment(store_, path_, environment_lattice_, options_.max_points, progress_);
-    std::vector<PageColumn> columns = make_columns(summary.conflicts);
-    summary.facts = facts(summary.conflicts);
+    PageContent content{.title = title(), .facts = {}, .section = {}, .columns = {}};
+    content.columns = make_columns(summary.conflicts);
+    if (section_) {
+      content.section = section_svg(*section_, false);
+      section_->add_columns(content.columns);
+    }
+    content.facts = summary.facts = facts(summary.conflicts);
     summary.verdict = answer_.verdict();
     summary.clear = summary.verdict == Verdict::kClear;
-    summary.bytes = write_page(path, title(), summary.facts, columns);
+    summary.bytes = write_page(path, PageKind::kReport, content);
     return summary;
   }
 
@@ -345,6 +365,7 @@ class Report {
          .unsearched = unsearched_stretches(poses_, options_.bodies),
          .searched = searched_length(poses_, options_.bodies),
          .conflicts = result_.parameters().first_pose ? &conflicts : nullptr,
+         .section = section_ ? &*section_ : nullptr,
          .stations = stations_ ? &*stations_ : nullptr,
          .every = every_,
          .unseen = unseen_,
@@ -380,6 +401,8 @@ class Report {
   std::optional<StationTable> stations_;
   double every_ = 0;
   UnseenGroups unseen_;
+  SectionPicture picture_;
+  std::optional<SectionView> section_;
   std::vector<double> chainage_;
   std::vector<std::uint32_t> shown_;
   std::size_t shown_model_points_ = 0;

@@ -92,6 +92,25 @@ void add_cells_of_bin(const SectionLattice& lattice, const std::uint32_t* firsts
   }
 }
 
+Body load_of_section(const std::vector<Pose>& path, const SectionParameters& parameters,
+                     std::vector<Message>* doubts) {
+  if (parameters.pivots && !path.empty()) {
+    return follow({"load", {}, {}, {}}, path, *parameters.pivots, doubts);
+  }
+  Body load;
+  load.poses = path;
+  load.path_pose.resize(path.size());
+  for (std::uint32_t i = 0; i < path.size(); ++i) load.path_pose[i] = i;
+  return load;
+}
+
+QueryParameters ignored_by(const SectionParameters& asked) {
+  QueryParameters query;
+  query.ignore_classes = asked.ignore_classes;
+  query.ignore_boxes = asked.ignore_boxes;
+  return query;
+}
+
 namespace {
 
 SectionParameters with_defaults(SectionParameters asked, double metre) {
@@ -122,14 +141,6 @@ void check_rigid(std::span<const Pose> poses) {
                      "; a section is measured in the frame of the load, so expected rotations "
                      "whose singular values are within 1e-4 of 1, and finite positions");
   }
-}
-
-/// The ignored points of a section as a query has them.
-QueryParameters ignored_by(const SectionParameters& asked) {
-  QueryParameters query;
-  query.ignore_classes = asked.ignore_classes;
-  query.ignore_boxes = asked.ignore_boxes;
-  return query;
 }
 
 /// One call of find_section(), step by step.
@@ -172,16 +183,10 @@ class Finder {
     for (const Message& told : options_.input_warnings) {
       if (told.severity == Message::Severity::kWarning) data_.warnings.push_back(told);
     }
-    if (data_.parameters.pivots && !path_.empty()) {
-      std::vector<Message> doubts;
-      load_ = follow({"load", {}, {}, {}}, path_, *data_.parameters.pivots, &doubts);
-      for (Message& doubt : doubts) log_.add(std::move(doubt));
-      check_rigid(load_.poses);
-    } else {
-      load_.poses = path_;
-      load_.path_pose.resize(path_.size());
-      for (std::uint32_t i = 0; i < path_.size(); ++i) load_.path_pose[i] = i;
-    }
+    std::vector<Message> doubts;
+    load_ = load_of_section(path_, data_.parameters, &doubts);
+    for (Message& doubt : doubts) log_.add(std::move(doubt));
+    if (data_.parameters.pivots) check_rigid(load_.poses);
     if (!data_.parameters.between_poses) return;
     for (std::size_t i = 1; i < load_.path_pose.size(); ++i) {
       if (load_.path_pose[i] == load_.path_pose[i - 1] + 1) continue;

@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "clearway/body.hpp"
+#include "clearway/query.hpp"
 #include "clearway/section.hpp"
 #include "core/cloud/packed_cloud.hpp"
 #include "core/query/ignored_points.hpp"
@@ -18,6 +20,14 @@ namespace clearway {
 void block_cells(const PackedCloud& cloud, const IgnoredPoints& ignored, const SectionPoses& poses,
                  const SectionLattice& lattice, double slack, int threads, SectionMaps& maps,
                  Progress& progress);
+
+/// The load of a section: its poses, and the poses of the path that they belong to, ascending.
+/// doubts: takes what is to be said of pivots that leave the path, unless it is null.
+Body load_of_section(const std::vector<Pose>& path, const SectionParameters& parameters,
+                     std::vector<Message>* doubts);
+
+/// The points that a section leaves out, as a query has them.
+QueryParameters ignored_by(const SectionParameters& asked);
 
 /// Adds the blocked cells of a bin, ascending by k and j. without: the firsts of another map, whose
 /// cells with the same first pose are left out; null for none.

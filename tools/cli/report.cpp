@@ -111,6 +111,7 @@ void check_model_or_vehicle(const ReportCommand& options) {
   if (options.model.empty() && options.vehicle.empty()) throw CLI::RequiredError("--model");
   std::vector<std::filesystem::path> inputs{options.result, options.environment, options.model,
                                             options.trajectory};
+  if (!options.section.empty()) inputs.push_back(options.section);
   if (!options.vehicle.empty()) inputs = vehicle_inputs(options.vehicle, std::move(inputs));
   refuse_overwriting(options.output, inputs);
   if (options.vehicle.empty()) check_is_model(options.model);
@@ -130,6 +131,10 @@ void add_report_inputs(CLI::App& command, ReportCommand& options) {
   command.add_option("--trajectory", options.trajectory, kTrajectoryHelp)
       ->type_name("FILE")
       ->required();
+  command
+      .add_option("--section", options.section,
+                  "Section of clearway section find on the same path, to be shown on the page, too")
+      ->type_name("FILE");
   command.add_option("-o,--output", options.output, "The page, an HTML file")
       ->type_name("FILE")
       ->required();
@@ -198,6 +203,12 @@ ReportSummary perform(ReportCommand& options) {
   options.report.conflicts = options.find;
   const Query query = read_query_again(options, result, store);
   name_files(options);
+  std::optional<Section> section;
+  if (!options.section.empty()) {
+    section.emplace(options.section);
+    options.report.section = &*section;
+    options.report.section_name = file_name(options.section);
+  }
   ReportSummary summary =
       write_report(result, store, query.model, query.poses, options.output, options.report);
   log_summary(options, summary, result);

@@ -16,6 +16,7 @@
 #include "clearway/trajectory.hpp"
 #include "cli/commands.hpp"
 #include "cli/input_roles.hpp"
+#include "cli/section_inputs.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/ignored_options.hpp"
 #include "cli/support/lengths.hpp"
@@ -25,7 +26,7 @@
 #include "cli/support/trajectory_options.hpp"
 #include "core/util/format.hpp"
 #include "io/files/pending_file.hpp"
-#include "io/scans/length_unit.hpp"
+#include "report/section_words.hpp"
 #include "search/threads.hpp"
 
 namespace clearway::tool {
@@ -220,26 +221,22 @@ void add_find(CLI::App& section) {
       [options] { run_stoppable(options->output, kStartsAgain, [&] { run_find(*options); }); });
 }
 
-/// Converts the lengths that were given with a unit into the unit of a section, and returns the
-/// metres of that unit; 1, and a warning where a length names a unit, where it is not known.
-double convert_for(const LengthOptions& lengths, const Section& section,
-                   const std::filesystem::path& file) {
-  const LengthUnit unit = length_unit_of(section.data().length_unit);
-  if (unit == LengthUnit::kUnknown) {
-    return lengths.convert_for(file.string(), section.data().crs_wkt);
-  }
-  const double metres = unit == LengthUnit::kDegrees ? 1 : metres_of(unit);
-  lengths.convert(metres);
-  return metres;
-}
-
 struct CheckCommand {
-  std::filesystem::path section, outline;
-  OutlineOptions how;
-  double margin = 0;
+  std::filesystem::path section;
+  LoadInput load;
+  SiteInput site;
   LengthOptions lengths;
   bool json = false;
 };
+
+using Witnesses = std::vector<std::optional<SectionWitness>>;
+
+ordered_json witness_json(const std::optional<SectionWitness>& witness) {
+  if (!witness) return nullptr;
+  return {{"source", witness->source},
+          {"xyz", {witness->xyz.x, witness->xyz.y, witness->xyz.z}},
+          {"class", witness->point_class}};
+}
 
 ordered_json stop_json(const SectionStop& stop) {
   return {{"bin", stop.bin},
@@ -248,10 +245,12 @@ ordered_json stop_json(const SectionStop& stop) {
           {"cell", stop.cell}};
 }
 
-ordered_json json_of(const SectionCheck& check, const Section& section,
+/// witnesses: of each stop, or empty where nobody asked for them.
+ordered_json json_of(const SectionCheck& check, const Witnesses& witnesses, const Section& section,
                      const CheckCommand& options) {
-  ordered_json out = program_json({{"section", options.section}, {"outline", options.outline}});
-  out["margin"] = options.margin;
+  ordered_json out =
+      program_json({{"section", options.section}, {"outline", options.load.outline}});
+  out["margin"] = options.load.margin;
   out["verdict"] = name_of(check.verdict);
   out["reason"] = check.reason.empty() ? ordered_json(nullptr) : ordered_json(check.reason);
   out["first_pose"] = out["chainage"] = out["cell"] = nullptr;
@@ -260,8 +259,14 @@ ordered_json json_of(const SectionCheck& check, const Section& section,
     out["chainage"] = check.stop->chainage;
     out["cell"] = check.stop->cell;
   }
+  if (options.site.is_given()) {
+    out["witness"] = witnesses.empty() ? ordered_json(nullptr) : witness_json(witnesses.front());
+  }
   auto stops = ordered_json::array();
-  for (const SectionStop& stop : check.stops) stops.push_back(stop_json(stop));
+  for (std::size_t i = 0; i < check.stops.size(); ++i) {
+    stops.push_back(stop_json(check.stops[i]));
+    if (!witnesses.empty()) stops.back()["witness"] = witness_json(witnesses[i]);
+  }
   out["stops"] = std::move(stops);
   if (section.data().unknown) {
     auto unknowns = ordered_json::array();
@@ -272,76 +277,31 @@ ordered_json json_of(const SectionCheck& check, const Section& section,
   return out;
 }
 
-/// Where a cell is, such as "1.24 m to the left at a height of 3.1 m".
-std::string place_text(const SectionStop& stop, double cell, const std::string& unit) {
-  const bool left = stop.cell[0] >= 0;
-  const double j = stop.cell[0];
-  const double aside = cell * (left ? j : -j - 1);
-  return fmt::format("{} {} to the {} at a height of {} {}", format_brief(aside), unit,
-                     left ? "left" : "right", format_brief(cell * stop.cell[1]), unit);
+/// The points that stop the load first in each stretch; empty without store and path.
+Witnesses witnesses_of(const SectionCheck& check, const Section& section, SiteInput& site) {
+  if (!site.is_given()) return {};
+  site.read();
+  std::vector<SectionPlace> places;
+  for (const SectionStop& stop : check.stops) places.push_back({stop.first_pose, stop.cell});
+  return section_witnesses(section.data(), *site.store, site.path, places);
 }
 
-/// On how much of the path the load was looked at.
-std::string extent_text(const SectionData& section) {
-  if (section.load_poses == section.poses) return "everywhere on the path";
-  return "at " + format_count(section.load_poses) + " of " + counted(section.poses, "pose") +
-         " of the path, as its pivots are off the path at the others";
-}
-
-std::string sentence_of(const SectionCheck& check, const Section& section,
-                        const CheckCommand& options) {
-  const std::string unit = symbol_of_unit(section.data().length_unit);
-  const std::size_t warned = section.data().warnings.size();
-  const std::string doubts = warned == 0 ? "" : ". The section has " + counted(warned, "warning");
-  const std::string margin =
-      options.margin > 0 ? " with a margin of " + format_brief(options.margin) + " " + unit : "";
-  switch (check.verdict) {
-    case SectionVerdict::kPasses:
-      return "passes: the load passes " + extent_text(section.data()) + margin + doubts;
-    case SectionVerdict::kStopped:
-      return fmt::format(
-          "stopped: the load is stopped{} at pose {}, {} {} along the path, {}, and "
-          "in {} in all{}",
-          margin, check.stop->first_pose, format_brief(check.stop->chainage), unit,
-          place_text(*check.stop, section.data().parameters.cell, unit),
-          counted(check.stops.size(), "stretch", "stretches"), doubts);
-    case SectionVerdict::kUnknown:
-      break;
-  }
-  return "unknown: " + check.reason + doubts;
-}
-
-/// The outline in the unit of the section, which has so many metres. Where no unit is named, the
-/// file is in that unit.
-std::vector<OutlinePoint> read_load(const CheckCommand& options, const Section& section,
-                                    double metres) {
-  std::vector<OutlinePoint> outline = read_outline(options.outline, {.mirror = options.how.mirror});
-  const FileUnit& unit = options.how.unit;
-  if (!unit.is_known()) return outline;
-  if (length_unit_of(section.data().length_unit) == LengthUnit::kUnknown &&
-      (is_foot(unit.metres()) || unit.metres() == kMetresPerInch)) {
-    spdlog::warn("{}", unit_assumed_text("corners of the outline", unit.metres()));
-  }
-  const UnitFactor factor(unit.metres_in(metres), metres);
-  for (OutlinePoint& p : outline) p = {factor(p.y), factor(p.z)};
-  return outline;
-}
-
-int run_check(const CheckCommand& options) {
+int run_check(CheckCommand& options) {
   const Section section(options.section);
   const double metres = convert_for(options.lengths, section, options.section);
-  const std::vector<OutlinePoint> outline = read_load(options, section, metres);
+  const std::vector<OutlinePoint> outline = read_load(options.load, section, metres);
   SectionCheck check;
   try {
-    check = section.check(outline, options.margin);
+    check = section.check(outline, options.load.margin);
   } catch (const UsageError& error) {
-    throw UsageError(options.outline.string() + ": " + error.what());
+    throw UsageError(options.load.outline.string() + ": " + error.what());
   }
+  const Witnesses witnesses = witnesses_of(check, section, options.site);
   for (const Message& warning : section.data().warnings) log_message(warning);
-  const std::string sentence = sentence_of(check, section, options);
+  const std::string sentence = verdict_sentence(check, section.data(), options.load.margin);
   if (options.json) {
     spdlog::info("{}", sentence);
-    print(text_of_json(json_of(check, section, options)));
+    print(text_of_json(json_of(check, witnesses, section, options)));
   } else {
     print(sentence + "\n");
   }
@@ -357,18 +317,8 @@ void add_section_check(CLI::App& section, int& exit_code) {
   command->add_option("SECTION", options->section, "Section of clearway section find")
       ->type_name("FILE")
       ->required();
-  command
-      ->add_option("--outline", options->outline,
-                   "The outline of the load as text: y,z of each corner in a line, or with "
-                   "--mirror height,half_width")
-      ->type_name("FILE")
-      ->required();
-  options->lengths.add(*command, "--margin", options->margin,
-                       "Distance to keep on all sides; at most that of the section (default: 0)",
-                       LengthRange::kFromZero);
-  command->add_flag("--mirror", options->how.mirror,
-                    "The file has height,half_width of the one half of a symmetric outline");
-  add_model_unit(*command, "--unit", options->how.unit);
+  add_load_options(*command, options->load, options->lengths)->required();
+  add_site_options(*command, options->site, options->lengths);
   command->add_flag("--json", options->json, "Print one JSON object");
   command->footer(
       "Exit code 0: the load passes.\n"
@@ -462,6 +412,7 @@ void add_section(CLI::App& program, int& exit_code) {
   add_find(*command);
   add_section_check(*command, exit_code);
   add_export_of_section(*command);
+  add_section_report(*command);
 }
 
 }  // namespace clearway::tool

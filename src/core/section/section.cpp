@@ -8,6 +8,7 @@
 
 #include "clearway/answer.hpp"
 #include "clearway/error.hpp"
+#include "core/section/section_intrusions.hpp"
 #include "core/section/section_lattice.hpp"
 #include "core/section/section_map.hpp"
 #include "core/util/format.hpp"
@@ -252,8 +253,9 @@ std::vector<bool> needed(const SectionCells& cells, double g, const Load& load, 
   return near;
 }
 
-/// Index of a cell among those of the whole path, which have all cells of the bins.
-std::size_t index_of(const SectionCells& cells, std::int32_t j, std::int32_t k) {
+}  // namespace
+
+std::size_t index_of_cell(const SectionCells& cells, std::int32_t j, std::int32_t k) {
   std::size_t first = 0, end = cells.size();
   while (end - first > 1) {
     const std::size_t middle = first + (end - first) / 2;
@@ -263,6 +265,8 @@ std::size_t index_of(const SectionCells& cells, std::int32_t j, std::int32_t k) 
   return first;
 }
 
+namespace {
+
 /// The first place in each bin at which a load needs a cell. all: cells of the bins. cells: those
 /// of the whole path. near: whether the load needs them.
 std::vector<SectionStop> first_places(const SectionCells& all, const SectionCells& cells,
@@ -270,7 +274,7 @@ std::vector<SectionStop> first_places(const SectionCells& all, const SectionCell
                                       const std::vector<double>& chainage) {
   std::vector<SectionStop> places;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (!near[index_of(cells, all.j[i], all.k[i])]) continue;
+    if (!near[index_of_cell(cells, all.j[i], all.k[i])]) continue;
     if (places.empty() || places.back().bin != all.bin[i]) {
       places.push_back({all.bin[i], kNotBlocked, 0, {}});
     }
@@ -283,6 +287,18 @@ std::vector<SectionStop> first_places(const SectionCells& all, const SectionCell
 }
 
 }  // namespace
+
+double reach_of(const SectionFacts& section, double margin) {
+  return (section.motion ? margin + (*section.motion)[1] / 2 : margin) + section.rounding;
+}
+
+std::vector<bool> stopping_cells(const Section& section, std::span<const OutlinePoint> outline,
+                                 double margin) {
+  check_margin(margin);
+  outline_model(outline, 0, 1);  // refuses what is no outline
+  return needed(section.cells(), section.data().parameters.cell, Load(outline),
+                  reach_of(section.data(), margin));
+}
 
 Section::Section(SectionData data) : data_(std::move(data)), cells_(data_.cells()) {
   if (!data_.unknown) return;
@@ -297,20 +313,18 @@ SectionGrid Section::grid() const {
 }
 
 SectionCheck Section::check(std::span<const OutlinePoint> outline, double margin) const {
-  check_margin(margin);
-  outline_model(outline, 0, 1);  // refuses what is no outline
+  const std::vector<bool> stops = stopping_cells(*this, outline, margin);
   const Load load(outline);
   const double g = data_.parameters.cell;
-  const double grown = data_.motion ? margin + (*data_.motion)[1] / 2 : margin;
-  const double reach = grown + data_.rounding;
+  const double reach = reach_of(data_, margin);
   SectionCheck check;
-  check.stops =
-      first_places(data_.bin_cells, cells_, needed(cells_, g, load, reach), data_.chainage);
+  check.stops = first_places(data_.bin_cells, cells_, stops, data_.chainage);
   if (data_.unknown) {
     check.unknowns = first_places(*data_.unknown, ever_unknown_,
                                   needed(ever_unknown_, g, load, reach), data_.chainage);
   }
   if (!check.stops.empty()) {
+    find_intrusions(*this, outline, reach, stops, check.stops);
     check.verdict = SectionVerdict::kStopped;
     check.stop = check.stops.front();
     return check;

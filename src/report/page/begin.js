@@ -55,7 +55,7 @@ const byId = (id) => document.getElementById(id);
 
 /** An element. attributes: on... are listeners, others as they are; children: nodes or texts. */
 function make(tag, attributes = {}, ...children) {
-  const svg = ["svg", "g", "path", "line", "rect", "text", "circle", "polygon", "pattern", "defs"];
+  const svg = ["svg", "g", "path", "line", "rect", "text", "circle", "polygon", "pattern", "defs", "image", "clipPath"];
   const element = svg.includes(tag) ? document.createElementNS("http://www.w3.org/2000/svg", tag)
                                     : document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {

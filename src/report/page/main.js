@@ -3,13 +3,13 @@ async function start() {
     throw new Error("This browser is too old for this page: it needs DecompressionStream " +
                     "(Chromium 80, Firefox 113, Safari 16.4, or later).");
   }
-  await readAll();
+  await Promise.all([readAll(), readSection()]);
   page.path = [];
   for (let i = 0; i < page.poses.count; ++i) page.path.push(page.bodyPoses ? poseAt(i).t : vehicleAt(i).middle);
   page.enclosed = isEnclosed();
   page.vehicleSize = sizeOfVehicle();
   for (const build of [buildVerdict, buildProfile, buildPlan, buildTable, buildDetails, buildUnseen,
-                       buildStations, buildView, buildPrint]) {
+                       buildStations, buildSection, buildView, buildPrint]) {
     build();
   }
   const least = page.facts.least_distance;

@@ -43,17 +43,6 @@ function stretchStart(from, span) {
   return profileStart() + clamp(from - profileStart(), 0, profileLength() - span);
 }
 
-/** Values at round steps from a to b. */
-function ticks(a, b, most) {
-  const step = [1, 2, 5, 10].map((f) => f * 10 ** Math.floor(Math.log10((b - a) / most)))
-      .find((s) => (b - a) / s <= most) ?? (b - a);
-  const out = [];
-  for (let k = Math.ceil(a / step - 1e-9); k * step <= b + 1e-9 * step; ++k) {
-    out.push(+(k * step).toPrecision(12));
-  }
-  return out;
-}
-
 /**
  * The line of the profile as pieces: for each pixel column the least and the greatest. Poses where
  * nothing was found leave a gap.

@@ -1,25 +1,5 @@
 const kVerdictWords = { clear: "Clear", conflict: "Conflict", undecided: "Undecided" };
 
-function doubtSymbol() {
-  return make("svg", { viewBox: "0 0 64 64", class: "sign", "aria-hidden": "true" },
-              make("polygon", { points: "32,4 62,58 2,58", fill: "currentColor" }),
-              make("path", { d: "M32 22 V41 M32 47 V52", stroke: "#fff", "stroke-width": 6 }));
-}
-
-function verdictSymbol(verdict) {
-  if (verdict === "undecided") return doubtSymbol();
-  return verdict === "clear"
-      ? make("svg", { viewBox: "0 0 64 64", class: "sign", "aria-hidden": "true" },
-             make("circle", { cx: 32, cy: 32, r: 30, fill: "currentColor" }),
-             make("path", { d: "M17 33 L28 44 L48 21", fill: "none", stroke: "#fff",
-                            "stroke-width": 7, "stroke-linecap": "round" }))
-      : make("svg", { viewBox: "0 0 64 64", class: "sign", "aria-hidden": "true" },
-             make("polygon", { points: "20,2 44,2 62,20 62,44 44,62 20,62 2,44 2,20",
-                               fill: "currentColor" }),
-             make("path", { d: "M21 21 L43 43 M43 21 L21 43", stroke: "#fff", "stroke-width": 7,
-                            "stroke-linecap": "round" }));
-}
-
 function tile(value, label, action) {
   const content = [make("strong", {}, value), make("span", {}, label, action ?
       make("span", { class: "on-screen" }, ". Show it") : null)];

@@ -42,8 +42,9 @@ const StepOptions kConflictsOptions{
 // --show is about conflicts, which check prints.
 const StepOptions kStationsOptions{
     {"--output", "--forward", "--up", "--show", "--force", "--json", "--help"}};
+// A section of a store that check is about to make cannot be there.
 const StepOptions kReportOptions{
-    {"--env", "--output", "--forward", "--up", "--force", "--json", "--help"}};
+    {"--env", "--output", "--section", "--forward", "--up", "--force", "--json", "--help"}};
 
 Words operator+(Words a, const Words& b) {
   a.insert(a.end(), b.begin(), b.end());

@@ -1,0 +1,219 @@
+// The cross-section of the route: the picture of the whole path or of one stretch, and the room at the cursor.
+
+/** What the page knows of the section, and what is shown of it. */
+const section = {
+  facts: page.facts.section ?? null,
+  chainage: null,             // of each pose of the path
+  first: null,                // first pose of each blocked cell of the whole path, row by row
+  whole: null, stops: null,   // bits of the window's cells
+  cells: null, unknown: null, // the same for each stretch, one after the other
+  left: null, right: null, leftPose: null, rightPose: null,  // for each stretch and, last, the whole path: bands
+  chosen: null,               // which of the stretches is shown: an index, or null for the whole path
+  shown: undefined,           // the same with what the pointer is over
+  band: 0,                    // the band of height that the cursor is in
+};
+
+async function readSection() {
+  if (!section.facts) return;
+  const integers = async (name) => integersOf(await columnBytes(`section.${name}`));
+  const millimetres = await integers("chainage");
+  section.chainage = Float64Array.from(millimetres ?? [], (at) => at / 1000);
+  [section.first, section.left, section.right, section.leftPose, section.rightPose] = await Promise.all(
+      ["first", "left", "right", "left_pose", "right_pose"].map(integers));
+  [section.whole, section.stops, section.cells, section.unknown] = await Promise.all(
+      ["whole", "stops", "cells", "unknown"].map((name) => columnBytes(`section.${name}`)));
+}
+
+const sectionBins = () => section.facts.bins;
+const bytesOfWindow = () => section.facts.columns * section.facts.rows + 7 >> 3;
+const isSet = (bits, i) => bits[i >> 3] >> (i & 7) & 1;
+
+/** The bits of one stretch. */
+const bitsOf = (bits, index) => bits && bits.subarray(index * bytesOfWindow(), (index + 1) * bytesOfWindow());
+
+/** From where to where a stretch reaches along the path. */
+function stretchRange(index) {
+  const { bin, length } = section.facts, from = sectionBins()[index] * bin;
+  return [from, Math.min(from + bin, Math.max(length, from))];
+}
+
+const rangeWords = ([from, to], digits = 2) => `${from.toFixed(digits)} – ${to.toFixed(digits)} ${unitSymbol}`;
+
+/** The cells that are set as a path, in cells from the window's corner; both: only where this is set, too. */
+function pathOfCells(bits, both) {
+  const { columns, rows } = section.facts, parts = [];
+  for (let row = 0; row < rows; ++row) {
+    const first = row * columns;
+    for (let column = 0; column < columns; ++column) {
+      if ((first + column & 7) === 0 && column + 8 <= columns && bits[first + column >> 3] === 0) {
+        column += 7;
+        continue;
+      }
+      const begin = column;
+      while (column < columns && isSet(bits, first + column) && (!both || isSet(both, first + column))) ++column;
+      if (column > begin) parts.push(`M${begin} ${row}h${column - begin}v1h-${column - begin}z`);
+    }
+  }
+  return parts.join("");
+}
+
+/** The colour of a place of the path. */
+function colourAt(chainage) {
+  const { colours, length } = section.facts;
+  return colours[length > 0 ? clamp(Math.floor(chainage / length * colours.length), 0, colours.length - 1) : 0];
+}
+
+/** Pixels of the picture from places of the section, and back. */
+function sectionScale() {
+  const { left, top, scale } = byId("section-svg").dataset, { columns, rows, cell, j_from, k_from } = section.facts;
+  const x0 = +left, y0 = +top, s = +scale;
+  return {
+    x: (y) => x0 + (j_from + columns - y / cell) * s, y: (z) => y0 + (k_from + rows - z / cell) * s,
+    left: x0, right: x0 + columns * s, top: y0, bottom: y0 + rows * s,
+    place: (x, y) => [(j_from + columns - (x - x0) / s) * cell, (k_from + rows - (y - y0) / s) * cell],
+  };
+}
+
+function stretchCells(index) {
+  const { transform } = byId("section-cells").attributes, bits = bitsOf(section.cells, index);
+  const unknown = bitsOf(section.unknown, index);
+  return make("g", { id: "section-stretch", "shape-rendering": "crispEdges", transform: transform.value },
+      unknown && make("path", { class: "unknown", fill: "url(#section_unknown)", d: pathOfCells(unknown) }),
+      make("path", { fill: colourAt(stretchRange(index)[0]), d: pathOfCells(bits) }),
+      section.stops && make("path", { class: "stops", fill: "url(#section_stops)", d: pathOfCells(bits, section.stops) }));
+}
+
+/** The deepest places of the intrusions of one stretch, with how deep they are. */
+function stretchMarks(index) {
+  const stop = stopOfStretch(index), scale = sectionScale(), { cell } = section.facts;
+  return make("g", { id: "section-stretch-marks" }, (stop?.intrusions ?? []).map((intrusion) => {
+    const x = scale.x((intrusion.cell[0] + 0.5) * cell), y = scale.y((intrusion.cell[1] + 0.5) * cell);
+    const label = `${intrusion.depth.toFixed(2)} ${unitSymbol}${intrusion.obstacle ? `, ${intrusion.obstacle}` : ""}`;
+    const right = x < (scale.left + scale.right) / 2;
+    return [make("circle", { cx: x, cy: y, r: 4, fill: "#fff", stroke: "#111827", "stroke-width": 2 }),
+            make("text", { x: x + (right ? 9 : -9), y: y - 7, class: `strong halo ${right ? "" : "end"}` }, label)];
+  }));
+}
+
+const stopOfStretch = (index) => section.facts.check?.stops.find((stop) => stop.bin === sectionBins()[index]);
+
+/** Shows a stretch, or with null the whole path, in the picture. */
+function drawStretch(index) {
+  if (index === section.shown) return;
+  section.shown = index;
+  for (const id of ["section-stretch", "section-stretch-marks"]) byId(id)?.remove();
+  const whole = index === null || !section.cells;
+  byId("section-cells").style.display = whole ? "" : "none";
+  byId("section-marks").style.display = whole ? "" : "none";
+  if (!whole) {
+    byId("section-cells").after(stretchCells(index));
+    byId("section-marks").after(stretchMarks(index));
+  }
+  byId("section-title").textContent = pictureTitle(index);
+  byId("section-whole").disabled = section.chosen === null;
+  drawRoom();
+}
+
+function pictureTitle(index) {
+  if (index === null) return "The whole path: a cell shows where on the path it is blocked first.";
+  if (!section.cells) return "The section is so large that the page has the picture of the whole path alone.";
+  const stop = stopOfStretch(index), range = `Chainage ${rangeWords(stretchRange(index))}`;
+  if (!section.facts.check) return `${range}.`;
+  return stop ? `${range}: stops the load. ${stop.remedy}.` : `${range}: nothing stops the load here.`;
+}
+
+function chooseStretch(index) {
+  section.chosen = index;
+  drawStretch(index);
+  tell("stretch");
+}
+
+/** Widths in a band: {left, right, width} in lengths or null where open, and the poses that block. */
+function roomAt(index, band) {
+  const { bands, cell, kept } = section.facts, at = (index ?? sectionBins().length) * bands.length + band;
+  const length = (cells) => cells < 0 ? null : cells * cell;
+  const left = length(section.left[at]), right = length(section.right[at]);
+  const least = Math.min(left ?? Infinity, right ?? Infinity);
+  return { left, right, width: least === Infinity ? null : Math.max(0, 2 * least - 2 * kept),
+           leftPose: section.leftPose[at], rightPose: section.rightPose[at] };
+}
+
+const poseWords = (pose) => `pose ${count(pose)} at chainage ${station(section.chainage[pose])}`;
+
+function sideRoom(name, room, pose) {
+  return room === null ? `${name} open up to the window` : `${name} ${metres(room, 2)} (${poseWords(pose)})`;
+}
+
+function roomWords(index, band) {
+  const { left, right, width, leftPose, rightPose } = roomAt(index, band), { z_from, z_to } = section.facts.bands[band];
+  const where = index === null ? "Whole path" : `Chainage ${rangeWords(stretchRange(index))}`;
+  const wide = width === null ? "width open" : `width ${metres(width, 2)}`;
+  return `${where}, z = ${z_from.toFixed(2)} – ${z_to.toFixed(2)} ${unitSymbol}: ` +
+      `${sideRoom("left", left, leftPose)}, ${sideRoom("right", right, rightPose)}, ${wide}`;
+}
+
+/** The line in the picture with the widths to both sides at the cursor's height. */
+function drawRoom() {
+  byId("section-room")?.remove();
+  const scale = sectionScale(), { z_from, z_to } = section.facts.bands[section.band];
+  const { left, right } = roomAt(section.shown ?? null, section.band);
+  const y = scale.y((z_from + z_to) / 2), x1 = left === null ? scale.left : scale.x(left);
+  const x2 = right === null ? scale.right : scale.x(-right), x0 = scale.x(0);
+  const words = (x, room) => make("text", { x, y: y - 6, class: "middle strong halo" },
+                                  room === null ? "open" : `${room.toFixed(2)} ${unitSymbol}`);
+  const end = (x) => make("line", { x1: x, x2: x, y1: y - 6, y2: y + 6, stroke: "#00735c", "stroke-width": 2.5 });
+  byId("section-svg").append(make("g", { id: "section-room", "pointer-events": "none" },
+      make("line", { x1, x2, y1: y, y2: y, stroke: "#fff", "stroke-width": 5, "stroke-opacity": 0.8 }),
+      make("line", { x1, x2, y1: y, y2: y, stroke: "#00735c", "stroke-width": 2 }), end(x1), end(x2),
+      words(Math.min(x0 - 26, (x0 + x1) / 2), left), words(Math.max(x0 + 26, (x0 + x2) / 2), right)));
+  byId("section-readout").textContent = `${roomWords(section.shown ?? null, section.band)}.`;
+}
+
+/** The first pose that blocks a cell of the whole path; null where nothing does. */
+function firstPoseAt(i) {
+  if (!isSet(section.whole, i)) return null;
+  let before = 0;
+  for (let byte = 0; byte < i >> 3; ++byte) for (let b = section.whole[byte]; b; b &= b - 1) ++before;
+  for (let at = i & ~7; at < i; ++at) before += isSet(section.whole, at);
+  return section.first[before];
+}
+
+/** What is in the cell under the pointer, and the widths at its height. */
+function readPicture(event) {
+  const svg = byId("section-svg"), box = svg.getBoundingClientRect(), view = svg.viewBox.baseVal;
+  const [y, z] = sectionScale().place((event.clientX - box.left) * view.width / box.width,
+                                      (event.clientY - box.top) * view.height / box.height);
+  const { cell, j_from, k_from, columns, rows, bands } = section.facts;
+  const column = Math.floor(y / cell) - j_from, row = Math.floor(z / cell) - k_from;
+  if (column < 0 || row < 0 || column >= columns || row >= rows) return;
+  const band = bands.findIndex((b) => z >= b.z_from && z < b.z_to);
+  if (band >= 0) section.band = band;
+  drawRoom();
+  const i = row * columns + column, shown = section.shown ?? null;
+  const blocked = isSet(shown === null || !section.cells ? section.whole : bitsOf(section.cells, shown), i);
+  const unknown = section.unknown && shown !== null && isSet(bitsOf(section.unknown, shown), i);
+  const what = blocked ? `blocked${shown === null ? ` first by ${poseWords(firstPoseAt(i))}` : ""}`
+      : unknown ? "not known" : "no point";
+  byId("section-readout").textContent += ` Here y = ${signed(y)}, z = ${signed(z)}: ${what}.`;
+  tell("stretch");
+}
+
+function buildSection() {
+  if (!section.facts) {
+    byId("section")?.remove();
+    document.querySelector('nav a[href="#section"]')?.remove();
+    return;
+  }
+  if (byId("section-sentence")) byId("section-sentence").textContent = `${capital(section.facts.sentence)}.`;
+  byId("section-caution").textContent = `${section.facts.caution}. Looking forward, left is left.`;
+  byId("section-tools").append(
+      button("Whole path", () => chooseStretch(null), { id: "section-whole" }), ...mapTools(),
+      make("span", { class: "hint" }, "Click the map to see a stretch. Arrow keys move the cursor, Escape shows the whole path."));
+  section.band = Math.max(0, section.facts.bands.findIndex((b) => b.z_to > 1));
+  drawMap();
+  drawStretch(null);
+  byId("section-svg").addEventListener("pointermove", readPicture);
+  on("stretch", placeMapCursor);
+}
+
+const capital = (text) => text ? text[0].toUpperCase() + text.slice(1) : text;

@@ -1,0 +1,32 @@
+// Signs beside a verdict, and the steps of axes, which several parts of a page draw.
+
+function doubtSymbol() {
+  return make("svg", { viewBox: "0 0 64 64", class: "sign", "aria-hidden": "true" },
+              make("polygon", { points: "32,4 62,58 2,58", fill: "currentColor" }),
+              make("path", { d: "M32 22 V41 M32 47 V52", stroke: "#fff", "stroke-width": 6 }));
+}
+
+function verdictSymbol(verdict) {
+  if (verdict === "undecided") return doubtSymbol();
+  return verdict === "clear"
+      ? make("svg", { viewBox: "0 0 64 64", class: "sign", "aria-hidden": "true" },
+             make("circle", { cx: 32, cy: 32, r: 30, fill: "currentColor" }),
+             make("path", { d: "M17 33 L28 44 L48 21", fill: "none", stroke: "#fff",
+                            "stroke-width": 7, "stroke-linecap": "round" }))
+      : make("svg", { viewBox: "0 0 64 64", class: "sign", "aria-hidden": "true" },
+             make("polygon", { points: "20,2 44,2 62,20 62,44 44,62 20,62 2,44 2,20",
+                               fill: "currentColor" }),
+             make("path", { d: "M21 21 L43 43 M43 21 L21 43", stroke: "#fff", "stroke-width": 7,
+                            "stroke-linecap": "round" }));
+}
+
+/** Values at round steps from a to b. */
+function ticks(a, b, most) {
+  const step = [1, 2, 5, 10].map((f) => f * 10 ** Math.floor(Math.log10((b - a) / most)))
+      .find((s) => (b - a) / s <= most) ?? (b - a);
+  const out = [];
+  for (let k = Math.ceil(a / step - 1e-9); k * step <= b + 1e-9 * step; ++k) {
+    out.push(+(k * step).toPrecision(12));
+  }
+  return out;
+}

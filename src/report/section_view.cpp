@@ -1,0 +1,435 @@
+#include "report/section_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <span>
+
+#include "clearway/error.hpp"
+#include "core/section/section_intrusions.hpp"
+#include "core/util/format.hpp"
+#include "io/files/xxh64.hpp"
+#include "io/store/store_metadata.hpp"
+#include "report/section_words.hpp"
+#include "search/section.hpp"
+
+namespace clearway {
+namespace {
+
+/// The most bits of cells of stretches that a page takes: 16 MB before they are packed.
+constexpr double kMostCellBits = 128e6;
+/// The most widths of bands in stretches that a page takes.
+constexpr double kMostWidths = 2e6;
+/// How many of a stretch's cells are looked at for names of obstacles, besides the deepest.
+constexpr std::size_t kLooksPerStretch = 24;
+
+void check_obstacles(const SectionPicture& picture) {
+  if (picture.obstacles.empty()) return;
+  if (picture.store == nullptr || picture.path == nullptr) {
+    throw UsageError(
+        "names of obstacles need the store and the path of the section, because they "
+        "belong to points");
+  }
+  const Box all = picture.store->box();
+  const double slack =
+      picture.store->metres_per_unit() > 0 ? 0.01 / picture.store->metres_per_unit() : 0.01;
+  for (const NamedObstacle& obstacle : picture.obstacles) {
+    const Box box = obstacle.box;
+    bool inside = true;
+    for (int k = 0; k < 3; ++k) {
+      inside = inside && box.lo[k] >= all.lo[k] - slack && box.hi[k] <= all.hi[k] + slack;
+    }
+    if (inside) continue;
+    throw InputError("the obstacle \"" + obstacle.name +
+                         "\" lies outside of the environment, so the conflicts are those of "
+                         "another one",
+                     Remedy::kSameEnvironment);
+  }
+}
+
+double volume(const Box& box) {
+  return (box.hi.x - box.lo.x) * (box.hi.y - box.lo.y) * (box.hi.z - box.lo.z);
+}
+
+/// The name of the smallest obstacle around a point; empty where there is none.
+std::string name_at(const Vec3& point, std::span<const NamedObstacle> obstacles, double slack) {
+  const NamedObstacle* best = nullptr;
+  for (const NamedObstacle& obstacle : obstacles) {
+    if (!obstacle.box.grown(slack).contains(point)) continue;
+    if (best == nullptr || volume(obstacle.box) < volume(best->box)) best = &obstacle;
+  }
+  return best == nullptr ? "" : best->name;
+}
+
+}  // namespace
+
+SectionView::SectionView(const Section& section, const SectionPicture& picture)
+    : section_(section), picture_(picture), lattice_(lattice_of(section.data())) {
+  check_obstacles(picture);
+  bands_ = section_bands(section, picture.heights);
+  stretches_ = section_stations(section, picture.heights);
+  const double widths = static_cast<double>(stretches_.size()) * static_cast<double>(bands_.size());
+  if (widths > kMostWidths) {
+    throw UsageError("widths of " + counted(bands_.size(), "band") + " in " +
+                     counted(stretches_.size(), "stretch", "stretches") +
+                     " are too many for a page; expected bands that are higher");
+  }
+  if (picture.outline.empty()) return;
+  check_ = section.check(picture.outline, picture.margin);
+  stopping_ = stopping_cells(section, picture.outline, picture.margin);
+  for (const SectionStop& stop : check_->stops) {
+    ShownStop shown{.stop = stop};
+    for (const SectionIntrusion& intrusion : stop.intrusions)
+      shown.intrusions.push_back({intrusion});
+    stops_.push_back(std::move(shown));
+  }
+  if (picture.store != nullptr && picture.path != nullptr) find_obstacles();
+}
+
+void SectionView::find_obstacles() {
+  const SectionData& data = section_.data();
+  const SectionCells& all = data.bin_cells;
+  std::vector<SectionPlace> places;
+  std::vector<std::size_t> stop_of;
+  std::size_t i = 0;
+  for (std::size_t s = 0; s < stops_.size(); ++s) {
+    for (const ShownIntrusion& shown : stops_[s].intrusions) {
+      places.push_back({shown.intrusion.first_pose, shown.intrusion.cell});
+    }
+    stop_of.resize(places.size(), s);
+    if (picture_.obstacles.empty()) continue;
+    std::vector<std::size_t> cells;
+    while (i < all.size() && all.bin[i] < stops_[s].stop.bin) ++i;
+    for (; i < all.size() && all.bin[i] == stops_[s].stop.bin; ++i) {
+      if (stopping_[index_of_cell(section_.cells(), all.j[i], all.k[i])]) cells.push_back(i);
+    }
+    const std::size_t looks = std::min(kLooksPerStretch, cells.size());
+    for (std::size_t look = 0; look < looks; ++look) {
+      const std::size_t cell = cells[look * cells.size() / looks];
+      places.push_back({all.first_pose[cell], {all.j[cell], all.k[cell]}});
+    }
+    stop_of.resize(places.size(), s);
+  }
+  const auto witnesses = section_witnesses(data, *picture_.store, *picture_.path, places);
+  const double slack = 0.01 / picture_.store->metres_per_unit();
+  std::size_t next = 0;
+  for (std::size_t s = 0; s < stops_.size(); ++s) {
+    std::map<std::string, int> names;
+    const auto named = [&](const std::optional<SectionWitness>& witness) {
+      const std::string name =
+          witness ? name_at(witness->xyz, picture_.obstacles, slack) : std::string();
+      if (!name.empty()) ++names[name];
+      return name;
+    };
+    for (ShownIntrusion& shown : stops_[s].intrusions) {
+      shown.witness = witnesses[next++];
+      shown.obstacle = named(shown.witness);
+    }
+    for (; next < places.size() && stop_of[next] == s; ++next) named(witnesses[next]);
+    for (const auto& [name, times] : names) stops_[s].obstacles.push_back(name);
+    std::ranges::stable_sort(stops_[s].obstacles,
+                             [&](const auto& a, const auto& b) { return names[a] > names[b]; });
+  }
+}
+
+std::string SectionView::unit() const { return section_unit(section_.data()); }
+
+std::string SectionView::sentence() const {
+  if (check_) return verdict_sentence(*check_, section_.data(), picture_.margin);
+  return widths_sentence(section_, picture_.heights);
+}
+
+const SectionCells& SectionView::not_known() const {
+  static const SectionCells none;
+  return section_.data().unknown ? *section_.data().unknown : none;
+}
+
+std::string SectionView::caution() const {
+  const bool some = not_known().size() > 0;
+  return some ? "Hatched cells are not known, because no beam crossed them. White cells have no "
+                "point and were crossed by a beam somewhere"
+              : "White says that no point is there. Whether a scanner looked there is not known: "
+                "cells above its view, behind other objects, or between sparse points look free";
+}
+
+namespace {
+
+const char* words_of(Side side) {
+  switch (side) {
+    case Side::kLeft:
+      return "on the left";
+    case Side::kRight:
+      return "on the right";
+    case Side::kAbove:
+      return "above";
+    default:
+      return "below";
+  }
+}
+
+/// The border up to which everything has to be cleared for the load: a y on the left and right, a z
+/// above and below.
+double cleared_to(const SectionIntrusion& intrusion, double cell) {
+  const double j = intrusion.cell[0], k = intrusion.cell[1];
+  switch (intrusion.side) {
+    case Side::kLeft:
+      return j * cell + intrusion.depth;
+    case Side::kRight:
+      return (j + 1) * cell - intrusion.depth;
+    case Side::kAbove:
+      return k * cell + intrusion.depth;
+    default:
+      return (k + 1) * cell - intrusion.depth;
+  }
+}
+
+/// Two digits, rounded away from zero, so that what is cleared is enough.
+std::string outwards(double value) {
+  const double hundredths = std::ceil(std::abs(value) * 100 - 1e-6);
+  std::string digits = std::to_string(static_cast<long long>(hundredths));
+  while (digits.size() < 3) digits.insert(digits.begin(), '0');
+  digits.insert(digits.size() - 2, ".");
+  return (value < 0 && hundredths > 0 ? "-" : "") + digits;
+}
+
+/// How wide, or for what comes from above or below how high, an outline is.
+double size_across(std::span<const OutlinePoint> outline, Side side) {
+  const auto axis =
+      side == Side::kLeft || side == Side::kRight ? &OutlinePoint::y : &OutlinePoint::z;
+  const auto [least, most] = std::ranges::minmax(outline, {}, axis);
+  return most.*axis - least.*axis;
+}
+
+/// gives_way: whether a load that is smaller by the depth is told of, too.
+std::string remedy_of(const SectionIntrusion& in, double cell, const std::string& unit,
+                      bool gives_way) {
+  const std::string to = outwards(cleared_to(in, cell)) + " " + unit;
+  const std::string depth = outwards(in.depth) + " " + unit;
+  const std::string heights =
+      " between z = " + format_brief(in.z_from) + " and " + format_brief(in.z_to) + " " + unit;
+  switch (in.side) {
+    case Side::kLeft:
+    case Side::kRight:
+      return "clear " + std::string(words_of(in.side)) + " to y = " + to + heights +
+             (gives_way ? ", or make the load " + depth + " narrower there" : "");
+    case Side::kAbove:
+      return "clear up to z = " + to + (gives_way ? ", or make the load " + depth + " lower" : "");
+    default:
+      return "clear down to z = " + to +
+             (gives_way ? ", or begin the load " + depth + " higher" : "");
+  }
+}
+
+}  // namespace
+
+std::string SectionView::remedy(const ShownStop& stop) const {
+  std::string out;
+  for (const ShownIntrusion& shown : stop.intrusions) {
+    if (!out.empty()) out += "; and ";
+    const SectionIntrusion& in = shown.intrusion;
+    const bool gives_way = in.depth < size_across(picture_.outline, in.side) / 2;
+    out += remedy_of(in, lattice_.cell, unit(), gives_way);
+  }
+  if (!out.empty()) out[0] = static_cast<char>(out[0] - 'a' + 'A');
+  return out;
+}
+
+bool SectionView::has_cells_of_bins() const {
+  return static_cast<double>(lattice_.cells()) * static_cast<double>(stretches_.size()) <=
+         kMostCellBits;
+}
+
+namespace {
+
+void write_cell(JsonText& json, const std::array<std::int32_t, 2>& cell) {
+  json.key("cell").begin('[').value(double{0} + cell[0]).value(double{0} + cell[1]).end(']');
+}
+
+void write_witness(JsonText& json, const std::optional<SectionWitness>& witness) {
+  json.key("witness");
+  if (!witness) {
+    json.raw("null");
+    return;
+  }
+  json.begin('{').field("source", witness->source).field("xyz", witness->xyz);
+  json.field("class", std::uint64_t{witness->point_class});
+  json.field("class_name", class_name(witness->point_class)).end('}');
+}
+
+void write_intrusion(JsonText& json, const ShownIntrusion& shown, double cell) {
+  const SectionIntrusion& in = shown.intrusion;
+  json.begin('{').field("side", name_of(in.side)).field("depth", in.depth);
+  json.field("clear_to", cleared_to(in, cell)).field("cells", in.cells);
+  json.field("first_pose", std::uint64_t{in.first_pose}).field("chainage", in.chainage);
+  write_cell(json, in.cell);
+  json.field("y_from", in.y_from).field("y_to", in.y_to);
+  json.field("z_from", in.z_from).field("z_to", in.z_to);
+  json.field("obstacle", shown.obstacle);
+  write_witness(json, shown.witness);
+  json.end('}');
+}
+
+void write_band(JsonText& json, const SectionData& data, const SectionBand& band) {
+  const auto width = [](const std::optional<HalfWidth>& half) -> std::optional<double> {
+    return half ? std::optional(half->width) : std::nullopt;
+  };
+  json.begin('{').field("z_from", band.z_from).field("z_to", band.z_to);
+  json.field("left", width(band.left)).field("right", width(band.right));
+  json.field("symmetric_width", symmetric_width(data, band)).end('}');
+}
+
+}  // namespace
+
+void SectionView::write_question(JsonText& json) const {
+  const SectionData& data = section_.data();
+  const SectionParameters& asked = data.parameters;
+  json.field("rear", asked.rear).field("front", asked.front).field("cell", asked.cell);
+  json.field("bin", asked.bin).field("margin", asked.margin);
+  json.field("between_poses", asked.between_poses).key("pivots");
+  if (asked.pivots) {
+    json.begin('[').value(asked.pivots->front).value(asked.pivots->rear).end(']');
+  } else {
+    json.raw("null");
+  }
+  json.field("rounding", data.rounding).field("kept", kept_beside(data));
+  json.field("points", data.environment_points).field("ignored_points", data.ignored_points);
+  json.field("ignored", ignored_text(ignored_by(asked)));
+  json.field("poses", data.poses).field("load_poses", data.load_poses);
+  json.field("length", data.chainage.empty() ? 0.0 : data.chainage.back());
+  json.field("environment_hash", hash_text(data.environment_hash));
+  json.field("trajectory_hash", hash_text(data.trajectory_hash));
+}
+
+void SectionView::write_check(JsonText& json) const {
+  json.key("check");
+  if (!check_) {
+    json.raw("null");
+    return;
+  }
+  json.begin('{').field("verdict", name_of(check_->verdict)).field("reason", check_->reason);
+  json.field("outline_name", picture_.outline_name).field("margin", picture_.margin);
+  json.key("outline").begin('[');
+  for (const OutlinePoint& p : picture_.outline) {
+    json.begin('[').value(p.y).value(p.z).end(']');
+  }
+  json.end(']').key("stops").begin('[');
+  for (const ShownStop& shown : stops_) {
+    json.begin('{').field("bin", std::uint64_t{shown.stop.bin});
+    json.field("first_pose", std::uint64_t{shown.stop.first_pose});
+    json.field("chainage", shown.stop.chainage);
+    write_cell(json, shown.stop.cell);
+    json.field("remedy", remedy(shown)).key("obstacles").begin('[');
+    for (const std::string& name : shown.obstacles) json.value(name);
+    json.end(']').key("intrusions").begin('[');
+    for (const ShownIntrusion& in : shown.intrusions) write_intrusion(json, in, lattice_.cell);
+    json.end(']').end('}');
+  }
+  json.end(']').end('}');
+}
+
+void SectionView::write_facts(JsonText& json) const {
+  json.begin('{').field("name", picture_.section_name).field("sentence", sentence());
+  json.field("caution", caution());
+  write_question(json);
+  json.field("columns", std::uint64_t{lattice_.columns})
+      .field("rows", std::uint64_t{lattice_.rows});
+  json.field("j_from", lattice_.j_from).field("k_from", lattice_.k_from);
+  json.key("colours").begin('[');
+  for (const char* colour : kSectionColours) json.value(colour);
+  json.end(']');
+  json.field("blocked", std::uint64_t{section_.cells().size()});
+  json.field("not_known", std::uint64_t{not_known().size()});
+  json.field("has_cells_of_bins", has_cells_of_bins());
+  json.key("bins").begin('[');
+  for (const std::uint32_t bin : section_.data().bins) json.value(std::uint64_t{bin});
+  json.end(']').key("bands").begin('[');
+  for (const SectionBand& band : bands_) write_band(json, section_.data(), band);
+  json.end(']').key("boxes").begin('[');
+  for (const SectionBand& box : section_boxes(section_, picture_.heights)) {
+    write_band(json, section_.data(), box);
+  }
+  json.end(']');
+  write_check(json);
+  json.end('}');
+}
+
+namespace {
+
+/// Bits in bytes, the first in the lowest bit.
+std::string packed(const CellBits& bits) {
+  std::string out((bits.size() + 7) / 8, '\0');
+  for (std::size_t i = 0; i < bits.size(); ++i) {
+    if (bits[i]) out[i / 8] = static_cast<char>(out[i / 8] | 1 << i % 8);
+  }
+  return out;
+}
+
+void add_integers(const std::string& name, const std::vector<std::int32_t>& values,
+                  std::vector<PageColumn>& columns) {
+  columns.push_back({name, deflated_base64(delta_planes(values))});
+}
+
+/// Widths in cells, or -1 where a side is open, and their poses.
+void add_widths(const std::string& side, std::optional<HalfWidth> SectionBand::*half,
+                const std::vector<const std::vector<SectionBand>*>& rows, double cell,
+                std::vector<PageColumn>& columns) {
+  std::vector<std::int32_t> widths, poses;
+  for (const std::vector<SectionBand>* bands : rows) {
+    for (const SectionBand& band : *bands) {
+      const std::optional<HalfWidth>& of = band.*half;
+      widths.push_back(of ? static_cast<std::int32_t>(std::round(of->width / cell)) : -1);
+      poses.push_back(of ? static_cast<std::int32_t>(of->first_pose) : -1);
+    }
+  }
+  add_integers("section." + side, widths, columns);
+  add_integers("section." + side + "_pose", poses, columns);
+}
+
+}  // namespace
+
+void SectionView::add_columns(std::vector<PageColumn>& columns) const {
+  const SectionData& data = section_.data();
+  const SectionCells& all = data.bin_cells;
+  const std::uint64_t cells = lattice_.cells();
+  const auto place = [&](std::int32_t j, std::int32_t k) {
+    return static_cast<std::uint64_t>(k - lattice_.k_from) * lattice_.columns +
+           static_cast<std::uint64_t>(j - lattice_.j_from);
+  };
+  std::vector<std::int32_t> millimetres, firsts;
+  for (const double at : data.chainage) {
+    millimetres.push_back(static_cast<std::int32_t>(std::min(std::round(at * 1000), 0x1p31 - 1)));
+  }
+  add_integers("section.chainage", millimetres, columns);
+  CellBits whole(cells), stops(cells);
+  for (std::size_t i = 0; i < section_.cells().size(); ++i) {
+    const std::uint64_t at = place(section_.cells().j[i], section_.cells().k[i]);
+    whole[at] = true;
+    if (!stopping_.empty() && stopping_[i]) stops[at] = true;
+    firsts.push_back(static_cast<std::int32_t>(section_.cells().first_pose[i]));
+  }
+  columns.push_back({"section.whole", deflated_base64(packed(whole))});
+  add_integers("section.first", firsts, columns);
+  if (check_) columns.push_back({"section.stops", deflated_base64(packed(stops))});
+  std::vector<const std::vector<SectionBand>*> rows;
+  for (const SectionStretch& stretch : stretches_) rows.push_back(&stretch.bands);
+  rows.push_back(&bands_);
+  add_widths("left", &SectionBand::left, rows, lattice_.cell, columns);
+  add_widths("right", &SectionBand::right, rows, lattice_.cell, columns);
+  if (!has_cells_of_bins()) return;
+  const auto bits_of_bins = [&](const SectionCells& of) {
+    std::string bytes;
+    std::size_t i = 0;
+    for (const std::uint32_t bin : data.bins) {
+      CellBits bits(cells);
+      while (i < of.size() && of.bin[i] < bin) ++i;
+      for (; i < of.size() && of.bin[i] == bin; ++i) bits[place(of.j[i], of.k[i])] = true;
+      bytes += packed(bits);
+    }
+    return deflated_base64(bytes);
+  };
+  columns.push_back({"section.cells", bits_of_bins(all)});
+  if (not_known().size() > 0) columns.push_back({"section.unknown", bits_of_bins(not_known())});
+}
+
+}  // namespace clearway

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clearway/report.hpp"
+#include "clearway/section.hpp"
+#include "core/section/section_lattice.hpp"
+#include "core/section/section_tables.hpp"
+#include "report/facts_text.hpp"
+#include "report/page.hpp"
+
+/// What pages and pictures show of a section.
+namespace clearway {
+
+/// A bit for each cell of the window, row by row from below and from the least j.
+using CellBits = std::vector<bool>;
+
+/// An intrusion with what is known of the obstacle.
+struct ShownIntrusion {
+  SectionIntrusion intrusion;
+  std::optional<SectionWitness> witness = {};
+  std::string obstacle = {};  ///< its name; empty where it has none
+};
+
+struct ShownStop {
+  SectionStop stop;
+  std::vector<ShownIntrusion> intrusions = {};
+  std::vector<std::string> obstacles = {};  ///< names of all that are known to stop the load here
+};
+
+/// All that is drawn and told of a section.
+class SectionView {
+ public:
+  /// section and picture outlive this object. Throws as Section::check(), section_bands() and
+  /// section_witnesses(), and UsageError where obstacles are given without store and path.
+  SectionView(const Section& section, const SectionPicture& picture);
+
+  const Section& section() const { return section_; }
+  const SectionPicture& picture() const { return picture_; }
+  const SectionLattice& lattice() const { return lattice_; }
+  std::string unit() const;  ///< symbol of the unit of lengths
+  const std::optional<SectionCheck>& check() const { return check_; }
+  const std::vector<ShownStop>& stops() const { return stops_; }
+  /// Whether each cell of the whole path, in its order, stops the load; empty without an outline.
+  const std::vector<bool>& stopping() const { return stopping_; }
+  const std::vector<SectionBand>& bands() const { return bands_; }
+  const std::vector<SectionStretch>& stretches() const { return stretches_; }
+
+  /// The cells of each bin that are not known, because no beam crossed them.
+  const SectionCells& not_known() const;
+
+  /// The answer in a sentence.
+  std::string sentence() const;
+  /// What the picture does not tell, in a sentence.
+  std::string caution() const;
+  /// What would let the load pass on a stretch, as a sentence.
+  std::string remedy(const ShownStop& stop) const;
+
+  /// Chainage at which a bin begins.
+  double chainage_of_bin(double number) const { return number * section_.data().parameters.bin; }
+
+  /// Writes the object "section" of the facts.
+  void write_facts(JsonText& json) const;
+  /// The columns that the page draws from. docs/design/report.md describes them.
+  void add_columns(std::vector<PageColumn>& columns) const;
+  /// Whether the page has the cells of each stretch, which it lacks where they would be too many.
+  bool has_cells_of_bins() const;
+
+ private:
+  void find_obstacles();
+  void write_question(JsonText& json) const;
+  void write_check(JsonText& json) const;
+  std::string sentence_of_widths() const;
+
+  const Section& section_;
+  const SectionPicture& picture_;
+  SectionLattice lattice_;
+  std::optional<SectionCheck> check_;
+  std::vector<bool> stopping_;
+  std::vector<ShownStop> stops_;
+  std::vector<SectionBand> bands_;
+  std::vector<SectionStretch> stretches_;
+};
+
+/// The picture as an SVG element: cells, axes, outline with its margin, marks. whole: with title,
+/// legend and the list of the places that stop the load, for a file of its own; otherwise for a
+/// page, which has these beside it.
+std::string section_svg(const SectionView& view, bool whole);
+
+/// Colours of the cells, each for a part of the path, from dark to light, so that grey tells them
+/// apart, too.
+inline constexpr std::array kSectionColours{"#0b2545", "#1f4e79", "#2f7f8c",
+                                            "#62a87c", "#a9c46c", "#e0cf62"};
+
+}  // namespace clearway

@@ -1,0 +1,138 @@
+#include "report/section_words.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "core/section/section_tables.hpp"
+#include "core/util/format.hpp"
+#include "io/scans/length_unit.hpp"
+
+namespace clearway {
+
+std::string section_unit(const SectionFacts& section) {
+  const LengthUnit unit = length_unit_of(section.length_unit);
+  return symbol_of(unit == LengthUnit::kDegrees ? LengthUnit::kMetre : unit);
+}
+
+std::string cell_words(const std::array<std::int32_t, 2>& cell, const SectionFacts& section) {
+  const std::string unit = section_unit(section);
+  const bool left = cell[0] >= 0;
+  const double j = cell[0], g = section.parameters.cell;
+  return format_brief(g * (left ? j : -j - 1)) + " " + unit + " to the " +
+         (left ? "left" : "right") + " at a height of " + format_brief(g * cell[1]) + " " + unit;
+}
+
+namespace {
+
+/// On how much of the path the load was looked at.
+std::string extent_words(const SectionData& section) {
+  if (section.load_poses == section.poses) return "everywhere on the path";
+  return "at " + format_count(section.load_poses) + " of " + counted(section.poses, "pose") +
+         " of the path, as its pivots are off the path at the others";
+}
+
+}  // namespace
+
+std::string verdict_sentence(const SectionCheck& check, const SectionData& section, double margin) {
+  const std::string unit = section_unit(section);
+  const std::size_t warned = section.warnings.size();
+  const std::string doubts = warned == 0 ? "" : ". The section has " + counted(warned, "warning");
+  const std::string kept =
+      margin > 0 ? " with a margin of " + format_brief(margin) + " " + unit : "";
+  switch (check.verdict) {
+    case SectionVerdict::kPasses:
+      return "passes: the load passes " + extent_words(section) + kept + doubts;
+    case SectionVerdict::kStopped:
+      return "stopped: the load is stopped" + kept + " at pose " +
+             std::to_string(check.stop->first_pose) + ", " + format_brief(check.stop->chainage) +
+             " " + unit + " along the path, " + cell_words(check.stop->cell, section) +
+             ", and in " + counted(check.stops.size(), "stretch", "stretches") + " in all" + doubts;
+    case SectionVerdict::kUnknown:
+      break;
+  }
+  return "unknown: " + check.reason + doubts;
+}
+
+namespace {
+
+/// A load that stands on the base: its height and, unless both sides are open, its width.
+struct BoxLoad {
+  double height;
+  std::optional<double> width;
+};
+
+std::string box_words(const BoxLoad& box, const SectionData& section) {
+  const std::string unit = section_unit(section);
+  const std::string wide =
+      box.width ? format_brief(*box.width) + " " + unit + " wide" : "as wide as the window";
+  return wide + " and " + format_brief(box.height) + " " + unit + " high";
+}
+
+/// Where a band is blocked in the very middle.
+std::string first_stop_words(const SectionData& data, const SectionBand& band) {
+  const auto& side =
+      band.left && (!band.right || band.left->width <= band.right->width) ? band.left : band.right;
+  return "first at pose " + std::to_string(side->first_pose) + ", " +
+         format_brief(data.chainage[side->first_pose]) + " " + section_unit(data) +
+         " along the path";
+}
+
+/// The lowest heights at which the middle is free everywhere.
+std::string free_heights_words(const Section& section, const SectionHeights& heights) {
+  const SectionData& data = section.data();
+  const std::string unit = section_unit(data);
+  std::optional<double> from, to, width;
+  for (const SectionBand& band : section_bands(section, heights)) {
+    const auto here = symmetric_width(data, band);
+    if (here && *here == 0) {
+      if (from) break;
+      continue;
+    }
+    if (!from) from = band.z_from;
+    to = band.z_to;
+    if (here && (!width || *here < *width)) width = here;
+  }
+  if (!from) return "The middle is blocked at every height of the window";
+  return "The middle is free from z = " + format_brief(*from) + " to " + format_brief(*to) + " " +
+         unit + ", for a load " +
+         (width ? format_brief(*width) + " " + unit + " wide" : "as wide as the window");
+}
+
+}  // namespace
+
+std::string widths_sentence(const Section& section, const SectionHeights& heights) {
+  const SectionData& data = section.data();
+  const std::string unit = section_unit(data);
+  const std::vector<SectionBand> boxes = section_boxes(section, heights);
+  const double base = boxes[0].z_from;
+  std::vector<BoxLoad> loads;  // the highest of each width
+  for (const SectionBand& box : boxes) {
+    const auto width = symmetric_width(data, box);
+    if (width && *width == 0) break;
+    if (!loads.empty() && loads.back().width == width) {
+      loads.back().height = box.z_to - base;
+    } else {
+      loads.push_back({box.z_to - base, width});
+    }
+  }
+  const std::string stands = "a load that stands at z = " + format_brief(base) + " " + unit;
+  if (loads.empty()) {
+    return "nothing passes: " + stands + " is stopped in the very middle, " +
+           first_stop_words(data, boxes[0]) + ". " + free_heights_words(section, heights);
+  }
+  const auto area = [&](const BoxLoad& box) {
+    const SectionWindow& window = *data.parameters.window;
+    return box.height * box.width.value_or(2 * std::min(window.y_to, -window.y_from));
+  };
+  const auto largest = std::ranges::max_element(loads, {}, area);
+  std::string out = "the largest box: " + stands + " may be " + box_words(*largest, data);
+  if (largest != loads.begin()) out += "; or " + box_words(loads.front(), data);
+  if (largest + 1 != loads.end()) out += "; or " + box_words(loads.back(), data);
+  const bool to_the_top = loads.back().height == boxes.back().z_to - base;
+  out += to_the_top ? ". Heights end with the window"
+                    : ". Higher loads are stopped in the very middle";
+  const std::size_t warned = data.warnings.size();
+  return warned == 0 ? out : out + ". The section has " + counted(warned, "warning");
+}
+
+}  // namespace clearway

@@ -1,0 +1,68 @@
+#include <span>
+#include <string>
+
+#include "clearway/report.hpp"
+#include "io/files/file.hpp"
+#include "io/files/pending_file.hpp"
+#include "report/section_view.hpp"
+
+namespace clearway {
+namespace {
+
+std::string title_of(const SectionPageOptions& options) {
+  if (!options.title.empty()) return options.title;
+  const std::string name = options.section_name.empty() ? "the route" : options.section_name;
+  return options.outline_name.empty() ? "Section of " + name : options.outline_name + " in " + name;
+}
+
+void write_warnings(JsonText& json, const SectionView& view, const SectionPageOptions& options) {
+  json.key("warnings").begin('[');
+  const auto write = [&](const std::string& code, const std::string& text) {
+    json.begin('{').field("code", code).field("message", text).end('}');
+  };
+  for (const Message& warning : view.section().data().warnings) write(warning.code, warning.text);
+  for (const Message& warning : options.warnings) {
+    if (warning.severity == Message::Severity::kWarning) write(warning.code, warning.text);
+  }
+  json.end(']');
+}
+
+}  // namespace
+
+SectionPageSummary write_section_page(const Section& section, const std::filesystem::path& output,
+                                      const SectionPageOptions& options) {
+  PendingFile file(output, options.overwrite);
+  const SectionView view(section, options);
+  JsonText json;
+  const std::string title = title_of(options);
+  json.begin('{').field("clearway", CLEARWAY_VERSION).field("title", title);
+  json.field("project", options.project).field("client", options.client);
+  json.field("author", options.author).field("date", options.date);
+  json.field("unit", section.data().length_unit);
+  write_warnings(json, view, options);
+  json.key("section");
+  view.write_facts(json);
+  json.end('}');
+  SectionPageSummary summary{.check = view.check(), .sentence = view.sentence()};
+  summary.facts = json.text();
+  PageContent content{
+      .title = title, .facts = summary.facts, .section = section_svg(view, false), .columns = {}};
+  view.add_columns(content.columns);
+  summary.bytes = write_page(file.partial(), PageKind::kSection, content);
+  file.publish();
+  return summary;
+}
+
+void write_section_picture(const Section& section, const std::filesystem::path& output,
+                           const SectionPicture& picture, bool overwrite) {
+  PendingFile pending(output, overwrite);
+  {
+    const SectionView view(section, picture);
+    const std::string svg =
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + section_svg(view, true);
+    File::create(pending.partial()).write(std::as_bytes(std::span(svg)));
+  }
+  pending.publish();
+}
+
+}  // namespace clearway
