@@ -13,6 +13,7 @@
 #include "clearway/pose.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/result.hpp"
+#include "clearway/shift.hpp"
 #include "clearway/store.hpp"
 #include "clearway/trajectory.hpp"
 
@@ -47,6 +48,9 @@ struct ReportOptions {
   /// search need not be among them, because they are found again from store, model and poses.
   std::vector<Message> warnings = {};
   bool overwrite = false;
+  /// Shifts that free the path and its conflicts, by find_shifts() for conflicts that were found
+  /// with the options of `conflicts`; the page tells them.
+  std::optional<ShiftTable> shifts = {};
   /// Bodies of the search, for the result of a vehicle; then the model is empty.
   std::vector<Body> bodies = {};
 };

@@ -17,6 +17,7 @@
 #include "io/files/pending_file.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/result/answer.hpp"
+#include "io/result/conflicts/shift_file.hpp"
 #include "io/result/result.hpp"
 #include "io/store/store_reader.hpp"
 #include "report/drawn_bodies.hpp"
@@ -160,6 +161,7 @@ class Report {
       if (options_.bodies.empty()) find.model = &model_;
       conflicts = find_conflicts(result_, poses_, find, &conflict_of);
     }
+    if (options_.shifts) check_shifts(*options_.shifts, conflicts, result_.reader());
     PointSelection selection{
         .classes = classes_, .conflicts = &conflicts, .conflict_of = &conflict_of, .wanted = {}};
     for (const Conflict& conflict : conflicts.listed) {

@@ -475,7 +475,7 @@ TEST_CASE("a table of shifts that was written is read again, and only for its re
   ConflictOptions how;
   how.min_points = 1;
   write_shifts({table, how, result.reader()}, ShiftFormat::kJson, scene.folder / "s.json");
-  const ShiftTable again = read_shifts(scene.folder / "s.json", result.reader(), conflicts);
+  const ShiftTable again = read_shifts(scene.folder / "s.json", result.reader());
   CHECK(again.step == 0.01);
   CHECK(again.lateral_from == -2);
   CHECK(again.searches == table.searches);
@@ -489,8 +489,7 @@ TEST_CASE("a table of shifts that was written is read again, and only for its re
              Contains("conflicts: expected the 0 conflicts"));
   const Scene other(wall(2, 4, 0.3), box_on(straight(12)));
   CHECK_THAT(refusal<InputError>([&] {
-               read_shifts(scene.folder / "s.json", Result(other.folder / "out.h5").reader(),
-                           other.conflicts());
+               read_shifts(scene.folder / "s.json", Result(other.folder / "out.h5").reader());
              }),
              Contains("of another result"));
 }

@@ -43,7 +43,7 @@ const StepOptions kConflictsOptions{
 const StepOptions kStationsOptions{
     {"--output", "--forward", "--up", "--show", "--force", "--json", "--help"}};
 const StepOptions kReportOptions{
-    {"--env", "--output", "--forward", "--up", "--force", "--json", "--help"}};
+    {"--env", "--output", "--forward", "--up", "--shifts", "--force", "--json", "--help"}};
 
 Words operator+(Words a, const Words& b) {
   a.insert(a.end(), b.begin(), b.end());

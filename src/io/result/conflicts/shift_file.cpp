@@ -1,5 +1,6 @@
 #include "io/result/conflicts/shift_file.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -83,7 +84,7 @@ class ShiftReader {
   ShiftReader(const std::filesystem::path& path, const ResultReader& result)
       : file_(KeyReader::parse(path, text_of_file(path))), result_(result) {}
 
-  ShiftTable read(const Conflicts& conflicts) const {
+  ShiftTable read() const {
     if (!file_.has("kind") || file_.value()["kind"] != "shifts") {
       file_.refuse("is no table of shifts; expected the JSON of clearway shift");
     }
@@ -97,23 +98,9 @@ class ShiftReader {
     table.searches = count(file_.at("searches"), kMostSearches);
     table.path = row(file_.at("path"));
     const KeyReader list = file_.at("conflicts");
-    if (!list.value().is_array() || list.value().size() != conflicts.listed.size()) {
-      list.refuse("expected the " + counted(conflicts.listed.size(), "conflict") + " of " +
-                  result_.name() + ", with the same gap, least points and longest stretch");
-    }
-    if (!list.value().empty()) {
-      for (const KeyReader& entry : list.elements()) table.conflicts.push_back(row(entry));
-    }
-    for (std::size_t i = 0; i < table.conflicts.size(); ++i) {
-      const StretchShift& shift = table.conflicts[i];
-      const Conflict& conflict = conflicts.listed[i];
-      if (shift.conflict == conflict.id && shift.first_pose == conflict.first_pose &&
-          shift.last_pose == conflict.last_pose) {
-        continue;
-      }
-      list.refuse("has other conflicts than " + result_.name() +
-                  "; expected those with the same gap, least points and longest stretch");
-    }
+    if (!list.value().is_array()) list.refuse("expected a list, in brackets");
+    if (list.value().empty()) return table;
+    for (const KeyReader& entry : list.elements()) table.conflicts.push_back(row(entry));
     return table;
   }
 
@@ -205,9 +192,21 @@ void write_shifts(const ShiftFile& shifts, ShiftFormat format, const std::filesy
   out.flush();
 }
 
-ShiftTable read_shifts(const std::filesystem::path& path, const ResultReader& result,
-                       const Conflicts& conflicts) {
-  return ShiftReader(path, result).read(conflicts);
+ShiftTable read_shifts(const std::filesystem::path& path, const ResultReader& result) {
+  return ShiftReader(path, result).read();
+}
+
+void check_shifts(const ShiftTable& table, const Conflicts& conflicts, const ResultReader& result) {
+  const auto is_of = [](const StretchShift& shift, const Conflict& conflict) {
+    return shift.conflict == conflict.id && shift.first_pose == conflict.first_pose &&
+           shift.last_pose == conflict.last_pose;
+  };
+  if (std::ranges::equal(table.conflicts, conflicts.listed, is_of)) return;
+  refuse(result.name(), "its " + counted(conflicts.listed.size(), "conflict") +
+                            " are not those of the table of shifts, which has " +
+                            format_count(table.conflicts.size()) +
+                            "; expected shifts that were found with the same gap, least points "
+                            "and longest stretch of conflicts");
 }
 
 }  // namespace clearway

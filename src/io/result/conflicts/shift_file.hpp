@@ -34,8 +34,10 @@ std::string json_of(const ShiftFile& file);
 void write_shifts(const ShiftFile& shifts, ShiftFormat format, const std::filesystem::path& path);
 
 /// Reads the table of a file in JSON that write_shifts() wrote. Throws InputError where it is not
-/// one, or not of this result and these conflicts.
-ShiftTable read_shifts(const std::filesystem::path& path, const ResultReader& result,
-                       const Conflicts& conflicts);
+/// one, or not of this result.
+ShiftTable read_shifts(const std::filesystem::path& path, const ResultReader& result);
+
+/// Throws InputError where the rows of the table are not those of these conflicts.
+void check_shifts(const ShiftTable& table, const Conflicts& conflicts, const ResultReader& result);
 
 }  // namespace clearway
