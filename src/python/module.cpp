@@ -21,6 +21,7 @@ PYBIND11_MODULE(_clearway, module) {
   add_results(module);
   add_merge(module);
   add_findings(module);
+  add_shifts(module);
   add_report_page(module);
 }
 
