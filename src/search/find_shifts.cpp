@@ -107,7 +107,7 @@ Pose shifted(Pose pose, const Vec3& left, double shift) {
 }
 
 /// Poses of the path, of which the last one ends the last way where ways are searched.
-struct Stretch {
+struct PoseRange {
   std::uint32_t first, last;
 };
 
@@ -156,7 +156,7 @@ struct MovingShapes {
 /// body, because every search of the shift would find that point.
 class ObstaclePoints {
  public:
-  ObstaclePoints(const MovingShapes& moving, Stretch stretch, double radius, bool ways,
+  ObstaclePoints(const MovingShapes& moving, PoseRange stretch, double radius, bool ways,
                  const ShiftOptions& range)
       : moving_(moving),
         radius_(radius),
@@ -203,7 +203,7 @@ class ObstaclePoints {
     std::uint32_t place;
   };
 
-  void add_place(std::size_t body, std::uint32_t i, Stretch stretch) {
+  void add_place(std::size_t body, std::uint32_t i, PoseRange stretch) {
     const Pose* pose = moving_.bodies[body].pose_at(i);
     if (pose == nullptr) return;
     const ModelIndex& shape = *moving_.shapes[body];
@@ -296,7 +296,7 @@ class ShiftedQuery {
  public:
   /// The bodies' poses of the stretch are counted from its first pose. Bodies that have no pose
   /// there are left out.
-  ShiftedQuery(const Query& query, const QueryParameters& asked, Stretch stretch, Axis left)
+  ShiftedQuery(const Query& query, const QueryParameters& asked, PoseRange stretch, Axis left)
       : query_(query.model, {}, asked) {
     for (std::uint32_t i = stretch.first; i <= stretch.last; ++i) {
       path_.push_back(query.poses[i]);
@@ -413,7 +413,7 @@ class ShiftSearch {
   }
 
   void add_places(StretchShift& row) const {
-    const std::uint32_t end = stretch_of(row).last;
+    const std::uint32_t end = range_of(row).last;
     row.chainage_from = chainage_[row.first_pose] + options_.chainage_start;
     row.chainage_to = chainage_[end] + options_.chainage_start;
     if (options_.station.empty()) return;
@@ -421,7 +421,7 @@ class ShiftSearch {
     row.station_to = options_.station[end];
   }
 
-  Stretch stretch_of(const StretchShift& row) const {
+  PoseRange range_of(const StretchShift& row) const {
     const bool way = asked_.between_poses && row.last_pose + 1 < query_.poses.size();
     return {row.first_pose, row.last_pose + (way ? 1 : 0)};
   }
@@ -443,7 +443,7 @@ class ShiftSearch {
     for (std::size_t i = 0; i < of_pose.size(); ++i) of_pose_[i] = of_pose[i].points();
   }
 
-  std::vector<Vec3> known_points(Stretch stretch) const {
+  std::vector<Vec3> known_points(PoseRange stretch) const {
     PointSample sample(kMostOfStretch);
     for (std::uint32_t i = stretch.first; i <= stretch.last; ++i) {
       for (const Vec3& point : of_pose_[i]) sample.add(point);
@@ -476,7 +476,7 @@ class ShiftSearch {
   /// Finds the first candidate from `rank` on that frees the stretch of the row. points: further
   /// points that may stand in the way.
   Found find(StretchShift row, std::uint64_t rank, std::span<const Vec3> points = {}) const {
-    const Stretch stretch = stretch_of(row);
+    const PoseRange stretch = range_of(row);
     ShiftedQuery moved(query_, asked_, stretch, moving_.left);
     ObstaclePoints obstacles(moving_, stretch, asked_.radius, asked_.between_poses, options_);
     obstacles.add(known_points(stretch));

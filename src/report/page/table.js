@@ -99,7 +99,7 @@ function sortedConflicts(columns, list = filteredConflicts()) {
 }
 
 function sortBy(title) {
-  const numbers = !["No.", "Chainage", "Station", "Obstacle at", "Body", "Side", "Lateral", "Height", "Least distance", "Class", "Certainty", "Pose"].includes(title);
+  const numbers = !["No.", "Chainage", "Station", "Obstacle at", "Body", "Side", "Lateral", "Height", "Least distance", "Class", "Certainty", "Frees it", "Pose"].includes(title);
   table.down = table.title === title ? !table.down : numbers;
   table.title = title;
   table.first = 0;
