@@ -1,6 +1,7 @@
 #include "clearway/unsearched.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <numeric>
 
 #include "clearway/follow.hpp"
@@ -91,4 +92,24 @@ TEST_CASE("a body that leaves the path at its ends is a note, one that lacks pos
   followed.off_path.insert(followed.off_path.begin() + 2, 10);
   doubts = doubts_about(followed, path, mount, "wagon");
   CHECK(doubts[0].severity == Message::Severity::kWarning);
+}
+
+TEST_CASE("the lengths of a path that two bodies share stay within it, whatever is rounded") {
+  std::vector<Pose> path = straight(12);
+  int odd = 0;
+  for (int scene = 1; scene <= 200; ++scene) {
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      path[i].translation[0] = 0.1 * scene * std::sqrt(static_cast<double>(i + i * i));
+    }
+    for (std::uint32_t at = 1; at < 11; ++at) {
+      const SearchedLength length =
+          searched_length(path, std::vector<Body>{there(0, at), there(at, 12)});
+      CHECK(length.whole >= 0);
+      CHECK(length.whole <= length.path);
+      CHECK(length.part >= 0);
+      CHECK(length.part <= length.path);
+      if (length.whole < 1e-9) ++odd;
+    }
+  }
+  CHECK(odd > 0);
 }

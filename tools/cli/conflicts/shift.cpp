@@ -166,14 +166,14 @@ std::string perform(ShiftCommand& options) {
   check_kind_of_model(result, options.model, options.vehicle);
   check_axes(result, options);
   check_is_store(options.environment);
+  options.machine.threads = options.find.threads;
+  options.machine.memory_bytes = options.find.memory_bytes;
   const Session session(options.environment, options.machine);
   if (const auto warning = options.lengths.convert_for(session.store())) log_message(*warning);
   set_environment_unit(session.store(), options.trajectory_options, options.model_options);
   ConsoleProgress progress;
   options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
   options.find.stop = &stop_flag();
-  options.find.threads = options.machine.threads;
-  options.find.memory_bytes = options.machine.memory_bytes;
   PoseLabels labels;
   const Query query = read_query_again(options, result, labels);
   options.find.station = labels.station;
