@@ -94,22 +94,20 @@ TEST_CASE("a body that leaves the path at its ends is a note, one that lacks pos
   CHECK(doubts[0].severity == Message::Severity::kWarning);
 }
 
-TEST_CASE("the lengths of a path that two bodies share stay within it, whatever is rounded") {
+TEST_CASE("the lengths of a path that three bodies share stay within it, whatever is rounded") {
   std::vector<Pose> path = straight(12);
-  int odd = 0;
-  for (int scene = 1; scene <= 200; ++scene) {
+  for (int scene = 1; scene <= 50; ++scene) {
     for (std::size_t i = 0; i < path.size(); ++i) {
       path[i].translation[0] = 0.1 * scene * std::sqrt(static_cast<double>(i + i * i));
     }
-    for (std::uint32_t at = 1; at < 11; ++at) {
-      const SearchedLength length =
-          searched_length(path, std::vector<Body>{there(0, at), there(at, 12)});
-      CHECK(length.whole >= 0);
-      CHECK(length.whole <= length.path);
-      CHECK(length.part >= 0);
-      CHECK(length.part <= length.path);
-      if (length.whole < 1e-9) ++odd;
+    for (std::uint32_t a = 1; a < 10; ++a) {
+      for (std::uint32_t b = a + 1; b < 11; ++b) {
+        const std::vector<Body> bodies{there(0, a), there(a, b), there(b, 12)};
+        const SearchedLength length = searched_length(path, bodies);
+        CHECK(length.whole >= 0);  // each body is missing somewhere, so this is 0 but for rounding
+        CHECK(length.whole < 1e-12 * length.path);
+        CHECK(length.part <= length.path);
+      }
     }
   }
-  CHECK(odd > 0);
 }
