@@ -220,7 +220,8 @@ std::vector<Body> bodies_on(Random& random, const std::vector<Pose>& path, bool 
               part_of(random, ways ? 0 : static_cast<int>(below(random, 3))),
               {},
               {}};
-    const std::uint64_t from = below(random, 4), to = path.size() - below(random, 4);
+    const std::uint64_t ends = std::min<std::uint64_t>(path.size(), 4);
+    const std::uint64_t from = below(random, ends), to = path.size() - below(random, ends);
     const Vec3 offset{uniform(random, -0.8, 0.8), uniform(random, -0.2, 0.2), 0};
     for (std::uint64_t i = from; i < to; ++i) {
       Pose pose = rotation({0, 0, 1}, 0.1 * static_cast<double>(b), path[i].position() + offset);
@@ -474,7 +475,7 @@ TEST_CASE("a table of shifts that was written is read again, and only for its re
   const Conflicts conflicts = scene.conflicts();
   ConflictOptions how;
   how.min_points = 1;
-  write_shifts({table, how, result.reader()}, ShiftFormat::kJson, scene.folder / "s.json");
+  write_shifts({table, how, result.reader(), "m"}, ShiftFormat::kJson, scene.folder / "s.json");
   const ShiftTable again = read_shifts(scene.folder / "s.json", result.reader());
   CHECK(again.step == 0.01);
   CHECK(again.lateral_from == -2);

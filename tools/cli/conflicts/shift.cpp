@@ -30,7 +30,6 @@
 #include "io/files/pending_file.hpp"
 #include "io/result/conflicts/shift_file.hpp"
 #include "io/result/result.hpp"
-#include "io/scans/scan_crs.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -181,12 +180,12 @@ std::string perform(ShiftCommand& options) {
   const Conflicts conflicts = find_conflicts(result, query.poses, options.find);
   const ShiftTable table =
       find_shifts(session, result, query, conflicts.listed, shift_options_of(options, labels));
-  const ShiftFile file{table, options.find, result.reader()};
+  const std::string unit = symbol_of_unit(session.store().length_unit());
+  const ShiftFile file{table, options.find, result.reader(), unit};
   for (const auto& output : outputs) {
     write_shifts(file, output->format, output->pending.partial());
   }
   for (const auto& output : outputs) output->pending.publish();
-  const std::string unit = symbol_of(units_of_wkt(result.reader().header().crs_wkt).horizontal);
   spdlog::info("{} in {:.2f} s", counted(table.searches, "search", "searches"), table.seconds);
   spdlog::info(
       "what was not scanned counts as free; clearway run --seen along the shifted path tells "

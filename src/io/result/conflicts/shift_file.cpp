@@ -19,7 +19,6 @@
 #include "io/files/xxh64.hpp"
 #include "io/result/conflicts/conflict_fields.hpp"
 #include "io/result/conflicts/json_text.hpp"
-#include "io/scans/scan_crs.hpp"
 
 namespace clearway {
 namespace {
@@ -159,7 +158,7 @@ std::string json_of(const ShiftFile& file) {
   const ResultHeader& header = file.result.header();
   JsonMembers out;
   out.add("kind", json_string("shifts"));
-  out.add("unit", json_string(symbol_of(units_of_wkt(header.crs_wkt).horizontal)));
+  out.add("unit", json_string(file.unit));
   out.add_length("radius", header.radius);
   out.add("between_poses", header.between_poses ? "true" : "false");
   out.add_length("lateral_from", file.table.lateral_from);

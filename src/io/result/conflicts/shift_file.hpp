@@ -14,6 +14,7 @@ struct ShiftFile {
   const ShiftTable& table;
   const ConflictOptions& conflicts;  ///< the options with which the conflicts were found
   const ResultReader& result;
+  std::string unit;  ///< symbol of the environment's unit of length
 };
 
 enum class ShiftFormat { kCsv, kJson };

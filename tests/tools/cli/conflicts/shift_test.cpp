@@ -63,7 +63,7 @@ const Lane& lane() {
   return made;
 }
 
-std::vector<std::string> lines_of(const std::string& text) {
+std::vector<std::string> csv_rows(const std::string& text) {
   std::vector<std::string> out;
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) out.push_back(line);
@@ -112,7 +112,7 @@ TEST_CASE("shift says what frees the path and each conflict, as a table, in JSON
   CHECK(all["searches"] == of_conflicts + all["path"]["searches"].get<std::uint64_t>());
   CHECK(of_conflicts < 20);
 
-  const auto rows = lines_of(bytes_of(lane().folder / "s.csv"));
+  const auto rows = csv_rows(bytes_of(lane().folder / "s.csv"));
   REQUIRE(rows.size() == 4);
   CHECK(rows[0] ==
         "conflict,chainage_from,chainage_to,station_from,station_to,first_pose,last_pose,shift,"
@@ -157,10 +157,11 @@ TEST_CASE("points that the run ignored stay ignored, and an error budget keeps i
   CHECK(ignored["path"]["shift"] == 0.21);
   lane().done("run --model-as solid --radius 0.1 --error-model 0.05 --first-pose --force -o " +
               lane().name("budget.h5") + lane().files());
-  // 0.1 m to be free, 0.05 m of error, and half a step of the stored coordinates.
+  // 0.1 m to be free, 0.05 m of error, half a step of the stored coordinates, and half the way of
+  // 0.5 m from a pose to the next.
   const json budget = lane().shifts("", "budget.h5");
-  CHECK(budget["conflicts"][0]["shift"] == -0.26);
-  CHECK(budget["conflicts"][1]["shift"] == 0.36);
+  CHECK(budget["conflicts"][0]["shift"] == -0.51);
+  CHECK(budget["conflicts"][1]["shift"] == 0.61);
 }
 
 TEST_CASE("a model that its run turned is shifted to its own side") {
@@ -303,7 +304,7 @@ TEST_CASE("shifts of a scan in feet are in feet, and lengths with units are conv
   const Outcome feet = run(shift + "--step 0.25 --lateral -1,1");
   const json all = json::parse(feet.out);
   CHECK(all["unit"] == "ft");
-  CHECK(all["path"]["shift"] == 0.25);
+  CHECK(all["path"]["shift"] == -0.5);
   CHECK(run(shift + "--step 3in --lateral=-12in,1ft").out == feet.out);
 }
 
