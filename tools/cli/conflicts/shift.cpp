@@ -105,8 +105,8 @@ ShiftOptions shift_options_of(const ShiftCommand& command, const PoseLabels& lab
 /// How far was looked on either side, for example "of up to 2 m" or "between 1 m to the right and 3
 /// m to the left".
 std::string range_text(const ShiftTable& table, const std::string& unit) {
-  const std::string left = format_brief(table.lateral_to) + " " + unit;
-  const std::string right = format_brief(-table.lateral_from) + " " + unit;
+  const std::string left = format_number(table.lateral_to) + " " + unit;
+  const std::string right = format_number(-table.lateral_from) + " " + unit;
   if (left == right) return "of up to " + left;
   return "between " + right + " to the right and " + left + " to the left";
 }
@@ -114,7 +114,7 @@ std::string range_text(const ShiftTable& table, const std::string& unit) {
 std::string shift_text(const StretchShift& row, const ShiftTable& table, const std::string& unit) {
   if (!row.shift) return "no shift " + range_text(table, unit) + " frees it";
   if (*row.shift == 0) return "it is free";
-  return format_brief(std::abs(*row.shift)) + " " + unit + " to the " + side_of(row) + " frees it";
+  return format_number(std::abs(*row.shift)) + " " + unit + " to the " + side_of(row) + " frees it";
 }
 
 std::string row_text(const StretchShift& row, const ShiftTable& table, const std::string& unit) {
