@@ -15,6 +15,7 @@
 #include "clearway/progress.hpp"
 #include "clearway/result.hpp"
 #include "clearway/section.hpp"
+#include "clearway/shift.hpp"
 #include "clearway/store.hpp"
 #include "clearway/trajectory.hpp"
 
@@ -49,6 +50,9 @@ struct ReportOptions {
   /// search need not be among them, because they are found again from store, model and poses.
   std::vector<Message> warnings = {};
   bool overwrite = false;
+  /// Shifts that free the path and its conflicts, by find_shifts() for conflicts that were found
+  /// with the options of `conflicts`; the page tells them.
+  std::optional<ShiftTable> shifts = {};
   /// Bodies of the search, for the result of a vehicle; then the model is empty.
   std::vector<Body> bodies = {};
   /// A section of the same path through the same environment, which the page shows; or null. It

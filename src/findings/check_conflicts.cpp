@@ -8,6 +8,7 @@
 #include "io/files/input_error.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/paths/content_hash.hpp"
+#include "io/store/store_reader.hpp"
 
 namespace clearway {
 namespace {
@@ -89,6 +90,39 @@ void check_bodies_of(const ResultReader& result, std::span<const Body> bodies) {
          "is the result of another vehicle (hash " + hash_text(header.model_hash) + ", given " +
              hash_text(hash) + ")",
          Remedy::kSameModel);
+}
+
+namespace {
+
+void check_hash(const ResultReader& result, const char* what, std::uint64_t is,
+                std::uint64_t searched, Remedy remedy) {
+  if (is == searched) return;
+  throw InputError(result.name() + ": is the result of another " + what + " (hash " +
+                       hash_text(searched) + ", given " + hash_text(is) + ")",
+                   remedy);
+}
+
+}  // namespace
+
+void check_searched(const ResultReader& result, const StoreReader& store, const Searched& given) {
+  const ResultHeader& header = result.header();
+  check_hash(result, "environment", store.metadata().points_hash, header.environment_hash,
+             Remedy::kSameEnvironment);
+  if (store.metadata().crs_wkt != header.crs_wkt) {
+    throw InputError(result.name() + ": names another coordinate reference system than the store",
+                     Remedy::kSameEnvironment);
+  }
+  if (given.bodies.empty() && !header.bodies.empty()) {
+    throw InputError(result.name() +
+                     ": is the result of a vehicle of several bodies, and one model is given");
+  }
+  if (given.bodies.empty()) {
+    check_hash(result, "model", hash_of_model(given.model), header.model_hash, Remedy::kSameModel);
+  } else {
+    check_bodies_of(result, given.bodies);
+  }
+  check_hash(result, "trajectory", hash_of_trajectory(given.poses), header.trajectory_hash,
+             Remedy::kSameTrajectory);
 }
 
 namespace {

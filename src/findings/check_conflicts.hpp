@@ -5,10 +5,14 @@
 #include <vector>
 
 #include "clearway/conflicts.hpp"
+#include "clearway/model.hpp"
+#include "clearway/pose.hpp"
 #include "clearway/progress.hpp"
 #include "io/result/result.hpp"
 
 namespace clearway {
+
+class StoreReader;
 
 /// Throws UsageError for options that make no sense and for a result without first poses, and
 /// InputError for poses or bodies that are not those of the search.
@@ -21,6 +25,16 @@ void check_axes(const ResultReader& result, const ConflictOptions& options);
 
 /// Throws InputError where a result is not that of the vehicle with these bodies.
 void check_bodies_of(const ResultReader& result, std::span<const Body> bodies);
+
+/// What a result is said to be of; the references must outlive it.
+struct Searched {
+  const Model& model;  ///< empty for a vehicle of several bodies
+  std::span<const Body> bodies;
+  const std::vector<Pose>& poses;
+};
+
+/// Throws InputError where store, model or bodies, or poses are not those of the search.
+void check_searched(const ResultReader& result, const StoreReader& store, const Searched& given);
 
 /// Warns of conflicts that are of little use: "one-long-conflict" for a group that spans most of
 /// the path. unit: the symbol of the unit of length.

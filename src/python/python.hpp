@@ -90,6 +90,7 @@ void add_bodies(py::module_& module);       // bodies.cpp
 void add_results(py::module_& module);      // results.cpp
 void add_findings(py::module_& module);     // findings.cpp
 void add_section(py::module_& module);      // section.cpp
+void add_shifts(py::module_& module);       // shifts.cpp
 void add_report_page(py::module_& module);  // report_page.cpp
 
 }  // namespace clearway::python

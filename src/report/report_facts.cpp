@@ -309,6 +309,23 @@ void write_stations(JsonText& json, const ReportFacts& facts) {
   json.end(']').end('}');
 }
 
+void write_shift(JsonText& json, const StretchShift& row) {
+  json.begin('{').field("conflict", std::uint64_t{row.conflict}).field("shift", row.shift);
+  json.field("least_distance", row.least_distance).end('}');
+}
+
+/// Writes the shifts that free the path and its conflicts; nothing where they were not given.
+void write_shifts(JsonText& json, const ReportFacts& facts) {
+  if (!facts.options.shifts) return;
+  const ShiftTable& table = *facts.options.shifts;
+  json.key("shifts").begin('{').field("lateral_from", table.lateral_from);
+  json.field("lateral_to", table.lateral_to).field("step", table.step).key("path");
+  write_shift(json, table.path);
+  json.key("list").begin('[');
+  for (const StretchShift& row : table.conflicts) write_shift(json, row);
+  json.end(']').end('}');
+}
+
 void write_least(JsonText& json, const ReportFacts& facts) {
   json.key("least_distance");
   if (!facts.least) {
@@ -491,6 +508,7 @@ std::string json_of(const ReportFacts& facts) {
     json.key("section");
     facts.section->write_facts(json);
   }
+  write_shifts(json, facts);
   write_page_facts(json, facts);
   json.end('}');
   return json.text();

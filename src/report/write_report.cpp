@@ -16,9 +16,8 @@
 #include "findings/touched_first.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/thread_limit.hpp"
-#include "io/files/xxh64.hpp"
-#include "io/paths/content_hash.hpp"
 #include "io/result/answer.hpp"
+#include "io/result/conflicts/shift_file.hpp"
 #include "io/result/result.hpp"
 #include "io/store/store_reader.hpp"
 #include "report/drawn_bodies.hpp"
@@ -35,27 +34,6 @@
 namespace clearway {
 namespace {
 
-void check_hash(const Result& result, const char* what, std::uint64_t is, std::uint64_t searched,
-                Remedy remedy) {
-  if (is == searched) return;
-  throw InputError(result.reader().name() + ": is the result of another " + what + " (hash " +
-                       hash_text(searched) + ", given " + hash_text(is) + ")",
-                   remedy);
-}
-
-void check_model(const Result& result, const Model& model, const ReportOptions& options) {
-  const ResultHeader& header = result.reader().header();
-  if (options.bodies.empty() && !header.bodies.empty()) {
-    throw InputError(result.reader().name() +
-                     ": is the result of a vehicle of several bodies, and one model is given");
-  }
-  if (!options.bodies.empty()) {
-    check_bodies_of(result.reader(), options.bodies);
-    return;
-  }
-  check_hash(result, "model", hash_of_model(model), header.model_hash, Remedy::kSameModel);
-}
-
 /// Throws InputError where a section is that of another environment or path than the result's.
 void check_section(const ResultHeader& header, const SectionData& section) {
   const bool same_store = section.environment_hash == header.environment_hash;
@@ -63,24 +41,6 @@ void check_section(const ResultHeader& header, const SectionData& section) {
   throw InputError(std::string("the section was found for another ") +
                        (same_store ? "trajectory" : "environment") + " than the result",
                    same_store ? Remedy::kSameTrajectory : Remedy::kSameEnvironment);
-}
-
-/// Throws InputError where store, model or bodies, or poses are not those of the result.
-void check_report_inputs(const Result& result, const Store& store, const Model& model,
-                         const std::vector<Pose>& poses, const ReportOptions& options) {
-  const ResultHeader& header = result.reader().header();
-  check_axes(result.reader(), options.conflicts);
-  check_hash(result, "environment", store.reader().metadata().points_hash, header.environment_hash,
-             Remedy::kSameEnvironment);
-  if (store.crs_wkt() != header.crs_wkt) {
-    throw InputError(
-        result.reader().name() + ": names another coordinate reference system than the store",
-        Remedy::kSameEnvironment);
-  }
-  check_model(result, model, options);
-  check_hash(result, "trajectory", hash_of_trajectory(poses), header.trajectory_hash,
-             Remedy::kSameTrajectory);
-  if (options.section != nullptr) check_section(header, options.section->data());
 }
 
 constexpr std::size_t kMostModelPoints = 200'000;
@@ -220,6 +180,7 @@ class Report {
       if (options_.bodies.empty()) find.model = &model_;
       conflicts = find_conflicts(result_, poses_, find, &conflict_of);
     }
+    if (options_.shifts) check_shifts(*options_.shifts, conflicts, result_.reader());
     PointSelection selection{
         .classes = classes_, .conflicts = &conflicts, .conflict_of = &conflict_of, .wanted = {}};
     for (const Conflict& conflict : conflicts.listed) {
@@ -440,7 +401,11 @@ void add_query_warnings(const Result& result, const Store& store, const Model& m
 ReportSummary write_report(const Result& result, const Store& store, const Model& model,
                            const std::vector<Pose>& poses, const std::filesystem::path& output,
                            const ReportOptions& options) {
-  check_report_inputs(result, store, model, poses, options);
+  check_axes(result.reader(), options.conflicts);
+  check_searched(result.reader(), store.reader(), {model, options.bodies, poses});
+  if (options.section != nullptr) {
+    check_section(result.reader().header(), options.section->data());
+  }
   PendingFile file(output, options.overwrite);
   const int threads = options.conflicts.threads;
   ReportSummary summary;

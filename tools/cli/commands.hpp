@@ -16,6 +16,7 @@ void add_merge(CLI::App& program, int& exit_code);
 void add_export(CLI::App& program);
 void add_conflicts(CLI::App& program);
 void add_stations(CLI::App& program);
+void add_shift(CLI::App& program);
 void add_compare(CLI::App& program, int& exit_code);
 void add_info(CLI::App& program);
 void add_verify(CLI::App& program, int& exit_code);

@@ -16,6 +16,7 @@ void add_commands(CLI::App& program, int& exit_code) {
   add_export(program);
   add_conflicts(program);
   add_stations(program);
+  add_shift(program);
   add_compare(program, exit_code);
   add_info(program);
   add_verify(program, exit_code);

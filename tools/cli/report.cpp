@@ -23,6 +23,7 @@
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "core/util/format.hpp"
 #include "io/files/pending_file.hpp"
+#include "io/result/conflicts/shift_file.hpp"
 
 namespace clearway::tool {
 
@@ -110,7 +111,7 @@ void log_summary(const ReportCommand& options, const ReportSummary& summary, con
 void check_model_or_vehicle(const ReportCommand& options) {
   if (options.model.empty() && options.vehicle.empty()) throw CLI::RequiredError("--model");
   std::vector<std::filesystem::path> inputs{options.result, options.environment, options.model,
-                                            options.trajectory};
+                                            options.trajectory, options.shifts};
   if (!options.section.empty()) inputs.push_back(options.section);
   if (!options.vehicle.empty()) inputs = vehicle_inputs(options.vehicle, std::move(inputs));
   refuse_overwriting(options.output, inputs);
@@ -134,6 +135,11 @@ void add_report_inputs(CLI::App& command, ReportCommand& options) {
   command
       .add_option("--section", options.section,
                   "Section of clearway section find on the same path, to be shown on the page, too")
+      ->type_name("FILE");
+  command
+      .add_option("--shifts", options.shifts,
+                  "Shifts that free the path and its conflicts, for the page to tell: JSON of "
+                  "clearway shift -o")
       ->type_name("FILE");
   command.add_option("-o,--output", options.output, "The page, an HTML file")
       ->type_name("FILE")
@@ -202,6 +208,9 @@ ReportSummary perform(ReportCommand& options) {
   }
   options.report.conflicts = options.find;
   const Query query = read_query_again(options, result, store);
+  if (!options.shifts.empty()) {
+    options.report.shifts = read_shifts(options.shifts, result.reader());
+  }
   name_files(options);
   std::optional<Section> section;
   if (!options.section.empty()) {

@@ -92,7 +92,7 @@ StationsOutcome perform(StationsCommand& options);
 
 /// The options of `clearway report`.
 struct ReportCommand : ConflictCommand {
-  std::filesystem::path result, environment, model, vehicle, trajectory, section, output;
+  std::filesystem::path result, environment, model, vehicle, trajectory, section, shifts, output;
   ModelOptions model_options;
   ReportOptions report;
   std::vector<ParsedLength> classes;

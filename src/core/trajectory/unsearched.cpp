@@ -1,5 +1,6 @@
 #include "clearway/unsearched.hpp"
 
+#include <algorithm>
 #include <bitset>
 #include <cstddef>
 
@@ -88,6 +89,9 @@ SearchedLength searched_length(std::span<const Pose> path, std::span<const Body>
     length.whole -= metres;
     if (stretch.has_answer) length.part += metres;
   }
+  // Sums of stretches that fill the path may differ from its length by roundings.
+  length.whole = std::max(length.whole, 0.0);
+  length.part = std::min(length.part, length.path);
   return length;
 }
 

@@ -514,6 +514,26 @@ class Section:
     def boxes(self, band: float = 0.0, base: float = 0.0) -> list[SectionBand]: ...
     def stations(self, band: float = 0.0, base: float = 0.0) -> list[SectionStretch]: ...
     def symmetric_width(self, band: SectionBand) -> float | None: ...
+class StretchShift:
+    conflict: Final[int]
+    first_pose: Final[int]
+    last_pose: Final[int]
+    chainage_from: Final[float]
+    chainage_to: Final[float]
+    station_from: Final[float | None]
+    station_to: Final[float | None]
+    shift: Final[float | None]
+    least_distance: Final[float | None]
+    searches: Final[int]
+class ShiftTable:
+    path: Final[StretchShift]
+    conflicts: Final[list[StretchShift]]
+    lateral_from: Final[float]
+    lateral_to: Final[float]
+    step: Final[float]
+    searches: Final[int]
+    seconds: Final[float]
+    def __len__(self) -> int: ...
 class ReportSummary:
     clear: Final[bool]
     verdict: Final[Literal["clear", "conflict", "undecided"]]
@@ -631,6 +651,14 @@ def export_section_outline(
     section: Section, output: _AnyPath, *, band: float = 0.0, base: float = 0.0,
     overwrite: bool = False,
 ) -> None: ...
+def find_shifts(
+    result: Result, store: Store, model: ArrayLike | Model | None, poses: ArrayLike, *,
+    lateral: Sequence[float] = (-2.0, 2.0), step: float = 0.01, gap: float = 0.3,
+    min_points: int = 10, split: float = 25.0, chainage_start: float = 0.0, forward: _Axis = "+x",
+    up: _Axis = "+z", bodies: Sequence[Body] = (), labels: PoseLabels | None = None,
+    memory_bytes: int = 4294967296, threads: int = 0, progress: _Progress | None = None,
+    stop: _Stop | None = None,
+) -> ShiftTable: ...
 def write_report(
     result: Result, store: Store, model: ArrayLike | Model | None, poses: ArrayLike, output: _AnyPath, *,
     title: str = "", project: str = "", client: str = "", author: str = "", date: str = "",
@@ -639,7 +667,8 @@ def write_report(
     classes: Sequence[float] = (), max_points: int = 1000000, gap: float = 0.3,
     min_points: int = 10, split: float = 25.0, chainage_start: float = 0.0, forward: _Axis = "+x",
     up: _Axis = "+z", memory_bytes: int = 4294967296, threads: int = 0,
-    labels: PoseLabels | None = None, every: float = 0.0, warnings: Iterable[Message] = (),
+    labels: PoseLabels | None = None, every: float = 0.0, shifts: ShiftTable | None = None,
+    warnings: Iterable[Message] = (),
     bodies: Sequence[Body] = (), overwrite: bool = False,
     progress: _Progress | None = None, stop: _Stop | None = None,
 ) -> ReportSummary: ...

@@ -49,6 +49,7 @@ function conflictFacts(conflict) {
   if (shifts.length > 0) {
     rows.push(["Shift", `at least ${shifts.join(" or ")} frees its own points`]);
   }
+  if (page.facts.shifts) rows.push(["Frees it", freedWords(conflict)]);
   rows.push(["Points", `${count(conflict.points)} in ${sizeOf(conflict).map((s) => s.toFixed(2)).join(" × ")} ${unitSymbol}`],
             ["Poses", `${count(conflict.first_pose)} to ${count(conflict.last_pose)}` +
              nearestPoseWords(conflict)]);

@@ -39,6 +39,7 @@ function tableColumns() {
     measured && ["Missing", (c) => c.encroachment ?? -1, lengths("encroachment")],
     shifted && ["Shift left", (c) => c.shift_left ?? Infinity, shiftCell("shift_left")],
     shifted && ["Shift right", (c) => c.shift_right ?? Infinity, shiftCell("shift_right")],
+    page.facts.shifts && ["Frees it", freedRank, freedCell],
     ["Points", (c) => c.points, (c) => count(c.points)],
     deep && ["Inside", (c) => c.points_inside ?? 0, (c) => count(c.points_inside ?? 0)],
     ["Size", (c) => Math.max(...sizeOf(c)), (c) => sizeOf(c).map((s) => s.toFixed(2)).join(" × ")],
@@ -77,7 +78,7 @@ function classCell(conflict) {
 /** Column titles with the unit, where all of its numbers have one. */
 function titleWithUnit(title) {
   const has = ["Chainage", "Obstacle at", "Lateral", "Height", "Least distance", "Depth", "Missing",
-               "Shift left", "Shift right", "Size", "Place x, y, z"].includes(title);
+               "Shift left", "Shift right", "Frees it", "Size", "Place x, y, z"].includes(title);
   return title === "Station" ? "Station (m)" : has ? `${title} (${unitSymbol})` : title;
 }
 
@@ -98,7 +99,7 @@ function sortedConflicts(columns, list = filteredConflicts()) {
 }
 
 function sortBy(title) {
-  const numbers = !["No.", "Chainage", "Station", "Obstacle at", "Body", "Side", "Lateral", "Height", "Least distance", "Class", "Certainty", "Pose"].includes(title);
+  const numbers = !["No.", "Chainage", "Station", "Obstacle at", "Body", "Side", "Lateral", "Height", "Least distance", "Class", "Certainty", "Frees it", "Pose"].includes(title);
   table.down = table.title === title ? !table.down : numbers;
   table.title = title;
   table.first = 0;
@@ -272,5 +273,5 @@ function conflictsNote(found) {
     text += ` This page lists the ${count(found.list.length)} worst of ${count(found.count)}; ` +
         "clearway conflicts writes all.";
   }
-  return text;
+  return text + freedNote();
 }

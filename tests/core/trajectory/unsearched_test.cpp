@@ -1,6 +1,7 @@
 #include "clearway/unsearched.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <numeric>
 
 #include "clearway/follow.hpp"
@@ -91,4 +92,22 @@ TEST_CASE("a body that leaves the path at its ends is a note, one that lacks pos
   followed.off_path.insert(followed.off_path.begin() + 2, 10);
   doubts = doubts_about(followed, path, mount, "wagon");
   CHECK(doubts[0].severity == Message::Severity::kWarning);
+}
+
+TEST_CASE("the lengths of a path that three bodies share stay within it, whatever is rounded") {
+  std::vector<Pose> path = straight(12);
+  for (int scene = 1; scene <= 50; ++scene) {
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      path[i].translation[0] = 0.1 * scene * std::sqrt(static_cast<double>(i + i * i));
+    }
+    for (std::uint32_t a = 1; a < 10; ++a) {
+      for (std::uint32_t b = a + 1; b < 11; ++b) {
+        const std::vector<Body> bodies{there(0, a), there(a, b), there(b, 12)};
+        const SearchedLength length = searched_length(path, bodies);
+        CHECK(length.whole >= 0);  // each body is missing somewhere, so this is 0 but for rounding
+        CHECK(length.whole < 1e-12 * length.path);
+        CHECK(length.part <= length.path);
+      }
+    }
+  }
 }

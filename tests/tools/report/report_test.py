@@ -210,6 +210,44 @@ class ReportTest(PageChecks, unittest.TestCase):
         self.assertFalse(page.run("document.querySelector('#stations details').open"))
         self.check_quiet(page)
 
+    def test_shifts(self):
+        shifts = f"{self.hall.folder}/shifts.json"
+        told = json.loads(clearway("shift", self.found, "--env", self.hall.store, "--model", self.hall.model,
+                                   "--trajectory", self.hall.trajectory, "--lateral", "-0.6,1",
+                                   "--step", 0.05, "-o", shifts, "--force", "--json"))
+        path, facts = self.hall.report(self.found, "shifts", "--shifts", shifts)
+        self.assertEqual(facts["shifts"]["path"]["shift"], told["path"]["shift"])
+        rows = facts["shifts"]["list"]
+        self.assertEqual([r["shift"] for r in rows], [c["shift"] for c in told["conflicts"]])
+        self.assertEqual({row["shift"] is None for row in rows}, {True, False})
+        self.assertIn("table of shifts", self.hall.report(self.found, "bad", "--min-points", 500,
+                                                          "--shifts", shifts, code=3)[1])
+        self.assertNotIn("shifts", self.hall.report(self.found, "plain")[1])
+        page = self.open(path)
+        self.check_words(page, facts)
+        titles = page.run("tableColumns().map((c) => c.title)")
+        cells = page.run(f"conflictList().map((c) => tableColumns()[{titles.index('Frees it')}].cell(c))")
+        for cell, row, conflict in zip(cells, rows, facts["conflicts"]["list"]):
+            page.run(f"selectConflict(conflictList().find((c) => c.id === {row['conflict']}))")
+            words = page.run("byId('conflict-details').innerText")
+            if row["shift"] is None:
+                self.assertEqual(cell, "\u2013")
+                self.assertIn("no shift of up to 1 m to the left and 0.6 m to the right frees it", words)
+                continue
+            side = "left" if row["shift"] > 0 else "right"
+            self.assertEqual(cell, f"{abs(row['shift']):g} {side}")
+            self.assertIn(f"{abs(row['shift']):g} m to the {side} ", words)
+            self.assertIn(f"{conflict['chainage_to']:.1f} m", words)
+        freed = sum(row["shift"] is not None for row in rows)
+        self.assertIn(f"{freed} of {len(rows)} conflicts can be freed",
+                      page.run("byId('conflicts-note').textContent"))
+        order = page.run("(sortBy('Frees it'), sortedConflicts(tableColumns()).map(freedRank))")
+        known = [rank for rank in order if rank is not None]
+        self.assertEqual(known, sorted(known))
+        page.run("preparePrint()")
+        self.assertIn("Frees it", page.run("byId('print-cards').textContent"))
+        self.check_quiet(page)
+
     def test_without_first_poses(self):
         bare = self.hall.search("bare", "--radius", 0.1)
         path, facts = self.hall.report(bare, "bare")

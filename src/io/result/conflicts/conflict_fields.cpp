@@ -12,15 +12,6 @@
 namespace clearway {
 namespace {
 
-template <typename Value, typename Number>
-FieldValue value_of(const std::optional<Number>& number) {
-  return number ? FieldValue(static_cast<Value>(*number)) : FieldValue();
-}
-
-}  // namespace
-
-namespace {
-
 /// The number of fields before those of stations, which stand behind chainage_to.
 constexpr std::ptrdiff_t kAfterChainage = 16;
 

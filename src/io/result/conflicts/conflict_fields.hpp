@@ -16,6 +16,12 @@ namespace clearway {
 /// A value of a field: absent, a count, a number such as a length or coordinate, or a word.
 using FieldValue = std::variant<std::monostate, std::uint64_t, double, std::string_view>;
 
+/// The value of a field that may be absent, as a number of type Value.
+template <typename Value = double, typename Number>
+FieldValue value_of(const std::optional<Number>& number) {
+  return number ? FieldValue(static_cast<Value>(*number)) : FieldValue();
+}
+
 /// A column of a conflict in files without nesting.
 struct ConflictField {
   std::string_view name;

@@ -19,10 +19,6 @@ namespace {
 /// A column of a row, whose name may hold that of a body.
 using StationField = std::pair<std::string, FieldValue>;
 
-FieldValue value_of(const std::optional<double>& number) {
-  return number ? FieldValue(*number) : FieldValue();
-}
-
 /// An overthrow to a tenth of a micrometre, which is finer than any path is known. Without this,
 /// roundings would show where it is 0.
 FieldValue overthrow_value(const std::optional<double>& metres) {

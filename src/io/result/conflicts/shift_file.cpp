@@ -1,0 +1,211 @@
+#include "io/result/conflicts/shift_file.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "clearway/error.hpp"
+#include "core/query/ignored_points.hpp"
+#include "core/util/format.hpp"
+#include "io/files/file.hpp"
+#include "io/files/input_error.hpp"
+#include "io/files/json.hpp"
+#include "io/files/text_writer.hpp"
+#include "io/files/xxh64.hpp"
+#include "io/result/conflicts/conflict_fields.hpp"
+#include "io/result/conflicts/json_text.hpp"
+
+namespace clearway {
+namespace {
+
+std::vector<ConflictField> fields_of(const StretchShift& row) {
+  const char* side = side_of(row);
+  return {{"conflict", std::uint64_t{row.conflict}},
+          {"chainage_from", row.chainage_from},
+          {"chainage_to", row.chainage_to},
+          {"station_from", value_of(row.station_from)},
+          {"station_to", value_of(row.station_to)},
+          {"first_pose", std::uint64_t{row.first_pose}},
+          {"last_pose", std::uint64_t{row.last_pose}},
+          {"shift", value_of(row.shift)},
+          {"side", *side != 0 ? FieldValue(std::string_view(side)) : FieldValue()},
+          {"least_distance", value_of(row.least_distance)},
+          {"searches", row.searches}};
+}
+
+void write_csv(const ShiftTable& table, const File& file) {
+  TextWriter out(file);
+  const auto write = [&](const StretchShift& row, auto text_of) {
+    const char* between = "";
+    for (const ConflictField& field : fields_of(row)) {
+      out << between << text_of(field);
+      between = ",";
+    }
+    out << "\n";
+  };
+  write({}, [](const ConflictField& field) { return std::string(field.name); });
+  const auto value = [](const ConflictField& field) { return csv_value(field.value); };
+  write(table.path, value);
+  for (const StretchShift& row : table.conflicts) write(row, value);
+  out.flush();
+}
+
+std::string row_json(const StretchShift& row) {
+  std::string out;
+  for (const ConflictField& field : fields_of(row)) {
+    out += (out.empty() ? "" : ", ") + json_string(field.name) + ": " + json_value(field.value);
+  }
+  return "{" + out + "}";
+}
+
+/// A hash of everything that the shifts of a result depend on, besides their own options: what was
+/// asked, of what, and which points collide.
+std::uint64_t question_hash(const ResultReader& result) {
+  const ResultHeader& header = result.header();
+  std::string text = hash_text(header.environment_hash) + hash_text(header.model_hash) +
+                     hash_text(header.trajectory_hash) +
+                     hash_text(result.recorded_hash<Collisions>()) + json_number(header.radius) +
+                     (header.between_poses ? " between" : " at") +
+                     (header.ignores_points() ? ignored_text(header) : std::string()) +
+                     (header.budget ? json_number(header.budget->clear()) : std::string());
+  for (const Box& box : header.ignore_boxes) text += json_vector(box.lo) + json_vector(box.hi);
+  return xxh64(std::as_bytes(std::span(text)));
+}
+
+/// Reads the numbers of a table in JSON, and checks each.
+class ShiftReader {
+ public:
+  ShiftReader(const std::filesystem::path& path, const ResultReader& result)
+      : file_(KeyReader::parse(path, text_of_file(path))), result_(result) {}
+
+  ShiftTable read() const {
+    if (!file_.has("kind") || file_.value()["kind"] != "shifts") {
+      file_.refuse("is no table of shifts; expected the JSON of clearway shift");
+    }
+    if (file_.at("question_hash").text() != hash_text(question_hash(result_))) {
+      file_.refuse("holds the shifts of another result than " + result_.name());
+    }
+    ShiftTable table;
+    table.lateral_from = *number(file_.at("lateral_from"));
+    table.lateral_to = *number(file_.at("lateral_to"));
+    table.step = *number(file_.at("step"));
+    table.searches = count(file_.at("searches"), kMostSearches);
+    table.path = row(file_.at("path"));
+    const KeyReader list = file_.at("conflicts");
+    if (!list.value().is_array()) list.refuse("expected a list, in brackets");
+    if (list.value().empty()) return table;
+    for (const KeyReader& entry : list.elements()) table.conflicts.push_back(row(entry));
+    return table;
+  }
+
+ private:
+  static constexpr std::uint64_t kMostSearches = std::uint64_t{1} << 53;
+
+  StretchShift row(const KeyReader& of) const {
+    constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+    StretchShift out;
+    out.conflict = static_cast<std::uint32_t>(count(of.at("conflict"), kMost));
+    out.first_pose = static_cast<std::uint32_t>(count(of.at("first_pose"), kMost));
+    out.last_pose = static_cast<std::uint32_t>(count(of.at("last_pose"), kMost));
+    out.chainage_from = *number(of.at("chainage_from"));
+    out.chainage_to = *number(of.at("chainage_to"));
+    out.station_from = number_or_none(of.at("station_from"));
+    out.station_to = number_or_none(of.at("station_to"));
+    out.shift = number_or_none(of.at("shift"));
+    out.least_distance = number_or_none(of.at("least_distance"));
+    out.searches = count(of.at("searches"), kMostSearches);
+    return out;
+  }
+
+  static std::optional<double> number_or_none(const KeyReader& of) {
+    return of.value().is_null() ? std::nullopt : number(of);
+  }
+  static std::optional<double> number(const KeyReader& of) {
+    if (!of.value().is_number()) of.refuse("expected a number");
+    return of.value().get<double>();
+  }
+  static std::uint64_t count(const KeyReader& of, std::uint64_t most) {
+    if (of.value().is_number_unsigned() && of.value().get<std::uint64_t>() <= most) {
+      return of.value().get<std::uint64_t>();
+    }
+    of.refuse("expected a whole number, 0 or above");
+  }
+
+  KeyReader file_;
+  const ResultReader& result_;
+};
+
+}  // namespace
+
+ShiftFormat shift_format_of(const std::filesystem::path& output) {
+  const std::string ending = file_ending(output);
+  if (ending == ".csv") return ShiftFormat::kCsv;
+  if (ending == ".json") return ShiftFormat::kJson;
+  throw UsageError(output.string() + ": unknown output format; the name must end in .csv or .json");
+}
+
+const char* side_of(const StretchShift& stretch) {
+  if (!stretch.shift || *stretch.shift == 0) return "";
+  return *stretch.shift > 0 ? "left" : "right";
+}
+
+std::string json_of(const ShiftFile& file) {
+  const ResultHeader& header = file.result.header();
+  JsonMembers out;
+  out.add("kind", json_string("shifts"));
+  out.add("unit", json_string(file.unit));
+  out.add_length("radius", header.radius);
+  out.add("between_poses", header.between_poses ? "true" : "false");
+  out.add_length("lateral_from", file.table.lateral_from);
+  out.add_length("lateral_to", file.table.lateral_to);
+  out.add_length("step", file.table.step);
+  out.add_length("gap", file.conflicts.gap);
+  out.add_count("min_points", file.conflicts.min_points);
+  out.add_length("split", file.conflicts.split);
+  out.add_count("poses", header.poses);
+  out.add_count("searches", file.table.searches);
+  if (!header.bodies.empty()) out.add("bodies", json_strings(header.bodies));
+  out.add_hash("environment_hash", header.environment_hash);
+  out.add_hash("model_hash", header.model_hash);
+  out.add_hash("trajectory_hash", header.trajectory_hash);
+  out.add_hash("question_hash", question_hash(file.result));
+  out.add("path", row_json(file.table.path));
+  std::string rows;
+  for (const StretchShift& row : file.table.conflicts) {
+    rows += (rows.empty() ? "\n    " : ",\n    ") + row_json(row);
+  }
+  out.add("conflicts", "[" + rows + (rows.empty() ? "]" : "\n  ]"));
+  return "{\n" + std::move(out).text() + "\n}\n";
+}
+
+void write_shifts(const ShiftFile& shifts, ShiftFormat format, const std::filesystem::path& path) {
+  const File file = File::create(path);
+  if (format == ShiftFormat::kCsv) return write_csv(shifts.table, file);
+  TextWriter out(file);
+  out << json_of(shifts);
+  out.flush();
+}
+
+ShiftTable read_shifts(const std::filesystem::path& path, const ResultReader& result) {
+  return ShiftReader(path, result).read();
+}
+
+void check_shifts(const ShiftTable& table, const Conflicts& conflicts, const ResultReader& result) {
+  const auto is_of = [](const StretchShift& shift, const Conflict& conflict) {
+    return shift.conflict == conflict.id && shift.first_pose == conflict.first_pose &&
+           shift.last_pose == conflict.last_pose;
+  };
+  if (std::ranges::equal(table.conflicts, conflicts.listed, is_of)) return;
+  refuse(result.name(), "its " + counted(conflicts.listed.size(), "conflict") +
+                            " are not those of the table of shifts, which has " +
+                            format_count(table.conflicts.size()) +
+                            "; expected shifts that were found with the same gap, least points "
+                            "and longest stretch of conflicts");
+}
+
+}  // namespace clearway
