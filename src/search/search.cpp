@@ -731,6 +731,7 @@ SearchReport search(const Store& store, const Query& query, const std::filesyste
 struct SessionAnswer::Tables : ResultTables {
   ResultHeader header;
   ResultFindings findings;
+  std::filesystem::path store;
 };
 
 SessionAnswer::SessionAnswer() : tables_(std::make_shared<Tables>()) {}
@@ -747,6 +748,7 @@ const Nearby& SessionAnswer::near() const { return tables_->near; }
 const UnseenCubes& SessionAnswer::unseen() const { return tables_->unseen; }
 
 void SessionAnswer::save(const std::filesystem::path& output, bool overwrite) const {
+  refuse_overwriting(output, {tables_->store});
   PendingFile pending(output, overwrite);
   write_tables(*tables_, tables_->header, tables_->findings, pending.partial());
   pending.publish();
@@ -803,6 +805,7 @@ SessionAnswer Session::search(const Query& query, const QuestionOptions& asked) 
   state_->store.reader().check_unchanged();
   SessionAnswer answer;
   const auto tables = std::make_shared<SessionAnswer::Tables>();
+  tables->store = state_->store.path();
   static_cast<SearchReport&>(answer) = Search(state_->session, query, options, std::nullopt)
                                            .answer(*tables, tables->header, tables->findings);
   answer.tables_ = tables;

@@ -55,6 +55,8 @@ from ._clearway import (
     SearchedLength,
     SearchSeconds,
     SeenSummary,
+    Session,
+    SessionAnswer,
     SmallGroup,
     StationRow,
     StationTable,
