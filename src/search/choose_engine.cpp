@@ -135,6 +135,8 @@ namespace {
 
 /// Seconds that a GPU adds to a run: the part of its start and end during which nothing else runs.
 constexpr double kStart = 0.5;
+/// Seconds for making the slots of a GPU that was started before.
+constexpr double kSlots = 0.15;
 /// How many cores of a CPU search as fast as a GPU does.
 constexpr double kCores = 350;
 /// By what factor a search on the CPU takes longer where it has distances beyond the radius.
@@ -147,7 +149,7 @@ constexpr double kPointsPerCore = 13e6;
 }  // namespace
 
 DeviceEstimate estimate_devices(std::span<const Workload> work, const QueryParameters& query,
-                                Engine engine, int threads) {
+                                Engine engine, int threads, bool started) {
   const bool distances = query.clearance > 0 || query.profile > 0;
   const bool may_be_kdtree = engine == Engine::kAuto && !distances && work.size() == 1;
   double set = 0;
@@ -158,7 +160,7 @@ DeviceEstimate estimate_devices(std::span<const Workload> work, const QueryParam
   }
   const double beams = work.empty() ? 0 : work.front().beams / (kBeamsPerCore * threads);
   const double cpu = (distances ? kDistances : 1) * set + beams;
-  return {cpu, kStart + cpu * threads / kCores};
+  return {cpu, (started ? kSlots : kStart) + cpu * threads / kCores};
 }
 
 std::uint64_t surely_many_points(int threads) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -23,8 +25,17 @@ struct QueryTrees {
                               : std::make_shared<ModelIndex>(query.model, threads, 1)),
         of_session(kept != nullptr && kept->is_session()),
         model_seconds(clock.seconds()),
-        motion(query.poses, box(), query.between_poses, threads),
+        motion(query.poses, box(), query.between_poses, threads_for_poses(query, threads)),
         motion_seconds(clock.seconds() - model_seconds) {}
+
+  /// The threads that pay for the poses of a query: with few poses, to wake a thread would take
+  /// longer than the work.
+  static int threads_for_poses(const Query& query, int threads) {
+    constexpr std::size_t kPosesOfThread = 256;
+    return static_cast<int>(
+        std::min<std::size_t>(static_cast<std::size_t>(threads),
+                              1 + query.poses.size() / kPosesOfThread));
+  }
 
   /// The bytes of the trees, without what the model's index has besides them.
   std::uint64_t allocated_bytes() const {

@@ -38,6 +38,10 @@
 namespace clearway {
 namespace {
 
+/// The least number of poses for which a session of its own accord asks a GPU, because the CPU has
+/// answered for fewer poses before a GPU's slots are made.
+constexpr std::size_t kPosesForGpu = 256;
+
 /// Thrown when no GPU is available; the user has already been told why.
 struct NoGpu {};
 
@@ -231,6 +235,8 @@ class Search {
     options_.threads = threads_or_all(options_.threads);
     const bool gpu = gpu_pays() && may_take_gpus(options_);
     if (gpu && !options_.started) options_.started = session_.start_surely(options_);
+    // What the sweep looks up of a model stays for the next question of a session.
+    if (session_.is_session() && options_.engine == Engine::kAuto) options_.engine = Engine::kSweep;
     choose_engine(store_, query_, file_ ? file_->journal.earlier_engine() : Engine::kAuto, gpu,
                   options_, report_, log_);
     // A question with further searches has all the memory, because these need some of their own.
@@ -293,8 +299,9 @@ class Search {
 #ifdef CLEARWAY_CUDA
     const bool other = options_.engine == Engine::kGrid || options_.engine == Engine::kKdtree;
     if (!fallback_allowed(options_) || other) return true;
-    report_.estimate =
-        estimate_devices(workloads_of(store_, query_), query_, options_.engine, options_.threads);
+    if (session_.is_session() && query_.poses.size() < kPosesForGpu) return false;
+    report_.estimate = estimate_devices(workloads_of(store_, query_), query_, options_.engine,
+                                        options_.threads, session_.has_gpus());
     const auto [cpu, cuda] = *report_.estimate;
     if (cpu > cuda) return true;
     log_.note("the CPU is taken: by estimate it needs " + format_brief(cpu) +

@@ -326,10 +326,6 @@ std::array<PackedChunk<std::int32_t>, 3> StoreReader::peek(std::uint32_t cell) c
 }
 
 PackedChunk<std::uint64_t> StoreReader::sources(std::uint32_t cell) const {
-  return chunk<std::uint64_t>(cell, kPointDatasets[3], checked_chunk(cell, 3));
-}
-
-std::uint64_t StoreReader::source_of(std::uint32_t cell, std::uint32_t index) const {
   const std::atomic_ref checked(sources_checked_[cell]);
   if (checked.load(std::memory_order_acquire) == 0) {
     checked_chunk(cell, 3);
@@ -337,7 +333,11 @@ std::uint64_t StoreReader::source_of(std::uint32_t cell, std::uint32_t index) co
   }
   const std::size_t i = 4 * std::size_t{cell} + 3;
   const auto bytes = map_.bytes().subspan(index_.cells.address[i], index_.cells.bytes[i]);
-  return chunk<std::uint64_t>(cell, kPointDatasets[3], bytes)[index];
+  return chunk<std::uint64_t>(cell, kPointDatasets[3], bytes);
+}
+
+std::uint64_t StoreReader::source_of(std::uint32_t cell, std::uint32_t index) const {
+  return sources(cell)[index];
 }
 
 /// The packed values of a cell in a column, checked against their hash at the first call for it.
@@ -384,12 +384,14 @@ std::array<PackedChunk<std::int32_t>, 3> StoreReader::read_packed(std::uint32_t 
     for (std::size_t axis = 0; axis < 3; ++axis) file.read_at(address[axis], parts[axis]);
   }
   std::array<PackedChunk<std::int32_t>, 3> chunks;
+  const std::atomic_ref was_read(read_[cell]);
+  const bool was_right = was_read.load(std::memory_order_relaxed) != 0;
   for (int axis = 0; axis < 3; ++axis) {
     const auto part = parts[static_cast<std::size_t>(axis)];
-    check_hash(cell, axis, part);
+    if (!was_right) check_hash(cell, axis, part);
     chunks[static_cast<std::size_t>(axis)] = chunk<std::int32_t>(cell, kPointDatasets[axis], part);
   }
-  std::atomic_ref(read_[cell]).store(1, std::memory_order_relaxed);
+  was_read.store(1, std::memory_order_relaxed);
   return chunks;
 }
 

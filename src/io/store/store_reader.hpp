@@ -45,7 +45,7 @@ class StoreReader final : public PackedCloud {
   /// files are recognised as the same store without reading their points.
   std::uint64_t fingerprint() const;
 
-  /// The packed source indices of a cell, checked against their hash.
+  /// The packed source indices of a cell, checked against their hash at the first call for it.
   PackedChunk<std::uint64_t> sources(std::uint32_t cell) const;
 
   /// The packed classes of a cell, checked against their hash at the first call for it. Only where
@@ -70,11 +70,11 @@ class StoreReader final : public PackedCloud {
   std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const override;
   std::array<PackedChunk<std::int32_t>, 3> peek(std::uint32_t cell) const override;
   std::uint64_t packed_bytes(std::uint32_t cell) const override;
-  /// The source index of a point of a cell. The packed source indices are checked against their
-  /// hash at the first call for the cell.
+  /// The source index of a point of a cell, by sources().
   std::uint64_t source_of(std::uint32_t cell, std::uint32_t index) const override;
   /// Reads the packed coordinates of a cell into `to` from the file, not from the map; in one call
-  /// where x, y and z are adjacent in the file.
+  /// where x, y and z are adjacent in the file. They are checked against their hash at the first
+  /// call for the cell.
   std::array<PackedChunk<std::int32_t>, 3> read_packed(std::uint32_t cell,
                                                        std::span<std::byte> to) const override;
 

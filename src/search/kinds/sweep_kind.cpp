@@ -52,7 +52,7 @@ const PoseReach& SweepKindOf<Element>::build_index(const QueryTrees& trees,
                         .by_need = !this->needs().on_gpu},
       options_.threads);
   return filter_.emplace(query_, trees.motion, trees.of<Element>(), *field_, cloud_,
-                         options_.threads);
+                         QueryTrees::threads_for_poses(query_, options_.threads));
 }
 
 /// The fineness of the field, which is coarser for few poses, because they need few exact tests. It
