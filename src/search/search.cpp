@@ -1,6 +1,7 @@
 #include "clearway/search.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -739,6 +740,15 @@ struct SessionAnswer::Tables : ResultTables {
   ResultHeader header;
   ResultFindings findings;
   std::filesystem::path store;
+
+  /// Sets the profile's distance at the poses where no body has a pose: NaN in memory, and infinity
+  /// in a file, which Result::profile() turns into NaN.
+  static void set_distance_without_bodies(const ResultFindings& findings, double distance,
+                                          ResultTables& tables) {
+    for (const auto& [first, last] : findings.without_bodies) {
+      std::fill_n(tables.profile.distance.begin() + first, last - first + 1, distance);
+    }
+  }
 };
 
 SessionAnswer::SessionAnswer() : tables_(std::make_shared<Tables>()) {}
@@ -757,7 +767,14 @@ const UnseenCubes& SessionAnswer::unseen() const { return tables_->unseen; }
 void SessionAnswer::save(const std::filesystem::path& output, bool overwrite) const {
   refuse_overwriting(output, {tables_->store});
   PendingFile pending(output, overwrite);
-  write_tables(*tables_, tables_->header, tables_->findings, pending.partial());
+  const ResultFindings& findings = tables_->findings;
+  if (findings.without_bodies.empty()) {
+    write_tables(*tables_, tables_->header, findings, pending.partial());
+  } else {
+    ResultTables of_file = *tables_;
+    Tables::set_distance_without_bodies(findings, std::numeric_limits<double>::infinity(), of_file);
+    write_tables(of_file, tables_->header, findings, pending.partial());
+  }
   pending.publish();
 }
 
@@ -815,6 +832,8 @@ SessionAnswer Session::search(const Query& query, const QuestionOptions& asked) 
   tables->store = state_->store.path();
   static_cast<SearchReport&>(answer) = Search(state_->session, query, options, std::nullopt)
                                            .answer(*tables, tables->header, tables->findings);
+  SessionAnswer::Tables::set_distance_without_bodies(
+      tables->findings, std::numeric_limits<double>::quiet_NaN(), *tables);
   answer.tables_ = tables;
   return answer;
 }
