@@ -200,12 +200,4 @@ std::vector<std::uint32_t> indices_of(const py::handle& object, const char* name
   return indices;
 }
 
-py::array to_array(std::vector<Vec3> points) {
-  static_assert(sizeof(Vec3) == 3 * sizeof(double));
-  const py::capsule owner = keep(std::move(points));
-  const auto& kept = *owner.get_pointer<std::vector<Vec3>>();
-  const std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(kept.size()), 3};
-  return py::array_t<double>(shape, reinterpret_cast<const double*>(kept.data()), owner);
-}
-
 }  // namespace clearway::python

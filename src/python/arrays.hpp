@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -63,15 +64,26 @@ py::capsule keep(std::vector<Value> values) {
   return owner;
 }
 
-/// An array over the vector's memory, which it owns.
-template <typename Number>
-py::array to_array(std::vector<Number> values) {
-  const py::capsule owner = keep(std::move(values));
-  const auto& kept = *owner.get_pointer<std::vector<Number>>();
-  return py::array_t<Number>(static_cast<py::ssize_t>(kept.size()), kept.data(), owner);
+/// An array over the vector's memory, which `owner` keeps: of n numbers, or of n x 3 where an
+/// element of the vector has three of them.
+template <typename Value>
+py::array array_over(const std::vector<Value>& values, const py::handle& owner) {
+  const auto rows = static_cast<py::ssize_t>(values.size());
+  if constexpr (std::is_arithmetic_v<Value>) {
+    return py::array_t<Value>(rows, values.data(), owner);
+  } else {
+    using Number = std::remove_cvref_t<decltype(std::declval<Value&>()[0])>;
+    static_assert(sizeof(Value) == 3 * sizeof(Number));
+    const auto* const first = reinterpret_cast<const Number*>(values.data());
+    return py::array_t<Number>(std::vector<py::ssize_t>{rows, 3}, first, owner);
+  }
 }
 
-/// The points as an array of shape n x 3 that owns the vector.
-py::array to_array(std::vector<Vec3> points);
+/// An array over the vector's memory, which it owns; its shape is that of array_over().
+template <typename Value>
+py::array to_array(std::vector<Value> values) {
+  const py::capsule owner = keep(std::move(values));
+  return array_over(*owner.get_pointer<std::vector<Value>>(), owner);
+}
 
 }  // namespace clearway::python

@@ -19,6 +19,7 @@ PYBIND11_MODULE(_clearway, module) {
   add_bodies(module);
   add_search(module);
   add_results(module);
+  add_session(module);
   add_merge(module);
   add_findings(module);
   add_section(module);

@@ -171,6 +171,13 @@ void add_answer(py::module_& module) {
       .def_readonly("least_profile", &Answer::least_profile,
                     "The point with the least distance of the profile: a FoundPlace. None where "
                     "there is none or no profile was asked for.")
+      .def_property_readonly(
+          "first", [](const Answer& a) { return a.first_place; },
+          "The colliding point with the smallest first pose, as first_place has it.")
+      .def_property_readonly(
+          "least", [](const Answer& a) { return a.nearest(); },
+          "The place of the least distance that is known, of profile and clearances: a FoundPlace. "
+          "None where nothing is that close or neither was asked for.")
       .def_readonly("searched", &Answer::searched,
                     "How much of the path was searched: a SearchedLength. None where a file does "
                     "not say it: one model is searched on the whole path, and earlier releases did "

@@ -1,113 +1,44 @@
 #include <pybind11/stl.h>
 
-#include <algorithm>
 #include <memory>
 #include <string>
 
 #include "clearway/result.hpp"
 #include "core/query/query_fields.hpp"
 #include "python/arrays.hpp"
+#include "python/columns.hpp"
 #include "python/model.hpp"
 
 namespace clearway::python {
 namespace {
 
-/// The columns of a result, as arrays that are made once and then shared.
-struct Columns {
-  py::array source, xyz, distance;
-};
-struct ClearanceColumns : Columns {
-  py::array pose, body;
-};
-struct ProfileColumns : Columns {
-  py::array chainage;
-};
-/// Columns that the result does not have are None.
-struct CollisionColumns {
-  py::array source, xyz;
-  py::object first_pose, last_pose, body, certain;
-};
-
-struct UnseenColumns {
-  py::array cube, first_pose, group;
-};
-
-/// Makes the columns that clearances and profile have in common. The arrays take over the vectors.
-template <typename Shared, typename Read>
-Shared common_columns(Read& read) {
-  Shared columns;
-  columns.source = to_array(std::move(read.source));
-  columns.xyz = to_array(std::move(read.xyz));
-  columns.distance = to_array(std::move(read.distance));
-  return columns;
-}
-
 CollisionColumns collisions(const Result& result) {
-  Collisions read = without_gil([&] { return result.collisions(); });
-  const auto array_or_none = [&](std::vector<std::uint32_t>& values, bool there) -> py::object {
-    if (!there) return py::none();
-    return to_array(std::move(values));
-  };
-  const std::size_t rows = read.size();
-  const bool first_pose = result.parameters().first_pose;
-  CollisionColumns columns;
-  columns.source = to_array(std::move(read.source));
-  columns.xyz = to_array(std::move(read.xyz));
-  columns.first_pose = array_or_none(read.first_pose, first_pose);
-  columns.last_pose = array_or_none(read.last_pose, first_pose && read.last_pose.size() == rows);
-  columns.body = array_or_none(read.body, first_pose && !result.bodies().empty());
-  columns.certain = py::none();
-  if (result.parameters().has_budget()) {
-    py::array_t<bool> certain(static_cast<py::ssize_t>(read.certain.size()));
-    std::transform(read.certain.begin(), read.certain.end(), certain.mutable_data(),
-                   [](std::uint8_t flag) { return flag != 0; });
-    columns.certain = std::move(certain);
-  }
-  return columns;
+  Collisions table = without_gil([&] { return result.collisions(); });
+  return collision_columns(table, result.parameters(), !result.bodies().empty(), OwnArrays());
 }
 
 py::object near_points(const Result& result) {
   if (!result.parameters().has_budget()) return py::none();
-  Nearby read = without_gil([&] { return result.near(); });
-  const bool first_pose = result.parameters().first_pose;
-  CollisionColumns columns;
-  columns.source = to_array(std::move(read.source));
-  columns.xyz = to_array(std::move(read.xyz));
-  columns.first_pose = columns.last_pose = columns.body = columns.certain = py::none();
-  if (first_pose) columns.first_pose = to_array(std::move(read.first_pose));
-  if (first_pose && !result.bodies().empty()) columns.body = to_array(std::move(read.body));
-  return py::cast(std::move(columns));
+  Nearby table = without_gil([&] { return result.near(); });
+  return near_columns(table, result.parameters(), !result.bodies().empty(), OwnArrays());
 }
 
 py::object unseen_cubes(const Result& result) {
   if (!result.parameters().seen) return py::none();
-  UnseenCubes read = without_gil([&] { return result.unseen(); });
-  UnseenColumns columns;
-  const auto rows = static_cast<py::ssize_t>(read.size());
-  const py::capsule owner = keep(std::move(read.cube));
-  const auto& cubes = *owner.get_pointer<std::vector<std::array<std::int32_t, 3>>>();
-  const std::int32_t* const first = cubes.empty() ? nullptr : cubes.front().data();
-  columns.cube = py::array_t<std::int32_t>({rows, py::ssize_t{3}}, first, owner);
-  columns.first_pose = to_array(std::move(read.first_pose));
-  columns.group = to_array(std::move(read.group));
-  return py::cast(std::move(columns));
+  UnseenCubes table = without_gil([&] { return result.unseen(); });
+  return unseen_columns(table, result.parameters(), OwnArrays());
 }
 
 py::object clearance(const Result& result) {
   if (!(result.parameters().clearance > 0)) return py::none();
-  Clearances read = without_gil([&] { return result.clearance(); });
-  auto columns = common_columns<ClearanceColumns>(read);
-  columns.pose = to_array(std::move(read.pose));
-  columns.body = to_array(std::move(read.body));
-  return py::cast(std::move(columns));
+  Clearances table = without_gil([&] { return result.clearance(); });
+  return clearance_columns(table, result.parameters(), OwnArrays());
 }
 
 py::object profile(const Result& result) {
   if (!(result.parameters().profile > 0)) return py::none();
-  Profile read = without_gil([&] { return result.profile(); });
-  auto columns = common_columns<ProfileColumns>(read);
-  columns.chainage = to_array(std::move(read.chainage));
-  return py::cast(std::move(columns));
+  Profile table = without_gil([&] { return result.profile(); });
+  return profile_columns(table, result.parameters(), OwnArrays());
 }
 
 py::object first_pose(const Result& result) {

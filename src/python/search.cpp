@@ -20,13 +20,6 @@ namespace {
 
 using namespace py::literals;
 
-constexpr Named<Engine> kEngines[] = {{"auto", Engine::kAuto},
-                                      {"sweep", Engine::kSweep},
-                                      {"grid", Engine::kGrid},
-                                      {"kdtree", Engine::kKdtree}};
-constexpr Named<Device> kDevices[] = {
-    {"auto", Device::kAuto}, {"cpu", Device::kCpu}, {"cuda", Device::kCuda}};
-
 }  // namespace
 
 void add_store(py::module_& module) {
@@ -174,11 +167,7 @@ void add_searches(py::module_& module) {
          bool strict, const py::object& input_warnings, bool model_is_cut, bool end_gpus,
          double journal_interval_seconds, py::object progress, py::object message,
          py::object stop) {
-        if (query.parameters.radius == 0) {
-          throw UsageError(
-              "radius: the query has none; give the distance to keep in metres, as in "
-              "Query(model, poses, radius=0.1) or query.radius = 0.1");
-        }
+        require_radius(query);
         SearchOptions options;
         options.engine = value_of("engine", kEngines, engine);
         options.device = value_of("device", kDevices, device);
@@ -201,10 +190,7 @@ void add_searches(py::module_& module) {
         watch.attach(options);
         return watch.run(
             [&, asked = query_of(query), rigid = !query.allow_non_rigid, to = path_of(output)] {
-              if (rigid) {
-                require_rigid(asked.poses);
-                for (const Body& body : asked.bodies) require_rigid(body.poses);
-              }
+              if (rigid) require_rigid(asked);
               return in_turn(store, options.stop,
                              [&](const Store& own) { return search(own, asked, to, options); });
             });
@@ -256,9 +242,28 @@ stop: an object with is_set(), such as threading.Event. When it is set, Interrup
 }  // namespace
 
 Query query_of(const ArrayQuery& query) {
-  Query asked(model_of(query.model), poses_of(query.poses, "poses"), query.parameters);
-  asked.bodies = bodies_on(query.bodies, asked.poses);
+  Query asked;
+  asked.model = model_of(query.model);
+  ask(query, asked);
   return asked;
+}
+
+void ask(const ArrayQuery& query, Query& asked) {
+  static_cast<QueryParameters&>(asked) = query.parameters;
+  asked.poses = poses_of(query.poses, "poses");
+  asked.bodies = bodies_on(query.bodies, asked.poses);
+}
+
+void require_radius(const ArrayQuery& query) {
+  if (query.parameters.radius != 0) return;
+  throw UsageError(
+      "radius: the query has none; give the distance to keep in metres, as in "
+      "Query(model, poses, radius=0.1) or query.radius = 0.1");
+}
+
+void require_rigid(const Query& query) {
+  require_rigid(query.poses);
+  for (const Body& body : query.bodies) require_rigid(body.poses);
 }
 
 void add_search(py::module_& module) {

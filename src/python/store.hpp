@@ -10,19 +10,33 @@
 #include <vector>
 
 #include "clearway/error.hpp"
+#include "clearway/follow.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/query.hpp"
+#include "clearway/search.hpp"
 #include "clearway/store.hpp"
 #include "python/arrays.hpp"
 
 namespace clearway::python {
 
+inline constexpr Named<Engine> kEngines[] = {{"auto", Engine::kAuto},
+                                             {"sweep", Engine::kSweep},
+                                             {"grid", Engine::kGrid},
+                                             {"kdtree", Engine::kKdtree}};
+inline constexpr Named<Device> kDevices[] = {
+    {"auto", Device::kAuto}, {"cpu", Device::kCpu}, {"cuda", Device::kCuda}};
+
 /// A store that several Python threads share. Calls on it take turns, because a store remembers
 /// which of its cells it has checked.
 struct SharedStore {
-  explicit SharedStore(const std::filesystem::path& path) : store(path) {}
+  explicit SharedStore(const std::filesystem::path& path)
+      : SharedStore(std::make_shared<const Store>(path)) {}
+  /// The store of a session, which stays open as long as this refers to it.
+  explicit SharedStore(std::shared_ptr<const Store> opened)
+      : kept(std::move(opened)), store(*kept) {}
 
-  Store store;
+  const std::shared_ptr<const Store> kept;
+  const Store& store;
   std::timed_mutex turn;
 };
 
@@ -73,5 +87,14 @@ struct ArrayQuery {
 
 /// The query with copies of model and poses, so that Python may change its own during the search.
 Query query_of(const ArrayQuery& query);
+
+/// Makes `asked` what the query is, but for the model, which stays.
+void ask(const ArrayQuery& query, Query& asked);
+
+/// Throws UsageError for a query that has no radius yet.
+void require_radius(const ArrayQuery& query);
+
+/// Throws InputError for a pose of the path or of a body that scales, shears or mirrors.
+void require_rigid(const Query& query);
 
 }  // namespace clearway::python

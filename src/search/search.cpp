@@ -1,6 +1,7 @@
 #include "clearway/search.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 

@@ -1,5 +1,7 @@
 #include "clearway/session.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 
 #include "io/files/pending_file.hpp"
@@ -10,6 +12,15 @@ namespace clearway {
 
 struct SessionAnswer::Tables : AnswerInMemory {
   std::filesystem::path store;  ///< which no output may overwrite
+
+  /// Sets the profile's distance at the poses where no body has a pose: NaN in memory, and infinity
+  /// in a file, which Result::profile() turns into NaN.
+  static void set_distance_without_bodies(const ResultFindings& findings, double distance,
+                                          ResultTables& tables) {
+    for (const auto& [first, last] : findings.without_bodies) {
+      std::fill_n(tables.profile.distance.begin() + first, last - first + 1, distance);
+    }
+  }
 };
 
 SessionAnswer::SessionAnswer() : tables_(std::make_shared<Tables>()) {}
@@ -28,7 +39,14 @@ const UnseenCubes& SessionAnswer::unseen() const { return tables_->unseen; }
 void SessionAnswer::save(const std::filesystem::path& output, bool overwrite) const {
   refuse_overwriting(output, {tables_->store});
   PendingFile pending(output, overwrite);
-  write_tables(*tables_, tables_->header, tables_->findings, pending.partial());
+  const ResultFindings& findings = tables_->findings;
+  if (findings.without_bodies.empty()) {
+    write_tables(*tables_, tables_->header, findings, pending.partial());
+  } else {
+    ResultTables of_file = *tables_;
+    Tables::set_distance_without_bodies(findings, std::numeric_limits<double>::infinity(), of_file);
+    write_tables(of_file, tables_->header, findings, pending.partial());
+  }
   pending.publish();
 }
 
@@ -85,6 +103,8 @@ SessionAnswer Session::search(const Query& query, const QuestionOptions& asked) 
   static_cast<SearchReport&>(answer) =
       answer_question(state_->session, query, options, *tables);
   tables->store = state_->store.path();
+  SessionAnswer::Tables::set_distance_without_bodies(
+      tables->findings, std::numeric_limits<double>::quiet_NaN(), *tables);
   answer.tables_ = tables;
   return answer;
 }

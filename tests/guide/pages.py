@@ -25,6 +25,7 @@ NOT_RUN = {
     ("docs/guide/python.md", "sudo"): "installs the package; tools/test_package.sh does",
     ("docs/guide/python.md", "cmake"): "builds the program",
     ("docs/guide/python.md", "clearway scene"): "the test python_guide runs it, with the page's snippets",
+    ("docs/guide/whatif.md", "clearway scene"): "the test python_whatif runs it, with the page's snippets",
 }
 
 # (page, beginning of the snippet): which other test runs it, or why none does.
@@ -34,6 +35,7 @@ SNIPPETS_ELSEWHERE = {
     ("docs/guide/library.md", "#include"): "the test installed_library compiles it, and runs the one with main",
     ("docs/guide/python.md", ""): "the test python_guide runs it",
     ("docs/guide/section.md", "import clearway"): "the test python_section runs it",
+    ("docs/guide/whatif.md", ""): "the test python_whatif runs it",
     ("docs/guide/campaigns.md", '"vehicles"'): "a part of a campaign's file, with folders of models",
 }
 

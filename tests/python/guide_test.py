@@ -2,11 +2,13 @@
 """Runs the Python blocks of a page, one after the other, in a folder of their own.
 
     guide_test.py PAGE --scene PROGRAM   with a scene that PROGRAM makes; compares what is printed
+    guide_test.py PAGE --scene PROGRAM --needs MODULE    as above; skipped where Python lacks MODULE
     guide_test.py PAGE --street          with the street of CLEARWAY_TEST_DATA, and its known answer
 """
 
 import argparse
 import contextlib
+import importlib.util
 import io
 import os
 import re
@@ -64,8 +66,12 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("page", type=Path)
     parser.add_argument("--scene")
+    parser.add_argument("--needs", help="a module of Python that the page imports")
     parser.add_argument("--street", action="store_true")
     options = parser.parse_args()
+    if options.needs and importlib.util.find_spec(options.needs) is None:
+        print(f"skipped: {options.page.name} needs Python's module {options.needs}")
+        sys.exit(SKIPPED)
     page = options.page.resolve()
     with tempfile.TemporaryDirectory(prefix="clearway-guide-") as folder:
         if options.street:

@@ -65,6 +65,8 @@ from ._clearway import (
     SectionStop,
     SectionStretch,
     SeenSummary,
+    Session,
+    SessionAnswer,
     ShiftTable,
     SmallGroup,
     StationRow,

@@ -1,7 +1,7 @@
 from collections.abc import Callable, Iterable, Sequence
 from os import PathLike
 from pathlib import Path as _Path
-from typing import Any, ClassVar, Final, Literal, Protocol
+from typing import Any, ClassVar, Final, Literal, Protocol, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -263,6 +263,8 @@ class Answer:
     first_place: Final[FoundPlace | None]
     least_clearance: Final[FoundPlace | None]
     least_profile: Final[FoundPlace | None]
+    first: Final[FoundPlace | None]
+    least: Final[FoundPlace | None]
     searched: Final[SearchedLength | None]
     shard: Final[tuple[int, int] | None]
 class SearchReport(Answer):
@@ -352,6 +354,30 @@ class Result:
     def model_spacing(self) -> float: ...
     def model_axes(self) -> tuple[str, str]: ...
     def model_box(self) -> Box | None: ...
+class SessionAnswer(SearchReport):
+    collisions: Final[Collisions]
+    near: Final[Collisions | None]
+    clearances: Final[Clearances | None]
+    profile: Final[Profile | None]
+    unseen: Final[UnseenCubes | None]
+    def save(self, path: _AnyPath, overwrite: bool = False) -> None: ...
+class Session:
+    def __init__(
+        self, path: _AnyPath, device: Literal["auto", "cpu", "cuda"] = "auto", threads: int = 0,
+        memory_bytes: int = 4294967296, device_memory_bytes: int = 0, gpus: Sequence[int] = (),
+    ) -> None: ...
+    store: Final[Store]
+    closed: Final[bool]
+    def search(
+        self, query: Query, *, engine: Literal["auto", "sweep", "grid", "kdtree"] = "auto",
+        strict: bool = False, input_warnings: Iterable[Message] = (), model_is_cut: bool = False,
+        progress: _Progress | None = None, message: _Tell | None = None, stop: _Stop | None = None,
+    ) -> SessionAnswer: ...
+    def forget_models(self) -> None: ...
+    def kept_bytes(self) -> int: ...
+    def close(self) -> None: ...
+    def __enter__(self) -> Self: ...
+    def __exit__(self, *raised: object) -> None: ...
 class Conflict:
     id: Final[int]
     points: Final[int]
