@@ -33,7 +33,8 @@ void block_cells(const PackedCloud& cloud, const IgnoredPoints& ignored, const S
                  const SectionLattice& lattice, double slack, int threads, SectionMaps& maps,
                  Progress& progress) {
   constexpr std::uint32_t kBlocksAtOnce = 32;
-  const SectionSearch search(cloud, poses, lattice, slack, maps);
+  const SectionRef section = section_ref(poses, lattice, slack, maps);
+  const SectionSearch search(cloud, section);
   progress.begin("section", cloud.point_count(), "points");
   in_threads(threads, [&] {
     const ParallelScope all_cells;
@@ -42,7 +43,9 @@ void block_cells(const PackedCloud& cloud, const IgnoredPoints& ignored, const S
       const auto cell = static_cast<std::uint32_t>(i);
       const std::uint32_t count = cloud.cells()[cell].count;
       std::vector<std::uint32_t> bins;
-      if (!ignored.any() || !ignored.skips(cell)) bins = search.bins_in_reach(cell);
+      if (!ignored.any() || !ignored.skips(cell)) {
+        bins = bins_in_reach(section, position_box(cloud.quantisation(), cloud.cells()[cell].box));
+      }
       if (!bins.empty()) {
         const auto coordinates = cloud.coordinates(cell);
         std::vector<std::uint64_t> searched;
