@@ -19,32 +19,35 @@ namespace {
 struct Covered {
   alignas(64) std::int32_t column_from[kBlockPoints], column_to[kBlockPoints];
   alignas(64) std::int32_t row_from[kBlockPoints], row_to[kBlockPoints];
-  /// PlaceBounds::first_in_range, or -1 where all poses see the point outside of the range.
+  /// PlaceBounds::first_in_range, or -1 where no pose can see the point in the range and the
+  /// window.
   alignas(64) std::int32_t first_in_range[kBlockPoints];
 };
 
 constexpr double kMostFirst = 2147483647;  ///< that fits Covered::first_in_range
 
-/// The cells of an axis under a range of places, counted from the first cell of the window: the
-/// first is greater than the last where there are none. Ends that are NaN become those of the
-/// window.
+/// The cells of an axis under a range of places, counted from the first cell of the window. Ends
+/// that are NaN become those of the window.
 struct AxisCells {
   const SectionLattice& lattice;
-  double first, most;
+  double first, last;
 
   AxisCells(const SectionLattice& of, double from, double to)
-      : lattice(of), first(from), most(to - from) {}
+      : lattice(of), first(from), last(to - from - 1) {}
 
-  CLEARWAY_IN_CLONE void cover(double place_from, double place_to, std::int32_t& from,
+  /// Returns whether the range misses the window; from and to are then cells of it all the same.
+  CLEARWAY_IN_CLONE bool cover(double place_from, double place_to, std::int32_t& from,
                                std::int32_t& to) const {
     double a = lattice.number_at_bound(place_from) - first;
     double b = lattice.number_at_bound(place_to) - first;
+    const bool misses = (a > last) | (b < 0);
     a = a > 0 ? a : 0;
-    a = a < most ? a : most;
-    b = b > -1 ? b : b <= -1 ? -1 : most - 1;
-    b = b < most - 1 ? b : most - 1;
+    a = a < last ? a : last;
+    b = b < last ? b : last;  // for NaN, too
+    b = b > 0 ? b : 0;
     from = static_cast<std::int32_t>(a);
     to = static_cast<std::int32_t>(b);
+    return misses;
   }
 };
 
@@ -77,9 +80,10 @@ void cover_points(const SectionPoseNode& node, const SectionLattice& lattice, do
     const bool misses =
         (to[0][i] < lattice.x_from) | (from[0][i] > lattice.x_to) | (first[i] >= count_of_poses);
     const double at_least = first[i] < kMostFirst ? first[i] : kMostFirst;
-    out.first_in_range[i] = static_cast<std::int32_t>(misses ? -1.0 : at_least);
-    across.cover(from[1][i], to[1][i], out.column_from[i], out.column_to[i]);
-    up.cover(from[2][i], to[2][i], out.row_from[i], out.row_to[i]);
+    const bool is_beside = across.cover(from[1][i], to[1][i], out.column_from[i], out.column_to[i]);
+    const bool is_over = up.cover(from[2][i], to[2][i], out.row_from[i], out.row_to[i]);
+    out.first_in_range[i] =
+        static_cast<std::int32_t>(misses | is_beside | is_over ? -1.0 : at_least);
   }
 }
 
@@ -152,22 +156,28 @@ void SectionSearch::visit(std::uint32_t at, const Points& points) const {
   const SectionMapRef map = section_.map(node.bin);
   Covered covered;
   cover_points(node, section_.lattice, section_.slack, points.at, points.count, covered);
+  std::uint32_t kept[kBlockPoints];
   Points left;
   for (std::uint32_t i = 0; i < points.count; ++i) {
-    if (covered.first_in_range[i] < 0 || covered.column_from[i] > covered.column_to[i] ||
-        covered.row_from[i] > covered.row_to[i]) {
-      continue;
-    }
     const SectionRect rect{static_cast<std::uint32_t>(covered.column_from[i]),
                            static_cast<std::uint32_t>(covered.column_to[i]),
                            static_cast<std::uint32_t>(covered.row_from[i]),
                            static_cast<std::uint32_t>(covered.row_to[i])};
-    const auto first = static_cast<std::uint32_t>(covered.first_in_range[i]);
-    if (map.is_blocked_by(rect, node.first_pose + first)) continue;
-    for (int axis = 0; axis < 3; ++axis) left.at[axis][left.count] = points.at[axis][i];
-    ++left.count;
+    const bool is_in_range = covered.first_in_range[i] >= 0;
+    const std::uint32_t pose =
+        node.first_pose + static_cast<std::uint32_t>(std::max(covered.first_in_range[i], 0));
+    // Few branches, as they could hardly be foretold.
+    bool is_left = is_in_range & (map.last_corner(rect) > pose);
+    const bool is_small =
+        (rect.column_to - rect.column_from <= 1) & (rect.row_to - rect.row_from <= 1);
+    if (is_in_range & !is_left & !is_small) is_left = !map.is_blocked_inside(rect, pose);
+    kept[left.count] = i;
+    left.count += is_left ? 1 : 0;
   }
   if (left.count == 0) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::uint32_t i = 0; i < left.count; ++i) left.at[axis][i] = points.at[axis][kept[i]];
+  }
   if (node.is_leaf()) return visit_poses(node, left);
   visit(at + 1, left);
   visit(node.right, left);
