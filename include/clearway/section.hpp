@@ -14,6 +14,7 @@
 #include "clearway/outline.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/progress.hpp"
+#include "clearway/search.hpp"
 #include "clearway/store.hpp"
 
 /// The section of a route: which cells of the cross-section are blocked for a load of a given
@@ -48,8 +49,11 @@ struct SectionParameters {
 
 /// How a section is found. The file's bytes depend on none of these options.
 struct SectionOptions {
-  int threads = 0;  ///< 0: all cores
+  Device device = Device::kAuto;  ///< kAuto: a GPU that has room and pays, or else the CPU
+  std::vector<int> gpus = {};     ///< CUDA's device numbers; empty: the first GPU with room
+  int threads = 0;                ///< 0: all cores
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
+  std::uint64_t device_memory_bytes = 0;  ///< budget on each device; 0: 2 GiB, or what is free
   bool overwrite = false;
   bool strict = false;  ///< any warning ends with InputError, and nothing is written
   /// Warnings from reading the path, which the user has already seen. The section keeps them, and
@@ -106,14 +110,19 @@ struct SectionReport {
   double rounding = 0;
   std::optional<std::array<double, 2>> motion = {};
   std::vector<Message> warnings = {};
-  std::uint64_t needed_host_bytes = 0;
+  Device device = Device::kCpu;            ///< the device that searched
+  std::string device_name = "the CPU";     ///< name of the device for the user
+  std::optional<DeviceEstimate> estimate;  ///< the estimate by which kAuto chose the device
+  std::uint64_t needed_host_bytes = 0;     ///< greatest memory that the search takes
+  std::uint64_t peak_device_bytes = 0;     ///< allocated on the GPU, without the CUDA context
   double seconds = 0, search_seconds = 0;
 };
 
 /// Finds the section of a path in a store and writes it to a file. Throws UsageError for an empty
 /// range or window, for poses that scale or are singular, and for an output that exists; InputError
 /// for a damaged store; ResourceError where the memory is too little, with the coarser bin that
-/// fits; Interrupted when asked to stop. docs/design/section.md has the definitions.
+/// fits, or where a GPU is asked for and cannot be used; Interrupted when asked to stop.
+/// docs/design/section.md has the definitions.
 SectionReport find_section(const Store& store, const std::vector<Pose>& path,
                            const SectionParameters& parameters, const std::filesystem::path& output,
                            const SectionOptions& options = {});

@@ -1,7 +1,5 @@
 #include "search/section.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -14,64 +12,18 @@
 #include "core/util/format.hpp"
 #include "core/util/messages.hpp"
 #include "core/util/stopwatch.hpp"
-#include "core/util/tsan_annotations.hpp"
-#include "cpu/section_search.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/paths/content_hash.hpp"
 #include "io/section/section_file.hpp"
 #include "io/store/store_reader.hpp"
+#include "search/block_cells.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/checks.hpp"
 #include "search/checks/facts/path_facts.hpp"
 #include "search/checks/question.hpp"
 #include "search/ignored.hpp"
-#include "search/threads.hpp"
 
 namespace clearway {
-
-void block_cells(const PackedCloud& cloud, const IgnoredPoints& ignored, const SectionPoses& poses,
-                 const SectionLattice& lattice, double slack, int threads, SectionMaps& maps,
-                 Progress& progress) {
-  constexpr std::uint32_t kBlocksAtOnce = 32;
-  const SectionRef section = section_ref(poses, lattice, slack, maps);
-  const SectionSearch search(cloud, section);
-  progress.begin("section", cloud.point_count(), "points");
-  in_threads(threads, [&] {
-    const ParallelScope all_cells;
-    const auto search_cell = piece_of(all_cells, [&](std::size_t i) {
-      throw_if_stopped(progress);
-      const auto cell = static_cast<std::uint32_t>(i);
-      const std::uint32_t count = cloud.cells()[cell].count;
-      std::vector<std::uint32_t> bins;
-      if (!ignored.any() || !ignored.skips(cell)) {
-        bins = bins_in_reach(section, position_box(cloud.quantisation(), cloud.cells()[cell].box));
-      }
-      if (!bins.empty()) {
-        const auto coordinates = cloud.coordinates(cell);
-        std::vector<std::uint64_t> searched;
-        if (ignored.any() && ignored.touches(cell)) {
-          searched.resize(cloud.blocks_per_cell());
-          ignored.mask(cell, searched, [&] { return coordinates; });
-        }
-        const auto blocks = static_cast<std::uint32_t>(divide_up(count, kBlockPoints));
-        const ParallelScope of_cell;
-        const auto search_blocks = piece_of(of_cell, [&](std::uint32_t part) {
-          const std::uint32_t first = part * kBlocksAtOnce;
-          search.search(cell, coordinates, searched, bins, first,
-                        std::min(first + kBlocksAtOnce, blocks));
-        });
-        of_cell.begin();
-        tbb::parallel_for(std::uint32_t{0},
-                          static_cast<std::uint32_t>(divide_up(blocks, kBlocksAtOnce)),
-                          search_blocks);
-      }
-      progress.advance(count);
-    });
-    all_cells.begin();
-    tbb::parallel_for(std::size_t{0}, cloud.cells().size(), search_cell);
-  });
-  progress.end();
-}
 
 void add_cells_of_bin(const SectionLattice& lattice, const std::uint32_t* firsts,
                       std::uint32_t number, SectionCells& cells) {
@@ -139,7 +91,8 @@ class Finder {
         options_(options),
         progress_(options_.progress, options_.stop),
         log_(options_.message, data_.warnings),
-        pending_(output, options.overwrite) {
+        pending_(output, options.overwrite),
+        device_(store, options_, log_) {
     data_.parameters = with_defaults(parameters, metre_of(store_));
   }
 
@@ -314,8 +267,8 @@ class Finder {
     const SectionPoses poses(load_.poses, load_.path_pose, bins);
     SectionMaps maps(lattice_, bins.size());
     const IgnoredPoints ignored(store_, ignored_by(data_.parameters));
-    block_cells(store_, ignored, poses, lattice_, data_.rounding, options_.threads, maps,
-                progress_);
+    device_.block(store_, ignored, section_ref(poses, lattice_, data_.rounding, maps),
+                  options_.memory_bytes - report_.needed_host_bytes, progress_, report_);
     for (std::size_t bin = 0; bin < bins.size(); ++bin) {
       const auto number = static_cast<std::uint32_t>(bins[bin].number);
       data_.bins.push_back(number);
@@ -349,6 +302,7 @@ class Finder {
   SectionData data_;
   MessageLog log_;
   PendingFile pending_;
+  SectionDevice device_;
   Body load_;
   SectionLattice lattice_{};
   SectionReport report_;

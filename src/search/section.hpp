@@ -1,23 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
-#include <vector>
 
 #include "clearway/section.hpp"
-#include "core/cloud/packed_cloud.hpp"
-#include "core/query/ignored_points.hpp"
-#include "core/section/section_map.hpp"
-#include "core/section/section_poses.hpp"
-#include "core/util/progress.hpp"
+#include "core/section/section_lattice.hpp"
 
 namespace clearway {
-
-/// Blocks the cells of a section by all points of a cloud that are not ignored. Throws InputError
-/// for a damaged cell, Interrupted.
-void block_cells(const PackedCloud& cloud, const IgnoredPoints& ignored, const SectionPoses& poses,
-                 const SectionLattice& lattice, double slack, int threads, SectionMaps& maps,
-                 Progress& progress);
 
 /// Adds the blocked cells of a bin, ascending by k and j.
 void add_cells_of_bin(const SectionLattice& lattice, const std::uint32_t* firsts,

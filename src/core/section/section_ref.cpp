@@ -4,7 +4,10 @@ namespace clearway {
 
 SectionRef section_ref(const SectionPoses& poses, const SectionLattice& lattice, double slack,
                        SectionMaps& maps) {
-  return {.nodes = poses.nodes().data(),
+  return {.node_count = static_cast<std::uint32_t>(poses.nodes().size()),
+          .pose_count = static_cast<std::uint32_t>(poses.pull_backs().size()),
+          .bin_count = static_cast<std::uint32_t>(maps.entries().size() / maps.shape().entries),
+          .nodes = poses.nodes().data(),
           .pull_backs = poses.pull_backs().data(),
           .path_pose = poses.path_pose().data(),
           .lattice = lattice,

@@ -11,6 +11,7 @@ namespace clearway {
 /// The poses of a load and the maps of its bins as a search sees them, on the host or on a device.
 /// Owns nothing.
 struct SectionRef {
+  std::uint32_t node_count, pose_count, bin_count;
   const SectionPoseNode* nodes;    ///< SectionPoses::nodes()
   const PullBack* pull_backs;      ///< of each pose of the load
   const std::uint32_t* path_pose;  ///< of each pose of the load: the pose of the path
@@ -18,6 +19,9 @@ struct SectionRef {
   double slack;  ///< section_rounding()
   SectionMapShape shape;
   std::uint32_t* entries;  ///< of the maps of all bins, one map after another
+
+  /// Number of the entries of all maps.
+  std::uint64_t entry_count() const { return bin_count * shape.entries; }
 
   CLEARWAY_HD SectionMapRef map(std::uint32_t bin) const {
     return {&shape, entries + bin * shape.entries};
