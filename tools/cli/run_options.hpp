@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "clearway/model.hpp"
 #include "clearway/search.hpp"
@@ -29,6 +31,10 @@ struct RunOptions {
 /// The options by which the model of a run is read. Throws UsageError for options that contradict
 /// each other.
 ModelOptions model_options_of(const RunOptions& options);
+
+/// Adds --device, --gpus and --device-memory.
+void add_device_options(CLI::App& command, Device& device, std::vector<int>& gpus,
+                        std::uint64_t& device_memory_bytes);
 
 /// Adds the options of `clearway run`. `options` outlive the command.
 void add_run_options(CLI::App& command, RunOptions& options);
