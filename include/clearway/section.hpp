@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "clearway/box.hpp"
+#include "clearway/device.hpp"
 #include "clearway/follow.hpp"
 #include "clearway/outline.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/progress.hpp"
-#include "clearway/search.hpp"
 #include "clearway/store.hpp"
 
 /// The section of a route: which cells of the cross-section are blocked for a load of a given
