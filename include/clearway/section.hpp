@@ -115,7 +115,10 @@ struct SectionReport {
   std::optional<DeviceEstimate> estimate;  ///< the estimate by which kAuto chose the device
   std::uint64_t needed_host_bytes = 0;     ///< greatest memory that the search takes
   std::uint64_t peak_device_bytes = 0;     ///< allocated on the GPU, without the CUDA context
-  double seconds = 0, search_seconds = 0;
+  double seconds = 0;                      ///< of the whole call
+  double search_seconds = 0;               ///< for blocking the cells, without the two below
+  double engine_seconds = 0;               ///< for making engines on GPUs with their slots
+  double context_wait_seconds = 0;         ///< that the search waited for the GPUs to start
 };
 
 /// Finds the section of a path in a store and writes it to a file. Throws UsageError for an empty

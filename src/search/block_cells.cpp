@@ -8,6 +8,7 @@
 
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
+#include "core/util/stopwatch.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "cpu/section_search.hpp"
 #include "search/choose_engine.hpp"
@@ -142,10 +143,12 @@ void SectionDevice::block_on_gpus(const PackedCloud& cloud, const IgnoredPoints&
   }
   std::string name;
   const auto open = [&] {
+    const Stopwatch waiting;
     options_.started->wait();
     DeviceChoice choice = choose_device(options_, log_);
     if (!choice.is_cuda()) throw ResourceError("no GPU has room", Remedy::kCpuDevice);
     name = choice.name;
+    report.context_wait_seconds = waiting.seconds();
     return choice;
   };
   SectionOnGpus taken =
@@ -154,6 +157,7 @@ void SectionDevice::block_on_gpus(const PackedCloud& cloud, const IgnoredPoints&
   report.device_name = name;
   report.peak_device_bytes = taken.device_bytes;
   report.needed_host_bytes += taken.host_bytes;
+  report.engine_seconds = taken.engine_seconds;
   ending_ = std::move(taken.end);
 }
 

@@ -105,7 +105,8 @@ class Finder {
     if (options_.strict) refuse_warnings(data_.warnings);
     const Stopwatch searching;
     if (!load_.poses.empty()) find();
-    report_.search_seconds = searching.seconds();
+    report_.search_seconds =
+        searching.seconds() - report_.engine_seconds - report_.context_wait_seconds;
     publish();
     report_.seconds = total_.seconds();
     return std::move(report_);

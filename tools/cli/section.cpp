@@ -64,7 +64,10 @@ ordered_json json_of(const SectionReport& report, const FindCommand& options) {
   }
   out["needed_host_bytes"] = report.needed_host_bytes;
   out["peak_device_bytes"] = report.peak_device_bytes;
-  out["seconds"] = {{"total", report.seconds}, {"search", report.search_seconds}};
+  out["seconds"] = {{"total", report.seconds},
+                    {"search", report.search_seconds},
+                    {"engine", report.engine_seconds},
+                    {"context_wait", report.context_wait_seconds}};
   out["warnings"] = warnings_json(report.warnings);
   return out;
 }

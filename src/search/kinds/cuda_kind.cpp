@@ -4,6 +4,7 @@
 #include <functional>
 #include <future>
 
+#include "core/util/stopwatch.hpp"
 #include "cpu/sweep_engine.hpp"
 #include "gpu/beam_engine.hpp"
 #include "gpu/devices.hpp"
@@ -292,16 +293,18 @@ SectionOnGpus block_cells_on_gpus(const PackedCloud& cloud, const IgnoredPoints&
       .kept = gpus.size() > 1 ? entries.size_bytes() : 0};
   const SlotLayout layout =
       layout_that_fits(cloud, cells, ignored.any(), bytes, memory_bytes, needs);
+  SectionOnGpus taken;
+  const Stopwatch making;
   PageEngines engines = gpus.engines([&](int gpu) -> std::unique_ptr<PageEngine> {
     return std::make_unique<CudaSectionEngine>(gpu, section, cloud, layout);
   });
+  taken.engine_seconds = making.seconds();
   const std::vector<PageEngine*> lanes = lanes_of(engines);
   StageTimes times;
   run_pages(
       cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells, ignored.any()), lanes,
       {.stage = "section", .ignored = ignored, .threads = needs.threads},
       [](std::span<const PlannedCell>, const PageResult&) {}, progress, times);
-  SectionOnGpus taken;
   std::vector<std::uint32_t> of_device;
   for (const PageEngine* lane : lanes) {
     const auto& engine = dynamic_cast<const CudaSectionEngine&>(*lane);

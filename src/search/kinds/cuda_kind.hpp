@@ -37,6 +37,7 @@ BeamCounts follow_beams_on_gpus(const PackedCloud& cloud, std::span<const Planne
 struct SectionOnGpus {
   std::uint64_t device_bytes = 0;  ///< of the GPU that took most
   std::uint64_t host_bytes = 0;
+  double engine_seconds = 0;  ///< for making the engines
   EngineEnd end;
 };
 
