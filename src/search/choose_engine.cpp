@@ -145,7 +145,7 @@ constexpr double kBeamsPerCore = 2.5e6;
 constexpr double kPointsPerCore = 13e6;
 /// How many pairs of a point and a bin in reach a core searches for a section in a second, and how
 /// many a GPU.
-constexpr double kSectionPairsPerCore = 60e6, kSectionPairsPerGpu = 3e9;
+constexpr double kSectionPairsPerCore = 25e6, kSectionPairsPerGpu = 1.5e9;
 
 }  // namespace
 
