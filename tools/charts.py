@@ -10,13 +10,13 @@ import argparse
 import sys
 from pathlib import Path
 
-from charting import (accuracy, certainty, datasets, grid, points, scaling, seen, stability,
-                      surfaces, table, threads)
+from charting import (accuracy, certainty, datasets, grid, points, scaling, section, seen,
+                      stability, surfaces, table, threads)
 from charting.record import read_record
 
 FIGURES = {"table": table, "threads": threads, "grid": grid, "datasets": datasets,
            "points": points, "accuracy": accuracy, "stability": stability, "scaling": scaling,
-           "surfaces": surfaces, "seen": seen, "certainty": certainty}
+           "surfaces": surfaces, "seen": seen, "section": section, "certainty": certainty}
 
 
 def files_in(folder):

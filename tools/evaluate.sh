@@ -6,7 +6,7 @@
 # Usage: tools/evaluate.sh [--force] [small|full] FOLDER
 # Output: FOLDER/EXPERIMENT.json, FOLDER/charts; scenes and stores stay in FOLDER/work.
 set -euo pipefail
-experiments=(table threads grid datasets points accuracy stability scaling surfaces seen)
+experiments=(table threads grid datasets points accuracy stability scaling surfaces seen section)
 force=no
 if [ "${1:-}" = --force ]; then
   force=yes

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "clearway/answer.hpp"
+#include "clearway/device.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/query.hpp"
 #include "clearway/shard.hpp"
@@ -16,10 +17,8 @@
 namespace clearway {
 
 enum class Engine { kAuto, kSweep, kGrid, kKdtree };  ///< kAuto: chosen by estimate
-enum class Device { kAuto, kCpu, kCuda };  ///< kAuto: a GPU that has room, or else the CPU
 
 const char* name_of(Engine engine);  ///< "auto", "sweep", "grid" or "kdtree"
-const char* name_of(Device device);  ///< "auto", "cpu" or "cuda"
 
 class DeviceStart;
 
@@ -86,11 +85,6 @@ struct SearchSeconds {
   double write = 0;  ///< seconds for writing the result, while the GPUs' memory is given back
   /// Seconds of waiting for the GPUs' memory to be given back after the result was written
   double end_wait = 0;
-};
-
-/// Estimated seconds of a search on each device, including a GPU's start.
-struct DeviceEstimate {
-  double cpu = 0, cuda = 0;
 };
 
 /// Estimated seconds of the whole command on the CPU with each engine.

@@ -11,6 +11,7 @@
 
 #include "clearway/box.hpp"
 #include "clearway/conflicts.hpp"
+#include "clearway/device.hpp"
 #include "clearway/follow.hpp"
 #include "clearway/outline.hpp"
 #include "clearway/pose.hpp"
@@ -55,8 +56,11 @@ struct SectionParameters {
 
 /// How a section is found. The file's bytes depend on none of these options.
 struct SectionOptions {
-  int threads = 0;  ///< 0: all cores
+  Device device = Device::kAuto;  ///< kAuto: a GPU that has room and pays, or else the CPU
+  std::vector<int> gpus = {};     ///< CUDA's device numbers; empty: the first GPU with room
+  int threads = 0;                ///< 0: all cores
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
+  std::uint64_t device_memory_bytes = 0;  ///< budget on each device; 0: 2 GiB, or what is free
   bool overwrite = false;
   bool strict = false;  ///< any warning ends with InputError, and nothing is written
   /// Warnings from reading the path, which the user has already seen. The section keeps them, and
@@ -131,14 +135,22 @@ struct SectionReport {
   std::optional<std::array<double, 2>> motion = {};
   std::optional<SectionSeenCounts> seen = {};  ///< where seen space was asked for
   std::vector<Message> warnings = {};
-  std::uint64_t needed_host_bytes = 0;
-  double seconds = 0, search_seconds = 0;
+  Device device = Device::kCpu;            ///< the device that searched
+  std::string device_name = "the CPU";     ///< name of the device for the user
+  std::optional<DeviceEstimate> estimate;  ///< the estimate by which kAuto chose the device
+  std::uint64_t needed_host_bytes = 0;     ///< greatest memory that the search takes
+  std::uint64_t peak_device_bytes = 0;     ///< allocated on the GPU, without the CUDA context
+  double seconds = 0;                      ///< of the whole call
+  double search_seconds = 0;               ///< for blocking the cells, without the two below
+  double engine_seconds = 0;               ///< for making engines on GPUs with their slots
+  double context_wait_seconds = 0;         ///< that the search waited for the GPUs to start
 };
 
 /// Finds the section of a path in a store and writes it to a file. Throws UsageError for an empty
 /// range or window, for poses that scale or are singular, for seen space in a store without
 /// origins, and for an output that exists; InputError for a damaged store; ResourceError where the
-/// memory is too little, with the coarser bin that fits; Interrupted when asked to stop.
+/// memory is too little, with the coarser bin that fits, or where a GPU is asked for and cannot be
+/// used; Interrupted when asked to stop.
 /// docs/design/section.md has the definitions.
 SectionReport find_section(const Store& store, const std::vector<Pose>& path,
                            const SectionParameters& parameters, const std::filesystem::path& output,

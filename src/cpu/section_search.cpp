@@ -19,29 +19,35 @@ namespace {
 struct Covered {
   alignas(64) std::int32_t column_from[kBlockPoints], column_to[kBlockPoints];
   alignas(64) std::int32_t row_from[kBlockPoints], row_to[kBlockPoints];
-  /// Whether the bound of x' meets the range.
-  alignas(64) std::int32_t is_in_range[kBlockPoints];
+  /// PlaceBounds::first_in_range, or -1 where no pose can see the point in the range and the
+  /// window.
+  alignas(64) std::int32_t first_in_range[kBlockPoints];
 };
 
-/// The cells of an axis under a range of places, counted from the first cell of the window: the
-/// first is greater than the last where there are none. Ends that are NaN become those of the
-/// window.
+constexpr double kMostFirst = 2147483647;  ///< that fits Covered::first_in_range
+
+/// The cells of an axis under a range of places, counted from the first cell of the window. Ends
+/// that are NaN become those of the window.
 struct AxisCells {
-  double cell, first, last, most;
+  const SectionLattice& lattice;
+  double first, last;
 
-  AxisCells(double side, double from, double to)
-      : cell(side), first(from), last(to - 1), most(to - from) {}
+  AxisCells(const SectionLattice& of, double from, double to)
+      : lattice(of), first(from), last(to - from - 1) {}
 
-  CLEARWAY_IN_CLONE void cover(double place_from, double place_to, std::int32_t& from,
+  /// Returns whether the range misses the window; from and to are then cells of it all the same.
+  CLEARWAY_IN_CLONE bool cover(double place_from, double place_to, std::int32_t& from,
                                std::int32_t& to) const {
-    double a = std::floor(place_from / cell) - first;
-    double b = std::floor(place_to / cell) - first;
+    double a = lattice.number_at_bound(place_from) - first;
+    double b = lattice.number_at_bound(place_to) - first;
+    const bool misses = (a > last) | (b < 0);
     a = a > 0 ? a : 0;
-    a = a < most ? a : most;
-    b = b > -1 ? b : b <= -1 ? -1 : most - 1;
-    b = b < most - 1 ? b : most - 1;
+    a = a < last ? a : last;
+    b = b < last ? b : last;  // for NaN, too
+    b = b > 0 ? b : 0;
     from = static_cast<std::int32_t>(a);
     to = static_cast<std::int32_t>(b);
+    return misses;
   }
 };
 
@@ -49,7 +55,7 @@ struct AxisCells {
 CLEARWAY_SIMD_CLONES
 void cover_points(const SectionPoseNode& node, const SectionLattice& lattice, double slack,
                   const double (*at)[kBlockPoints], std::uint32_t count, Covered& out) {
-  double from[3][kBlockPoints], to[3][kBlockPoints];
+  double from[3][kBlockPoints], to[3][kBlockPoints], first[kBlockPoints];
   for (int a = 0; a < 3; ++a) {
     const double* const row = node.row[a];
     const double* const spread = node.spread[a];
@@ -62,15 +68,22 @@ void cover_points(const SectionPoseNode& node, const SectionLattice& lattice, do
           spread[0] * std::fabs(x) + spread[1] * std::fabs(y) + spread[2] * std::fabs(z);
       from[a][i] = middle - reach + shift_from;
       to[a][i] = middle + reach + shift_to;
+      if (a == 0) {
+        first[i] = node.first_in_range(middle, reach + slack, lattice.x_from, lattice.x_to);
+      }
     }
   }
-  const AxisCells across(lattice.cell, lattice.j_from, lattice.j_to);
-  const AxisCells up(lattice.cell, lattice.k_from, lattice.k_to);
+  const AxisCells across(lattice, lattice.j_from, lattice.j_to);
+  const AxisCells up(lattice, lattice.k_from, lattice.k_to);
+  const double count_of_poses = node.count;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const bool misses = to[0][i] < lattice.x_from || from[0][i] > lattice.x_to;
-    out.is_in_range[i] = misses ? 0 : 1;
-    across.cover(from[1][i], to[1][i], out.column_from[i], out.column_to[i]);
-    up.cover(from[2][i], to[2][i], out.row_from[i], out.row_to[i]);
+    const bool misses =
+        (to[0][i] < lattice.x_from) | (from[0][i] > lattice.x_to) | (first[i] >= count_of_poses);
+    const double at_least = first[i] < kMostFirst ? first[i] : kMostFirst;
+    const bool is_beside = across.cover(from[1][i], to[1][i], out.column_from[i], out.column_to[i]);
+    const bool is_over = up.cover(from[2][i], to[2][i], out.row_from[i], out.row_to[i]);
+    out.first_in_range[i] =
+        static_cast<std::int32_t>(misses | is_beside | is_over ? -1.0 : at_least);
   }
 }
 
@@ -104,36 +117,6 @@ void place_points(const PullBack& pose, const SectionLattice& lattice,
 
 }  // namespace
 
-bool SectionSearch::may_block(const SectionPoseNode& node, const Box& points) const {
-  const Vec3 half = 0.5 * points.size();
-  const PlaceBounds bounds = node.bounds(points.centre(), half, slack_);
-  if (bounds.to[0] < lattice_.x_from || bounds.from[0] > lattice_.x_to) return false;
-  SectionRect rect{};
-  if (!lattice_.cover(bounds.from[1], bounds.to[1], bounds.from[2], bounds.to[2], rect)) {
-    return false;
-  }
-  return node.bin == SectionPoseNode::kManyBins ||
-         !maps_[node.bin].is_blocked_by(rect, node.first_pose);
-}
-
-std::vector<std::uint32_t> SectionSearch::bins_in_reach(std::uint32_t cell) const {
-  const Box box = position_box(cloud_.quantisation(), cloud_.cells()[cell].box);
-  const std::span nodes = poses_.nodes();
-  std::vector<std::uint32_t> bins, open{0};
-  while (!open.empty()) {
-    const std::uint32_t at = open.back();
-    open.pop_back();
-    if (!may_block(nodes[at], box)) continue;
-    if (nodes[at].bin != SectionPoseNode::kManyBins) {
-      bins.push_back(at);
-      continue;
-    }
-    open.push_back(nodes[at].right);
-    open.push_back(at + 1);
-  }
-  return bins;
-}
-
 void SectionSearch::search(std::uint32_t cell,
                            const std::array<PackedChunk<std::int32_t>, 3>& coordinates,
                            std::span<const std::uint64_t> searched,
@@ -149,7 +132,7 @@ void SectionSearch::search(std::uint32_t cell,
     const Box box = position_box(quantisation, decode_block_box(of.box, boxes[block]));
     points.count = 0;
     for (const std::uint32_t bin : bins) {
-      if (!may_block(poses_.nodes()[bin], box)) continue;
+      if (!section_.may_block(section_.nodes[bin], box)) continue;
       if (points.count == 0) {
         std::array<std::int32_t, kBlockPoints> q{};
         const std::uint32_t count = std::min(kBlockPoints, of.count - block * kBlockPoints);
@@ -169,36 +152,44 @@ void SectionSearch::search(std::uint32_t cell,
 }
 
 void SectionSearch::visit(std::uint32_t at, const Points& points) const {
-  const SectionPoseNode& node = poses_.nodes()[at];
-  const SectionMapRef map = maps_[node.bin];
+  const SectionPoseNode& node = section_.nodes[at];
+  const SectionMapRef map = section_.map(node.bin);
   Covered covered;
-  cover_points(node, lattice_, slack_, points.at, points.count, covered);
+  cover_points(node, section_.lattice, section_.slack, points.at, points.count, covered);
+  std::uint32_t kept[kBlockPoints];
   Points left;
   for (std::uint32_t i = 0; i < points.count; ++i) {
-    if (covered.is_in_range[i] == 0 || covered.column_from[i] > covered.column_to[i] ||
-        covered.row_from[i] > covered.row_to[i]) {
-      continue;
-    }
     const SectionRect rect{static_cast<std::uint32_t>(covered.column_from[i]),
                            static_cast<std::uint32_t>(covered.column_to[i]),
                            static_cast<std::uint32_t>(covered.row_from[i]),
                            static_cast<std::uint32_t>(covered.row_to[i])};
-    if (map.is_blocked_by(rect, node.first_pose)) continue;
-    for (int axis = 0; axis < 3; ++axis) left.at[axis][left.count] = points.at[axis][i];
-    ++left.count;
+    const bool is_in_range = covered.first_in_range[i] >= 0;
+    const std::uint32_t pose =
+        node.first_pose + static_cast<std::uint32_t>(std::max(covered.first_in_range[i], 0));
+    // Few branches, as they could hardly be foretold.
+    bool is_left = is_in_range & (map.last_corner(rect) > pose);
+    const bool is_small =
+        (rect.column_to - rect.column_from <= 1) & (rect.row_to - rect.row_from <= 1);
+    if (is_in_range & !is_left & !is_small) is_left = !map.is_blocked_inside(rect, pose);
+    kept[left.count] = i;
+    left.count += is_left ? 1 : 0;
   }
   if (left.count == 0) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::uint32_t i = 0; i < left.count; ++i) left.at[axis][i] = points.at[axis][kept[i]];
+  }
   if (node.is_leaf()) return visit_poses(node, left);
   visit(at + 1, left);
   visit(node.right, left);
 }
 
 void SectionSearch::visit_poses(const SectionPoseNode& node, const Points& points) const {
-  const SectionMapRef map = maps_[node.bin];
+  const SectionMapRef map = section_.map(node.bin);
   std::int32_t columns[kBlockPoints], rows[kBlockPoints];
   for (std::uint32_t pose = node.first; pose < node.first + node.count; ++pose) {
-    place_points(poses_.pull_back(pose), lattice_, points.at, points.count, columns, rows);
-    const std::uint32_t path_pose = poses_.path_pose(pose);
+    place_points(section_.pull_backs[pose], section_.lattice, points.at, points.count, columns,
+                 rows);
+    const std::uint32_t path_pose = section_.path_pose[pose];
     for (std::uint32_t i = 0; i < points.count; ++i) {
       if (columns[i] < 0) continue;
       map.block(static_cast<std::uint32_t>(columns[i]), static_cast<std::uint32_t>(rows[i]),

@@ -72,9 +72,13 @@ class DeviceArrays {
 
   template <typename Value>
   Value* zeros(std::size_t count) {
-    Value* to = add<Value>(count);
-    if (count > 0) check_cuda(cudaMemset(to, 0, count * sizeof(Value)));
-    return to;
+    return filled<Value>(count, 0);
+  }
+
+  /// Values all of whose bits are 1.
+  template <typename Value>
+  Value* ones(std::size_t count) {
+    return filled<Value>(count, 0xff);
   }
 
   std::uint64_t bytes() const {
@@ -84,6 +88,13 @@ class DeviceArrays {
   }
 
  private:
+  template <typename Value>
+  Value* filled(std::size_t count, int byte) {
+    Value* to = add<Value>(count);
+    if (count > 0) check_cuda(cudaMemset(to, byte, count * sizeof(Value)));
+    return to;
+  }
+
   template <typename Value>
   Value* add(std::size_t count) {
     return reinterpret_cast<Value*>(buffers_.emplace_back(count * sizeof(Value)).data());
@@ -104,6 +115,11 @@ class DeviceArrayCount {
   Value* zeros(std::size_t count) {
     bytes_ += count * sizeof(Value);
     return nullptr;
+  }
+
+  template <typename Value>
+  Value* ones(std::size_t count) {
+    return zeros<Value>(count);
   }
 
   std::uint64_t bytes() const { return bytes_; }

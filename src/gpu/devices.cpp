@@ -2,6 +2,7 @@
 
 #include "gpu/cuda_objects.hpp"
 #include "gpu/grid_kernels.hpp"
+#include "gpu/section_kernels.hpp"
 #include "gpu/sweep_kernels.hpp"
 
 namespace clearway {
@@ -41,9 +42,19 @@ void end_cuda_device(int index) noexcept {
   if (cudaSetDevice(index) == cudaSuccess) cudaDeviceReset();
 }
 
-void start_cuda_device(int index, bool grid) noexcept {
+void start_cuda_device(int index, CudaKernels kernels) noexcept {
   if (cudaSetDevice(index) == cudaSuccess && cudaFree(nullptr) == cudaSuccess) {
-    grid ? load_grid_kernels() : load_sweep_kernels();
+    switch (kernels) {
+      case CudaKernels::kSweep:
+        load_sweep_kernels();
+        break;
+      case CudaKernels::kGrid:
+        load_grid_kernels();
+        break;
+      case CudaKernels::kSection:
+        load_section_kernel();
+        break;
+    }
   }
   cudaGetLastError();
 }

@@ -25,10 +25,13 @@ std::string cuda_device_name(int index);
 /// ResourceError.
 CudaDevice open_cuda_device(int index);
 
-/// Creates the device's context and loads the kernels of an engine, so that nothing waits for that
-/// later. May run at the same time as anything else. A failure is ignored here, and occurs again
-/// when the device is opened. grid: loads the kernels of engine grid, otherwise of engine sweep.
-void start_cuda_device(int index, bool grid) noexcept;
+/// What a device is started for.
+enum class CudaKernels { kSweep, kGrid, kSection };
+
+/// Creates the device's context and loads kernels, so that nothing waits for that later. May run at
+/// the same time as anything else. A failure is ignored here, and occurs again when the device is
+/// opened.
+void start_cuda_device(int index, CudaKernels kernels) noexcept;
 
 /// Ends the device's context, and with it everything that the process has there.
 void end_cuda_device(int index) noexcept;

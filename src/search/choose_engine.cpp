@@ -145,6 +145,9 @@ constexpr double kDistances = 6;
 constexpr double kBeamsPerCore = 2.5e6;
 /// How many environment points a core searches in a second.
 constexpr double kPointsPerCore = 13e6;
+/// How many pairs of a point and a bin in reach a core searches for a section in a second, and how
+/// many a GPU.
+constexpr double kSectionPairsPerCore = 25e6, kSectionPairsPerGpu = 1.5e9;
 
 }  // namespace
 
@@ -161,6 +164,10 @@ DeviceEstimate estimate_devices(std::span<const Workload> work, const QueryParam
   const double beams = work.empty() ? 0 : work.front().beams / (kBeamsPerCore * threads);
   const double cpu = (distances ? kDistances : 1) * set + beams;
   return {cpu, (started ? kSlots : kStart) + cpu * threads / kCores};
+}
+
+DeviceEstimate estimate_section(double pairs, int threads) {
+  return {pairs / (kSectionPairsPerCore * threads), kStart + pairs / kSectionPairsPerGpu};
 }
 
 std::uint64_t surely_many_points(int threads) {

@@ -60,6 +60,10 @@ EngineEstimate estimate_on_cpu(const Workload& work, int threads);
 DeviceEstimate estimate_devices(std::span<const Workload> work, const QueryParameters& query,
                                 Engine engine, int threads, bool started = false);
 
+/// Estimates the wall clock of a search for a section as estimate_devices() does. pairs: of a point
+/// and a bin that its cell may block.
+DeviceEstimate estimate_section(double pairs, int threads);
+
 /// The least number of environment points for which a GPU is started before the query is known.
 /// With fewer points the CPU answers most queries before a GPU has started.
 std::uint64_t surely_many_points(int threads);

@@ -139,14 +139,17 @@ DeviceChoice choose_device(const SearchOptions& options, const MessageLog& log) 
   return fallback_allowed(options) ? choose_automatically(options, log) : choose_cuda(options, log);
 }
 
+DeviceStart::DeviceStart(const SearchOptions& options)
+    : DeviceStart(options, chosen_engine(options) == Engine::kGrid ? CudaKernels::kGrid
+                                                                   : CudaKernels::kSweep) {}
+
 #ifdef CLEARWAY_CUDA
 
-DeviceStart::DeviceStart(const SearchOptions& options) {
-  const Engine engine = chosen_engine(options);
-  if (engine == Engine::kKdtree || options.device == Device::kCpu) return;
-  const auto start = [engine](int gpu) {
+DeviceStart::DeviceStart(const SearchOptions& options, CudaKernels kernels) {
+  if (chosen_engine(options) == Engine::kKdtree || options.device == Device::kCpu) return;
+  const auto start = [kernels](int gpu) {
     const Stopwatch clock;
-    start_cuda_device(gpu, engine == Engine::kGrid);
+    start_cuda_device(gpu, kernels);
     return clock.seconds();
   };
   const std::vector<int> gpus = options.gpus.empty() ? std::vector{0} : options.gpus;
@@ -155,7 +158,7 @@ DeviceStart::DeviceStart(const SearchOptions& options) {
 
 #else
 
-DeviceStart::DeviceStart(const SearchOptions&) {}
+DeviceStart::DeviceStart(const SearchOptions&, CudaKernels) {}
 
 #endif
 

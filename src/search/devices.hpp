@@ -68,6 +68,8 @@ class DeviceStart {
   /// Starts the GPUs that options name, or the first one, all at once. Starts none where options
   /// rule out GPUs.
   explicit DeviceStart(const SearchOptions& options);
+  /// kernels: those to load.
+  DeviceStart(const SearchOptions& options, CudaKernels kernels);
 
   /// Waits until all GPUs have started or failed.
   void wait() const;

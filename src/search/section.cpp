@@ -1,7 +1,5 @@
 #include "search/section.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -15,12 +13,11 @@
 #include "core/util/format.hpp"
 #include "core/util/messages.hpp"
 #include "core/util/stopwatch.hpp"
-#include "core/util/tsan_annotations.hpp"
-#include "cpu/section_search.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/paths/content_hash.hpp"
 #include "io/section/section_file.hpp"
 #include "io/store/store_reader.hpp"
+#include "search/block_cells.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/checks.hpp"
 #include "search/checks/facts/path_facts.hpp"
@@ -28,51 +25,8 @@
 #include "search/ignored.hpp"
 #include "search/section_seen.hpp"
 #include "search/seen_space.hpp"
-#include "search/threads.hpp"
 
 namespace clearway {
-
-void block_cells(const PackedCloud& cloud, const IgnoredPoints& ignored, const SectionPoses& poses,
-                 const SectionLattice& lattice, double slack, int threads, SectionMaps& maps,
-                 Progress& progress) {
-  constexpr std::uint32_t kBlocksAtOnce = 32;
-  const SectionSearch search(cloud, poses, lattice, slack, maps);
-  progress.begin("section", cloud.point_count(), "points");
-  in_threads(threads, [&] {
-    const ParallelScope all_cells;
-    const auto search_cell = piece_of(all_cells, [&](std::size_t i) {
-      throw_if_stopped(progress);
-      const auto cell = static_cast<std::uint32_t>(i);
-      const std::uint32_t count = cloud.cells()[cell].count;
-      std::vector<std::uint32_t> bins;
-      if (!ignored.any() || !ignored.skips(cell)) bins = search.bins_in_reach(cell);
-      if (!bins.empty()) {
-        const auto coordinates = cloud.coordinates(cell);
-        std::vector<std::uint64_t> searched;
-        if (ignored.any() && ignored.touches(cell)) {
-          searched.resize(cloud.blocks_per_cell());
-          ignored.mask(cell, searched, [&] { return coordinates; });
-        }
-        const auto blocks = static_cast<std::uint32_t>(divide_up(count, kBlockPoints));
-        const ParallelScope of_cell;
-        const auto search_blocks = piece_of(of_cell, [&](std::uint32_t part) {
-          throw_if_stopped(progress);
-          const std::uint32_t first = part * kBlocksAtOnce;
-          search.search(cell, coordinates, searched, bins, first,
-                        std::min(first + kBlocksAtOnce, blocks));
-        });
-        of_cell.begin();
-        tbb::parallel_for(std::uint32_t{0},
-                          static_cast<std::uint32_t>(divide_up(blocks, kBlocksAtOnce)),
-                          search_blocks);
-      }
-      progress.advance(count);
-    });
-    all_cells.begin();
-    tbb::parallel_for(std::size_t{0}, cloud.cells().size(), search_cell);
-  });
-  progress.end();
-}
 
 void add_cells_of_bin(const SectionLattice& lattice, const std::uint32_t* firsts,
                       std::uint32_t number, SectionCells& cells, const std::uint32_t* without) {
@@ -154,7 +108,8 @@ class Finder {
         options_(options),
         progress_(options_.progress, options_.stop),
         log_(options_.message, data_.warnings),
-        pending_(output, options.overwrite) {
+        pending_(output, options.overwrite),
+        device_(store, options_, log_) {
     data_.parameters = with_defaults(parameters, metre_of(store_));
   }
 
@@ -171,7 +126,8 @@ class Finder {
     if (options_.strict) refuse_warnings(data_.warnings);
     const Stopwatch searching;
     if (!load_.poses.empty()) find();
-    report_.search_seconds = searching.seconds();
+    report_.search_seconds =
+        searching.seconds() - report_.engine_seconds - report_.context_wait_seconds;
     publish();
     report_.seconds = total_.seconds();
     return std::move(report_);
@@ -353,8 +309,8 @@ class Finder {
     check_memory(bins.size(), seen ? seen->needed_bytes() : 0);
     maps_.emplace(lattice_, bins.size());
     const IgnoredPoints ignored(store_, ignored_by(data_.parameters));
-    block_cells(store_, ignored, poses, lattice_, data_.rounding, options_.threads, *maps_,
-                progress_);
+    device_.block(store_, ignored, section_ref(poses, lattice_, data_.rounding, *maps_),
+                  options_.memory_bytes - report_.needed_host_bytes, progress_, report_);
     for (const SectionBin& bin : bins) {
       data_.bins.push_back(static_cast<std::uint32_t>(bin.number));
     }
@@ -450,6 +406,7 @@ class Finder {
   SectionData data_;
   MessageLog log_;
   PendingFile pending_;
+  SectionDevice device_;
   Body load_;
   SectionLattice lattice_{};
   std::optional<SectionMaps> maps_;   ///< blocked cells

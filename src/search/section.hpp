@@ -1,25 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
-#include <vector>
 
 #include "clearway/body.hpp"
 #include "clearway/query.hpp"
 #include "clearway/section.hpp"
-#include "core/cloud/packed_cloud.hpp"
-#include "core/query/ignored_points.hpp"
-#include "core/section/section_map.hpp"
-#include "core/section/section_poses.hpp"
-#include "core/util/progress.hpp"
+#include "core/section/section_lattice.hpp"
 
 namespace clearway {
-
-/// Blocks the cells of a section by all points of a cloud that are not ignored. Throws InputError
-/// for a damaged cell, Interrupted.
-void block_cells(const PackedCloud& cloud, const IgnoredPoints& ignored, const SectionPoses& poses,
-                 const SectionLattice& lattice, double slack, int threads, SectionMaps& maps,
-                 Progress& progress);
 
 /// The load of a section: its poses, and the poses of the path that they belong to, ascending.
 /// doubts: takes what is to be said of pivots that leave the path, unless it is null.

@@ -5,12 +5,14 @@
 #include "gpu/beam_engine.hpp"
 #include "gpu/devices.hpp"
 #include "gpu/grid_engine.hpp"
+#include "gpu/section_engine.hpp"
 #include "gpu/sweep_engine.hpp"
 #include "stream/plan.hpp"
 #include "stream/run_pages.hpp"
 #include "support/engines/beam_runs.hpp"
 #include "support/engines/engines.hpp"
 #include "support/engines/grid_runs.hpp"
+#include "support/engines/section_runs.hpp"
 
 namespace clearway {
 namespace {
@@ -56,6 +58,25 @@ BeamRun beams_on_cuda(const PackedCloud& cloud, const Beams& beams) {
   return {engine.words(), engine.counts()};
 }
 
+void section_on_cuda(const PackedCloud& cloud, const IgnoredPoints& ignored,
+                     const SectionRef& section) {
+  const std::vector<PlannedCell> cells = section_cells(cloud, section);
+  if (cells.empty()) return;
+  const SlotLayout layout{2, smallest_page_bytes(cloud, cells, ignored.any()) * kSectionPageCells,
+                          kSectionPageCells};
+  CudaSectionEngine engine(0, section, cloud, layout);
+  CHECK(engine.device_bytes() ==
+        cuda_section_bytes(section) + layout.slots * cuda_section_slot_bytes(cloud, layout));
+  PageEngine* const lane = &engine;
+  NoProgress silent;
+  StageTimes times;
+  run_pages(
+      cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells, ignored.any()),
+      {&lane, 1}, {.stage = "section", .ignored = ignored, .threads = 2},
+      [](std::span<const PlannedCell>, const PageResult&) {}, silent, times);
+  engine.read_entries({section.entries, section.entry_count()});
+}
+
 }  // namespace
 }  // namespace clearway
 
@@ -63,6 +84,7 @@ int main(int count, char** arguments) {
   clearway::test_only({{"sweep on CUDA", clearway::sweep_on_cuda, true, true, true, true},
                        {"grid on CUDA", clearway::grid_on_cuda, false, false, false, false}});
   clearway::follow_pages_with(clearway::beams_on_cuda);
+  clearway::block_pages_with(clearway::section_on_cuda);
   return run_catch(count, arguments, [] {
     return clearway::cuda_device_count() == 0 ? "no CUDA device here" : nullptr;
   });

@@ -252,3 +252,32 @@ TEST_CASE("tables of a section are written as text") {
   export_section_outline(section, tube.folder / "o.dxf", {.band = 0.25, .base = 1.75});
   CHECK(std::filesystem::file_size(tube.folder / "o.dxf") > 200);
 }
+
+TEST_CASE("a section has the same bytes on every device") {
+  const Tube tube(13);
+  const SectionReport on_cpu = tube.find({.device = Device::kCpu, .threads = 2, .overwrite = true});
+  CHECK(on_cpu.device == Device::kCpu);
+  CHECK(on_cpu.device_name == "the CPU");
+  CHECK(on_cpu.peak_device_bytes == 0);
+  CHECK(!on_cpu.estimate);
+  const std::string bytes = tube.bytes();
+  CHECK(tube.find().device == Device::kCpu);  // few points do not pay for the start of a GPU
+  CHECK(tube.bytes() == bytes);
+  // A machine without a GPU refuses one, so that nobody takes the CPU's time for that of a GPU.
+  try {
+    const SectionReport on_gpu =
+        tube.find({.device = Device::kCuda, .threads = 2, .overwrite = true});
+    CHECK(on_gpu.device == Device::kCuda);
+    CHECK(on_gpu.peak_device_bytes > 0);
+    CHECK(tube.bytes() == bytes);
+    CHECK_THROWS_WITH(tube.find({.device = Device::kCuda,
+                                 .threads = 2,
+                                 .device_memory_bytes = 100000,
+                                 .overwrite = true}),
+                      Contains("GPU"));
+  } catch (const ResourceError& error) {
+    CHECK_THAT(error.what(), Contains("device cuda"));
+  }
+  CHECK_THROWS_WITH(tube.find({.gpus = {1023}, .overwrite = true}),
+                    Contains("GPU 1023") || Contains("device cuda"));
+}

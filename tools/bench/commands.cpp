@@ -57,6 +57,10 @@ constexpr Experiment kExperiments[] = {
      "cubes, "
      "path and threads",
      true},
+    {"section", bench_section,
+     "Time of a section by bins, cells, length of the load, threads and device, beside every pair "
+     "of a point and a pose, and beside runs of many widths",
+     true},
 };
 
 /// Throws UsageError, which lists the experiments that take --scenes, where one of the others is
@@ -152,8 +156,9 @@ void add_bounds(CLI::App& command, BenchOptions& options) {
 /// Adds --scenes and returns the option.
 const CLI::Option* add_scenes(CLI::App& command, BenchOptions& options) {
   return command
-      .add_option("--scenes", options.scenes,
-                  "Scenes, for table, datasets, equality, choice, shards and seen (default: all)")
+      .add_option(
+          "--scenes", options.scenes,
+          "Scenes, for table, datasets, equality, choice, shards, seen and section (default: all)")
       ->delimiter(',')
       ->check(CLI::IsMember({"mine", "hall", "plant", "tunnel"}));
 }

@@ -26,12 +26,13 @@ OFF
 BOX
 echo '{"bodies": [{"name": "front", "model": "box.off", "at": 3}, {"name": "middle", "model": "model.ply", "pivots": [2, -2]}]}' \
   >"$folder/vehicle.json"
-ask=(run --env "$folder/site.h5" --trajectory "$folder/trajectory.txt" --radius 0.1
+ask=(--env "$folder/site.h5" --trajectory "$folder/trajectory.txt"
   -o "$folder/out.h5" --force --device cuda --device-memory 256M)
-points="--model $folder/model.ply"
-surface="--model $folder/box.off --model-as surface"
-solid="--model $folder/box.off --model-as solid"
-vehicle="--vehicle $folder/vehicle.json"
+run="run --radius 0.1"
+points="$run --model $folder/model.ply"
+surface="$run --model $folder/box.off --model-as surface"
+solid="$run --model $folder/box.off --model-as solid"
+vehicle="$run --vehicle $folder/vehicle.json"
 questions=("$points --engine sweep" "$points --engine sweep --first-pose" "$points --engine sweep --between-poses"
   "$points --engine sweep --clearance 0.3" "$points --engine sweep --clearance 0.3 --first-pose"
   "$points --engine sweep --between-poses --first-pose" "$points --engine sweep --profile 0.5"
@@ -40,12 +41,14 @@ questions=("$points --engine sweep" "$points --engine sweep --first-pose" "$poin
 for model in "$surface" "$solid" "$vehicle"; do
   questions+=("$model --first-pose" "$model --clearance 0.3" "$model --profile 0.5" "$model --seen")
 done
+section="section find --x-range=-1,1 --cell 0.1 --bin 1 --window=-3,3,-1,3"
+questions+=("$section" "$section --ignore-box 0,0,0,50,50,50 --between-poses")
 for tool in memcheck racecheck initcheck; do
   for question in "${questions[@]}"; do
     [[ "$question" == *"$only"* ]] || continue
     told=${question//"$folder/"/}
     # shellcheck disable=SC2086
-    if log=$(compute-sanitizer --tool "$tool" --error-exitcode 9 "$program" "${ask[@]}" $question 2>&1); then
+    if log=$(compute-sanitizer --tool "$tool" --error-exitcode 9 "$program" $question "${ask[@]}" 2>&1); then
       echo "$tool, $told: clean"
     else
       failed=1

@@ -176,24 +176,6 @@ void add_choice(CLI::App& command, const std::string& option, Value& chosen,
       ->default_str(name_of(chosen));
 }
 
-}  // namespace
-
-void add_device_options(CLI::App& command, Device& device, std::vector<int>& gpus,
-                        std::uint64_t& device_memory_bytes) {
-  add_choice(command, "--device", device, {Device::kAuto, Device::kCpu, Device::kCuda},
-             "cpu or cuda; auto takes a GPU where the engine and the machine have one");
-  command
-      .add_option("--gpus", gpus,
-                  "Numbers of the GPUs to use, for example 0,1 (default: the first with room)")
-      ->delimiter(',')
-      ->type_name("N,...")
-      ->check(CLI::Range(0, 1023));
-  add_size_option(command, "--device-memory", device_memory_bytes,
-                  "Memory bound of each GPU, without CUDA's own (default: 2G, or what is free)");
-}
-
-namespace {
-
 void add_engine(CLI::App& command, SearchOptions& options, LengthOptions& lengths) {
   const GroupScope group(command, OptionGroup::kSpeed);
   add_choice(
@@ -257,6 +239,20 @@ ModelOptions model_options_of(const RunOptions& options) {
   }
   how.radius = options.query.radius;
   return how;
+}
+
+void add_device_options(CLI::App& command, Device& device, std::vector<int>& gpus,
+                        std::uint64_t& device_memory_bytes) {
+  add_choice(command, "--device", device, {Device::kAuto, Device::kCpu, Device::kCuda},
+             "cpu or cuda; auto takes a GPU where the engine and the machine have one");
+  command
+      .add_option("--gpus", gpus,
+                  "Numbers of the GPUs to use, for example 0,1 (default: the first with room)")
+      ->delimiter(',')
+      ->type_name("N,...")
+      ->check(CLI::Range(0, 1023));
+  add_size_option(command, "--device-memory", device_memory_bytes,
+                  "Memory bound of each GPU, without CUDA's own (default: 2G, or what is free)");
 }
 
 void add_run_options(CLI::App& command, RunOptions& options) {

@@ -32,7 +32,7 @@ struct RunOptions {
 /// each other.
 ModelOptions model_options_of(const RunOptions& options);
 
-/// Adds --device, --gpus and --device-memory. The values outlive the command.
+/// Adds --device, --gpus and --device-memory.
 void add_device_options(CLI::App& command, Device& device, std::vector<int>& gpus,
                         std::uint64_t& device_memory_bytes);
 

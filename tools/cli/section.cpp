@@ -16,6 +16,7 @@
 #include "clearway/trajectory.hpp"
 #include "cli/commands.hpp"
 #include "cli/input_roles.hpp"
+#include "cli/run_options.hpp"
 #include "cli/section_inputs.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/ignored_options.hpp"
@@ -58,13 +59,22 @@ ordered_json json_of(const SectionReport& report, const FindCommand& options) {
   out["bins"] = report.bins;
   out["rounding"] = report.rounding;
   out["motion"] = motion_json(report.motion);
+  out["device"] = name_of(report.device);
+  out["device_estimate"] = nullptr;
+  if (report.estimate) {
+    out["device_estimate"] = {{"cpu", report.estimate->cpu}, {"cuda", report.estimate->cuda}};
+  }
   if (report.seen) {
     out["seen"] = {{"cube", report.seen->cube},
                    {"unknown", report.seen->unknown},
                    {"unknown_in_bins", report.seen->unknown_in_bins}};
   }
   out["needed_host_bytes"] = report.needed_host_bytes;
-  out["seconds"] = {{"total", report.seconds}, {"search", report.search_seconds}};
+  out["peak_device_bytes"] = report.peak_device_bytes;
+  out["seconds"] = {{"total", report.seconds},
+                    {"search", report.search_seconds},
+                    {"engine", report.engine_seconds},
+                    {"context_wait", report.context_wait_seconds}};
   out["warnings"] = warnings_json(report.warnings);
   return out;
 }
@@ -125,7 +135,9 @@ void run_find(FindCommand& options) {
       fmt::format("{} of the cross-section {} blocked somewhere on the path, in {} of it{}{}",
                   counted(report.blocked, "cell"), report.blocked == 1 ? "is" : "are",
                   counted(report.bins, "stretch", "stretches"), unknown, doubts);
-  spdlog::info("{}: {}; {:.2f} s", options.output.string(), sentence, report.seconds);
+  spdlog::info("{}: {}; {}{:.2f} s", options.output.string(), sentence,
+               report.device == Device::kCuda ? "on " + report.device_name + ", " : "",
+               report.seconds);
   print(options.json ? text_of_json(json_of(report, options)) : sentence + "\n");
 }
 
@@ -189,6 +201,13 @@ void add_ignored(CLI::App& command, FindCommand& options) {
       ->type_name("X0,Y0,Z0,X1,Y1,Z1");
 }
 
+void add_speed(CLI::App& command, SectionOptions& options) {
+  const GroupScope group(command, OptionGroup::kSpeed);
+  add_device_options(command, options.device, options.gpus, options.device_memory_bytes);
+  add_threads_option(command, options.threads);
+  add_memory_option(command, options.memory_bytes);
+}
+
 void add_find(CLI::App& section) {
   const auto options = std::make_shared<FindCommand>();
   CLI::App* command = section.add_subcommand(
@@ -205,8 +224,7 @@ void add_find(CLI::App& section) {
   add_question(*command, *options);
   add_ignored(*command, *options);
   add_trajectory_options(*command, options->trajectory_options, options->lengths);
-  add_threads_option(*command, options->search.threads);
-  add_memory_option(*command, options->search.memory_bytes);
+  add_speed(*command, options->search);
   command->add_flag("--force", options->search.overwrite, "Overwrite an existing section");
   command->add_flag("--strict", options->search.strict,
                     "Treat warnings as errors: no section is written (exit code 3)");

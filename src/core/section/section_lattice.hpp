@@ -20,6 +20,7 @@ struct SectionRect {
 struct SectionLattice {
   double x_from, x_to;    ///< closed range of x', with the margin and, between poses, the motion
   double cell;            ///< side of a cell
+  double per_cell;        ///< 1 / cell
   double j_from, j_to;    ///< columns: whole numbers, j_from <= j < j_to
   double k_from, k_to;    ///< rows: whole numbers, k_from <= k < k_to
   std::uint32_t columns;  ///< j_to - j_from
@@ -42,13 +43,20 @@ struct SectionLattice {
     return true;
   }
 
-  /// The cells of the window that places with y' and z' in these ranges may block; false where
-  /// there are none. An end that is NaN is taken as unbounded.
+  /// The number of the cell at a bound of places. It is rounded otherwise than number_of(), by less
+  /// than bounds are widened.
+  CLEARWAY_IN_CLONE CLEARWAY_HD double number_at_bound(double bound) const {
+    return std::floor(bound * per_cell);
+  }
+
+  /// The cells of the window that places with y' and z' in these ranges, which are widened, may
+  /// block; false where there are none. An end that is NaN is taken as unbounded.
   CLEARWAY_HD bool cover(double y_from, double y_to, double z_from, double z_to,
                          SectionRect& rect) const {
-    return along(number_of(y_from), number_of(y_to), j_from, j_to, rect.column_from,
+    return along(number_at_bound(y_from), number_at_bound(y_to), j_from, j_to, rect.column_from,
                  rect.column_to) &&
-           along(number_of(z_from), number_of(z_to), k_from, k_to, rect.row_from, rect.row_to);
+           along(number_at_bound(z_from), number_at_bound(z_to), k_from, k_to, rect.row_from,
+                 rect.row_to);
   }
 
  private:

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/section/section_lattice.hpp"
@@ -33,30 +34,60 @@ struct SectionMapRef {
   std::uint32_t* entry;
 
   /// Whether every cell of the rectangle is blocked at `pose` or before. May say no for cells that
-  /// other threads are blocking.
+  /// other threads are blocking. Surfaces are thin, so where a cell of the rectangle is free, a
+  /// corner mostly is, and four reads tell.
   CLEARWAY_HD bool is_blocked_by(const SectionRect& rect, std::uint32_t pose) const {
-    int level = 0;
-    while (((rect.column_to >> 2 * level) - (rect.column_from >> 2 * level)) > 1 ||
-           ((rect.row_to >> 2 * level) - (rect.row_from >> 2 * level)) > 1) {
-      ++level;
+    if (last_corner(rect) > pose) return false;
+    return (rect.column_to - rect.column_from <= 1 && rect.row_to - rect.row_from <= 1) ||
+           is_blocked_inside(rect, pose);
+  }
+
+  /// The greatest first pose of the cells at the corners of a rectangle.
+  CLEARWAY_HD std::uint32_t last_corner(const SectionRect& rect) const {
+    const std::uint32_t* const below = at(0, 0, rect.row_from);
+    const std::uint32_t* const above = at(0, 0, rect.row_to);
+    return greater(
+        greater(shared_value(below + rect.column_from), shared_value(below + rect.column_to)),
+        greater(shared_value(above + rect.column_from), shared_value(above + rect.column_to)));
+  }
+
+  /// is_blocked_by() without the look at the corners.
+  CLEARWAY_HD bool is_blocked_inside(const SectionRect& rect, std::uint32_t pose) const {
+    int top = 0;
+    while (((rect.column_to >> 2 * top) - (rect.column_from >> 2 * top)) > 1 ||
+           ((rect.row_to >> 2 * top) - (rect.row_from >> 2 * top)) > 1) {
+      ++top;
     }
-    return is_blocked_at(level,
-                         {rect.column_from >> 2 * level, rect.column_to >> 2 * level,
-                          rect.row_from >> 2 * level, rect.row_to >> 2 * level},
-                         rect, pose);
+    int level = top;
+    std::uint32_t column = rect.column_from >> 2 * level, row = rect.row_from >> 2 * level;
+    while (true) {
+      if (shared_value(at(level, column, row)) > pose) {
+        if (level == 0) return false;
+        --level;  // to the first of its parts in the rectangle
+        column = greater(4 * column, rect.column_from >> 2 * level);
+        row = greater(4 * row, rect.row_from >> 2 * level);
+        continue;
+      }
+      // To the next part of the same entry, or else to the entry after it.
+      while (!step(level == top, rect, level, column, row)) {
+        if (level == top) return true;
+        ++level;
+        column >>= 2;
+        row >>= 2;
+      }
+    }
   }
 
   /// Blocks a cell at a pose.
   CLEARWAY_HD void block(std::uint32_t column, std::uint32_t row, std::uint32_t pose) const {
-    std::uint32_t* at = entry + std::uint64_t{row} * shape->columns[0] + column;
-    if (shared_value(at) <= pose) return;
-    std::uint32_t before = lower_shared(at, pose);
+    std::uint32_t* const cell = at(0, column, row);
+    if (shared_value(cell) <= pose) return;
+    std::uint32_t before = lower_shared(cell, pose);
     // The maximum above falls only where it was the maximum of this entry.
     for (int level = 1; level < shape->levels && before > pose; ++level) {
       column >>= 2;
       row >>= 2;
-      std::uint32_t* above =
-          entry + shape->start[level] + std::uint64_t{row} * shape->columns[level] + column;
+      std::uint32_t* const above = at(level, column, row);
       if (shared_value(above) > before) return;
       pose = greatest_below(level, column, row);
       before = lower_shared(above, pose);
@@ -90,38 +121,36 @@ struct SectionMapRef {
   }
 
  private:
-  /// Looks at the entries of a level, and below those that do not tell at their parts in `rect`.
-  CLEARWAY_HD bool is_blocked_at(int level, const SectionRect& here, const SectionRect& rect,
-                                 std::uint32_t pose) const {
-    const std::uint32_t* const at = entry + shape->start[level];
-    for (std::uint32_t row = here.row_from; row <= here.row_to; ++row) {
-      for (std::uint32_t column = here.column_from; column <= here.column_to; ++column) {
-        if (shared_value(at + std::uint64_t{row} * shape->columns[level] + column) <= pose) {
-          continue;
-        }
-        if (level == 0) return false;
-        const int below = 2 * (level - 1);
-        const SectionRect parts{greater(4 * column, rect.column_from >> below),
-                                smaller(4 * column + 3, rect.column_to >> below),
-                                greater(4 * row, rect.row_from >> below),
-                                smaller(4 * row + 3, rect.row_to >> below)};
-        if (!is_blocked_at(level - 1, parts, rect, pose)) return false;
-      }
+  CLEARWAY_HD std::uint32_t* at(int level, std::uint32_t column, std::uint32_t row) const {
+    return entry + shape->start[level] + std::uint64_t{row} * shape->columns[level] + column;
+  }
+
+  /// Goes on, row by row, to the next entry of the rectangle on a level: to one below the same
+  /// entry, or with `any` to any. False where there is none.
+  CLEARWAY_HD static bool step(bool any, const SectionRect& rect, int level, std::uint32_t& column,
+                               std::uint32_t& row) {
+    const std::uint32_t last_column = rect.column_to >> 2 * level,
+                        last_row = rect.row_to >> 2 * level;
+    if (column < last_column && (any || (column & 3) != 3)) {
+      ++column;
+      return true;
     }
+    if (row == last_row || (!any && (row & 3) == 3)) return false;
+    const std::uint32_t first_column = rect.column_from >> 2 * level;
+    column = any ? first_column : greater(column & ~3U, first_column);
+    ++row;
     return true;
   }
 
   /// The greatest of the entries below an entry, each as it is read.
   CLEARWAY_HD std::uint32_t greatest_below(int level, std::uint32_t column,
                                            std::uint32_t row) const {
-    const std::uint32_t* const at = entry + shape->start[level - 1];
-    const std::uint32_t columns = shape->columns[level - 1];
-    const std::uint32_t column_end = smaller(4 * column + 4, columns);
+    const std::uint32_t column_end = smaller(4 * column + 4, shape->columns[level - 1]);
     const std::uint32_t row_end = smaller(4 * row + 4, shape->rows[level - 1]);
     std::uint32_t greatest = 0;
     for (std::uint32_t r = 4 * row; r < row_end; ++r) {
       for (std::uint32_t c = 4 * column; c < column_end; ++c) {
-        greatest = greater(greatest, shared_value(at + std::uint64_t{r} * columns + c));
+        greatest = greater(greatest, shared_value(at(level - 1, c, r)));
       }
     }
     return greatest;
@@ -144,6 +173,11 @@ class SectionMaps {
   SectionMapRef operator[](std::uint64_t bin) {
     return {&shape_, entries_.data() + bin * shape_.entries};
   }
+  const SectionMapShape& shape() const { return shape_; }
+  /// The entries of all maps, one map after another.
+  std::span<std::uint32_t> entries() { return entries_; }
+  std::span<const std::uint32_t> entries() const { return entries_; }
+
   /// The first poses of a bin's cells, row by row.
   const std::uint32_t* firsts(std::uint64_t bin) const {
     return entries_.data() + bin * shape_.entries;

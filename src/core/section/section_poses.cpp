@@ -42,6 +42,7 @@ SectionLattice section_lattice(const SectionParameters& parameters, double motio
   lattice.x_from = parameters.rear - parameters.margin - motion / 2;
   lattice.x_to = parameters.front + parameters.margin + motion / 2;
   const double g = lattice.cell = parameters.cell;
+  lattice.per_cell = 1 / g;
   lattice.j_from = std::floor(window.y_from / g);
   lattice.j_to = std::ceil(window.y_to / g);
   lattice.k_from = std::floor(window.z_from / g);
@@ -128,8 +129,31 @@ std::size_t SectionPoses::open(std::uint32_t first, std::uint32_t count, std::ui
       node.shift_to[axis] = std::max(node.shift_to[axis], shift);
     }
   }
+  add_pace(node);
   nodes_.push_back(node);
   return nodes_.size() - 1;
+}
+
+/// Where the load moves on by about as much from each pose to the next, a line tells when a point
+/// comes into the range of x'.
+void SectionPoses::add_pace(SectionPoseNode& node) const {
+  if (node.count < 2) return;
+  const Vec3 reference{node.position[0], node.position[1], node.position[2]};
+  const auto shift_of = [&](std::uint32_t pose) {
+    const PullBack& of = pull_backs_[pose];
+    return -dot((1 / of.determinant) * of.rows[0], poses_[pose].position() - reference);
+  };
+  const std::uint32_t last = node.first + node.count - 1;
+  const double way = (shift_of(node.first) - shift_of(last)) / (node.count - 1);  // of a pose
+  const double pace = 1 / way;
+  if (!std::isfinite(pace)) return;
+  node.pace = pace;
+  node.pace_shift = shift_of(node.first);
+  for (std::uint32_t i = 1; i < node.count; ++i) {
+    const double level = shift_of(node.first + i) + way * i;
+    node.pace_shift =
+        pace > 0 ? std::min(node.pace_shift, level) : std::max(node.pace_shift, level);
+  }
 }
 
 void SectionPoses::add_bins(std::uint32_t first, std::uint32_t count) {
@@ -140,14 +164,17 @@ void SectionPoses::add_bins(std::uint32_t first, std::uint32_t count) {
   add_bins(first, count / 2);
   nodes_[self].right = static_cast<std::uint32_t>(nodes_.size());
   add_bins(first + count / 2, count - count / 2);
+  nodes_[self].end = static_cast<std::uint32_t>(nodes_.size());
 }
 
 void SectionPoses::add_poses(std::uint32_t first, std::uint32_t count, std::uint32_t bin) {
   const std::size_t self = open(first, count, bin);
-  if (count <= kLeafPoses) return;
-  add_poses(first, count / 2, bin);
-  nodes_[self].right = static_cast<std::uint32_t>(nodes_.size());
-  add_poses(first + count / 2, count - count / 2, bin);
+  if (count > kLeafPoses) {
+    add_poses(first, count / 2, bin);
+    nodes_[self].right = static_cast<std::uint32_t>(nodes_.size());
+    add_poses(first + count / 2, count - count / 2, bin);
+  }
+  nodes_[self].end = static_cast<std::uint32_t>(nodes_.size());
 }
 
 double section_rounding(double largest_point, std::span<const Pose> poses,

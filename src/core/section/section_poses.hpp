@@ -25,9 +25,12 @@ struct SectionBin {
 std::vector<SectionBin> section_bins(std::span<const double> chainage,
                                      std::span<const std::uint32_t> path_pose, double bin);
 
-/// A range of a place's coordinates on each axis.
+/// Where the poses of a node see a box of points.
 struct PlaceBounds {
-  double from[3], to[3];
+  double from[3], to[3];  ///< range of the place's coordinate on each axis
+  /// The poses of the node before this one, counted from its first, see the whole box outside of
+  /// the range of x'. It is the number of poses where all of them do.
+  std::uint32_t first_in_range;
 };
 
 /// Consecutive poses of the load, and a bound on each axis of where they see a point
@@ -39,29 +42,51 @@ struct SectionPoseNode {
   double row[3][3];                   ///< inverse of its rotation
   double spread[3][3];                ///< greatest change of each entry of the inverse
   double shift_from[3], shift_to[3];  ///< range of the part that does not depend on the point
-  std::uint32_t first, count;         ///< poses of the load
-  std::uint32_t right;       ///< index of the right child, 0 for a leaf; the left one follows
-  std::uint32_t bin;         ///< index of the bin of all its poses, or kManyBins
-  std::uint32_t first_pose;  ///< the first of its poses, as a pose of the path
+  /// A line below, or where the load goes backwards above, the part of x' that does not depend on
+  /// the point: pace_shift - i / pace at pose i of the node. pace: poses in which x' falls by 1, or
+  /// less than 0 where it grows; 0 where there is no such line.
+  double pace, pace_shift;
+  std::uint32_t first, count;  ///< poses of the load
+  std::uint32_t right;         ///< index of the right child, 0 for a leaf; the left one follows
+  std::uint32_t bin;           ///< index of the bin of all its poses, or kManyBins
+  std::uint32_t first_pose;    ///< the first of its poses, as a pose of the path
+  std::uint32_t end;           ///< index of the node after the last one of its subtree
 
-  bool is_leaf() const { return right == 0; }
+  CLEARWAY_HD bool is_leaf() const { return right == 0; }
 
-  /// Where poses of the node see a box of points with this centre and these half sides. slack: see
-  /// section_rounding().
-  CLEARWAY_HD PlaceBounds bounds(const Vec3& centre, const Vec3& half, double slack) const {
+  /// Where poses of the node see a box of points with this centre and these half sides, or a point
+  /// where half is null. slack: see section_rounding().
+  CLEARWAY_HD PlaceBounds bounds(const Vec3& centre, const Vec3* half,
+                                 const SectionLattice& lattice, double slack) const {
     const double d[3] = {centre.x - position[0], centre.y - position[1], centre.z - position[2]};
-    const double h[3] = {half.x, half.y, half.z};
     PlaceBounds out;
     for (int a = 0; a < 3; ++a) {
       double middle = 0, reach = slack;
       for (int k = 0; k < 3; ++k) {
         middle += row[a][k] * d[k];
-        reach += std::fabs(row[a][k]) * h[k] + spread[a][k] * (std::fabs(d[k]) + h[k]);
+        reach += spread[a][k] * std::fabs(d[k]);
+        if (half != nullptr) reach += (std::fabs(row[a][k]) + spread[a][k]) * (*half)[k];
       }
       out.from[a] = middle - reach + shift_from[a];
       out.to[a] = middle + reach + shift_to[a];
+      if (a == 0) {
+        const double at = first_in_range(middle, reach, lattice.x_from, lattice.x_to);
+        const bool misses = out.to[0] < lattice.x_from || out.from[0] > lattice.x_to;
+        out.first_in_range = misses ? count : static_cast<std::uint32_t>(at);
+      }
     }
     return out;
+  }
+
+  /// PlaceBounds::first_in_range as a number that is yet to be rounded down, of the middle and the
+  /// reach along x that bounds() has.
+  CLEARWAY_IN_CLONE CLEARWAY_HD double first_in_range(double middle, double reach, double x_from,
+                                                      double x_to) const {
+    const double border = pace < 0 ? x_from - reach : x_to + reach;
+    const double at = pace * (middle + pace_shift - border);
+    const double at_least = at > 0 ? at : 0.0;  // for NaN, too
+    const auto all = static_cast<double>(count);
+    return at_least < all ? at_least : all;
   }
 };
 
@@ -76,9 +101,9 @@ class SectionPoses {
                std::span<const SectionBin> bins);
 
   std::span<const SectionPoseNode> nodes() const { return nodes_; }
-  const PullBack& pull_back(std::uint32_t pose) const { return pull_backs_[pose]; }
-  /// The pose of the path that a pose of the load belongs to.
-  std::uint32_t path_pose(std::uint32_t pose) const { return path_pose_[pose]; }
+  std::span<const PullBack> pull_backs() const { return pull_backs_; }  ///< of each pose
+  /// The poses of the path that the poses of the load belong to.
+  std::span<const std::uint32_t> path_pose() const { return path_pose_; }
   std::uint64_t allocated_bytes() const {
     return nodes_.capacity() * sizeof(SectionPoseNode) + pull_backs_.capacity() * sizeof(PullBack);
   }
@@ -87,6 +112,7 @@ class SectionPoses {
   void add_bins(std::uint32_t first, std::uint32_t count);
   void add_poses(std::uint32_t first, std::uint32_t count, std::uint32_t bin);
   std::size_t open(std::uint32_t first, std::uint32_t count, std::uint32_t bin);
+  void add_pace(SectionPoseNode& node) const;
 
   std::span<const Pose> poses_;
   std::span<const std::uint32_t> path_pose_;

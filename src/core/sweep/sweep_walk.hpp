@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "core/sweep/sweep_ref.hpp"
-#include "core/sweep/warp.hpp"
+#include "core/util/warp.hpp"
 #include "core/util/bit_reversal_order.hpp"
 #include "core/util/device_bits.hpp"
 

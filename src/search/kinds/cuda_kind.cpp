@@ -1,12 +1,15 @@
 #include "search/kinds/cuda_kind.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <future>
 
+#include "core/util/stopwatch.hpp"
 #include "cpu/sweep_engine.hpp"
 #include "gpu/beam_engine.hpp"
 #include "gpu/devices.hpp"
 #include "gpu/grid_engine.hpp"
+#include "gpu/section_engine.hpp"
 #include "gpu/sweep_engine.hpp"
 #include "search/check_query.hpp"
 #include "search/kinds/grid_kind.hpp"
@@ -197,26 +200,37 @@ std::unique_ptr<PageEngineKind> cuda_kind(const PackedCloud& cloud, const Query&
 
 namespace {
 
-/// The layout in which beams are followed within the memory of host and device.
-SlotLayout beam_layout(const PackedCloud& cloud, std::span<const PlannedCell> cells,
-                       const Beams& beams, std::uint64_t memory_bytes,
-                       const PageEngineNeeds& needs) {
+/// Bytes that pages take with a layout, and what is kept besides them.
+struct PageBytes {
+  std::function<std::uint64_t(const SlotLayout&)> on_device;  ///< of each device
+  std::function<std::uint64_t(const SlotLayout&)> on_host;    ///< for each device
+  std::uint64_t kept = 0;                                     ///< bytes on the host besides these
+};
+
+/// The largest layout whose pages fit the memory of host and device.
+SlotLayout layout_that_fits(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                            bool masked, const PageBytes& bytes, std::uint64_t memory_bytes,
+                            const PageEngineNeeds& needs) {
   std::uint64_t least_device = 0, least_host = 0;
-  const std::uint64_t words = beams.map.words().size_bytes() + run_pages_bytes(cells.size());
-  for (const SlotLayout& layout : layouts(needs, smallest_page_bytes(cloud, cells))) {
-    least_device =
-        cuda_beam_bytes(beams) + layout.slots * cuda_beam_slot_bytes(beams, cloud, layout);
-    least_host =
-        words + needs.devices * layout.slots * cuda_beam_pinned_bytes(beams, cloud, layout);
+  const std::uint64_t kept = bytes.kept + run_pages_bytes(cells.size());
+  for (const SlotLayout& layout : layouts(needs, smallest_page_bytes(cloud, cells, masked))) {
+    least_device = bytes.on_device(layout);
+    least_host = kept + needs.devices * bytes.on_host(layout);
     if (least_device <= needs.most_device_bytes && least_host <= memory_bytes) {
-      return needed_layout(cloud, cells, false, needs.devices, layout);
+      return needed_layout(cloud, cells, masked, needs.devices, layout);
     }
   }
   if (least_device > needs.most_device_bytes) {
     refuse_device_memory(least_device, needs.most_device_bytes, needs.short_device);
   }
-  throw ResourceError("too little memory for pages of beams", Remedy::kMoreMemory,
+  throw ResourceError("too little memory for pages on the way to a GPU", Remedy::kMoreMemory,
                       static_cast<double>(least_host));
+}
+
+std::vector<PageEngine*> lanes_of(const PageEngines& engines) {
+  std::vector<PageEngine*> lanes;
+  for (const auto& engine : engines) lanes.push_back(engine.get());
+  return lanes;
 }
 
 }  // namespace
@@ -228,12 +242,19 @@ BeamCounts follow_beams_on_gpus(const PackedCloud& cloud, std::span<const Planne
   Gpus gpus(std::move(open), options.end_gpus);
   PageEngineNeeds needs = needs_of(cloud, options, 1);
   gpus.resolve(needs);
-  const SlotLayout layout = beam_layout(cloud, cells, beams, memory_bytes, needs);
+  const PageBytes bytes{
+      .on_device =
+          [&](const SlotLayout& of) {
+            return cuda_beam_bytes(beams) + of.slots * cuda_beam_slot_bytes(beams, cloud, of);
+          },
+      .on_host =
+          [&](const SlotLayout& of) { return of.slots * cuda_beam_pinned_bytes(beams, cloud, of); },
+      .kept = beams.map.words().size_bytes()};
+  const SlotLayout layout = layout_that_fits(cloud, cells, false, bytes, memory_bytes, needs);
   PageEngines engines = gpus.engines([&](int gpu) -> std::unique_ptr<PageEngine> {
     return std::make_unique<CudaBeamEngine>(gpu, beams, cloud, layout);
   });
-  std::vector<PageEngine*> lanes;
-  for (const auto& engine : engines) lanes.push_back(engine.get());
+  const std::vector<PageEngine*> lanes = lanes_of(engines);
   const IgnoredPoints none(cloud, {});
   StageTimes times;
   run_pages(
@@ -251,6 +272,57 @@ BeamCounts follow_beams_on_gpus(const PackedCloud& cloud, std::span<const Planne
   for (const auto& of_device : words) map.clear_as_in(of_device);
   gpus.end(std::move(engines)).clear();
   return counts;
+}
+
+SectionOnGpus block_cells_on_gpus(const PackedCloud& cloud, const IgnoredPoints& ignored,
+                                  std::span<const PlannedCell> cells, const SectionRef& section,
+                                  std::uint64_t memory_bytes, const SearchOptions& options,
+                                  OpenGpus open, Progress& progress) {
+  const std::span entries(section.entries, section.entry_count());
+  Gpus gpus(std::move(open), options.end_gpus);
+  PageEngineNeeds needs = needs_of(cloud, options, 1);
+  gpus.resolve(needs);
+  const PageBytes bytes{
+      .on_device =
+          [&](const SlotLayout& of) {
+            return cuda_section_bytes(section) + of.slots * cuda_section_slot_bytes(cloud, of);
+          },
+      .on_host =
+          [&](const SlotLayout& of) { return of.slots * cuda_section_pinned_bytes(cloud, of); },
+      // The maps of a second GPU and of any further one are merged by way of the host.
+      .kept = gpus.size() > 1 ? entries.size_bytes() : 0};
+  const SlotLayout layout =
+      layout_that_fits(cloud, cells, ignored.any(), bytes, memory_bytes, needs);
+  SectionOnGpus taken;
+  const Stopwatch making;
+  PageEngines engines = gpus.engines([&](int gpu) -> std::unique_ptr<PageEngine> {
+    return std::make_unique<CudaSectionEngine>(gpu, section, cloud, layout);
+  });
+  taken.engine_seconds = making.seconds();
+  const std::vector<PageEngine*> lanes = lanes_of(engines);
+  StageTimes times;
+  run_pages(
+      cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells, ignored.any()), lanes,
+      {.stage = "section", .ignored = ignored, .threads = needs.threads},
+      [](std::span<const PlannedCell>, const PageResult&) {}, progress, times);
+  std::vector<std::uint32_t> of_device;
+  for (const PageEngine* lane : lanes) {
+    const auto& engine = dynamic_cast<const CudaSectionEngine&>(*lane);
+    taken.device_bytes = std::max(taken.device_bytes, engine.device_bytes());
+    taken.host_bytes += engine.pinned_bytes();
+    if (lane == lanes.front()) {
+      engine.read_entries(entries);
+      continue;
+    }
+    of_device.resize(entries.size());
+    engine.read_entries(of_device);
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      entries[i] = std::min(entries[i], of_device[i]);
+    }
+  }
+  taken.host_bytes += bytes.kept + run_pages_bytes(cells.size());
+  taken.end = gpus.end(std::move(engines));
+  return taken;
 }
 
 }  // namespace clearway

@@ -203,6 +203,22 @@ def seen():
             yield one
 
 
+def section():
+    varied = {"bin": (80.0, 20.0, 5.0, 1.25), "cell": (0.08, 0.04, 0.02, 0.01),
+              "length": (1.0, 4.5, 12.0, 25.0), "threads": (1, 2, 4, 8, 16),
+              "method": ("section, 1 thread", "section, all threads", "section, GPU")}
+    for scene in ("mine", "hall"):
+        for vary, values in varied.items():
+            for at in values:
+                refused = at == 0.01 and scene == "mine"
+                yield case({"scene": scene, "vary": vary, "value": at}, 0.3,
+                           failed=REFUSED if refused else None)
+        for width in (1.0, 2.0):
+            yield case({"scene": scene, "vary": "width", "value": width, "widths": 200}, 0.9)
+        yield case({"scene": scene, "vary": "method", "value": "brute force"}, 0,
+                   {"pairs": 3.2e9, "seconds": 48.0, "poses_searched": 50}, runs=0)
+
+
 def certainty():
     shapes = ("wall and plane", "edge and edge", "point and corner")
     for shape, errors, margin, k in itertools.product(shapes, ("position", "all"), (0, 0.1),
@@ -223,7 +239,7 @@ def certainty():
 
 
 EXPERIMENTS = (table, threads, grid, datasets, points, accuracy, stability, scaling, surfaces, seen,
-               certainty)
+               section, certainty)
 
 
 def write_records(folder):

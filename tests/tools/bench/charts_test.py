@@ -163,7 +163,7 @@ def main():
         for name, words in sheets.items():
             for kind, start in (("svg", b"<?xml"), ("png", b"\x89PNG")):
                 assert (folder / "charts" / f"{name}.{kind}").read_bytes().startswith(start), name
-            if name in ("grid", "datasets", "stability", "scaling", "seen"):
+            if name in ("grid", "datasets", "stability", "scaling", "seen", "section"):
                 assert "× failed: 1 " in words, name
             if name == "stability":
                 assert "from 1 to 1.001 and determinant 1.001" in words

@@ -90,6 +90,32 @@ TEST_CASE("seen: what is swept grows with the path, and more beams see more of i
   CHECK(swept["cube"][0] < swept["cube"][4]);
 }
 
+TEST_CASE("section: a section for every outline, whatever bins, cells, load and threads") {
+  const Experiment section("section", 1);
+  const Outcome done = section.run("--scenes hall");
+  CAPTURE(done.err);
+  REQUIRE(done.exit_code == 0);
+  std::map<std::string, std::vector<std::uint64_t>> blocked;
+  const Json figures = section.figures();
+  for (const Json& one : figures["cases"]) {
+    CAPTURE(one["key"]);
+    const std::string vary = one["parameters"]["vary"];
+    if (one["parameters"]["value"] == "brute force") {
+      CHECK(one["findings"]["pairs"] > 0);
+      CHECK(one["findings"]["seconds"] > 0);
+    } else if (vary == "width") {
+      CHECK(one["runs"][0]["model_solids"] == 1);
+    } else {
+      blocked[vary].push_back(one["runs"][0]["blocked"]);
+    }
+  }
+  CHECK(blocked["bin"] == std::vector(4, blocked["bin"][0]));
+  CHECK(std::set(blocked["threads"].begin(), blocked["threads"].end()).size() == 1);
+  CHECK(blocked["cell"][0] < blocked["cell"][3]);
+  CHECK(blocked["length"][0] < blocked["length"][3]);
+  CHECK(blocked["method"].front() == blocked["bin"][2]);
+}
+
 TEST_CASE("accuracy: exact engines err nowhere, the others say where") {
   const Experiment accuracy("accuracy");
   const Outcome done = accuracy.run("--limit 4");

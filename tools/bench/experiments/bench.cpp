@@ -325,16 +325,45 @@ std::vector<std::string> Bench::command(const SceneFiles& files,
 Json Bench::measure(const std::string& key, Json parameters, const SceneFiles& files,
                     const std::vector<std::string>& run_options, const Judge& judge,
                     std::optional<int> repetitions, Refusal expected) {
+  const std::filesystem::path result = work() / "result.h5";
+  return measure_program(key, std::move(parameters), files, command(files, result, run_options),
+                         result, judge, repetitions, expected);
+}
+
+Json Bench::measure_section(const std::string& key, Json parameters, const SceneFiles& files,
+                            const std::vector<std::string>& find_options) {
+  const std::filesystem::path section = work() / "section.h5";
+  std::vector<std::string> arguments{"section",
+                                     "find",
+                                     "--env",
+                                     files.store.string(),
+                                     "--trajectory",
+                                     files.trajectory.string(),
+                                     "-o",
+                                     section.string(),
+                                     "--memory",
+                                     options_.memory,
+                                     "--device-memory",
+                                     options_.device_memory,
+                                     "--force",
+                                     "--json"};
+  return measure_program(key, std::move(parameters), files,
+                         joined(std::move(arguments), find_options), section, {}, {},
+                         Refusal::kMemory);
+}
+
+Json Bench::measure_program(const std::string& key, Json parameters, const SceneFiles& files,
+                            const std::vector<std::string>& arguments,
+                            const std::filesystem::path& result, const Judge& judge,
+                            std::optional<int> repetitions, Refusal expected) {
   if (const Json* known = record_.find(key)) return *known;
   spdlog::info("{}", key);
-  const std::filesystem::path result = work() / "result.h5";
   Json one{{"key", key}, {"parameters", std::move(parameters)}, {"runs", Json::array()}};
   double seconds = 0;
   for (int i = 0; i < repetitions.value_or(options_.repetitions); ++i) {
     if (seconds > kEnoughSeconds) break;
     if (options_.cold) drop_from_page_cache(files.store);
-    const ProgramRun run =
-        program_.run(command(files, result, run_options), options_.limit_seconds);
+    const ProgramRun run = program_.run(arguments, options_.limit_seconds);
     if (run.exit_code != 0) {
       one["failed"] = finding(key, run, expected);
       return record_.add(std::move(one));

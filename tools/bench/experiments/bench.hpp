@@ -120,6 +120,10 @@ class Bench {
                const std::vector<std::string>& run_options, const Judge& judge = {},
                std::optional<int> repetitions = {}, Refusal expected = Refusal::kNone);
 
+  /// Measures a case as measure() does, with `clearway section find` in the place of a run.
+  Json measure_section(const std::string& key, Json parameters, const SceneFiles& files,
+                       const std::vector<std::string>& find_options);
+
   /// Records a case whose findings come from elsewhere, unless the file has it already.
   Json keep(const std::string& key, Json parameters, const std::function<Json()>& findings);
 
@@ -134,6 +138,11 @@ class Bench {
 
   std::vector<std::string> command(const SceneFiles& files, const std::filesystem::path& result,
                                    const std::vector<std::string>& run_options) const;
+
+  Json measure_program(const std::string& key, Json parameters, const SceneFiles& files,
+                       const std::vector<std::string>& arguments,
+                       const std::filesystem::path& result, const Judge& judge,
+                       std::optional<int> repetitions, Refusal expected);
 
   /// What is recorded of a failed run that is a finding; throws ResourceError where it is none.
   Json finding(const std::string& key, const ProgramRun& failed, Refusal expected) const;
@@ -164,5 +173,6 @@ void bench_choice(Bench& bench);
 void bench_shards(Bench& bench);
 void bench_surfaces(Bench& bench);
 void bench_seen(Bench& bench);
+void bench_section(Bench& bench);
 
 }  // namespace clearway::bench

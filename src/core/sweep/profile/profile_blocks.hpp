@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "core/sweep/sweep_page.hpp"
-#include "core/sweep/warp.hpp"
+#include "core/util/warp.hpp"
 #include "core/util/device_bits.hpp"
 
 namespace clearway {

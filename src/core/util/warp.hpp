@@ -58,6 +58,14 @@ struct CudaWarp {
 #endif
   }
 
+  CLEARWAY_HD static std::uint32_t least([[maybe_unused]] PerLane<std::uint32_t>& values) {
+#ifdef __CUDA_ARCH__
+    return __reduce_min_sync(0xffffffff, values.value);
+#else
+    return 0;
+#endif
+  }
+
   /// Reads a value once for all lanes, because other warps may change it at any time.
   template <typename Read>
   CLEARWAY_HD static double once([[maybe_unused]] Read read) {
@@ -127,9 +135,10 @@ struct HostWarp {
     return bits;
   }
 
-  static double least(PerLane<double>& values) {
-    double least = values[0];
-    for (const double value : values.values) least = value < least ? value : least;
+  template <typename Value>
+  static Value least(PerLane<Value>& values) {
+    Value least = values[0];
+    for (const Value value : values.values) least = value < least ? value : least;
     return least;
   }
 
