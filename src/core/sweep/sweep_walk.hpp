@@ -3,9 +3,9 @@
 #include <cstdint>
 
 #include "core/sweep/sweep_ref.hpp"
-#include "core/util/warp.hpp"
 #include "core/util/bit_reversal_order.hpp"
 #include "core/util/device_bits.hpp"
+#include "core/util/warp.hpp"
 
 namespace clearway {
 

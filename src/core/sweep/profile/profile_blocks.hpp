@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "core/sweep/sweep_page.hpp"
-#include "core/util/warp.hpp"
 #include "core/util/device_bits.hpp"
+#include "core/util/warp.hpp"
 
 namespace clearway {
 
