@@ -475,7 +475,8 @@ TEST_CASE("a table of shifts that was written is read again, and only for its re
   const Conflicts conflicts = scene.conflicts();
   ConflictOptions how;
   how.min_points = 1;
-  write_shifts({table, how, result.reader(), "m"}, ShiftFormat::kJson, scene.folder / "s.json");
+  write_shifts({table, conflicts, how, result.reader(), "m"}, ShiftFormat::kJson,
+               scene.folder / "s.json");
   const ShiftTable again = read_shifts(scene.folder / "s.json", result.reader());
   CHECK(again.step == 0.01);
   CHECK(again.lateral_from == -2);

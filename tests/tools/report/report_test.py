@@ -14,7 +14,7 @@ import unittest
 import scenes
 from browser import Browser, find_chromium
 from page_checks import PageChecks
-from scenes import Scene, clearway, make_car, make_empty, make_hall, make_road
+from scenes import Scene, clearway, make_car, make_empty, make_hall, make_lane, make_road
 
 CHROMIUM = find_chromium()
 
@@ -211,39 +211,38 @@ class ReportTest(PageChecks, unittest.TestCase):
         self.check_quiet(page)
 
     def test_shifts(self):
-        shifts = f"{self.hall.folder}/shifts.json"
-        told = json.loads(clearway("shift", self.found, "--env", self.hall.store, "--model", self.hall.model,
-                                   "--trajectory", self.hall.trajectory, "--lateral", "-0.6,1",
-                                   "--step", 0.05, "-o", shifts, "--force", "--json"))
-        path, facts = self.hall.report(self.found, "shifts", "--shifts", shifts)
-        self.assertEqual(facts["shifts"]["path"]["shift"], told["path"]["shift"])
-        rows = facts["shifts"]["list"]
+        folder = f"{self.hall.folder}/lane"
+        os.mkdir(folder)
+        lane = make_lane(folder)
+        found = lane.search("out", "--model-as", "solid", "--radius", 0.001, "--first-pose",
+                            "--clearance", 0.3)
+        shifts = f"{folder}/shifts.json"
+        told = json.loads(clearway("shift", found, "--env", lane.store, "--model", lane.model,
+                                   "--trajectory", lane.trajectory, "--lateral", "-0.6,0.8",
+                                   "-o", shifts, "--json"))
+        path, facts = lane.report(found, "shifts", "--shifts", shifts)
+        rows, listed = facts["shifts"]["list"], facts["conflicts"]["list"]
         self.assertEqual([r["shift"] for r in rows], [c["shift"] for c in told["conflicts"]])
-        self.assertEqual({row["shift"] is None for row in rows}, {True, False})
-        self.assertIn("table of shifts", self.hall.report(self.found, "bad", "--min-points", 500,
-                                                          "--shifts", shifts, code=3)[1])
-        self.assertNotIn("shifts", self.hall.report(self.found, "plain")[1])
+        self.assertEqual([r["shift"] for r in rows], [-0.11, 0.21, None, None])
+        self.assertIn("table of shifts", lane.report(found, "bad", "--min-points", 500, "--shifts",
+                                                     shifts, code=3)[1])
+        self.assertNotIn("shifts", lane.report(found, "plain")[1])
         page = self.open(path)
         self.check_words(page, facts)
         titles = page.run("tableColumns().map((c) => c.title)")
         cells = page.run(f"conflictList().map((c) => tableColumns()[{titles.index('Frees it')}].cell(c))")
-        for cell, row, conflict in zip(cells, rows, facts["conflicts"]["list"]):
-            page.run(f"selectConflict(conflictList().find((c) => c.id === {row['conflict']}))")
-            words = page.run("byId('conflict-details').innerText")
-            if row["shift"] is None:
-                self.assertEqual(cell, "\u2013")
-                self.assertIn("no shift of up to 1 m to the left and 0.6 m to the right frees it", words)
-                continue
-            side = "left" if row["shift"] > 0 else "right"
-            self.assertEqual(cell, f"{abs(row['shift']):g} {side}")
-            self.assertIn(f"{abs(row['shift']):g} m to the {side} ", words)
-            self.assertIn(f"{conflict['chainage_to']:.1f} m", words)
-        freed = sum(row["shift"] is not None for row in rows)
-        self.assertIn(f"{freed} of {len(rows)} conflicts can be freed",
-                      page.run("byId('conflicts-note').textContent"))
-        order = page.run("(sortBy('Frees it'), sortedConflicts(tableColumns()).map(freedRank))")
-        known = [rank for rank in order if rank is not None]
-        self.assertEqual(known, sorted(known))
+        self.assertEqual(cells, ["0.11 right", "0.21 left", "\u2013", "\u2013"])
+        no_shift = "no shift of up to 0.8 m to the left and 0.6 m to the right frees it"
+        expected = ["0.11 m to the right between 2.0 and 5.0 m, which leaves 0.010 m",
+                    "0.21 m to the left between 7.0 and 10.0 m, which leaves 0.010 m", no_shift, no_shift]
+        for words, conflict in zip(expected, listed):
+            page.run(f"selectConflict(conflictList().find((c) => c.id === {conflict['id']}))")
+            self.assertIn(words, page.run("byId('conflict-details').innerText"))
+        note = page.run("byId('conflicts-note').textContent")
+        self.assertIn("No shift of up to 0.8 m to the left and 0.6 m to the right frees the whole path.", note)
+        self.assertIn("2 of 4 conflicts can be freed", note)
+        self.assertEqual(page.run("(sortBy('Frees it'), sortedConflicts(tableColumns()).map((c) => c.id))"),
+                         [1, 2, 3, 4])
         page.run("preparePrint()")
         self.assertIn("Frees it", page.run("byId('print-cards').textContent"))
         self.check_quiet(page)

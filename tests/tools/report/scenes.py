@@ -95,6 +95,21 @@ def make_empty(folder):
     return scene
 
 
+def make_lane(folder):
+    """A box of 2 x 1 x 1 m that meets a wall on its left, one on its right, and a gate of 0.8 m."""
+    lane = Scene(folder)
+    lane.model = f"{folder}/box.off"
+    clearway("model", "box", "2,1,1", "-o", lane.model, "--force")
+    with open(lane.trajectory, "w") as file:
+        file.writelines(f"1 0 0 {0.5 * i} 0 1 0 0 0 0 1 0\n" for i in range(41))
+    with open(f"{folder}/scan.xyz", "w") as file:
+        for x, y in ((3, 0.4), (8, -0.3), (14, 0.4), (14, -0.4)):
+            file.writelines(f"{x + 0.1 * i:.1f} {y} {0.1 + 0.2 * k:.1f}\n"
+                            for i in range(11) for k in range(5))
+    clearway("convert", f"{folder}/scan.xyz", "-o", lane.store, "--force")
+    return lane
+
+
 def make_road(folder):
     """A car that drives towards a wall, which a scanner saw but for a wedge behind a board."""
     scene = Scene(folder)

@@ -133,20 +133,33 @@ std::string row_text(const StretchShift& row, const ShiftTable& table, const std
          "\n";
 }
 
-std::string table_text(const ShiftTable& table, std::size_t most, const std::string& unit) {
-  std::string text = "the whole path: " + shift_text(table.path, table, unit) + "\n";
+/// A line about the groups that are too small to be conflicts; none where there are none.
+std::string small_text(const ShiftFile& file) {
+  const Conflicts& found = file.conflicts;
+  if (found.small_groups == 0) return "";
+  return counted(found.small_groups, "group") + " of fewer than " +
+         counted(file.options.min_points, "point") + (found.small_groups == 1 ? " is" : " are") +
+         " no conflict, and " + (found.small_groups == 1 ? "counts" : "count") +
+         " for the whole path alone; --min-points 1 lists " +
+         (found.small_groups == 1 ? "it" : "them") + "\n";
+}
+
+std::string table_text(const ShiftFile& file, std::size_t most) {
+  const ShiftTable& table = file.table;
+  std::string text = "the whole path: " + shift_text(table.path, table, file.unit) + "\n";
   const auto freed = std::ranges::count_if(
       table.conflicts, [](const StretchShift& row) { return row.shift.has_value(); });
   text += counted(table.conflicts.size(), "conflict") +
           fmt::format(", of which {} can be freed by a shift {}; {}\n", freed,
-                      range_text(table, unit), counted(table.searches, "search", "searches"));
+                      range_text(table, file.unit), counted(table.searches, "search", "searches")) +
+          small_text(file);
   const std::size_t shown = std::min(most, table.conflicts.size());
   if (shown == 0) return text;
-  text += fmt::format("{:>8}  {:>19}", "conflict", "chainage (" + unit + ")");
+  text += fmt::format("{:>8}  {:>19}", "conflict", "chainage (" + file.unit + ")");
   if (table.conflicts.front().station_from) text += fmt::format("  {:>23}", "station (m)");
   text += fmt::format("  {:>13}  {:>8}  shift\n", "poses", "searches");
   for (const StretchShift& row : std::span(table.conflicts).first(shown)) {
-    text += row_text(row, table, unit);
+    text += row_text(row, table, file.unit);
   }
   if (shown < table.conflicts.size()) {
     text += "and " + counted(table.conflicts.size() - shown, "conflict") +
@@ -181,7 +194,7 @@ std::string perform(ShiftCommand& options) {
   const ShiftTable table =
       find_shifts(session, result, query, conflicts.listed, shift_options_of(options, labels));
   const std::string unit = symbol_of_unit(session.store().length_unit());
-  const ShiftFile file{table, options.find, result.reader(), unit};
+  const ShiftFile file{table, conflicts, options.find, result.reader(), unit};
   for (const auto& output : outputs) {
     write_shifts(file, output->format, output->pending.partial());
   }
@@ -190,7 +203,7 @@ std::string perform(ShiftCommand& options) {
   spdlog::info(
       "what was not scanned counts as free; clearway run --seen along the shifted path tells "
       "whether it was");
-  return options.json ? json_of(file) : table_text(table, options.show, unit);
+  return options.json ? json_of(file) : table_text(file, options.show);
 }
 
 void add_inputs(CLI::App& command, ShiftCommand& options) {

@@ -164,9 +164,11 @@ std::string json_of(const ShiftFile& file) {
   out.add_length("lateral_from", file.table.lateral_from);
   out.add_length("lateral_to", file.table.lateral_to);
   out.add_length("step", file.table.step);
-  out.add_length("gap", file.conflicts.gap);
-  out.add_count("min_points", file.conflicts.min_points);
-  out.add_length("split", file.conflicts.split);
+  out.add_length("gap", file.options.gap);
+  out.add_count("min_points", file.options.min_points);
+  out.add_length("split", file.options.split);
+  out.add_count("small_groups", file.conflicts.small_groups);
+  out.add_count("small_points", file.conflicts.small_points);
   out.add_count("poses", header.poses);
   out.add_count("searches", file.table.searches);
   if (!header.bodies.empty()) out.add("bodies", json_strings(header.bodies));

@@ -12,7 +12,8 @@ namespace clearway {
 /// The contents of a file of shifts. The references must outlive the writing.
 struct ShiftFile {
   const ShiftTable& table;
-  const ConflictOptions& conflicts;  ///< the options with which the conflicts were found
+  const Conflicts& conflicts;
+  const ConflictOptions& options;  ///< the options with which the conflicts were found
   const ResultReader& result;
   std::string unit;  ///< symbol of the environment's unit of length
 };

@@ -132,6 +132,10 @@ TEST_CASE("shift looks only where it is told, and says if nothing is found") {
   CHECK_THAT(none.out, Contains("the whole path: no shift of up to 0.05 m frees it") &&
                            Contains("of which 0 can be freed") &&
                            Contains("and 1 conflict more, which --show or an output shows"));
+  CHECK_THAT(lane().shift("--min-points 1000").out,
+             Contains("2 groups of fewer than 1,000 points are no conflict, and count for the "
+                      "whole path alone; --min-points 1 lists them") &&
+                 Contains("the whole path: 0.81 m to the right frees it"));
   CHECK_THAT(lane().shift("--lateral=-0.05,0.1").out,
              Contains("no shift between 0.05 m to the right and 0.1 m to the left frees it"));
 }
