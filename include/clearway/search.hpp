@@ -73,6 +73,7 @@ struct SearchSeconds {
   /// Seconds for starting the GPUs, in parallel with everything that comes before the engine
   double context = 0;
   double context_wait = 0;  ///< seconds that the search waited for the GPUs to start
+  double check = 0;         ///< seconds for looking at the question before it is searched
   double ignored = 0;       ///< seconds for counting the ignored points that would collide
   double thin = 0;          ///< seconds for choosing what a tolerance keeps
   /// Seconds for making what the engine looks up: the model field, the grid's groups

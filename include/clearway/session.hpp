@@ -26,9 +26,9 @@ struct SessionOptions {
 /// How one question of a session is asked. The answer depends on none of these options.
 struct QuestionOptions {
   Engine engine = Engine::kAuto;
-  bool strict = false;                        ///< any warning ends with InputError
-  std::vector<Message> input_warnings = {};   ///< as in SearchOptions
-  bool model_is_cut = false;                  ///< as in SearchOptions
+  bool strict = false;                       ///< any warning ends with InputError
+  std::vector<Message> input_warnings = {};  ///< as in SearchOptions
+  bool model_is_cut = false;                 ///< as in SearchOptions
   ProgressCallback progress = nullptr;
   MessageCallback message = nullptr;  ///< receives notes, and the warnings that the answer holds
   StopFlag stop = nullptr;

@@ -55,8 +55,8 @@ EngineEstimate estimate_on_cpu(const Workload& work, int threads);
 /// Estimates the wall clock of answering a query on the CPU with this many threads, and on a GPU
 /// including its start and end. work: one for the model, or one for each body. engine: the one that
 /// searches on the CPU, which is not the grid; kAuto for the faster one where there is one model.
-/// started: whether the GPU was started before. Used for choosing only. docs/design/pipeline.md says
-/// how its constants are measured.
+/// started: whether the GPU was started before. Used for choosing only. docs/design/pipeline.md
+/// says how its constants are measured.
 DeviceEstimate estimate_devices(std::span<const Workload> work, const QueryParameters& query,
                                 Engine engine, int threads, bool started = false);
 

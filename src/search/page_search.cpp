@@ -96,15 +96,15 @@ void report_stages(const StageTimes& stages, SearchSeconds& seconds) {
 
 /// The threads that pay: fewer than the kind has where there is little to search on the CPU,
 /// because to wake another thread takes as long as a few thousand points.
-int useful_threads(const PackedCloud& cloud, const Query& query,
-                   std::span<const PlannedCell> cells, const PageEngineNeeds& needs) {
+int useful_threads(const PackedCloud& cloud, const Query& query, std::span<const PlannedCell> cells,
+                   const PageEngineNeeds& needs) {
   constexpr std::uint64_t kPointsOfThread = std::uint64_t{1} << 14, kMostPoses = 64;
   if (needs.on_gpu) return needs.threads;
   std::uint64_t points = 0;
   for (const PlannedCell& cell : cells) points += cloud.cells()[cell.cell].count;
   const std::uint64_t poses = std::clamp<std::uint64_t>(query.poses.size(), 1, kMostPoses);
-  return static_cast<int>(std::clamp<std::uint64_t>(
-      points * poses / kPointsOfThread, 1, static_cast<std::uint64_t>(needs.threads)));
+  return static_cast<int>(std::clamp<std::uint64_t>(points * poses / kPointsOfThread, 1,
+                                                    static_cast<std::uint64_t>(needs.threads)));
 }
 
 /// Begins to take the engines down, and waits until that is done where memory is too scarce to

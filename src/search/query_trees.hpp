@@ -32,9 +32,8 @@ struct QueryTrees {
   /// longer than the work.
   static int threads_for_poses(const Query& query, int threads) {
     constexpr std::size_t kPosesOfThread = 256;
-    return static_cast<int>(
-        std::min<std::size_t>(static_cast<std::size_t>(threads),
-                              1 + query.poses.size() / kPosesOfThread));
+    return static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(threads),
+                                                  1 + query.poses.size() / kPosesOfThread));
   }
 
   /// The bytes of the trees, without what the model's index has besides them.

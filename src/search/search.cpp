@@ -1,12 +1,10 @@
 #include "clearway/search.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <optional>
 
 #include "clearway/error.hpp"
-#include "clearway/session.hpp"
 #include "core/query/search_result.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
@@ -16,6 +14,7 @@
 #include "io/files/pending_file.hpp"
 #include "io/paths/content_hash.hpp"
 #include "io/result/answer.hpp"
+#include "search/answer_question.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/query_warnings.hpp"
 #include "search/checks/question.hpp"
@@ -121,19 +120,19 @@ class Search {
     return std::move(report_);
   }
 
-  /// Answers into `tables`, with all that a file of the same answer would need.
-  SearchReport answer(ResultTables& tables, ResultHeader& header, ResultFindings& found_besides) {
+  SearchReport answer(AnswerInMemory& kept) {
     begin();
     Found found = find_all();
     found.engine_end.clear();
     const Stopwatch write;
-    tables = tables_of(store_, std::move(found.result), header_, found.write_bytes, progress_,
-                       chainage(), options_.threads);
-    static_cast<TableSummary&>(report_) = summary_of(tables);
+    static_cast<ResultTables&>(kept) =
+        tables_of(store_, std::move(found.result), header_, found.write_bytes, progress_,
+                  chainage(), options_.threads);
+    static_cast<TableSummary&>(report_) = summary_of(kept);
     report_.ignored_looked_at = found.result.ignored_points;
     report_.seconds.write = write.seconds();
-    found_besides = findings();
-    header = std::move(header_);
+    kept.findings = findings();
+    kept.header = std::move(header_);
     end();
     return std::move(report_);
   }
@@ -145,6 +144,7 @@ class Search {
     report_sizes(store_, query_, report_);
     report_.doubts = doubts_among(report_.warnings);
     report_.warned_of = codes_beside_doubts(report_.warnings);
+    report_.seconds.check = total_.seconds();
   }
 
   Found find_all() {
@@ -734,108 +734,10 @@ SearchReport search(const Store& store, const Query& query, const std::filesyste
   return Search(session, query, options, output).run();
 }
 
-// --- Session ---
-
-struct SessionAnswer::Tables : ResultTables {
-  ResultHeader header;
-  ResultFindings findings;
-  std::filesystem::path store;
-
-  /// Sets the profile's distance at the poses where no body has a pose: NaN in memory, and infinity
-  /// in a file, which Result::profile() turns into NaN.
-  static void set_distance_without_bodies(const ResultFindings& findings, double distance,
-                                          ResultTables& tables) {
-    for (const auto& [first, last] : findings.without_bodies) {
-      std::fill_n(tables.profile.distance.begin() + first, last - first + 1, distance);
-    }
-  }
-};
-
-SessionAnswer::SessionAnswer() : tables_(std::make_shared<Tables>()) {}
-SessionAnswer::~SessionAnswer() = default;
-SessionAnswer::SessionAnswer(const SessionAnswer&) = default;
-SessionAnswer::SessionAnswer(SessionAnswer&&) noexcept = default;
-SessionAnswer& SessionAnswer::operator=(const SessionAnswer&) = default;
-SessionAnswer& SessionAnswer::operator=(SessionAnswer&&) noexcept = default;
-
-const Collisions& SessionAnswer::collisions() const { return tables_->collisions; }
-const Clearances& SessionAnswer::clearances() const { return tables_->clearances; }
-const Profile& SessionAnswer::profile() const { return tables_->profile; }
-const Nearby& SessionAnswer::near() const { return tables_->near; }
-const UnseenCubes& SessionAnswer::unseen() const { return tables_->unseen; }
-
-void SessionAnswer::save(const std::filesystem::path& output, bool overwrite) const {
-  refuse_overwriting(output, {tables_->store});
-  PendingFile pending(output, overwrite);
-  const ResultFindings& findings = tables_->findings;
-  if (findings.without_bodies.empty()) {
-    write_tables(*tables_, tables_->header, findings, pending.partial());
-  } else {
-    ResultTables of_file = *tables_;
-    Tables::set_distance_without_bodies(findings, std::numeric_limits<double>::infinity(), of_file);
-    write_tables(of_file, tables_->header, findings, pending.partial());
-  }
-  pending.publish();
-}
-
-struct Session::State {
-  State(const std::filesystem::path& path, const SessionOptions& machine)
-      : store(path),
-        options(machine),
-        for_search(search_options(machine)),
-        session(store, for_search, KeptModels::Kept::kForSession) {
-    if (may_take_gpus(for_search) && !fallback_allowed(for_search)) {
-      session.start_surely(for_search);
-    }
-  }
-
-  static SearchOptions search_options(const SessionOptions& machine) {
-    SearchOptions options;
-    options.device = machine.device;
-    options.gpus = machine.gpus;
-    options.threads = machine.threads;
-    options.memory_bytes = machine.memory_bytes;
-    options.device_memory_bytes = machine.device_memory_bytes;
-    return options;
-  }
-
-  const Store store;
-  const SessionOptions options;
-  const SearchOptions for_search;
-  SessionState session;
-};
-
-Session::Session(const std::filesystem::path& store, const SessionOptions& options)
-    : state_(std::make_unique<State>(store, options)) {}
-Session::~Session() = default;
-Session::Session(Session&&) noexcept = default;
-Session& Session::operator=(Session&&) noexcept = default;
-
-const Store& Session::store() const { return state_->store; }
-const SessionOptions& Session::options() const { return state_->options; }
-void Session::forget_models() const { state_->session.models().forget_all(); }
-std::uint64_t Session::kept_bytes() const { return state_->session.models().allocated_bytes(); }
-
-SessionAnswer Session::search(const Query& query, const QuestionOptions& asked) const {
-  SearchOptions options = state_->for_search;
-  options.engine = asked.engine;
-  options.strict = asked.strict;
-  options.input_warnings = asked.input_warnings;
-  options.model_is_cut = asked.model_is_cut;
-  options.progress = asked.progress;
-  options.message = asked.message;
-  options.stop = asked.stop;
+SearchReport answer_question(SessionState& session, const Query& query,
+                             const SearchOptions& options, AnswerInMemory& answer) {
   check_question(query, options);
-  state_->store.reader().check_unchanged();
-  SessionAnswer answer;
-  const auto tables = std::make_shared<SessionAnswer::Tables>();
-  tables->store = state_->store.path();
-  static_cast<SearchReport&>(answer) = Search(state_->session, query, options, std::nullopt)
-                                           .answer(*tables, tables->header, tables->findings);
-  SessionAnswer::Tables::set_distance_without_bodies(
-      tables->findings, std::numeric_limits<double>::quiet_NaN(), *tables);
-  answer.tables_ = tables;
-  return answer;
+  return Search(session, query, options, std::nullopt).answer(answer);
 }
 
 }  // namespace clearway

@@ -39,8 +39,7 @@ constexpr std::uint64_t kModelsShare = 4;
 
 }  // namespace
 
-SessionState::SessionState(const Store& store, const SearchOptions& options,
-                           KeptModels::Kept kept)
+SessionState::SessionState(const Store& store, const SearchOptions& options, KeptModels::Kept kept)
     : store_(store),
       options_(options),
       models_(kept, options.memory_bytes / kModelsShare),

@@ -84,7 +84,8 @@ void set_columns(const RowMeaning& meaning, std::span<const ClearanceRow> rows,
   set_column(columns.xyz, rows,
              [&](const auto& row) { return xyz_of(meaning.quantisation, row.q); });
   set_column(columns.distance, rows, [](const auto& row) { return row.distance; });
-  set_column(columns.pose, rows, [&](const auto& row) { return meaning.numbers.pose_of(row.pose); });
+  set_column(columns.pose, rows,
+             [&](const auto& row) { return meaning.numbers.pose_of(row.pose); });
   if (!meaning.header.bodies.empty()) {
     set_column(columns.body, rows,
                [&](const auto& row) { return meaning.numbers.body_of(row.pose); });
@@ -194,8 +195,8 @@ struct WritePlan {
 
 template <typename Row>
 WritePlan plan_of(const StoreReader& store, std::uint64_t table_rows, std::uint64_t memory_bytes) {
-  const int threads = static_cast<int>(
-      std::min<std::uint64_t>(tbb::this_task_arena::max_concurrency(), 1 + table_rows / kRowsOfThread));
+  const int threads = static_cast<int>(std::min<std::uint64_t>(
+      tbb::this_task_arena::max_concurrency(), 1 + table_rows / kRowsOfThread));
   const std::uint64_t left = std::max(memory_bytes, least_write_bytes(store)) - kWriterBytes;
   const std::uint64_t for_thread = thread_bytes(store);
   WritePlan plan{};
@@ -419,8 +420,9 @@ ResultTables tables_of(const StoreReader& store, SearchResult answer, const Resu
       keep(rows.meaning(), some, tables.clearances);
     });
     if (header.profile > 0) {
-      for_profile(store, answer.profile, chainage, false, progress,
-                  [&](const ProfileRows& some, std::uint64_t) { append_rows(some, tables.profile); });
+      for_profile(
+          store, answer.profile, chainage, false, progress,
+          [&](const ProfileRows& some, std::uint64_t) { append_rows(some, tables.profile); });
     }
     if (answer.near) {
       rows.for_near(in.near, [&](std::span<const NearRow> some, const auto&) {

@@ -68,13 +68,12 @@ SearchResult answer_of(const Vehicle& vehicle, const StoreReader& store, PageEng
   SearchReport report;
   const MessageCallback silent;
   const MessageLog log(silent, report.warnings);
-  return search_pages(
-             store, vehicle.query, std::uint64_t{1} << 30, kind, nullptr,
-             {.open_journal = [&]() -> SearchJournal* {
-               return &opened.emplace(vehicle.folder / journal, JournalIdentity{}, nullptr, store,
-                                      vehicle.query, 1e9);
-             }},
-             progress, report, log)
+  return search_pages(store, vehicle.query, std::uint64_t{1} << 30, kind, nullptr,
+                      {.open_journal = [&]() -> SearchJournal* {
+                        return &opened.emplace(vehicle.folder / journal, JournalIdentity{}, nullptr,
+                                               store, vehicle.query, 1e9);
+                      }},
+                      progress, report, log)
       .result;
 }
 

@@ -267,6 +267,7 @@ TEST_CASE("an answer in memory has the columns and the verdict of the file") {
   CHECK(bytes_of(scene.folder / "saved.h5") == bytes_of(output));
   CHECK_THROWS_AS(answer.save(scene.folder / "saved.h5"), UsageError);
   answer.save(scene.folder / "saved.h5", true);
+  CHECK_THROWS_AS(answer.save(scene.store(), true), UsageError);
 }
 
 TEST_CASE("a question that fails or is stopped leaves the session usable") {
@@ -311,6 +312,7 @@ TEST_CASE("too little memory is refused with the number that would do") {
   Random random(8);
   const Query query{scene.models[1], smooth_path(random, kRoom, 3), {0.1}};
   const Session session(
-      scene.store(), {.device = Device::kCpu, .threads = 1, .memory_bytes = std::uint64_t{1} << 20});
+      scene.store(),
+      {.device = Device::kCpu, .threads = 1, .memory_bytes = std::uint64_t{1} << 20});
   CHECK_THROWS_WITH(session.search(query), Contains("of memory is too little"));
 }

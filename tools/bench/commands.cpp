@@ -9,6 +9,7 @@
 #include "bench/experiments/bench.hpp"
 #include "bench/measure/scoring.hpp"
 #include "bench/peers/compare_engines.hpp"
+#include "bench/stages/time_session.hpp"
 #include "bench/stages/time_stages.hpp"
 #include "clearway/error.hpp"
 #include "cli/support/console.hpp"
@@ -220,6 +221,38 @@ void add_stages(CLI::App& program) {
       ->capture_default_str();
   command->add_flag("--cold", options->cold, "Drop the store from the page cache before");
   command->callback([options] { tool::print(time_stages(*options).dump(2) + "\n"); });
+}
+
+void add_session(CLI::App& program) {
+  const auto options = std::make_shared<SessionTimes>();
+  CLI::App* command = program.add_subcommand(
+      "session", "Times questions of one pose that a session answers; prints JSON");
+  add_query(*command, options->environment, options->model, options->trajectory, true);
+  add_radius_and_threads(*command, options->radius, options->threads);
+  const auto count = [&](const char* name, std::uint64_t& value, const char* help) {
+    command->add_option(name, value, help)->type_name("N")->capture_default_str();
+  };
+  command
+      ->add_option("--distance", options->distance,
+                   "Ask for the least distance up to this; 0: only for the colliding points")
+      ->type_name("METRES")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--askers", options->askers, "Threads that ask at the same time")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  count("--questions", options->questions, "Questions that are timed, after as many that are not");
+  count("--further", options->repeat_memory, "Questions after which the memory is compared");
+  command->add_option("--device", options->device, "Where questions are answered")
+      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+      ->capture_default_str();
+  command->add_flag("--one-run", options->one_run,
+                    "Compare the whole trajectory in one question with its poses one by one");
+#ifdef CLEARWAY_NANOFLANN
+  command->add_flag("--peer", options->peer, "Time nanoflann on some of the poses, too");
+#endif
+  command->callback([options] { tool::print(time_session(*options).dump(2) + "\n"); });
 }
 
 #ifdef CLEARWAY_NANOFLANN

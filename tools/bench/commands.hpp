@@ -14,6 +14,9 @@ void add_experiments(CLI::App& program, int& exit_code);
 /// Adds the command that times each stage of a run on a GPU by itself.
 void add_stages(CLI::App& program);
 
+/// Adds the command that times the questions of a session.
+void add_session(CLI::App& program);
+
 /// Adds the command that compares the kdtree engine with nanoflann, where the build found
 /// nanoflann.
 void add_peers(CLI::App& program);

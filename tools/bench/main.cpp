@@ -6,6 +6,7 @@ namespace {
 void add_commands(CLI::App& program, int& exit_code) {
   clearway::bench::add_experiments(program, exit_code);
   clearway::bench::add_stages(program);
+  clearway::bench::add_session(program);
 #ifdef CLEARWAY_NANOFLANN
   clearway::bench::add_peers(program);
 #endif

@@ -15,8 +15,6 @@
 namespace clearway::bench {
 namespace {
 
-constexpr std::size_t kPeerLeafPoints = 12;
-
 template <typename Run>
 double seconds_of(Run run) {
   const auto start = std::chrono::steady_clock::now();
@@ -57,7 +55,8 @@ std::uint64_t differing_points(const PackedCloud& cloud, const HitSet& hits,
   return differing;
 }
 
-/// The positions of a cloud's used slots, in order.
+}  // namespace
+
 std::vector<Vec3> positions_by_slot(const PackedCloud& cloud) {
   std::vector<Vec3> points;
   points.reserve(cloud.point_count());
@@ -69,6 +68,8 @@ std::vector<Vec3> positions_by_slot(const PackedCloud& cloud) {
   }
   return points;
 }
+
+namespace {
 
 nlohmann::json compare(const PackedCloud& cloud, const Query& query,
                        const CompareOptions& options) {

@@ -3,8 +3,17 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "core/cloud/packed_cloud.hpp"
 
 namespace clearway::bench {
+
+/// Points in a leaf of nanoflann's tree.
+inline constexpr std::size_t kPeerLeafPoints = 12;
+
+/// The positions of a cloud's used slots, in order.
+std::vector<Vec3> positions_by_slot(const PackedCloud& cloud);
 
 struct CompareOptions {
   std::filesystem::path environment, model, trajectory;

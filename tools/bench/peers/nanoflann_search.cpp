@@ -1,6 +1,8 @@
 #include "bench/peers/nanoflann_search.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <limits>
 #include <nanoflann.hpp>
 
 #include "core/geometry/predicate.hpp"
@@ -69,6 +71,21 @@ NanoflannSearch::SearchResult NanoflannSearch::run(const Query& query, int threa
   }
   answer.empty_searches = empty;
   return answer;
+}
+
+double NanoflannSearch::least_distance(const Query& query) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Pose& pose : query.poses) {
+    for (const Vec3& m : query.model.vertices) {
+      const Vec3 moved = transform(pose, m);
+      const double position[3] = {moved.x, moved.y, moved.z};
+      std::uint32_t point = 0;
+      double squared = 0;
+      index_->tree.knnSearch(position, 1, &point, &squared);
+      least = std::min(least, squared);
+    }
+  }
+  return least;
 }
 
 }  // namespace clearway::bench

@@ -23,6 +23,10 @@ class NanoflannSearch {
   };
   SearchResult run(const Query& query, int threads) const;
 
+  /// The least squared distance at any pose, by one search for the nearest neighbour of every pose
+  /// and model point.
+  double least_distance(const Query& query) const;
+
  private:
   struct Index;
   std::unique_ptr<Index> index_;
