@@ -21,6 +21,8 @@ void add_seconds(py::module_& module) {
                     "Seconds that starting the GPUs took, beside all that comes before the engine.")
       .def_readonly("context_wait", &Seconds::context_wait,
                     "Seconds that the search waited for the GPUs to start.")
+      .def_readonly("check", &Seconds::check,
+                    "Seconds of looking at the question before it was searched.")
       .def_readonly(
           "ignored", &Seconds::ignored,
           "Seconds of searching the ignored points too, to tell how many of them would collide.")

@@ -1,7 +1,6 @@
 #include "clearway/search.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <optional>
 

@@ -200,6 +200,7 @@ class SearchSeconds:
     total: Final[float]
     context: Final[float]
     context_wait: Final[float]
+    check: Final[float]
     ignored: Final[float]
     thin: Final[float]
     field: Final[float]
