@@ -34,7 +34,7 @@ SectionCubes::SectionCubes(const CubeLattice& cubes, const Quantisation& quantis
 /// rounding of its place and for that of the bound.
 bool SectionCubes::covers(const SectionPoseNode& node, const Vec3& centre, const Vec3& half,
                           SectionRect& rect) const {
-  const PlaceBounds bounds = node.bounds(centre, half, 3 * slack_);
+  const PlaceBounds bounds = node.bounds(centre, &half, lattice_, 3 * slack_);
   if (bounds.to[0] < lattice_.x_from || bounds.from[0] > lattice_.x_to) return false;
   return lattice_.cover(bounds.from[1], bounds.to[1], bounds.from[2], bounds.to[2], rect);
 }
@@ -115,8 +115,8 @@ void SectionCubes::visit_poses(const SectionPoseNode& node, const Cubes& cubes,
                                SectionMaps& maps) const {
   const SectionMapRef map = maps[node.bin];
   for (std::uint32_t pose = node.first; pose < node.first + node.count; ++pose) {
-    const PullBack& frame = poses_.pull_back(pose);
-    const std::uint32_t path_pose = poses_.path_pose(pose);
+    const PullBack& frame = poses_.pull_backs()[pose];
+    const std::uint32_t path_pose = poses_.path_pose()[pose];
     double extent[3];
     for (int a = 0; a < 3; ++a) {
       const Vec3& row = frame.rows[a];

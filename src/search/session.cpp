@@ -101,8 +101,6 @@ SessionAnswer Session::search(const Query& query, const QuestionOptions& asked) 
   SessionAnswer answer;
   const auto tables = std::make_shared<SessionAnswer::Tables>();
   static_cast<SearchReport&>(answer) = answer_question(state_->session, query, options, *tables);
-  SessionAnswer::Tables::set_distance_without_bodies(
-      tables->findings, std::numeric_limits<double>::quiet_NaN(), *tables);
   tables->store = state_->store.path();
   SessionAnswer::Tables::set_distance_without_bodies(
       tables->findings, std::numeric_limits<double>::quiet_NaN(), *tables);

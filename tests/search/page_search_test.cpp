@@ -66,8 +66,8 @@ class Line {
     NoProgress progress;
     report = {};
     MessageLog log(options.message, report.warnings);
-    return search_pages(*store, query, options.memory_bytes, *kind, nullptr, open, progress, report,
-                        log)
+    return search_pages(*store, query, options.memory_bytes, *kind, nullptr, {.open_journal = open},
+                        progress, report, log)
         .result.hits.count();
   }
 
