@@ -338,8 +338,9 @@ TEST_CASE("cells that are not known are hatched in the picture and on the page")
   }
   const Section with_unknown(std::move(data));
   // From the window's corner at j = -30: columns 28 and 29 of rows 5 and 6.
-  CHECK(picture(with_unknown).find("<path class=\"unknown\" fill=\"url(#section_unknown)\" "
-                       "d=\"M28 5h2v1h-2zM28 6h2v1h-2z\"/>") != std::string::npos);
+  CHECK(picture(with_unknown)
+            .find("<path class=\"unknown\" fill=\"url(#section_unknown)\" "
+                  "d=\"M28 5h2v1h-2zM28 6h2v1h-2z\"/>") != std::string::npos);
   write_section_page(with_unknown, road.folder / "page.html", options);
   CHECK(text_in(road.folder / "page.html").find("data-column=\"section.unknown\"") !=
         std::string::npos);

@@ -147,8 +147,7 @@ SectionPageSummary write_outputs(const ReportOfSection& options, const Section& 
 void run_report(ReportOfSection& options) {
   check_outputs(options);
   const Section section(options.section);
-  const double metres =
-      convert_for(options.lengths, section, options.section);
+  const double metres = convert_for(options.lengths, section, options.section);
   SectionPageOptions& page = options.page;
   page.section_name = options.section.filename().string();
   if (page.date.empty()) page.date = now_in_utc();

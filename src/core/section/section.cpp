@@ -297,7 +297,7 @@ std::vector<bool> stopping_cells(const Section& section, std::span<const Outline
   check_margin(margin);
   outline_model(outline, 0, 1);  // refuses what is no outline
   return needed(section.cells(), section.data().parameters.cell, Load(outline),
-                  reach_of(section.data(), margin));
+                reach_of(section.data(), margin));
 }
 
 Section::Section(SectionData data) : data_(std::move(data)), cells_(data_.cells()) {

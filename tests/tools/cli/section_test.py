@@ -213,8 +213,10 @@ class Finding(Sections):
     def test_json(self):
         done = self.find("--json --margin 0.2 --between-poses")
         found = json.loads(done.stdout)
-        self.assertEqual(list(found)[-8:], ["blocked", "blocked_in_bins", "bins", "rounding",
-                                            "motion", "needed_host_bytes", "seconds", "warnings"])
+        self.assertEqual(list(found)[-11:], ["blocked", "blocked_in_bins", "bins", "rounding",
+                                             "motion", "device", "device_estimate",
+                                             "needed_host_bytes", "peak_device_bytes", "seconds",
+                                             "warnings"])
         self.assertEqual(found["bins"], 5)
         self.assertEqual(len(found["motion"]), 2)
         self.assertIsNone(json.loads(self.find("--json").stdout)["motion"])

@@ -43,9 +43,8 @@ const StepOptions kConflictsOptions{
 const StepOptions kStationsOptions{
     {"--output", "--forward", "--up", "--show", "--force", "--json", "--help"}};
 // A section of a store that check is about to make cannot be there.
-const StepOptions kReportOptions{
-    {"--env", "--output", "--section", "--forward", "--up", "--shifts", "--force", "--json",
-     "--help"}};
+const StepOptions kReportOptions{{"--env", "--output", "--section", "--forward", "--up", "--shifts",
+                                  "--force", "--json", "--help"}};
 
 Words operator+(Words a, const Words& b) {
   a.insert(a.end(), b.begin(), b.end());
