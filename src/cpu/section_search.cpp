@@ -83,7 +83,7 @@ void cover_points(const SectionPoseNode& node, const SectionLattice& lattice, do
     const bool is_beside = across.cover(from[1][i], to[1][i], out.column_from[i], out.column_to[i]);
     const bool is_over = up.cover(from[2][i], to[2][i], out.row_from[i], out.row_to[i]);
     out.first_in_range[i] =
-        static_cast<std::int32_t>(misses | is_beside | is_over ? -1.0 : at_least);
+        static_cast<std::int32_t>((misses | is_beside | is_over) ? -1.0 : at_least);
   }
 }
 

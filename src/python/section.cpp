@@ -116,6 +116,11 @@ void add_section_report(py::module_& module) {
       .def_property_readonly(
           "warnings", [](const SectionReport& r) { return to_list(r.warnings); },
           "What the section may have misread: a list of Message.")
+      .def_property_readonly(
+          "device", [](const SectionReport& r) { return name_of(r.device); },
+          "The device that searched: 'cpu' or 'cuda'.")
+      .def_readonly("peak_device_bytes", &SectionReport::peak_device_bytes,
+                    "How many bytes were taken on the GPU.")
       .def_readonly("needed_host_bytes", &SectionReport::needed_host_bytes,
                     "How many bytes of working memory the search took.")
       .def_readonly("seconds", &SectionReport::seconds, "Seconds of the whole call.")
@@ -449,7 +454,8 @@ void add_find_section(py::module_& module) {
          double front, std::optional<std::array<double, 4>> window, double cell, double bin,
          double margin, bool between_poses, std::optional<std::array<double, 2>> pivots,
          std::vector<std::uint8_t> ignore_classes, std::vector<Box> ignore_boxes, bool seen,
-         double seen_cube, int threads, std::uint64_t memory_bytes, bool overwrite, bool strict,
+         double seen_cube, const std::string& device, std::vector<int> gpus, int threads,
+         std::uint64_t memory_bytes, std::uint64_t device_memory_bytes, bool overwrite, bool strict,
          const py::object& input_warnings, py::object progress, py::object message,
          py::object stop) {
         SectionParameters asked =
@@ -459,8 +465,11 @@ void add_find_section(py::module_& module) {
         asked.seen = seen;
         asked.seen_cube = seen_cube;
         SectionOptions options;
+        options.device = value_of("device", kDevices, device);
+        options.gpus = std::move(gpus);
         options.threads = threads;
         options.memory_bytes = memory_bytes;
+        options.device_memory_bytes = device_memory_bytes;
         options.overwrite = overwrite;
         options.strict = strict;
         options.input_warnings = messages_of(input_warnings);
@@ -476,11 +485,12 @@ void add_find_section(py::module_& module) {
       "store"_a, "poses"_a, "output"_a, "rear"_a, "front"_a, py::kw_only(), "window"_a = py::none(),
       "cell"_a = 0.0, "bin"_a = 0.0, "margin"_a = 0.0, "between_poses"_a = false,
       "pivots"_a = py::none(), "ignore_classes"_a = py::tuple(), "ignore_boxes"_a = py::tuple(),
-      "seen"_a = false, "seen_cube"_a = 0.0, "threads"_a = 0,
-      "memory_bytes"_a = SectionOptions{}.memory_bytes, "overwrite"_a = false, "strict"_a = false,
+      "seen"_a = false, "seen_cube"_a = 0.0, "device"_a = "auto", "gpus"_a = std::vector<int>{},
+      "threads"_a = 0, "memory_bytes"_a = SectionOptions{}.memory_bytes,
+      "device_memory_bytes"_a = 0, "overwrite"_a = false, "strict"_a = false,
       "input_warnings"_a = py::tuple(), "progress"_a = py::none(), "message"_a = py::none(),
       "stop"_a = py::none(),
-      R"(find_section(store, poses, output, rear, front, *, window=None, cell=0.0, bin=0.0, margin=0.0, between_poses=False, pivots=None, ignore_classes=(), ignore_boxes=(), seen=False, seen_cube=0.0, threads=0, memory_bytes=4294967296, overwrite=False, strict=False, input_warnings=(), progress=None, message=None, stop=None)
+      R"(find_section(store, poses, output, rear, front, *, window=None, cell=0.0, bin=0.0, margin=0.0, between_poses=False, pivots=None, ignore_classes=(), ignore_boxes=(), seen=False, seen_cube=0.0, device='auto', gpus=(), threads=0, memory_bytes=4294967296, device_memory_bytes=0, overwrite=False, strict=False, input_warnings=(), progress=None, message=None, stop=None)
 --
 
 Find which cells of the cross-section are blocked for a load of a given length along a path.
@@ -502,8 +512,11 @@ pivots: (front, rear), two places of the load that lie on the path; None: the lo
 ignore_classes, ignore_boxes: points to leave out, as Query takes them.
 seen: tells cells that no beam of the scanner crossed from free ones; needs a store with origins.
 seen_cube: side of the cubes of space in which beams are followed; 0: 0.2 m.
+device: 'auto', 'cpu' or 'cuda'; 'auto' takes a GPU where that is estimated faster.
+gpus: the numbers that CUDA gives the GPUs to take; empty: the first one with room.
 threads: how many threads work; 0: as many as there are cores.
 memory_bytes: how many bytes of working memory may be taken.
+device_memory_bytes: how many bytes may be taken on each GPU; 0: 2 GiB, or what is free.
 overwrite: replaces an existing section.
 strict: raises InputError where anything is warned of, and writes nothing.
 input_warnings: messages of read_trajectory(), which the section keeps, and which strict counts.

@@ -95,7 +95,7 @@ void set_columns(const RowMeaning& meaning, std::span<const ClearanceRow> rows,
 template <typename Rows, typename Row>
 std::shared_ptr<WritePiece<Rows>> encode(const ResultWriter& writer, const RowMeaning& meaning,
                                          std::span<const Row> rows) {
-  auto out = std::make_shared<WritePiece<Rows>>(writer.new_rows<Rows>());
+  auto out = std::make_shared<WritePiece<Rows>>(WritePiece<Rows>{writer.new_rows<Rows>()});
   Rows columns;
   for_each_strip(rows, [&](std::span<const Row> strip) {
     set_columns(meaning, strip, columns);

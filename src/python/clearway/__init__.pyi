@@ -476,6 +476,8 @@ class SectionReport:
     motion: Final[list[float] | None]
     seen: Final[SectionSeenCounts | None]
     warnings: Final[list[Message]]
+    device: Final[Literal["cpu", "cuda"]]
+    peak_device_bytes: Final[int]
     needed_host_bytes: Final[int]
     seconds: Final[float]
     search_seconds: Final[float]
@@ -663,8 +665,9 @@ def find_section(
     window: tuple[float, float, float, float] | None = None, cell: float = 0.0, bin: float = 0.0,
     margin: float = 0.0, between_poses: bool = False, pivots: tuple[float, float] | None = None,
     ignore_classes: Sequence[int] = (), ignore_boxes: Sequence[Box] = (), seen: bool = False,
-    seen_cube: float = 0.0, threads: int = 0,
-    memory_bytes: int = 4294967296, overwrite: bool = False, strict: bool = False,
+    seen_cube: float = 0.0, device: Literal["auto", "cpu", "cuda"] = "auto",
+    gpus: Sequence[int] = (), threads: int = 0, memory_bytes: int = 4294967296,
+    device_memory_bytes: int = 0, overwrite: bool = False, strict: bool = False,
     input_warnings: Iterable[Message] = (), progress: _Progress | None = None,
     message: _Tell | None = None, stop: _Stop | None = None,
 ) -> SectionReport: ...
