@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/geometry/point_box.hpp"
+#include "core/util/tsan_annotations.hpp"
 #include "search/checks/facts/scan_facts.hpp"
 
 namespace clearway {
@@ -221,13 +222,13 @@ PathLooks::PathLooks(const Question& question, const PathCover& cover)
   // Looks that follow each other read the same cells, so a thread takes several of them.
   constexpr std::size_t kLooksOfTask = 16;
   const tbb::blocked_range<std::size_t> all(0, looks_.size(), kLooksOfTask);
-  tbb::parallel_for(
-      all,
-      [&](const tbb::blocked_range<std::size_t>& part) {
-        const Looking looking(question, cover);
-        for (std::size_t i = part.begin(); i < part.end(); ++i) looking.at(looks_[i]);
-      },
-      tbb::simple_partitioner());
+  const ParallelScope scope;
+  const auto look = piece_of(scope, [&](const tbb::blocked_range<std::size_t>& part) {
+    const Looking looking(question, cover);
+    for (std::size_t i = part.begin(); i < part.end(); ++i) looking.at(looks_[i]);
+  });
+  scope.begin();
+  tbb::parallel_for(all, look, tbb::simple_partitioner());
 }
 
 double PathLooks::apart() const {
