@@ -124,12 +124,12 @@ class Search {
     begin();
     Found found = find_all();
     found.engine_end.clear();
+    report_.ignored_looked_at = found.result.ignored_points;
     const Stopwatch write;
     static_cast<ResultTables&>(kept) =
         tables_of(store_, std::move(found.result), header_, found.write_bytes, progress_,
                   chainage(), options_.threads);
     static_cast<TableSummary&>(report_) = summary_of(kept);
-    report_.ignored_looked_at = found.result.ignored_points;
     report_.seconds.write = write.seconds();
     kept.findings = findings();
     kept.header = std::move(header_);

@@ -67,8 +67,8 @@ class SessionState {
   std::shared_ptr<const DeviceStart> start_surely(const SearchOptions& options);
   /// Whether GPUs were chosen, so that a search need not wait for their start.
   bool has_gpus() const;
-  /// The GPUs, chosen at the first call. started: the start that is waited for. waited: gets the
-  /// seconds of the waiting.
+  /// The GPUs, chosen at the first call, which waits for their start. waited: gets the seconds of
+  /// that, and stays as it is at later calls.
   DeviceChoice gpus(const SearchOptions& options, const MessageLog& log, double& waited);
 
   /// How many points a query leaves out of the store: count_ignored(), remembered.

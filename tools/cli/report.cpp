@@ -119,19 +119,8 @@ void check_model_or_vehicle(const ReportCommand& options) {
 }
 
 void add_report_inputs(CLI::App& command, ReportCommand& options) {
-  command.add_option("RESULT", options.result, "Result of clearway run")
-      ->type_name("FILE")
-      ->required();
-  command.add_option("--env", options.environment, "The store that was searched")
-      ->type_name("FILE")
-      ->required();
-  CLI::Option* model =
-      command.add_option("--model", options.model, "The model that was moved")->type_name("FILE");
-  add_vehicle_option(command, options.vehicle,
-                     "Instead of --model: the vehicle of several bodies that was moved", model);
-  command.add_option("--trajectory", options.trajectory, kTrajectoryHelp)
-      ->type_name("FILE")
-      ->required();
+  add_searched_inputs(command, "Result of clearway run", options.result, options.environment,
+                      options.model, options.vehicle, options.trajectory);
   command
       .add_option("--section", options.section,
                   "Section of clearway section find on the same path, to be shown on the page, too")
@@ -166,14 +155,8 @@ void add_classes(CLI::App& command, ReportCommand& options) {
 
 void add_page_options(CLI::App& command, ReportOptions& options, LengthOptions& lengths) {
   const GroupScope group(command, OptionGroup::kPage);
-  command.add_option("--title", options.title, "Title of the page (default: names of the files)")
-      ->type_name("TEXT");
-  command.add_option("--project", options.project, "Name of the project, in the head of the page")
-      ->type_name("TEXT");
-  command.add_option("--client", options.client, "Who the page is for")->type_name("TEXT");
-  command.add_option("--author", options.author, "Who made it")->type_name("TEXT");
-  command.add_option("--date", options.date, "Date on the page (default: now, in UTC)")
-      ->type_name("TEXT");
+  add_page_texts(command, options.title, options.project, options.client, options.author,
+                 options.date);
   command
       .add_option("--max-points", options.max_points,
                   "Environment points on the page at most; they are thinned evenly")

@@ -169,14 +169,7 @@ void run_report(ReportOfSection& options) {
 
 void add_texts(CLI::App& command, SectionPageOptions& page) {
   const GroupScope group(command, OptionGroup::kPage);
-  command.add_option("--title", page.title, "Title of the page (default: names of the files)")
-      ->type_name("TEXT");
-  command.add_option("--project", page.project, "Name of the project, in the head of the page")
-      ->type_name("TEXT");
-  command.add_option("--client", page.client, "Who the page is for")->type_name("TEXT");
-  command.add_option("--author", page.author, "Who made it")->type_name("TEXT");
-  command.add_option("--date", page.date, "Date on the page (default: now, in UTC)")
-      ->type_name("TEXT");
+  add_page_texts(command, page.title, page.project, page.client, page.author, page.date);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ std::uint64_t hash_of_trajectory(std::span<const Pose> poses);
 /// name, hash_of_model(), the number of its poses, for each of them the index of the path's pose
 /// (uint32), and hash_of_trajectory(). Lengths, numbers and hashes are 8 little-endian bytes.
 std::uint64_t hash_of_bodies(std::span<const Body> bodies);
-/// The same, where the hashes of the bodies' models are known.
+/// Hash of bodies as above. models: hash_of_model() of each body's model, in their order.
 std::uint64_t hash_of_bodies(std::span<const Body> bodies, std::span<const std::uint64_t> models);
 
 }  // namespace clearway

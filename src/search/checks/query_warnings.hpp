@@ -35,7 +35,7 @@ void warn_of_query(const StoreReader& store, const Query& query, std::span<const
 /// Gives what is known of a model for the radius of the query.
 using LooksOf = std::function<std::shared_ptr<const ModelLooks>(const Model&)>;
 
-/// The same, where models may have been looked at before.
+/// Warns as above, for models that may have been looked at before: looks_of gives what is known.
 void warn_of_query(const StoreReader& store, const Query& query, const LooksOf& looks_of,
                    std::span<const Message> told, MessageLog& log);
 

@@ -61,6 +61,21 @@ void add_vehicle_option(CLI::App& command, std::filesystem::path& vehicle,
   command.add_option("--vehicle", vehicle, description)->type_name("FILE")->excludes(model);
 }
 
+void add_searched_inputs(CLI::App& command, const std::string& about_result,
+                         std::filesystem::path& result, std::filesystem::path& environment,
+                         std::filesystem::path& model, std::filesystem::path& vehicle,
+                         std::filesystem::path& trajectory) {
+  command.add_option("RESULT", result, about_result)->type_name("FILE")->required();
+  command.add_option("--env", environment, "The store that was searched")
+      ->type_name("FILE")
+      ->required();
+  CLI::Option* of_model =
+      command.add_option("--model", model, "The model that was moved")->type_name("FILE");
+  add_vehicle_option(command, vehicle,
+                     "Instead of --model: the vehicle of several bodies that was moved", of_model);
+  command.add_option("--trajectory", trajectory, kTrajectoryHelp)->type_name("FILE")->required();
+}
+
 std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOptions options,
                              const Result& result, PoseLabels* labels) {
   options.default_crs = result.reader().header().crs_wkt;

@@ -40,6 +40,13 @@ void check_axes(const Result& result, const ConflictCommand& options);
 void add_vehicle_option(CLI::App& command, std::filesystem::path& vehicle,
                         const std::string& description, CLI::Option* model);
 
+/// Adds RESULT, described by `about_result`, and what was searched for it: --env, --model,
+/// --vehicle and --trajectory.
+void add_searched_inputs(CLI::App& command, const std::string& about_result,
+                         std::filesystem::path& result, std::filesystem::path& environment,
+                         std::filesystem::path& model, std::filesystem::path& vehicle,
+                         std::filesystem::path& trajectory);
+
 /// Reads the poses of a result's trajectory and logs the warnings. labels: where given, becomes
 /// what the file says of its poses.
 std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOptions options,

@@ -208,19 +208,8 @@ std::string perform(ShiftCommand& options) {
 
 void add_inputs(CLI::App& command, ShiftCommand& options) {
   const GroupScope group(command, OptionGroup::kInputs);
-  command.add_option("RESULT", options.result, "Result of clearway run with --first-pose")
-      ->type_name("FILE")
-      ->required();
-  command.add_option("--env", options.environment, "The store that was searched")
-      ->type_name("FILE")
-      ->required();
-  CLI::Option* model =
-      command.add_option("--model", options.model, "The model that was moved")->type_name("FILE");
-  add_vehicle_option(command, options.vehicle,
-                     "Instead of --model: the vehicle of several bodies that was moved", model);
-  command.add_option("--trajectory", options.trajectory, kTrajectoryHelp)
-      ->type_name("FILE")
-      ->required();
+  add_searched_inputs(command, "Result of clearway run with --first-pose", options.result,
+                      options.environment, options.model, options.vehicle, options.trajectory);
   command
       .add_option("-o,--output", options.outputs,
                   "Output: .csv, or .json, which clearway report --shifts takes; may be given "

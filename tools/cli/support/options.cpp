@@ -131,6 +131,17 @@ CLI::Validator seconds_up_to(double most) {
   return {check, ""};
 }
 
+void add_page_texts(CLI::App& command, std::string& title, std::string& project,
+                    std::string& client, std::string& author, std::string& date) {
+  command.add_option("--title", title, "Title of the page (default: names of the files)")
+      ->type_name("TEXT");
+  command.add_option("--project", project, "Name of the project, in the head of the page")
+      ->type_name("TEXT");
+  command.add_option("--client", client, "Who the page is for")->type_name("TEXT");
+  command.add_option("--author", author, "Who made it")->type_name("TEXT");
+  command.add_option("--date", date, "Date on the page (default: now, in UTC)")->type_name("TEXT");
+}
+
 std::uint64_t parse_size(const std::string& option, const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -99,6 +99,10 @@ void add_turn_options(CLI::App& command, Axis& forward, Axis& up);
 /// Adds --model-spacing, --model-unit, --model-vertices and --model-above.
 void add_model_options(CLI::App& command, ModelOptions& options, LengthOptions& lengths);
 
+/// Adds --title, --project, --client, --author and --date, the texts in the head of a page.
+void add_page_texts(CLI::App& command, std::string& title, std::string& project,
+                    std::string& client, std::string& author, std::string& date);
+
 /// The bytes of "512M", "1.5G", "4GiB" or "300000000". Throws CLI::ValidationError naming the
 /// option.
 std::uint64_t parse_size(const std::string& option, const std::string& text);
