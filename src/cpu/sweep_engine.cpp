@@ -8,11 +8,23 @@ namespace clearway {
 template <typename Element>
 SweepEngineOf<Element>::SweepEngineOf(const PackedCloud& cloud,
                                       const SweepFilterOf<Element>& filter,
-                                      const SlotLayout& layout)
-    : cloud_(cloud), filter_(filter), pool_(cloud, filter.query(), layout), results_(layout.slots) {
+                                      const SlotLayout& layout, bool in_place)
+    : cloud_(cloud),
+      filter_(filter),
+      in_place_(in_place),
+      pool_(cloud, filter.query(), layout),
+      results_(layout.slots) {
   if (!(filter.ref().profile > 0)) return;
   bests_.emplace(filter.ref());
   facts_.resize(layout.slots);
+}
+
+template <typename Element>
+std::optional<CellPayload> SweepEngineOf<Element>::kept(std::uint32_t slot, std::uint32_t cell) {
+  if (!in_place_) return std::nullopt;
+  const auto packed = cloud_.in_place(cell);
+  if (!packed) return std::nullopt;
+  return payload_at(*packed, pool_.page(slot).data());
 }
 
 template <typename Element>

@@ -19,11 +19,14 @@ class SweepEngineOf final : public PageEngine {
  public:
   /// Cloud and filter must outlive the engine. It allocates its slots; in addition it takes at most
   /// CellSearchOf::most_bytes for each thread that is in `start` at a time, and profile_bytes().
+  /// in_place: whether coordinates are searched where the cloud has them, without a copy, which
+  /// pays where they were read before.
   SweepEngineOf(const PackedCloud& cloud, const SweepFilterOf<Element>& filter,
-                const SlotLayout& layout);
+                const SlotLayout& layout, bool in_place = false);
 
   std::uint32_t slots() const override { return pool_.layout().slots; }
   std::span<std::byte> page(std::uint32_t slot) override { return pool_.page(slot); }
+  std::optional<CellPayload> kept(std::uint32_t slot, std::uint32_t cell) override;
   void start(std::uint32_t slot, const PageShape& shape) override;
   PageResult finish(std::uint32_t slot) override { return results_[slot]; }
 
@@ -42,6 +45,7 @@ class SweepEngineOf final : public PageEngine {
 
   const PackedCloud& cloud_;
   const SweepFilterOf<Element>& filter_;
+  const bool in_place_;
   PagePool pool_;
   std::vector<PageResult> results_;              ///< one for each slot
   std::optional<ProfileBestValues> bests_;       ///< only with a profile

@@ -8,28 +8,10 @@
 #include "core/page/page_pool.hpp"
 #include "core/util/array_run.hpp"
 #include "gpu/cuda_objects.hpp"
+#include "gpu/cuda_slots.hpp"
 #include "gpu/device_arrays.hpp"
 
 namespace clearway {
-
-/// Bytes that a slot's largest page takes in each run of memory. Slots lie one after another in
-/// memory that an engine allocates at once, so each run begins with the alignment of an allocation.
-struct CudaSlotSize {
-  std::uint64_t page;    ///< the page, a multiple of kPageAlignment
-  std::uint64_t plan;    ///< what the host adds to the page
-  std::uint64_t result;  ///< the result as PageResultArrays
-  std::uint64_t work;    ///< memory that is only on the device
-
-  std::uint64_t upload() const { return whole(page + plan); }
-  std::uint64_t found() const { return whole(result); }
-  std::uint64_t pinned() const { return upload() + found(); }
-  std::uint64_t device() const { return pinned() + whole(work); }
-
- private:
-  static constexpr std::uint64_t whole(std::uint64_t bytes) {
-    return divide_up(bytes, ArrayRun::kAlignment) * ArrayRun::kAlignment;
-  }
-};
 
 /// Description of what the host added to a page.
 struct CudaPagePlan {
@@ -62,7 +44,7 @@ class CudaPageSearch {
   const ResultParts& parts() const { return parts_; }
 
   /// Device memory besides the slots, bytes.
-  std::uint64_t device_bytes() const { return arrays_.bytes(); }
+  virtual std::uint64_t device_bytes() const { return arrays_.bytes(); }
 
   virtual const CudaSlotSize& slot_size() const = 0;
 
@@ -85,6 +67,11 @@ class CudaPageSearch {
  protected:
   /// Makes the device the current one of the thread.
   CudaPageSearch(int device, const ResultParts& parts) : device_(device), parts_(parts) {
+    use_device();
+  }
+  /// arrays: memory on the device for the arrays, as far as it is enough for them.
+  CudaPageSearch(int device, const ResultParts& parts, std::span<std::byte> arrays)
+      : arrays_(arrays), device_(device), parts_(parts) {
     use_device();
   }
 

@@ -4,10 +4,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/util/array_run.hpp"
 #include "gpu/cuda_objects.hpp"
 
 namespace clearway {
@@ -62,6 +64,10 @@ class PinnedBuffer {
 /// default stream must begin after a cudaDeviceSynchronize. Throws ResourceError.
 class DeviceArrays {
  public:
+  DeviceArrays() = default;
+  /// Takes memory of others first, which outlives the arrays and is not counted in bytes().
+  explicit DeviceArrays(std::span<std::byte> memory) : memory_(memory) {}
+
   template <typename Value>
   const Value* copy(const Value* values, std::size_t count) {
     Value* to = add<Value>(count);
@@ -81,6 +87,11 @@ class DeviceArrays {
     return filled<Value>(count, 0xff);
   }
 
+  /// Bytes rounded up to the alignment of an allocation.
+  static constexpr std::uint64_t whole(std::uint64_t bytes) {
+    return (bytes + ArrayRun::kAlignment - 1) / ArrayRun::kAlignment * ArrayRun::kAlignment;
+  }
+
   std::uint64_t bytes() const {
     std::uint64_t sum = 0;
     for (const DeviceBuffer& buffer : buffers_) sum += buffer.bytes();
@@ -97,15 +108,25 @@ class DeviceArrays {
 
   template <typename Value>
   Value* add(std::size_t count) {
+    const std::uint64_t bytes = whole(count * sizeof(Value));
+    if (bytes <= memory_.size()) {
+      std::byte* const begin = memory_.data();
+      memory_ = memory_.subspan(bytes);
+      return reinterpret_cast<Value*>(begin);
+    }
     return reinterpret_cast<Value*>(buffers_.emplace_back(count * sizeof(Value)).data());
   }
 
+  std::span<std::byte> memory_;
   std::vector<DeviceBuffer> buffers_;
 };
 
 /// Counts the memory that DeviceArrays would allocate for the same calls, and allocates none.
 class DeviceArrayCount {
  public:
+  /// Bytes in which all of the arrays fit one after another, each aligned as an allocation.
+  std::uint64_t bytes_in_a_run() const { return run_bytes_; }
+
   template <typename Value>
   const Value* copy(const Value*, std::size_t count) {
     return zeros<Value>(count);
@@ -114,6 +135,7 @@ class DeviceArrayCount {
   template <typename Value>
   Value* zeros(std::size_t count) {
     bytes_ += count * sizeof(Value);
+    run_bytes_ += DeviceArrays::whole(count * sizeof(Value));
     return nullptr;
   }
 
@@ -125,7 +147,7 @@ class DeviceArrayCount {
   std::uint64_t bytes() const { return bytes_; }
 
  private:
-  std::uint64_t bytes_ = 0;
+  std::uint64_t bytes_ = 0, run_bytes_ = 0;
 };
 
 }  // namespace clearway

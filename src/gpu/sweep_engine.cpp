@@ -4,6 +4,7 @@
 
 #include "core/sweep/profile/host_profile.hpp"
 #include "gpu/cuda_page_search.hpp"
+#include "gpu/kept_on_device.hpp"
 #include "gpu/sweep_on_device.hpp"
 #include "gpu/sweep_work_arrays.hpp"
 
@@ -41,6 +42,46 @@ CudaSlotSize size_of_slot(const SweepRefOf<Element>& sweep, const PackedCloud& c
           .work = work.bytes()};
 }
 
+/// A model and its field on a device.
+template <typename Element>
+struct ModelOnDevice {
+  explicit ModelOnDevice(const SweepRefOf<Element>& sweep) : ref(sweep) {
+    put_model_on_device(ref, arrays);
+  }
+
+  DeviceArrays arrays;
+  SweepRefOf<Element> ref;  ///< of which only the model and the field are of use
+};
+
+/// A sweep whose model and field are those on a device.
+template <typename Element>
+SweepRefOf<Element> with_model(SweepRefOf<Element> sweep, const ModelOnDevice<Element>& model) {
+  sweep.field = model.ref.field;
+  sweep.model = model.ref.model;
+  return sweep;
+}
+
+/// The copy of a sweep's model and field that is kept on a device. field: that of the sweep.
+template <typename Element>
+std::shared_ptr<const ModelOnDevice<Element>> kept_model(const SweepRefOf<Element>& sweep,
+                                                         const std::shared_ptr<const void>& field,
+                                                         KeptOnDevice& kept) {
+  const auto make = [&]() -> KeptOnDevice::KeptModel {
+    auto made = std::make_shared<const ModelOnDevice<Element>>(sweep);
+    return {field, made, made->arrays.bytes()};
+  };
+  return std::static_pointer_cast<const ModelOnDevice<Element>>(kept.model(field, make));
+}
+
+/// Bytes of the arrays of a sweep besides its model and field.
+template <typename Element>
+std::uint64_t bytes_of_poses(const SweepRefOf<Element>& sweep) {
+  DeviceArrayCount count;
+  put_poses_on_device(sweep, count);
+  put_on_device(sweep, ProfileBests{}, count);
+  return count.bytes_in_a_run();
+}
+
 template <typename Element>
 class SweepSearch final : public CudaPageSearch {
  public:
@@ -55,9 +96,28 @@ class SweepSearch final : public CudaPageSearch {
         sweep_(sweep),
         cloud_(cloud),
         facts_(layout.slots) {
-    if (!(sweep.profile > 0)) return;
-    ProfileBestValues values(sweep);
-    bests_ = put_on_device(sweep, values.ref(), arrays_);
+    put_bests();
+  }
+
+  /// With a model that is kept on the device, and memory there for the other arrays.
+  SweepSearch(int device, const SweepRefOf<Element>& sweep, const PackedCloud& cloud,
+              const SlotLayout& layout, std::shared_ptr<const ModelOnDevice<Element>> model,
+              std::span<std::byte> arrays)
+      : CudaPageSearch(device, parts_of(sweep), arrays),
+        resident_(resident_sweep_blocks(device)),
+        quantisation_(cloud.quantisation()),
+        size_(size_of_slot(sweep, cloud, layout)),
+        model_(std::move(model)),
+        on_device_(put_poses_on_device(with_model(sweep, *model_), arrays_)),
+        work_(work_run_, sweep, most_blocks(cloud, layout)),
+        sweep_(sweep),
+        cloud_(cloud),
+        facts_(layout.slots) {
+    put_bests();
+  }
+
+  std::uint64_t device_bytes() const override {
+    return arrays_.bytes() + (model_ ? model_->arrays.bytes() : 0);
   }
 
   const CudaSlotSize& slot_size() const override { return size_; }
@@ -106,6 +166,12 @@ class SweepSearch final : public CudaPageSearch {
   }
 
  private:
+  void put_bests() {
+    if (!(sweep_.profile > 0)) return;
+    ProfileBestValues values(sweep_);
+    bests_ = put_on_device(sweep_, values.ref(), arrays_);
+  }
+
   /// What the device knows of the poses by now, so that the host need not find it again.
   ProfileBestValues known_bests() const {
     ProfileBestValues values(sweep_);
@@ -122,6 +188,7 @@ class SweepSearch final : public CudaPageSearch {
   unsigned resident_;
   Quantisation quantisation_;
   CudaSlotSize size_;
+  std::shared_ptr<const ModelOnDevice<Element>> model_;  ///< where it is kept
   SweepOnDevice<Element> on_device_;
   ArrayRun work_run_;
   SweepWorkArrays work_;
@@ -140,6 +207,21 @@ CudaSweepEngineOf<Element>::CudaSweepEngineOf(int device, const SweepRefOf<Eleme
                      std::make_unique<SweepSearch<Element>>(device, sweep, cloud, layout)) {}
 
 template <typename Element>
+std::unique_ptr<PageEngine> CudaSweepEngineOf<Element>::of_kept(
+    const SweepRefOf<Element>& sweep, const std::shared_ptr<const void>& field,
+    const PackedCloud& cloud, const SlotLayout& layout, std::shared_ptr<KeptOnDevice> kept) {
+  const int device = kept->device();
+  check_cuda(cudaSetDevice(device));
+  auto model = kept_model(sweep, field, *kept);
+  auto slots = kept->slots(layout.slots, size_of_slot(sweep, cloud, layout), bytes_of_poses(sweep));
+  const std::span arrays(slots->arrays.data(), slots->arrays.bytes());
+  auto search = std::make_unique<SweepSearch<Element>>(device, sweep, cloud, layout,
+                                                       std::move(model), arrays);
+  return std::unique_ptr<PageEngine>(new CudaSweepEngineOf(
+      layout.slots, std::move(search), std::move(slots), cloud, std::move(kept)));
+}
+
+template <typename Element>
 SweepStatistics CudaSweepEngineOf<Element>::statistics() const {
   return static_cast<const SweepSearch<Element>&>(search()).statistics();
 }
@@ -149,6 +231,14 @@ std::uint64_t cuda_sweep_bytes(const SweepRefOf<Element>& sweep) {
   DeviceArrayCount count;
   put_on_device(sweep, count);
   put_on_device(sweep, ProfileBests{}, count);
+  return count.bytes();
+}
+
+template <typename Element>
+std::uint64_t cuda_model_bytes(const SweepRefOf<Element>& sweep) {
+  DeviceArrayCount count;
+  SweepRefOf<Element> ref = sweep;
+  put_model_on_device(ref, count);
   return count.bytes();
 }
 
@@ -168,6 +258,9 @@ template class CudaSweepEngineOf<Vec3>;
 template class CudaSweepEngineOf<Triangle>;
 template class CudaSweepEngineOf<SolidTriangle>;
 template std::uint64_t cuda_sweep_bytes(const SweepRefOf<Vec3>&);
+template std::uint64_t cuda_model_bytes(const SweepRefOf<Vec3>&);
+template std::uint64_t cuda_model_bytes(const SweepRefOf<Triangle>&);
+template std::uint64_t cuda_model_bytes(const SweepRefOf<SolidTriangle>&);
 template std::uint64_t cuda_sweep_slot_bytes(const SweepRefOf<Vec3>&, const PackedCloud&,
                                              const SlotLayout&);
 template std::uint64_t cuda_sweep_pinned_bytes(const SweepRefOf<Vec3>&, const PackedCloud&,

@@ -21,8 +21,19 @@ class CudaSweepEngineOf final : public CudaPageEngine {
   CudaSweepEngineOf(int device, const SweepRefOf<Element>& sweep, const PackedCloud& cloud,
                     const SlotLayout& layout);
 
+  /// An engine that uses and leaves what is kept on the device. field: the one of `sweep`. The
+  /// cloud outlives the engine, and the data of `sweep` as for the constructor. Throws
+  /// ResourceError with CUDA's reason.
+  static std::unique_ptr<PageEngine> of_kept(const SweepRefOf<Element>& sweep,
+                                             const std::shared_ptr<const void>& field,
+                                             const PackedCloud& cloud, const SlotLayout& layout,
+                                             std::shared_ptr<KeptOnDevice> kept);
+
   /// Counts of all finished pages. Must not be called during a search.
   SweepStatistics statistics() const;
+
+ private:
+  using CudaPageEngine::CudaPageEngine;
 };
 
 using CudaSweepEngine = CudaSweepEngineOf<Vec3>;
@@ -35,6 +46,9 @@ extern template class CudaSweepEngineOf<SolidTriangle>;
 /// of each slot.
 template <typename Element>
 std::uint64_t cuda_sweep_bytes(const SweepRefOf<Element>& sweep);
+/// The part of cuda_sweep_bytes() that the model and its field take.
+template <typename Element>
+std::uint64_t cuda_model_bytes(const SweepRefOf<Element>& sweep);
 template <typename Element>
 std::uint64_t cuda_sweep_slot_bytes(const SweepRefOf<Element>& sweep, const PackedCloud& cloud,
                                     const SlotLayout& layout);

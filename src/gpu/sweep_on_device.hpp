@@ -15,14 +15,13 @@ struct SweepOnDevice {
   static constexpr std::size_t kTallies = std::size_t{kSweepCounts} * kSweepTallies;
 };
 
-/// Copies a sweep's data into DeviceArrays, or counts it with DeviceArrayCount.
+/// Copies the model and its field into DeviceArrays, or counts them with DeviceArrayCount, and
+/// makes `ref` refer to them there.
 template <typename Element, typename Arrays>
-SweepOnDevice<Element> put_on_device(const SweepRefOf<Element>& sweep, Arrays& arrays) {
+void put_model_on_device(SweepRefOf<Element>& ref, Arrays& arrays) {
   const auto move = [&](auto*& values, std::size_t count) { values = arrays.copy(values, count); };
-  SweepRefOf<Element> ref = sweep;
   const std::size_t coarse = ref.field.coarse_nodes();
   const std::size_t fine = std::size_t{ref.field.bricks} * ModelFieldRef::kBrickNodes;
-  const std::size_t poses = ref.motion.pose_count;
   move(ref.field.coarse_squared, coarse);
   move(ref.field.coarse_nearest, ref.field.coarse_nearest == nullptr ? 0 : coarse);
   move(ref.field.brick_of, coarse);
@@ -39,6 +38,13 @@ SweepOnDevice<Element> put_on_device(const SweepRefOf<Element>& sweep, Arrays& a
   }
   move(ref.model.elements, ref.model.size);
   move(ref.model.boxes, ref.model.box_count);
+}
+
+/// Copies what a sweep has besides the model and its field, as put_model_on_device() does.
+template <typename Element, typename Arrays>
+SweepOnDevice<Element> put_poses_on_device(SweepRefOf<Element> ref, Arrays& arrays) {
+  const auto move = [&](auto*& values, std::size_t count) { values = arrays.copy(values, count); };
+  const std::size_t poses = ref.motion.pose_count;
   move(ref.wide.nodes, ref.wide.node_count);
   ref.wide.slabs = nullptr;
   move(ref.wide.packets, ref.wide.packet_count);
@@ -47,6 +53,14 @@ SweepOnDevice<Element> put_on_device(const SweepRefOf<Element>& sweep, Arrays& a
   move(ref.motion.poses, poses);
   move(ref.motion.curves, ref.motion.curves == nullptr ? 0 : 2 * poses - 1);
   return {ref, arrays.template zeros<unsigned long long>(SweepOnDevice<Element>::kTallies)};
+}
+
+/// Copies a sweep's data into DeviceArrays, or counts it with DeviceArrayCount.
+template <typename Element, typename Arrays>
+SweepOnDevice<Element> put_on_device(const SweepRefOf<Element>& sweep, Arrays& arrays) {
+  SweepRefOf<Element> ref = sweep;
+  put_model_on_device(ref, arrays);
+  return put_poses_on_device(ref, arrays);
 }
 
 /// Copies what is known of the poses into DeviceArrays, or counts it with DeviceArrayCount. Empty

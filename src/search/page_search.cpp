@@ -133,7 +133,7 @@ Found search_pages(const StoreReader& store, const Query& query, std::uint64_t m
   report_plan(budget, kind, report, log);
 
   throw_if_stopped(progress);
-  if (steps.planned) steps.planned(budget.needed_bytes());
+  if (steps.planned) steps.planned(budget.needed_bytes(), kind.own_device_bytes(budget.layout()));
   const Stopwatch making;
   PageEngines engines = kind.make(budget.layout());
   report.seconds.engine = making.seconds();

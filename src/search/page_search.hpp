@@ -24,8 +24,9 @@ struct Found {
 
 /// What search_pages() asks its caller for; either may be empty.
 struct SearchSteps {
-  /// Called with the bytes that the search takes, once it is planned.
-  std::function<void(std::uint64_t)> planned = {};
+  /// Called with the bytes that the search takes, on the host and on each device, once it is
+  /// planned.
+  std::function<void(std::uint64_t host, std::uint64_t device)> planned = {};
   /// Returns the journal, or null; called once the engines are made.
   std::function<SearchJournal*()> open_journal = {};
 };

@@ -82,7 +82,8 @@ class Search {
         options_(options),
         progress_(options_.progress, options_.stop),
         log_(options_.message, report_.warnings),
-        memory_(session.memory()) {
+        memory_(session.memory()),
+        device_memory_(session.device_memory()) {
     if (output) file_.emplace(*output, options_, log_);
     for (const MovingBody& body : moving_bodies(query_)) {
       model_hashes_.push_back(hash_of_model(body.model));
@@ -126,9 +127,11 @@ class Search {
     found.engine_end.clear();
     report_.ignored_looked_at = found.result.ignored_points;
     const Stopwatch write;
-    static_cast<ResultTables&>(kept) =
-        tables_of(store_, std::move(found.result), header_, found.write_bytes, progress_,
-                  chainage(), options_.threads);
+    static_cast<ResultTables&>(kept) = session_.spare().take_tables();
+    RowMemory rows = session_.spare().take_rows();
+    fill_tables(store_, std::move(found.result), header_, found.write_bytes, progress_, chainage(),
+                options_.threads, rows, kept);
+    session_.spare().keep(std::move(rows));
     static_cast<TableSummary&>(report_) = summary_of(kept);
     report_.seconds.write = write.seconds();
     kept.findings = findings();
@@ -261,6 +264,14 @@ class Search {
 
   void take_memory(std::uint64_t bytes) { memory_.take(bytes, progress_); }
 
+  /// Does nothing on the CPU.
+  void take_device_memory(std::uint64_t bytes) {
+    if (!session_.is_session() || !gpus_ || !gpus_->is_cuda()) return;
+    const std::uint64_t left = session_.kept_on_gpus().left_of(gpus_->memory_bytes);
+    session_.device_memory().set_bytes(left);
+    device_memory_.take(bytes, progress_);
+  }
+
   /// A second search, of the ignored points alone. It comes first because it leaves nothing in
   /// memory. The journal does not keep it, so a run that is resumed repeats it.
   void count_ignored_that_collide(bool gpu) {
@@ -334,7 +345,11 @@ class Search {
     if (device == Device::kCpu || !fallback_allowed(options_)) open_journal();
     const std::unique_ptr<PageEngineKind> kind = kind_on(device, query_, options_);
     return search_pages(store_, query_, options_.memory_bytes, *kind, only(),
-                        {.planned = [this](std::uint64_t bytes) { take_memory(bytes); },
+                        {.planned =
+                             [this](std::uint64_t host, std::uint64_t on_device) {
+                               take_memory(host);
+                               take_device_memory(on_device);
+                             },
                          .open_journal = [this] { return open_journal(); }},
                         progress_, report_, log_);
   }
@@ -576,8 +591,9 @@ class Search {
 #ifdef CLEARWAY_CUDA
       if (device == Device::kCuda) {
         const OpenGpus open = [this] { return open_gpus(); };
-        if (!query.bodies.empty()) return cuda_body_kind(cloud, query, options, open);
-        return cuda_kind(cloud, query, options, open);
+        KeptOnGpus* const kept = session_.is_session() ? &session_.kept_on_gpus() : nullptr;
+        if (!query.bodies.empty()) return cuda_body_kind(cloud, query, options, open, kept);
+        return cuda_kind(cloud, query, options, open, kept);
       }
 #endif
       if (!query.bodies.empty()) return cpu_body_kind(cloud, query, options);
@@ -672,7 +688,7 @@ class Search {
   SearchReport report_;
   CallbackProgress progress_;
   MessageLog log_;
-  SharedMemory::Share memory_;
+  SharedMemory::Share memory_, device_memory_;
   std::optional<OutputFile> file_;
   /// hash_of_model() of the model, or of the model of each body.
   std::vector<std::uint64_t> model_hashes_;

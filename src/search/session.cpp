@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 
+#include "clearway/error.hpp"
 #include "io/files/pending_file.hpp"
 #include "search/answer_question.hpp"
 #include "search/session_state.hpp"
@@ -85,8 +86,8 @@ Session& Session::operator=(Session&&) noexcept = default;
 
 const Store& Session::store() const { return state_->store; }
 const SessionOptions& Session::options() const { return state_->options; }
-void Session::forget_models() const { state_->session.models().forget_all(); }
-std::uint64_t Session::kept_bytes() const { return state_->session.models().allocated_bytes(); }
+void Session::forget_models() const { state_->session.forget(); }
+std::uint64_t Session::kept_bytes() const { return state_->session.kept_bytes(); }
 
 SessionAnswer Session::search(const Query& query, const QuestionOptions& asked) const {
   SearchOptions options = state_->for_search;
@@ -99,8 +100,23 @@ SessionAnswer Session::search(const Query& query, const QuestionOptions& asked) 
   options.stop = asked.stop;
   state_->store.reader().check_unchanged();
   SessionAnswer answer;
-  const auto tables = std::make_shared<SessionAnswer::Tables>();
-  static_cast<SearchReport&>(answer) = answer_question(state_->session, query, options, *tables);
+  // Nobody keeps the session alive for an answer's sake, so the tables' memory may have nowhere to
+  // go back to.
+  const auto end =
+      [spare = std::weak_ptr(state_->session.shared_spare())](SessionAnswer::Tables* tables) {
+        const std::unique_ptr<SessionAnswer::Tables> ended(tables);
+        if (const auto kept = spare.lock()) kept->keep(static_cast<ResultTables&&>(*ended));
+      };
+  const std::shared_ptr<SessionAnswer::Tables> tables(new SessionAnswer::Tables, end);
+  const auto ask = [&] { return answer_question(state_->session, query, options, *tables); };
+  try {
+    static_cast<SearchReport&>(answer) = ask();
+  } catch (const ResourceError& error) {
+    // What is kept on the GPUs may be what there is too little memory for.
+    if (error.remedy() != Remedy::kMoreDeviceMemory) throw;
+    if (!state_->session.kept_on_gpus().give_way()) throw;
+    static_cast<SearchReport&>(answer) = ask();
+  }
   tables->store = state_->store.path();
   SessionAnswer::Tables::set_distance_without_bodies(
       tables->findings, std::numeric_limits<double>::quiet_NaN(), *tables);

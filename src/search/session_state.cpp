@@ -19,11 +19,16 @@ SharedMemory::Share::~Share() {
   memory_.given_back_.notify_all();
 }
 
+void SharedMemory::set_bytes(std::uint64_t bytes) {
+  const std::lock_guard lock(mutex_);
+  bytes_ = bytes;
+}
+
 void SharedMemory::Share::take(std::uint64_t bytes, const Progress& progress) {
   constexpr std::chrono::milliseconds kLook{50};  // how often the wish to stop is looked at
   if (taken_ > 0 || bytes == 0) return;
-  const std::uint64_t wanted = std::min(bytes, memory_.bytes_);
   std::unique_lock lock(memory_.mutex_);
+  const std::uint64_t wanted = std::min(bytes, memory_.bytes_);
   while (memory_.in_use_ + wanted > memory_.bytes_) {
     throw_if_stopped(progress);
     memory_.given_back_.wait_for(lock, kLook);
@@ -36,6 +41,8 @@ namespace {
 
 /// The share of a session's memory that models of earlier questions may keep.
 constexpr std::uint64_t kModelsShare = 4;
+/// The share of its memory that the tables of answers that are gone may keep.
+constexpr std::uint64_t kSpareShare = 32;
 
 }  // namespace
 
@@ -43,7 +50,9 @@ SessionState::SessionState(const Store& store, const SearchOptions& options, Kep
     : store_(store),
       options_(options),
       models_(kept, options.memory_bytes / kModelsShare),
-      memory_(options.memory_bytes) {
+      memory_(options.memory_bytes),
+      kept_on_gpus_(store.reader()),
+      spare_(std::make_shared<SpareTables>(options.memory_bytes / kSpareShare)) {
   check_threads(threads_or_all(options.threads));
 }
 

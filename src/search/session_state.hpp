@@ -15,6 +15,8 @@
 #include "search/checks/facts/model_looks.hpp"
 #include "search/devices.hpp"
 #include "search/kept_models.hpp"
+#include "search/kept_on_gpus.hpp"
+#include "stream/spare_tables.hpp"
 
 namespace clearway {
 
@@ -22,6 +24,9 @@ namespace clearway {
 class SharedMemory {
  public:
   explicit SharedMemory(std::uint64_t bytes) : bytes_(bytes) {}
+
+  /// Changes how much there is. Shares that were taken stay.
+  void set_bytes(std::uint64_t bytes);
 
   /// Bytes that a question has until it ends.
   class Share {
@@ -43,7 +48,7 @@ class SharedMemory {
  private:
   std::mutex mutex_;
   std::condition_variable given_back_;
-  const std::uint64_t bytes_;
+  std::uint64_t bytes_;
   std::uint64_t in_use_ = 0;
 };
 
@@ -58,7 +63,20 @@ class SessionState {
   KeptModels& models() { return models_; }
   KeptLooks& looks() { return looks_; }
   SharedMemory& memory() { return memory_; }
+  SharedMemory& device_memory() { return device_memory_; }  ///< of each GPU
+  KeptOnGpus& kept_on_gpus() { return kept_on_gpus_; }
+  SpareTables& spare() { return *spare_; }
+  /// Keeps the memory of an answer's tables that is no longer needed, also where the session ends
+  /// before the answer does.
+  std::shared_ptr<SpareTables> shared_spare() { return spare_; }
   bool is_session() const { return models_.is_session(); }
+  /// Forgets the models, and memory that is kept for questions to come.
+  void forget() {
+    models_.forget_all();
+    spare_->forget_all();
+  }
+  /// Bytes of memory that is kept for questions to come.
+  std::uint64_t kept_bytes() const { return models_.allocated_bytes() + spare_->bytes(); }
 
   /// The start of the GPUs, which is begun where that has not been done; null where none is
   /// started, as by start_devices().
@@ -80,6 +98,9 @@ class SessionState {
   KeptModels models_;
   KeptLooks looks_;
   SharedMemory memory_;
+  SharedMemory device_memory_{0};
+  KeptOnGpus kept_on_gpus_;
+  const std::shared_ptr<SpareTables> spare_;
   mutable std::mutex mutex_;
   std::shared_ptr<const DeviceStart> started_;
   std::optional<DeviceChoice> gpus_;

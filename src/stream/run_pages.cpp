@@ -89,8 +89,13 @@ PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cell
 
 PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                      std::span<std::byte> page, const IgnoredPoints& ignored,
-                     std::uint64_t& ignored_points) {
-  const PageShape shape = page_shape(cloud, cells, ignored.any());
+                     std::uint64_t& ignored_points, const KeptPayload& kept) {
+  PageShape shape = page_shape(cloud, cells, ignored.any());
+  std::vector<std::optional<CellPayload>> elsewhere;
+  for (const PlannedCell& planned : cells) {
+    elsewhere.push_back(kept ? kept(planned.cell) : std::nullopt);
+    if (elsewhere.back()) shape.payload_bytes -= cloud.packed_bytes(planned.cell);
+  }
   assert(shape.bytes() <= page.size());
   Section headers(page, 0, shape.nodes_at());
   Section nodes(page, shape.nodes_at(), shape.blocks_at());
@@ -99,7 +104,8 @@ PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cell
   Section payload(page, shape.payload_at(), shape.bytes());
   std::uint32_t first_node = 0;
   std::vector<std::uint64_t> searched(shape.masked ? shape.blocks_per_cell : 0);
-  for (const PlannedCell& planned : cells) {
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const PlannedCell& planned = cells[i];
     const Cell& cell = cloud.cells()[planned.cell];
     PageCell header{.cell = planned.cell,
                     .count = cell.count,
@@ -108,18 +114,20 @@ PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cell
                     .box = cell.box,
                     .chunks = {}};
     first_node += header.node_count;
-    const auto packed =
-        cloud.read_packed(planned.cell, payload.take(cloud.packed_bytes(planned.cell)));
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      header.chunks[axis] = {static_cast<std::uint64_t>(packed[axis].payload() - page.data()),
-                             packed[axis].minimum(), packed[axis].minbits()};
+    std::optional<std::array<PackedChunk<std::int32_t>, 3>> packed;
+    if (elsewhere[i]) {
+      std::ranges::copy(*elsewhere[i], header.chunks);
+    } else {
+      packed = cloud.read_packed(planned.cell, payload.take(cloud.packed_bytes(planned.cell)));
+      std::ranges::copy(payload_at(*packed, page.data()), header.chunks);
     }
     headers.append(std::span<const PageCell>(&header, 1));
     nodes.append(std::span(planned.nodes));
     blocks.append(cloud.blocks().subspan(std::size_t{planned.cell} * shape.blocks_per_cell,
                                          shape.blocks_per_cell));
     if (!shape.masked) continue;
-    ignored_points += ignored.mask(planned.cell, searched, [&] { return packed; });
+    ignored_points += ignored.mask(
+        planned.cell, searched, [&] { return packed ? *packed : cloud.coordinates(planned.cell); });
     masks.append(std::span<const std::uint64_t>(searched));
   }
   return shape;
@@ -271,11 +279,12 @@ class Lane {
     Interval& time = pages_.times[page.page].read;
     time.begin = Clock::now();
     std::uint64_t ignored = 0;
-    stage_page(pages_.cloud, pages_.cells_of(page.page), engine_.page(page.slot), pages_.ignored,
-               ignored);
+    const PageShape shape = stage_page(
+        pages_.cloud, pages_.cells_of(page.page), engine_.page(page.slot), pages_.ignored, ignored,
+        [&](std::uint32_t cell) { return engine_.kept(page.slot, cell); });
     pages_.ignored_points += ignored;
     time.end = Clock::now();
-    engine_.start(page.slot, pages_.pages[page.page].shape);
+    engine_.start(page.slot, shape);
     started_[page.slot] = true;
   }
 

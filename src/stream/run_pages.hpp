@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,13 +28,17 @@ std::uint64_t entry_of(const PackedCloud& cloud, std::span<const PlannedCell> ce
 void collect_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                   const PageResult& answer, SearchResult& all);
 
+/// Where the coordinates of a cell are kept outside of a page, as PageEngine::kept() says it.
+using KeptPayload = std::function<std::optional<CellPayload>(std::uint32_t cell)>;
+
 /// Fills `page` with the cells from the cloud: headers, motion nodes, block boxes, masks if points
-/// are ignored, and packed coordinates, which are read straight into it. page: aligned to
-/// kPageAlignment, and at least as large as the page of these cells. ignored_points: increased by
-/// the number of ignored points in these cells. Thread safe. Throws what reading the cells throws.
+/// are ignored, and packed coordinates, which are read straight into it unless they are kept
+/// elsewhere. page: aligned to kPageAlignment, and at least as large as the page of these cells.
+/// ignored_points: increased by the number of ignored points in these cells. Thread safe. Throws
+/// what reading the cells throws.
 PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                      std::span<std::byte> page, const IgnoredPoints& ignored,
-                     std::uint64_t& ignored_points);
+                     std::uint64_t& ignored_points, const KeptPayload& kept = nullptr);
 
 /// Fills `page` with the cells if no point is ignored.
 PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,

@@ -1,5 +1,7 @@
 #include "stream/write_result.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -13,6 +15,7 @@
 
 #include "core/query/search_result.hpp"
 #include "core/util/progress.hpp"
+#include "core/util/tsan_annotations.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/result.hpp"
@@ -31,64 +34,74 @@ void for_each_strip(std::span<const Row> rows, Visit visit) {
   }
 }
 
-template <typename Values, typename Row, typename ValueOf>
-void set_column(std::vector<Values>& column, std::span<const Row> rows, ValueOf value_of) {
-  column.resize(rows.size());
-  std::ranges::transform(rows, column.begin(), value_of);
-}
+/// Gives a column this many rows, whatever their values are.
+struct SizeColumn {
+  std::size_t size;
+
+  template <typename Value, typename ValueOf>
+  void operator()(std::vector<Value>& column, ValueOf) const {
+    column.resize(size);
+  }
+};
+
+/// Sets the values of some rows in a column that has room for them.
+template <typename Row>
+struct SetColumn {
+  std::span<const Row> rows;
+  std::size_t first;  ///< where the first of the rows is in the column
+
+  template <typename Value, typename ValueOf>
+  void operator()(std::vector<Value>& column, ValueOf value_of) const {
+    std::ranges::transform(rows, column.begin() + static_cast<std::ptrdiff_t>(first), value_of);
+  }
+};
 
 Vec3 xyz_of(const Quantisation& quantisation, const std::int32_t (&q)[3]) {
   return position(quantisation, q[0], q[1], q[2]);
 }
 
-/// Sets what a colliding point and a near one have in common: which point it is, and by which body
-/// at which pose the model first comes so close to it.
-template <typename Columns, typename Row>
-void set_touched_columns(const RowMeaning& meaning, std::span<const Row> rows, Columns& columns) {
-  set_column(columns.source, rows, [](const auto& row) { return row.source; });
-  set_column(columns.xyz, rows,
-             [&](const auto& row) { return xyz_of(meaning.quantisation, row.q); });
+// put_columns() calls put(column, value_of) for every column that a table has by its meaning;
+// value_of(row) is the value of a row there.
+
+/// The columns that colliding points and near ones have in common: which point it is, and by which
+/// body at which pose the model first comes so close to it.
+template <typename Columns, typename Put>
+void put_touched_columns(const RowMeaning& meaning, Columns& columns, Put put) {
+  put(columns.source, [](const auto& row) { return row.source; });
+  put(columns.xyz, [&](const auto& row) { return xyz_of(meaning.quantisation, row.q); });
   if (meaning.header.first_pose) {
-    set_column(columns.first_pose, rows,
-               [&](const auto& row) { return meaning.numbers.pose_of(row.first_pose); });
+    put(columns.first_pose,
+        [&](const auto& row) { return meaning.numbers.pose_of(row.first_pose); });
   }
   if (meaning.header.has_first_bodies()) {
-    set_column(columns.body, rows,
-               [&](const auto& row) { return meaning.numbers.body_of(row.first_pose); });
+    put(columns.body, [&](const auto& row) { return meaning.numbers.body_of(row.first_pose); });
   }
 }
 
-}  // namespace
-
-namespace {
-
-/// Sets the columns of rows that ascend by source index.
-void set_columns(const RowMeaning& meaning, std::span<const CollisionRow> rows,
-                 Collisions& columns) {
-  set_touched_columns(meaning, rows, columns);
+template <typename Put>
+void put_columns(const RowMeaning& meaning, Collisions& columns, Put put) {
+  put_touched_columns(meaning, columns, put);
   if (meaning.header.last_pose) {
-    set_column(columns.last_pose, rows, [](const auto& row) { return row.last_pose; });
+    put(columns.last_pose, [](const CollisionRow& row) { return row.last_pose; });
   }
   if (meaning.header.budget) {
-    set_column(columns.certain, rows, [](const auto& row) { return row.certain; });
+    put(columns.certain, [](const CollisionRow& row) { return row.certain; });
   }
 }
 
-void set_columns(const RowMeaning& meaning, std::span<const NearRow> rows, Nearby& columns) {
-  set_touched_columns(meaning, rows, columns);
+template <typename Put>
+void put_columns(const RowMeaning& meaning, Nearby& columns, Put put) {
+  put_touched_columns(meaning, columns, put);
 }
 
-void set_columns(const RowMeaning& meaning, std::span<const ClearanceRow> rows,
-                 Clearances& columns) {
-  set_column(columns.source, rows, [](const auto& row) { return row.source; });
-  set_column(columns.xyz, rows,
-             [&](const auto& row) { return xyz_of(meaning.quantisation, row.q); });
-  set_column(columns.distance, rows, [](const auto& row) { return row.distance; });
-  set_column(columns.pose, rows,
-             [&](const auto& row) { return meaning.numbers.pose_of(row.pose); });
+template <typename Put>
+void put_columns(const RowMeaning& meaning, Clearances& columns, Put put) {
+  put(columns.source, [](const ClearanceRow& row) { return row.source; });
+  put(columns.xyz, [&](const ClearanceRow& row) { return xyz_of(meaning.quantisation, row.q); });
+  put(columns.distance, [](const ClearanceRow& row) { return row.distance; });
+  put(columns.pose, [&](const ClearanceRow& row) { return meaning.numbers.pose_of(row.pose); });
   if (!meaning.header.bodies.empty()) {
-    set_column(columns.body, rows,
-               [&](const auto& row) { return meaning.numbers.body_of(row.pose); });
+    put(columns.body, [&](const ClearanceRow& row) { return meaning.numbers.body_of(row.pose); });
   }
 }
 
@@ -98,7 +111,8 @@ std::shared_ptr<WritePiece<Rows>> encode(const ResultWriter& writer, const RowMe
   auto out = std::make_shared<WritePiece<Rows>>(WritePiece<Rows>{writer.new_rows<Rows>()});
   Rows columns;
   for_each_strip(rows, [&](std::span<const Row> strip) {
-    set_columns(meaning, strip, columns);
+    put_columns(meaning, columns, SizeColumn{strip.size()});
+    put_columns(meaning, columns, SetColumn<Row>{strip, 0});
     out->rows.add(columns);
     summarise(columns, out->summary);
   });
@@ -226,15 +240,14 @@ std::size_t end_of_pass(const StoreReader& store, const std::vector<std::uint64_
 /// last.
 template <typename Row, typename Set, typename RowsOf, typename Write>
 void write_set(const StoreReader& store, const Set& set, const SetCells& in, const WritePlan& plan,
-               Progress& progress, RowsOf rows_of, Write write) {
+               RowMemory& memory, Progress& progress, RowsOf rows_of, Write write) {
   if (in.entries == 0) return;
   tbb::task_arena arena(plan.threads);
   std::optional<GatherRows<Row, Set>> gather;
   arena.execute([&] { gather.emplace(store, set, in, progress); });
   const std::vector<std::uint64_t>& counts = gather->counts();
   const std::size_t most = std::min<std::uint64_t>(plan.rows, in.entries);
-  const auto memory = std::make_unique_for_overwrite<Row[]>(most);
-  const std::span<Row> rows(memory.get(), most);
+  const std::span<Row> rows = memory.rows<Row>(most);
   std::size_t kept = 0;  // number of rows of the last pass that are kept, at the front
   for (std::size_t first = 0; first < counts.size();) {
     const std::size_t end = end_of_pass(store, counts, first, most - kept);
@@ -268,11 +281,12 @@ struct TableCells {
 class ResultRows {
  public:
   ResultRows(const StoreReader& store, const SearchResult& answer, const ResultHeader& header,
-             std::uint64_t memory_bytes, Progress& progress)
+             std::uint64_t memory_bytes, RowMemory& memory, Progress& progress)
       : store_(store),
         answer_(answer),
         meaning_{store.quantisation(), header, BodyNumbers(header.bodies.size())},
         memory_bytes_(memory_bytes),
+        memory_(memory),
         progress_(progress) {}
 
   const RowMeaning& meaning() const { return meaning_; }
@@ -328,7 +342,7 @@ class ResultRows {
   template <typename Row, typename Set, typename RowsOf, typename Take>
   void gather(const Set& set, const SetCells& in, RowsOf rows_of, Take take) {
     const WritePlan plan = plan_of<Row>(store_, in.entries, memory_bytes_);
-    write_set<Row>(store_, set, in, plan, progress_, rows_of,
+    write_set<Row>(store_, set, in, plan, memory_, progress_, rows_of,
                    [&](std::span<const Row> rows) { take(rows, plan); });
   }
 
@@ -336,6 +350,7 @@ class ResultRows {
   const SearchResult& answer_;
   const RowMeaning meaning_;
   std::uint64_t memory_bytes_;
+  RowMemory& memory_;
   Progress& progress_;
 };
 
@@ -349,7 +364,8 @@ TableSummary write_tables(const StoreReader& store, const SearchResult& answer,
                       answer.unseen ? answer.unseen->size() : 0, answer.swept.size());
   progress.begin("write", in.collisions.entries + in.clearances.entries + in.near.entries,
                  "points");
-  ResultRows rows(store, answer, header, memory_bytes, progress);
+  RowMemory memory;
+  ResultRows rows(store, answer, header, memory_bytes, memory, progress);
   const auto write = [&]<typename Rows, typename Row>(std::span<const Row> some,
                                                       const WritePlan& plan, Rows*) {
     write_rows<Rows>(
@@ -397,27 +413,33 @@ TableSummary write_result(const StoreReader& store, const SearchResult& answer,
   });
 }
 
-ResultTables tables_of(const StoreReader& store, SearchResult answer, const ResultHeader& header,
-                       std::uint64_t memory_bytes, Progress& progress,
-                       std::span<const double> chainage, int threads) {
-  ResultTables tables;
+void fill_tables(const StoreReader& store, SearchResult answer, const ResultHeader& header,
+                 std::uint64_t memory_bytes, Progress& progress, std::span<const double> chainage,
+                 int threads, RowMemory& memory, ResultTables& tables) {
+  // Sets the next rows of a table that has `all` of them in the end.
   const auto keep = [&]<typename Rows, typename Row>(const RowMeaning& meaning,
-                                                     std::span<const Row> rows, Rows& to) {
-    Rows columns;
-    for_each_strip(rows, [&](std::span<const Row> strip) {
-      set_columns(meaning, strip, columns);
-      append_rows(columns, to);
+                                                     std::span<const Row> rows, std::uint64_t all,
+                                                     std::uint64_t& kept, Rows& to) {
+    if (kept == 0) put_columns(meaning, to, SizeColumn{all});
+    const ParallelScope scope;
+    const auto strips = piece_of(scope, [&](const tbb::blocked_range<std::size_t>& part) {
+      const std::span<const Row> of = rows.subspan(part.begin(), part.size());
+      put_columns(meaning, to, SetColumn<Row>{of, kept + part.begin()});
     });
+    scope.begin();
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows.size(), kRowsOfThread), strips);
+    kept += rows.size();
   };
   if (threads == 0) threads = tbb::this_task_arena::max_concurrency();
   ThreadLimit(threads).run([&] {
     const TableCells in(store, answer, header);
-    ResultRows rows(store, answer, header, memory_bytes, progress);
+    ResultRows rows(store, answer, header, memory_bytes, memory, progress);
+    std::uint64_t collisions = 0, clearances = 0, near = 0;
     rows.for_collisions(in.collisions, [&](std::span<const CollisionRow> some, const auto&) {
-      keep(rows.meaning(), some, tables.collisions);
+      keep(rows.meaning(), some, in.collisions.entries, collisions, tables.collisions);
     });
     rows.for_clearances(in.clearances, [&](std::span<const ClearanceRow> some, const auto&) {
-      keep(rows.meaning(), some, tables.clearances);
+      keep(rows.meaning(), some, in.clearances.entries, clearances, tables.clearances);
     });
     if (header.profile > 0) {
       for_profile(
@@ -426,7 +448,7 @@ ResultTables tables_of(const StoreReader& store, SearchResult answer, const Resu
     }
     if (answer.near) {
       rows.for_near(in.near, [&](std::span<const NearRow> some, const auto&) {
-        keep(rows.meaning(), some, tables.near);
+        keep(rows.meaning(), some, in.near.entries, near, tables.near);
       });
     }
   });
@@ -434,7 +456,6 @@ ResultTables tables_of(const StoreReader& store, SearchResult answer, const Resu
     tables.unseen = std::move(*answer.unseen);
     tables.swept = std::move(answer.swept);
   }
-  return tables;
 }
 
 TableSummary summary_of(const ResultTables& tables) {

@@ -126,12 +126,34 @@ struct ResultTables {
   SweptCells swept;
 };
 
-/// The tables that write_result() would write, in memory. Takes at most `memory_bytes`, but no less
-/// than least_write_bytes(), besides the tables themselves. Throws InputError for a damaged cell,
-/// Interrupted when the progress asks to stop.
-ResultTables tables_of(const StoreReader& store, SearchResult answer, const ResultHeader& header,
-                       std::uint64_t memory_bytes, Progress& progress,
-                       std::span<const double> chainage, int threads);
+/// Memory in which the rows of a table are brought into order.
+class RowMemory {
+ public:
+  /// Uninitialised memory for rows; what it held before is lost.
+  template <typename Row>
+  std::span<Row> rows(std::size_t count) {
+    if (bytes_ < count * sizeof(Row)) {
+      memory_.reset();
+      memory_ = std::make_unique_for_overwrite<std::byte[]>(count * sizeof(Row));
+      bytes_ = count * sizeof(Row);
+    }
+    return {reinterpret_cast<Row*>(memory_.get()), count};
+  }
+
+  std::uint64_t bytes() const { return bytes_; }
+
+ private:
+  std::unique_ptr<std::byte[]> memory_;
+  std::size_t bytes_ = 0;
+};
+
+/// Fills `tables`, which have no rows, with what write_result() would write. Takes at most
+/// `memory_bytes`, but no less than least_write_bytes(), besides the tables themselves; rows are
+/// ordered in `memory`. Throws InputError for a damaged cell, Interrupted when the progress asks to
+/// stop.
+void fill_tables(const StoreReader& store, SearchResult answer, const ResultHeader& header,
+                 std::uint64_t memory_bytes, Progress& progress, std::span<const double> chainage,
+                 int threads, RowMemory& memory, ResultTables& tables);
 
 /// What tables say in short.
 TableSummary summary_of(const ResultTables& tables);

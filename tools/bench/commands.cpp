@@ -252,6 +252,11 @@ void add_session(CLI::App& program) {
   command->add_option("--device", options->device, "Where questions are answered")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
       ->capture_default_str();
+  command
+      ->add_option("--device-memory", options->device_memory_bytes,
+                   "Memory bound of each GPU (default: 2G, or what is free)")
+      ->transform(CLI::AsSizeValue(false))
+      ->type_name("SIZE");
   command->add_flag("--one-run", options->one_run,
                     "Compare the whole trajectory in one question with its poses one by one");
 #ifdef CLEARWAY_NANOFLANN

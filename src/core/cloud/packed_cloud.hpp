@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -232,6 +233,14 @@ class PackedCloud {
   virtual std::array<PackedChunk<std::int32_t>, 3> read_packed(std::uint32_t cell,
                                                                std::span<std::byte> to) const = 0;
 
+  /// The packed x, y and z of a cell in memory that stays as it is while the cloud lives, where a
+  /// decoder may read whole words past each payload; nothing where only copies can be read so.
+  /// Thread safe. Throws as coordinates() does.
+  virtual std::optional<std::array<PackedChunk<std::int32_t>, 3>> in_place(
+      std::uint32_t /*cell*/) const {
+    return std::nullopt;
+  }
+
   /// The source index of a point by its index in its cell. Thread safe. Throws InputError if the
   /// cell is damaged.
   virtual std::uint64_t source_of(std::uint32_t cell, std::uint32_t index) const = 0;
@@ -242,6 +251,10 @@ class PackedCloud {
   /// Throws InputError if the cell is damaged.
   virtual PackedChunk<std::uint8_t> classes(std::uint32_t /*cell*/) const { return {}; }
 
+  /// The median diagonal of the blocks, metres, found from a sample where there are many. The cloud
+  /// has at least one point.
+  virtual double typical_block() const { return median_block(*this); }
+
   /// Bytes of memory that cells, tree and blocks occupy.
   virtual std::uint64_t allocated_bytes() const { return 0; }
 
@@ -250,6 +263,9 @@ class PackedCloud {
   }
   std::uint32_t cell_entries() const { return blocks_per_cell() * kBlockPoints; }
   std::uint64_t entry_count() const { return std::uint64_t{cells().size()} * cell_entries(); }
+
+ protected:
+  static double median_block(const PackedCloud& cloud);
 };
 
 /// The largest |coordinate| of the cloud's box, metres; 0 for no points.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -10,8 +11,9 @@
 /// A page: one run of bytes that holds what an engine needs of some planned cells, the same on the
 /// host and on a device. Layout: PageCell[cells]; motion nodes uint32[nodes]; BlockBox[cells *
 /// blocks_per_cell]; if points are ignored, masks uint64[cells * blocks_per_cell]; then the packed
-/// payloads. Each section is aligned to kPageAlignment bytes, and kPagePadding zero bytes follow at
-/// the end, so that a decoder may read whole words past a payload.
+/// payloads, except those that lie elsewhere in the memory of the page's address. Each section is
+/// aligned to kPageAlignment bytes. After every payload at least kPagePadding bytes can be read, so
+/// that a decoder may read whole words past it; those at the end of the page are zeros.
 namespace clearway {
 
 inline constexpr std::size_t kPageAlignment = 16;
@@ -21,10 +23,15 @@ inline constexpr std::size_t kPagePadding = 16;
 /// `minbits` bits from bit i * minbits on, most significant first. With minbits 32 the payload is
 /// the little-endian values themselves.
 struct PageChunk {
-  std::uint64_t payload;  ///< offset of the payload from the beginning of the page, bytes
+  /// Offset of the payload from the beginning of the page, bytes, modulo 2^64: the payload may also
+  /// lie before the page or behind it, in memory that outlives the page's search.
+  std::uint64_t payload;
   std::int32_t minimum;
   std::uint32_t minbits;
 };
+
+/// The x, y and z of a cell.
+using CellPayload = std::array<PageChunk, 3>;
 
 struct PageCell {
   std::uint32_t cell;   ///< index of the cell in the cloud
@@ -40,7 +47,7 @@ struct PageShape {
   std::uint32_t cells = 0;
   std::uint32_t blocks_per_cell = 0;
   std::uint32_t nodes = 0;
-  std::uint64_t payload_bytes = 0;  ///< bytes of all chunks together
+  std::uint64_t payload_bytes = 0;  ///< bytes of all chunks in the page together
   bool masked = false;  ///< whether points may be ignored: one word for each block says which
 
   CLEARWAY_HD static constexpr std::uint64_t aligned(std::uint64_t bytes) {
@@ -98,6 +105,11 @@ struct PageRef {
     if (!shape.masked) return point < cell(index).count;
     return (searched(index, point / kBlockPoints) >> (point % kBlockPoints) & 1) != 0;
   }
+  /// The payload of a chunk.
+  CLEARWAY_HD const std::byte* payload(const PageChunk& chunk) const {
+    return reinterpret_cast<const std::byte*>(reinterpret_cast<std::uintptr_t>(begin) +
+                                              chunk.payload);
+  }
   /// Position of point `index` of a cell, metres.
   CLEARWAY_HD Vec3 position(const Quantisation& quantisation, const PageCell& cell,
                             std::uint32_t index) const {
@@ -113,9 +125,9 @@ struct PageRef {
 CLEARWAY_HD inline std::int32_t PageRef::value(const PageChunk& chunk, std::uint32_t index) const {
   if (chunk.minbits == 0) return chunk.minimum;
   const std::uint64_t bit = std::uint64_t{index} * chunk.minbits;
-  // Reads whole aligned words: a page begins on one, and its padding follows the last payload.
-  const std::uint64_t byte = chunk.payload + bit / 8;
-  const auto* words = reinterpret_cast<const std::uint32_t*>(begin) + byte / 4;
+  // Reads whole aligned words; what is past the last payload can be read too.
+  const std::uintptr_t byte = reinterpret_cast<std::uintptr_t>(payload(chunk)) + bit / 8;
+  const auto* words = reinterpret_cast<const std::uint32_t*>(byte - byte % 4);
   const auto shift = static_cast<std::uint32_t>(8 * (byte % 4));
   const std::uint64_t low = std::uint64_t{words[1]} << 32 | words[0];
   const std::uint64_t window =
@@ -128,10 +140,22 @@ CLEARWAY_HD inline std::int32_t PageRef::value(const PageChunk& chunk, std::uint
                                    static_cast<std::uint32_t>(delta));
 }
 
+/// Where the coordinates of a cell lie on the host, as seen from a page.
+inline CellPayload payload_at(const std::array<PackedChunk<std::int32_t>, 3>& packed,
+                              const std::byte* page) {
+  CellPayload at;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    at[axis] = {reinterpret_cast<std::uintptr_t>(packed[axis].payload()) -
+                    reinterpret_cast<std::uintptr_t>(page),
+                packed[axis].minimum(), packed[axis].minbits()};
+  }
+  return at;
+}
+
 /// A chunk of a page on the host, for decoding many values at once. count: the cloud's cell_points.
 inline PackedChunk<std::int32_t> packed_chunk(const PageRef& page, const PageChunk& chunk,
                                               std::uint32_t count) {
-  return PackedChunk<std::int32_t>::of_payload(page.begin + chunk.payload, count, chunk.minbits,
+  return PackedChunk<std::int32_t>::of_payload(page.payload(chunk), count, chunk.minbits,
                                                chunk.minimum);
 }
 

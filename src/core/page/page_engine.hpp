@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -62,6 +63,12 @@ class PageEngine {
   /// The memory of a slot's page, to be filled: of the same size in every slot, aligned to
   /// kPageAlignment.
   virtual std::span<std::byte> page(std::uint32_t slot) = 0;
+
+  /// Where the engine finds the coordinates of a cell outside of the slot's page, which then need
+  /// not be copied into it; nothing where it does not. Such coordinates stay there until finish().
+  virtual std::optional<CellPayload> kept(std::uint32_t /*slot*/, std::uint32_t /*cell*/) {
+    return std::nullopt;
+  }
 
   /// Searches the page in the slot, whose shape must fit the slot; a GPU goes on by itself after
   /// the call. If this throws, nothing of the slot is in flight.

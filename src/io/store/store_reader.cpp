@@ -13,6 +13,7 @@
 #include "clearway/error.hpp"
 #include "clearway/store.hpp"
 #include "core/cloud/packed_cloud.hpp"
+#include "core/page/page.hpp"
 #include "io/files/hdf5.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/kept_warnings.hpp"
@@ -395,6 +396,15 @@ std::array<PackedChunk<std::int32_t>, 3> StoreReader::read_packed(std::uint32_t 
   return chunks;
 }
 
+std::optional<std::array<PackedChunk<std::int32_t>, 3>> StoreReader::in_place(
+    std::uint32_t cell) const {
+  for (std::size_t i = 4 * std::size_t{cell}; i < 4 * std::size_t{cell} + 3; ++i) {
+    const std::uint64_t end = index_.cells.address[i] + index_.cells.bytes[i];
+    if (end + kPagePadding > map_.bytes().size()) return std::nullopt;
+  }
+  return coordinates(cell);
+}
+
 std::uint64_t StoreReader::fingerprint() const {
   Xxh64Stream hash;
   const auto add = [&hash](const auto& values) { hash.update(std::as_bytes(std::span(values))); };
@@ -433,6 +443,11 @@ StoreReader::Touched StoreReader::touched() const {
     touched.bytes += packed_bytes(static_cast<std::uint32_t>(cell));
   }
   return touched;
+}
+
+double StoreReader::typical_block() const {
+  std::call_once(typical_block_found_, [this] { typical_block_ = median_block(*this); });
+  return typical_block_;
 }
 
 std::uint64_t StoreReader::allocated_bytes() const {

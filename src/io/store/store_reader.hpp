@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -77,6 +78,9 @@ class StoreReader final : public PackedCloud {
   /// call for the cell.
   std::array<PackedChunk<std::int32_t>, 3> read_packed(std::uint32_t cell,
                                                        std::span<std::byte> to) const override;
+  /// The coordinates in the map, except those at the very end of the file.
+  std::optional<std::array<PackedChunk<std::int32_t>, 3>> in_place(
+      std::uint32_t cell) const override;
 
   /// Cells whose coordinates were requested or read since the store was opened, and their packed
   /// bytes.
@@ -85,6 +89,9 @@ class StoreReader final : public PackedCloud {
     std::uint64_t bytes = 0;
   };
   Touched touched() const;
+
+  /// Found at the first call.
+  double typical_block() const override;
 
   /// Bytes of memory that the index occupies.
   std::uint64_t allocated_bytes() const override;
@@ -110,6 +117,8 @@ class StoreReader final : public PackedCloud {
   StoreIndex index_;
   std::vector<Cell> cells_;
   std::vector<TreeNode> tree_;
+  mutable std::once_flag typical_block_found_;
+  mutable double typical_block_ = 0;
   /// Per cell: 1 once the hashes of its x, y and z in the map were found right.
   mutable std::vector<std::uint8_t> checked_;
   /// Per cell: 1 once read_packed() read its coordinates from the file.

@@ -253,8 +253,7 @@ void warn_of_fine_radius(const Question& question, MessageLog& log) {
 /// Warns of a scan whose points are far apart, because it says nothing about what lies between
 /// them. A radius bridges gaps in walls and ground, but not those in which a post stands.
 void check_coarse_scan(const Question& question, MessageLog& log) {
-  const ScanProximity scan(question.cloud, 0);
-  const double spacing = scan.typical_block() / kSpacingsOfBlock;
+  const double spacing = question.cloud.typical_block() / kSpacingsOfBlock;
   const double radius = question.query.radius, metre = question.metre;
   const double width = Sides(question.model).middle;
   // The following lengths are in metres.

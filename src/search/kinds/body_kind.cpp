@@ -43,6 +43,9 @@ class BodyEngine final : public PageEngine {
   std::span<std::byte> page(std::uint32_t slot) override {
     return bodies_.front().engine->page(slot);
   }
+  std::optional<CellPayload> kept(std::uint32_t slot, std::uint32_t cell) override {
+    return bodies_.front().engine->kept(slot, cell);
+  }
   void start(std::uint32_t slot, const PageShape& shape) override;
   void wait(std::uint32_t slot) override;
   PageResult finish(std::uint32_t slot) override;
@@ -55,6 +58,8 @@ class BodyEngine final : public PageEngine {
                                     const SlotLayout& layout, std::uint64_t most_poses);
 
  private:
+  static void find_kept(std::span<std::byte> page, const PageShape& shape, PageEngine& engine,
+                        std::uint32_t slot);
   void keep_nodes(std::span<std::byte> page, const PageShape& shape, std::size_t body) const;
   void make_room(std::uint32_t slot, std::span<const PageResult> found);
   void merge(std::uint32_t slot, std::size_t body, const PageResult& found);
@@ -99,7 +104,10 @@ void BodyEngine::start(std::uint32_t slot, const PageShape& shape) {
     while (body-- > 0) {
       PageEngine& engine = *bodies_[body].engine;
       const std::span<std::byte> own = engine.page(slot);
-      if (body > 0) std::ranges::copy(filled, own.begin());
+      if (body > 0) {
+        std::ranges::copy(filled, own.begin());
+        find_kept(own, shape, engine, slot);
+      }
       keep_nodes(own, shape, body);
       engine.start(slot, shape);
     }
@@ -111,6 +119,16 @@ void BodyEngine::start(std::uint32_t slot, const PageShape& shape) {
       }
     }
     throw;
+  }
+}
+
+/// Corrects, in a copy of the first body's page, where the cells are that are kept outside of it.
+void BodyEngine::find_kept(std::span<std::byte> page, const PageShape& shape, PageEngine& engine,
+                           std::uint32_t slot) {
+  for (PageCell& cell : std::span(reinterpret_cast<PageCell*>(page.data()), shape.cells)) {
+    if (cell.chunks[0].payload < shape.bytes()) continue;
+    // The first body's engine holds the cell, so the other engines find it too.
+    std::ranges::copy(engine.kept(slot, cell.cell).value(), cell.chunks);
   }
 }
 
@@ -391,9 +409,10 @@ std::unique_ptr<PageEngineKind> cpu_body_kind(const PackedCloud& cloud, const Qu
 
 #ifdef CLEARWAY_CUDA
 std::unique_ptr<PageEngineKind> cuda_body_kind(const PackedCloud& cloud, const Query& query,
-                                               const SearchOptions& options, const OpenGpus& open) {
+                                               const SearchOptions& options, const OpenGpus& open,
+                                               KeptOnGpus* kept) {
   return body_kind(cloud, query,
-                   [&](const Query& body) { return cuda_kind(cloud, body, options, open); });
+                   [&](const Query& body) { return cuda_kind(cloud, body, options, open, kept); });
 }
 #endif
 

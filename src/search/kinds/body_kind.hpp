@@ -58,6 +58,7 @@ std::unique_ptr<PageEngineKind> cpu_body_kind(const PackedCloud& cloud, const Qu
 /// The CUDA engines of a query with bodies, made as by cuda_kind(). `open` is called for every
 /// body, and always chooses the same GPUs.
 std::unique_ptr<PageEngineKind> cuda_body_kind(const PackedCloud& cloud, const Query& query,
-                                               const SearchOptions& options, const OpenGpus& open);
+                                               const SearchOptions& options, const OpenGpus& open,
+                                               KeptOnGpus* kept = nullptr);
 
 }  // namespace clearway

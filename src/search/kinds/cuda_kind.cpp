@@ -12,6 +12,7 @@
 #include "gpu/section_engine.hpp"
 #include "gpu/sweep_engine.hpp"
 #include "search/check_query.hpp"
+#include "search/kept_on_gpus.hpp"
 #include "search/kinds/grid_kind.hpp"
 #include "search/kinds/sweep_kind.hpp"
 #include "search/memory_budget.hpp"
@@ -61,10 +62,14 @@ class Gpus {
     if (!indices_.empty()) return;
     const DeviceChoice chosen = open_();
     indices_ = chosen.gpus;
+    budget_ = chosen.memory_bytes;
     needs.most_device_bytes = chosen.memory_bytes;
     needs.short_device = chosen.short_device;
   }
   std::size_t size() const { return indices_.size(); }
+  const std::vector<int>& indices() const { return indices_; }
+  /// Bytes that may be taken on each GPU.
+  std::uint64_t budget() const { return budget_; }
 
   /// Makes an engine on each GPU, all at once.
   template <typename Make>
@@ -98,6 +103,7 @@ class Gpus {
   OpenGpus open_;
   bool end_contexts_;
   std::vector<int> indices_;
+  std::uint64_t budget_ = 0;
 };
 
 /// Adds up the statistics of the engines, and reports the memory that they took.
@@ -117,11 +123,15 @@ template <typename Element>
 class CudaSweepKindOf final : public SweepKindOf<Element> {
  public:
   CudaSweepKindOf(const PackedCloud& cloud, const Query& query, const SearchOptions& options,
-                  OpenGpus open)
+                  OpenGpus open, KeptOnGpus* kept)
       : SweepKindOf<Element>(needs_of(cloud, options, 1), cloud, query, options, kFieldFineness),
-        gpus_(std::move(open), options.end_gpus) {}
+        gpus_(std::move(open), options.end_gpus),
+        kept_(kept != nullptr && kept->are_of(cloud) ? kept : nullptr) {}
 
-  void resolve_devices() override { gpus_.resolve(this->needs_); }
+  void resolve_devices() override {
+    gpus_.resolve(this->needs_);
+    if (kept_ != nullptr) this->needs_.most_device_bytes = kept_->left_of(gpus_.budget());
+  }
 
   std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const override {
     return gpus_.size() *
@@ -132,12 +142,28 @@ class CudaSweepKindOf final : public SweepKindOf<Element> {
     const SweepRefOf<Element>& sweep = filter_->ref();
     return cuda_sweep_bytes(sweep) + layout.slots * cuda_sweep_slot_bytes(sweep, cloud_, layout);
   }
+  std::uint64_t own_device_bytes(const SlotLayout& layout) const override {
+    const std::uint64_t all = device_bytes(layout);
+    if (kept_ == nullptr) return all;
+    const std::uint64_t model = cuda_model_bytes(filter_->ref());
+    return kept_->keeps_model(model, gpus_.budget()) ? all - model : all;
+  }
   PageEngines make(const SlotLayout& layout) override {
+    KeptOnGpus::OnDevices kept;
+    if (kept_ != nullptr) kept = kept_->on(gpus_.indices(), gpus_.budget());
     return gpus_.engines([&](int gpu) -> std::unique_ptr<PageEngine> {
+      if (!kept.empty()) {
+        return CudaSweepEngineOf<Element>::of_kept(filter_->ref(), this->field_, cloud_, layout,
+                                                   kept.at(gpu));
+      }
       return std::make_unique<CudaSweepEngineOf<Element>>(gpu, filter_->ref(), cloud_, layout);
     });
   }
-  EngineEnd end(PageEngines engines) const override { return gpus_.end(std::move(engines)); }
+  EngineEnd end(PageEngines engines) const override {
+    if (kept_ == nullptr) return gpus_.end(std::move(engines));
+    engines.clear();  // what they leave takes no time to end
+    return {};
+  }
   void report_search(EngineList engines, SearchReport& report,
                      const MessageLog& log) const override {
     this->report_statistics(report_of<CudaSweepEngineOf<Element>, SweepStatistics>(engines, report),
@@ -150,6 +176,7 @@ class CudaSweepKindOf final : public SweepKindOf<Element> {
   using SweepKindOf<Element>::filter_;
 
   Gpus gpus_;
+  KeptOnGpus* const kept_;
 };
 
 class CudaGridKind final : public GridKind {
@@ -185,17 +212,20 @@ class CudaGridKind final : public GridKind {
 }  // namespace
 
 std::unique_ptr<PageEngineKind> cuda_kind(const PackedCloud& cloud, const Query& query,
-                                          const SearchOptions& options, OpenGpus open) {
+                                          const SearchOptions& options, OpenGpus open,
+                                          KeptOnGpus* kept) {
   if (chosen_engine(options) == Engine::kGrid) {
     return std::make_unique<CudaGridKind>(cloud, query, options, std::move(open));
   }
   if (query.model.is_solid()) {
-    return std::make_unique<CudaSweepKindOf<SolidTriangle>>(cloud, query, options, std::move(open));
+    return std::make_unique<CudaSweepKindOf<SolidTriangle>>(cloud, query, options, std::move(open),
+                                                            kept);
   }
   if (query.model.is_surface()) {
-    return std::make_unique<CudaSweepKindOf<Triangle>>(cloud, query, options, std::move(open));
+    return std::make_unique<CudaSweepKindOf<Triangle>>(cloud, query, options, std::move(open),
+                                                       kept);
   }
-  return std::make_unique<CudaSweepKindOf<Vec3>>(cloud, query, options, std::move(open));
+  return std::make_unique<CudaSweepKindOf<Vec3>>(cloud, query, options, std::move(open), kept);
 }
 
 namespace {

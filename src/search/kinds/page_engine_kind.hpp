@@ -109,6 +109,10 @@ class PageEngineKind {
   virtual std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const = 0;
   /// Bytes of memory on each device with this layout: what make() allocates and what searches take.
   virtual std::uint64_t device_bytes(const SlotLayout&) const { return 0; }
+  /// device_bytes() without what stays on the devices for other searches too.
+  virtual std::uint64_t own_device_bytes(const SlotLayout& layout) const {
+    return device_bytes(layout);
+  }
   /// Describes the index in the log and in the report.
   virtual void report_index(SearchReport& report, const MessageLog& log) const = 0;
   /// Makes an engine for each device, each with the layout's number of slots. The index outlives

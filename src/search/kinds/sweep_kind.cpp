@@ -40,6 +40,7 @@ std::vector<PageEngineKind::IndexSize> SweepKindOf<Element>::index_sizes() const
 template <typename Element>
 const PoseReach& SweepKindOf<Element>::build_index(const QueryTrees& trees,
                                                    std::uint64_t most_bytes) {
+  of_session_ = trees.of_session;
   filter_.reset();
   field_.reset();
   field_ = trees.model->field<Element>(
@@ -105,7 +106,8 @@ std::uint64_t CpuSweepKindOf<Element>::host_bytes(const SlotLayout& layout,
 template <typename Element>
 PageEngines CpuSweepKindOf<Element>::make(const SlotLayout& layout) {
   PageEngines engines;
-  engines.push_back(std::make_unique<SweepEngineOf<Element>>(cloud_, *filter_, layout));
+  engines.push_back(
+      std::make_unique<SweepEngineOf<Element>>(cloud_, *filter_, layout, this->of_session_));
   return engines;
 }
 

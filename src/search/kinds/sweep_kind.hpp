@@ -40,6 +40,7 @@ class SweepKindOf : public PageEngineKind {
   const SearchOptions& options_;
   std::shared_ptr<const ModelField> field_;
   std::optional<SweepFilterOf<Element>> filter_;
+  bool of_session_ = false;  ///< whether there are questions to come, as build_index() learns
 
  private:
   double fineness_for_query() const;

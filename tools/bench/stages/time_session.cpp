@@ -151,8 +151,9 @@ ordered_json time_peer(const SessionTimes& options, const Model& model,
 
 ordered_json time_session(const SessionTimes& options) {
   const Stopwatch opening;
-  const Session session(options.environment,
-                        {.device = device_named(options.device), .threads = options.threads});
+  const Session session(options.environment, {.device = device_named(options.device),
+                                              .threads = options.threads,
+                                              .device_memory_bytes = options.device_memory_bytes});
   ordered_json out = {{"points", session.store().point_count()},
                       {"opened_seconds", opening.seconds()},
                       {"threads", options.threads},

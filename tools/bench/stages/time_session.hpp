@@ -15,6 +15,7 @@ struct SessionTimes {
   int askers = 1;       ///< threads that ask at the same time
   std::uint64_t questions = 1000;
   std::string device = "auto";
+  std::uint64_t device_memory_bytes = 0;  ///< as in SessionOptions
   bool one_run = false;  ///< whether the whole trajectory is searched too, in one question
   bool peer = false;     ///< whether nanoflann answers some of the questions, too
   std::uint64_t repeat_memory = 0;  ///< further questions, after which the memory is compared

@@ -134,6 +134,11 @@ const SolidParts& ModelLooks::solids(const Model& model) const {
   return *solids_;
 }
 
+const ModelTree& ModelLooks::tree(const std::vector<Vec3>& points) const {
+  std::call_once(tree_made_, [&] { tree_.emplace(points); });
+  return *tree_;
+}
+
 PointsAlone ModelLooks::alone(const std::vector<Vec3>& points) const {
   std::call_once(alone_made_, [&] {
     Neighbours neighbours(points, radius_);

@@ -10,6 +10,7 @@
 
 #include "clearway/model.hpp"
 #include "core/geometry/box.hpp"
+#include "core/geometry/model_tree.hpp"
 #include "core/geometry/solid_parts.hpp"
 #include "search/checks/facts/model_views.hpp"
 
@@ -46,6 +47,8 @@ class ModelLooks {
   const ModelView& view(const std::vector<Vec3>& points, int axis) const;
   const SolidParts& solids(const Model& model) const;
   PointsAlone alone(const std::vector<Vec3>& points) const;
+  /// A tree over the points, for nearest neighbours.
+  const ModelTree& tree(const std::vector<Vec3>& points) const;
 
  private:
   const double radius_;
@@ -54,9 +57,10 @@ class ModelLooks {
   Box box_{};
   mutable std::array<std::once_flag, 3> view_made_;
   mutable std::array<std::optional<ModelView>, 3> views_;
-  mutable std::once_flag solids_made_, alone_made_;
+  mutable std::once_flag solids_made_, alone_made_, tree_made_;
   mutable std::optional<SolidParts> solids_;
   mutable PointsAlone alone_;
+  mutable std::optional<ModelTree> tree_;
 };
 
 /// The looks of models that were asked about, the last ones. Thread safe.

@@ -24,8 +24,6 @@ std::optional<double> height_above_ground(const ScanPoints& points, const Box& b
 
 namespace {
 
-/// How many blocks are sampled to find the typical one.
-constexpr std::uint64_t kBlockSample = 4096;
 /// A block that is longer than this many typical blocks lies across a gap.
 constexpr double kUsual = 4;
 
@@ -37,7 +35,7 @@ std::uint32_t blocks_of(const Cell& cell) {
 
 ScanProximity::ScanProximity(const PackedCloud& cloud, double longest_block)
     : cloud_(cloud),
-      typical_block_(median_block()),
+      typical_block_(cloud.typical_block()),
       longest_block_(std::max(longest_block, kUsual * typical_block_)) {}
 
 Box ScanProximity::cell_box(std::uint32_t cell) const {
@@ -48,24 +46,6 @@ Box ScanProximity::block_box(std::uint32_t cell, std::uint32_t block) const {
   const std::uint64_t at = std::uint64_t{cell} * cloud_.blocks_per_cell() + block;
   return position_box(cloud_.quantisation(),
                       decode_block_box(cloud_.cells()[cell].box, cloud_.blocks()[at]));
-}
-
-double ScanProximity::median_block() const {
-  const std::uint64_t cells = cloud_.cells().size();
-  const std::uint64_t a_cell = std::max<std::uint64_t>(1, kBlockSample / cells);
-  const std::uint64_t stride = divide_up(cells, kBlockSample);
-  std::vector<double> diagonals;
-  for (std::uint64_t cell = 0; cell < cells; cell += stride) {
-    const std::uint64_t blocks = blocks_of(cloud_.cells()[cell]);
-    for (std::uint64_t i = 0; i < std::min(blocks, a_cell); ++i) {
-      const std::uint64_t block = i * blocks / std::min(blocks, a_cell);
-      diagonals.push_back(2 * half_diagonal(block_box(static_cast<std::uint32_t>(cell),
-                                                      static_cast<std::uint32_t>(block))));
-    }
-  }
-  const auto middle = diagonals.begin() + static_cast<std::ptrdiff_t>(diagonals.size() / 2);
-  std::nth_element(diagonals.begin(), middle, diagonals.end());
-  return *middle;
 }
 
 void ScanProximity::look_into(std::uint32_t cell, const Box& box, bool any, Nearest& best) const {

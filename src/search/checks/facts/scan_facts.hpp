@@ -25,7 +25,7 @@ class ScanProximity {
   /// diagonal up to this length count in any case, in the environment's unit.
   ScanProximity(const PackedCloud& cloud, double longest_block);
 
-  /// The median diagonal of the blocks, found from a sample where there are many.
+  /// PackedCloud::typical_block().
   double typical_block() const { return typical_block_; }
 
   /// A block of the scan and its distance to the box that was asked about.
@@ -48,7 +48,6 @@ class ScanProximity {
   Box block_box(std::uint32_t cell, std::uint32_t block) const;
   void look_into(std::uint32_t cell, const Box& box, bool any, Nearest& best) const;
   Nearest descend(const Box& box, double most, bool any) const;
-  double median_block() const;
 
   const PackedCloud& cloud_;
   double typical_block_ = 0;
