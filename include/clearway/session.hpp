@@ -61,8 +61,8 @@ class SessionAnswer : public SearchReport {
   std::shared_ptr<const Tables> tables_;
 };
 
-/// An environment that stays open for questions, with the GPUs that were started and with what is
-/// looked up of the models that were asked about. Several threads may ask at once. They share the
+/// An environment that stays open for questions, with the GPUs that were started, the points that
+/// are there, and what is looked up of the models that were asked about. Several threads may ask at once. They share the
 /// memory of the options: a question waits where its memory is in use by others. A question that
 /// fails or is stopped leaves the session as it was.
 class Session {
@@ -78,10 +78,11 @@ class Session {
   const SessionOptions& options() const;
 
   /// Answers a question as search() does, in memory. Throws as search() does, and InputError where
-  /// the store's file was replaced or changed since it was opened.
+  /// the store's file was replaced or changed since it was opened, or could not be read.
   SessionAnswer search(const Query& query, const QuestionOptions& options = {}) const;
 
-  /// Forgets the models that were asked about, which gives their memory back.
+  /// Forgets the models that were asked about, and what else waits for questions on the host and on
+  /// GPUs, which gives the memory back.
   void forget_models() const;
   /// Bytes of memory that the session keeps for questions to come, besides the mapped store.
   std::uint64_t kept_bytes() const;

@@ -57,6 +57,12 @@ KeptOnGpus::OnDevices KeptOnGpus::on([[maybe_unused]] const std::vector<int>& gp
   return devices_;
 }
 
+void KeptOnGpus::forget_all() {
+  OnDevices ended;
+  const std::lock_guard lock(mutex_);
+  ended.swap(devices_);
+}
+
 bool KeptOnGpus::give_way() {
   OnDevices ended;
   const std::lock_guard lock(mutex_);

@@ -33,6 +33,8 @@ class KeptOnGpus {
   /// little memory.
   OnDevices on(const std::vector<int>& gpus, std::uint64_t budget_bytes);
 
+  /// Gives back what is kept now. What engines use stays as long as they.
+  void forget_all();
   /// Keeps nothing on the GPUs from now on, for questions that need their memory. What engines use
   /// stays as long as they. Returns whether anything was kept before.
   bool give_way();

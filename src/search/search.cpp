@@ -39,7 +39,7 @@ namespace clearway {
 namespace {
 
 /// The least number of poses for which a session of its own accord asks a GPU, because the CPU has
-/// answered for fewer poses before a GPU's slots are made.
+/// answered for fewer poses before a GPU has started.
 constexpr std::size_t kPosesForGpu = 256;
 
 /// Thrown when no GPU is available; the user has already been told why.
@@ -642,6 +642,7 @@ class Search {
       static_cast<TableSummary&>(report_) =
           write_result(store_, found.result, header_, file_->pending.partial(), found.write_bytes,
                        progress_, chainage(), options_.threads, findings());
+      store_.check_read();
       file_->pending.publish();
     } catch (const ResourceError& error) {
       throw ResourceError(error.what(), Remedy::kResume);

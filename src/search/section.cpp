@@ -395,6 +395,7 @@ class Finder {
     report_.motion = data_.motion;
     report_.warnings = data_.warnings;
     write_section(data_, blocked_, unknown_, pending_.partial());
+    store_.check_read();
     pending_.publish();
   }
 

@@ -57,6 +57,7 @@ struct Session::State {
         options(machine),
         for_search(search_options(machine)),
         session(store, for_search, KeptModels::Kept::kForSession) {
+    store.reader().survive_faults();
     if (may_take_gpus(for_search) && !fallback_allowed(for_search)) {
       session.start_surely(for_search);
     }
@@ -98,7 +99,9 @@ SessionAnswer Session::search(const Query& query, const QuestionOptions& asked) 
   options.progress = asked.progress;
   options.message = asked.message;
   options.stop = asked.stop;
-  state_->store.reader().check_unchanged();
+  const StoreReader& reader = state_->store.reader();
+  reader.check_read();
+  reader.check_unchanged();
   SessionAnswer answer;
   // Nobody keeps the session alive for an answer's sake, so the tables' memory may have nowhere to
   // go back to.
@@ -116,7 +119,11 @@ SessionAnswer Session::search(const Query& query, const QuestionOptions& asked) 
     if (error.remedy() != Remedy::kMoreDeviceMemory) throw;
     if (!state_->session.kept_on_gpus().give_way()) throw;
     static_cast<SearchReport&>(answer) = ask();
+  } catch (const InputError&) {
+    reader.check_read();  // which is why a cell may have seemed damaged
+    throw;
   }
+  reader.check_read();
   tables->store = state_->store.path();
   SessionAnswer::Tables::set_distance_without_bodies(
       tables->findings, std::numeric_limits<double>::quiet_NaN(), *tables);

@@ -70,12 +70,13 @@ class SessionState {
   /// before the answer does.
   std::shared_ptr<SpareTables> shared_spare() { return spare_; }
   bool is_session() const { return models_.is_session(); }
-  /// Forgets the models, and memory that is kept for questions to come.
+  /// Forgets the models, what is on the GPUs, and memory that is kept for questions to come.
   void forget() {
     models_.forget_all();
+    kept_on_gpus_.forget_all();
     spare_->forget_all();
   }
-  /// Bytes of memory that is kept for questions to come.
+  /// Bytes of memory on the host that is kept for questions to come.
   std::uint64_t kept_bytes() const { return models_.allocated_bytes() + spare_->bytes(); }
 
   /// The start of the GPUs, which is begun where that has not been done; null where none is

@@ -5,6 +5,7 @@
 #include "gpu/beam_engine.hpp"
 #include "gpu/devices.hpp"
 #include "gpu/grid_engine.hpp"
+#include "gpu/kept_on_device.hpp"
 #include "gpu/section_engine.hpp"
 #include "gpu/sweep_engine.hpp"
 #include "stream/plan.hpp"
@@ -39,6 +40,28 @@ SearchResult sweep_on_cuda(const PackedCloud& cloud, const Query& query, int thr
         return engine;
       },
       true);
+}
+
+/// Searches twice with the same cells kept on the device, where there is room for about a half of
+/// them, and returns the second answer.
+SearchResult sweep_with_kept_cells(const PackedCloud& cloud, const Query& query, int threads) {
+  std::uint64_t bytes = 0;
+  for (std::uint32_t cell = 0; cell < cloud.cells().size(); ++cell) {
+    bytes += DeviceArrays::whole(cloud.packed_bytes(cell) + kPagePadding);
+  }
+  const auto kept = std::make_shared<KeptOnDevice>(0, cloud, bytes + (1 << 12));
+  const auto search = [&] {
+    return run_sweep(
+        cloud, query, threads,
+        [&kept]<typename Element>(const SweepFilterOf<Element>& filter, const PackedCloud& of,
+                                  const SlotLayout& layout) {
+          const auto field = std::make_shared<int>();
+          return CudaSweepEngineOf<Element>::of_kept(filter.ref(), field, of, layout, kept);
+        },
+        true);
+  };
+  search();
+  return search();
 }
 
 BeamRun beams_on_cuda(const PackedCloud& cloud, const Beams& beams) {
@@ -81,8 +104,10 @@ void section_on_cuda(const PackedCloud& cloud, const IgnoredPoints& ignored,
 }  // namespace clearway
 
 int main(int count, char** arguments) {
-  clearway::test_only({{"sweep on CUDA", clearway::sweep_on_cuda, true, true, true, true},
-                       {"grid on CUDA", clearway::grid_on_cuda, false, false, false, false}});
+  clearway::test_only(
+      {{"sweep on CUDA", clearway::sweep_on_cuda, true, true, true, true},
+       {"sweep on CUDA with kept cells", clearway::sweep_with_kept_cells, true, true, true, true},
+       {"grid on CUDA", clearway::grid_on_cuda, false, false, false, false}});
   clearway::follow_pages_with(clearway::beams_on_cuda);
   clearway::block_pages_with(clearway::section_on_cuda);
   return run_catch(count, arguments, [] {

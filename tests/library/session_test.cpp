@@ -235,9 +235,15 @@ TEST_CASE("a session on a GPU gives the bytes of the CPU") {
     return asked.engine == Engine::kKdtree || asked.query.tolerance > 0;
   });
   const auto expected = answers_of_runs(scene, questions);
-  const Session session(scene.store(), {.device = Device::kCuda, .threads = 2});
-  for (const int threads : {1, 4}) {
-    CHECK(differing(scene, session, questions, expected, threads).empty());
+  // With 64 MiB questions wait for each other, and with 24 MiB nothing can stay on the GPU.
+  for (const std::uint64_t mebibytes : {0, 64, 24}) {
+    CAPTURE(mebibytes);
+    const Session session(
+        scene.store(),
+        {.device = Device::kCuda, .threads = 2, .device_memory_bytes = mebibytes << 20});
+    for (const int threads : {1, 4}) {
+      CHECK(differing(scene, session, questions, expected, threads).empty());
+    }
   }
 }
 
@@ -305,6 +311,52 @@ TEST_CASE("a session notices that its store was replaced, changed or shortened")
         scene.store(), std::filesystem::last_write_time(scene.store()) + std::chrono::seconds(1));
   }
   CHECK_THROWS_WITH(session.search(query), Contains("was replaced or changed"));
+}
+
+TEST_CASE("a store that shrinks while it is read ends the question, not the program") {
+  const SessionScene scene;
+  Random random(9);
+  const Query query{scene.models[2], smooth_path(random, kRoom, 30), {.radius = 0.1, .profile = 1}};
+  const std::string whole = bytes_of(scene.store());
+  const auto other = scene.folder / "other.h5";
+  put_bytes(other, whole);
+  const Session intact(other, {.device = Device::kCpu, .threads = 1});
+  const std::string expected = bytes_of_answer(scene, intact.search(query));
+  for (const int askers : {1, 4}) {
+    CAPTURE(askers);
+    put_bytes(scene.store(), whole);
+    const Session session(scene.store(), {.device = Device::kCpu, .threads = 2});
+    if (askers == 4) session.search(query);  // so that no hash is looked at any more
+    std::atomic<int> refused = 0, other_ends = 0;
+    std::once_flag cut;
+    const auto ask = [&] {
+      // Notes are told once the store was looked at, and before its points are.
+      const MessageCallback shorten = [&](const Message&) {
+        std::call_once(cut, [&] { std::filesystem::resize_file(scene.store(), 4096); });
+      };
+      try {
+        session.search(query, {.message = shorten});
+        ++other_ends;
+      } catch (const InputError& error) {
+        const std::string text = error.what();
+        const bool names = text.find(scene.store().string()) != std::string::npos;
+        const bool why = text.find("shrank") != std::string::npos ||
+                         text.find("was replaced or changed") != std::string::npos;
+        ++(names && why ? refused : other_ends);
+      }
+    };
+    {
+      std::vector<std::jthread> threads;
+      for (int i = 0; i < askers; ++i) threads.emplace_back(ask);
+    }
+    CHECK(refused == askers);
+    CHECK(other_ends == 0);
+    CHECK_THROWS_AS(session.search(query), InputError);
+    CHECK(bytes_of_answer(scene, intact.search(query)) == expected);
+  }
+  put_bytes(scene.store(), whole);
+  const Session again(scene.store(), {.device = Device::kCpu, .threads = 2});
+  CHECK(bytes_of_answer(scene, again.search(query)) == expected);
 }
 
 TEST_CASE("too little memory is refused with the number that would do") {

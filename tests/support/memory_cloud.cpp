@@ -126,6 +126,7 @@ void MemoryCloud::add_cell(std::span<Point> points) {
       values[i] = points[std::min(i, points.size() - 1)].q[axis];
     }
     append_packed_chunk<std::int32_t>(values, chunks[axis]);
+    chunks[axis].resize(chunks[axis].size() + kPagePadding);
   }
 }
 
@@ -133,15 +134,13 @@ std::array<PackedChunk<std::int32_t>, 3> MemoryCloud::coordinates(std::uint32_t 
   if (cell == damaged_cell_) {
     throw InputError("memory: cell " + std::to_string(cell) + " is damaged");
   }
-  const auto& chunks = chunks_[cell];
-  return {PackedChunk<std::int32_t>(chunks[0], cell_points_),
-          PackedChunk<std::int32_t>(chunks[1], cell_points_),
-          PackedChunk<std::int32_t>(chunks[2], cell_points_)};
+  return {PackedChunk<std::int32_t>(packed(cell, 0), cell_points_),
+          PackedChunk<std::int32_t>(packed(cell, 1), cell_points_),
+          PackedChunk<std::int32_t>(packed(cell, 2), cell_points_)};
 }
 
 std::uint64_t MemoryCloud::packed_bytes(std::uint32_t cell) const {
-  const auto& chunks = chunks_[cell];
-  return chunks[0].size() + chunks[1].size() + chunks[2].size();
+  return packed(cell, 0).size() + packed(cell, 1).size() + packed(cell, 2).size();
 }
 
 std::array<PackedChunk<std::int32_t>, 3> MemoryCloud::read_packed(std::uint32_t cell,
@@ -149,7 +148,7 @@ std::array<PackedChunk<std::int32_t>, 3> MemoryCloud::read_packed(std::uint32_t 
   coordinates(cell);  // throws where the cell is damaged
   std::array<PackedChunk<std::int32_t>, 3> chunks;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto& bytes = chunks_[cell][axis];
+    const std::span<const std::byte> bytes = packed(cell, axis);
     std::memcpy(to.data(), bytes.data(), bytes.size());
     chunks[axis] = {to.first(bytes.size()), cell_points_};
     to = to.subspan(bytes.size());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/cloud/packed_cloud.hpp"
+#include "core/page/page.hpp"
 
 namespace clearway {
 
@@ -39,6 +40,13 @@ class MemoryCloud final : public PackedCloud {
   std::uint64_t packed_bytes(std::uint32_t cell) const override;
   std::array<PackedChunk<std::int32_t>, 3> read_packed(std::uint32_t cell,
                                                        std::span<std::byte> to) const override;
+
+  /// Every second cell, so that engines get cells both in place and copied.
+  std::optional<std::array<PackedChunk<std::int32_t>, 3>> in_place(
+      std::uint32_t cell) const override {
+    if (cell % 2 == 1) return std::nullopt;
+    return coordinates(cell);
+  }
 
   bool has_classes() const override { return !classes_.empty(); }
   PackedChunk<std::uint8_t> classes(std::uint32_t cell) const override {
@@ -76,6 +84,12 @@ class MemoryCloud final : public PackedCloud {
   std::vector<TreeNode> tree_;
   std::vector<BlockBox> blocks_;
   std::vector<std::uint64_t> sources_;
+  /// The packed bytes of x, y and z of a cell, which others follow that a decoder may read.
+  std::span<const std::byte> packed(std::uint32_t cell, std::size_t axis) const {
+    const std::vector<std::byte>& bytes = chunks_[cell][axis];
+    return std::span(bytes).first(bytes.size() - kPagePadding);
+  }
+
   std::vector<std::array<std::vector<std::byte>, 3>> chunks_;
   std::vector<std::vector<std::byte>> classes_;  ///< one chunk for each cell
   std::uint32_t damaged_cell_ = 0xffffffff;

@@ -9,8 +9,11 @@
 
 namespace clearway {
 
+struct MapRecord;
+
 /// A read-only map of a whole file. If the file shrinks or fails under the map, the system sends
-/// SIGBUS, which install_map_fault_handler() turns into a message and an exit code.
+/// SIGBUS, which install_map_fault_handler() turns into a message and an exit code, and
+/// survive_faults() into pages of zeros.
 class MappedFile {
  public:
   explicit MappedFile(const std::filesystem::path& path);
@@ -23,9 +26,17 @@ class MappedFile {
   /// The file itself, for reads that do not go through the map.
   const File& file() const { return file_; }
 
+  /// From now on, what can no longer be read is zeros, and failed() says so: for programs that go
+  /// on without the file. Installs a handler of SIGBUS, which passes on what does not concern a
+  /// map. Source of the idea: libwayland's access to shared memory.
+  void survive_faults() const;
+  /// Whether something of the file could not be read, so that what was read may be zeros.
+  bool failed() const;
+
  private:
   File file_;
   std::span<const std::byte> bytes_;
+  MapRecord* record_ = nullptr;
 };
 
 /// Makes a fault under any MappedFile print the file's name to standard error and end the process

@@ -432,6 +432,11 @@ void StoreReader::check_unchanged() const {
          "open it again");
 }
 
+void StoreReader::check_read() const {
+  if (!map_.failed()) return;
+  refuse(name(), "the file shrank or could not be read while it was in use");
+}
+
 StoreReader::Touched StoreReader::touched() const {
   Touched touched;
   const auto is_set = [](std::uint8_t& flag) {

@@ -100,6 +100,12 @@ class StoreReader final : public PackedCloud {
   /// written to or shortened since.
   void check_unchanged() const;
 
+  /// Lets the program go on where the file shrinks or fails while it is read: reading goes on over
+  /// zeros, and check_read() then throws.
+  void survive_faults() const { map_.survive_faults(); }
+  /// Throws InputError where something of the file could not be read since survive_faults().
+  void check_read() const;
+
  private:
   std::span<const std::byte> checked_chunk(std::uint32_t cell, int dataset) const;
   void check_hash(std::uint32_t cell, int dataset, std::span<const std::byte> bytes) const;

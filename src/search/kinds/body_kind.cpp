@@ -43,9 +43,7 @@ class BodyEngine final : public PageEngine {
   std::span<std::byte> page(std::uint32_t slot) override {
     return bodies_.front().engine->page(slot);
   }
-  std::optional<CellPayload> kept(std::uint32_t slot, std::uint32_t cell) override {
-    return bodies_.front().engine->kept(slot, cell);
-  }
+  std::optional<CellPayload> kept(std::uint32_t slot, std::uint32_t cell) override;
   void start(std::uint32_t slot, const PageShape& shape) override;
   void wait(std::uint32_t slot) override;
   PageResult finish(std::uint32_t slot) override;
@@ -122,12 +120,21 @@ void BodyEngine::start(std::uint32_t slot, const PageShape& shape) {
   }
 }
 
+/// Where the first body's engine finds a cell that the engines of all bodies find.
+std::optional<CellPayload> BodyEngine::kept(std::uint32_t slot, std::uint32_t cell) {
+  std::optional<CellPayload> first = bodies_.front().engine->kept(slot, cell);
+  for (std::size_t body = 1; body < bodies_.size() && first; ++body) {
+    if (!bodies_[body].engine->kept(slot, cell)) first.reset();
+  }
+  return first;
+}
+
 /// Corrects, in a copy of the first body's page, where the cells are that are kept outside of it.
 void BodyEngine::find_kept(std::span<std::byte> page, const PageShape& shape, PageEngine& engine,
                            std::uint32_t slot) {
   for (PageCell& cell : std::span(reinterpret_cast<PageCell*>(page.data()), shape.cells)) {
     if (cell.chunks[0].payload < shape.bytes()) continue;
-    // The first body's engine holds the cell, so the other engines find it too.
+    // The engine has found the cell already, and it stays there until the page is finished.
     std::ranges::copy(engine.kept(slot, cell.cell).value(), cell.chunks);
   }
 }

@@ -1,5 +1,6 @@
 #include "io/files/mapped_file.hpp"
 
+#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -55,4 +56,39 @@ TEST_CASE("a file that shrinks under its map ends the program with its name") {
   REQUIRE(WIFEXITED(status));
   CHECK(WEXITSTATUS(status) == 4);
   CHECK_THAT(message, Catch::Contains(path.string()) && Catch::Contains("shrank"));
+}
+
+TEST_CASE("a map that survives a file that shrinks has zeros there and says so") {
+  const ScratchFolder folder;
+  put_bytes(folder / "kept", std::string(100'000, 'x'));
+  put_bytes(folder / "cut", std::string(100'000, 'x'));
+  const MappedFile kept(folder / "kept"), cut(folder / "cut");
+  kept.survive_faults();
+  cut.survive_faults();
+  CHECK(cut.bytes()[90'000] == std::byte{'x'});
+  CHECK_FALSE(cut.failed());
+  REQUIRE(::truncate((folder / "cut").c_str(), 10) == 0);
+  CHECK(cut.bytes()[90'000] == std::byte{0});
+  CHECK(cut.failed());
+  CHECK(cut.bytes()[3] == std::byte{'x'});
+  CHECK(kept.bytes()[90'000] == std::byte{'x'});
+  CHECK_FALSE(kept.failed());
+}
+
+TEST_CASE("a fault that concerns no map goes to the handler that was there before") {
+  const ScratchFolder folder;
+  put_bytes(folder / "map", "abc");
+  const pid_t child = ::fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    ::signal(SIGBUS, [](int) { ::_exit(42); });
+    const MappedFile map(folder / "map");
+    map.survive_faults();
+    ::raise(SIGBUS);
+    ::_exit(98);
+  }
+  int status = 0;
+  REQUIRE(::waitpid(child, &status, 0) == child);
+  REQUIRE(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 42);
 }

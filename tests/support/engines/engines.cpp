@@ -24,7 +24,8 @@ SearchResult sweep(const PackedCloud& cloud, const Query& query, int threads) {
   return run_sweep(cloud, query, threads,
                    []<typename Element>(const SweepFilterOf<Element>& filter, const PackedCloud& of,
                                         const SlotLayout& layout) {
-                     return std::make_unique<SweepEngineOf<Element>>(of, filter, layout);
+                     const bool in_place = layout.cells % 2 == 0;
+                     return std::make_unique<SweepEngineOf<Element>>(of, filter, layout, in_place);
                    });
 }
 
