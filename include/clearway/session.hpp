@@ -62,9 +62,9 @@ class SessionAnswer : public SearchReport {
 };
 
 /// An environment that stays open for questions, with the GPUs that were started, the points that
-/// are there, and what is looked up of the models that were asked about. Several threads may ask at once. They share the
-/// memory of the options: a question waits where its memory is in use by others. A question that
-/// fails or is stopped leaves the session as it was.
+/// are there, and what is looked up of the models that were asked about. Several threads may ask at
+/// once. They share the memory of the options: a question waits where its memory is in use by
+/// others. A question that fails or is stopped leaves the session as it was.
 class Session {
  public:
   /// Throws InputError where the file is not an intact store of this version, and ResourceError
