@@ -313,6 +313,20 @@ TEST_CASE("a session notices that its store was replaced, changed or shortened")
   CHECK_THROWS_WITH(session.search(query), Contains("was replaced or changed"));
 }
 
+TEST_CASE("a session may reach its store by a link, and notices where that leads elsewhere") {
+  const SessionScene scene;
+  Random random(10);
+  const Query query{scene.models[1], smooth_path(random, kRoom, 3), {0.1}};
+  const auto link = scene.folder / "link.h5", other = scene.folder / "other.h5";
+  std::filesystem::create_symlink(scene.store(), link);
+  const Session session(link, {.device = Device::kCpu, .threads = 1});
+  CHECK(bytes_of_answer(scene, session.search(query)) == bytes_by_run(scene, {query}));
+  put_bytes(other, bytes_of(scene.store()));
+  std::filesystem::remove(link);
+  std::filesystem::create_symlink(other, link);
+  CHECK_THROWS_WITH(session.search(query), Contains("was replaced or changed"));
+}
+
 TEST_CASE("a store that shrinks while it is read ends the question, not the program") {
   const SessionScene scene;
   Random random(9);

@@ -26,6 +26,7 @@
 #include "cli/run_options.hpp"
 #include "cli/steps.hpp"
 #include "cli/support/console.hpp"
+#include "cli/support/inherited_store.hpp"
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/program.hpp"
@@ -267,7 +268,7 @@ void log_report(const SearchReport& report, const RunOptions& options, const std
 
 Store open_environment(const std::filesystem::path& path) {
   try {
-    return Store(path);
+    return open_store(path);
   } catch (const InputError&) {
     check_is_store(path);
     throw;

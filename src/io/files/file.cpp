@@ -101,11 +101,22 @@ File::Stamp File::stamp() const {
 
 bool File::is_regular() const { return S_ISREG(status_of(descriptor_, name_).st_mode); }
 
+namespace {
+
+bool are_same(const struct stat& a, const struct stat& b) {
+  return a.st_ino == b.st_ino && a.st_dev == b.st_dev;
+}
+
+}  // namespace
+
 bool File::is_at(const std::filesystem::path& path) const {
-  const struct stat opened = status_of(descriptor_, name_);
   struct stat named {};
-  return ::lstat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
-         opened.st_dev == named.st_dev;
+  return ::lstat(path.c_str(), &named) == 0 && are_same(status_of(descriptor_, name_), named);
+}
+
+bool File::is_reached_by(const std::filesystem::path& path) const {
+  struct stat reached {};
+  return ::stat(path.c_str(), &reached) == 0 && are_same(status_of(descriptor_, name_), reached);
 }
 
 std::uint64_t File::names() const { return status_of(descriptor_, name_).st_nlink; }

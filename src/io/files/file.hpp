@@ -42,8 +42,10 @@ class File {
     friend bool operator==(const Stamp&, const Stamp&) = default;
   };
   Stamp stamp() const;
-  /// Whether the path names this very file.
+  /// Whether the path names this very file. A symbolic link there does not, whatever it leads to.
   bool is_at(const std::filesystem::path& path) const;
+  /// Whether the path leads to this very file, by way of symbolic links or not.
+  bool is_reached_by(const std::filesystem::path& path) const;
   /// Number of names (hard links) of the file.
   std::uint64_t names() const;
 

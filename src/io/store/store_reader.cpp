@@ -426,7 +426,7 @@ std::uint64_t StoreReader::fingerprint() const {
 }
 
 void StoreReader::check_unchanged() const {
-  if (map_.file().is_at(name()) && map_.file().stamp() == stamp_) return;
+  if (map_.file().is_reached_by(name()) && map_.file().stamp() == stamp_) return;
   refuse(name(),
          "the file was replaced or changed since it was opened, so its points are no longer known; "
          "open it again");

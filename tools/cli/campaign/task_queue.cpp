@@ -22,6 +22,7 @@
 #include "campaign/task_state.hpp"
 #include "clearway/error.hpp"
 #include "cli/clearway_program.hpp"
+#include "cli/support/inherited_store.hpp"
 #include "cli/support/program.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/choose_engine.hpp"
@@ -230,6 +231,7 @@ void TaskQueue::start_command(Work& work, std::size_t number) {
   TaskFolder& folder = work.folder;
   folder.begin_command(number);
   const campaign::Command& words = folder.task().commands[number];
+  // The next tasks most often ask about the same store.
   ChildCommand command{.words = with_threads(words, jobs_),
                        .folder = folder.path(),
                        .log = folder.log(),
@@ -239,6 +241,7 @@ void TaskQueue::start_command(Work& work, std::size_t number) {
   for (const Work& other : working_) {
     if (&other != &work) command.foreign.push_back(other.folder.lock_descriptor());
   }
+  if (unfinished_.size() > 1) keep_store_of(words);
   work.child = start_child(command);
 }
 

@@ -9,6 +9,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import signal
 import struct
 import subprocess
@@ -162,6 +163,29 @@ def new_plans_keep_results(test):
     expect(status(test.path)["done"] == 6, "not all are done")
 
 
+def stores_are_opened_once(test):
+    """The runs of one call share the store that the first of them needs, and give the same bytes."""
+    results = {file: file.read_bytes() for file in test.path.glob("runs/*/*/*/out.h5")}
+    for file in results:
+        file.unlink()
+    if shutil.which("strace") is None:
+        print("strace is not installed, so nobody counts how often the store is opened")
+        expect(outcome("campaign", "run", test.path, "--all").returncode == 0, "anew")
+    else:
+        calls = test.work / "calls.txt"
+        done = subprocess.run(["strace", "-f", "-qq", "-e", "trace=openat,clone,clone3", "-o", calls,
+                               PROGRAM, "campaign", "run", test.path, "--all"],
+                              stderr=subprocess.PIPE, text=True)
+        expect(done.returncode == 0, done.stderr)
+        lines = calls.read_text().splitlines()
+        parent = lines[0].split()[0]
+        opened = [line.split()[0] for line in lines if "site.h5" in line and "O_RDONLY" in line]
+        expect(opened and set(opened) == {parent}, f"the store is opened by {set(opened)}")
+        started = [line for line in lines if line.startswith(parent) and "CLONE_THREAD" in line]
+        expect(not started, "the parent of the runs has started a thread")
+    expect(results == {file: file.read_bytes() for file in results}, "other bytes")
+
+
 def failures(test):
     model = test.work / "vehicles/v02.ply"
     sound = model.read_bytes()
@@ -273,7 +297,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         test = Test(pathlib.Path(folder))
         for check in [errors_name_the_key, plans_are_stable, tasks_are_idempotent, by_hand,
-                      one_at_a_time, new_plans_keep_results, failures, signals, crashes, page, misuse]:
+                      one_at_a_time, new_plans_keep_results, stores_are_opened_once, failures, signals, crashes, page, misuse]:
             begin = time.monotonic()
             check(test)
             print(f"{check.__name__}: {time.monotonic() - begin:.1f} s", flush=True)
