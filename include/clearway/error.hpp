@@ -12,6 +12,7 @@ enum class Remedy {
   kMoreDeviceMemory,  ///< amount: bytes that are enough on each GPU
   kOtherGpu,          ///< another GPU, or the CPU
   kCpuDevice,         ///< the CPU, because a GPU failed or there is none
+  kNewProcess,        ///< a new process, or the CPU, because this one cannot use the GPU any more
   kLessDeviceMemory,  ///< a smaller budget of GPU memory, or the CPU
   kLessMemory,        ///< a smaller memory budget, or the CPU
   kFewerThreads,

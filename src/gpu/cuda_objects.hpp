@@ -11,15 +11,15 @@
 
 namespace clearway {
 
-/// Throws ResourceError naming the call's place and CUDA's reason if a call failed. To be used
-/// after a kernel launch as check_cuda(cudaGetLastError()).
+/// Throws the ResourceError of a call that failed: it names the call's place and CUDA's reason, and
+/// says so where the process can use the device no more.
+[[noreturn]] void throw_cuda_error(cudaError_t status, std::source_location where);
+
+/// Throws as throw_cuda_error() if a call failed. To be used after a kernel launch as
+/// check_cuda(cudaGetLastError()).
 inline void check_cuda(cudaError_t status,
                        std::source_location where = std::source_location::current()) {
-  if (status == cudaSuccess) return;
-  throw ResourceError(
-      std::string("CUDA failed at ") + where.file_name() + ":" + std::to_string(where.line()) +
-          ": " + cudaGetErrorString(status),
-      status == cudaErrorMemoryAllocation ? Remedy::kLessDeviceMemory : Remedy::kCpuDevice);
+  if (status != cudaSuccess) throw_cuda_error(status, where);
 }
 
 /// Owner of a stream on the device that is current when it is made. The stream does not wait for

@@ -63,8 +63,8 @@ void CudaPageEngine::make_slots(std::uint32_t slots) {
   for (std::uint32_t i = 0; i < slots; ++i) {
     slots_.emplace_back(*memory_, search_->slot_size(), slots, i);
   }
-  check_cuda(
-      cudaStreamSynchronize(nullptr));  // the slots' streams do not wait for copies and memsets
+  // The slots' streams do not wait for the copies and memsets before.
+  check_cuda(cudaStreamSynchronize(nullptr));
 }
 
 CudaPageEngine::~CudaPageEngine() {
@@ -99,8 +99,8 @@ void CudaPageEngine::keep_cells(Slot& slot) const {
   const std::uint64_t page_bytes = slot.shape.bytes();
   const std::span cells(reinterpret_cast<const PageCell*>(slot.host_upload), slot.shape.cells);
   for (const PageCell& cell : cells) {
+    if (cell.chunks[0].payload >= page_bytes) continue;  // it is there already
     const std::uint64_t first = cell.chunks[0].payload - kPackedHeaderBytes;
-    if (cell.chunks[0].payload >= page_bytes) continue;
     std::optional<ResidentCells::Place> place = kept_->cells().room_for(cell.cell);
     if (!place) continue;
     slot.cells.push_back(*place);

@@ -65,12 +65,9 @@ class CudaPageSearch {
   }
 
  protected:
-  /// Makes the device the current one of the thread.
-  CudaPageSearch(int device, const ResultParts& parts) : device_(device), parts_(parts) {
-    use_device();
-  }
-  /// arrays: memory on the device for the arrays, as far as it is enough for them.
-  CudaPageSearch(int device, const ResultParts& parts, std::span<std::byte> arrays)
+  /// Makes the device the current one of the thread. arrays: memory there for the arrays, as far as
+  /// it is enough for them; more is allocated.
+  CudaPageSearch(int device, const ResultParts& parts, std::span<std::byte> arrays = {})
       : arrays_(arrays), device_(device), parts_(parts) {
     use_device();
   }

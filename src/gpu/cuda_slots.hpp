@@ -17,15 +17,10 @@ struct CudaSlotSize {
   std::uint64_t result;  ///< the result as PageResultArrays
   std::uint64_t work;    ///< memory that is only on the device
 
-  std::uint64_t upload() const { return whole(page + plan); }
-  std::uint64_t found() const { return whole(result); }
+  std::uint64_t upload() const { return ArrayRun::aligned(page + plan); }
+  std::uint64_t found() const { return ArrayRun::aligned(result); }
   std::uint64_t pinned() const { return upload() + found(); }
-  std::uint64_t device() const { return pinned() + whole(work); }
-
- private:
-  static constexpr std::uint64_t whole(std::uint64_t bytes) {
-    return divide_up(bytes, ArrayRun::kAlignment) * ArrayRun::kAlignment;
-  }
+  std::uint64_t device() const { return pinned() + ArrayRun::aligned(work); }
 };
 
 /// The stream of a slot, and what happened there.

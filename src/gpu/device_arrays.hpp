@@ -87,11 +87,6 @@ class DeviceArrays {
     return filled<Value>(count, 0xff);
   }
 
-  /// Bytes rounded up to the alignment of an allocation.
-  static constexpr std::uint64_t whole(std::uint64_t bytes) {
-    return (bytes + ArrayRun::kAlignment - 1) / ArrayRun::kAlignment * ArrayRun::kAlignment;
-  }
-
   std::uint64_t bytes() const {
     std::uint64_t sum = 0;
     for (const DeviceBuffer& buffer : buffers_) sum += buffer.bytes();
@@ -108,7 +103,7 @@ class DeviceArrays {
 
   template <typename Value>
   Value* add(std::size_t count) {
-    const std::uint64_t bytes = whole(count * sizeof(Value));
+    const std::uint64_t bytes = ArrayRun::aligned(count * sizeof(Value));
     if (bytes <= memory_.size()) {
       std::byte* const begin = memory_.data();
       memory_ = memory_.subspan(bytes);
@@ -135,7 +130,7 @@ class DeviceArrayCount {
   template <typename Value>
   Value* zeros(std::size_t count) {
     bytes_ += count * sizeof(Value);
-    run_bytes_ += DeviceArrays::whole(count * sizeof(Value));
+    run_bytes_ += ArrayRun::aligned(count * sizeof(Value));
     return nullptr;
   }
 

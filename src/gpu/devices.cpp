@@ -38,6 +38,13 @@ CudaDevice open_cuda_device(int index) {
   }
 }
 
+bool cuda_device_works(int index) noexcept {
+  if (cudaSetDevice(index) != cudaSuccess) return false;
+  const cudaError_t status = cudaStreamQuery(cudaStreamLegacy);
+  cudaGetLastError();
+  return status == cudaSuccess || status == cudaErrorNotReady;
+}
+
 void end_cuda_device(int index) noexcept {
   if (cudaSetDevice(index) == cudaSuccess) cudaDeviceReset();
 }

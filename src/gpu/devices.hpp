@@ -25,6 +25,10 @@ std::string cuda_device_name(int index);
 /// ResourceError.
 CudaDevice open_cuda_device(int index);
 
+/// Whether the process can still use a device that it has opened. A fault in a kernel ends that,
+/// for all work of the process there. Takes microseconds.
+bool cuda_device_works(int index) noexcept;
+
 /// What a device is started for.
 enum class CudaKernels { kSweep, kGrid, kSection };
 

@@ -72,12 +72,4 @@ void KeptOnDevice::keep(std::unique_ptr<CudaSlots> slots) {
   });
 }
 
-std::uint64_t KeptOnDevice::bytes() const {
-  const std::lock_guard lock(mutex_);
-  std::uint64_t bytes = cells_.bytes();
-  for (const KeptModel& one : models_) bytes += one.bytes;
-  for (const auto& one : slots_) bytes += one->device_bytes();
-  return bytes;
-}
-
 }  // namespace clearway

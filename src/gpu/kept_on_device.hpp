@@ -47,14 +47,11 @@ class KeptOnDevice {
   /// Keeps slots whose work is done.
   void keep(std::unique_ptr<CudaSlots> slots);
 
-  /// Bytes on the device of all that is kept now.
-  std::uint64_t bytes() const;
-
  private:
   const int device_;
   const std::uint64_t bytes_;
   ResidentCells cells_;
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   std::list<KeptModel> models_;  ///< the most recently used one first
   std::vector<std::unique_ptr<CudaSlots>> slots_;
 };

@@ -11,7 +11,7 @@ std::uint64_t bytes_of_place(const PackedCloud& cloud) {
   for (std::uint32_t cell = 0; cell < cloud.cells().size(); ++cell) {
     most = std::max(most, cloud.packed_bytes(cell));
   }
-  return DeviceArrays::whole(most + kPagePadding);
+  return ArrayRun::aligned(most + kPagePadding);
 }
 
 }  // namespace
@@ -36,7 +36,6 @@ std::optional<ResidentCells::Place> ResidentCells::find(std::uint32_t cell) {
   Held& held = places_[index];
   if (!held.filled) return std::nullopt;  // another question is bringing it
   ++held.holders;
-  ++counts_.found;
   order_.splice(order_.begin(), order_, held.order);
   return Place{cell, index, memory_.data() + index * place_bytes_, true, held.payload};
 }
@@ -69,16 +68,10 @@ void ResidentCells::release(const Place& place) {
   if (place.filled) {
     held.filled = true;
     held.payload = place.payload;
-    ++counts_.brought;
     return;
   }
   place_of_.erase(place.cell);
   order_.splice(order_.end(), order_, held.order);
-}
-
-ResidentCells::Counts ResidentCells::counts() const {
-  const std::lock_guard lock(mutex_);
-  return counts_;
 }
 
 }  // namespace clearway

@@ -29,8 +29,6 @@ class ResidentCells {
     CellPayload payload{};  ///< as seen from address 0, where it is filled
   };
 
-  /// Whether the cells are those of this cloud.
-  bool are_of(const PackedCloud& cloud) const { return &cloud == &cloud_; }
   /// The place of a cell that is there.
   std::optional<Place> find(std::uint32_t cell);
   /// An empty place for a cell, from which another cell may have left; nothing where all places are
@@ -39,13 +37,6 @@ class ResidentCells {
   /// Gives a place back. A place that the caller has filled keeps its cell from now on; an empty
   /// one is free.
   void release(const Place& place);
-
-  std::uint64_t bytes() const { return memory_.bytes(); }
-  /// Counts of cells that were there, and of cells that were brought.
-  struct Counts {
-    std::uint64_t found = 0, brought = 0;
-  };
-  Counts counts() const;
 
  private:
   struct Held {
@@ -59,11 +50,10 @@ class ResidentCells {
   const PackedCloud& cloud_;
   const std::uint64_t place_bytes_;
   DeviceBuffer memory_;
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   std::vector<Held> places_;
   std::list<std::uint32_t> order_;  ///< indices of places, the most recently used ones first
   std::unordered_map<std::uint32_t, std::uint32_t> place_of_;  ///< by cell
-  Counts counts_;
 };
 
 }  // namespace clearway

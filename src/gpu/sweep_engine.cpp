@@ -85,35 +85,25 @@ std::uint64_t bytes_of_poses(const SweepRefOf<Element>& sweep) {
 template <typename Element>
 class SweepSearch final : public CudaPageSearch {
  public:
+  /// model: the one of the sweep where it is kept on the device, or null. arrays: memory there for
+  /// the other arrays, as far as it is enough for them.
   SweepSearch(int device, const SweepRefOf<Element>& sweep, const PackedCloud& cloud,
-              const SlotLayout& layout)
-      : CudaPageSearch(device, parts_of(sweep)),
-        resident_(resident_sweep_blocks(device)),
-        quantisation_(cloud.quantisation()),
-        size_(size_of_slot(sweep, cloud, layout)),
-        on_device_(put_on_device(sweep, arrays_)),
-        work_(work_run_, sweep, most_blocks(cloud, layout)),
-        sweep_(sweep),
-        cloud_(cloud),
-        facts_(layout.slots) {
-    put_bests();
-  }
-
-  /// With a model that is kept on the device, and memory there for the other arrays.
-  SweepSearch(int device, const SweepRefOf<Element>& sweep, const PackedCloud& cloud,
-              const SlotLayout& layout, std::shared_ptr<const ModelOnDevice<Element>> model,
-              std::span<std::byte> arrays)
+              const SlotLayout& layout, std::shared_ptr<const ModelOnDevice<Element>> model = {},
+              std::span<std::byte> arrays = {})
       : CudaPageSearch(device, parts_of(sweep), arrays),
         resident_(resident_sweep_blocks(device)),
         quantisation_(cloud.quantisation()),
         size_(size_of_slot(sweep, cloud, layout)),
         model_(std::move(model)),
-        on_device_(put_poses_on_device(with_model(sweep, *model_), arrays_)),
+        on_device_(model_ ? put_poses_on_device(with_model(sweep, *model_), arrays_)
+                          : put_on_device(sweep, arrays_)),
         work_(work_run_, sweep, most_blocks(cloud, layout)),
         sweep_(sweep),
         cloud_(cloud),
         facts_(layout.slots) {
-    put_bests();
+    if (!(sweep.profile > 0)) return;
+    ProfileBestValues values(sweep);
+    bests_ = put_on_device(sweep, values.ref(), arrays_);
   }
 
   std::uint64_t device_bytes() const override {
@@ -166,12 +156,6 @@ class SweepSearch final : public CudaPageSearch {
   }
 
  private:
-  void put_bests() {
-    if (!(sweep_.profile > 0)) return;
-    ProfileBestValues values(sweep_);
-    bests_ = put_on_device(sweep_, values.ref(), arrays_);
-  }
-
   /// What the device knows of the poses by now, so that the host need not find it again.
   ProfileBestValues known_bests() const {
     ProfileBestValues values(sweep_);

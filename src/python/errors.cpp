@@ -18,6 +18,8 @@ const char* name_of(Remedy remedy) {
       return "other_gpu";
     case Remedy::kCpuDevice:
       return "cpu_device";
+    case Remedy::kNewProcess:
+      return "new_process";
     case Remedy::kLessDeviceMemory:
       return "less_device_memory";
     case Remedy::kLessMemory:

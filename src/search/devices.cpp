@@ -64,9 +64,13 @@ DeviceChoice choose_automatically(const SearchOptions& options, const MessageLog
   return automatic_choice(cuda_device_count(), open_cuda_device, wanted_bytes_of(options), log);
 }
 
+bool gpu_works(int gpu) { return cuda_device_works(gpu); }
+
 #else
 
 int count_devices() { return 0; }
+
+bool gpu_works(int) { return false; }
 
 void refuse_missing(const std::vector<int>&) {
   throw ResourceError(
@@ -138,6 +142,8 @@ bool may_take_gpus(const SearchOptions& options) {
 DeviceChoice choose_device(const SearchOptions& options, const MessageLog& log) {
   return fallback_allowed(options) ? choose_automatically(options, log) : choose_cuda(options, log);
 }
+
+bool still_works(const DeviceChoice& choice) { return std::ranges::all_of(choice.gpus, gpu_works); }
 
 DeviceStart::DeviceStart(const SearchOptions& options)
     : DeviceStart(options, chosen_engine(options) == Engine::kGrid ? CudaKernels::kGrid

@@ -41,6 +41,9 @@ inline bool fallback_allowed(const SearchOptions& options) {
 /// and cannot be used.
 DeviceChoice choose_device(const SearchOptions& options, const MessageLog& log);
 
+/// Whether the process can still use all GPUs of a choice.
+bool still_works(const DeviceChoice& choice);
+
 // The steps of the choice, which need no CUDA:
 
 /// Makes the context of a GPU and asks how much memory is free. Throws ResourceError where the GPU

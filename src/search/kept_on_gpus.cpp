@@ -1,14 +1,8 @@
 #include "search/kept_on_gpus.hpp"
 
-#include <algorithm>
-
 #include "clearway/error.hpp"
 #ifdef CLEARWAY_CUDA
 #include "gpu/kept_on_device.hpp"
-#else
-namespace clearway {
-class KeptOnDevice {};
-}  // namespace clearway
 #endif
 
 namespace clearway {
@@ -20,9 +14,6 @@ constexpr std::uint64_t kKeptOfFour = 3;
 std::uint64_t kept_of(std::uint64_t budget_bytes) { return budget_bytes / 4 * kKeptOfFour; }
 
 }  // namespace
-
-KeptOnGpus::KeptOnGpus(const PackedCloud& cloud) : cloud_(cloud) {}
-KeptOnGpus::~KeptOnGpus() = default;
 
 std::uint64_t KeptOnGpus::left_of(std::uint64_t budget_bytes) const {
   const std::lock_guard lock(mutex_);
@@ -70,15 +61,6 @@ bool KeptOnGpus::give_way() {
   keeps_ = false;
   ended.swap(devices_);
   return kept;
-}
-
-std::uint64_t KeptOnGpus::bytes() const {
-  std::uint64_t most = 0;
-#ifdef CLEARWAY_CUDA
-  const std::lock_guard lock(mutex_);
-  for (const auto& [gpu, kept] : devices_) most = std::max(most, kept->bytes());
-#endif
-  return most;
 }
 
 }  // namespace clearway

@@ -17,8 +17,7 @@ class KeptOnDevice;
 class KeptOnGpus {
  public:
   /// The cloud outlives it.
-  explicit KeptOnGpus(const PackedCloud& cloud);
-  ~KeptOnGpus();
+  explicit KeptOnGpus(const PackedCloud& cloud) : cloud_(cloud) {}
 
   bool are_of(const PackedCloud& cloud) const { return &cloud == &cloud_; }
 
@@ -38,8 +37,6 @@ class KeptOnGpus {
   /// Keeps nothing on the GPUs from now on, for questions that need their memory. What engines use
   /// stays as long as they. Returns whether anything was kept before.
   bool give_way();
-  /// Bytes on the GPU that has most.
-  std::uint64_t bytes() const;
 
  private:
   const PackedCloud& cloud_;

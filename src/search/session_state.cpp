@@ -50,6 +50,7 @@ SessionState::SessionState(const Store& store, const SearchOptions& options, Kep
     : store_(store),
       options_(options),
       models_(kept, options.memory_bytes / kModelsShare),
+      looks_(models_.is_session()),
       memory_(options.memory_bytes),
       kept_on_gpus_(store.reader()),
       spare_(std::make_shared<SpareTables>(options.memory_bytes / kSpareShare)) {
@@ -77,6 +78,10 @@ bool SessionState::has_gpus() const {
 DeviceChoice SessionState::gpus(const SearchOptions& options, const MessageLog& log,
                                 double& waited) {
   const std::lock_guard lock(mutex_);
+  if (gpus_ && !still_works(*gpus_)) {
+    kept_on_gpus_.forget_all();
+    gpus_.reset();
+  }
   if (!gpus_) {
     const Stopwatch waiting;
     started_->wait();

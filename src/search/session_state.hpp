@@ -86,8 +86,9 @@ class SessionState {
   std::shared_ptr<const DeviceStart> start_surely(const SearchOptions& options);
   /// Whether GPUs were chosen, so that a search need not wait for their start.
   bool has_gpus() const;
-  /// The GPUs, chosen at the first call, which waits for their start. waited: gets the seconds of
-  /// that, and stays as it is at later calls.
+  /// The GPUs, chosen at the first call, which waits for their start, and once more where the
+  /// process can no longer use one of them. waited: gets the seconds of that, and stays as it is at
+  /// other calls.
   DeviceChoice gpus(const SearchOptions& options, const MessageLog& log, double& waited);
 
   /// How many points a query leaves out of the store: count_ignored(), remembered.

@@ -47,7 +47,7 @@ SearchResult sweep_on_cuda(const PackedCloud& cloud, const Query& query, int thr
 SearchResult sweep_with_kept_cells(const PackedCloud& cloud, const Query& query, int threads) {
   std::uint64_t bytes = 0;
   for (std::uint32_t cell = 0; cell < cloud.cells().size(); ++cell) {
-    bytes += DeviceArrays::whole(cloud.packed_bytes(cell) + kPagePadding);
+    bytes += ArrayRun::aligned(cloud.packed_bytes(cell) + kPagePadding);
   }
   const auto kept = std::make_shared<KeptOnDevice>(0, cloud, bytes + (1 << 12));
   const auto search = [&] {

@@ -293,20 +293,20 @@ template void append_packed_chunk(std::span<const std::uint32_t>, std::vector<st
 template void append_packed_chunk(std::span<const std::uint64_t>, std::vector<std::byte>&);
 template void append_packed_chunk(std::span<const std::uint8_t>, std::vector<std::byte>&);
 
-double PackedCloud::median_block(const PackedCloud& cloud) {
+double PackedCloud::typical_block() const {
   constexpr std::uint64_t kBlockSample = 4096;
-  const std::uint64_t cells = cloud.cells().size();
-  const std::uint64_t a_cell = std::max<std::uint64_t>(1, kBlockSample / cells);
-  const std::uint64_t stride = divide_up(cells, kBlockSample);
+  const std::uint64_t count = cells().size();
+  const std::uint64_t a_cell = std::max<std::uint64_t>(1, kBlockSample / count);
+  const std::uint64_t stride = divide_up(count, kBlockSample);
   std::vector<double> diagonals;
-  for (std::uint64_t index = 0; index < cells; index += stride) {
-    const Cell& cell = cloud.cells()[index];
-    const std::uint64_t blocks = divide_up(cell.count, kBlockPoints);
-    for (std::uint64_t i = 0; i < std::min(blocks, a_cell); ++i) {
-      const std::uint64_t block = i * blocks / std::min(blocks, a_cell);
-      const BlockBox& box = cloud.blocks()[index * cloud.blocks_per_cell() + block];
+  for (std::uint64_t index = 0; index < count; index += stride) {
+    const Cell& cell = cells()[index];
+    const std::uint64_t in_cell = divide_up(cell.count, kBlockPoints);
+    for (std::uint64_t i = 0; i < std::min(in_cell, a_cell); ++i) {
+      const std::uint64_t block = i * in_cell / std::min(in_cell, a_cell);
+      const BlockBox& box = blocks()[index * blocks_per_cell() + block];
       diagonals.push_back(
-          2 * half_diagonal(position_box(cloud.quantisation(), decode_block_box(cell.box, box))));
+          2 * half_diagonal(position_box(quantisation(), decode_block_box(cell.box, box))));
     }
   }
   const auto middle = diagonals.begin() + static_cast<std::ptrdiff_t>(diagonals.size() / 2);

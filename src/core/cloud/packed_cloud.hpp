@@ -253,7 +253,7 @@ class PackedCloud {
 
   /// The median diagonal of the blocks, metres, found from a sample where there are many. The cloud
   /// has at least one point.
-  virtual double typical_block() const { return median_block(*this); }
+  virtual double typical_block() const;
 
   /// Bytes of memory that cells, tree and blocks occupy.
   virtual std::uint64_t allocated_bytes() const { return 0; }
@@ -263,9 +263,6 @@ class PackedCloud {
   }
   std::uint32_t cell_entries() const { return blocks_per_cell() * kBlockPoints; }
   std::uint64_t entry_count() const { return std::uint64_t{cells().size()} * cell_entries(); }
-
- protected:
-  static double median_block(const PackedCloud& cloud);
 };
 
 /// The largest |coordinate| of the cloud's box, metres; 0 for no points.

@@ -29,11 +29,16 @@ class ArrayRun {
   /// Alignment of each array, that of CUDA's own allocations: warps read from it in whole lines.
   static constexpr std::uint64_t kAlignment = 256;
 
+  /// Bytes rounded up to the alignment.
+  static constexpr std::uint64_t aligned(std::uint64_t bytes) {
+    return (bytes + kAlignment - 1) / kAlignment * kAlignment;
+  }
+
   template <typename Value>
   ArrayPlace<Value> add(std::uint64_t count) {
     static_assert(alignof(Value) <= kAlignment);
     if (count == 0) return {bytes_, 0};
-    const std::uint64_t at = (bytes_ + kAlignment - 1) / kAlignment * kAlignment;
+    const std::uint64_t at = aligned(bytes_);
     bytes_ = at + count * sizeof(Value);
     return {at, count};
   }

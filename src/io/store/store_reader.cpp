@@ -451,7 +451,7 @@ StoreReader::Touched StoreReader::touched() const {
 }
 
 double StoreReader::typical_block() const {
-  std::call_once(typical_block_found_, [this] { typical_block_ = median_block(*this); });
+  std::call_once(typical_block_found_, [this] { typical_block_ = PackedCloud::typical_block(); });
   return typical_block_;
 }
 

@@ -216,14 +216,11 @@ void keep_enclosed(const Question& question, double distance, std::vector<Vec3>&
 /// An estimate, from some of the points, of how many of them no model point comes within the radius
 /// of.
 std::uint64_t untouched(const Question& question, const std::vector<Vec3>& points) {
-  const std::vector<std::uint32_t> measured = spread_poses(points.size(), kMeasuredInside);
-  const ModelTree& model = question.looks.tree(question.points);
-  std::uint32_t guess = 0;
-  const auto count = std::ranges::count_if(measured, [&](std::uint32_t i) {
-    guess = model.nearest(points[i], guess).element;
-    return !collides(model.element(guess), points[i], question.query.radius);
-  });
-  return points.size() * static_cast<std::uint64_t>(count) / measured.size();
+  std::vector<Vec3> some;
+  for (const std::uint32_t i : spread_poses(points.size(), kMeasuredInside)) {
+    some.push_back(points[i]);
+  }
+  return points.size() * question.looks.untouched(question.points, some) / some.size();
 }
 
 /// The axis of the model along which it moves; the model's longest one where that cannot be told.

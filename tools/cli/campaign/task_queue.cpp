@@ -231,7 +231,6 @@ void TaskQueue::start_command(Work& work, std::size_t number) {
   TaskFolder& folder = work.folder;
   folder.begin_command(number);
   const campaign::Command& words = folder.task().commands[number];
-  // The next tasks most often ask about the same store.
   ChildCommand command{.words = with_threads(words, jobs_),
                        .folder = folder.path(),
                        .log = folder.log(),
@@ -241,6 +240,7 @@ void TaskQueue::start_command(Work& work, std::size_t number) {
   for (const Work& other : working_) {
     if (&other != &work) command.foreign.push_back(other.folder.lock_descriptor());
   }
+  // Further tasks most often ask about the same store.
   if (unfinished_.size() > 1) keep_store_of(words);
   work.child = start_child(command);
 }

@@ -45,6 +45,9 @@ std::string advice_on(const Error& error) {
     case Remedy::kCpuDevice:
       return "; --device cpu does without a GPU; nvidia-smi lists the GPUs that can be used; an "
              "unfinished run continues with --resume";
+    case Remedy::kNewProcess:
+      return "; start the command again, where --resume continues an unfinished run, or take "
+             "--device cpu";
     case Remedy::kLessDeviceMemory:
       return "; nvidia-smi lists what else uses the GPU: take less --device-memory, or --device "
              "cpu";

@@ -113,7 +113,8 @@ double largest_spacing(const std::vector<Vec3>& model, const std::vector<Vec3>& 
 
 }  // namespace
 
-ModelLooks::ModelLooks(const Model& model, double radius) : radius_(radius) {
+ModelLooks::ModelLooks(const Model& model, double radius, bool for_many)
+    : radius_(radius), for_many_(for_many) {
   if (model.is_surface()) {
     const TriangleMesh mesh{model.vertices, model.triangles};
     const double spacing = std::max(spacing_for(mesh, kMostSurfaceSamples), radius);
@@ -134,9 +135,20 @@ const SolidParts& ModelLooks::solids(const Model& model) const {
   return *solids_;
 }
 
-const ModelTree& ModelLooks::tree(const std::vector<Vec3>& points) const {
+std::size_t ModelLooks::untouched(const std::vector<Vec3>& points, std::vector<Vec3> places) const {
+  if (!for_many_) {
+    for (const Vec3& m : points) {
+      std::erase_if(places, [&](const Vec3& p) { return collides(m, p, radius_); });
+      if (places.empty()) break;
+    }
+    return places.size();
+  }
   std::call_once(tree_made_, [&] { tree_.emplace(points); });
-  return *tree_;
+  std::uint32_t guess = 0;
+  return static_cast<std::size_t>(std::ranges::count_if(places, [&](const Vec3& p) {
+    guess = tree_->nearest(p, guess).element;
+    return !collides(tree_->element(guess), p, radius_);
+  }));
 }
 
 PointsAlone ModelLooks::alone(const std::vector<Vec3>& points) const {
@@ -162,7 +174,7 @@ std::shared_ptr<const ModelLooks> KeptLooks::of(const Model& model, std::uint64_
     }
   }
   // Made without the lock, so that questions about other models go on.
-  auto made = std::make_shared<const ModelLooks>(model, radius);
+  auto made = std::make_shared<const ModelLooks>(model, radius, for_many_);
   const std::lock_guard lock(mutex_);
   kept_.push_front({hash, radius, made});
   if (kept_.size() > kMost) kept_.pop_back();

@@ -32,7 +32,8 @@ struct PointsAlone {
 class ModelLooks {
  public:
   /// Samples a surface as close as the radius, or farther apart where these would be too many.
-  ModelLooks(const Model& model, double radius);
+  /// for_many: whether many questions are to come, for which a tree pays.
+  ModelLooks(const Model& model, double radius, bool for_many = false);
 
   ModelForm form() const { return form_; }
   /// The points that the checks look at: the samples of a surface, or the points of the model.
@@ -47,11 +48,12 @@ class ModelLooks {
   const ModelView& view(const std::vector<Vec3>& points, int axis) const;
   const SolidParts& solids(const Model& model) const;
   PointsAlone alone(const std::vector<Vec3>& points) const;
-  /// A tree over the points, for nearest neighbours.
-  const ModelTree& tree(const std::vector<Vec3>& points) const;
+  /// How many of these places no model point comes within the radius of.
+  std::size_t untouched(const std::vector<Vec3>& points, std::vector<Vec3> places) const;
 
  private:
   const double radius_;
+  const bool for_many_;
   ModelForm form_ = ModelForm::kPoints;
   std::vector<Vec3> samples_;  ///< empty for a model of points
   Box box_{};
@@ -60,12 +62,15 @@ class ModelLooks {
   mutable std::once_flag solids_made_, alone_made_, tree_made_;
   mutable std::optional<SolidParts> solids_;
   mutable PointsAlone alone_;
-  mutable std::optional<ModelTree> tree_;
+  mutable std::optional<ModelTree> tree_;  ///< over the points
 };
 
 /// The looks of models that were asked about, the last ones. Thread safe.
 class KeptLooks {
  public:
+  /// for_many: as for ModelLooks.
+  explicit KeptLooks(bool for_many) : for_many_(for_many) {}
+
   /// hash: hash_of_model().
   std::shared_ptr<const ModelLooks> of(const Model& model, std::uint64_t hash, double radius);
 
@@ -76,6 +81,7 @@ class KeptLooks {
     std::shared_ptr<const ModelLooks> looks;
   };
 
+  const bool for_many_;
   std::mutex mutex_;
   std::list<Kept> kept_;  ///< the most recently used ones first
 };
