@@ -96,48 +96,38 @@ class SourceParts {
   std::size_t parts_;
 };
 
-/// One thread's view of a cell's entries in a set: those whose source indices are in some parts.
-class CellRows {
+/// One thread's count of a cell's entries in a set by the part of their source indices.
+class CellParts {
  public:
-  struct Row {
-    std::uint64_t source;
-    std::uint64_t entry;
-  };
-
-  explicit CellRows(const SourceParts& parts) : counts_(parts.count()) {}
+  explicit CellParts(const SourceParts& parts) : counts_(parts.count()) {}
 
   /// Memory of each thread, bytes.
   static std::uint64_t most_bytes(const StoreReader& store) {
-    return SourceParts(store).count() * (sizeof(std::uint32_t) + sizeof(std::uint64_t)) +
-           std::uint64_t{store.cell_entries()} * (sizeof(Row) + sizeof(std::size_t));
+    return SourceParts(store).count() * (sizeof(std::uint32_t) + sizeof(std::size_t));
   }
 
-  /// Replaces the rows with those of a cell. Throws InputError for a damaged cell.
+  /// Counts the entries of a cell whose parts are `first_part` to `end_part` - 1, and forgets those
+  /// of the cell before. Throws InputError for a damaged cell.
   template <typename Set>
-  void take(const StoreReader& store, const Set& set, std::uint32_t cell, std::size_t first_part,
-            std::size_t end_part) {
+  void count(const StoreReader& store, const Set& set, std::uint32_t cell, std::size_t first_part,
+             std::size_t end_part) {
     for (const std::size_t part : parts_) counts_[part] = 0;
     parts_.clear();
-    rows_.clear();
-    rows_.reserve(store.cell_entries());
     const PackedChunk<std::uint64_t> sources = store.sources(cell);
     if (SourceParts::of(sources.minimum()) >= end_part && end_part < counts_.size()) return;
-    for_each_entry(store, set, cell, [&](std::uint64_t entry, std::uint32_t i) {
-      const std::uint64_t source = sources[i];
-      const std::size_t part = SourceParts::of(source);
+    for_each_entry(store, set, cell, [&](std::uint64_t, std::uint32_t i) {
+      const std::size_t part = SourceParts::of(sources[i]);
       if (part < first_part || part >= end_part) {
-        if (part >= counts_.size()) refuse_source(store, cell, source);
+        if (part >= counts_.size()) refuse_source(store, cell, sources[i]);
         return;
       }
-      rows_.push_back({source, entry});
       if (counts_[part]++ == 0) parts_.push_back(part);
     });
   }
 
-  const std::vector<Row>& rows() const { return rows_; }
-  /// The parts that have rows, in no particular order.
+  /// The parts that have entries, in no particular order.
   const std::vector<std::size_t>& parts() const { return parts_; }
-  std::uint32_t rows_of(std::size_t part) const { return counts_[part]; }
+  std::uint32_t entries_of(std::size_t part) const { return counts_[part]; }
 
  private:
   [[noreturn]] static void refuse_source(const StoreReader& store, std::uint32_t cell,
@@ -149,56 +139,61 @@ class CellRows {
 
   std::vector<std::uint32_t> counts_;
   std::vector<std::size_t> parts_;
-  std::vector<Row> rows_;
 };
 
-/// Orders the rows of a part by source index. Each thread has its own PartOrder.
-template <typename Row>
-class PartOrder {
+/// The ranks of the rows of one part: for each, how many have a smaller source index.
+class SourceRanks {
  public:
-  /// without_copy: orders more slowly, but takes no memory.
-  explicit PartOrder(bool without_copy) : without_copy_(without_copy) {}
+  /// Fewer rows are sorted faster than all words of the part's bits are visited.
+  static constexpr std::size_t kFewest = 256;
 
-  static std::uint64_t most_bytes() { return SourceParts::kMostRows * sizeof(Row); }
+  template <typename Row>
+  explicit SourceRanks(std::span<const Row> rows) {
+    bits_.fill(0);
+    for (const Row& row : rows) bits_[word_of(row.source)] |= bit_of(row.source);
+    for (std::size_t word = 0; word < kWords; ++word) {
+      before_[word] = count_;
+      count_ += static_cast<std::uint32_t>(std::popcount(bits_[word]));
+    }
+  }
 
-  void order(std::span<Row> rows) {
-    if (without_copy_ || rows.size() < kFew || !by_rank(rows))
-      std::ranges::sort(rows, {}, &Row::source);
+  /// The number of different source indices.
+  std::size_t count() const { return count_; }
+
+  std::size_t of(std::uint64_t source) const {
+    const std::size_t word = word_of(source);
+    const std::uint64_t below = bits_[word] & (bit_of(source) - 1);
+    return before_[word] + static_cast<std::uint32_t>(std::popcount(below));
   }
 
  private:
-  /// Fewer rows are sorted faster than all words of the part's bits are visited.
-  static constexpr std::size_t kFew = 256;
   static constexpr std::size_t kWords = SourceParts::kMostRows / 64;
 
-  /// Puts each row at the number of rows with a smaller source index. Returns false, with nothing
-  /// done, if two rows have the same one.
-  bool by_rank(std::span<Row> rows) {
-    std::array<std::uint64_t, kWords> bits{};
-    for (const Row& row : rows) {
-      std::uint64_t& word = bits[row.source / 64 % kWords];
-      const std::uint64_t bit = std::uint64_t{1} << (row.source % 64);
-      if ((word & bit) != 0) return false;
-      word |= bit;
-    }
-    std::array<std::uint32_t, kWords> before;
-    std::uint32_t rank = 0;
-    for (std::size_t word = 0; word < kWords; ++word) {
-      before[word] = rank;
-      rank += static_cast<std::uint32_t>(std::popcount(bits[word]));
-    }
-    copy_.assign(rows.begin(), rows.end());
-    for (const Row& row : copy_) {
-      const std::size_t word = row.source / 64 % kWords;
-      const std::uint64_t below = (std::uint64_t{1} << (row.source % 64)) - 1;
-      rows[before[word] + static_cast<std::uint32_t>(std::popcount(bits[word] & below))] = row;
-    }
-    return true;
-  }
+  static std::size_t word_of(std::uint64_t source) { return source / 64 % kWords; }
+  static std::uint64_t bit_of(std::uint64_t source) { return std::uint64_t{1} << (source % 64); }
 
-  bool without_copy_;
-  std::vector<Row> copy_;
+  std::array<std::uint64_t, kWords> bits_;
+  std::array<std::uint32_t, kWords> before_;
+  std::uint32_t count_ = 0;
 };
+
+/// Orders the rows of one part by source index, in place.
+template <typename Row>
+void order_part(std::span<Row> rows) {
+  if (rows.size() >= SourceRanks::kFewest) {
+    const SourceRanks ranks{std::span<const Row>(rows)};
+    if (ranks.count() == rows.size()) {
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        // Each exchange puts a row where it belongs.
+        for (std::size_t at = ranks.of(rows[i].source); at != i; at = ranks.of(rows[i].source)) {
+          std::swap(rows[i], rows[at]);
+        }
+      }
+      return;
+    }
+  }
+  std::ranges::sort(rows, {}, &Row::source);
+}
 
 /// Brings the entries of a set into the order of their source indices, for some parts of these at a
 /// time. Row: what is kept of an entry, with its `source`. All functions throw InputError for a
@@ -213,10 +208,10 @@ class GatherRows {
         progress_(progress),
         parts_(store),
         counts_(parts_.count()),
-        threads_([this] { return CellRows(parts_); }) {
-    for_each_cell(0, parts_.count(), [this](std::uint32_t, const CellRows& cell) {
+        threads_([this] { return CellParts(parts_); }) {
+    for_each_cell(0, parts_.count(), [this](std::uint32_t, const CellParts& cell) {
       for (const std::size_t part : cell.parts()) {
-        std::atomic_ref(counts_[part]).fetch_add(cell.rows_of(part), std::memory_order_relaxed);
+        std::atomic_ref(counts_[part]).fetch_add(cell.entries_of(part), std::memory_order_relaxed);
       }
     });
   }
@@ -226,34 +221,33 @@ class GatherRows {
 
   /// Fills `rows` with the rows of parts `first` to `end` - 1, in order. rows_of(cell): returns the
   /// function that makes a row of (source, entry, index in the cell). rows: must have the length
-  /// that counts() gives. without_copy: see PartOrder.
+  /// that counts() gives.
   template <typename RowsOf>
-  void gather(std::size_t first, std::size_t end, std::span<Row> rows, bool without_copy,
-              RowsOf rows_of) {
+  void gather(std::size_t first, std::size_t end, std::span<Row> rows, RowsOf rows_of) {
     threads_.clear();                              // other threads than before may take part
     std::vector<std::uint64_t> next(end - first);  // next free place of each part
     for (std::size_t part = first, at = 0; part < end; at += counts_[part++]) {
       next[part - first] = at;
     }
     scatter(first, end, next, rows, rows_of);
-    order(first, end, next, rows, without_copy);
+    order(first, end, next, rows);
   }
 
  private:
   using Range = tbb::blocked_range<std::size_t>;
 
-  /// Calls visit(cell, rows) for each cell that has rows in parts `first` to `end` - 1. Takes a
-  /// std::function, because the thread sanitizer cannot handle types with names of thousands of
+  /// Calls visit(cell, its parts) for each cell that has rows in parts `first` to `end` - 1. Takes
+  /// a std::function, because the thread sanitizer cannot handle types with names of thousands of
   /// letters.
   void for_each_cell(std::size_t first, std::size_t end,
-                     const std::function<void(std::uint32_t, const CellRows&)>& visit) {
+                     const std::function<void(std::uint32_t, const CellParts&)>& visit) {
     const ParallelScope scope;
     const auto cells = piece_of(scope, [&](const Range& range) {
-      CellRows& rows = threads_.local();
+      CellParts& parts = threads_.local();
       for (std::size_t i = range.begin(); i != range.end(); ++i) {
         throw_if_stopped(progress_);
-        rows.take(store_, set_, in_.cells[i], first, end);
-        if (!rows.rows().empty()) visit(in_.cells[i], rows);
+        parts.count(store_, set_, in_.cells[i], first, end);
+        if (!parts.parts().empty()) visit(in_.cells[i], parts);
       }
     });
     scope.begin();
@@ -264,31 +258,30 @@ class GatherRows {
   void scatter(std::size_t first, std::size_t end, std::vector<std::uint64_t>& next,
                std::span<Row> rows, RowsOf rows_of) {
     tbb::enumerable_thread_specific<std::vector<std::uint64_t>> places(end - first);
-    for_each_cell(first, end, [&](std::uint32_t cell, const CellRows& found) {
+    for_each_cell(first, end, [&](std::uint32_t cell, const CellParts& found) {
       std::vector<std::uint64_t>& place = places.local();
       for (const std::size_t part : found.parts()) {
         place[part - first] = std::atomic_ref(next[part - first])
-                                  .fetch_add(found.rows_of(part), std::memory_order_relaxed);
+                                  .fetch_add(found.entries_of(part), std::memory_order_relaxed);
       }
       const auto row_of = rows_of(cell);
-      const std::uint64_t entries = std::uint64_t{cell} * store_.cell_entries();
-      for (const CellRows::Row& row : found.rows()) {
-        rows[place[SourceParts::of(row.source) - first]++] =
-            row_of(row.source, row.entry, static_cast<std::uint32_t>(row.entry - entries));
-      }
+      const PackedChunk<std::uint64_t> sources = store_.sources(cell);
+      for_each_entry(store_, set_, cell, [&](std::uint64_t entry, std::uint32_t i) {
+        const std::uint64_t source = sources[i];
+        const std::size_t part = SourceParts::of(source);
+        if (part >= first && part < end) rows[place[part - first]++] = row_of(source, entry, i);
+      });
     });
   }
 
   /// Orders the rows of each part. ends: ends of the parts in `rows`.
   void order(std::size_t first, std::size_t end, const std::vector<std::uint64_t>& ends,
-             std::span<Row> rows, bool without_copy) {
-    tbb::enumerable_thread_specific<PartOrder<Row>> orders(without_copy);
+             std::span<Row> rows) {
     const ParallelScope scope;
     const auto parts = piece_of(scope, [&](const Range& range) {
-      PartOrder<Row>& order = orders.local();
       for (std::size_t part = range.begin(); part != range.end(); ++part) {
         throw_if_stopped(progress_);
-        order.order(rows.subspan(ends[part - first] - counts_[part], counts_[part]));
+        order_part(rows.subspan(ends[part - first] - counts_[part], counts_[part]));
       }
     });
     scope.begin();
@@ -301,7 +294,7 @@ class GatherRows {
   Progress& progress_;
   const SourceParts parts_;
   std::vector<std::uint64_t> counts_;
-  tbb::enumerable_thread_specific<CellRows> threads_;
+  tbb::enumerable_thread_specific<CellParts> threads_;
 };
 
 }  // namespace clearway

@@ -24,9 +24,11 @@ std::uint64_t entry_of(const PackedCloud& cloud, std::span<const PlannedCell> ce
 
 /// Adds the answer of a page of these cells to `all`. Cells are disjoint and a block is a word, so
 /// different pages may be collected at once and in any order; the nearest points of poses are only
-/// offered. Throws InputError if the source index of such a point cannot be read.
-void collect_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
-                  const PageResult& answer, SearchResult& all);
+/// offered. Returns the cells in which points were found. Throws InputError if the source index of
+/// such a point cannot be read.
+std::vector<std::uint32_t> collect_page(const PackedCloud& cloud,
+                                        std::span<const PlannedCell> cells,
+                                        const PageResult& answer, SearchResult& all);
 
 /// Where the coordinates of a cell are kept outside of a page, as PageEngine::kept() says it.
 using KeptPayload = std::function<std::optional<CellPayload>(std::uint32_t cell)>;

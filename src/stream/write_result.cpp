@@ -193,7 +193,7 @@ constexpr std::size_t kLeastRows = kEncodedRows + SourceParts::kMostRows;
 constexpr std::uint64_t kLeastThreadBytes = std::uint64_t{1} << 20;
 
 std::uint64_t thread_bytes(const StoreReader& store) {
-  return CellRows::most_bytes(store) + 8 * SourceParts(store).count();
+  return CellParts::most_bytes(store) + 8 * SourceParts(store).count();
 }
 
 /// The number of rows for which another thread pays.
@@ -204,7 +204,6 @@ struct WritePlan {
   std::size_t rows;    ///< greatest number of rows of a pass
   std::size_t pieces;  ///< number of encoded pieces under way
   int threads;         ///< number of threads that gather
-  bool without_copy;   ///< whether to order without a copy of a part
 };
 
 template <typename Row>
@@ -216,10 +215,7 @@ WritePlan plan_of(const StoreReader& store, std::uint64_t table_rows, std::uint6
   WritePlan plan{};
   plan.pieces = std::clamp<std::uint64_t>(left / 4 / kPieceBytes, 1, 2 * threads);
   plan.threads = static_cast<int>(std::clamp<std::uint64_t>(left / 8 / for_thread, 1, threads));
-  const std::uint64_t order_bytes = plan.threads * PartOrder<Row>::most_bytes();
-  plan.without_copy = order_bytes > left / 4;
-  const std::uint64_t used =
-      plan.pieces * kPieceBytes + plan.threads * for_thread + (plan.without_copy ? 0 : order_bytes);
+  const std::uint64_t used = plan.pieces * kPieceBytes + plan.threads * for_thread;
   plan.rows = std::max<std::uint64_t>(kLeastRows, (left - std::min(left, used)) / sizeof(Row));
   return plan;
 }
@@ -253,9 +249,7 @@ void write_set(const StoreReader& store, const Set& set, const SetCells& in, con
     const std::size_t end = end_of_pass(store, counts, first, most - kept);
     std::size_t count = kept;
     for (std::size_t part = first; part < end; ++part) count += counts[part];
-    arena.execute([&] {
-      gather->gather(first, end, rows.subspan(kept, count - kept), plan.without_copy, rows_of);
-    });
+    arena.execute([&] { gather->gather(first, end, rows.subspan(kept, count - kept), rows_of); });
     const std::size_t whole = end == counts.size() ? count : count - count % kEncodedRows;
     write(rows.first(whole));
     std::copy(rows.begin() + static_cast<std::ptrdiff_t>(whole),

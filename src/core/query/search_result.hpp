@@ -251,8 +251,8 @@ struct SearchResult {
   HitSet hits;
   ClearanceSet clearances;  ///< no entries unless asked for
   ProfileSet profile = {};  ///< no poses unless asked for
-  /// The cells of the cloud that were searched, ascending, so that whoever reads a result of few
-  /// cells need not look at all; nullopt where any cell may have something.
+  /// The cells of the cloud in which points were found, ascending, so that whoever reads the result
+  /// need not look at all; nullopt where any cell may have some.
   std::optional<std::vector<std::uint32_t>> cells = {};
   /// Number of ignored points in the cells that were searched, without those of a journal.
   std::uint64_t ignored_points = 0;

@@ -180,48 +180,73 @@ namespace {
 constexpr std::size_t kMostInside = 65'536;
 /// Fewer points than this may be noise.
 constexpr std::size_t kFewInside = 10;
+/// At least this many of them are measured, where there are so many.
 constexpr std::size_t kMeasuredInside = 64;
 /// The least open share of the model's outline, seen along the direction of motion, that is warned
 /// of.
 constexpr double kOpen = 0.4;
 
+/// Some of the points that are added, evenly spread over all of them: every one up to twice as many
+/// as are wanted, then every second one, every fourth one and so on.
+class EvenSample {
+ public:
+  void add(const Vec3& point) {
+    if (count_++ % step_ != 0) return;
+    points_.push_back(point);
+    if (points_.size() < 2 * kMeasuredInside) return;
+    for (std::size_t i = 0; i < kMeasuredInside; ++i) points_[i] = points_[2 * i];
+    points_.resize(kMeasuredInside);
+    step_ *= 2;
+  }
+
+  /// How many points were added.
+  std::uint64_t count() const { return count_; }
+
+  /// An estimate of how many of them no model point comes within the radius of.
+  std::uint64_t untouched(const Question& question) const {
+    if (points_.empty()) return 0;
+    return count_ * question.looks.untouched(question.points, points_) / points_.size();
+  }
+
+ private:
+  std::vector<Vec3> points_;
+  std::uint64_t count_ = 0, step_ = 1;
+};
+
 /// The scan's points in the model's box at the first pose, in the model's frame, except those in
-/// the model's solids, which collide.
-std::vector<Vec3> points_in_box(const Question& question) {
-  std::vector<Vec3> inside;
-  try {
-    ScanPoints(question.cloud)
-        .visit(question.model, question.query.poses.front(), [&](const Vec3& p) {
-          inside.push_back(p);
-          return inside.size() < kMostInside;
-        });
-  } catch (const InputError&) {
-    inside.clear();  // a damaged cell is reported by the search, where it matters
-  }
-  if (question.query.model.is_solid() && !inside.empty()) {
-    const SolidParts& solids = question.looks.solids(question.query.model);
-    std::erase_if(inside, [&](const Vec3& p) { return solids.ref().contains(p); });
-  }
-  return inside;
-}
+/// the model's solids, which collide. Nothing where a cell is damaged, because the search reports
+/// that where it matters.
+struct PointsInBox {
+  EvenSample all;
+  EvenSample enclosed;  ///< those that have model points in all six directions
 
-/// Keeps the points that have model points in all six directions.
-void keep_enclosed(const Question& question, double distance, std::vector<Vec3>& points) {
-  for (int axis = 0; axis < 3 && points.size() >= kFewInside; ++axis) {
-    const ModelView& view = question.looks.view(question.points, axis);
-    std::erase_if(points, [&](const Vec3& p) { return !view.encloses(p, distance); });
+  explicit PointsInBox(const Question& question) {
+    const Model& model = question.query.model;
+    const SolidParts* const solids = model.is_solid() ? &question.looks.solids(model) : nullptr;
+    std::size_t looked_at = 0;
+    const auto look = [&](const Vec3& p) {
+      if (solids == nullptr || !solids->ref().contains(p)) {
+        all.add(p);
+        if (is_enclosed(question, p)) enclosed.add(p);
+      }
+      return ++looked_at < kMostInside;
+    };
+    try {
+      ScanPoints(question.cloud).visit(question.model, question.query.poses.front(), look);
+    } catch (const InputError&) {
+      all = enclosed = {};
+    }
   }
-}
 
-/// An estimate, from some of the points, of how many of them no model point comes within the radius
-/// of.
-std::uint64_t untouched(const Question& question, const std::vector<Vec3>& points) {
-  std::vector<Vec3> some;
-  for (const std::uint32_t i : spread_poses(points.size(), kMeasuredInside)) {
-    some.push_back(points[i]);
+ private:
+  static bool is_enclosed(const Question& question, const Vec3& p) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const ModelView& view = question.looks.view(question.points, axis);
+      if (!view.encloses(p, question.query.radius)) return false;
+    }
+    return true;
   }
-  return points.size() * question.looks.untouched(question.points, some) / some.size();
-}
+};
 
 /// The axis of the model along which it moves; the model's longest one where that cannot be told.
 int axis_of_motion(const Question& question) {
@@ -234,13 +259,11 @@ int axis_of_motion(const Question& question) {
 }  // namespace
 
 void check_inside(const Question& question, MessageLog& log) {
-  const std::vector<Vec3> in_box = points_in_box(question);
-  std::vector<Vec3> enclosed = in_box;
-  keep_enclosed(question, question.query.radius, enclosed);
-  if (enclosed.size() < kFewInside) return;
-  const std::uint64_t count = untouched(question, enclosed);
+  const PointsInBox in_box(question);
+  if (in_box.enclosed.count() < kFewInside) return;
+  const std::uint64_t count = in_box.enclosed.untouched(question);
   // A rough ground that reaches into the model also touches it, and so is in the result.
-  if (count < kFewInside || count < in_box.size() - untouched(question, in_box)) return;
+  if (count < kFewInside || count < in_box.all.count() - in_box.all.untouched(question)) return;
   log.warn("inside-model",
            "at pose " + std::to_string(question.number_of(0)) + " about " + format_count(count) +
                " scanned points lie inside the model and do not touch it: only its surface is "
