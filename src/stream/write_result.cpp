@@ -204,6 +204,7 @@ struct WritePlan {
   std::size_t rows;    ///< greatest number of rows of a pass
   std::size_t pieces;  ///< number of encoded pieces under way
   int threads;         ///< number of threads that gather
+  bool copies;         ///< whether each of them may copy a part to order it
 };
 
 template <typename Row>
@@ -215,7 +216,10 @@ WritePlan plan_of(const StoreReader& store, std::uint64_t table_rows, std::uint6
   WritePlan plan{};
   plan.pieces = std::clamp<std::uint64_t>(left / 4 / kPieceBytes, 1, 2 * threads);
   plan.threads = static_cast<int>(std::clamp<std::uint64_t>(left / 8 / for_thread, 1, threads));
-  const std::uint64_t used = plan.pieces * kPieceBytes + plan.threads * for_thread;
+  const std::uint64_t copies = plan.threads * SourceParts::kMostRows * sizeof(Row);
+  plan.copies = copies <= left / 4;
+  const std::uint64_t used =
+      plan.pieces * kPieceBytes + plan.threads * for_thread + (plan.copies ? copies : 0);
   plan.rows = std::max<std::uint64_t>(kLeastRows, (left - std::min(left, used)) / sizeof(Row));
   return plan;
 }
@@ -243,13 +247,18 @@ void write_set(const StoreReader& store, const Set& set, const SetCells& in, con
   arena.execute([&] { gather.emplace(store, set, in, progress); });
   const std::vector<std::uint64_t>& counts = gather->counts();
   const std::size_t most = std::min<std::uint64_t>(plan.rows, in.entries);
-  const std::span<Row> rows = memory.rows<Row>(most);
+  const std::uint64_t largest =
+      std::min(SourceParts::kMostRows, *std::max_element(counts.begin(), counts.end()));
+  const std::uint64_t copied = plan.copies ? plan.threads * largest : 0;
+  const std::span<Row> all = memory.rows<Row>(most + copied);
+  const std::span<Row> rows = all.first(most), copies = all.subspan(most);
   std::size_t kept = 0;  // number of rows of the last pass that are kept, at the front
   for (std::size_t first = 0; first < counts.size();) {
     const std::size_t end = end_of_pass(store, counts, first, most - kept);
     std::size_t count = kept;
     for (std::size_t part = first; part < end; ++part) count += counts[part];
-    arena.execute([&] { gather->gather(first, end, rows.subspan(kept, count - kept), rows_of); });
+    arena.execute(
+        [&] { gather->gather(first, end, rows.subspan(kept, count - kept), copies, rows_of); });
     const std::size_t whole = end == counts.size() ? count : count - count % kEncodedRows;
     write(rows.first(whole));
     std::copy(rows.begin() + static_cast<std::ptrdiff_t>(whole),

@@ -224,6 +224,18 @@ TEST_CASE("a session with little memory gives the same bytes") {
   }
 }
 
+namespace {
+
+bool has_two_gpus() {
+  try {
+    return may_take_gpus({.device = Device::kCuda, .gpus = {0, 1}});
+  } catch (const ResourceError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
 TEST_CASE("a session on a GPU gives the bytes of the CPU") {
   if (!may_take_gpus({})) {
     WARN("no GPU here, so nothing is asked of one");
@@ -245,6 +257,12 @@ TEST_CASE("a session on a GPU gives the bytes of the CPU") {
       CHECK(differing(scene, session, questions, expected, threads).empty());
     }
   }
+  if (!has_two_gpus()) {
+    WARN("no second GPU here, so nothing is asked of two");
+    return;
+  }
+  const Session session(scene.store(), {.device = Device::kCuda, .gpus = {0, 1}, .threads = 2});
+  CHECK(differing(scene, session, questions, expected, 4).empty());
 }
 
 TEST_CASE("an answer in memory has the columns and the verdict of the file") {
