@@ -224,17 +224,28 @@ class GatherRows {
   template <typename RowsOf>
   void gather(std::size_t first, std::size_t end, std::span<Row> rows, std::span<Row> copies,
               RowsOf rows_of) {
-    threads_.clear();                              // other threads than before may take part
-    std::vector<std::uint64_t> next(end - first);  // next free place of each part
-    for (std::size_t part = first, at = 0; part < end; at += counts_[part++]) {
-      next[part - first] = at;
+    threads_.clear();  // other threads than before may take part
+    std::vector<Places> parts(end - first);
+    for (std::size_t part = first, at = 0; part < end; ++part) {
+      parts[part - first] = {at, at + counts_[part]};
+      at += counts_[part];
     }
-    scatter(first, end, next, rows, rows_of);
-    order(first, end, next, rows, copies);
+    scatter(first, end, parts, rows, rows_of);
+    order(first, end, parts, rows, copies);
   }
 
  private:
   using Range = tbb::blocked_range<std::size_t>;
+
+  /// The places that are left for rows: of a part, or of the rows of one cell in it. No row is put
+  /// elsewhere, whatever happens to the file while it is read.
+  struct Places {
+    std::uint64_t next = 0, end = 0;
+  };
+
+  [[noreturn]] void refuse_change() const {
+    refuse(store_.name(), "its points changed while they were read");
+  }
 
   /// Calls visit(cell, its parts) for each cell that has rows in parts `first` to `end` - 1. Takes
   /// a std::function, because the thread sanitizer cannot handle types with names of thousands of
@@ -254,28 +265,38 @@ class GatherRows {
     tbb::parallel_for(Range(0, in_.cells.size()), cells);
   }
 
+  /// Puts the rows of each part into its places, in any order.
   template <typename RowsOf>
-  void scatter(std::size_t first, std::size_t end, std::vector<std::uint64_t>& next,
-               std::span<Row> rows, RowsOf rows_of) {
-    tbb::enumerable_thread_specific<std::vector<std::uint64_t>> places(end - first);
+  void scatter(std::size_t first, std::size_t end, std::vector<Places>& parts, std::span<Row> rows,
+               RowsOf rows_of) {
+    tbb::enumerable_thread_specific<std::vector<Places>> of_cell(end - first);
     for_each_cell(first, end, [&](std::uint32_t cell, const CellParts& found) {
-      std::vector<std::uint64_t>& place = places.local();
+      std::vector<Places>& places = of_cell.local();
       for (const std::size_t part : found.parts()) {
-        place[part - first] = std::atomic_ref(next[part - first])
-                                  .fetch_add(found.entries_of(part), std::memory_order_relaxed);
+        Places& whole = parts[part - first];
+        const std::uint64_t count = found.entries_of(part);
+        const std::uint64_t at =
+            std::atomic_ref(whole.next).fetch_add(count, std::memory_order_relaxed);
+        if (at + count > whole.end) refuse_change();
+        places[part - first] = {at, at + count};
       }
       const auto row_of = rows_of(cell);
       const PackedChunk<std::uint64_t> sources = store_.sources(cell);
       for_each_entry(store_, set_, cell, [&](std::uint64_t entry, std::uint32_t i) {
         const std::uint64_t source = sources[i];
         const std::size_t part = SourceParts::of(source);
-        if (part >= first && part < end) rows[place[part - first]++] = row_of(source, entry, i);
+        if (part < first || part >= end) return;
+        Places& here = places[part - first];
+        if (here.next == here.end) refuse_change();
+        rows[here.next++] = row_of(source, entry, i);
       });
     });
+    const auto is_full = [](const Places& part) { return part.next == part.end; };
+    if (!std::ranges::all_of(parts, is_full)) refuse_change();
   }
 
-  /// Orders the rows of each part. ends: ends of the parts in `rows`.
-  void order(std::size_t first, std::size_t end, const std::vector<std::uint64_t>& ends,
+  /// Orders the rows of each part.
+  void order(std::size_t first, std::size_t end, const std::vector<Places>& places,
              std::span<Row> rows, std::span<Row> copies) {
     const std::size_t largest =
         *std::max_element(counts_.begin() + static_cast<std::ptrdiff_t>(first),
@@ -290,7 +311,8 @@ class GatherRows {
       const std::span<Row> copy = copy_of_thread.local();
       for (std::size_t part = range.begin(); part != range.end(); ++part) {
         throw_if_stopped(progress_);
-        order_part(rows.subspan(ends[part - first] - counts_[part], counts_[part]), copy);
+        const std::uint64_t count = counts_[part];
+        order_part(rows.subspan(places[part - first].end - count, count), copy);
       }
     });
     scope.begin();

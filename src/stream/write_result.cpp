@@ -193,7 +193,7 @@ constexpr std::size_t kLeastRows = kEncodedRows + SourceParts::kMostRows;
 constexpr std::uint64_t kLeastThreadBytes = std::uint64_t{1} << 20;
 
 std::uint64_t thread_bytes(const StoreReader& store) {
-  return CellParts::most_bytes(store) + 8 * SourceParts(store).count();
+  return CellParts::most_bytes(store) + 16 * SourceParts(store).count();
 }
 
 /// The number of rows for which another thread pays.
@@ -488,7 +488,7 @@ void write_tables(const ResultTables& tables, const ResultHeader& header,
 std::uint64_t least_write_bytes(const StoreReader& store) {
   // The rows of all parts are counted once, and once again while they are put in place.
   return kWriterBytes + kPieceBytes + std::max(kLeastThreadBytes, thread_bytes(store)) +
-         16 * SourceParts(store).count() +
+         24 * SourceParts(store).count() +
          kLeastRows * std::max(sizeof(CollisionRow), sizeof(ClearanceRow));
 }
 

@@ -6,7 +6,12 @@
 #include <random>
 #include <vector>
 
+#include "clearway/error.hpp"
+#include "support/clouds.hpp"
+#include "support/store_fixture.hpp"
+
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -27,6 +32,12 @@ std::vector<Row> shuffled(std::size_t count, std::mt19937_64& random) {
   }
   return rows;
 }
+
+/// A set with other entries after they were counted, as where the store's file changes meanwhile.
+struct ChangingSet {
+  std::uint64_t bits;
+  std::uint64_t word(std::uint64_t) const { return bits; }
+};
 
 }  // namespace
 
@@ -54,4 +65,26 @@ TEST_CASE("rows of a damaged store that have the same source index are kept, all
   CHECK(std::ranges::is_sorted(ordered, {}, &Row::source));
   std::ranges::sort(ordered, {}, &Row::number);
   CHECK((ordered == rows));
+}
+
+TEST_CASE("no row is put beside its place where the points change while they are read") {
+  const ScratchFolder folder;
+  write_las(folder / "a.las", cube_cloud(10'000, -1000, 1000, 1));
+  convert_quietly(conversion_of({folder / "a.las"}, folder / "a.h5", 1000));
+  const StoreReader store(folder / "a.h5");
+  ChangingSet set{0xff};
+  const SetCells cells = cells_of(store, set);
+  NoProgress progress;
+  GatherRows<Row, ChangingSet> gather(store, set, cells, progress);
+  std::vector<Row> rows(cells.entries);
+  const auto rows_of = [](std::uint32_t) {
+    return [](std::uint64_t source, std::uint64_t, std::uint32_t i) { return Row{source, i}; };
+  };
+  const auto call = [&] { gather.gather(0, gather.counts().size(), rows, {}, rows_of); };
+  call();
+  CHECK(std::ranges::is_sorted(rows, {}, &Row::source));
+  set.bits = 0x7f;
+  CHECK_THROWS_AS(call(), InputError);
+  set.bits = 0xfffff;
+  CHECK_THROWS_AS(call(), InputError);
 }
