@@ -67,8 +67,9 @@ class SessionAnswer : public SearchReport {
 /// others. A question that fails or is stopped leaves the session as it was.
 class Session {
  public:
-  /// Throws InputError where the file is not an intact store of this version, and ResourceError
-  /// where it cannot be read, or where a device is asked for and missing.
+  /// Throws InputError where the file is not an intact store of this version, ResourceError where
+  /// it cannot be read, or where a device is asked for and missing, and UsageError where the
+  /// options contradict each other.
   explicit Session(const std::filesystem::path& store, const SessionOptions& options = {});
   ~Session();
   Session(Session&&) noexcept;

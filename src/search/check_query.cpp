@@ -296,6 +296,10 @@ void check_query(const QueryParameters& query, const SearchOptions& options) {
   if (engine == Engine::kKdtree && (options.device == Device::kCuda || !options.gpus.empty())) {
     refuse_engine("kdtree", "runs on the CPU alone");
   }
+  check_gpus(options);
+}
+
+void check_gpus(const SearchOptions& options) {
   if (std::set(options.gpus.begin(), options.gpus.end()).size() < options.gpus.size()) {
     throw UsageError("a GPU is named twice");
   }

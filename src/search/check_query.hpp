@@ -20,6 +20,9 @@ Engine chosen_engine(const SearchOptions& options);
 /// parameters, whatever its model and poses, or where the options contradict each other.
 void check_query(const QueryParameters& query, const SearchOptions& options);
 
+/// Throws UsageError where the options for GPUs contradict each other.
+void check_gpus(const SearchOptions& options);
+
 /// Throws UsageError where the engine cannot answer a query with these parameters whose model is a
 /// surface.
 void check_surface(const QueryParameters& query, const SearchOptions& options);

@@ -7,6 +7,7 @@
 #include "clearway/error.hpp"
 #include "io/files/pending_file.hpp"
 #include "search/answer_question.hpp"
+#include "search/check_query.hpp"
 #include "search/session_state.hpp"
 
 namespace clearway {
@@ -57,6 +58,7 @@ struct Session::State {
         options(machine),
         for_search(search_options(machine)),
         session(store, for_search, KeptModels::Kept::kForSession) {
+    check_gpus(for_search);
     store.reader().survive_faults();
     if (may_take_gpus(for_search) && !fallback_allowed(for_search)) {
       session.start_surely(for_search);

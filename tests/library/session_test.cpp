@@ -306,6 +306,7 @@ TEST_CASE("a question that fails or is stopped leaves the session usable") {
   wrong = query;
   wrong.ignore_classes = {7};
   CHECK_THROWS_AS(session.search(wrong, {.strict = true}), InputError);
+  CHECK_THROWS_AS(Session(scene.store(), {.device = Device::kCpu, .gpus = {0}}), UsageError);
   const std::atomic<bool> stop = true;
   CHECK_THROWS_AS(session.search(query, {.stop = &stop}), Interrupted);
   CHECK(bytes_of_answer(scene, session.search(query)) == expected);

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <fstream>
+#include <future>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <thread>
 #include <vector>
 
 #include "clearway/model.hpp"
@@ -85,9 +85,9 @@ Asking ask(const Session& session, const SessionTimes& options, const Model& mod
     all.points.merge(own.points);
   };
   const Stopwatch clock;
-  std::vector<std::jthread> askers;
-  for (int i = 0; i < options.askers; ++i) askers.emplace_back(work);
-  askers.clear();
+  std::vector<std::future<void>> askers;
+  for (int i = 0; i < options.askers; ++i) askers.push_back(std::async(std::launch::async, work));
+  for (std::future<void>& asker : askers) asker.get();
   all.wall = clock.seconds();
   std::ranges::sort(all.seconds);
   return all;
