@@ -77,7 +77,7 @@ TEST_CASE("wrong usage exits with 2") {
   check_refused(work.run(convert + " --cell-points 63"), 2, "63 points a cell: expected 64");
   check_refused(work.run(convert + " --memory much"), 2, "--memory");
   check_refused(work.run(convert + " --memory -1"), 2, "--memory");
-  check_refused(work.run(convert + " --scale -1"), 2, "--scale");
+  check_refused(work.run(convert + " --scale -1"), 2, "--scale: -1: expected a finite number");
   check_refused(work.run(convert + " --scale nan"), 2, "--scale");
   check_refused(work.run(convert + " --threads 0"), 2, "--threads");
   for (const char* layout : {"regular", "regular:", "regular:x", "regular:1x", "regular:0",

@@ -114,7 +114,8 @@ CLI::Validator positive_length() {
     try {
       text = format_number(parse_length("", text).value);
     } catch (const CLI::ValidationError& error) {
-      return error.what();
+      // The text begins with the option's name, which is empty here, and a colon.
+      return std::string(error.what()).substr(std::string_view(": ").size());
     }
     return "";
   };
