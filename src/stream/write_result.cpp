@@ -212,7 +212,7 @@ WritePlan plan_of(const StoreReader& store, std::uint64_t table_rows, std::uint6
   const int threads = static_cast<int>(std::min<std::uint64_t>(
       tbb::this_task_arena::max_concurrency(), 1 + table_rows / kRowsOfThread));
   const std::uint64_t left = std::max(memory_bytes, least_write_bytes(store)) - kWriterBytes;
-  const std::uint64_t for_thread = thread_bytes(store);
+  const std::uint64_t for_thread = std::max<std::uint64_t>(1, thread_bytes(store));  // of no points
   WritePlan plan{};
   plan.pieces = std::clamp<std::uint64_t>(left / 4 / kPieceBytes, 1, 2 * threads);
   plan.threads = static_cast<int>(std::clamp<std::uint64_t>(left / 8 / for_thread, 1, threads));
