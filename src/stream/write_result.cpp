@@ -212,7 +212,7 @@ WritePlan plan_of(const StoreReader& store, std::uint64_t table_rows, std::uint6
   const int threads = static_cast<int>(std::min<std::uint64_t>(
       tbb::this_task_arena::max_concurrency(), 1 + table_rows / kRowsOfThread));
   const std::uint64_t left = std::max(memory_bytes, least_write_bytes(store)) - kWriterBytes;
-  const std::uint64_t for_thread = std::max<std::uint64_t>(1, thread_bytes(store));  // of no points
+  const std::uint64_t for_thread = thread_bytes(store);
   WritePlan plan{};
   plan.pieces = std::clamp<std::uint64_t>(left / 4 / kPieceBytes, 1, 2 * threads);
   plan.threads = static_cast<int>(std::clamp<std::uint64_t>(left / 8 / for_thread, 1, threads));
@@ -236,12 +236,11 @@ std::size_t end_of_pass(const StoreReader& store, const std::vector<std::uint64_
   return end;
 }
 
-/// Writes a set in passes by write(rows), each with a multiple of kEncodedRows rows except the
-/// last.
+/// Writes a set that has entries in passes by write(rows), each with a multiple of kEncodedRows
+/// rows except the last.
 template <typename Row, typename Set, typename RowsOf, typename Write>
 void write_set(const StoreReader& store, const Set& set, const SetCells& in, const WritePlan& plan,
                RowMemory& memory, Progress& progress, RowsOf rows_of, Write write) {
-  if (in.entries == 0) return;
   tbb::task_arena arena(plan.threads);
   std::optional<GatherRows<Row, Set>> gather;
   arena.execute([&] { gather.emplace(store, set, in, progress); });
@@ -344,6 +343,7 @@ class ResultRows {
  private:
   template <typename Row, typename Set, typename RowsOf, typename Take>
   void gather(const Set& set, const SetCells& in, RowsOf rows_of, Take take) {
+    if (in.entries == 0) return;  // a store without points has no parts to plan for
     const WritePlan plan = plan_of<Row>(store_, in.entries, memory_bytes_);
     write_set<Row>(store_, set, in, plan, memory_, progress_, rows_of,
                    [&](std::span<const Row> rows) { take(rows, plan); });

@@ -64,11 +64,10 @@ std::string advice_of_check(const Error& error) {
   }
   switch (error.remedy()) {
     case Remedy::kResume:
+    case Remedy::kNewProcess:
       return std::string("; ") + kGoesOn;
     case Remedy::kCpuDevice:
       return "; --device cpu does without a GPU; nvidia-smi lists the GPUs that can be used";
-    case Remedy::kNewProcess:
-      return std::string("; ") + kGoesOn;
     case Remedy::kStandardInput:
       return "; write it into a file first";
     case Remedy::kSampleMesh:
