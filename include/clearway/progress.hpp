@@ -19,6 +19,13 @@ struct ProgressUpdate {
   bool finished = false;    ///< whether the stage has ended
 };
 
+/// Consecutive poses of the path, from the first to the last one.
+struct PoseRange {
+  std::uint32_t first = 0, last = 0;
+
+  friend bool operator==(const PoseRange&, const PoseRange&) = default;
+};
+
 /// A note or a warning to the user about a running call.
 struct Message {
   enum class Severity { kNote, kWarning };
@@ -27,6 +34,9 @@ struct Message {
   std::string text;
   /// Numbers that occur in the text, by name
   std::vector<std::pair<std::string, double>> numbers = {};
+  /// The stretches of the path that the message is about, ascending and apart from each other;
+  /// empty for a message about the whole question
+  std::vector<PoseRange> stretches = {};
 };
 
 /// Callbacks that watch a call. They are never called from two threads at once, but may be called

@@ -106,11 +106,6 @@ Pose shifted(Pose pose, const Vec3& left, double shift) {
   return pose;
 }
 
-/// Poses of the path, of which the last one ends the last way where ways are searched.
-struct PoseRange {
-  std::uint32_t first, last;
-};
-
 /// At most so many points, taken evenly from those that are added.
 class PointSample {
  public:

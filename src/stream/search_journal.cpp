@@ -236,8 +236,8 @@ namespace {
 using enum JournalRecordKind;
 
 /// A range of poses as a payload gives it, which must lie within the first `most` poses.
-struct PoseRange {
-  PoseRange(JournalPayload& payload, std::uint64_t most)
+struct TakenPoses {
+  TakenPoses(JournalPayload& payload, std::uint64_t most)
       : first(payload.take_count()), count(payload.take_count()) {
     if (first > most || count > most - first) {
       payload.refuse("poses past the trajectory's end");
@@ -261,7 +261,7 @@ void SearchJournal::note_finished() {
     const auto kind = payload.take<JournalRecordKind>();
     if (kind == kCell) finished_cells_[take_cell(payload)] = true;
     if (kind == kFinishedPoses) {
-      const PoseRange poses(payload, finished_poses_.size());
+      const TakenPoses poses(payload, finished_poses_.size());
       const auto begin = finished_poses_.begin() + static_cast<std::ptrdiff_t>(poses.first);
       std::fill_n(begin, poses.count, true);
     }
@@ -282,7 +282,7 @@ void SearchJournal::replay_all(const Target& target) const {
         replay_marks(payload, target.hits);
         break;
       case kFinishedPoses:
-        PoseRange(payload, query_.poses.size());
+        TakenPoses(payload, query_.poses.size());
         break;
       default:
         payload.refuse("of an unknown kind");

@@ -22,8 +22,10 @@ class MessageLog {
     if (callback_) callback_({Message::Severity::kNote, {}, std::move(text)});
   }
   void warn(std::string code, std::string text,
-            std::vector<std::pair<std::string, double>> numbers = {}) {
-    add({Message::Severity::kWarning, std::move(code), std::move(text), std::move(numbers)});
+            std::vector<std::pair<std::string, double>> numbers = {},
+            std::vector<PoseRange> stretches = {}) {
+    add({Message::Severity::kWarning, std::move(code), std::move(text), std::move(numbers),
+         std::move(stretches)});
   }
   void add(Message message) {
     if (callback_) callback_(message);

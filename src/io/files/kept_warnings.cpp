@@ -15,12 +15,15 @@ constexpr const char* kCode = "code";
 constexpr const char* kMessage = "message";
 constexpr const char* kNumberNames = "names";  // one per line; only where there are numbers
 constexpr const char* kNumbers = "numbers";
+constexpr const char* kStretchCount = "stretch_count";  // only where there are stretches
+constexpr const char* kStretches = "stretches";         // stretch_count x 2 poses
 }  // namespace names
 
 /// Most bytes of a warning's text; an attribute holds at most 64 KiB.
 constexpr std::size_t kMostTextBytes = 1 << 15;
 constexpr std::uint32_t kMostWarnings = 1 << 16;
 constexpr std::uint32_t kMostNumbers = 1 << 10;
+constexpr std::uint32_t kMostStretches = 1 << 12;
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
@@ -32,9 +35,47 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
+/// Writes the stretches. Where an attribute cannot hold them all, the last one reaches from the
+/// first that does not fit to the end, so that no pose of a stretch is lost.
+void write_stretches(const hdf5::Id& group, std::vector<PoseRange> stretches) {
+  if (stretches.empty()) return;
+  if (stretches.size() > kMostStretches) {
+    stretches[kMostStretches - 1].last = stretches.back().last;
+    stretches.resize(kMostStretches);
+  }
+  std::vector<std::uint32_t> ends;
+  for (const PoseRange& stretch : stretches) {
+    ends.insert(ends.end(), {stretch.first, stretch.last});
+  }
+  hdf5::write_number(group, names::kStretchCount, static_cast<std::uint32_t>(stretches.size()));
+  hdf5::write_attribute(group, names::kStretches, std::span<const std::uint32_t>(ends), 2);
+}
+
+std::vector<PoseRange> read_stretches(const hdf5::Id& group, const std::string& name) {
+  std::vector<PoseRange> stretches;
+  if (!hdf5::has_attribute(group, names::kStretchCount, name)) return stretches;
+  const auto count = hdf5::read_number<std::uint32_t>(group, names::kStretchCount, name);
+  if (count == 0 || count > kMostStretches) {
+    refuse(name, "/warnings holds a warning with " + std::to_string(count) +
+                     " stretches, expected 1 to " + std::to_string(kMostStretches));
+  }
+  const auto ends = hdf5::read_attribute<std::uint32_t>(group, names::kStretches,
+                                                        std::size_t{2} * count, name);
+  for (std::size_t i = 0; i < ends.size(); i += 2) {
+    const PoseRange stretch{ends[i], ends[i + 1]};
+    const bool follows = stretches.empty() || stretch.first > stretches.back().last;
+    if (stretch.first > stretch.last || !follows) {
+      refuse(name, "the stretches of a warning in /warnings do not ascend");
+    }
+    stretches.push_back(stretch);
+  }
+  return stretches;
+}
+
 void write_warning(const hdf5::Id& group, const Message& warning) {
   hdf5::write_attribute(group, names::kCode, warning.code);
   hdf5::write_attribute(group, names::kMessage, warning.text.substr(0, kMostTextBytes));
+  write_stretches(group, warning.stretches);
   if (warning.numbers.empty()) return;
   std::string lines;
   std::vector<double> numbers;
@@ -49,6 +90,7 @@ void write_warning(const hdf5::Id& group, const Message& warning) {
 Message read_warning(const hdf5::Id& group, const std::string& name) {
   Message warning{Message::Severity::kWarning, hdf5::read_text_attribute(group, names::kCode, name),
                   hdf5::read_text_attribute(group, names::kMessage, name)};
+  warning.stretches = read_stretches(group, name);
   if (!hdf5::has_attribute(group, names::kNumberNames, name)) return warning;
   const auto lines = lines_of(hdf5::read_text_attribute(group, names::kNumberNames, name));
   if (lines.empty() || lines.size() > kMostNumbers) {

@@ -386,7 +386,7 @@ void check_stretches_above(const Question& question, const PathLooks& looks, Mes
                ": a part of the scan may be registered at another height, the ground may be "
                "missing there, or the path leaves it. Compare the heights of path and scan there" +
                told.others,
-           numbers);
+           numbers, told.stretches);
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ class Stretches {
                  "registered at another height. Then what stands there is missing too. If you "
                  "removed the ground on purpose, this is all right" +
                  told.others,
-             told.numbers);
+             told.numbers, told.stretches);
   }
 
   void check_beside(MessageLog& log) const {
@@ -101,7 +101,7 @@ class Stretches {
                  ", though there is something on the rest of the path. Was only the ground "
                  "scanned there? If the site is open there, this is all right" +
                  told.others,
-             told.numbers);
+             told.numbers, told.stretches);
   }
 
   void check_sides(MessageLog& log) const {
@@ -122,7 +122,7 @@ class Stretches {
                  "sides. Was the " +
                  side + " side scanned there? If the site is open there, this is all right" +
                  told.others,
-             told.numbers);
+             told.numbers, ToldStretches(question_, looks_, all).stretches);
   }
 
  private:

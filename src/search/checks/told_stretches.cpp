@@ -25,7 +25,11 @@ ToldStretches::ToldStretches(const Question& question, const PathLooks& looks,
   const Look &first = looks.all()[longest.first], &last = looks.all()[longest.last];
   const double from = question.chainage(first.pose), to = question.chainage(last.pose);
   double sum = 0;
-  for (const LookRun& run : runs) sum += looks.length(run);
+  for (const LookRun& run : runs) {
+    sum += looks.length(run);
+    stretches.push_back({question.number_of(looks.all()[run.first].pose),
+                         question.number_of(looks.all()[run.last].pose)});
+  }
   where = "between pose " + std::to_string(question.number_of(first.pose)) + " and pose " +
           std::to_string(question.number_of(last.pose)) + " (" + length_text(from, question.unit) +
           " to " + length_text(to, question.unit) + " along the path)";

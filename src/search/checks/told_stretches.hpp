@@ -24,6 +24,8 @@ struct ToldStretches {
   std::string others;
   /// The place of the longest stretch, number and length of all, and their share of the path.
   std::vector<std::pair<std::string, double>> numbers;
+  /// All stretches, by the numbers of the poses that users know.
+  std::vector<PoseRange> stretches;
 };
 
 /// Whether a warning is about a stretch of the path and not about the whole path.
