@@ -59,8 +59,8 @@ std::vector<PoseRange> read_stretches(const hdf5::Id& group, const std::string& 
     refuse(name, "/warnings holds a warning with " + std::to_string(count) +
                      " stretches, expected 1 to " + std::to_string(kMostStretches));
   }
-  const auto ends = hdf5::read_attribute<std::uint32_t>(group, names::kStretches,
-                                                        std::size_t{2} * count, name);
+  const auto ends =
+      hdf5::read_attribute<std::uint32_t>(group, names::kStretches, std::size_t{2} * count, name);
   for (std::size_t i = 0; i < ends.size(); i += 2) {
     const PoseRange stretch{ends[i], ends[i + 1]};
     const bool follows = stretches.empty() || stretch.first > stretches.back().last;
