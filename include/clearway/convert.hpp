@@ -28,7 +28,13 @@ struct ConvertOptions {
   /// The unit of the coordinates of inputs that name none: the metre, or a foot. Inputs that name a
   /// unit must name this one. None: the unit stays unknown and is treated as the metre.
   FileUnit unit = {};
-  bool ignore_crs = false;  ///< takes coordinates in degrees, or in different units, as they are
+  /// The unit of the heights of all inputs, which are then converted to the unit of the other
+  /// coordinates. Inputs that name a unit of heights must name this one. None: heights are in the
+  /// unit of the other coordinates.
+  FileUnit unit_z = {};
+  /// Takes coordinates as they are where they are in degrees or in different units, where their
+  /// coordinate reference system is not read, and where it is a map that does not keep lengths.
+  bool ignore_crs = false;
   /// Columns of x, y and z in text files: numbers counted from 1, or names of the header. Empty: as
   /// the files declare them.
   std::vector<std::string> columns = {};

@@ -486,7 +486,7 @@ class ConflictSearch {
       bodies = one;
     }
     const std::vector<std::vector<Vec3>> points = points_to_free(conflict_of_row);
-    const double metre = metres_of(units_of_wkt(reader_.header().crs_wkt).horizontal);
+    const double metre = metres_of(unit_of_crs(reader_.header().crs_wkt));
     const double most = kMostShift / (metre > 0 ? metre : 1);
     const LeastShift shifts(bodies, poses_, direction_to_left(options_.forward, options_.up),
                             reader_.header().radius, reader_.header().between_poses,

@@ -339,13 +339,13 @@ void add_convert(py::module_& module) {
       "convert",
       [](const py::object& inputs, const py::object& output, std::optional<double> scale,
          std::uint32_t cell_points, std::optional<double> regular_size, std::uint64_t memory_bytes,
-         int threads, const UnitArgument& unit, bool ignore_crs, std::vector<std::string> columns,
-         const py::object& origins, const py::object& origins_path,
-         const std::array<double, 3>& lever_arm, const std::string& format,
-         const std::string& angle_unit, const std::string& angle_frame, const std::string& crs,
-         const std::string& datum, const UnitArgument& metres_per_unit, bool skip_unreadable,
-         bool strict, bool overwrite, bool resume, py::object progress, py::object message,
-         py::object stop) {
+         int threads, const UnitArgument& unit, const UnitArgument& unit_z, bool ignore_crs,
+         std::vector<std::string> columns, const py::object& origins,
+         const py::object& origins_path, const std::array<double, 3>& lever_arm,
+         const std::string& format, const std::string& angle_unit, const std::string& angle_frame,
+         const std::string& crs, const std::string& datum, const UnitArgument& metres_per_unit,
+         bool skip_unreadable, bool strict, bool overwrite, bool resume, py::object progress,
+         py::object message, py::object stop) {
         ConvertOptions options{
             .scale = scale,
             .cell_points = cell_points,
@@ -353,6 +353,7 @@ void add_convert(py::module_& module) {
             .memory_bytes = memory_bytes,
             .threads = threads,
             .unit = file_unit(unit),
+            .unit_z = file_unit(unit_z),
             .ignore_crs = ignore_crs,
             .columns = std::move(columns),
             .origins = origins.is_none() ? std::filesystem::path() : path_of(origins),
@@ -374,13 +375,14 @@ void add_convert(py::module_& module) {
       "inputs"_a, "output"_a, py::kw_only(), "scale"_a = py::none(),
       "cell_points"_a = ConvertOptions{}.cell_points, "regular_size"_a = py::none(),
       "memory_bytes"_a = ConvertOptions{}.memory_bytes, "threads"_a = 0, "unit"_a = 0.0,
-      "ignore_crs"_a = false, "columns"_a = std::vector<std::string>{}, "origins"_a = py::none(),
-      "origins_path"_a = py::none(), "lever_arm"_a = std::array<double, 3>{0, 0, 0},
-      "format"_a = "auto", "angle_unit"_a = "declared", "angle_frame"_a = "declared", "crs"_a = "",
-      "datum"_a = "", "metres_per_unit"_a = 0.0, "skip_unreadable"_a = false, "strict"_a = false,
+      "unit_z"_a = 0.0, "ignore_crs"_a = false, "columns"_a = std::vector<std::string>{},
+      "origins"_a = py::none(), "origins_path"_a = py::none(),
+      "lever_arm"_a = std::array<double, 3>{0, 0, 0}, "format"_a = "auto",
+      "angle_unit"_a = "declared", "angle_frame"_a = "declared", "crs"_a = "", "datum"_a = "",
+      "metres_per_unit"_a = 0.0, "skip_unreadable"_a = false, "strict"_a = false,
       "overwrite"_a = false, "resume"_a = false, "progress"_a = py::none(),
       "message"_a = py::none(), "stop"_a = py::none(),
-      R"(convert(inputs, output, *, scale=None, cell_points=65536, regular_size=None, memory_bytes=4294967296, threads=0, unit=0.0, ignore_crs=False, columns=(), origins=None, origins_path=None, lever_arm=(0.0, 0.0, 0.0), format='auto', angle_unit='declared', angle_frame='declared', crs='', datum='', metres_per_unit=0.0, skip_unreadable=False, strict=False, overwrite=False, resume=False, progress=None, message=None, stop=None)
+      R"(convert(inputs, output, *, scale=None, cell_points=65536, regular_size=None, memory_bytes=4294967296, threads=0, unit=0.0, unit_z=0.0, ignore_crs=False, columns=(), origins=None, origins_path=None, lever_arm=(0.0, 0.0, 0.0), format='auto', angle_unit='declared', angle_frame='declared', crs='', datum='', metres_per_unit=0.0, skip_unreadable=False, strict=False, overwrite=False, resume=False, progress=None, message=None, stop=None)
 --
 
 Turn scans into a store, the one file that searches read. Returns a ConvertReport.
@@ -394,7 +396,10 @@ memory_bytes: how many bytes of working memory may be taken.
 threads: how many threads work; 0: as many as there are cores.
 unit: the unit of the coordinates where the inputs name none: 'm', 'ft', 'ift', 'us-ft', or metres;
     0: not known, and taken for metres.
-ignore_crs: takes coordinates in degrees, or in different units, as they are.
+unit_z: the unit of the heights of all inputs, which are then converted to the unit of the other
+    coordinates: a name such as 'us-ft', or metres; 0: heights are in the unit of the others.
+ignore_crs: takes coordinates as they are: in degrees, in different units, in a system that is not
+    read, or on a map that does not keep lengths.
 columns: which columns of texts are x, y and z: numbers from 1, or names of the header.
 origins: a CSV file with the header first,x,y,z: from source index first on, the scanner stood at
     x, y, z. None: the places are those that the inputs tell.

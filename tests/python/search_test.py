@@ -444,6 +444,16 @@ class Stores(SceneTest):
         self.assertEqual(store.read_bytes(), (self.folder / "site.h5").read_bytes())
         self.assertTrue(clearway.convert(scan, store, resume=True).was_finished)
 
+    def test_heights_in_another_unit(self):
+        scan, store = self.folder / "heights.xyz", self.folder / "heights.h5"
+        scan.write_text("X [m],Y [m],Z [ft]\n1,2,0\n3,4,10\n")
+        with self.assertRaisesRegex(clearway.InputError, "its heights are in foot") as caught:
+            clearway.convert(scan, store)
+        self.assertEqual(caught.exception.remedy, "ignore_crs")
+        self.assertAlmostEqual(clearway.convert(scan, store, unit_z="ft").box.hi[2], 3.048)
+        with self.assertRaisesRegex(clearway.UsageError, "unit_z"):
+            clearway.convert(scan, store, unit_z=-1)
+
     def test_names_that_are_no_utf8(self):
         name = os.fsencode(self.folder) + b"/sch\xf6n.h5"
         clearway.convert(self.folder / "scan.xyz", name)

@@ -186,9 +186,14 @@ void add_options(CLI::App& command, ConvertCommand& options) {
                   "Unit of the coordinates where the inputs name none: m, ft, ift or us-ft "
                   "(default: not known, and taken for metres)")
       ->group(title_of(OptionGroup::kUnits));
+  add_unit_option(command, "--unit-z", conversion.unit_z,
+                  "Unit of the heights where it differs from that of the other coordinates, to "
+                  "which they are then converted: mm, cm, m, in, ft, ift or us-ft")
+      ->group(title_of(OptionGroup::kUnits));
   command
       .add_flag("--ignore-crs", conversion.ignore_crs,
-                "Accept coordinates in degrees, and inputs in different units, as they are")
+                "Take coordinates as they are: in degrees or different units, in a system that is "
+                "not read, or on a map that does not keep lengths")
       ->group(title_of(OptionGroup::kUnits));
   command
       .add_option("--columns", conversion.columns,

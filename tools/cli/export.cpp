@@ -113,7 +113,7 @@ void run_export(ExportOptions& options) {
   spdlog::info("{}: {}", options.output.string(), counted(exported.rows, exported.row));
   warn_of_doubts(result);
   const std::string verdict =
-      verdict_to_repeat(result, {}, symbol_of(units_of_wkt(result.header().crs_wkt).horizontal));
+      verdict_to_repeat(result, {}, symbol_of(unit_of_crs(result.header().crs_wkt)));
   if (!verdict.empty()) spdlog::info("the verdict of this result is {}", verdict);
   if (!options.json) return;
   nlohmann::ordered_json out =

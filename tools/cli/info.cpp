@@ -75,6 +75,7 @@ ordered_json describe(const StoreReader& store) {
                            {"fingerprint", hash_text(store.fingerprint())},
                            {"sources", sources_json(m)},
                            {"warnings", warnings_json(store_warnings(m))}};
+  if (m.height_unit != 0) description["height_unit"] = m.height_unit;
   if (m.origins) description["origins"] = origins_json(*m.origins);
   return description;
 }
@@ -232,6 +233,7 @@ ordered_json describe_points(const std::filesystem::path& file) {
     description["scale"] = points.info.quantisation->scale;
     description["offset"] = points.info.quantisation->offset;
   }
+  if (points.info.height_unit != 0) description["height_unit"] = points.info.height_unit;
   if (points.spacing) description["spacing"] = *points.spacing;
   return description;
 }

@@ -20,6 +20,7 @@
 #include "io/models/surface_of.hpp"
 #include "io/scans/length_unit.hpp"
 #include "io/scans/point_reader.hpp"
+#include "io/scans/scan_crs.hpp"
 
 namespace clearway {
 namespace {
@@ -66,6 +67,10 @@ void read_points(ModelInput& input) {
   input.messages = reader->info().remarks;
   input.sampled_spacing = reader->info().model_spacing;
   const CloudInfo& info = reader->info();
+  const std::string trouble = heights_trouble(info.height_unit, info.unit);
+  if (!trouble.empty()) {
+    refuse(input.path.string(), trouble + "; expected one unit for all of them");
+  }
   const double metres = metres_of(info.unit);
   input.declared_unit = info.any_foot ? FileUnit(metres) : FileUnit::exactly(metres);
   if (reader->info().faces > 0) {

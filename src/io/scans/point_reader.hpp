@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clearway/box.hpp"
@@ -14,7 +15,7 @@
 #include "clearway/vec3.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "io/files/file.hpp"
-#include "io/scans/length_unit.hpp"
+#include "io/scans/stated_crs.hpp"
 
 namespace clearway {
 
@@ -33,21 +34,13 @@ enum class GpsTimes {
 };
 
 /// What a point cloud file declares before its points.
-struct CloudInfo {
+struct CloudInfo : StatedCrs {
   std::optional<Quantisation> quantisation;      ///< where points are stored as integers
   std::optional<std::uint64_t> declared_points;  ///< where the format declares a count
   /// Box of all points, where the format declares one. It is compared with the points and never
   /// trusted.
   std::optional<Box> declared_box;
-  /// Coordinate reference system as found in the file; empty where there is none.
-  std::string crs_wkt;
-  /// EPSG code in a file that names its CRS by a code alone; otherwise 0
-  std::uint16_t crs_epsg = 0;
-  LengthUnit unit = LengthUnit::kUnknown;  ///< unit of the horizontal coordinates
-  bool any_foot = false;     ///< whether the unit is "ft", which does not say which foot it is
-  std::string unit_trouble;  ///< why coordinates cannot be used as they are; empty where they can
-  std::string unit_doubt;    ///< what contradicts the unit; empty where nothing does
-  std::uint64_t faces = 0;   ///< number of faces in a mesh; they are not read
+  std::uint64_t faces = 0;  ///< number of faces in a mesh; they are not read
   /// See Query::model_spacing; known where `clearway model` wrote the file.
   double model_spacing = 0;
   bool text_table = false;  ///< whether the file is a text table, whose columns can be chosen
@@ -59,6 +52,8 @@ struct CloudInfo {
   GpsTimes gps_times = GpsTimes::kNone;
   /// Remarks on the whole file; complete once read() has returned false.
   std::vector<Message> remarks;
+
+  void set(StatedCrs stated) { static_cast<StatedCrs&>(*this) = std::move(stated); }
 };
 
 /// Consecutive points of a file, in its order: integers where the file has a quantisation,

@@ -4,10 +4,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "io/files/input_error.hpp"
@@ -22,6 +22,340 @@ ProjContext start_proj(PJ_LOG_FUNCTION log, void* kept) {
   return context;
 }
 
+ProjContext start_proj() {
+  return start_proj([](void*, int, const char*) {}, nullptr);
+}
+
+namespace {
+
+char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
+
+std::string upper(std::string_view text) {
+  std::string result(text);
+  std::ranges::transform(result, result.begin(), [](char c) { return upper(c); });
+  return result;
+}
+
+bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+/// The text in upper case without white space, as PROJ compares parts of its own strings.
+std::string squeezed(std::string_view text) {
+  std::string out = upper(text);
+  std::erase_if(out, is_space);
+  return out;
+}
+
+bool contains(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
+
+/// Whether a text holds a PROJ string with a parameter whose value is the name of a file, which
+/// PROJ may open as soon as it reads the text. text: squeezed.
+bool has_file_parameter(std::string text) {
+  constexpr std::string_view kNone = "NADGRIDS=@NULL";
+  for (std::size_t at; (at = text.find(kNone)) != std::string::npos;) text.erase(at, kNone.size());
+  return contains(text, "GRIDS=") || contains(text, "INIT=") || contains(text, "FILE=") ||
+         contains(text, "MODEL=");
+}
+
+bool is_json(std::string_view text) { return text.starts_with('{'); }
+
+}  // namespace
+
+bool names_files(std::string_view text) {
+  const std::string all = squeezed(text);
+  if (has_file_parameter(all) || contains(all, "PARAMETERFILE") || contains(all, "PROJ4_GRIDS")) {
+    return true;
+  }
+  // In PROJJSON the name of a parameter whose value is a file ends so, and any letter can be
+  // written as a number.
+  return is_json(all) && (contains(all, "FILE\"") || contains(all, "\\U"));
+}
+
+namespace {
+
+/// Appends a character of Unicode as UTF-8.
+void append_utf8(std::uint32_t code, std::string& out) {
+  const auto put = [&out](std::uint32_t byte) { out += static_cast<char>(byte); };
+  if (code < 0x80) {
+    put(code);
+  } else if (code < 0x800) {
+    put(0xC0 | code >> 6);
+    put(0x80 | (code & 0x3F));
+  } else if (code < 0x10000) {
+    put(0xE0 | code >> 12);
+    put(0x80 | (code >> 6 & 0x3F));
+    put(0x80 | (code & 0x3F));
+  } else {
+    put(0xF0 | code >> 18);
+    put(0x80 | (code >> 12 & 0x3F));
+    put(0x80 | (code >> 6 & 0x3F));
+    put(0x80 | (code & 0x3F));
+  }
+}
+
+/// Decodes UTF-16 up to its first zero. big: whether the first byte of two is the higher one.
+std::string from_utf16(std::string_view bytes, bool big) {
+  const auto unit = [&](std::size_t at) {
+    const auto first = static_cast<unsigned char>(bytes[at]);
+    const auto second = static_cast<unsigned char>(bytes[at + 1]);
+    return static_cast<std::uint32_t>(big ? first << 8 | second : second << 8 | first);
+  };
+  std::string out;
+  for (std::size_t at = 0; at + 1 < bytes.size(); at += 2) {
+    std::uint32_t code = unit(at);
+    if (code == 0) break;
+    const bool leads = code >= 0xD800 && code < 0xDC00 && at + 3 < bytes.size();
+    if (leads && unit(at + 2) >= 0xDC00 && unit(at + 2) < 0xE000) {
+      code = 0x10000 + ((code - 0xD800) << 10) + (unit(at + 2) - 0xDC00);
+      at += 2;
+    }
+    append_utf8(code, out);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string crs_text_of(std::span<const std::byte> bytes) {
+  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const auto has_zeros = [&](std::size_t from) {
+    return text.size() >= 4 && text[from] == 0 && text[from + 2] == 0 && text[1 - from] != 0 &&
+           text[3 - from] != 0;
+  };
+  std::string decoded;
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+    decoded = from_utf16(text.substr(2), text.starts_with("\xFE"));
+  } else if (has_zeros(0) || has_zeros(1)) {
+    decoded = from_utf16(text, has_zeros(0));
+  } else {
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    decoded = text.substr(0, text.find('\0'));
+  }
+  return std::string(trimmed(decoded));
+}
+
+namespace {
+
+constexpr std::size_t kDeepest = 64;       // levels of brackets in a text that PROJ is given
+constexpr std::size_t kLongestName = 200;  // bytes of a name that PROJ's database is asked for
+constexpr std::size_t kLongestText = std::size_t{1} << 18;  // bytes of a text that PROJ is given
+constexpr std::size_t kMostSystems = 4;         // systems after one another that PROJ is given
+constexpr std::int32_t kGreatestCode = 99'999;  // EPSG codes are not greater
+
+bool is_word(char c) {
+  return (upper(c) >= 'A' && upper(c) <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+/// Whether a text begins like well-known text. Names in PROJ's database have round brackets too, as
+/// in "NAD83(HARN)".
+bool is_wkt(std::string_view text) {
+  std::size_t at = 0;
+  const auto skip = [&](auto which) {
+    while (at < text.size() && which(text[at])) ++at;
+  };
+  skip(is_word);
+  if (at == 0) return false;
+  skip(is_space);
+  if (at == text.size() || text[at] != '(') return at < text.size() && text[at] == '[';
+  ++at;
+  skip(is_space);
+  return at < text.size() && text[at] == '"';
+}
+
+/// The systems in a well-known text, by its brackets outside of quoted names alone.
+struct WktSystems {
+  /// The texts of the systems that stand one after another, and of those of heights within a system
+  /// that has no place for them, which PROJ leaves out.
+  std::vector<std::string> texts;
+  bool names_unit = false;  ///< whether some keyword is that of a unit
+};
+
+bool is_of_heights(std::string_view keyword) {
+  return keyword == "VERT_CS" || keyword == "VERTCS" || keyword == "VERTCRS" ||
+         keyword == "VERTICALCRS";
+}
+
+/// Whether a node has whole systems as its parts.
+bool is_of_systems(std::string_view keyword) {
+  return keyword == "COMPD_CS" || keyword == "COMPOUNDCRS" || keyword == "SOURCECRS" ||
+         keyword == "TARGETCRS" || keyword == "INTERPOLATIONCRS";
+}
+
+WktSystems systems_of(std::string_view text) {
+  constexpr std::size_t kNone = std::string_view::npos;
+  struct Open {
+    std::size_t begin;
+    std::string keyword;  ///< in upper case
+  };
+  WktSystems out;
+  std::vector<Open> open;
+  std::vector<std::string> within;  // systems of heights within the current system
+  std::size_t begin = kNone;        // where the current system begins
+  std::size_t word = 0, word_end = 0;
+  bool quoted = false;
+  const auto end_system = [&](std::size_t end) {
+    out.texts.emplace_back(trimmed(text.substr(begin, end - begin)));
+    out.texts.insert(out.texts.end(), within.begin(), within.end());
+    within.clear();
+    begin = kNone;
+  };
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
+    const bool closes = !quoted && (c == ']' || c == ')');
+    if (begin == kNone && !closes && !is_space(c) && c != ',' && c != ';') begin = at;
+    if (c == '"') quoted = !quoted;
+    if (quoted || is_space(c)) continue;
+    if (is_word(c)) {
+      if (word_end != at) word = at;
+      word_end = at + 1;
+    } else if (c == '[' || c == '(') {
+      open.push_back({word, upper(text.substr(word, word_end - word))});
+      out.names_unit = out.names_unit || open.back().keyword.ends_with("UNIT");
+    } else if (closes && open.empty()) {
+      if (begin != kNone) end_system(at);
+    } else if (closes) {
+      const Open closed = std::move(open.back());
+      open.pop_back();
+      if (open.empty()) {
+        end_system(at + 1);
+      } else if (is_of_heights(closed.keyword) && !is_of_systems(open.back().keyword)) {
+        within.emplace_back(text.substr(closed.begin, at + 1 - closed.begin));
+      }
+    }
+  }
+  if (begin != kNone) end_system(text.size());
+  return out;
+}
+
+/// The number of levels of brackets of any kind, those in quoted names too.
+std::size_t depth_of(std::string_view text) {
+  std::size_t depth = 0, deepest = 0;
+  for (const char c : text) {
+    if (c == '[' || c == '(' || c == '{') deepest = std::max(deepest, ++depth);
+    if ((c == ']' || c == ')' || c == '}') && depth > 0) --depth;
+  }
+  return deepest;
+}
+
+/// Whether a text is a code such as "EPSG:25832" or "EPSG:25832+5783", or the address of one.
+bool is_code(std::string_view text) {
+  const std::string all = upper(text);
+  for (const std::string_view begin :
+       {"URN:OGC:DEF:CRS", "HTTP://WWW.OPENGIS.NET/DEF/CRS", "HTTPS://WWW.OPENGIS.NET/DEF/CRS"}) {
+    if (all.starts_with(begin)) return true;
+  }
+  const std::size_t colon = all.find(':');
+  return colon != std::string::npos && colon > 0 && colon + 1 < all.size() &&
+         std::ranges::all_of(all.substr(0, colon), is_word) &&
+         std::ranges::all_of(all.substr(colon + 1),
+                             [](char c) { return is_word(c) || c == '+' || c == ':'; });
+}
+
+/// The system of one text that PROJ reads as a whole.
+ProjObject create_one(PJ_CONTEXT* context, const std::string& text) {
+  if (text.empty() || text.size() > kLongestText || contains(text, std::string_view("\0", 1)) ||
+      depth_of(text) > kDeepest || has_file_parameter(squeezed(text))) {
+    return nullptr;
+  }
+  ProjObject found;
+  if (is_wkt(text)) {
+    found.reset(proj_create_from_wkt(context, text.c_str(), nullptr, nullptr, nullptr));
+  } else if (contains(text, "+proj=")) {
+    const bool typed = contains(text, "+type=crs");
+    found.reset(proj_create(context, (typed ? text : text + " +type=crs").c_str()));
+  } else if (is_json(text) || is_code(text)) {
+    found.reset(proj_create(context, text.c_str()));
+  } else if (text.size() <= kLongestName) {
+    // PROJ also finds names that only contain the text: "hall" in "Marshall Islands 1960".
+    found.reset(proj_create(context, text.c_str()));
+    const char* const name = found ? proj_get_name(found.get()) : nullptr;
+    if (name == nullptr || upper(name) != upper(text)) found.reset();
+  }
+  if (found && proj_is_crs(found.get()) == 0) found.reset();
+  return found;
+}
+
+bool is_system_of_heights(PJ_CONTEXT* context, const PJ* crs) {
+  if (proj_get_type(crs) == PJ_TYPE_BOUND_CRS) {
+    const ProjObject source(proj_get_source_crs(context, crs));
+    return source && is_system_of_heights(context, source.get());
+  }
+  return proj_get_type(crs) == PJ_TYPE_VERTICAL_CRS;
+}
+
+/// The systems that a text holds: of the plane, of heights, or of both.
+struct ReadSystems {
+  ProjObject plane, heights;
+  std::string plane_text, heights_text;
+  bool names_unit = true;  ///< false where PROJ assumes a unit that the text does not name
+  std::string unread;      ///< what PROJ does not read
+};
+
+ReadSystems read_systems(PJ_CONTEXT* context, std::string_view text) {
+  ReadSystems out;
+  WktSystems systems;
+  text = trimmed(text);
+  if (is_wkt(text)) {
+    systems = systems_of(text);
+    out.names_unit = systems.names_unit;
+  } else if (!text.empty()) {
+    systems.texts.emplace_back(text);
+  }
+  for (std::size_t i = 0; i < systems.texts.size() && out.unread.empty(); ++i) {
+    ProjObject one = i < kMostSystems ? create_one(context, systems.texts[i]) : nullptr;
+    const bool of_heights = one && is_system_of_heights(context, one.get());
+    ProjObject& place = of_heights ? out.heights : out.plane;
+    // The same once more says nothing new.
+    const bool again =
+        one && place && systems.texts[i] == (of_heights ? out.heights_text : out.plane_text);
+    if (again) continue;
+    if (!one || place) {
+      out.unread = systems.texts[i];
+      continue;
+    }
+    place = std::move(one);
+    (of_heights ? out.heights_text : out.plane_text) = systems.texts[i];
+  }
+  return out;
+}
+
+}  // namespace
+
+ProjObject create_crs(PJ_CONTEXT* context, const std::string& text) {
+  ReadSystems read = read_systems(context, text);
+  if (!read.unread.empty()) return nullptr;
+  if (!read.plane) return std::move(read.heights);
+  if (!read.heights || proj_get_type(read.plane.get()) == PJ_TYPE_COMPOUND_CRS) {
+    return std::move(read.plane);
+  }
+  const std::string both = "COMPD_CS[\"" + std::string(trimmed(proj_get_name(read.plane.get()))) +
+                           " + " + std::string(trimmed(proj_get_name(read.heights.get()))) + "\"," +
+                           read.plane_text + "," + read.heights_text + "]";
+  ProjObject compound(proj_create_from_wkt(context, both.c_str(), nullptr, nullptr, nullptr));
+  return compound ? std::move(compound) : std::move(read.plane);
+}
+
+ProjObject plane_of(PJ_CONTEXT* context, ProjObject crs) {
+  while (crs) {
+    const PJ_TYPE type = proj_get_type(crs.get());
+    if (type == PJ_TYPE_BOUND_CRS) {
+      crs.reset(proj_get_source_crs(context, crs.get()));
+    } else if (type == PJ_TYPE_COMPOUND_CRS) {
+      crs.reset(proj_crs_get_sub_crs(context, crs.get(), 0));
+    } else {
+      break;
+    }
+  }
+  return crs;
+}
+
 double unit_of_axis(PJ_CONTEXT* context, const PJ* crs, int axis) {
   const ProjObject system(proj_crs_get_coordinate_system(context, crs));
   double metres = 0;
@@ -32,120 +366,7 @@ double unit_of_axis(PJ_CONTEXT* context, const PJ* crs, int axis) {
   return metres;
 }
 
-namespace {
-
-constexpr std::size_t kRoot = static_cast<std::size_t>(-1);
-
-/// A node KEYWORD[value, ..., child, ...] of well-known text. Nodes are in the order of the text.
-struct Node {
-  std::string keyword;  ///< upper case
-  std::size_t parent;
-  std::vector<std::string_view> values;  ///< bare words and numbers, without quoted strings
-};
-
-bool is_word(char c) {
-  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
-         c == '.' || c == '-' || c == '+';
-}
-
-std::string upper(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  }
-  return result;
-}
-
-/// Parses well-known text, without recursion so that no text can exhaust the stack. Unbalanced
-/// brackets end the parsing.
-std::vector<Node> parse(std::string_view text) {
-  std::vector<Node> nodes;
-  std::size_t open = kRoot;
-  for (std::size_t at = 0; at < text.size();) {
-    const char c = text[at];
-    if (c == '"') {
-      const std::size_t close = text.find('"', at + 1);
-      if (close == std::string_view::npos) break;
-      at = close + 1;
-    } else if (is_word(c)) {
-      std::size_t end = at;
-      while (end < text.size() && is_word(text[end])) ++end;
-      const std::string_view word = text.substr(at, end - at);
-      at = end;
-      while (at < text.size() && text[at] == ' ') ++at;
-      if (at < text.size() && (text[at] == '[' || text[at] == '(')) {
-        nodes.push_back({upper(word), open, {}});
-        open = nodes.size() - 1;
-        ++at;
-      } else if (open != kRoot) {
-        nodes[open].values.push_back(word);
-      }
-    } else {
-      if (c == ']' || c == ')') {
-        if (open == kRoot) break;
-        open = nodes[open].parent;
-      }
-      ++at;
-    }
-  }
-  return nodes;
-}
-
-bool is_one_of(const Node& node, std::initializer_list<std::string_view> keywords) {
-  return std::find(keywords.begin(), keywords.end(), node.keyword) != keywords.end();
-}
-
-std::optional<std::size_t> find(const std::vector<Node>& nodes,
-                                std::initializer_list<std::string_view> keywords) {
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (is_one_of(nodes[i], keywords)) return i;
-  }
-  return std::nullopt;
-}
-
-StatedUnit unit_of(const Node& node) {
-  if (node.values.empty()) return {};
-  const std::string_view text = node.values.front();
-  double metres = 0;
-  std::from_chars(text.data(), text.data() + text.size(), metres);
-  return unit_of_length(metres);
-}
-
-/// The unit given in the system itself, or else in its first axis that gives one.
-StatedUnit unit_within(const std::vector<Node>& nodes, std::size_t system) {
-  for (const Node& node : nodes) {
-    if (node.parent == system && is_one_of(node, {"UNIT", "LENGTHUNIT"})) return unit_of(node);
-  }
-  for (const Node& node : nodes) {
-    if (!is_one_of(node, {"UNIT", "LENGTHUNIT"}) || node.parent == kRoot) continue;
-    const Node& axis = nodes[node.parent];
-    if (axis.keyword == "AXIS" && axis.parent == system) return unit_of(node);
-  }
-  return {};
-}
-
-bool has_cartesian_axes(const std::vector<Node>& nodes, std::size_t system) {
-  return std::any_of(nodes.begin(), nodes.end(), [&](const Node& node) {
-    return node.keyword == "CS" && node.parent == system && !node.values.empty() &&
-           upper(node.values.front()) == "CARTESIAN";
-  });
-}
-
-StatedUnit horizontal(const std::vector<Node>& nodes) {
-  const auto metric = find(nodes, {"PROJCS", "PROJCRS", "PROJECTEDCRS", "GEOCCS", "LOCAL_CS",
-                                   "ENGCRS", "ENGINEERINGCRS"});
-  if (metric) return unit_within(nodes, *metric);
-  const auto geodetic = find(nodes, {"GEODCRS", "GEODETICCRS"});
-  if (geodetic && has_cartesian_axes(nodes, *geodetic)) return unit_within(nodes, *geodetic);
-  if (geodetic || find(nodes, {"GEOGCS", "GEOGCRS", "GEOGRAPHICCRS"})) {
-    return {LengthUnit::kDegrees, {}};
-  }
-  return {};
-}
-
-}  // namespace
-
-StatedUnit unit_of_length(double metres) {
+LengthUnit unit_of_length(double metres) {
   // The tolerance allows for files that give few digits; the two feet differ by 2e-6 of their
   // length.
   constexpr std::array kKnown{LengthUnit::kMetre, LengthUnit::kFoot, LengthUnit::kUsSurveyFoot};
@@ -153,37 +374,133 @@ StatedUnit unit_of_length(double metres) {
   const LengthUnit nearest =
       *std::min_element(kKnown.begin(), kKnown.end(),
                         [&](LengthUnit a, LengthUnit b) { return difference(a) < difference(b); });
-  if (difference(nearest) < 5e-6 * metres_of(nearest)) return {nearest, {}};
-  return {LengthUnit::kUnknown, shown(metres) + " m"};
+  return difference(nearest) < 5e-6 * metres_of(nearest) ? nearest : LengthUnit::kUnknown;
 }
 
-CrsUnits crs_units(const StatedUnit& plane, const StatedUnit& heights) {
-  if (!plane.other.empty()) return {plane.unit, "its unit is " + plane.other};
-  const bool stated = heights.unit != LengthUnit::kUnknown || !heights.other.empty();
-  const bool comparable = plane.unit != LengthUnit::kUnknown && plane.unit != LengthUnit::kDegrees;
-  if (stated && plane.unit == LengthUnit::kUnknown && heights.unit != LengthUnit::kMetre) {
-    return {plane.unit,
-            {},
-            "its heights are in " +
-                (heights.other.empty() ? to_string(heights.unit) : heights.other) +
-                ", and no unit of its other coordinates is named. They are taken for metres; "
-                "--unit names another unit"};
-  }
-  if (!stated || !comparable || heights.unit == plane.unit) return {plane.unit, {}};
-  return {plane.unit, "its heights are in " +
-                          (heights.other.empty() ? to_string(heights.unit) : heights.other) +
-                          ", its other coordinates in " + to_string(plane.unit)};
-}
-
-CrsUnits units_of_wkt(std::string_view wkt) {
-  const std::vector<Node> nodes = parse(wkt);
-  const auto vertical = find(nodes, {"VERT_CS", "VERTCRS", "VERTICALCRS"});
-  return crs_units(horizontal(nodes), vertical ? unit_within(nodes, *vertical) : StatedUnit());
+std::string name_of_length(double metres) {
+  const LengthUnit unit = unit_of_length(metres);
+  return unit == LengthUnit::kUnknown ? shown(metres) + " m" : to_string(unit);
 }
 
 namespace {
 
-constexpr std::int32_t kGreatestCode = 99'999;  // EPSG codes are not greater
+bool are_alike(double metres, double other) {
+  return std::abs(metres - other) <= kSameHeights * other;
+}
+
+}  // namespace
+
+std::string heights_trouble(double height_unit, LengthUnit plane) {
+  const double metres = metres_of(plane);
+  if (height_unit == 0 || metres == 0 || are_alike(height_unit, metres)) return {};
+  return "its heights are in " + name_of_length(height_unit) + ", its other coordinates in " +
+         to_string(plane);
+}
+
+namespace {
+
+/// An axis of a coordinate system.
+struct Axis {
+  double unit = 0;  ///< metres, or radians; 0 where there is no such axis
+  double named_unit =
+      0;  ///< metres of the known unit that has the name of this axis's; otherwise 0
+  std::string unit_name, direction;
+
+  /// Whether name and length of the unit contradict each other, as in UNIT["US survey foot",1].
+  bool contradicts() const { return named_unit > 0 && !are_alike(unit, named_unit); }
+};
+
+std::string lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return out;
+}
+
+Axis axis_of(PJ_CONTEXT* context, const PJ* system, int number) {
+  Axis out;
+  const char *direction = nullptr, *unit = nullptr;
+  if (proj_cs_get_axis_info(context, system, number, nullptr, nullptr, &direction, &out.unit, &unit,
+                            nullptr, nullptr) == 0) {
+    return {};
+  }
+  if (direction != nullptr) out.direction = direction;
+  if (unit != nullptr) out.unit_name = unit;
+  const NamedUnit* const named = find_unit(lower(out.unit_name));
+  if (named != nullptr) out.named_unit = named->metres();
+  return out;
+}
+
+/// Takes the unit of heights from their axis.
+void take_heights(const Axis& axis, CrsUnits& units) {
+  if (axis.direction == "down") {
+    units.trouble = "its heights count downwards";
+    return;
+  }
+  double metres = axis.unit;
+  if (axis.contradicts()) {
+    // A length of 1 stands where a writer knew the name alone.
+    metres = axis.named_unit;
+    units.doubt = "the unit of its heights is named " + excerpt(axis.unit_name) + " and has " +
+                  shown(axis.unit) + " m. It is taken by its name";
+  }
+  if (units.heights != 0 && !are_alike(metres, units.heights)) {
+    units.trouble = "it names two systems of heights, in " + name_of_length(units.heights) +
+                    " and in " + name_of_length(metres);
+    return;
+  }
+  units.heights = metres;
+}
+
+/// Takes the units of a system that is neither compound nor bound.
+void take_single(PJ_CONTEXT* context, const PJ* crs, CrsUnits& units, std::string& unread) {
+  const ProjObject system(proj_crs_get_coordinate_system(context, crs));
+  const PJ_COORDINATE_SYSTEM_TYPE type =
+      system ? proj_cs_get_type(context, system.get()) : PJ_CS_TYPE_UNKNOWN;
+  if (type == PJ_CS_TYPE_VERTICAL) {
+    take_heights(axis_of(context, system.get(), 0), units);
+    return;
+  }
+  if (type != PJ_CS_TYPE_CARTESIAN && type != PJ_CS_TYPE_ELLIPSOIDAL &&
+      type != PJ_CS_TYPE_SPHERICAL) {
+    const char* const name = proj_get_name(crs);
+    unread = name != nullptr ? name : "a system without axes";
+    return;
+  }
+  if (proj_cs_get_axis_count(context, system.get()) > 2) {
+    take_heights(axis_of(context, system.get(), 2), units);
+  }
+  if (type != PJ_CS_TYPE_CARTESIAN) {
+    units.plane = LengthUnit::kDegrees;
+    return;
+  }
+  const Axis x = axis_of(context, system.get(), 0), y = axis_of(context, system.get(), 1);
+  units.plane = unit_of_length(x.unit);
+  if (!are_alike(y.unit, x.unit)) {
+    units.trouble = "its first coordinates are in " + name_of_length(x.unit) + ", its second in " +
+                    name_of_length(y.unit);
+  } else if (x.contradicts()) {
+    units.trouble =
+        "its unit is named " + excerpt(x.unit_name) + " and has " + shown(x.unit) + " m";
+  } else if (units.plane == LengthUnit::kUnknown) {
+    units.trouble = "its unit is " + shown(x.unit) + " m";
+  }
+}
+
+void take_units(PJ_CONTEXT* context, const PJ* crs, CrsUnits& units, std::string& unread) {
+  const PJ_TYPE type = proj_get_type(crs);
+  if (type == PJ_TYPE_BOUND_CRS) {
+    const ProjObject source(proj_get_source_crs(context, crs));
+    if (source) take_units(context, source.get(), units, unread);
+  } else if (type == PJ_TYPE_COMPOUND_CRS) {
+    for (int i = 0;; ++i) {
+      const ProjObject part(proj_crs_get_sub_crs(context, crs, i));
+      if (!part) break;
+      take_units(context, part.get(), units, unread);
+    }
+  } else {
+    take_single(context, crs, units, unread);
+  }
+}
 
 std::int32_t epsg_of(const PJ* crs) {
   const char* authority = proj_get_id_auth_name(crs, 0);
@@ -202,37 +519,55 @@ std::int32_t horizontal_epsg_of(PJ_CONTEXT* context, const PJ* crs) {
   return horizontal ? epsg_of(horizontal.get()) : 0;
 }
 
-void log_nothing(void*, int, const char*) {}
-
-}  // namespace
-
-ScanCrs scan_crs_of(const std::string& wkt) {
-  ScanCrs out{wkt, "the coordinate reference system of the scans"};
-  if (wkt.empty() || wkt.find('\0') != std::string::npos) return out;
-  const ProjContext context = start_proj(log_nothing, nullptr);
-  if (!context) return out;
-  const ProjObject crs(proj_create_from_wkt(context.get(), wkt.c_str(), nullptr, nullptr, nullptr));
-  if (!crs || proj_is_crs(crs.get()) == 0) return out;
+ScanCrs read_crs(const std::string& text) {
+  ScanCrs out{.wkt = text, .name = "the coordinate reference system of the scans"};
+  const ProjContext context = start_proj();
+  if (!context) {
+    out.unread = text;
+    return out;
+  }
+  const ReadSystems read = read_systems(context.get(), text);
+  out.unread = read.unread;
+  for (const PJ* part : {read.plane.get(), read.heights.get()}) {
+    if (part != nullptr) take_units(context.get(), part, out.units, out.unread);
+  }
+  // PROJ takes a local system without a unit for one in metres.
+  if (!read.names_unit && out.units.plane != LengthUnit::kDegrees) out.units = {};
+  const ProjObject crs = create_crs(context.get(), text);
+  if (!crs) return out;
   if (const char* name = proj_get_name(crs.get())) out.name = name;
   const char* const options[] = {"MULTILINE=NO", nullptr};
-  if (const char* text = proj_as_wkt(context.get(), crs.get(), PJ_WKT1_GDAL, options)) {
-    out.wkt = text;
-  }
+  if (const char* wkt = proj_as_wkt(context.get(), crs.get(), PJ_WKT1_GDAL, options)) out.wkt = wkt;
   out.epsg = epsg_of(crs.get());
   out.horizontal_epsg = horizontal_epsg_of(context.get(), crs.get());
   return out;
 }
 
-ScanCrs scan_crs_of_epsg(std::uint16_t code) {
-  ScanCrs out{"", "EPSG:" + std::to_string(code), code, code};
-  const ProjContext context = start_proj(log_nothing, nullptr);
-  if (!context) return out;
-  const ProjObject crs(proj_create_from_database(
-      context.get(), "EPSG", std::to_string(code).c_str(), PJ_CATEGORY_CRS, 0, nullptr));
-  if (!crs) return out;
-  if (const char* name = proj_get_name(crs.get())) out.name = name;
-  out.horizontal_epsg = horizontal_epsg_of(context.get(), crs.get());
+}  // namespace
+
+ScanCrs scan_crs_of(const std::string& text) {
+  thread_local std::string last;
+  thread_local ScanCrs crs{.wkt = {}, .name = "the coordinate reference system of the scans"};
+  if (text == last) return crs;
+  crs = read_crs(text);
+  last = text;
+  return crs;
+}
+
+StatedCrs stated_crs_of(const std::string& text) {
+  const ScanCrs crs = scan_crs_of(text);
+  StatedCrs out{.crs_wkt = text, .crs = text};
+  if (!crs.unread.empty()) {
+    out.crs_unread = "its coordinate reference system " + excerpt(crs.unread);
+    out.crs.clear();
+  }
+  out.unit = crs.units.plane;
+  out.height_unit = crs.units.heights;
+  out.unit_trouble = crs.units.trouble;
+  out.unit_doubt = crs.units.doubt;
   return out;
 }
+
+LengthUnit unit_of_crs(const std::string& text) { return scan_crs_of(text).units.plane; }
 
 }  // namespace clearway

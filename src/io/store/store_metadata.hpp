@@ -88,6 +88,9 @@ struct StoreMetadata {
   std::string layout;  ///< "adaptive" or "regular:SIZE"
   LengthUnit unit = LengthUnit::kUnknown;
   std::string crs_wkt;
+  /// Metres per unit of the inputs' heights, where they were converted from a given unit; otherwise
+  /// 0.
+  double height_unit = 0;
   std::uint64_t points_hash = 0;
   std::vector<SourceFile> sources;
   /// Number of points of each source file; 0 for files of poses. Empty for a single scan, and in
@@ -122,6 +125,9 @@ namespace clearway {
 inline const std::string kStoreFormat = "clearway store";
 inline constexpr std::uint32_t kMostCellPoints = 1U << 20;
 inline constexpr const char* kPointDatasets[4] = {"x", "y", "z", "source"};
+
+/// Attribute of a store whose heights were converted: StoreMetadata::height_unit.
+inline constexpr const char* kHeightUnit = "height_unit";
 
 /// Dataset of /sources; only where there are several files.
 inline constexpr const char* kSourcePoints = "points";

@@ -94,6 +94,9 @@ StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name, Colum
   metadata.layout = hdf5::read_text_attribute(file, "layout", name);
   metadata.unit = length_unit_of(hdf5::read_text_attribute(file, "length_unit", name));
   metadata.crs_wkt = hdf5::read_text_attribute(file, "crs_wkt", name);
+  if (hdf5::has_attribute(file, kHeightUnit, name)) {
+    metadata.height_unit = hdf5::read_number<double>(file, kHeightUnit, name);
+  }
   for (int k = 0; k < 3; ++k) {
     if (!(scale[k] > 0) || !std::isfinite(scale[k]) || !std::isfinite(offset[k])) {
       refuse(name, "attributes 'scale' and 'offset': expected finite numbers, the scale above 0");

@@ -151,6 +151,7 @@ void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata, ColumnH
   hdf5::write_attribute(file, "layout", metadata.layout);
   hdf5::write_attribute(file, "length_unit", to_string(metadata.unit));
   hdf5::write_attribute(file, "crs_wkt", metadata.crs_wkt);
+  if (metadata.height_unit != 0) hdf5::write_number(file, kHeightUnit, metadata.height_unit);
 
   if (!metadata.warnings.empty()) write_warnings(file, metadata.warnings);
 

@@ -622,7 +622,8 @@ def read_vehicle(
 def convert(
     inputs: _AnyPath | Iterable[_AnyPath], output: _AnyPath, *, scale: float | None = None,
     cell_points: int = 65536, regular_size: float | None = None, memory_bytes: int = 4294967296,
-    threads: int = 0, unit: float | str = 0.0, ignore_crs: bool = False, columns: Sequence[str] = (),
+    threads: int = 0, unit: float | str = 0.0, unit_z: float | str = 0.0, ignore_crs: bool = False,
+    columns: Sequence[str] = (),
     origins: _AnyPath | None = None, origins_path: _AnyPath | None = None,
     lever_arm: Sequence[float] = (0.0, 0.0, 0.0), format: str = "auto",
     angle_unit: Literal["declared", "deg", "rad"] = "declared",

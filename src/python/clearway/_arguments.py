@@ -160,7 +160,7 @@ _messages = _each(_kind(_clearway.Message))
 _CHECKS = {
     **dict.fromkeys(("radius", "scale", "regular_size", "step", "rail_distance", "length",
                      "width", "corner_radius", "track"), _above_0),
-    **dict.fromkeys(("unit", "metres_per_unit"), _or_name(_at_least_0)),
+    **dict.fromkeys(("unit", "unit_z", "metres_per_unit"), _or_name(_at_least_0)),
     "environment_unit": _or_name(_above_0),
     **dict.fromkeys(("clearance", "profile", "tolerance", "spacing", "field_voxel", "grid_cell", "gap", "max_gap", "split", "journal_interval_seconds", "sigmas", "seen_cube", "every",
                      "cell", "bin", "margin", "band"),

@@ -220,6 +220,40 @@ TEST_CASE("degrees are refused and feet reported in real files") {
   CHECK_THAT(feet.err, Contains("feet"));
 }
 
+TEST_CASE("public cases of heights in feet and of web Mercator are no clear lorry") {
+  const ScratchFolder folder;
+  const auto file = [](const std::string& name) { return data_folder() / "cases" / name; };
+  const auto colliding = [&](const std::string& model, const std::string& path,
+                             const std::string& radius) {
+    const Outcome run =
+        run_program(folder, "run --json --force --env " + quoted(folder / "a.h5") + " --model " +
+                                quoted(file(model)) + " --trajectory " + quoted(file(path)) +
+                                " --radius " + radius + " -o " + quoted(folder / "out.h5"));
+    CAPTURE(run.err);
+    REQUIRE(run.exit_code == 0);
+    return nlohmann::json::parse(run.out);
+  };
+  for (const char* name : {"f1_esri_vertcs.las", "f1_geotiff_4096_6360.las"}) {
+    CAPTURE(name);
+    const Outcome refused = convert_file(folder, file(name));
+    CHECK(refused.exit_code == 3);
+    CHECK_THAT(refused.err, Contains("its heights are in us-survey-foot") &&
+                                Contains("--unit-z us-ft converts the heights"));
+    REQUIRE(convert_file(folder, file(name), "--unit-z us-ft").exit_code == 0);
+    CHECK(colliding("f1_lorry.off", "f1_road.txt", "0.1")["colliding_points"] > 0);
+  }
+  const Outcome mercator = convert_file(folder, file("f2_web_mercator.las"));
+  CHECK(mercator.exit_code == 3);
+  CHECK_THAT(mercator.err, Contains("1.494 times by area") && Contains("--ignore-crs"));
+  REQUIRE(convert_file(folder, file("f2_web_mercator.las"), "--ignore-crs").exit_code == 0);
+  const auto report = colliding("f2_lorry.off", "f2_path.txt", "0.3");
+  CHECK(std::ranges::any_of(report["warnings"], [](const nlohmann::json& warning) {
+    return warning["code"] == "store-map-scale";
+  }));
+  REQUIRE(convert_file(folder, file("f5_geotiff_3077.las")).exit_code == 0);
+  CHECK(StoreReader(folder / "a.h5").metadata().unit == LengthUnit::kUsSurveyFoot);
+}
+
 TEST_CASE("malformed scans are refused by name") {
   const ScratchFolder folder;
   for (const char* name : {"1.2-no-points.las", "garbage_nVariableLength.las", "broken_size.laz",

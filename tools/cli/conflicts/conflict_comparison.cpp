@@ -65,7 +65,7 @@ struct ComparedSide {
     ComparedResult out;
     out.file = result.reader().name();
     out.radius = header.radius;
-    out.unit = symbol_of(units_of_wkt(header.crs_wkt).horizontal);
+    out.unit = symbol_of(unit_of_crs(header.crs_wkt));
     out.conflicts = std::move(conflicts);
     out.verdict = answer.verdict();
     out.doubts = answer.doubts;

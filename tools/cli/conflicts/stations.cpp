@@ -213,7 +213,7 @@ StationsOutcome perform(StationsCommand& command) {
   }
   for (const auto& output : outputs) output->pending.publish();
   for (const Message& warning : table.warnings) log_message(warning);
-  const std::string unit = symbol_of(units_of_wkt(header.crs_wkt).horizontal);
+  const std::string unit = symbol_of(unit_of_crs(header.crs_wkt));
   return {
       totals_text(table, command, path_length(poses), unit) + table_text(table, command.show, unit),
       "{\n" + summary_json(file) + "\n}\n"};

@@ -36,7 +36,7 @@ std::array<ParsedLength, kCount> parse_lengths(const std::string& option, const 
 
 /// Metres per unit of the CRS that well-known text describes; 1 where it names no unit.
 double metres_of_crs(const std::string& wkt) {
-  const double metres = metres_of(units_of_wkt(wkt).horizontal);
+  const double metres = metres_of(unit_of_crs(wkt));
   return metres > 0 ? metres : 1;
 }
 

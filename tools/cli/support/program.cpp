@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -20,6 +21,7 @@
 #include "core/util/format.hpp"
 #include "io/files/hdf5.hpp"
 #include "io/files/mapped_file.hpp"
+#include "io/scans/length_unit.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -27,6 +29,15 @@ namespace {
 /// An option with a size in a form that it takes, without rounding.
 std::string size_option(const std::string& name, double bytes) {
   return name + " " + std::to_string(static_cast<std::uint64_t>(bytes));
+}
+
+/// The name in options of a unit of length, or UNIT where it has none.
+std::string option_of_length(double metres) {
+  for (const std::string& name : file_unit_names()) {
+    const double named = FileUnit::named(name).metres();
+    if (std::abs(named - metres) < 1e-6 * named) return name;
+  }
+  return "UNIT";
 }
 
 }  // namespace
@@ -82,7 +93,10 @@ std::string advice_on(const Error& error) {
     case Remedy::kSkipUnreadable:
       return "; --skip-unreadable leaves out the files that cannot be read";
     case Remedy::kIgnoreCrs:
-      return "; --ignore-crs takes the coordinates as they are";
+      return error.amount() > 0 ? "; --unit-z " + option_of_length(error.amount()) +
+                                      " converts the heights, and --ignore-crs takes the "
+                                      "coordinates as they are"
+                                : "; --ignore-crs takes the coordinates as they are";
     case Remedy::kOverwrite:
       return "; --force overwrites it, or give another name for the output";
     case Remedy::kReadOrOverwrite:

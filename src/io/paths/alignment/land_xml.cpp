@@ -9,6 +9,7 @@
 #include "core/util/format.hpp"
 #include "io/files/file.hpp"
 #include "io/files/input_error.hpp"
+#include "io/scans/scan_crs.hpp"
 
 namespace clearway {
 namespace {
@@ -120,6 +121,22 @@ void LandXml::read_unit() {
   metres_ = unit->metres;
   unit_name_ = unit->name;
   imperial_ = unit->imperial;
+  check_heights(system);
+}
+
+void LandXml::check_heights(pugi::xml_node system) const {
+  const auto name = attribute(system, "elevationUnit");
+  if (!name) return;
+  // Here LandXML has other names than for linearUnit.
+  constexpr std::pair<std::string_view, double> kHeights[] = {
+      {"meter", 1}, {"kilometer", 1000}, {"feet", kMetresPerFoot}, {"miles", 1609.344}};
+  const auto* const unit =
+      std::ranges::find(kHeights, *name, &std::pair<std::string_view, double>::first);
+  if (unit != std::end(kHeights) && std::abs(unit->second - metres_) <= kSameHeights * metres_) {
+    return;
+  }
+  refuse_at(system, "has elevationUnit=" + excerpt(*name) + " and linearUnit=" +
+                        excerpt(unit_name_) + "; expected one unit for heights and lengths");
 }
 
 std::string LandXml::name_of(pugi::xml_node node) const {

@@ -48,6 +48,7 @@ class LandXml : public XmlText {
 
  private:
   void read_unit();
+  void check_heights(pugi::xml_node system) const;
 
   double metres_ = 1;
   std::string unit_name_;

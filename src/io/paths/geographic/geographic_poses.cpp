@@ -5,9 +5,11 @@
 #include <cstdio>
 
 #include "core/geometry/angle.hpp"
+#include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/paths/geographic/map_projection.hpp"
 #include "io/scans/length_unit.hpp"
+#include "io/scans/map_scale.hpp"
 
 namespace clearway {
 namespace {
@@ -33,6 +35,14 @@ struct Range {
 /// Ranges of the map's properties at the poses of a file.
 struct Ranges {
   Range north, scale, height;
+  MapScale worst{};  ///< the scale that is farthest from 1
+
+  void add(const MapProjection::Place& place) {
+    north.add(place.north);
+    scale.add(place.scale.farthest);
+    height.add(place.position.z);
+    if (place.scale.error() > worst.error()) worst = place.scale;
+  }
 };
 
 MapProjection open_projection(const TrajectoryOptions& options, const std::string& name) {
@@ -93,7 +103,6 @@ void remark_heights(const MapProjection& map, const TrajectoryOptions& options,
 void remark_map(const MapProjection& map, const TrajectoryOptions& options, const Ranges& ranges,
                 const std::string& name, TrajectoryFile& out) {
   constexpr double kFeet = 0.9;
-  constexpr double kGoodScale = 2e-3;
   out.note("map-projection",
            name + ": positions are in " + map.name() +
                (options.crs.empty() ? ", as the environment" : "") + "; true north lies " +
@@ -114,12 +123,16 @@ void remark_map(const MapProjection& map, const TrajectoryOptions& options, cons
                  " m; model, radius and lever arm are to be in it too",
              {{"metres", unit}});
   }
-  const double worst = std::max(ranges.scale.greatest - 1, 1 - ranges.scale.least);
-  if (worst > kGoodScale) {
+  const MapScale& worst = ranges.worst;
+  if (worst.error() > kMapScaleWarning) {
     out.warn("map-scale",
              name + ": lengths on the map of " + map.name() + " are wrong by " +
-                 brief(100 * worst) + " % here; another zone or another CRS may be meant",
-             {{"error", worst}});
+                 brief(100 * worst.error()) + " % at longitude " + format_brief(worst.longitude) +
+                 ", latitude " + format_brief(worst.latitude) + ": they are " +
+                 format_brief(worst.farthest) + " times those on the ground (" +
+                 format_brief(worst.mean) +
+                 " times by area). Another zone or another CRS may be meant",
+             {{"error", worst.error()}, {"scale", worst.farthest}, {"mean_scale", worst.mean}});
   }
 }
 
@@ -162,9 +175,7 @@ void append_geographic_poses(std::span<const AttitudeRow> rows, AngleFrame frame
     Pose pose{{}, {place->position.x, place->position.y, place->position.z}};
     set_rotation(row, frame, place->north, pose);
     out.poses.push_back(pose);
-    ranges.north.add(place->north);
-    ranges.scale.add(place->scale);
-    ranges.height.add(place->position.z);
+    ranges.add(*place);
   }
   out.crs = map.name();
   out.metres_per_unit = map.metres_per_unit();

@@ -1,6 +1,5 @@
 #include "io/paths/geographic/map_projection.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -10,6 +9,7 @@
 #include "clearway/trajectory.hpp"
 #include "core/geometry/angle.hpp"
 #include "io/files/input_error.hpp"
+#include "io/scans/map_scale.hpp"
 #include "io/scans/scan_crs.hpp"
 
 namespace clearway {
@@ -21,31 +21,16 @@ constexpr double kEccentricity2 = 6.69437999014e-3;  // squared eccentricity of 
 /// Keeps the text that PROJ logs, instead of printing it.
 void keep_log(void* kept, int, const char* text) { *static_cast<std::string*>(kept) = text; }
 
-/// Whether a well-known text names files, which a text from a file must not make PROJ open
-/// (docs/design/security.md).
-bool names_files(std::string_view wkt) {
-  std::string upper(wkt);
-  std::ranges::transform(upper, upper.begin(), [](char c) {
-    return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-  });
-  for (const char* word : {"PARAMETERFILE", "EXTENSION", "GRIDS", "INIT="}) {
-    if (upper.find(word) != std::string::npos) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 struct MapProjection::Parts {
   std::string log;  ///< must outlive the context
   ProjContext context;
   ProjObject transformation;
+  std::optional<ScanMap> map;
 
   ProjObject create(const std::string& text, bool from_file) {
-    if (from_file) {
-      return ProjObject(
-          proj_create_from_wkt(context.get(), text.c_str(), nullptr, nullptr, nullptr));
-    }
+    if (from_file) return create_crs(context.get(), text);
     const bool proj_string = text.find("+proj=") != std::string::npos;
     const bool typed = text.find("+type=crs") != std::string::npos;
     return ProjObject(
@@ -99,6 +84,9 @@ void MapProjection::open(const std::string& crs, bool from_file, const std::stri
   }
   unit_ = unit_of_axis(context, horizontal, 0);
   if (!(unit_ > 0)) throw InputError("its unit is not known");
+  const char* const text = proj_as_wkt(context, horizontal, PJ_WKT2_2019, nullptr);
+  parts_->map = ScanMap::of(text != nullptr ? text : "");
+  if (!parts_->map) throw InputError("its projection is not known");
 
   const ProjObject source = parts_->create(datum.empty() ? "EPSG:4979" : datum, false);
   if (!source) throw UsageError(excerpt(datum) + " is no geographic datum that PROJ knows");
@@ -149,11 +137,11 @@ std::optional<MapProjection::Place> MapProjection::place(double longitude, doubl
   double xyz[3];
   if (!project(longitude, latitude, height, xyz)) return std::nullopt;
   const Vec3 north = slope(longitude, latitude, height, true);
-  const double scale = std::hypot(north.x, north.y) * unit_;
-  if (!(scale > 0)) return std::nullopt;
+  const auto scale = parts_->map->at(xyz[0], xyz[1]);
+  if (!scale || (north.x == 0 && north.y == 0)) return std::nullopt;
   // A height that was not converted.
   const double vertical = vertical_unit_ > 0 ? vertical_unit_ : 1;
-  return Place{{xyz[0], xyz[1], xyz[2] * vertical / unit_}, std::atan2(north.x, north.y), scale};
+  return Place{{xyz[0], xyz[1], xyz[2] * vertical / unit_}, std::atan2(north.x, north.y), *scale};
 }
 
 double MapProjection::skew(double longitude, double latitude, double height) const {

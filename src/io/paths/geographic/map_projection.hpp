@@ -5,6 +5,7 @@
 #include <string>
 
 #include "clearway/vec3.hpp"
+#include "io/scans/map_scale.hpp"
 
 namespace clearway {
 
@@ -16,9 +17,9 @@ struct TrajectoryOptions;
 class MapProjection {
  public:
   struct Place {
-    Vec3 position;  ///< easting, northing, height in the unit of the CRS
-    double north;   ///< direction of true north, clockwise from the direction of northing, radians
-    double scale;   ///< length on the map divided by the length on the ellipsoid
+    Vec3 position;   ///< easting, northing, height in the unit of the CRS
+    double north;    ///< direction of true north, clockwise from the direction of northing, radians
+    MapScale scale;  ///< scale of the map at the position
   };
 
   /// Projects to options.crs, or else to options.default_crs. Throws UsageError for an unusable CRS

@@ -25,7 +25,7 @@ struct ConflictFile {
   std::string date = kNoDate;
 
   /// Unit of all lengths, which the scan's coordinate reference system names.
-  LengthUnit unit() const { return units_of_wkt(header.crs_wkt).horizontal; }
+  LengthUnit unit() const { return unit_of_crs(header.crs_wkt); }
   /// Metres per unit of length; 1 where the unit is not known.
   double metres_per_unit() const { return metres_of(unit()) > 0 ? metres_of(unit()) : 1; }
 

@@ -109,7 +109,7 @@ std::string summary_json(const StationFile& file) {
   const ResultHeader& header = file.header;
   JsonMembers out;
   out.add("kind", json_string("stations"));
-  out.add("unit", json_string(symbol_of(units_of_wkt(header.crs_wkt).horizontal)));
+  out.add("unit", json_string(symbol_of(unit_of_crs(header.crs_wkt))));
   out.add_length("radius", header.radius);
   out.add_length("clearance", header.clearance);
   out.add("between_poses", header.between_poses ? "true" : "false");

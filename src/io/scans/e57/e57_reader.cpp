@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -161,10 +162,7 @@ class E57Reader final : public PointReader {
     refuse_shared_sections(pages_.name(), scans_, extents_);
     refuse_points_from_nothing(pages_.name(), scans_);
     info_.declared_points = points;
-    info_.crs_wkt = std::move(document.crs);
-    const CrsUnits units = units_of_wkt(info_.crs_wkt);
-    info_.unit = units.horizontal;
-    info_.unit_trouble = units.trouble;
+    info_.set(stated_crs_of(crs_text_of(std::as_bytes(std::span(document.crs)))));
     if (info_.unit == LengthUnit::kUnknown) info_.unit = LengthUnit::kMetre;
   }
 

@@ -14,7 +14,6 @@
 #include "core/geometry/quantisation.hpp"
 #include "io/scans/input_buffer.hpp"
 #include "io/scans/point_reader.hpp"
-#include "io/scans/scan_crs.hpp"
 
 namespace clearway {
 
@@ -74,15 +73,6 @@ inline LasExtraDescription las_extra_bytes(std::string_view name, std::string_vi
   std::memcpy(&out[kNone], &none, sizeof none);
   return out;
 }
-
-/// The units that a GeoTIFF key directory (LAS record 34735) names, or those of the projection
-/// whose code it gives, where PROJ's database is installed. A directory that is cut off is read as
-/// far as it goes. Source: OGC GeoTIFF 1.1, LAS 1.4 R15 section 3.3.
-CrsUnits units_of_geotiff(std::span<const std::byte> key_directory);
-
-/// The EPSG code of the coordinate reference system that the keys name; 0 where they name none or a
-/// user-defined one.
-std::uint16_t epsg_of_geotiff(std::span<const std::byte> key_directory);
 
 /// The part of a LAS file's public header block that reading coordinates needs.
 /// Source: ASPRS LAS 1.4 R15, section 2.4, and its predecessors 1.0 to 1.3.

@@ -79,7 +79,7 @@ class LasReader final : public PointReader {
     info_.quantisation = header_.quantisation;
     info_.declared_points = header_.points;
     info_.declared_box = header_.box;
-    crs_.describe(info_);
+    info_.set(crs_.stated());
   }
 
   const CloudInfo& info() const override { return info_; }
@@ -196,7 +196,7 @@ class LasReader final : public PointReader {
   void finish() {
     if (tail_read_) return;
     read_las_tail(input_, header_, crs_);
-    crs_.describe(info_);
+    info_.set(crs_.stated());
     tail_read_ = true;
     if (points_ == header_.points) return;
     info_.remarks.push_back({Message::Severity::kWarning,
@@ -239,7 +239,7 @@ std::unique_ptr<PointReader> read_compressed(InputBuffer input, const LasPublicH
   info.declared_points = header.points;
   info.declared_box = header.box;
   info.gps_times = scheme.has_times() ? gps_times_of(header) : GpsTimes::kNone;
-  records.crs.describe(info);
+  info.set(records.crs.stated());
   const std::uint64_t end = header.tail_count > 0 ? header.tail_offset : *input.size();
   return read_laz_points(std::move(input), scheme, {header.points_offset, end, header.points},
                          std::move(info));

@@ -1,14 +1,17 @@
 #include "io/scans/las/las_records.hpp"
 
+#include <cmath>
 #include <limits>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "io/files/bytes.hpp"
 #include "io/files/input_error.hpp"
 #include "io/scans/las/las_header.hpp"
+#include "io/scans/scan_crs.hpp"
 
 namespace clearway {
 namespace {
@@ -19,26 +22,25 @@ std::string_view padded_text(std::span<const std::byte> bytes) {
   return text.substr(0, text.find('\0'));
 }
 
+constexpr unsigned kWkt = 2112, kGeoKeys = 34735, kGeoNumbers = 34736;
+
 /// Takes the CRS from a record. payload: the whole record after its header.
 void note_record(std::string_view user, unsigned id, std::span<const std::byte> payload,
                  LasCrs& crs) {
-  constexpr unsigned kWkt = 2112;
-  constexpr unsigned kGeoKeys = 34735;
-  if (user == "LASF_Projection" && id == kGeoKeys) {
-    crs.geotiff = units_of_geotiff(payload);
-    crs.geotiff_epsg = epsg_of_geotiff(payload);
+  if (user == "LASF_Projection" && (id == kGeoKeys || id == kGeoNumbers)) {
+    crs.geotiff.take(id, payload);
   }
   if (id != kWkt) return;
   std::string* wkt = user == "LASF_Projection" ? &crs.wkt
                      : user == "liblas"        ? &crs.foreign_wkt
                                                : nullptr;
-  if (wkt && wkt->empty()) *wkt = padded_text(payload);
+  if (wkt && wkt->empty()) *wkt = crs_text_of(payload);
 }
 
 /// Keeps the first record of each kind that copies of points need.
 void keep_record(const std::string& user, unsigned id, std::span<const std::byte> payload,
                  LasRecords& records) {
-  constexpr unsigned kExtraBytes = 4, kGeoKeys = 34735, kGeoTexts = 34737;
+  constexpr unsigned kExtraBytes = 4, kGeoTexts = 34737;
   if (user == "LASF_Spec" && id == kExtraBytes && records.extra_bytes.empty()) {
     records.extra_bytes.assign(payload.begin(), payload.end());
   }
@@ -51,26 +53,49 @@ void keep_record(const std::string& user, unsigned id, std::span<const std::byte
 }
 
 bool is_about_crs(std::string_view user, unsigned id) {
-  return (user == "LASF_Projection" || user == "liblas") && (id == 2112 || id == 34735);
+  return (user == "LASF_Projection" || user == "liblas") &&
+         (id == kWkt || id == kGeoKeys || id == kGeoNumbers);
 }
 
 }  // namespace
 
-void LasCrs::describe(CloudInfo& info) const {
-  info.crs_wkt = wkt.empty() ? foreign_wkt : wkt;
-  if (info.crs_wkt.empty()) info.crs_epsg = geotiff_epsg;
-  CrsUnits units = units_of_wkt(info.crs_wkt);
-  const bool keys_count = units.horizontal == LengthUnit::kUnknown && units.trouble.empty();
-  if (keys_count) {
-    units = geotiff;
-  } else if (geotiff.horizontal != LengthUnit::kUnknown && units.horizontal != geotiff.horizontal) {
-    units.doubt = "its well-known text names the unit " + to_string(units.horizontal) +
-                  ", its GeoTIFF keys " + to_string(geotiff.horizontal) +
-                  ". It is taken to be in that of the text";
+StatedCrs LasCrs::stated() const {
+  const GeotiffCrs keys = geotiff.crs();
+  StatedCrs out = stated_crs_of(wkt.empty() ? foreign_wkt : wkt);
+  const bool is_read = !out.crs.empty() && out.crs_unread.empty();
+  if (is_read) {
+    const bool plane_by_keys = out.unit == LengthUnit::kUnknown && out.unit_trouble.empty();
+    if (plane_by_keys) {
+      out.unit = keys.units.plane;
+      out.unit_trouble = keys.units.trouble;
+    } else if (keys.units.plane != LengthUnit::kUnknown && keys.units.plane != out.unit) {
+      out.unit_doubt = "its well-known text names the unit " + to_string(out.unit) +
+                       ", its GeoTIFF keys " + to_string(keys.units.plane) +
+                       ". It is taken to be in that of the text";
+    }
+    const double of_keys = keys.units.heights;
+    if (out.height_unit == 0) {
+      out.height_unit = of_keys;
+      out.crs_doubt = keys.unread_heights;
+    } else if (of_keys > 0 && out.unit_doubt.empty() &&
+               std::abs(of_keys - out.height_unit) > kSameHeights * of_keys) {
+      out.unit_doubt = "its well-known text names " + name_of_length(out.height_unit) +
+                       " for heights, its GeoTIFF keys " + name_of_length(of_keys) +
+                       ". They are taken to be in that of the text";
+    }
+    return out;
   }
-  info.unit = units.horizontal;
-  info.unit_doubt = units.doubt;
-  info.unit_trouble = units.trouble;
+  if (!out.crs_unread.empty() && keys.units.plane == LengthUnit::kUnknown) return out;
+  out.crs_doubt = keys.unread.empty() ? keys.unread_heights : keys.unread;
+  if (!out.crs_unread.empty()) {
+    out.crs_doubt = std::exchange(out.crs_unread, {}) + " is not read, so its GeoTIFF keys count";
+  }
+  out.crs = keys.crs;
+  out.unit = keys.units.plane;
+  out.height_unit = keys.units.heights;
+  out.unit_trouble = keys.units.trouble;
+  out.unit_doubt = keys.units.doubt;
+  return out;
 }
 
 void read_las_vlrs(InputBuffer& input, const LasPublicHeader& header, LasRecords& records) {

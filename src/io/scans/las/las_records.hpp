@@ -10,21 +10,22 @@
 #include "core/geometry/quantisation.hpp"
 #include "io/files/bytes.hpp"
 #include "io/scans/input_buffer.hpp"
+#include "io/scans/las/geotiff_keys.hpp"
 #include "io/scans/las/las_header.hpp"
 #include "io/scans/point_reader.hpp"
-#include "io/scans/scan_crs.hpp"
+#include "io/scans/stated_crs.hpp"
 
 namespace clearway {
 
-/// The coordinate reference system in the variable length records.
+/// What the variable length records say of the coordinate reference system.
 struct LasCrs {
   std::string wkt;          ///< from the record of user LASF_Projection
   std::string foreign_wkt;  ///< from the copy of that record that liblas writes
-  CrsUnits geotiff;
-  std::uint16_t geotiff_epsg = 0;  ///< EPSG code in the GeoTIFF keys; 0 for none
+  GeotiffKeys geotiff;
 
-  /// Sets the CRS and unit of `info`; well-known text takes precedence over GeoTIFF keys.
-  void describe(CloudInfo& info) const;
+  /// What all of it says. Well-known text takes precedence over GeoTIFF keys; where PROJ does not
+  /// read the one, the other counts.
+  StatedCrs stated() const;
 };
 
 /// A variable length record: user id, record id and contents.

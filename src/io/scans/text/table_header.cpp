@@ -304,24 +304,29 @@ std::string other_table(const TableHeader& header) {
 }
 
 TableUnit unit_of(const TableHeader& header, const CoordinateColumns& columns) {
+  TableUnit out;
   const NamedUnit* found = nullptr;
-  for (const std::size_t column : columns) {
-    if (column >= header.units.size()) continue;
-    const std::string& unit = header.units[column];
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (columns[k] >= header.units.size()) continue;
+    const std::string& unit = header.units[columns[k]];
     const NamedUnit* const known = find_unit(unit);
     const bool read = known != nullptr && known->environment != LengthUnit::kUnknown;
-    if (!read && (known != nullptr || is_one_of(unit, kOthers))) {
-      return {LengthUnit::kUnknown, false, unit};
+    const bool of_heights = k == 2 && known != nullptr && found != nullptr;
+    if (!read && !of_heights && (known != nullptr || is_one_of(unit, kOthers))) {
+      return {.refused = unit};
     }
-    if (!read) continue;
+    if (k == 2 && known != nullptr) out.heights = known->metres();
+    if (!read || of_heights) continue;
     if (found != nullptr && found != known) {
-      return {LengthUnit::kUnknown, false,
-              std::string(found->symbol) + " and " + std::string(known->symbol) + " together"};
+      return {.refused =
+                  std::string(found->symbol) + " and " + std::string(known->symbol) + " together"};
     }
     found = known;
   }
-  if (found == nullptr) return {};
-  return {found->environment, found->any_foot, {}};
+  if (found == nullptr) return out;
+  out.unit = found->environment;
+  out.any_foot = found->any_foot;
+  return out;
 }
 
 }  // namespace clearway

@@ -75,11 +75,13 @@ std::optional<PlanColumns> plan_columns(const TableHeader& header);
 /// What kind of table the names indicate if not one of points, for a message; otherwise empty.
 std::string other_table(const TableHeader& header);
 
-/// The unit of the columns x, y and z as the header gives it.
+/// The units of the columns x, y and z as the header gives them.
 struct TableUnit {
-  LengthUnit unit = LengthUnit::kUnknown;
-  bool any_foot = false;  ///< see CloudInfo
-  std::string refused;    ///< the unit that is not read, or the two that differ; otherwise empty
+  LengthUnit unit = LengthUnit::kUnknown;  ///< of x and y, or of z where they name none
+  bool any_foot = false;                   ///< see StatedCrs
+  double heights = 0;                      ///< metres per unit of z; 0 where it names none
+  /// The unit that is not read, or the two of x and y that differ; otherwise empty.
+  std::string refused = {};
 };
 TableUnit unit_of(const TableHeader& header, const CoordinateColumns& columns);
 

@@ -390,6 +390,7 @@ class PrologueReader {
     out_.line = PointLine(columns, separator);
     out_.unit = unit.unit;
     out_.any_foot = unit.any_foot;
+    out_.height_unit = unit.heights;
     all_named_ = all_named_ || !options_.columns.empty();
   }
 

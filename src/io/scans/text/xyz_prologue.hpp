@@ -16,7 +16,8 @@ struct XyzPrologue {
   std::optional<std::uint64_t> declared_points;
   std::uint64_t count_line = 0;  ///< line of declared_points
   LengthUnit unit = LengthUnit::kUnknown;
-  bool any_foot = false;  ///< see CloudInfo
+  bool any_foot = false;   ///< see StatedCrs
+  double height_unit = 0;  ///< see StatedCrs
   std::vector<Message> remarks;
 };
 

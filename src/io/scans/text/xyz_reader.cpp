@@ -61,6 +61,7 @@ class XyzReader final : public PointReader {
     info_.declared_points = prologue.declared_points;
     info_.unit = prologue.unit;
     info_.any_foot = prologue.any_foot;
+    info_.height_unit = prologue.height_unit;
     info_.remarks = std::move(remarks);
     info_.remarks.insert(info_.remarks.end(), prologue.remarks.begin(), prologue.remarks.end());
     info_.text_table = true;

@@ -28,12 +28,13 @@
 #include "io/files/thread_limit.hpp"
 #include "io/scans/point_formats.hpp"
 #include "io/scans/point_reader.hpp"
-#include "io/scans/scan_crs.hpp"
 #include "io/store/convert/count.hpp"
 #include "io/store/convert/distribute.hpp"
 #include "io/store/convert/environment_source.hpp"
+#include "io/store/convert/input_agreement.hpp"
 #include "io/store/convert/input_files.hpp"
 #include "io/store/convert/input_warnings.hpp"
+#include "io/store/convert/map_warnings.hpp"
 #include "io/store/convert/origin_table.hpp"
 #include "io/store/convert/pack_unit.hpp"
 #include "io/store/convert/path_origins.hpp"
@@ -254,11 +255,14 @@ class Conversion {
     CountedEnvironment counted = count_environment(environment, lattice, survey, hashes, threads_,
                                                    clocks_, progress_, path ? &*path : nullptr);
     fill_metadata(environment, counted, others.get(hashes.finish()));
-    if (environment.unit() == LengthUnit::kUnknown && counted.points > 0) {
+    const bool names_no_unit =
+        environment.unit() == LengthUnit::kUnknown && !environment.crs().is_partly_read;
+    if (names_no_unit && counted.points > 0) {
       log_.note(
           "the inputs name no unit of length, so metres are assumed; --unit names another one");
     }
     report_.box = warn_of_inputs(environment, survey.boxes, report_.metadata, log_);
+    check_coordinates(environment);
     if (path) report_.origins_path = path->finish(environment, log_);
     path.reset();
     collect_origins(environment, counted.input_points, origins);
@@ -287,9 +291,18 @@ class Conversion {
   }
 
  private:
+  /// Judges the coordinates by the place where they lie, now that it is known.
+  void check_coordinates(const EnvironmentSource& environment) {
+    if (!report_.box) return;
+    check_map_scale(environment.crs(), *report_.box, environment.files()[0], options_.ignore_crs,
+                    log_);
+    if (environment.unit() == LengthUnit::kUnknown) warn_of_degrees(*report_.box, log_);
+  }
+
   EnvironmentOptions environment_options() const {
     return {.scale = options_.scale,
             .unit = options_.unit,
+            .unit_z = options_.unit_z,
             .ignore_crs = options_.ignore_crs,
             .skip_unreadable = options_.skip_unreadable,
             .columns = options_.columns,
@@ -307,6 +320,7 @@ class Conversion {
                         .layout = layout_name(options_.regular_size),
                         .unit = environment.unit(),
                         .crs_wkt = environment.crs_wkt(),
+                        .height_unit = environment.crs().height_unit,
                         .points_hash = counted.points_hash,
                         .sources = std::move(sources),
                         .source_points = {},
@@ -482,6 +496,13 @@ bool has_wanted_unit(const FileUnit& wanted, LengthUnit found) {
   return !wanted.is_known() || wanted.metres_in(metres_of(found)) == metres_of(found);
 }
 
+/// Whether the heights of a store were converted from the unit that these options name.
+bool has_wanted_heights(const ConversionOptions& options, const StoreMetadata& found) {
+  if (!options.unit_z.is_known()) return found.height_unit == 0;
+  const double metres = metres_of(found.unit);
+  return found.height_unit == options.unit_z.metres_in(metres > 0 ? metres : 1);
+}
+
 /// Whether a store has the origins that these options give it beside the scans.
 bool has_wanted_origins(const ConversionOptions& options, const StoreMetadata& found) {
   const std::uint64_t given = found.origins ? found.origins->given_hash : 0;
@@ -499,9 +520,9 @@ bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
          found.layout == layout_name(options.regular_size) &&
          std::all_of(found.quantisation.scale, found.quantisation.scale + 3, wanted) &&
          (!options.strict || found.point_count == found.input_points || !found.warnings.empty()) &&
-         has_wanted_unit(options.unit, found.unit) && has_wanted_origins(options, found) &&
-         (options.ignore_crs ||
-          (found.unit != LengthUnit::kDegrees && units_of_wkt(found.crs_wkt).trouble.empty()));
+         has_wanted_unit(options.unit, found.unit) && has_wanted_heights(options, found) &&
+         has_wanted_origins(options, found) &&
+         (options.ignore_crs || std::ranges::none_of(found.warnings, is_of_ignored_crs));
 }
 
 }  // namespace

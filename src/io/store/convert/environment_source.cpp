@@ -10,6 +10,7 @@
 #include "clearway/error.hpp"
 #include "core/util/messages.hpp"
 #include "io/files/input_error.hpp"
+#include "io/store/convert/converted_heights.hpp"
 #include "io/store/convert/coordinate_range.hpp"
 #include "io/store/convert/read_points.hpp"
 #include "io/store/convert/spooled_reader.hpp"
@@ -47,6 +48,7 @@ EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& i
       inputs_(inputs, options.skip_unreadable, how_to_read_, progress) {
   open_inputs();
   find_crs();
+  begin_converting_heights();
   if (auto kept = common_quanta(files(), infos_, options_.scale)) {
     quantisation_ = kept->quantisation;
     shifts_ = std::move(kept->shifts);
@@ -81,13 +83,26 @@ void EnvironmentSource::open_inputs() {
 }
 
 void EnvironmentSource::find_crs() {
-  crs_ = common_crs(files(), infos_, options_.unit, options_.ignore_crs);
+  crs_ = common_crs(files(), infos_, {options_.unit, options_.unit_z, options_.ignore_crs});
   for (std::size_t i = 0; i < files().size(); ++i) {
     if (infos_[i].faces == 0) continue;
     crs_.warnings.push_back({Message::Severity::kWarning, "mesh-faces",
                              files()[i].string() + ": its " + std::to_string(infos_[i].faces) +
                                  " faces are not read, its vertices are"});
   }
+}
+
+void EnvironmentSource::begin_converting_heights() {
+  if (crs_.height_factor == 1) return;
+  for (CloudInfo& info : infos_) convert_heights(info, crs_.height_factor);
+  current_.reset();  // it was opened before the factor was known
+  if (stream_) stream_ = converted(std::move(stream_));
+}
+
+std::shared_ptr<PointReader> EnvironmentSource::converted(
+    std::shared_ptr<PointReader> reader) const {
+  if (crs_.height_factor == 1) return reader;
+  return with_converted_heights(std::move(reader), crs_.height_factor);
 }
 
 std::vector<Message> EnvironmentSource::remarks() const {
@@ -132,8 +147,8 @@ void EnvironmentSource::choose_offset_and_scale(Progress& progress) {
 const std::shared_ptr<PointReader>& EnvironmentSource::reader(std::size_t file) {
   if (stream_) return stream_;
   if (!current_ || open_file_ != file) {
-    current_ = reading_one_of(files().size(),
-                              [&] { return open_point_file(files()[file], how_to_read_); });
+    current_ = converted(reading_one_of(
+        files().size(), [&] { return open_point_file(files()[file], how_to_read_); }));
     open_file_ = file;
   }
   return current_;
@@ -174,14 +189,21 @@ bool EnvironmentSource::next(RecordBatch& records) {
     next_source_ += count;
     return true;
   }
-  if (stream_ &&
-      (infos_[0].crs_wkt != stream_->info().crs_wkt || infos_[0].unit != stream_->info().unit)) {
-    infos_[0].crs_wkt = stream_->info().crs_wkt;  // the CRS may follow the points
-    infos_[0].unit = stream_->info().unit;
-    infos_[0].unit_trouble = stream_->info().unit_trouble;
-    find_crs();
-  }
+  if (stream_) take_late_crs();
   return false;
+}
+
+/// Takes the CRS of a stream, which may follow its points.
+void EnvironmentSource::take_late_crs() {
+  const StatedCrs& late = stream_->info();
+  if (static_cast<const StatedCrs&>(infos_[0]) == late) return;
+  infos_[0].set(late);
+  const double factor = crs_.height_factor;
+  find_crs();
+  if (crs_.height_factor == factor) return;
+  refuse(files()[0].string(),
+         "its unit comes after its points, whose heights were converted for another one; expected "
+         "the scan as a file");
 }
 
 void EnvironmentSource::read_piece(RecordBatch& records, PieceBytes* bytes) const {

@@ -17,7 +17,8 @@ namespace clearway {
 struct EnvironmentOptions {
   std::optional<double> scale{};  ///< requested scale of all axes, in metres
   FileUnit unit{};                ///< unit of inputs that name none
-  bool ignore_crs = false;        ///< whether to accept degrees and inputs of different units
+  FileUnit unit_z{};              ///< unit of all heights, see ConvertOptions::unit_z
+  bool ignore_crs = false;        ///< see ConvertOptions::ignore_crs
   bool skip_unreadable = false;   ///< whether to leave out files that cannot be read to their end
   std::vector<std::string> columns{};  ///< columns of texts, see PointReadOptions
   bool with_times = false;             ///< whether GPS times are read too, where files have them
@@ -40,7 +41,8 @@ class EnvironmentSource {
   const Quantisation& quantisation() const { return quantisation_; }
   const std::string& crs_wkt() const { return crs_.wkt; }
   LengthUnit unit() const { return crs_.unit; }
-  /// The declarations of each of files().
+  const CommonCrs& crs() const { return crs_; }
+  /// The declarations of each of files(), with converted heights.
   std::span<const CloudInfo> infos() const { return infos_; }
   const std::vector<std::filesystem::path>& files() const {
     return inputs_.files();
@@ -98,7 +100,10 @@ class EnvironmentSource {
  private:
   void open_inputs();
   void find_crs();
+  void begin_converting_heights();
+  void take_late_crs();
   void choose_offset_and_scale(Progress& progress);
+  std::shared_ptr<PointReader> converted(std::shared_ptr<PointReader> reader) const;
   const std::shared_ptr<PointReader>& reader(std::size_t file);
   void read_piece(RecordBatch& records, PieceBytes* bytes) const;
   void append_kept(RecordBatch& records, QuantaBatch& out) const;

@@ -6,7 +6,9 @@
 
 #include "clearway/error.hpp"
 #include "io/files/input_error.hpp"
+#include "io/scans/map_scale.hpp"
 #include "io/scans/scan_crs.hpp"
+#include "io/store/convert/map_warnings.hpp"
 #include "io/store/store_metadata.hpp"
 
 namespace clearway {
@@ -41,24 +43,42 @@ void warn(CommonCrs& common, const char* code, const std::string& text) {
 
 bool has_unit(const CloudInfo& info) { return info.unit != LengthUnit::kUnknown; }
 
-void refuse_units(const std::filesystem::path& file, const CloudInfo& info) {
-  if (!info.unit_trouble.empty()) {
-    refuse(file.string(),
-           info.unit_trouble + "; expected metres or feet for all of them. Convert the scan first",
-           Remedy::kIgnoreCrs);
-  }
-  if (info.unit != LengthUnit::kDegrees) return;
-  refuse(file.string(),
-         "its coordinate reference system is in degrees, expected lengths; project the scan first",
-         Remedy::kIgnoreCrs);
+constexpr const char* kIgnored = "crs-ignored";
+
+/// Refuses a file for this reason, or warns of it where it is to be ignored.
+/// heights: metres of a unit of heights that can be named instead; 0 where that does not help.
+void refuse_or_warn(const std::filesystem::path& file, const std::string& reason,
+                    const std::string& expected, bool ignore, CommonCrs& common,
+                    double heights = 0) {
+  if (!ignore) refuse(file.string(), reason + expected, Remedy::kIgnoreCrs, heights);
+  warn(common, kIgnored, file.string() + ": " + reason + ". The coordinates are taken as they are");
 }
 
-[[noreturn]] void refuse_unit(const std::filesystem::path& file, LengthUnit found,
-                              const std::filesystem::path& other, LengthUnit expected) {
-  refuse(file.string(),
-         "its unit of length is " + to_string(found) + ", expected " + to_string(expected) +
-             " as in " + other.string(),
-         Remedy::kIgnoreCrs);
+/// Judges what an input says of its own.
+void check_own(const std::filesystem::path& file, const CloudInfo& info, bool ignore,
+               CommonCrs& common) {
+  if (!info.crs_unread.empty()) {
+    refuse_or_warn(file, info.crs_unread + " is not read",
+                   ", expected well-known text, PROJJSON, a PROJ string or a code that PROJ knows",
+                   ignore, common);
+  }
+  if (!info.unit_trouble.empty()) {
+    refuse_or_warn(file, info.unit_trouble,
+                   "; expected metres or feet for all of them. Convert the scan first", ignore,
+                   common);
+  }
+  if (info.unit == LengthUnit::kDegrees) {
+    refuse_or_warn(file, "its coordinate reference system is in degrees",
+                   ", expected lengths; project the scan first", ignore, common);
+  }
+  if (!info.crs_doubt.empty()) {
+    warn(common, "crs-not-read",
+         file.string() + ": " + info.crs_doubt +
+             (has_unit(info) ? "" : ". Its unit is not known, so metres are assumed"));
+  }
+  if (!info.unit_doubt.empty()) {
+    warn(common, "units-contradict", file.string() + ": " + info.unit_doubt);
+  }
 }
 
 LengthUnit environment_unit_of(const FileUnit& unit) {
@@ -97,24 +117,22 @@ std::vector<CloudInfo> with_unit(std::span<const std::filesystem::path> files,
 class CrsNames {
  public:
   const ScanCrs& of(const CloudInfo& info) {
-    const std::string key =
-        info.crs_wkt.empty() ? "EPSG:" + std::to_string(info.crs_epsg) : info.crs_wkt;
-    const auto known = known_.find(key);
+    const std::string& text = info.crs.empty() ? info.crs_wkt : info.crs;
+    const auto known = known_.find(text);
     if (known != known_.end()) return known->second;
-    return known_[key] =
-               info.crs_wkt.empty() ? scan_crs_of_epsg(info.crs_epsg) : scan_crs_of(info.crs_wkt);
+    return known_[text] = scan_crs_of(text);
   }
 
  private:
   std::map<std::string, ScanCrs> known_;
 };
 
-bool names_crs(const CloudInfo& info) { return !info.crs_wkt.empty() || info.crs_epsg != 0; }
+bool names_crs(const CloudInfo& info) { return !info.crs_wkt.empty() || !info.crs.empty(); }
 
 /// Whether both inputs certainly have the same coordinate reference system. GeoTIFF keys give the
 /// code of the horizontal part, so only that is compared where an input has no well-known text.
 bool has_same_crs(const CloudInfo& a, const CloudInfo& b, CrsNames& names) {
-  if (a.crs_wkt == b.crs_wkt && a.crs_epsg == b.crs_epsg) return true;
+  if (a.crs_wkt == b.crs_wkt && a.crs == b.crs) return true;
   const ScanCrs &of_a = names.of(a), &of_b = names.of(b);
   const bool texts = !a.crs_wkt.empty() && !b.crs_wkt.empty();
   const std::int32_t code = texts ? of_a.epsg : of_a.horizontal_epsg;
@@ -123,8 +141,9 @@ bool has_same_crs(const CloudInfo& a, const CloudInfo& b, CrsNames& names) {
 
 /// A reference system in words: "ETRS89 / UTM zone 32N, EPSG:25832".
 std::string crs_label(const ScanCrs& crs) {
-  if (crs.epsg == 0) return crs.name + ", without an EPSG code";
-  const std::string code = "EPSG:" + std::to_string(crs.epsg);
+  const std::int32_t number = crs.epsg != 0 ? crs.epsg : crs.horizontal_epsg;
+  if (number == 0) return crs.name + ", without an EPSG code";
+  const std::string code = "EPSG:" + std::to_string(number);
   return crs.name == code ? code : crs.name + ", " + code;
 }
 
@@ -137,6 +156,9 @@ void choose_crs(std::span<const std::filesystem::path> files, std::span<const Cl
   const auto text =
       std::ranges::find_if(infos, [](const CloudInfo& info) { return !info.crs_wkt.empty(); });
   if (text != infos.end()) common.wkt = text->crs_wkt;
+  const auto read =
+      std::ranges::find_if(infos, [](const CloudInfo& info) { return !info.crs.empty(); });
+  if (read != infos.end()) common.crs = read->crs;
   const std::string source = files[static_cast<std::size_t>(first - infos.begin())].string();
   CrsNames names;
   std::size_t unnamed = 0;
@@ -163,33 +185,96 @@ void choose_crs(std::span<const std::filesystem::path> files, std::span<const Cl
 
 }  // namespace
 
-CommonCrs common_crs(std::span<const std::filesystem::path> files,
-                     std::span<const CloudInfo> as_read, const FileUnit& unit, bool ignore) {
-  CommonCrs common;
-  const std::vector<CloudInfo> infos = with_unit(files, as_read, unit, ignore);
-  for (std::size_t i = 0; i < infos.size() && !ignore; ++i) refuse_units(files[i], infos[i]);
-  for (std::size_t i = 0; i < infos.size(); ++i) {
-    if (infos[i].unit_doubt.empty()) continue;
-    warn(common, "units-contradict", files[i].string() + ": " + infos[i].unit_doubt);
-  }
+namespace {
+
+/// The unit of the first input that names it.
+void choose_unit(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
+                 bool ignore, CommonCrs& common) {
   // A "ft" in a text file means the foot of another input that says which one it uses.
   const auto says_which = [](const CloudInfo& info) { return has_unit(info) && !info.any_foot; };
   auto known = std::find_if(infos.begin(), infos.end(), has_unit);
-  if (known != infos.end() && known->any_foot) {
+  if (known == infos.end()) return;
+  if (known->any_foot) {
     const auto exact = std::find_if(infos.begin(), infos.end(), says_which);
     if (exact != infos.end() && is_foot(metres_of(exact->unit))) known = exact;
   }
-  if (known != infos.end()) {
-    common.unit = known->unit;
-    const auto& first = files[static_cast<std::size_t>(known - infos.begin())];
-    for (std::size_t i = 0; i < infos.size() && !ignore; ++i) {
-      // An input that names no unit is taken to be in metres.
-      const bool same_foot = infos[i].any_foot && is_foot(metres_of(common.unit));
-      const bool agrees = infos[i].unit == common.unit || same_foot ||
-                          (!has_unit(infos[i]) && common.unit == LengthUnit::kMetre);
-      if (!agrees) refuse_unit(files[i], infos[i].unit, first, common.unit);
-    }
+  common.unit = known->unit;
+  const auto& first = files[static_cast<std::size_t>(known - infos.begin())];
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    // An input that names no unit is taken to be in metres.
+    const bool same_foot = infos[i].any_foot && is_foot(metres_of(common.unit));
+    const bool agrees = infos[i].unit == common.unit || same_foot ||
+                        (!has_unit(infos[i]) && common.unit == LengthUnit::kMetre);
+    if (agrees) continue;
+    refuse_or_warn(files[i], "its unit of length is " + to_string(infos[i].unit),
+                   ", expected " + to_string(common.unit) + " as in " + first.string(), ignore,
+                   common);
   }
+}
+
+/// Compares the units of heights with that of the other coordinates, or with the given one, to
+/// which heights are then converted.
+void choose_heights(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
+                    const GivenUnits& given, CommonCrs& common) {
+  if (!given.unit_z.is_known()) {
+    for (std::size_t i = 0; i < infos.size(); ++i) {
+      const std::string trouble = heights_trouble(infos[i].height_unit, common.unit);
+      if (trouble.empty()) continue;
+      refuse_or_warn(files[i], trouble, "; expected one unit for all of them", given.ignore_crs,
+                     common, infos[i].height_unit);
+    }
+    return;
+  }
+  if (common.unit == LengthUnit::kDegrees) {
+    throw UsageError(
+        "heights are converted to the unit of the other coordinates, and these are in degrees");
+  }
+  const double plane = metres_of(common.unit) > 0 ? metres_of(common.unit) : 1;
+  common.height_unit = given.unit_z.metres_in(plane);
+  common.height_factor = common.height_unit / plane;
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    const double named = infos[i].height_unit;
+    if (named == 0 || std::abs(named - common.height_unit) <= kSameHeights * named) continue;
+    refuse_or_warn(
+        files[i], "its heights are in " + name_of_length(named),
+        ", but " + name_of_length(common.height_unit) + " was given; expected the same unit",
+        given.ignore_crs, common);
+  }
+  if (common.height_factor == 1) return;
+  common.warnings.push_back({Message::Severity::kNote,
+                             "heights-converted",
+                             "heights are converted from " + name_of_length(common.height_unit) +
+                                 " to " + name_of_length(plane),
+                             {{"factor", common.height_factor}}});
+}
+
+/// Warns of heights whose unit an input names, while it names none for its other coordinates.
+void warn_of_lone_heights(std::span<const std::filesystem::path> files,
+                          std::span<const CloudInfo> infos, CommonCrs& common) {
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    const double metres = infos[i].height_unit;
+    if (has_unit(infos[i]) || metres == 0 || std::abs(metres - 1) <= kSameHeights) continue;
+    warn(common, "units-contradict",
+         files[i].string() + ": its heights are in " + name_of_length(metres) +
+             ", and no unit of its other coordinates is named. They are taken for metres; name "
+             "another unit where they are in one");
+  }
+}
+
+}  // namespace
+
+CommonCrs common_crs(std::span<const std::filesystem::path> files,
+                     std::span<const CloudInfo> as_read, const GivenUnits& given) {
+  CommonCrs common;
+  const bool ignore = given.ignore_crs;
+  const std::vector<CloudInfo> infos = with_unit(files, as_read, given.unit, ignore);
+  for (std::size_t i = 0; i < infos.size(); ++i) check_own(files[i], infos[i], ignore, common);
+  common.is_partly_read = std::ranges::any_of(infos, [](const CloudInfo& info) {
+    return !info.crs_unread.empty() || !info.crs_doubt.empty();
+  });
+  choose_unit(files, infos, ignore, common);
+  if (!given.unit_z.is_known()) warn_of_lone_heights(files, infos, common);
+  choose_heights(files, infos, given, common);
   choose_crs(files, infos, common);
   if (common.unit == LengthUnit::kFoot || common.unit == LengthUnit::kUsSurveyFoot) {
     warn(common, "feet",
@@ -198,6 +283,14 @@ CommonCrs common_crs(std::span<const std::filesystem::path> files,
              "too");
   }
   return common;
+}
+
+bool is_of_ignored_crs(const Message& warning) {
+  if (warning.code == kIgnored) return true;
+  if (warning.code != kMapScaleCode) return false;
+  return std::ranges::any_of(warning.numbers, [](const auto& number) {
+    return number.first == "scale" && std::abs(number.second - 1) > kMostMapScale;
+  });
 }
 
 std::optional<CommonQuanta> common_quanta(std::span<const std::filesystem::path> files,

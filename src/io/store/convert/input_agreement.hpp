@@ -20,14 +20,32 @@ namespace clearway {
 struct CommonCrs {
   LengthUnit unit = LengthUnit::kUnknown;
   std::string wkt;
-  /// Warnings on different CRS and on feet; a note where some inputs have no CRS.
+  /// The system of the first input that names one, in a form that scan_crs_of() reads; empty where
+  /// none does.
+  std::string crs;
+  double height_unit = 0;    ///< metres per unit of the heights as read, where it was given
+  double height_factor = 1;  ///< brings heights as read to `unit`
+  /// Whether an input says something of its unit or system that is not read.
+  bool is_partly_read = false;
+  /// Warnings on CRS and units; notes where some inputs have no CRS and where heights are
+  /// converted.
   std::vector<Message> warnings;
 };
 
-/// The unit and CRS of the first input that names them. Degrees, and units other than that one's,
-/// are refused unless `ignore`. Inputs that name no unit count as metres.
+/// What is given about the units of the inputs, see ConvertOptions.
+struct GivenUnits {
+  FileUnit unit, unit_z;
+  bool ignore_crs = false;
+};
+
+/// The unit and CRS of the first input that names them. Degrees, units and heights other than that
+/// one's, and systems that are not read, are refused unless they are to be ignored, which is a
+/// warning. Inputs that name no unit count as metres.
 CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
-                     const FileUnit& unit, bool ignore);
+                     const GivenUnits& given);
+
+/// Whether a conversion gave this warning because it was to ignore what it would refuse.
+bool is_of_ignored_crs(const Message& warning);
 
 struct CommonQuanta {
   Quantisation quantisation{};  ///< quantisation of the first input with integers

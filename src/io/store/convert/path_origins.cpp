@@ -111,7 +111,7 @@ PathOrigins::PathOrigins(const ConvertOptions& options, const EnvironmentSource&
   const double metres = metres_of(unit_) > 0 ? metres_of(unit_) : 1;
   TrajectoryOptions how = options.origins_path_options;
   how.lever_arm = {0, 0, 0};
-  how.default_crs = crs_wkt_;
+  how.default_crs = environment.crs().crs;
   how.environment_unit = metres;
   how.environment_unit_is_assumed = unit_ == LengthUnit::kUnknown;
   TrajectoryFile file = read_rigid_path(options.origins_path, how);

@@ -95,6 +95,11 @@ TEST_CASE("what is no LandXML is refused by what it is") {
   CHECK_THAT(refusal_with("\"meter\"", "\"cubit\""),
              Contains("linearUnit=\"cubit\"") && Contains("USSurveyFoot"));
   CHECK_THAT(refusal_with("\"meter\"", "\"foot\""), Contains("linearUnit=\"foot\""));
+  CHECK_THAT(refusal_with("\"meter\"", "\"meter\" elevationUnit=\"feet\""),
+             Contains("elevationUnit=\"feet\" and linearUnit=\"meter\""));
+  CHECK_THAT(refusal_with("\"meter\"", "\"meter\" elevationUnit=\"ell\""),
+             Contains("elevationUnit=\"ell\""));
+  CHECK(refusal_with("\"meter\"", "\"meter\" elevationUnit=\"meter\"") == "read");
   CHECK_THAT(refusal_of_text("<LandXML><Units><Metric linearUnit=\"meter\"/></Units></LandXML>"),
              Contains("holds no Alignment"));
   CHECK_THAT(refusal_of_text(

@@ -144,8 +144,9 @@ TEST_CASE("SBET: the CRS of the environment serves where none is named") {
   CHECK_THAT(found.find("map-projection")->text, Contains("as the environment"));
   const std::string files = wkt + ",EXTENSION[\"PROJ4\",\"+proj=utm +nadgrids=/etc/passwd\"]]";
   CHECK_THAT(refusal_of_sbet(bytes, {.default_crs = files}), Contains("not opened"));
-  CHECK_THAT(refusal_of_sbet(bytes, {.default_crs = "+proj=utm +zone=32"}),
-             Contains("does not know"));
+  CHECK(read(bytes, {.default_crs = "+proj=utm +zone=32 +datum=WGS84"}).poses ==
+        read(bytes, {.crs = "EPSG:32632"}).poses);
+  CHECK_THAT(refusal_of_sbet(bytes, {.default_crs = "hello"}), Contains("does not know"));
   CHECK_THAT(refusal_of_sbet(bytes, {.default_crs = "GEOGCS[\"a\"]"}), Contains("environment"));
 }
 
@@ -180,6 +181,12 @@ TEST_CASE("heights, units and datum of a CRS are said") {
   const Read mercator = read(SbetRecord().bytes(), {.crs = "EPSG:3857"});
   REQUIRE(mercator.find("map-scale"));
   CHECK(mercator.find("map-scale")->severity == Message::Severity::kWarning);
+  // This map keeps lengths along the meridian, and stretches the parallel at latitude 0.9
+  // by 1.6087.
+  const Read cylinder = read(SbetRecord().bytes(), {.crs = "EPSG:4087"});
+  REQUIRE(cylinder.find("map-scale"));
+  CHECK(cylinder.find("map-scale")->numbers.at(1).second == Approx(1.6087).margin(1e-4));
+  CHECK(cylinder.find("map-scale")->numbers.at(2).second == Approx(std::sqrt(1.6087)).margin(1e-4));
 }
 
 TEST_CASE("SBET: degrees, cut files and numbers that are none are refused") {

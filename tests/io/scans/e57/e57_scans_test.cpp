@@ -189,14 +189,22 @@ TEST_CASE("the coordinate reference system is kept, and its unit, E57's own is t
   file.scans = {e57_scan({1}, {2}, {3})};
   CHECK(read_scans(file).info.unit == LengthUnit::kMetre);
   CHECK(read_scans(file).info.crs_wkt.empty());
-  const std::string wkt = R"(PROJCS["p",GEOGCS["g"],UNIT["US survey foot",0.3048006096012192]])";
+  const std::string wkt = R"(LOCAL_CS["p",UNIT["US survey foot",0.3048006096012192]])";
   file.root_xml =
       "<coordinateMetadata type=\"String\"><![CDATA[" + wkt + "]]></coordinateMetadata>";
   CHECK(read_scans(file).info.unit == LengthUnit::kUsSurveyFoot);
   CHECK(read_scans(file).info.crs_wkt == wkt);
   REQUIRE(read_scans(file).info.remarks.size() == 1);
   CHECK(read_scans(file).info.remarks[0].code == "e57-unit");
+  file.root_xml =
+      "<coordinateMetadata type=\"String\"><![CDATA[LOCAL_CS[\"l\",UNIT[\"metre\",1]],"
+      "VERT_CS[\"v\",VERT_DATUM[\"d\",2005],UNIT[\"foot\",0.3048]] ]]></coordinateMetadata>";
+  CHECK(read_scans(file).info.unit == LengthUnit::kMetre);
+  CHECK(read_scans(file).info.height_unit == 0.3048);
+  file.root_xml = "<coordinateMetadata type=\"String\">EPSG:25832</coordinateMetadata>";
+  CHECK(read_scans(file).info.crs == "EPSG:25832");
   file.root_xml = "<coordinateMetadata type=\"String\">a &lt; b</coordinateMetadata>";
+  CHECK_FALSE(read_scans(file).info.crs_unread.empty());
   CHECK(read_scans(file).info.unit == LengthUnit::kMetre);
   CHECK(read_scans(file).info.crs_wkt == "a < b");
 }

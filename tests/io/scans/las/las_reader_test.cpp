@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "io/store/convert/spooled_reader.hpp"
+#include "io/scans/scan_crs.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/reader_fixture.hpp"
 
@@ -16,24 +17,12 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const std::string kMetreWkt =
-    R"(PROJCS["any",GEOGCS["any",UNIT["degree",0.0174532925199433]],UNIT["metre",1]])";
+const std::string kMetreWkt = R"(LOCAL_CS["any",UNIT["metre",1]])";
 
 std::string geo_keys(const std::vector<std::array<std::uint16_t, 2>>& keys) {
   std::vector<std::uint16_t> words{1, 1, 0, static_cast<std::uint16_t>(keys.size())};
   for (const auto& [key, value] : keys) words.insert(words.end(), {key, 0, 1, value});
   return {reinterpret_cast<const char*>(words.data()), words.size() * 2};
-}
-
-CloudInfo info_with_keys(const std::vector<std::array<std::uint16_t, 2>>& keys) {
-  ReaderScratch scratch;
-  LasBytes las;
-  las.vlrs = {{"LASF_Projection", 34735, geo_keys(keys)}};
-  return open_point_file(scratch.write("a.las", las.build()))->info();
-}
-
-LengthUnit unit_with_keys(const std::vector<std::array<std::uint16_t, 2>>& keys) {
-  return info_with_keys(keys).unit;
 }
 
 std::string refusal_of_bytes(const std::string& bytes) {
@@ -169,30 +158,26 @@ TEST_CASE("well-known text counts more than what liblas repeats and than GeoTIFF
   CHECK(open_point_file(scratch.write("a.las", las.build()))->info().unit == LengthUnit::kDegrees);
 }
 
-TEST_CASE("GeoTIFF keys tell the unit") {
-  CHECK(unit_with_keys({{1024, 1}, {3072, 26915}, {3076, 9001}}) == LengthUnit::kMetre);
-  CHECK(unit_with_keys({{1024, 1}, {3076, 9002}}) == LengthUnit::kFoot);
-  CHECK(unit_with_keys({{1024, 1}, {3076, 9003}}) == LengthUnit::kUsSurveyFoot);
-  CHECK(unit_with_keys({{1024, 1}, {3072, 26915}}) == LengthUnit::kMetre);
-  CHECK(unit_with_keys({{1024, 1}, {3072, 2227}}) == LengthUnit::kUsSurveyFoot);
-  CHECK(unit_with_keys({{1024, 1}, {3072, 32767}}) == LengthUnit::kUnknown);
-  CHECK(unit_with_keys({{1024, 1}, {3076, 9014}}) == LengthUnit::kUnknown);
-  CHECK(unit_with_keys({{1024, 2}, {2048, 4326}}) == LengthUnit::kDegrees);
-  CHECK(unit_with_keys({{2048, 4326}}) == LengthUnit::kDegrees);
-  CHECK(unit_with_keys({{1024, 3}, {2052, 9001}}) == LengthUnit::kMetre);
-  CHECK(unit_with_keys({}) == LengthUnit::kUnknown);
-}
-
-TEST_CASE("GeoTIFF units that cannot be taken as they are make trouble") {
-  const auto trouble = [](std::uint16_t plane, std::uint16_t heights) {
-    return info_with_keys({{1024, 1}, {3076, plane}, {4099, heights}}).unit_trouble;
+TEST_CASE("well-known text and GeoTIFF keys complete each other") {
+  using Keys = std::vector<std::array<std::uint16_t, 2>>;
+  const auto info = [](const std::string& text, const Keys& keys) {
+    ReaderScratch scratch;
+    LasBytes las;
+    las.vlrs = {{"LASF_Projection", 34735, geo_keys(keys)}, {"LASF_Projection", 2112, text}};
+    return open_point_file(scratch.write("a.las", las.build()))->info();
   };
-  CHECK(trouble(9001, 9001).empty());
-  CHECK(trouble(9001, 0).empty());
-  CHECK(trouble(9003, 9003).empty());
-  CHECK(trouble(32632, 0).empty());  // as in simple1_3.las of PDAL
-  CHECK(trouble(9036, 0) == "its unit is the GeoTIFF unit 9036");
-  CHECK(trouble(9001, 9003) == "its heights are in us-survey-foot, its other coordinates in metre");
+  const CloudInfo heights = info(kMetreWkt, {{1024, 1}, {3072, 26917}, {4099, 9003}});
+  CHECK(heights.unit == LengthUnit::kMetre);
+  CHECK(unit_of_length(heights.height_unit) == LengthUnit::kUsSurveyFoot);
+  CHECK(info("LOCAL_CS[\"a\"]", {{1024, 1}, {3076, 9002}}).unit == LengthUnit::kFoot);
+  const CloudInfo by_keys = info("PROJCS[\"a\"]", {{1024, 1}, {3072, 26917}});
+  CHECK(by_keys.unit == LengthUnit::kMetre);
+  CHECK(by_keys.crs == "EPSG:26917");
+  CHECK_THAT(by_keys.crs_doubt, Contains("PROJCS") && Contains("its GeoTIFF keys count"));
+  CHECK_THAT(info("PROJCS[\"a\"]", {}).crs_unread, Contains("PROJCS"));
+  const CloudInfo other = info(kMetreWkt, {{1024, 1}, {3076, 9002}});
+  CHECK(other.unit == LengthUnit::kMetre);
+  CHECK_THAT(other.unit_doubt, Contains("its GeoTIFF keys foot"));
 }
 
 TEST_CASE("a GeoTIFF directory that counts more keys than it holds is read as far as it goes") {

@@ -268,7 +268,9 @@ TEST_CASE("a store in degrees is what a conversion makes that ignores the refere
   las.minor = 4;
   las.format = 6;
   las.global_encoding = 16;
-  las.vlrs = {{"LASF_Projection", 2112, R"(GEOGCS["WGS 84",UNIT["degree",0.0174532925199433]])"}};
+  las.vlrs = {{"LASF_Projection", 2112,
+               R"(GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],)"
+               R"(PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]])"}};
   put_bytes(folder / "a.las", las.build());
   ConversionOptions options = conversion_of({folder / "a.las"}, folder / "a.h5");
   options.ignore_crs = true;

@@ -25,9 +25,11 @@ std::string las_with_wkt(const std::string& wkt) {
   return las.build();
 }
 
-const std::string kMetreWkt = R"(PROJCS["m",GEOGCS["g"],UNIT["metre",1]])";
-const std::string kFootWkt = R"(PROJCS["f",GEOGCS["g"],UNIT["US survey foot",0.3048006096012192]])";
-const std::string kDegreeWkt = R"(GEOGCS["WGS 84",UNIT["degree",0.0174532925199433]])";
+const std::string kMetreWkt = R"(LOCAL_CS["m",UNIT["metre",1]])";
+const std::string kFootWkt = R"(LOCAL_CS["f",UNIT["US survey foot",0.3048006096012192]])";
+const std::string kDegreeWkt =
+    R"(GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],)"
+    R"(PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]])";
 
 }  // namespace
 

@@ -1,0 +1,212 @@
+#include "io/scans/las/geotiff_keys.hpp"
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "io/scans/map_scale.hpp"
+
+using namespace clearway;
+using Catch::Contains;
+
+namespace {
+
+/// A key with a short, or with a number in the record of numbers.
+struct Key {
+  std::uint16_t key;
+  std::variant<int, double> value;
+};
+
+GeotiffKeys keys_of(const std::vector<Key>& keys) {
+  std::vector<std::uint16_t> words{1, 1, 0, static_cast<std::uint16_t>(keys.size())};
+  std::vector<double> numbers;
+  for (const Key& key : keys) {
+    const int* const code = std::get_if<int>(&key.value);
+    const auto at = static_cast<std::uint16_t>(code != nullptr ? *code : int(numbers.size()));
+    words.insert(words.end(),
+                 {key.key, static_cast<std::uint16_t>(code != nullptr ? 0 : 34736), 1, at});
+    if (code == nullptr) numbers.push_back(std::get<double>(key.value));
+  }
+  GeotiffKeys out;
+  out.take(34736, std::as_bytes(std::span(numbers)));
+  out.take(34735, std::as_bytes(std::span(words)));
+  return out;
+}
+
+constexpr double kFoot = 0.3048, kSurveyFoot = 1200.0 / 3937;
+
+/// What keys mean. place, scale: of the map, as crs_cases.tsv has them for the same map by code; a
+/// scale of 0 where the keys name no map.
+struct Case {
+  std::string name;
+  std::vector<Key> keys;
+  LengthUnit plane = LengthUnit::kUnknown;
+  double heights = 0;
+  std::array<double, 2> place{};
+  double scale = 0;
+};
+
+const std::array<double, 2> kUtm32{649187.875, 5318235.614};
+const std::array<double, 2> kOregon{655282.752, 848375.476};
+constexpr auto kMetre = LengthUnit::kMetre;
+
+const std::vector<Case> kCases{
+    {"nothing", {}},
+    {"a code", {{1024, 1}, {3072, 25832}}, kMetre, 0, kUtm32, 0.9998734899},
+    {"a code and a unit",
+     {{1024, 1}, {3072, 25832}, {3076, 9001}},
+     kMetre,
+     0,
+     kUtm32,
+     0.9998734899},
+    {"a code in US survey feet",
+     {{1024, 1}, {3072, 2227}},
+     LengthUnit::kUsSurveyFoot,
+     0,
+     {6126548.244, 2008012.813},
+     0.9999387279},
+    {"a code with a system of heights in feet",
+     {{1024, 1}, {3072, 26917}, {3076, 9001}, {4096, 6360}},
+     kMetre,
+     kSurveyFoot,
+     {588977.324, 4095339.691},
+     0.9996975207},
+    {"a code and a unit of heights",
+     {{1024, 1}, {3072, 25832}, {4099, 9002}},
+     kMetre,
+     kFoot,
+     kUtm32,
+     0.9998734899},
+    {"a compound code",
+     {{1024, 1}, {3072, 25832}, {4096, 5783}, {4099, 9001}},
+     kMetre,
+     1,
+     kUtm32,
+     0.9998734899},
+    {"a unit alone", {{1024, 1}, {3076, 9002}}, LengthUnit::kFoot},
+    {"the length of a unit",
+     {{1024, 1}, {3072, 32767}, {3076, 32767}, {3077, kSurveyFoot}},
+     LengthUnit::kUsSurveyFoot},
+    {"the length of a unit alone", {{3077, kFoot}}, LengthUnit::kFoot},
+    {"heights alone", {{4099, 9003}}, LengthUnit::kUnknown, kSurveyFoot},
+    {"geographic", {{1024, 2}, {2048, 4326}}, LengthUnit::kDegrees},
+    {"geographic without a type", {{2048, 4326}}, LengthUnit::kDegrees},
+    {"geographic with heights", {{1024, 2}, {2048, 4979}}, LengthUnit::kDegrees, 1},
+    {"geocentric", {{1024, 3}, {2048, 4978}, {2052, 9001}}, kMetre, 1},
+    {"its own transverse Mercator",
+     {{1024, 1},
+      {2048, 4258},
+      {3072, 32767},
+      {3075, 1},
+      {3076, 9001},
+      {3080, 9.0},
+      {3081, 0.0},
+      {3082, 500000.0},
+      {3083, 0.0},
+      {3092, 0.9996}},
+     kMetre,
+     0,
+     kUtm32,
+     0.9998734899},
+    {"its own transverse Mercator in grads",
+     {{1024, 1},
+      {2048, 4258},
+      {2054, 9105},
+      {3072, 32767},
+      {3075, 1},
+      {3076, 9001},
+      {3080, 10.0},
+      {3082, 500000.0},
+      {3092, 0.9996}},
+     kMetre,
+     0,
+     kUtm32,
+     0.9998734899},
+    {"its own Lambert map in feet",
+     {{1024, 1},
+      {2048, 32767},
+      {2056, 7019},
+      {3072, 32767},
+      {3075, 8},
+      {3076, 9002},
+      {3078, 43.0},
+      {3079, 45.5},
+      {3084, -120.5},
+      {3085, 41.75},
+      {3086, 1312335.958005249},
+      {3087, 0.0}},
+     LengthUnit::kFoot,
+     0,
+     kOregon,
+     0.9997691734},
+    {"its own ellipsoid",
+     {{1024, 1},
+      {2048, 32767},
+      {2057, 6378137.0},
+      {2059, 298.257222101},
+      {3072, 32767},
+      {3075, 1},
+      {3076, 9001},
+      {3080, 9.0},
+      {3082, 500000.0},
+      {3092, 0.9996}},
+     kMetre,
+     0,
+     kUtm32,
+     0.9998734899},
+    {"a projection by code",
+     {{1024, 1}, {2048, 4258}, {3072, 32767}, {3074, 16032}, {3076, 9001}},
+     kMetre,
+     0,
+     kUtm32,
+     0.9998734899}};
+
+}  // namespace
+
+TEST_CASE("GeoTIFF keys name units and maps") {
+  for (const Case& one : kCases) {
+    INFO(one.name);
+    const GeotiffCrs crs = keys_of(one.keys).crs();
+    CHECK(crs.units.plane == one.plane);
+    CHECK(std::abs(crs.units.heights - one.heights) < 1e-12);
+    CHECK(crs.units.trouble + crs.units.doubt == "");
+    const auto map = ScanMap::of(crs.crs);
+    REQUIRE(map.has_value() == (one.scale > 0));
+    if (!map) continue;
+    const auto scale = map->at(one.place[0], one.place[1]);
+    REQUIRE(scale);
+    CHECK(std::abs(scale->error() - std::abs(one.scale - 1)) < 2e-8);
+  }
+}
+
+TEST_CASE("GeoTIFF keys that are not understood are named") {
+  const auto unread = [](const std::vector<Key>& keys) {
+    const GeotiffCrs crs = keys_of(keys).crs();
+    return crs.unread + crs.unread_heights;
+  };
+  CHECK_THAT(unread({{1024, 1}, {3076, 32632}}), Contains("key 3076 is 32632"));
+  CHECK_THAT(unread({{1024, 1}, {3076, 32767}}), Contains("key 3076 is 32767 (user-defined)"));
+  CHECK_THAT(unread({{1024, 1}, {3076, 32767}, {3077, -1.0}}), Contains("key 3076"));
+  CHECK_THAT(unread({{1024, 1}, {3072, 1}}), Contains("key 3072 is 1,"));
+  CHECK_THAT(unread({{1024, 1}, {3072, 4326}}), Contains("key 3072 is 4326"));
+  CHECK_THAT(unread({{1024, 7}}), Contains("key 1024 is 7"));
+  CHECK_THAT(unread({{1024, 1}, {3072, 25832}, {4096, 5030}}), Contains("key 4096 is 5030"));
+  CHECK_THAT(unread({{1024, 1}, {3072, 25832}, {4096, 32767}}), Contains("key 4096 is 32767"));
+  CHECK_THAT(unread({{1024, 1}, {3072, 25832}, {4099, 9102}}), Contains("key 4099 is 9102"));
+  CHECK_THAT(unread({{1024, 1}, {3072, 32767}, {3075, 27}, {3076, 9001}}),
+             Contains("projection of their own"));
+  CHECK(unread({{1024, 1}, {3072, 25832}, {4096, 5030}, {4099, 9001}}).empty());
+}
+
+TEST_CASE("GeoTIFF keys that contradict each other or cannot be used as they are") {
+  const auto units = [](const std::vector<Key>& keys) { return keys_of(keys).crs().units; };
+  CHECK(units({{1024, 1}, {3076, 9036}}).trouble == "its unit is 1000 m");
+  CHECK(units({{1024, 1}, {3072, 25832}, {4096, 5715}}).trouble == "its heights count downwards");
+  CHECK_THAT(units({{1024, 1}, {3072, 2230}, {3076, 9001}}).doubt,
+             Contains("they name the unit metre") && Contains("EPSG:2230"));
+  CHECK_THAT(units({{1024, 1}, {3072, 26917}, {4096, 6360}, {4099, 9001}}).doubt,
+             Contains("they name metre for heights"));
+}

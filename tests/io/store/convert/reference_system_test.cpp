@@ -1,0 +1,281 @@
+// What a conversion makes of the coordinate reference systems and units that scans name.
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "clearway/error.hpp"
+#include "io/store/convert/convert.hpp"
+#include "io/store/store_reader.hpp"
+#include "support/bytes/las_bytes.hpp"
+#include "support/store_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+const std::string kUtm32 =
+    R"(PROJCS["UTM 32",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],)"
+    R"(PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],)"
+    R"(PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],)"
+    R"(PARAMETER["central_meridian",9],PARAMETER["scale_factor",0.9996],)"
+    R"(PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1]])";
+const std::string kFeetHeights =
+    R"(VERT_CS["v",VERT_DATUM["d",2005],UNIT["US survey foot",0.3048006096012192],AXIS["h",UP]])";
+
+/// A scan of three points, 10 by 10 by 20 units, by its middle, the text of its system and its
+/// GeoTIFF keys.
+struct Scan {
+  std::string text = {};
+  std::vector<std::array<std::uint16_t, 2>> keys = {};
+  double easting = 500'000, northing = 5'300'000;
+
+  std::string bytes() const {
+    LasBytes las;
+    las.scale = {0.001, 0.001, 0.001};
+    las.offset = {easting, northing, 0};
+    las.points = {{-5000, -5000, 0}, {5000, 5000, 20'000}, {0, 0, 10'000}};
+    if (!text.empty()) las.vlrs.push_back({"LASF_Projection", 2112, text});
+    if (!keys.empty()) {
+      std::vector<std::uint16_t> words{1, 1, 0, static_cast<std::uint16_t>(keys.size())};
+      for (const auto& [key, value] : keys) words.insert(words.end(), {key, 0, 1, value});
+      las.vlrs.push_back({"LASF_Projection",
+                          34735,
+                          {reinterpret_cast<const char*>(words.data()), words.size() * 2}});
+    }
+    return las.build();
+  }
+};
+
+struct Outcome {
+  std::string refusal = {};
+  std::string messages = " ";  ///< the codes of notes and warnings, with spaces around
+  Remedy remedy = Remedy::kNone;
+  double amount = 0;
+  ConversionReport report = {};
+
+  bool has(const std::string& code) const {
+    return messages.find(" " + code + " ") != messages.npos;
+  }
+};
+
+using Files = std::vector<std::pair<std::string, std::string>>;
+
+Outcome outcome_of_files(const Files& files, const ConvertOptions& how = {}) {
+  const ScratchFolder folder;
+  ConversionOptions options{how, {}, folder / "a.h5"};
+  for (const auto& [name, bytes] : files) {
+    put_bytes(folder / name, bytes);
+    options.inputs.push_back(folder / name);
+  }
+  Outcome out;
+  options.message = [&](const Message& message) { out.messages += message.code + " "; };
+  try {
+    out.report = convert_quietly(options);
+  } catch (const InputError& error) {
+    out.refusal = error.what();
+    out.remedy = error.remedy();
+    out.amount = error.amount();
+  }
+  return out;
+}
+
+Outcome outcome_of(const Scan& scan, const ConvertOptions& how = {}) {
+  return outcome_of_files({{"a.las", scan.bytes()}}, how);
+}
+
+/// A warning of this code; fails where there is none.
+const Message& warning(const Outcome& outcome, const std::string& code) {
+  const auto& all = outcome.report.warnings;
+  const auto found = std::ranges::find(all, code, &Message::code);
+  INFO(outcome.messages << outcome.refusal);
+  REQUIRE(found != all.end());
+  return *found;
+}
+
+double number(const Message& message, const std::string& name) {
+  for (const auto& [key, value] : message.numbers) {
+    if (key == name) return value;
+  }
+  return 0;
+}
+
+}  // namespace
+
+TEST_CASE("heights in another unit are refused, named, converted, or ignored with a warning") {
+  const double foot = kMetresPerUsSurveyFoot;
+  const std::string third =
+      R"(ENGCRS["a",EDATUM["x"],CS[Cartesian,3],AXIS["x",east,LENGTHUNIT["metre",1]],)"
+      R"(AXIS["y",north,LENGTHUNIT["metre",1]],)"
+      R"(AXIS["z",up,LENGTHUNIT["US survey foot",0.3048006096012192]]])";
+  const std::vector<Scan> scans{{kUtm32 + "," + kFeetHeights},
+                                {kUtm32 + "]," + kFeetHeights},
+                                {"COMPD_CS[\"c\"," + kUtm32 + "," + kFeetHeights + "]"},
+                                {third},
+                                {"", {{1024, 1}, {3072, 32632}, {4096, 6360}}},
+                                {"", {{1024, 1}, {3072, 32632}, {4099, 9003}}},
+                                {kUtm32, {{4099, 9003}}}};
+  for (const Scan& scan : scans) {
+    INFO(scan.text << " and " << scan.keys.size() << " keys");
+    const Outcome refused = outcome_of(scan);
+    CHECK_THAT(refused.refusal,
+               Contains("its heights are in us-survey-foot, its other coordinates in metre"));
+    CHECK(refused.remedy == Remedy::kIgnoreCrs);
+    CHECK(std::abs(refused.amount - foot) < 1e-9);
+    CHECK_THAT(outcome_of(scan, {.unit_z = FileUnit::named("m")}).refusal,
+               Contains("its heights are in us-survey-foot, but metre was given"));
+    const Outcome converted = outcome_of(scan, {.unit_z = FileUnit::named("us-ft")});
+    REQUIRE(converted.refusal.empty());
+    CHECK(converted.has("heights-converted"));
+    CHECK(converted.report.warnings.empty());
+    CHECK(std::abs(converted.report.box->hi.z - 20 * foot) < 1e-12);
+    CHECK(converted.report.metadata.quantisation.scale[2] == 0.001 * foot);
+    CHECK(converted.report.largest_change == 0);
+    const Outcome ignored = outcome_of(scan, {.ignore_crs = true});
+    CHECK(ignored.report.box->hi.z == 20);
+    CHECK(ignored.report.warnings.size() == 1);
+    CHECK_THAT(warning(ignored, "crs-ignored").text, Contains("its heights are in"));
+  }
+}
+
+TEST_CASE("heights in the other of the two feet, or without a unit, go with the plane") {
+  for (const Scan& scan : std::vector<Scan>{{"", {{1024, 1}, {3076, 9002}, {4099, 9003}}},
+                                            {"", {{1024, 1}, {3076, 9003}, {4099, 9002}}},
+                                            {"", {{1024, 1}, {3076, 9003}}}}) {
+    const Outcome outcome = outcome_of(scan);
+    CHECK(outcome.refusal.empty());
+    CHECK(outcome.messages == " feet ");
+  }
+  CHECK(outcome_of(Scan{kUtm32}).messages == " ");
+}
+
+TEST_CASE("heights of floating-point numbers, several files and tables are converted") {
+  const ConvertOptions feet{.unit_z = FileUnit::named("ft")};
+  const Outcome table = outcome_of_files({{"a.xyz", "X [m],Y [m],Z [ft]\n1,2,0\n3,4,10\n"}});
+  CHECK_THAT(table.refusal, Contains("its heights are in foot, its other coordinates in metre"));
+  const Outcome named = outcome_of_files({{"a.xyz", "X [m],Y [m],Z [ft]\n1,2,0\n3,4,10\n"}}, feet);
+  REQUIRE(named.refusal.empty());
+  CHECK(named.report.box->hi.z == Approx(3.048).margin(1e-6));
+  CHECK(named.report.box->hi.x == 3);
+  const Outcome unnamed = outcome_of_files({{"a.xyz", "1 2 0\n3 4 10\n"}}, feet);
+  CHECK(unnamed.report.box->hi.z == Approx(3.048).margin(1e-6));
+  const Outcome both = outcome_of_files({{"a.las", Scan{}.bytes()}, {"b.las", Scan{}.bytes()}},
+                                        {.unit_z = FileUnit::named("mm")});
+  CHECK(both.report.box->hi.z == Approx(0.02));
+  CHECK(both.report.points == 6);
+  // In a plane of US survey feet, "ft" is this foot.
+  const Scan survey{"", {{1024, 1}, {3076, 9003}}};
+  CHECK(outcome_of(survey, feet).report.box->hi.z == 20);
+  CHECK(outcome_of(survey, {.unit_z = FileUnit::named("m")}).report.box->hi.z ==
+        Approx(20 / kMetresPerUsSurveyFoot));
+}
+
+TEST_CASE("a store of converted heights is not that of other options") {
+  const ScratchFolder folder;
+  NoProgress progress;
+  put_bytes(folder / "a.las", Scan{}.bytes());
+  ConversionOptions options = conversion_of({folder / "a.las"}, folder / "a.h5");
+  options.unit_z = FileUnit::named("ft");
+  convert_quietly(options);
+  CHECK(StoreReader(options.output).metadata().height_unit == kMetresPerFoot);
+  CHECK(is_converted(options, progress));
+  options.unit_z = FileUnit::named("in");
+  CHECK_FALSE(is_converted(options, progress));
+  options.unit_z = {};
+  CHECK_FALSE(is_converted(options, progress));
+}
+
+TEST_CASE("a system that is not read is refused, and never counts as none") {
+  for (const std::string& text : std::vector<std::string>{
+           "PROJCS[\"a\"]", "Local grid", kUtm32 + ",VERT_CS[\"v\"]",
+           "LOCAL_CS[\"a\",UNIT[\"metre\",1],AXIS[\"X\",EAST],AXIS[\"Y\",NORTH]"
+           ",AXIS[\"Z\",UP]]"}) {
+    INFO(text);
+    CHECK_THAT(outcome_of(Scan{text}).refusal, Contains("is not read"));
+    const Outcome ignored = outcome_of(Scan{text}, {.ignore_crs = true});
+    CHECK_THAT(warning(ignored, "crs-ignored").text, Contains("is not read"));
+  }
+  const Outcome keys = outcome_of(Scan{"", {{1024, 1}, {3076, 32632}}});
+  CHECK(keys.messages == " crs-not-read ");
+  CHECK_THAT(warning(keys, "crs-not-read").text,
+             Contains("key 3076 is 32632") && Contains("metres are assumed"));
+  const Outcome known = outcome_of(Scan{"PROJCS[\"a\"]", {{1024, 1}, {3072, 32632}}});
+  CHECK(known.messages == " crs-not-read ");
+}
+
+TEST_CASE("a map that does not keep lengths is warned of, and refused above 5 %") {
+  struct Case {
+    std::string text;
+    double easting, northing, scale;
+  };
+  const std::string compound = "EPSG:3857+5773";
+  for (const Case& one : std::vector<Case>{{"EPSG:3857", 1224514.4, 6106854.8, 1.4962},
+                                           {compound, 1224514.4, 6106854.8, 1.4962},
+                                           {"EPSG:3395", 1113194.9, 8362698.5, 1.9950},
+                                           {kUtm32, 3'000'000, 5'300'000, 1.0774}}) {
+    INFO(one.text);
+    const Scan scan{one.text, {}, one.easting, one.northing};
+    const Outcome refused = outcome_of(scan);
+    CHECK_THAT(refused.refusal, Contains(std::to_string(one.scale).substr(0, 4)) &&
+                                    Contains("times those on the ground"));
+    CHECK(refused.remedy == Remedy::kIgnoreCrs);
+    const Outcome ignored = outcome_of(scan, {.ignore_crs = true});
+    CHECK(number(warning(ignored, "map-scale"), "scale") == Approx(one.scale).margin(1e-3));
+    CHECK(ignored.report.metadata.warnings.size() == 1);
+  }
+  const Outcome polar = outcome_of(Scan{"EPSG:3031", {}, 1419227.9, 819391.6});
+  CHECK(number(warning(polar, "map-scale"), "scale") == Approx(0.98963).margin(1e-4));
+  for (const Scan& scan : std::vector<Scan>{{kUtm32},
+                                            {kUtm32, {}, 166'000, 10'000},
+                                            {kUtm32, {}, 834'000, 10'000},
+                                            {"EPSG:2193", {}, 1'750'000, 5'426'000},
+                                            {"EPSG:4978", {}, 4'000'000, 600'000},
+                                            {"LOCAL_CS[\"a\",UNIT[\"metre\",1]]", {}, 0, 0}}) {
+    INFO(scan.text);
+    CHECK(outcome_of(scan).messages == " ");
+  }
+  CHECK(outcome_of(Scan{"EPSG:5514", {}, 1e9, 1e9}).messages == " map-scale-unknown ");
+  // Named in feet, coordinates on a map in metres lie where they do in metres.
+  const double foot = kMetresPerUsSurveyFoot;
+  const Scan contradicting{
+      "", {{1024, 1}, {3072, 32632}, {3076, 9003}}, 500'000 / foot, 5'300'000 / foot};
+  CHECK(outcome_of(contradicting).messages == " units-contradict feet ");
+}
+
+TEST_CASE("with --resume a store of an ignored system is converted again") {
+  const ScratchFolder folder;
+  NoProgress progress;
+  put_bytes(folder / "a.las", Scan{"EPSG:3857", {}, 1224514.4, 6106854.8}.bytes());
+  ConversionOptions options = conversion_of({folder / "a.las"}, folder / "a.h5");
+  options.ignore_crs = true;
+  convert_quietly(options);
+  CHECK(is_converted(options, progress));
+  options.ignore_crs = false;
+  CHECK_FALSE(is_converted(options, progress));
+}
+
+TEST_CASE("numbers that look like degrees are warned of where nothing names a unit") {
+  const auto scan = [](double x, double y, double length, double height) {
+    std::string text;
+    for (int i = 0; i <= 10; ++i) {
+      const double share = i / 10.0;
+      text += std::to_string(x + length * share) + " " +
+              std::to_string(y + length * share * share) + " " + std::to_string(height * share) +
+              "\n";
+    }
+    return Files{{"a.xyz", text}};
+  };
+  CHECK(outcome_of_files(scan(11.5, 48.1, 0.02, 35)).has("degrees"));
+  CHECK(outcome_of_files(scan(-94.66, 31.03, 0.0229, 39)).has("degrees"));
+  CHECK(outcome_of_files(scan(48.1, 11.5, 0.5, 300)).has("degrees"));
+  CHECK_FALSE(
+      outcome_of_files(scan(11.5, 48.1, 0.02, 35), {.unit = FileUnit::named("m")}).has("degrees"));
+  CHECK_FALSE(outcome_of_files(scan(0, 0, 20, 35)).has("degrees"));
+  CHECK_FALSE(outcome_of_files(scan(11.5, 48.1, 1, 20)).has("degrees"));
+  CHECK_FALSE(outcome_of_files(scan(500'000, 5'300'000, 0.5, 60)).has("degrees"));
+  CHECK_FALSE(outcome_of_files(scan(0, 0, 0, 10)).has("degrees"));
+}
