@@ -130,7 +130,15 @@ TEST_CASE("units in brackets: feet are told, others than metres and feet refused
                Contains("in " + unit) && Contains("metres"));
   }
   CHECK_THAT(refusal_of_columns("x_mm,y_mm,z_mm\n1,2,3\n").text, Contains("in mm"));
-  CHECK_THAT(refusal_of_columns("X [m],Y [m],Z [ft]\n1,2,3\n").text, Contains("m and ft"));
+  CHECK_THAT(refusal_of_columns("X [m],Y [ft],Z [m]\n1,2,3\n").text, Contains("m and ft"));
+  CHECK_THAT(refusal_of_columns("X [m],Y [m],Z [deg]\n1,2,3\n").text, Contains("in deg"));
+  for (const auto& [unit, metres] :
+       {std::pair("m", 1.0), std::pair("ft", 0.3048), std::pair("mm", 0.001)}) {
+    const auto info = cloud_of("X [m],Y [m],Z [" + std::string(unit) + "]\n1,2,3\n").info;
+    CHECK(info.unit == LengthUnit::kMetre);
+    CHECK(info.height_unit == metres);
+  }
+  CHECK(cloud_of("X,Y,Z [ft]\n1,2,3\n").info.unit == LengthUnit::kFoot);
 }
 
 TEST_CASE("names of a trajectory and of angles are refused") {
