@@ -217,8 +217,11 @@ TEST_CASE("another unit than the metre is warned of where the scan names none") 
 TEST_CASE("keys and texts that name two units are warned of") {
   const ScratchFolder folder;
   LasBytes las;
-  const auto codes = [&](std::vector<LasBytes::Record> records) {
+  las.points = {{0, 0, 0}, {1000, 1000, 1000}};
+  // The place is in the unit that the keys name, on the map that they name.
+  const auto codes = [&](std::vector<LasBytes::Record> records, double east, double north) {
     las.vlrs = std::move(records);
+    las.offset = {east, north, 0};
     put_bytes(folder / "a.las", las.build());
     const Outcome outcome =
         run_program(folder, "convert --json --force " + quoted(folder / "a.las") + " -o " +
@@ -231,13 +234,17 @@ TEST_CASE("keys and texts that name two units are warned of") {
     return LasBytes::Record{"LASF_Projection", 34735, geo_keys(all)};
   };
   const std::string metre = R"(LOCAL_CS["any",UNIT["metre",1]])";
-  CHECK_FALSE(has(codes({keys({{1024, 1}, {3072, 25832}, {3076, 9001}})}), "units-contradict"));
-  CHECK_FALSE(has(codes({keys({{1024, 1}, {3072, 2230}, {3076, 9003}, {4099, 9003}})}),
+  CHECK_FALSE(has(codes({keys({{1024, 1}, {3072, 25832}, {3076, 9001}})}, 500'000, 5'300'000),
                   "units-contradict"));
-  CHECK(has(codes({keys({{1024, 1}, {3072, 25832}, {3076, 9003}})}), "units-contradict"));
-  CHECK(has(codes({keys({{1024, 1}, {3072, 2230}, {3076, 9001}})}), "units-contradict"));
-  CHECK(has(codes({keys({{1024, 1}, {4099, 9003}})}), "units-contradict"));
-  CHECK(has(codes({keys({{1024, 1}, {3076, 9003}}), {"LASF_Projection", 2112, metre}}),
+  CHECK_FALSE(has(
+      codes({keys({{1024, 1}, {3072, 2230}, {3076, 9003}, {4099, 9003}})}, 6'500'000, 2'100'000),
+      "units-contradict"));
+  CHECK(has(codes({keys({{1024, 1}, {3072, 25832}, {3076, 9003}})}, 1'640'000, 17'390'000),
+            "units-contradict"));
+  CHECK(has(codes({keys({{1024, 1}, {3072, 2230}, {3076, 9001}})}, 1'980'000, 640'000),
+            "units-contradict"));
+  CHECK(has(codes({keys({{1024, 1}, {4099, 9003}})}, 0, 0), "units-contradict"));
+  CHECK(has(codes({keys({{1024, 1}, {3076, 9003}}), {"LASF_Projection", 2112, metre}}, 0, 0),
             "units-contradict"));
 }
 
