@@ -27,12 +27,12 @@ enum class Remedy {
   kColumns,      ///< the caller can name the columns of a text file
   /// Give a path from which the file can be read to its end, instead of standard input
   kStandardInput,
-  kSampleMesh,      ///< the file is a mesh where points are expected; its surface can be sampled
-  kSkipUnreadable,  ///< one of several inputs is bad; the others can be converted without it
-  kIgnoreCrs,
-  kOverwrite,           ///< the output exists
-  kReadOrOverwrite,     ///< the output exists, and is already the answer that was asked for
-  kResumeOrOverwrite,   ///< an unfinished run of this output exists
+  kSampleMesh,         ///< the file is a mesh where points are expected; its surface can be sampled
+  kSkipUnreadable,     ///< one of several inputs is bad; the others can be converted without it
+  kIgnoreCrs,          ///< amount: metres of the unit of heights, where naming it helps too; or 0
+  kOverwrite,          ///< the output exists
+  kReadOrOverwrite,    ///< the output exists, and is already the answer that was asked for
+  kResumeOrOverwrite,  ///< an unfinished run of this output exists
   kOverwriteNotResume,  ///< the run that was to be resumed is damaged
   kRestoreOptions,      ///< the run that was to be resumed belongs to other options or files
   kNameFormat,          ///< name the trajectory's format

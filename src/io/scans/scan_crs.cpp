@@ -402,8 +402,8 @@ namespace {
 /// An axis of a coordinate system.
 struct Axis {
   double unit = 0;  ///< metres, or radians; 0 where there is no such axis
-  double named_unit =
-      0;  ///< metres of the known unit that has the name of this axis's; otherwise 0
+  /// Metres of the known unit whose name the axis's unit has; 0 where none has it.
+  double named_unit = 0;
   std::string unit_name, direction;
 
   /// Whether name and length of the unit contradict each other, as in UNIT["US survey foot",1].

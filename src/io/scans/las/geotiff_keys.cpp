@@ -290,7 +290,7 @@ class Reading {
     const ProjObject axes(proj_create_cartesian_2D_cs(context_, PJ_CART2D_EASTING_NORTHING, "unit",
                                                       unit > 0 ? unit : 1));
     if (!conversion || !base || !axes) return {};
-    const ProjObject map(proj_create_projected_crs(context_, "user-defined", base.get(),
+    const ProjObject map(proj_create_projected_crs(context_, "map of GeoTIFF keys", base.get(),
                                                    conversion.get(), axes.get()));
     const char* const options[] = {"MULTILINE=NO", nullptr};
     const char* const text =
