@@ -5,9 +5,12 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -26,6 +29,7 @@
 #include "findings/check_conflicts.hpp"
 #include "io/files/input_error.hpp"
 #include "io/result/result.hpp"
+#include "search/checks/query_warnings.hpp"
 #include "search/kept_models.hpp"
 #include "search/threads.hpp"
 
@@ -484,7 +488,10 @@ class ShiftSearch {
       if (obstacles.rule_out(shift)) continue;
       ++found.row.searches;
       const SessionAnswer answer = session_.search(moved.at(shift), question());
-      if (answer.collisions().size() == 0) break;
+      if (answer.collisions().size() == 0) {
+        if (!answer.warnings.empty()) found.row.warned_of = new_warnings(answer, moved, shift);
+        break;
+      }
       PointSample sample(kMostOfSearch);
       for (const Vec3& point : answer.collisions().xyz) sample.add(point);
       obstacles.add(sample.points());
@@ -497,6 +504,24 @@ class ShiftSearch {
     }
     progress_.advance(1);
     return found;
+  }
+
+  /// The codes of what the checks say at a shift and not without it. answer: that of the shift.
+  std::vector<std::string> new_warnings(const SessionAnswer& answer, ShiftedQuery& moved,
+                                        double shift) const {
+    const MessageCallback quiet;
+    const auto codes_at = [&](double at) {
+      std::vector<Message> found;
+      MessageLog log(quiet, found);
+      warn_of_query(session_.store().reader(), moved.at(at), answer.ignored, {}, log);
+      std::set<std::string> codes;
+      for (const Message& warning : found) codes.insert(warning.code);
+      return codes;
+    };
+    const std::set<std::string> there = codes_at(shift), here = codes_at(0);
+    std::vector<std::string> codes;
+    std::ranges::set_difference(there, here, std::back_inserter(codes));
+    return codes;
   }
 
   std::optional<double> least_distance(ShiftedQuery& moved, double shift) const {
