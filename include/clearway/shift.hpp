@@ -52,9 +52,9 @@ struct StretchShift {
   /// than the clearance that the result was asked for, or if that is not above the radius.
   std::optional<double> least_distance = {};
   std::uint64_t searches = 0;  ///< searches that were needed to find the shift
-  /// Codes of the warnings that a run along the shifted stretch causes and one along the stretch as
-  /// it is does not, ascending: "leaves-scan" where the shift leads past what was scanned, so that
-  /// nothing is known there.
+  /// Codes of warnings that a run along the shifted stretch causes and one along the stretch as it
+  /// is does not, ascending: "floats", "leaves-scan", "nothing-below", "out-of-reach". The shift
+  /// leads past what was scanned, so little is known there.
   std::vector<std::string> warned_of = {};
 };
 

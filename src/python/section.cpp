@@ -526,7 +526,7 @@ rear, front: where the load begins and ends along x in its own frame.
 window: the part of the cross-section: y from and to, z from and to; None: -4, 4, 0, 6 m.
 cell: side of a cell; 0: 0.02 m.
 bin: length of the stretches of the path that are told apart; 0: 5 m.
-margin: the greatest margin that Section.check() may be asked for.
+margin: the greatest margin that Section.check() may be asked for, and its default.
 between_poses: counts the way from each pose to the next, too, because the load grows by its motion.
 pivots: (front, rear), two places of the load that lie on the path; None: the load has its poses.
 ignore_classes, ignore_boxes: points to leave out, as Query takes them.

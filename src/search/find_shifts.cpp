@@ -11,6 +11,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -506,7 +507,12 @@ class ShiftSearch {
     return found;
   }
 
-  /// The codes of what the checks say at a shift and not without it. answer: that of the shift.
+  /// Codes of the warnings that nothing, or no ground, was scanned at a place.
+  static constexpr std::array<std::string_view, 4> kOfPlace{"floats", "leaves-scan",
+                                                            "nothing-below", "out-of-reach"};
+
+  /// The codes of place that the checks give at a shift and not without it. answer: that of the
+  /// shift.
   std::vector<std::string> new_warnings(const SessionAnswer& answer, ShiftedQuery& moved,
                                         double shift) const {
     const MessageCallback quiet;
@@ -515,7 +521,9 @@ class ShiftSearch {
       MessageLog log(quiet, found);
       warn_of_query(session_.store().reader(), moved.at(at), answer.ignored, {}, log);
       std::set<std::string> codes;
-      for (const Message& warning : found) codes.insert(warning.code);
+      for (const Message& warning : found) {
+        if (std::ranges::find(kOfPlace, warning.code) != kOfPlace.end()) codes.insert(warning.code);
+      }
       return codes;
     };
     const std::set<std::string> there = codes_at(shift), here = codes_at(0);

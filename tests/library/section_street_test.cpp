@@ -106,7 +106,7 @@ TEST_CASE("sound questions about a street cause no warning") {
 TEST_CASE("sound questions about alignments cause no warning") {
   const ScratchFolder folder;
   for (const char* name : {"UT-Alignment-Aplitop-1.xml", "PR_Twin_Branch_section_alignment.xml"}) {
-    AlignmentOptions options{.step = 0.1, .max_gap = 0.01, .height = 12.5};
+    AlignmentOptions options{.step = 0.1, .max_gap = 0.01};
     std::vector<Pose> dense = read_alignment(data_folder() / "alignments" / name, options);
     if (dense.size() > 2500) dense.resize(2500);
     const double* const first = dense.front().translation;
@@ -114,6 +114,7 @@ TEST_CASE("sound questions about alignments cause no warning") {
                                  {std::round(first[0]), std::round(first[1]), 0});
     std::vector<Pose> path;
     for (std::size_t i = 150; i + 150 < dense.size(); i += 5) path.push_back(dense[i]);
+    CHECK(path.size() > 50);
     const Store store(folder / "site.h5");
     for (const auto& [rear, front] : {std::pair{-2.25, 2.25}, {-6.0, 6.0}}) {
       const SectionParameters question{.rear = rear, .front = front, .cell = 0.05, .margin = 0.1};

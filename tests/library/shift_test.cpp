@@ -336,9 +336,9 @@ TEST_CASE("a shift that leads past what was scanned says so") {
   const auto freed = [&](double half) {
     std::vector<Vec3> all = points;
     for (double y = -half; y <= half; y += 0.05) {
-      for (int i = 1; i < 20; ++i) all.push_back({20, y, 0.02 * i});
+      for (int i = 1; i < 20; ++i) all.push_back({15, y, 0.02 * i});
     }
-    const Scene scene(all, box_on(straight(36), 0.005));
+    const Scene scene(all, box_on(straight(60), 0.005));
     const ShiftTable table = scene.shifts({.lateral_from = -15, .lateral_to = 0, .step = 0.5});
     REQUIRE(table.conflicts.size() == 1);
     REQUIRE(table.conflicts[0].shift);

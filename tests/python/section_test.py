@@ -135,7 +135,7 @@ class Sections(SceneTest):
     def test_checks_of_outlines(self):
         middle = [clearway.Box((-9, -0.7, -0.5), (9, 0.9, 0.6))]
         section = self.section(ignore_boxes=middle)
-        passes = section.check([(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)])
+        passes = section.check([(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)], 0)
         self.assertEqual((passes.verdict, passes.reason, passes.stop, passes.stops),
                          ("passes", None, None, []))
         wide = np.array([(-1.4, -0.1), (1.4, -0.1), (1.4, 0.1), (-1.4, 0.1)])

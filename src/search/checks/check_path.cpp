@@ -190,20 +190,8 @@ void check_poses_alone(const Question& question, const Steps& known, MessageLog&
 struct LoadStep {
   std::uint32_t pose = 0;  ///< index in the question of the pose from which the step starts
   double length = 0;       ///< from position to position
-  /// How much deeper than at either pose something may reach into the load on the way.
-  double missed = 0;
+  double across = 0;       ///< how far the load moves across, as seen from itself
 };
-
-/// What may be missed on a step. Within the range of x' a point is seen at every pose, so it is
-/// missed where it comes into the range, or leaves it, between the poses: there it moves across
-/// while it moves along. The margin lengthens the range, so motion along that it covers is
-/// harmless.
-double missed_on(const Pose& from, const Pose& to, const Question& question) {
-  const SectionMotion motion = motion_of_step(from, to, question.model);
-  const double along = std::max(motion.along, motion.across);
-  if (!(along > question.query.radius)) return 0;
-  return motion.across * (along - question.query.radius) / along;
-}
 
 /// The steps of a load, without those that are `known`.
 std::vector<LoadStep> steps_of_load(const Question& question, const Steps& known) {
@@ -213,7 +201,7 @@ std::vector<LoadStep> steps_of_load(const Question& question, const Steps& known
     for (std::uint32_t i = first; i + 1 < end; ++i) {
       if (has(known, question.number_of(i))) continue;
       steps.push_back({i, std::sqrt(squared_distance(poses[i].position(), poses[i + 1].position())),
-                       missed_on(poses[i], poses[i + 1], question)});
+                       motion_of_step(poses[i], poses[i + 1], question.model).across});
     }
   }
   return steps;
@@ -243,27 +231,29 @@ void warn_of_gaps(const Question& question, std::vector<LoadStep> steps, double 
            {{"step", longest.length}, {"length", length}}, stretches_of(question, steps));
 }
 
-/// Warns where something may reach deeper into the load between two poses than at either by more
-/// than what matters, and notes where by more than two cells.
-void check_missed(const Question& question, std::vector<LoadStep> steps, MessageLog& log) {
+/// Warns where the load moves across by more than what matters on a step, and notes where by more
+/// than two cells. While a point is in the range of the load, it is seen at every pose; but where
+/// it comes into the range between two poses, or leaves it, it may have reached deeper by as much.
+void check_across(const Question& question, std::vector<LoadStep> steps, MessageLog& log) {
   constexpr double kCellsToBeNoted = 2;
-  const double least = least_motion(question), noted = kCellsToBeNoted * question.section->cell;
+  const double matters = least_motion(question), noted = kCellsToBeNoted * question.section->cell;
   const auto all = steps.size();
-  const LoadStep worst = *std::ranges::max_element(steps, {}, &LoadStep::missed);
-  const bool warns = worst.missed > least;
-  if (!warns && !(worst.missed > noted)) return;
-  std::erase_if(steps,
-                [&](const LoadStep& step) { return !(step.missed > (warns ? least : noted)); });
+  const LoadStep worst = *std::ranges::max_element(steps, {}, &LoadStep::across);
+  const bool warns = worst.across > matters;
+  const double least = warns ? matters : noted;
+  std::erase_if(steps, [&](const LoadStep& step) { return !(step.across > least); });
+  if (steps.empty()) return;
   log.add({warns ? Message::Severity::kWarning : Message::Severity::kNote,
            "large-steps",
            "at " + format_count(steps.size()) + " of " + counted(all, "step") +
-               " something can reach deeper into the load between two poses than at either: by up "
-               "to " +
-               length_text(worst.missed, question.unit) + " after pose " +
-               std::to_string(question.number_of(worst.pose)) + ", where the load goes on by " +
-               length_text(worst.length, question.unit) + " as it turns",
+               " the load turns so far that it moves across by more than " +
+               length_text(least, question.unit) + ": by up to " +
+               length_text(worst.across, question.unit) + " after pose " +
+               std::to_string(question.number_of(worst.pose)) + ", where it goes on by " +
+               length_text(worst.length, question.unit) +
+               ". What comes beside it between two poses can reach deeper into it than at either",
            {{"share", static_cast<double>(steps.size()) / static_cast<double>(all)},
-            {"largest", worst.missed},
+            {"largest", worst.across},
             {"pose", static_cast<double>(question.number_of(worst.pose))},
             {"step", worst.length}},
            stretches_of(question, steps)});
@@ -279,7 +269,7 @@ void check_load_at_poses(const Question& question, const Steps& known, MessageLo
   if (std::ranges::any_of(steps, [&](const LoadStep& step) { return step.length > length; })) {
     warn_of_gaps(question, std::move(steps), length, log);
   } else {
-    check_missed(question, std::move(steps), log);
+    check_across(question, std::move(steps), log);
   }
 }
 
