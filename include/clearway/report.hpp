@@ -91,10 +91,10 @@ std::vector<NamedObstacle> read_obstacles(const std::filesystem::path& path);
 
 /// What is drawn and told of a section.
 struct SectionPicture {
-  /// The outline of a load, whose passing is judged and drawn, with the distance that it keeps; or
-  /// empty.
+  /// The outline of a load, whose passing is judged and drawn, or empty.
   std::vector<OutlinePoint> outline = {};
-  double margin = 0;
+  /// The distance that the load keeps; none: that for which the section was found
+  std::optional<double> margin = {};
   SectionHeights heights = {};  ///< the bands of height whose widths are shown
   /// Store and path of the section, both or none, which must outlive the call. With them the points
   /// that stop the load are found.

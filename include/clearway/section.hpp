@@ -71,13 +71,27 @@ struct SectionOptions {
   StopFlag stop = nullptr;
 };
 
+/// Cells that ignored points would block somewhere on the path, and that no other point blocks
+/// anywhere on it.
+struct SectionIgnoredCells {
+  std::uint64_t blocked = 0;
+  /// Those of them that begin more than 0.5 m above z = 0, where the wheels stand, or above the
+  /// bottom of the window where that is lower
+  std::uint64_t high = 0;
+
+  friend bool operator==(const SectionIgnoredCells&, const SectionIgnoredCells&) = default;
+};
+
 /// What is known of a section besides its cells.
 struct SectionFacts {
   SectionParameters parameters;          ///< with the defaults filled in
   std::uint64_t environment_points = 0;  ///< points of the environment
   std::uint64_t ignored_points = 0;      ///< points of it that were left out
-  std::uint64_t poses = 0;               ///< poses of the path
-  std::uint64_t load_poses = 0;          ///< poses of the load
+  /// The cells that are free only because points were left out; none where nothing was to be left
+  /// out
+  std::optional<SectionIgnoredCells> ignored_cells = {};
+  std::uint64_t poses = 0;       ///< poses of the path
+  std::uint64_t load_poses = 0;  ///< poses of the load
   /// Upper bound on the rounding of a place in the frame of the load.
   double rounding = 0;
   /// Between poses: how far the load moves along x, and across, from a pose to the next.
@@ -133,7 +147,9 @@ struct SectionReport {
   std::uint64_t bins = 0;             ///< bins in which the load has a pose
   double rounding = 0;
   std::optional<std::array<double, 2>> motion = {};
-  std::optional<SectionSeenCounts> seen = {};  ///< where seen space was asked for
+  std::uint64_t ignored_points = 0;                       ///< points that were left out
+  std::optional<SectionIgnoredCells> ignored_cells = {};  ///< as SectionFacts has them
+  std::optional<SectionSeenCounts> seen = {};             ///< where seen space was asked for
   std::vector<Message> warnings = {};
   Device device = Device::kCpu;            ///< the device that searched
   std::string device_name = "the CPU";     ///< name of the device for the user
@@ -220,13 +236,16 @@ class Section {
   const SectionCells& unknown_cells() const { return unknown_; }
 
   /// Whether a load with this outline, and with the length for which the section was found, passes
-  /// at a distance of more than `margin` from every point. Throws UsageError for a margin that is
-  /// negative or not finite, and for an outline that outline_model() refuses.
-  SectionCheck check(std::span<const OutlinePoint> outline, double margin) const;
+  /// at a distance of more than `margin` from every point; none: the margin for which the section
+  /// was found. Throws UsageError for a margin that is negative or not finite, and for an outline
+  /// that outline_model() refuses.
+  SectionCheck check(std::span<const OutlinePoint> outline,
+                     std::optional<double> margin = {}) const;
 
-  /// For each cell of grid(), row by row, whether it is free with this margin; false everywhere
-  /// where the section is in doubt or the margin exceeds that of the section.
-  std::vector<bool> free_cells(double margin) const;
+  /// For each cell of grid(), row by row, whether it is free with this margin, or without one with
+  /// that of the section; false everywhere where the section is in doubt or the margin exceeds that
+  /// of the section.
+  std::vector<bool> free_cells(std::optional<double> margin = {}) const;
 
  private:
   SectionData data_;
@@ -273,19 +292,23 @@ const char* name_of(SectionTable table);
 /// The heights for which widths are listed.
 struct SectionHeights {
   double band = 0;  ///< height of a band; 0: 0.1 m
-  double base = 0;  ///< where the first band begins
+  /// Where the first band begins, in the window; none: 0, or the bottom of a window that does not
+  /// have z = 0
+  std::optional<double> base = {};
 };
 
 /// Writes a table of a section as CSV. With seen space, tables of widths have two more columns,
 /// which say whether a width ends at a blocked cell or at one that is not known. Throws UsageError
 /// where the table needs the middle, y = 0, and the window lacks it, where it needs seen space, for
-/// a band that is not above 0, and for an output that exists.
+/// widths of a section in doubt, for a band that is not above 0, for a base below the window, and
+/// for an output that exists.
 void export_section(const Section& section, SectionTable table, const std::filesystem::path& output,
                     const SectionHeights& heights = {}, bool overwrite = false);
 
 /// Writes the outline of the largest load as a closed polyline in a DXF file: for each band its
-/// widths to the left and to the right, narrower by more than the section's rounding. Throws as
-/// export_section() does, and UsageError where no load passes or a band is open.
+/// widths to the left and to the right, narrower by more than the section's rounding. The drawing
+/// looks forward: its x is to the right, which is -y of the load, and its y is up. Open sides end
+/// at the window. Throws as export_section() does, and UsageError where no load stands on the base.
 void export_section_outline(const Section& section, const std::filesystem::path& output,
                             const SectionHeights& heights = {}, bool overwrite = false);
 

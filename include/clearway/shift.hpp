@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "clearway/axis.hpp"
@@ -51,6 +52,10 @@ struct StretchShift {
   /// than the clearance that the result was asked for, or if that is not above the radius.
   std::optional<double> least_distance = {};
   std::uint64_t searches = 0;  ///< searches that were needed to find the shift
+  /// Codes of warnings that a run along the shifted stretch causes and one along the stretch as it
+  /// is does not, ascending: "floats", "leaves-scan", "nothing-below", "out-of-reach". The shift
+  /// leads past what was scanned, so little is known there.
+  std::vector<std::string> warned_of = {};
 };
 
 /// The shifts of a path and of its conflicts.

@@ -97,6 +97,17 @@ void add_section_report(py::module_& module) {
                     "How many cells are not known somewhere on the path, and not blocked before.")
       .def_readonly("unknown_in_bins", &Counts::unknown_in_bins,
                     "How many cells are not known in each stretch, added up.");
+  using Ignored = SectionIgnoredCells;
+  py::class_<Ignored>(module, "SectionIgnoredCells",
+                      "Cells of a section that ignored points would block somewhere on the path, "
+                      "and that no other point blocks.")
+      .def_readonly("blocked", &Ignored::blocked, "How many such cells there are.")
+      .def_readonly("high", &Ignored::high,
+                    "How many of them begin more than 0.5 m above z = 0, where the wheels stand, "
+                    "or above the bottom of the window where that is lower.")
+      .def("__repr__", [](const Ignored& i) {
+        return py::str("<{} cells, {} of them high>").format(i.blocked, i.high);
+      });
   py::class_<SectionReport>(module, "SectionReport", "How find_section() found a section.")
       .def_readonly("blocked", &SectionReport::blocked,
                     "How many cells of the cross-section are blocked somewhere on the path.")
@@ -110,6 +121,11 @@ void add_section_report(py::module_& module) {
       .def_readonly("motion", &SectionReport::motion,
                     "How far the load moves along x, and across, from a pose to the next, metres; "
                     "None unless between_poses was given.")
+      .def_readonly("ignored_points", &SectionReport::ignored_points,
+                    "How many points of the environment were left out.")
+      .def_readonly("ignored_cells", &SectionReport::ignored_cells,
+                    "The cells that are free only because points were left out: "
+                    "SectionIgnoredCells, or None where nothing was to be left out.")
       .def_readonly(
           "seen", &SectionReport::seen,
           "How many cells are not known: SectionSeenCounts, or None unless seen was given.")
@@ -255,7 +271,7 @@ void add_section_widths(py::module_& module) {
 }
 
 /// For each cell of the window whether it is free, as an array of rows x columns.
-py::array free_cells_of(const Section& section, double margin) {
+py::array free_cells_of(const Section& section, std::optional<double> margin) {
   const std::vector<bool> free = without_gil([&] { return section.free_cells(margin); });
   const SectionGrid grid = section.grid();
   py::array_t<bool> array({static_cast<py::ssize_t>(grid.k_to) - grid.k_from,
@@ -285,6 +301,10 @@ void add_section_facts(py::class_<Section>& section) {
       .def(
           "ignored_points", [](const Section& s) { return s.data().ignored_points; },
           "How many points of the environment were left out.")
+      .def(
+          "ignored_cells", [](const Section& s) { return s.data().ignored_cells; },
+          "The cells that are free only because points were left out: SectionIgnoredCells, or "
+          "None where nothing was to be left out.")
       .def(
           "poses", [](const Section& s) { return s.data().poses; }, "How many poses the path has.")
       .def(
@@ -356,20 +376,20 @@ void add_section_class(py::module_& module) {
           "or None without seen space.")
       .def(
           "check",
-          [](const Section& s, const py::object& outline, double margin) {
+          [](const Section& s, const py::object& outline, std::optional<double> margin) {
             const std::vector<OutlinePoint> corners = outline_of(outline, "outline");
             return without_gil([&] { return s.check(corners, margin); });
           },
-          "outline"_a, "margin"_a = 0.0,
-          R"(check(self, outline, margin=0.0)
+          "outline"_a, "margin"_a = py::none(),
+          R"(check(self, outline, margin=None)
 --
 
 Say whether a load with this outline passes. Returns a SectionCheck.
 
 outline: corners y, z of a simple polygon, n x 2, in the unit of the section; y is to the left, z up.
-margin: the distance to keep on all sides; at most that of find_section().)")
-      .def("free_cells", &free_cells_of, "margin"_a = 0.0,
-           R"(free_cells(self, margin=0.0)
+margin: the distance to keep on all sides; at most that of find_section(), which None stands for.)")
+      .def("free_cells", &free_cells_of, "margin"_a = py::none(),
+           R"(free_cells(self, margin=None)
 --
 
 Say of each cell of the window whether it is free: an array of rows x columns of bool.
@@ -378,27 +398,27 @@ Element [k - grid.k_from, j - grid.j_from] is about the cell (j, k). All are Fal
 is in doubt, or where the margin is above that of find_section(). Cells that are not known are not
 free.
 
-margin: the distance to keep on all sides.)")
+margin: the distance to keep on all sides; None: that of find_section().)")
       .def(
           "bands",
-          [](const Section& s, double band, double base) {
+          [](const Section& s, double band, std::optional<double> base) {
             return without_gil([&] { return section_bands(s, {band, base}); });
           },
-          "band"_a = 0.0, "base"_a = 0.0,
-          R"(bands(self, band=0.0, base=0.0)
+          "band"_a = 0.0, "base"_a = py::none(),
+          R"(bands(self, band=0.0, base=None)
 --
 
 Say how wide the room is, height by height. Returns a list of SectionBand.
 
 band: height of a band; 0: 0.1 m.
-base: where the first band begins.)")
+base: where the first band begins, in the window; None: 0, or the bottom of a window without z = 0.)")
       .def(
           "boxes",
-          [](const Section& s, double band, double base) {
+          [](const Section& s, double band, std::optional<double> base) {
             return without_gil([&] { return section_boxes(s, {band, base}); });
           },
-          "band"_a = 0.0, "base"_a = 0.0,
-          R"(boxes(self, band=0.0, base=0.0)
+          "band"_a = 0.0, "base"_a = py::none(),
+          R"(boxes(self, band=0.0, base=None)
 --
 
 Say how wide a box may be that stands on the base, for each height. Returns a list of SectionBand.
@@ -406,11 +426,11 @@ Say how wide a box may be that stands on the base, for each height. Returns a li
 band, base: as bands() takes them.)")
       .def(
           "stations",
-          [](const Section& s, double band, double base) {
+          [](const Section& s, double band, std::optional<double> base) {
             return without_gil([&] { return stretches_of(s, {band, base}); });
           },
-          "band"_a = 0.0, "base"_a = 0.0,
-          R"(stations(self, band=0.0, base=0.0)
+          "band"_a = 0.0, "base"_a = py::none(),
+          R"(stations(self, band=0.0, base=None)
 --
 
 Say how wide the room is in each stretch of the path. Returns a list of SectionStretch.
@@ -506,7 +526,7 @@ rear, front: where the load begins and ends along x in its own frame.
 window: the part of the cross-section: y from and to, z from and to; None: -4, 4, 0, 6 m.
 cell: side of a cell; 0: 0.02 m.
 bin: length of the stretches of the path that are told apart; 0: 5 m.
-margin: the greatest margin that Section.check() may be asked for.
+margin: the greatest margin that Section.check() may be asked for, and its default.
 between_poses: counts the way from each pose to the next, too, because the load grows by its motion.
 pivots: (front, rear), two places of the load that lie on the path; None: the load has its poses.
 ignore_classes, ignore_boxes: points to leave out, as Query takes them.
@@ -527,16 +547,16 @@ void add_section_exports(py::module_& module) {
   module.def(
       "export_section",
       [](const Section& section, const std::string& table, const py::object& output, double band,
-         double base, bool overwrite) {
+         std::optional<double> base, bool overwrite) {
         const SectionTable asked = value_of("table", kSectionTables, table);
         without_gil([&, to = path_of(output)] {
           export_section(section, asked, to, {band, base}, overwrite);
           return true;
         });
       },
-      "section"_a, "table"_a, "output"_a, py::kw_only(), "band"_a = 0.0, "base"_a = 0.0,
+      "section"_a, "table"_a, "output"_a, py::kw_only(), "band"_a = 0.0, "base"_a = py::none(),
       "overwrite"_a = false,
-      R"(export_section(section, table, output, *, band=0.0, base=0.0, overwrite=False)
+      R"(export_section(section, table, output, *, band=0.0, base=None, overwrite=False)
 --
 
 Write a table of a section as CSV, as clearway section export does.
@@ -546,22 +566,26 @@ table: 'bands', 'stations', 'boxes', 'cells' or 'bin-cells'; with seen space als
     or 'unknown-bin-cells'.
 output: the file to write.
 band: height of a band; 0: 0.1 m.
-base: where the first band begins.
+base: where the first band begins, in the window; None: 0, or the bottom of a window without z = 0.
 overwrite: replaces an existing file.)");
   module.def(
       "export_section_outline",
-      [](const Section& section, const py::object& output, double band, double base,
+      [](const Section& section, const py::object& output, double band, std::optional<double> base,
          bool overwrite) {
         without_gil([&, to = path_of(output)] {
           export_section_outline(section, to, {band, base}, overwrite);
           return true;
         });
       },
-      "section"_a, "output"_a, py::kw_only(), "band"_a = 0.0, "base"_a = 0.0, "overwrite"_a = false,
-      R"(export_section_outline(section, output, *, band=0.0, base=0.0, overwrite=False)
+      "section"_a, "output"_a, py::kw_only(), "band"_a = 0.0, "base"_a = py::none(),
+      "overwrite"_a = false,
+      R"(export_section_outline(section, output, *, band=0.0, base=None, overwrite=False)
 --
 
 Write the outline of the largest load that stands on the base as a polyline in a DXF file.
+
+The drawing looks forward: its x is to the right, which is -y of the load. Outlines for
+Section.check() have y to the left.
 
 section: the Section.
 output: the file to write.

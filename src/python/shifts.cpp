@@ -50,6 +50,9 @@ void add_tables(py::module_& module) {
                     "The least distance on the shifted stretch, metres. None where nothing is "
                     "within the clearance that the result was asked for, or without a shift.")
       .def_readonly("searches", &StretchShift::searches, "How many searches it took.")
+      .def_readonly("warned_of", &StretchShift::warned_of,
+                    "The codes of the warnings that a run along the shifted stretch causes and one "
+                    "along the stretch as it is does not, such as 'leaves-scan': a list of str.")
       .def("__repr__", [](const StretchShift& row) { return text("<" + words_of(row) + ">"); });
   py::class_<ShiftTable>(module, "ShiftTable", "The shifts of a path and of its conflicts.")
       .def_readonly("path", &ShiftTable::path, "The StretchShift of the whole path.")

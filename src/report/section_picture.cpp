@@ -238,7 +238,7 @@ class Picture {
   void draw_load() {
     if (view_.picture().outline.empty()) return;
     const std::string path = outline_path();
-    const double band = 2 * view_.picture().margin / lattice_.cell * scale_;
+    const double band = 2 * view_.margin() / lattice_.cell * scale_;
     if (band > 0) {
       out_ << R"(<clipPath id="section_outside"><path clip-rule="evenodd" d="M)" << px(left_) << " "
            << px(top_) << "h" << px(width_) << "v" << px(height_) << "h-" << px(width_) << "z"
@@ -441,11 +441,11 @@ class Picture {
     }
     if (view_.check()) {
       legend_item(x, y, R"(<path d="M0 8h24" stroke="#5b21b6" stroke-width="3"/>)", "load");
-      if (view_.picture().margin > 0) {
+      if (view_.margin() > 0) {
         legend_item(x, y,
                     R"(<path d="M0 8h24" stroke="#7c3aed" stroke-opacity="0.35" )"
                     R"(stroke-width="10"/>)",
-                    "its margin, " + format_brief(view_.picture().margin) + " " + view_.unit());
+                    "its margin, " + format_brief(view_.margin()) + " " + view_.unit());
       }
       if (!view_.stops().empty()) {
         legend_item(x, y, patterned("section_stops"), "stops the load");

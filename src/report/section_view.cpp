@@ -77,8 +77,8 @@ SectionView::SectionView(const Section& section, const SectionPicture& picture)
                      " are too many for a page; expected bands that are higher");
   }
   if (picture.outline.empty()) return;
-  check_ = section.check(picture.outline, picture.margin);
-  stopping_ = stopping_cells(section, picture.outline, picture.margin);
+  check_ = section.check(picture.outline, margin());
+  stopping_ = stopping_cells(section, picture.outline, margin());
   for (const SectionStop& stop : check_->stops) {
     ShownStop shown{.stop = stop};
     for (const SectionIntrusion& intrusion : stop.intrusions)
@@ -134,10 +134,14 @@ void SectionView::find_obstacles() {
   }
 }
 
+double SectionView::margin() const {
+  return picture_.margin.value_or(section_.data().parameters.margin);
+}
+
 std::string SectionView::unit() const { return section_unit(section_.data()); }
 
 std::string SectionView::sentence() const {
-  if (check_) return verdict_sentence(*check_, section_.data(), picture_.margin);
+  if (check_) return verdict_sentence(*check_, section_.data(), margin());
   return widths_sentence(section_, picture_.heights);
 }
 
@@ -295,7 +299,13 @@ void SectionView::write_question(JsonText& json) const {
   }
   json.field("rounding", data.rounding).field("kept", kept_beside(data));
   json.field("points", data.environment_points).field("ignored_points", data.ignored_points);
-  json.field("ignored", ignored_text(ignored_by(asked)));
+  json.field("ignored", ignored_text(ignored_by(asked))).key("ignored_cells");
+  if (data.ignored_cells) {
+    json.begin('{').field("blocked", data.ignored_cells->blocked);
+    json.field("high", data.ignored_cells->high).end('}');
+  } else {
+    json.raw("null");
+  }
   json.field("poses", data.poses).field("load_poses", data.load_poses);
   json.field("length", data.chainage.empty() ? 0.0 : data.chainage.back());
   json.field("environment_hash", hash_text(data.environment_hash));
@@ -309,7 +319,7 @@ void SectionView::write_check(JsonText& json) const {
     return;
   }
   json.begin('{').field("verdict", name_of(check_->verdict)).field("reason", check_->reason);
-  json.field("outline_name", picture_.outline_name).field("margin", picture_.margin);
+  json.field("outline_name", picture_.outline_name).field("margin", margin());
   json.key("outline").begin('[');
   for (const OutlinePoint& p : picture_.outline) {
     json.begin('[').value(p.y).value(p.z).end(']');

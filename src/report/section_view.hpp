@@ -43,6 +43,7 @@ class SectionView {
   const SectionPicture& picture() const { return picture_; }
   const SectionLattice& lattice() const { return lattice_; }
   std::string unit() const;  ///< symbol of the unit of lengths
+  double margin() const;     ///< the distance that the load keeps
   const std::optional<SectionCheck>& check() const { return check_; }
   const std::vector<ShownStop>& stops() const { return stops_; }
   /// Whether each cell of the whole path, in its order, stops the load; empty without an outline.

@@ -37,8 +37,9 @@ std::string verdict_sentence(const SectionCheck& check, const SectionData& secti
   const std::string unit = section_unit(section);
   const std::size_t warned = section.warnings.size();
   const std::string doubts = warned == 0 ? "" : ". The section has " + counted(warned, "warning");
-  const std::string kept =
-      margin > 0 ? " with a margin of " + format_brief(margin) + " " + unit : "";
+  const std::string kept = margin > 0 ? " with a margin of " + format_brief(margin) + " " + unit
+                           : section.parameters.margin > 0 ? " without a margin"
+                                                           : "";
   switch (check.verdict) {
     case SectionVerdict::kPasses:
       return "passes: the load passes " + extent_words(section) + kept + doubts;

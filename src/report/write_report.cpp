@@ -384,8 +384,7 @@ void add_query_warnings(const Result& result, const Store& store, const Model& m
   std::vector<Message> found;
   const MessageCallback quiet;
   MessageLog log(quiet, found);
-  warn_of_query(store.reader(), query, options.warnings, log);
-  warn_of_ignored(store.reader(), query, result.ignored(), log);
+  warn_of_query(store.reader(), query, result.ignored(), options.warnings, log);
   warn_of_colliding_ignored(counted_answer(result.reader()), options.model_above.has_value(),
                             store.reader().metadata().unit, log);
   for (Message& warning : found) {

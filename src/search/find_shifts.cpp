@@ -5,9 +5,13 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
+#include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -26,6 +30,7 @@
 #include "findings/check_conflicts.hpp"
 #include "io/files/input_error.hpp"
 #include "io/result/result.hpp"
+#include "search/checks/query_warnings.hpp"
 #include "search/kept_models.hpp"
 #include "search/threads.hpp"
 
@@ -484,7 +489,10 @@ class ShiftSearch {
       if (obstacles.rule_out(shift)) continue;
       ++found.row.searches;
       const SessionAnswer answer = session_.search(moved.at(shift), question());
-      if (answer.collisions().size() == 0) break;
+      if (answer.collisions().size() == 0) {
+        if (!answer.warnings.empty()) found.row.warned_of = new_warnings(answer, moved, shift);
+        break;
+      }
       PointSample sample(kMostOfSearch);
       for (const Vec3& point : answer.collisions().xyz) sample.add(point);
       obstacles.add(sample.points());
@@ -497,6 +505,31 @@ class ShiftSearch {
     }
     progress_.advance(1);
     return found;
+  }
+
+  /// Codes of the warnings that nothing, or no ground, was scanned at a place.
+  static constexpr std::array<std::string_view, 4> kOfPlace{"floats", "leaves-scan",
+                                                            "nothing-below", "out-of-reach"};
+
+  /// The codes of place that the checks give at a shift and not without it. answer: that of the
+  /// shift.
+  std::vector<std::string> new_warnings(const SessionAnswer& answer, ShiftedQuery& moved,
+                                        double shift) const {
+    const MessageCallback quiet;
+    const auto codes_at = [&](double at) {
+      std::vector<Message> found;
+      MessageLog log(quiet, found);
+      warn_of_query(session_.store().reader(), moved.at(at), answer.ignored, {}, log);
+      std::set<std::string> codes;
+      for (const Message& warning : found) {
+        if (std::ranges::find(kOfPlace, warning.code) != kOfPlace.end()) codes.insert(warning.code);
+      }
+      return codes;
+    };
+    const std::set<std::string> there = codes_at(shift), here = codes_at(0);
+    std::vector<std::string> codes;
+    std::ranges::set_difference(there, here, std::back_inserter(codes));
+    return codes;
   }
 
   std::optional<double> least_distance(ShiftedQuery& moved, double shift) const {

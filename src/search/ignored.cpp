@@ -159,19 +159,13 @@ void warn_of_ignored(const StoreReader& store, const QueryParameters& query,
   }
 }
 
-namespace {
-
-/// An ignored point at this height or more above the model's lowest point is suspicious, metres.
-/// Ground and rails are lower, and are ignored because the model stands on them; nobody
-/// wants to ignore what the model hits further up.
-constexpr double kHigh = 0.5;
-
-/// kHigh in the environment's unit. Where the unit is unknown, or is not a length, metres are
-/// assumed.
-double high_in(LengthUnit unit) {
+double suspicious_height(LengthUnit unit) {
+  constexpr double kHigh = 0.5;  // metres
   const double metres = metres_of(unit);
   return metres > 0 ? kHigh / metres : kHigh;
 }
+
+namespace {
 
 /// Finds points that are high above the lowest model point, in the frame of the body that touches
 /// them.
@@ -187,7 +181,7 @@ class Heights {
       }
     };
     for (const MovingBody& body : bodies_) lower_to(body.model.vertices);
-    limit_ = high_in(store.metadata().unit);
+    limit_ = suspicious_height(store.metadata().unit);
   }
 
   /// Whether a point is well above the model's lowest point at the pose at which it is first
@@ -275,7 +269,7 @@ void warn_of_colliding_ignored(const Answer& answer, bool model_is_cut, LengthUn
   if (high > 0) {
     warn("ignored-high",
          format_count(high) + of_ignored + " would collide more than " +
-             length_text(high_in(unit), unit) +
+             length_text(suspicious_height(unit), unit) +
              " above the model's lowest point, where no ground is: " +
              "the model hits what was ignored. Ignore the ground alone",
          static_cast<double>(high));

@@ -174,10 +174,9 @@ class Search {
       const auto looks_of = [&](const Model& model) {
         return session_.looks().of(model, hash_of(model), query_.radius);
       };
-      warn_of_query(store_, query_, looks_of, options_.input_warnings, log_);
+      warn_of_query(store_, query_, header_.ignored, looks_of, options_.input_warnings, log_);
     });
     if (options_.float_precision) warn_of_floats(store_, query_, log_);
-    warn_of_ignored(store_, header_, header_.ignored, log_);
     tell_of_large_errors();
     if (query_.seen) warn_of_large_cubes(store_, query_, swept_radius(), log_);
     if (options_.strict) refuse_warnings(report_.warnings);

@@ -9,7 +9,6 @@
 #include "clearway/error.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/trajectory/chainage.hpp"
-#include "core/trajectory/trajectory_doubts.hpp"
 #include "core/util/format.hpp"
 #include "core/util/messages.hpp"
 #include "core/util/stopwatch.hpp"
@@ -19,12 +18,13 @@
 #include "io/store/store_reader.hpp"
 #include "search/block_cells.hpp"
 #include "search/check_query.hpp"
-#include "search/checks/checks.hpp"
-#include "search/checks/facts/path_facts.hpp"
+#include "search/checks/query_warnings.hpp"
 #include "search/checks/question.hpp"
 #include "search/ignored.hpp"
+#include "search/section_ignored.hpp"
 #include "search/section_seen.hpp"
 #include "search/seen_space.hpp"
+#include "search/threads.hpp"
 
 namespace clearway {
 
@@ -188,76 +188,14 @@ class Finder {
 
   /// Warns of what the section may have misread. Nothing of it changes the section.
   void warn() {
-    for (Message& warning : store_warnings(store_.metadata())) log_.add(std::move(warning));
-    if (path_.empty()) log_.warn("no-poses", "the trajectory has no poses: nothing blocks a load");
-    const QueryParameters ignoring = ignored_by(data_.parameters);
-    const IgnoredPointCounts ignored = count_ignored(store_, ignoring, options_.threads);
+    const IgnoredPointCounts ignored =
+        count_ignored(store_, ignored_by(data_.parameters), options_.threads);
     data_.ignored_points = ignored.points;
-    if (store_.point_count() == 0) {
-      log_.warn("no-points", "the environment has no points: nothing blocks a load");
-      return;
-    }
-    warn_of_ignored(store_, ignoring, ignored, log_);
-    if (load_.poses.empty()) return;
-    warn_of_steps();
-    warn_of_place();
-  }
-
-  void warn_of_place() {
-    const LengthUnit unit = store_.metadata().unit;
-    if (unit == LengthUnit::kDegrees) {
-      log_.warn("degrees", "the environment's coordinates are degrees: lengths mean nothing there");
-      return;
-    }
-    Query load;
-    const SectionWindow& w = *data_.parameters.window;
-    const Box box{{data_.parameters.rear, w.y_from, w.z_from},
-                  {data_.parameters.front, w.y_to, w.z_to}};
-    for (unsigned corner = 0; corner < 8; ++corner) {
-      load.model.vertices.push_back(box.corner(corner));
-    }
-    load.poses = load_.poses;
-    load.radius = data_.parameters.margin;
-    const ModelLooks looks(load.model, load.radius);
-    const Question question(store_, unit, load, looks, load_.path_pose, data_.chainage);
-    check_reach(question, PathCover(question), log_);
-    // A load is longer than it is wide, whatever the window is.
-    const double length = std::max(box.hi.x - box.lo.x, metre_of(store_));
-    load.model.vertices.clear();
-    for (unsigned corner = 0; corner < 8; ++corner) {
-      load.model.vertices.push_back(
-          Box{{box.lo.x, -length / 4, 0}, {box.lo.x + length, length / 4, length / 4}}.corner(
-              corner));
-    }
-    const ModelLooks of_length(load.model, load.radius);
-    check_heading(Question(store_, unit, load, of_length, load_.path_pose, data_.chainage),
-                  options_.input_warnings, log_);
-  }
-
-  /// Between the poses of a long step there are places that the load passes at no pose.
-  void warn_of_steps() {
-    const SectionParameters& asked = data_.parameters;
-    const LengthUnit unit = store_.metadata().unit;
-    if (data_.motion && (*data_.motion)[1] > asked.cell) {
-      log_.warn("motion-exceeds-cell",
-                "from a pose to the next the load moves by up to " +
-                    length_text((*data_.motion)[1], unit) + " across, and the cells are " +
-                    length_text(asked.cell, unit) +
-                    ": a check keeps half of that motion as a distance, so it stops loads that "
-                    "pass. Poses that are closer together keep less",
-                {{"along", (*data_.motion)[0]}, {"across", (*data_.motion)[1]}});
-    }
-    const std::vector<double> steps = step_lengths(load_.poses);
-    const double length = lattice_.x_to - lattice_.x_from;
-    const auto longest = std::ranges::max_element(steps);
-    if (asked.between_poses || longest == steps.end() || *longest <= length) return;
-    const auto at = static_cast<std::size_t>(longest - steps.begin());
-    log_.warn("large-steps",
-              "the longest step, from pose " + std::to_string(load_.path_pose[at]) + ", is " +
-                  length_text(*longest, unit) + " and the load is " +
-                  length_text(asked.front - asked.rear, unit) +
-                  " long: what lies between two poses may block nothing",
-              {{"step", *longest}, {"length", length}});
+    if (ignored_by(data_.parameters).ignores_points()) data_.ignored_cells.emplace();
+    in_threads(options_.threads, [&] {
+      warn_of_section(store_, data_.parameters, ignored, load_, data_.chainage,
+                      options_.input_warnings, log_);
+    });
   }
 
   /// Bytes that writing the cells takes: those of one bin at a time, and which are in any bin.
@@ -269,7 +207,8 @@ class Finder {
   /// Throws ResourceError where the maps do not fit the memory.
   void check_memory(std::size_t bins, std::uint64_t of_cubes) {
     const std::uint64_t of_map = SectionMaps::bytes_of_bin(lattice_);
-    const std::uint64_t of_bin = data_.parameters.seen ? 2 * of_map : of_map;
+    const bool two_maps = data_.parameters.seen || data_.ignored_points > 0;
+    const std::uint64_t of_bin = two_maps ? 2 * of_map : of_map;
     const std::uint64_t fixed =
         store_.allocated_bytes() + 2 * path_.size() * (sizeof(Pose) + sizeof(double)) +
         2 * load_.poses.size() * sizeof(SectionPoseNode) + bytes_to_write() + of_cubes;
@@ -307,6 +246,7 @@ class Finder {
                    options_.memory_bytes / 4);
     }
     check_memory(bins.size(), seen ? seen->needed_bytes() : 0);
+    bytes_of_maps_ = report_.needed_host_bytes;
     maps_.emplace(lattice_, bins.size());
     const IgnoredPoints ignored(store_, ignored_by(data_.parameters));
     device_.block(store_, ignored, section_ref(poses, lattice_, data_.rounding, *maps_),
@@ -315,7 +255,30 @@ class Finder {
       data_.bins.push_back(static_cast<std::uint32_t>(bin.number));
     }
     count_blocked();
+    if (data_.ignored_cells && data_.ignored_points > 0) find_ignored(poses, bins);
     if (seen) find_unknown(*seen);
+  }
+
+  /// A second search, of the ignored points alone, for the cells that only they block.
+  void find_ignored(const SectionPoses& poses, std::span<const SectionBin> bins) {
+    const IgnoredPoints ignored(store_, ignored_by(data_.parameters),
+                                IgnoredPoints::Search::kIgnored);
+    SectionMaps maps(lattice_, bins.size());
+    SectionReport taken;
+    device_.block(store_, ignored, section_ref(poses, lattice_, data_.rounding, maps),
+                  options_.memory_bytes - bytes_of_maps_, progress_, taken);
+    report_.needed_host_bytes =
+        std::max(report_.needed_host_bytes, bytes_of_maps_ + taken.needed_host_bytes);
+    report_.peak_device_bytes = std::max(report_.peak_device_bytes, taken.peak_device_bytes);
+    report_.engine_seconds += taken.engine_seconds;
+    report_.context_wait_seconds += taken.context_wait_seconds;
+    const LengthUnit unit = store_.metadata().unit;
+    const CellsOfIgnored found =
+        cells_of_ignored(*maps_, maps, lattice_, bins, load_.path_pose,
+                         lowest_place(data_.parameters) + suspicious_height(unit));
+    data_.ignored_cells = found;
+    warn_of_cells_of_ignored(data_, found, report_.blocked, unit, log_);
+    if (options_.strict) refuse_warnings(data_.warnings);
   }
 
   /// Blocks a copy of the maps by the cubes that no beam saw, too: cells whose first pose falls are
@@ -392,6 +355,8 @@ class Finder {
       report_.seen = SectionSeenCounts{data_.parameters.seen_cube, 0, 0};
     }
     report_.rounding = data_.rounding;
+    report_.ignored_points = data_.ignored_points;
+    report_.ignored_cells = data_.ignored_cells;
     report_.motion = data_.motion;
     report_.warnings = data_.warnings;
     write_section(data_, blocked_, unknown_, pending_.partial());
@@ -410,6 +375,7 @@ class Finder {
   SectionDevice device_;
   Body load_;
   SectionLattice lattice_{};
+  std::uint64_t bytes_of_maps_ = 0;   ///< memory that is taken besides that of a device
   std::optional<SectionMaps> maps_;   ///< blocked cells
   std::optional<SectionMaps> taken_;  ///< with seen space: blocked cells and those not known
   SectionRows blocked_;

@@ -1,5 +1,6 @@
 // The section of a real street: the known answer, and the guarantee against solids.
 #include "library/section_guarantee.hpp"
+#include "support/road_scene.hpp"
 #include "support/test_data.hpp"
 
 using namespace clearway;
@@ -78,4 +79,49 @@ TEST_CASE("the section of the street has the known cells, and keeps what solids 
   }
   CHECK(verdicts.passes > 15);
   CHECK(verdicts.stopped > 15);
+}
+
+TEST_CASE("sound questions about a street cause no warning") {
+  const Street street;
+  const Store store(street.folder / "street.h5");
+  int asked = 0;
+  for (const auto& [rear, front] :
+       {std::pair{-2.25, 2.25}, {-1.0, 3.0}, {-2.5, 2.0}, {-1.5, 1.5}}) {
+    for (const double margin : {0.0, 0.1, 0.3}) {
+      for (const SectionWindow window : {SectionWindow{-4, 4, 0, 6}, {-2, 3, 0.42, 3}}) {
+        const SectionParameters question{
+            .rear = rear, .front = front, .window = window, .cell = 0.05, .margin = margin};
+        const SectionReport report =
+            find_section(store, street.path, question, street.folder / "section.h5",
+                         {.threads = 2, .overwrite = true});
+        INFO("from " << rear << " to " << front << ", margin " << margin);
+        for (const Message& warning : report.warnings) FAIL_CHECK(warning.text);
+        ++asked;
+      }
+    }
+  }
+  CHECK(asked == 24);
+}
+
+TEST_CASE("sound questions about alignments cause no warning") {
+  const ScratchFolder folder;
+  for (const char* name : {"UT-Alignment-Aplitop-1.xml", "PR_Twin_Branch_section_alignment.xml"}) {
+    AlignmentOptions options{.step = 0.1, .max_gap = 0.01};
+    std::vector<Pose> dense = read_alignment(data_folder() / "alignments" / name, options);
+    if (dense.size() > 2500) dense.resize(2500);
+    const double* const first = dense.front().translation;
+    road_along(dense).convert_to(folder / "site.h5",
+                                 {std::round(first[0]), std::round(first[1]), 0});
+    std::vector<Pose> path;
+    for (std::size_t i = 150; i + 150 < dense.size(); i += 5) path.push_back(dense[i]);
+    CHECK(path.size() > 50);
+    const Store store(folder / "site.h5");
+    for (const auto& [rear, front] : {std::pair{-2.25, 2.25}, {-6.0, 6.0}}) {
+      const SectionParameters question{.rear = rear, .front = front, .cell = 0.05, .margin = 0.1};
+      const SectionReport report = find_section(store, path, question, folder / "section.h5",
+                                                {.threads = 2, .overwrite = true});
+      INFO(name << ", from " << rear << " to " << front);
+      for (const Message& warning : report.warnings) FAIL_CHECK(warning.text);
+    }
+  }
 }

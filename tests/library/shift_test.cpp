@@ -328,6 +328,28 @@ TEST_CASE("of two shifts of the same length the one to the left is taken") {
   CHECK(side_of(right.path) == std::string("right"));
 }
 
+TEST_CASE("a shift that leads past what was scanned says so") {
+  std::vector<Vec3> points;
+  for (double x = -3; x <= 40; x += 0.1) {
+    for (double y = -6; y <= 6; y += 0.1) points.push_back({x, y, -0.01});
+  }
+  const auto freed = [&](double half) {
+    std::vector<Vec3> all = points;
+    for (double y = -half; y <= half; y += 0.05) {
+      for (int i = 1; i < 20; ++i) all.push_back({15, y, 0.02 * i});
+    }
+    const Scene scene(all, box_on(straight(60), 0.005));
+    const ShiftTable table = scene.shifts({.lateral_from = -15, .lateral_to = 0, .step = 0.5});
+    REQUIRE(table.conflicts.size() == 1);
+    REQUIRE(table.conflicts[0].shift);
+    return table.conflicts[0];
+  };
+  CHECK(freed(2).warned_of.empty());
+  const StretchShift far = freed(6);
+  CHECK(*far.shift <= -6.5);
+  CHECK(far.warned_of == std::vector<std::string>{"nothing-below"});
+}
+
 TEST_CASE("a range ends where it says, and one that ends before the shift frees nothing") {
   const Scene scene(wall(2, 4, 0.4), box_on(straight(12)));
   CHECK(scene.shifts({.lateral_from = -0.11, .lateral_to = 0}).path.shift == -0.11);

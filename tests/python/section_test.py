@@ -135,7 +135,7 @@ class Sections(SceneTest):
     def test_checks_of_outlines(self):
         middle = [clearway.Box((-9, -0.7, -0.5), (9, 0.9, 0.6))]
         section = self.section(ignore_boxes=middle)
-        passes = section.check([(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)])
+        passes = section.check([(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)], 0)
         self.assertEqual((passes.verdict, passes.reason, passes.stop, passes.stops),
                          ("passes", None, None, []))
         wide = np.array([(-1.4, -0.1), (1.4, -0.1), (1.4, 0.1), (-1.4, 0.1)])
@@ -152,6 +152,7 @@ class Sections(SceneTest):
         self.assertEqual([s.bin for s in stopped.stops], sorted({key[0] for key in near}))
         self.assertIn("stopped at pose", repr(stopped))
         self.assertEqual(section.check(wide, 0.5).verdict, "stopped")
+        self.assertEqual(repr(section.check(wide)), repr(section.check(wide, MARGIN)))
         unknown = self.section(ignore_boxes=middle, margin=0.01).check(
             [(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1)], 0.02)
         self.assertEqual(unknown.verdict, "unknown")
@@ -161,7 +162,7 @@ class Sections(SceneTest):
                            ([(0, 0), (1, math.nan), (1, 1)], "outline: corner 1")):
             with self.subTest(bad), self.assertRaisesRegex((clearway.Error, TypeError), error):
                 section.check(bad)
-        for margin in (-1, math.inf, "a", None):
+        for margin in (-1, math.inf, "a"):
             with self.assertRaisesRegex((clearway.UsageError, TypeError), "^margin: "):
                 section.check(wide, margin)
 
@@ -187,6 +188,21 @@ class Sections(SceneTest):
                          bands[0].left)
         with self.assertRaisesRegex(clearway.UsageError, "^band: "):
             section.bands(band=-1)
+        with self.assertRaisesRegex(clearway.UsageError, "below the window"):
+            section.boxes(base=-1)
+
+    def test_cells_of_ignored_points(self):
+        box = clearway.Box((-9, -0.7, -0.5), (9, 0.9, 0.6))
+        report = self.find(ignore_boxes=[box])
+        section = clearway.Section(self.folder / "section.h5")
+        all_cells = whole_path(blocked_cells(self.points, self.poses))
+        only = [k for k, j in all_cells if (k, j) not in rows(section.cells())]
+        self.assertGreater(len(only), 20)
+        high = sum(k * CELL > WINDOW[2] + 0.5 for k in only)
+        for found in (report.ignored_cells, section.ignored_cells()):
+            self.assertEqual((found.blocked, found.high), (len(only), high))
+        self.assertEqual(report.ignored_points, section.ignored_points())
+        self.assertIsNone(self.section().ignored_cells())
 
     def test_the_command_line_writes_the_same_bytes(self):
         self.find(between_poses=True, pivots=(0.5, -0.3))

@@ -105,6 +105,10 @@ ordered_json describe(const SectionData& section) {
                            {"warnings", warnings_json(section.warnings)}};
   if (asked.pivots) description["pivots"] = {asked.pivots->front, asked.pivots->rear};
   if (section.motion) description["motion"] = *section.motion;
+  if (section.ignored_cells) {
+    description["ignored_cells"] = {{"blocked", section.ignored_cells->blocked},
+                                    {"high", section.ignored_cells->high}};
+  }
   if (asked.seen) {
     description["seen_cube"] = asked.seen_cube;
     description["unknown"] = section.unknown_cells().size();

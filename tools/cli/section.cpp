@@ -69,6 +69,11 @@ ordered_json json_of(const SectionReport& report, const FindCommand& options) {
                    {"unknown", report.seen->unknown},
                    {"unknown_in_bins", report.seen->unknown_in_bins}};
   }
+  if (report.ignored_cells) {
+    out["ignored_points"] = report.ignored_points;
+    out["ignored_cells"] = {{"blocked", report.ignored_cells->blocked},
+                            {"high", report.ignored_cells->high}};
+  }
   out["needed_host_bytes"] = report.needed_host_bytes;
   out["peak_device_bytes"] = report.peak_device_bytes;
   out["seconds"] = {{"total", report.seconds},
@@ -131,10 +136,14 @@ void run_find(FindCommand& options) {
       !report.seen ? ""
                    : ", and " + format_count(report.seen->unknown) +
                          " more are not known, because no beam of the scanner crossed them";
+  const std::string ignored = !report.ignored_cells || report.ignored_cells->blocked == 0
+                                  ? ""
+                                  : ", and " + format_count(report.ignored_cells->blocked) +
+                                        " more would be by points that were ignored";
   const std::string sentence =
       fmt::format("{} of the cross-section {} blocked somewhere on the path, in {} of it{}{}",
                   counted(report.blocked, "cell"), report.blocked == 1 ? "is" : "are",
-                  counted(report.bins, "stretch", "stretches"), unknown, doubts);
+                  counted(report.bins, "stretch", "stretches"), unknown + ignored, doubts);
   spdlog::info("{}: {}; {}{:.2f} s", options.output.string(), sentence,
                report.device == Device::kCuda ? "on " + report.device_name + ", " : "",
                report.seconds);
@@ -163,7 +172,8 @@ void add_question(CLI::App& command, FindCommand& options) {
   options.lengths.add(command, "--bin", options.asked.bin,
                       "Length of the stretches of the path that are told apart (default: 5 m)");
   options.lengths.add(command, "--margin", options.asked.margin,
-                      "The greatest margin that clearway section check may ask for (default: 0)",
+                      "The greatest margin that clearway section check may ask for, and the one "
+                      "that it asks for by default (default: 0)",
                       LengthRange::kFromZero);
   command.add_flag(
       "--seen", options.asked.seen,
@@ -264,11 +274,11 @@ ordered_json stop_json(const SectionStop& stop) {
 }
 
 /// witnesses: of each stop, or empty where nobody asked for them.
-ordered_json json_of(const SectionCheck& check, const Witnesses& witnesses, const Section& section,
-                     const CheckCommand& options) {
+ordered_json json_of(const SectionCheck& check, double margin, const Witnesses& witnesses,
+                     const Section& section, const CheckCommand& options) {
   ordered_json out =
       program_json({{"section", options.section}, {"outline", options.load.outline}});
-  out["margin"] = options.load.margin;
+  out["margin"] = margin;
   out["verdict"] = name_of(check.verdict);
   out["reason"] = check.reason.empty() ? ordered_json(nullptr) : ordered_json(check.reason);
   out["first_pose"] = out["chainage"] = out["cell"] = nullptr;
@@ -308,18 +318,19 @@ int run_check(CheckCommand& options) {
   const Section section(options.section);
   const double metres = convert_for(options.lengths, section, options.section);
   const std::vector<OutlinePoint> outline = read_load(options.load, section, metres);
+  const double margin = options.load.margin.value_or(section.data().parameters.margin);
   SectionCheck check;
   try {
-    check = section.check(outline, options.load.margin);
+    check = section.check(outline, margin);
   } catch (const UsageError& error) {
     throw UsageError(options.load.outline.string() + ": " + error.what());
   }
   const Witnesses witnesses = witnesses_of(check, section, options.site);
   for (const Message& warning : section.data().warnings) log_message(warning);
-  const std::string sentence = verdict_sentence(check, section.data(), options.load.margin);
+  const std::string sentence = verdict_sentence(check, section.data(), margin);
   if (options.json) {
     spdlog::info("{}", sentence);
-    print(text_of_json(json_of(check, witnesses, section, options)));
+    print(text_of_json(json_of(check, margin, witnesses, section, options)));
   } else {
     print(sentence + "\n");
   }
@@ -402,15 +413,17 @@ void add_export_of_section(CLI::App& section) {
           ->check(CLI::IsMember(names));
   command
       ->add_flag("--outline", options->outline,
-                 "Write the outline of the largest load that stands on the base, as DXF")
+                 "Write the outline of the largest load that stands on the base, as DXF; looking "
+                 "forward, its x is to the right")
       ->excludes(table);
   options->lengths.add(*command, "--band", options->heights.band,
                        "Height of a band (default: 0.1 m)");
-  options->lengths.add(*command, "--base", options->heights.base,
-                       "Height at which the first band begins (default: 0)", LengthRange::kAny);
+  options->lengths.add(*command, "--base", options->heights.base, kBaseHelp, LengthRange::kAny);
   command->add_flag("--force", options->force, "Overwrite an existing output");
   command->footer(
       "Widths end at the border of the nearest blocked cell, so a load has to be narrower.\n"
+      "The DXF file is a drawing that looks forward, with x to the right; outlines for clearway\n"
+      "section check have y to the left.\n"
       "Example: clearway section export section.h5 --table bands --base 0.5 -o bands.csv");
   command->callback([options] {
     if (!options->table && !options->outline) {

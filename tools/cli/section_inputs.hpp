@@ -18,12 +18,17 @@ class Option;
 /// What several commands on a section are given besides its file.
 namespace clearway::tool {
 
-/// The outline of a load and the distance that it keeps.
+/// The outline of a load and the distance that it keeps; none: that of the section.
 struct LoadInput {
   std::filesystem::path outline;
   OutlineOptions how;
-  double margin = 0;
+  std::optional<double> margin;
 };
+
+/// What --base is.
+inline constexpr const char* kBaseHelp =
+    "Height at which the first band begins, in the window (default: 0, or the bottom of a window "
+    "without z = 0)";
 
 /// Adds --outline, --margin, --mirror and --unit, and returns the first.
 CLI::Option* add_load_options(CLI::App& command, LoadInput& load, LengthOptions& lengths);

@@ -29,11 +29,11 @@ CLI::Option* add_load_options(CLI::App& command, LoadInput& load, LengthOptions&
   CLI::Option* outline =
       command
           .add_option("--outline", load.outline,
-                      "The outline of the load as text: y,z of each corner in a line, or with "
-                      "--mirror height,half_width")
+                      "The outline of the load as text: y,z of each corner in a line, y to the "
+                      "left and z up, or with --mirror height,half_width")
           ->type_name("FILE");
   lengths.add(command, "--margin", load.margin,
-              "Distance to keep on all sides; at most that of the section (default: 0)",
+              "Distance to keep on all sides; at most that of the section, which is the default",
               LengthRange::kFromZero);
   command.add_flag("--mirror", load.how.mirror,
                    "The file has height,half_width of the one half of a symmetric outline");
@@ -196,8 +196,8 @@ void add_section_report(CLI::App& section) {
     }
     options->lengths.add(*command, "--band", options->page.heights.band,
                          "Height of a band of the map of widths (default: 0.1 m)");
-    options->lengths.add(*command, "--base", options->page.heights.base,
-                         "Height at which the first band begins (default: 0)", LengthRange::kAny);
+    options->lengths.add(*command, "--base", options->page.heights.base, kBaseHelp,
+                         LengthRange::kAny);
   }
   add_site_options(*command, options->site, options->lengths);
   command

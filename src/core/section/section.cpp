@@ -230,14 +230,6 @@ class Load {
   Square box_;
 };
 
-/// Why the section says nothing, as a clause; empty where it does.
-std::string doubt_about(const SectionData& section) {
-  for (const Message& warning : section.warnings) {
-    if (is_doubt(warning.code)) return "the section is in doubt (" + warning.code + ")";
-  }
-  return "";
-}
-
 void check_margin(double margin) {
   if (std::isfinite(margin) && margin >= 0) return;
   throw UsageError("a margin of " + format_number(margin) + "; expected 0 or more");
@@ -288,6 +280,13 @@ std::vector<SectionStop> first_places(const SectionCells& all, const SectionCell
 
 }  // namespace
 
+std::string doubt_about(const SectionData& section) {
+  for (const Message& warning : section.warnings) {
+    if (is_doubt(warning.code)) return "the section is in doubt (" + warning.code + ")";
+  }
+  return "";
+}
+
 double reach_of(const SectionFacts& section, double margin) {
   return (section.motion ? margin + (*section.motion)[1] / 2 : margin) + section.rounding;
 }
@@ -312,7 +311,9 @@ SectionGrid Section::grid() const {
           static_cast<std::int32_t>(lattice.k_from), static_cast<std::int32_t>(lattice.k_to)};
 }
 
-SectionCheck Section::check(std::span<const OutlinePoint> outline, double margin) const {
+SectionCheck Section::check(std::span<const OutlinePoint> outline,
+                            std::optional<double> asked_margin) const {
+  const double margin = asked_margin.value_or(data_.parameters.margin);
   const std::vector<bool> stops = stopping_cells(*this, outline, margin);
   const Load load(outline);
   const double g = data_.parameters.cell;
@@ -348,7 +349,8 @@ SectionCheck Section::check(std::span<const OutlinePoint> outline, double margin
   return check;
 }
 
-std::vector<bool> Section::free_cells(double margin) const {
+std::vector<bool> Section::free_cells(std::optional<double> asked_margin) const {
+  const double margin = asked_margin.value_or(data_.parameters.margin);
   check_margin(margin);
   const SectionLattice lattice = lattice_of(data_);
   const auto columns = static_cast<std::int64_t>(lattice.columns);

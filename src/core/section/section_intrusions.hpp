@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "clearway/outline.hpp"
@@ -10,6 +11,9 @@
 
 /// Which cells of a section stop a load, and how far they reach into it.
 namespace clearway {
+
+/// Why the section says nothing of any load, as a clause; empty where it does.
+std::string doubt_about(const SectionData& section);
 
 /// Cells closer to an outline than this stop it: the margin, rounding, and between poses half of
 /// the motion across.

@@ -190,21 +190,29 @@ double section_rounding(double largest_point, std::span<const Pose> poses,
   return 1024 * kUnitRoundoff * (std::max(1.0, largest_point) + largest_pose + 2 * largest_end);
 }
 
-SectionMotion section_motion(std::span<const Pose> poses, const SectionParameters& parameters) {
-  const SectionWindow& w = *parameters.window;
-  const Box load{{parameters.rear, w.y_from, w.z_from}, {parameters.front, w.y_to, w.z_to}};
+SectionMotion motion_of_step(const Pose& from, const Pose& to, const Box& load) {
   SectionMotion motion;
   const auto look = [&](const PullBack& frame, const Pose& other, const Vec3& corner) {
     const Vec3 moved = difference(frame.apply(transform(other, corner)), corner);
     motion.along = std::max(motion.along, std::abs(moved.x));
     motion.across = std::max(motion.across, std::hypot(moved.y, moved.z));
   };
+  const PullBack before(from), after(to);
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    look(before, to, load.corner(corner));
+    look(after, from, load.corner(corner));
+  }
+  return motion;
+}
+
+SectionMotion section_motion(std::span<const Pose> poses, const SectionParameters& parameters) {
+  const SectionWindow& w = *parameters.window;
+  const Box load{{parameters.rear, w.y_from, w.z_from}, {parameters.front, w.y_to, w.z_to}};
+  SectionMotion motion;
   for (std::size_t i = 1; i < poses.size(); ++i) {
-    const PullBack before(poses[i - 1]), after(poses[i]);
-    for (unsigned corner = 0; corner < 8; ++corner) {
-      look(before, poses[i], load.corner(corner));
-      look(after, poses[i - 1], load.corner(corner));
-    }
+    const SectionMotion step = motion_of_step(poses[i - 1], poses[i], load);
+    motion.along = std::max(motion.along, step.along);
+    motion.across = std::max(motion.across, step.across);
   }
   return motion;
 }

@@ -126,12 +126,15 @@ class SectionPoses {
 double section_rounding(double largest_point, std::span<const Pose> poses,
                         const SectionParameters& parameters, const SectionLattice& lattice);
 
-/// How far the load's own range and window move between two poses, as seen from either.
+/// How far a box in the frame of a load moves between two poses, as seen from either.
 struct SectionMotion {
   double along = 0;   ///< greatest change of x'
   double across = 0;  ///< greatest change in the plane of y' and z'
 };
 
+SectionMotion motion_of_step(const Pose& from, const Pose& to, const Box& load);
+
+/// The greatest motion of range and window over all steps from a pose to the next.
 SectionMotion section_motion(std::span<const Pose> poses, const SectionParameters& parameters);
 
 }  // namespace clearway

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "clearway/error.hpp"
+#include "core/section/section_intrusions.hpp"
 #include "core/section/section_lattice.hpp"
 #include "core/section/section_map.hpp"
 #include "core/util/format.hpp"
@@ -22,35 +23,49 @@ struct Rows {
   double k_from, k_to;  ///< k_from <= k < k_to
 };
 
+double base_of(const SectionLattice& lattice, const SectionHeights& heights) {
+  const double bottom = lattice.k_from * lattice.cell, top = lattice.k_to * lattice.cell;
+  if (!heights.base) return bottom <= 0 && top > 0 ? 0 : bottom;
+  const double base = *heights.base;
+  if (base >= bottom - kSameBorder * lattice.cell) return base;
+  throw UsageError(
+      "the base z = " + format_number(base) +
+      " is below the window of the section, which begins at z = " + format_number(bottom) +
+      ", so that nothing is known in between; expected a base in the window");
+}
+
 std::vector<Rows> rows_of_bands(const Section& section, const SectionHeights& heights) {
+  const std::string doubt = doubt_about(section.data());
+  if (!doubt.empty()) throw UsageError(doubt + ", so that it has no widths");
   const SectionLattice lattice = lattice_of(section.data());
   const double g = lattice.cell;
   double band = heights.band;
   if (band == 0) band = section.data().length_unit.ends_with("foot") ? 0.1 / 0.3048 : 0.1;
-  if (!(std::isfinite(band) && band > 0 && std::isfinite(heights.base))) {
+  if (!(std::isfinite(band) && band > 0 && std::isfinite(heights.base.value_or(0)))) {
     throw UsageError("bands of height " + format_number(band) + " from " +
-                     format_number(heights.base) + "; expected a height above 0, and a base");
+                     format_number(heights.base.value_or(0)) +
+                     "; expected a height above 0, and a base");
   }
+  const double base = base_of(lattice, heights);
   if (lattice.j_from >= 0 || lattice.j_to <= 0) {
     throw UsageError(
         "the window of the section lacks the middle, y = 0, so that it has no widths "
         "to the left and to the right; expected a window on both sides of it");
   }
   constexpr double kMostBands = 1e6;
-  const double first = std::ceil((lattice.k_from * g - heights.base) / band - kSameBorder);
-  const double end = std::floor((lattice.k_to * g - heights.base) / band + kSameBorder);
+  const double end = std::floor((lattice.k_to * g - base) / band + kSameBorder);
   const UnitFactor times(band);  // of ten bands of 0.1 the sum is 1
   std::vector<Rows> rows;
-  if (end - first > kMostBands) {
+  if (end > kMostBands) {
     throw UsageError("bands of height " + format_number(band) + "; expected at most a million");
   }
-  for (double i = std::max(0.0, first); i < end; ++i) {
-    const double from = heights.base + times(i), to = heights.base + times(i + 1);
+  for (double i = 0; i < end; ++i) {
+    const double from = base + times(i), to = base + times(i + 1);
     rows.push_back({from, to, std::floor(from / g + kSameBorder), std::ceil(to / g - kSameBorder)});
   }
   if (rows.empty()) {
     throw UsageError(
-        "no band of height " + format_number(band) + " from " + format_number(heights.base) +
+        "no band of height " + format_number(band) + " from " + format_number(base) +
         " upwards lies in the window, which ends at z = " + format_number(lattice.k_to * g));
   }
   return rows;
@@ -99,15 +114,20 @@ std::vector<SectionBand> open_bands(const std::vector<Rows>& rows) {
 
 }  // namespace
 
+double section_base(const Section& section, const SectionHeights& heights) {
+  return base_of(lattice_of(section.data()), heights);
+}
+
 double kept_beside(const SectionFacts& section) {
   return section.rounding + (section.motion ? (*section.motion)[1] / 2 : 0);
 }
 
 std::optional<double> symmetric_width(const SectionFacts& section, const SectionBand& band) {
   if (!band.left && !band.right) return std::nullopt;
-  double least = band.left ? band.left->width : band.right->width;
-  if (band.right) least = std::min(least, band.right->width);
-  return std::max(0.0, 2 * least - 2 * kept_beside(section));
+  const SectionLattice lattice = lattice_of(section);
+  const double left = band.left ? band.left->width : lattice.j_to * lattice.cell;
+  const double right = band.right ? band.right->width : -lattice.j_from * lattice.cell;
+  return std::max(0.0, 2 * std::min(left, right) - 2 * kept_beside(section));
 }
 
 std::vector<SectionBand> section_bands(const Section& section, const SectionHeights& heights) {

@@ -34,10 +34,15 @@ struct SectionStretch {
 double kept_beside(const SectionFacts& section);
 
 /// The width of a load that is as wide to the left as to the right; none where both sides are open.
+/// A side that is open ends at the border of the window.
 std::optional<double> symmetric_width(const SectionFacts& section, const SectionBand& band);
 
-/// The bands that lie in the window, from the base upwards. Throws UsageError where the window
-/// lacks the middle or has no whole band, and for heights that are not finite or not above 0.
+/// The height at which the first band begins. Throws UsageError where it is below the window.
+double section_base(const Section& section, const SectionHeights& heights);
+
+/// The bands that lie in the window, from the base upwards. Throws UsageError where the section is
+/// in doubt, the window lacks the middle or has no whole band, or the base is below the window, and
+/// for heights that are not finite or not above 0.
 std::vector<SectionBand> section_bands(const Section& section, const SectionHeights& heights);
 
 /// The bands of each bin in which the load has a pose, ascending. Throws as section_bands().

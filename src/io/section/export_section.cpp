@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <optional>
 #include <string>
 
 #include "clearway/error.hpp"
@@ -19,7 +21,8 @@ void refuse_replacing(const Section& section, const std::filesystem::path& outpu
 }
 
 /// What a reader of widths has to know, in lines that begin with "#".
-void write_preamble(TextWriter& out, const Section& section) {
+void write_preamble(TextWriter& out, const Section& section, const SectionHeights& heights) {
+  const double base = section_base(section, heights);
   const SectionData& data = section.data();
   const SectionParameters& asked = data.parameters;
   out << "# Widths from y = 0 to the border of the nearest blocked cell of "
@@ -38,6 +41,9 @@ void write_preamble(TextWriter& out, const Section& section) {
            "right_end say blocked or not-known\n";
   }
   out << "# open: nothing blocks that side up to the border of the window\n";
+  if (!heights.base && base != 0) {
+    out << "# The base is the bottom of the window, z = " << format_number(base) << "\n";
+  }
   for (const Message& warning : data.warnings) {
     std::string line = warning.text;
     for (char& c : line) {
@@ -142,18 +148,18 @@ void export_section(const Section& section, SectionTable table, const std::files
     TextWriter out(file);
     switch (table) {
       case SectionTable::kBands:
-        write_preamble(out, section);
+        write_preamble(out, section, heights);
         out << kBandColumns << names_of_ends(section.data());
         for (const SectionBand& band : section_bands(section, heights)) {
           write_band(out, section.data(), band);
         }
         break;
       case SectionTable::kStations:
-        write_preamble(out, section);
+        write_preamble(out, section, heights);
         write_stations(out, section, heights);
         break;
       case SectionTable::kBoxes:
-        write_preamble(out, section);
+        write_preamble(out, section, heights);
         write_boxes(out, section, heights);
         break;
       case SectionTable::kCells:
@@ -181,11 +187,30 @@ void write_pair(TextWriter& out, int code, const Value& value) {
   out << code << "\n" << value << "\n";
 }
 
+constexpr const char* kLookingForward = "Looking forward: x is to the right, y is up";
+
+/// A line of text below the outline, on a layer of its own.
+void write_note(TextWriter& out, const std::vector<OutlinePoint>& outline) {
+  const auto [bottom, top] = std::ranges::minmax(outline, {}, &OutlinePoint::z);
+  const double left = std::ranges::max(outline, {}, &OutlinePoint::y).y;
+  const double height = (top.z - bottom.z) / 20;
+  write_pair(out, 0, "TEXT");
+  write_pair(out, 8, "NOTES");
+  write_pair(out, 10, -left);
+  write_pair(out, 20, bottom.z - 2 * height);
+  write_pair(out, 30, 0);
+  write_pair(out, 40, height);
+  write_pair(out, 1, kLookingForward);
+}
+
 /// Writes a closed polyline in the form of AutoCAD's release 12, which every program reads. y of
-/// the load runs to the left, so looking forward it is drawn with the opposite sign.
+/// the load runs to the left, so looking forward it is drawn with the opposite sign, and the file
+/// says so.
 void write_dxf(TextWriter& out, const std::vector<OutlinePoint>& outline, bool feet) {
   write_pair(out, 999,
              feet ? "Outline of the largest load, feet" : "Outline of the largest load, metres");
+  write_pair(out, 999, kLookingForward);
+  write_pair(out, 999, "Outlines for clearway section check have y to the left instead: y = -x");
   write_pair(out, 0, "SECTION");
   write_pair(out, 2, "HEADER");
   write_pair(out, 9, "$ACADVER");
@@ -205,6 +230,7 @@ void write_dxf(TextWriter& out, const std::vector<OutlinePoint>& outline, bool f
     write_pair(out, 30, 0);
   }
   write_pair(out, 0, "SEQEND");
+  write_note(out, outline);
   write_pair(out, 0, "ENDSEC");
   write_pair(out, 0, "EOF");
 }

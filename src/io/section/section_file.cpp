@@ -39,6 +39,8 @@ constexpr const char* kChainage = "chainage";
 constexpr const char* kIgnored = "ignored";
 constexpr const char* kClasses = "classes";
 constexpr const char* kBoxes = "boxes";
+constexpr const char* kBlockedByIgnored = "blocked_cells";
+constexpr const char* kHighOfIgnored = "high_cells";
 }  // namespace names
 
 /// The numbers of a section's header, in the order of the attribute "numbers".
@@ -103,6 +105,9 @@ std::uint64_t hash_of(const SectionData& section, const CellSums& blocked,
     for (const std::uint64_t column : cells.hashes) hashes.add_digest(column);
   };
   add(blocked);
+  if (section.ignored_cells) {
+    hashes.add(std::vector{section.ignored_cells->blocked, section.ignored_cells->high});
+  }
   if (unknown) {
     hashes.add(std::vector<double>{section.parameters.seen_cube});
     add(*unknown);
@@ -252,6 +257,10 @@ void read_header(const hdf5::Id& file, const std::string& name, SectionData& sec
     asked.ignore_boxes.push_back(
         {{rows[i], rows[i + 1], rows[i + 2]}, {rows[i + 3], rows[i + 4], rows[i + 5]}});
   }
+  if (asked.ignore_classes.empty() && asked.ignore_boxes.empty()) return;
+  section.ignored_cells = {
+      hdf5::read_number<std::uint64_t>(ignored, names::kBlockedByIgnored, name),
+      hdf5::read_number<std::uint64_t>(ignored, names::kHighOfIgnored, name)};
 }
 
 void require(bool holds, const std::string& name, const char* what) {
@@ -381,6 +390,10 @@ void write_section(const SectionData& section, const SectionRows& blocked,
       const hdf5::Id ignored = hdf5::create_group(file, names::kIgnored);
       write_column(ignored, names::kClasses, section.parameters.ignore_classes);
       write_column(ignored, names::kBoxes, rows_of(section.parameters.ignore_boxes), 6);
+      if (section.ignored_cells) {
+        hdf5::write_number(ignored, names::kBlockedByIgnored, section.ignored_cells->blocked);
+        hdf5::write_number(ignored, names::kHighOfIgnored, section.ignored_cells->high);
+      }
       write_column(hdf5::create_group(file, names::kPath), names::kChainage, section.chainage);
       const hdf5::Id bins = hdf5::create_group(file, names::kBins);
       write_column(bins, names::kNumber, section.bins);

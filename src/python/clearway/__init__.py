@@ -59,6 +59,7 @@ from ._clearway import (
     SectionCells,
     SectionCheck,
     SectionGrid,
+    SectionIgnoredCells,
     SectionParameters,
     SectionReport,
     SectionSeenCounts,

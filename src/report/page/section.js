@@ -130,11 +130,11 @@ function chooseStretch(index) {
 
 /** Widths in a band: {left, right, width} in lengths or null where open, and the poses that block. */
 function roomAt(index, band) {
-  const { bands, cell, kept } = section.facts, at = (index ?? sectionBins().length) * bands.length + band;
+  const { bands, cell, kept, j_from, columns } = section.facts, at = (index ?? sectionBins().length) * bands.length + band;
   const length = (cells) => cells < 0 ? null : cells * cell;
   const left = length(section.left[at]), right = length(section.right[at]);
-  const least = Math.min(left ?? Infinity, right ?? Infinity);
-  return { left, right, width: least === Infinity ? null : Math.max(0, 2 * least - 2 * kept),
+  const least = Math.min(left ?? (j_from + columns) * cell, right ?? -j_from * cell);
+  return { left, right, width: left === null && right === null ? null : Math.max(0, 2 * least - 2 * kept),
            leftPose: section.leftPose[at], rightPose: section.rightPose[at] };
 }
 

@@ -35,7 +35,8 @@ function buildQuestion() {
     ["Cells", `${shortLength(f.cell)}, in stretches of ${shortLength(f.bin)}`],
     ["Margin at most", shortLength(f.margin)],
     ["Between poses", f.between_poses ? "counts, too" : "does not count"],
-    ["Points", `${count(f.points)}, of which ${count(f.ignored_points)} were left out (${f.ignored})`],
+    ["Points", `${count(f.points)}, of which ${count(f.ignored_points)} were left out (${f.ignored})` +
+        (f.ignored_cells === null ? "" : `; they alone would block ${plural(f.ignored_cells.blocked, "cell")}`)],
     ["Poses", `${count(f.load_poses)} of ${count(f.poses)} on ${station(f.length)} of path`],
     ["Environment", make("code", {}, f.environment_hash)], ["Path", make("code", {}, f.trajectory_hash)],
   ].filter(Boolean);

@@ -66,6 +66,14 @@ void warn_of_size(const Question& question, MessageLog& log) {
   const bool small = model.longest < kSmallest * metre ||
                      (model.longest < kSmallVehicle * metre && way > kLongWay * metre);
   if (!larger && !huge && !small) return;
+  if (question.is_load()) {
+    log.warn("model-size",
+             "the load is " + length_text(model.longest, question.unit) +
+                 " long, the environment " + size_text(question.environment, question.unit) +
+                 ". Check the unit of its range along the vehicle",
+             {{"model_longest", model.longest}, {"environment_longest", environment.longest}});
+    return;
+  }
   std::string text = "the model is " + size_text(question.model, question.unit) +
                      ", the environment " + size_text(question.environment, question.unit) + ". ";
   if (huge) text += unit_guess(question) + (larger ? ". " : "");
@@ -98,10 +106,14 @@ void warn_of_origin(const Question& question, MessageLog& log) {
   const auto rests = [&](const Pose& pose) { return is_rest(pose, question.metre); };
   if (std::ranges::any_of(question.query.poses, rests)) return;
   log.warn("model-origin",
-           "the model's points lie " + length_text(away, question.unit) +
-               " from the origin of their frame, at " + extent_text(question.model) +
-               ". A pose turns and moves the model about that origin. Is the model in the "
-               "scan's coordinates? Move its reference point to 0, 0, 0",
+           question.is_load()
+               ? "the load lies " + length_text(away, question.unit) +
+                     " from the origin of its frame, which a pose turns it about. Its range counts "
+                     "from the origin of the vehicle"
+               : "the model's points lie " + length_text(away, question.unit) +
+                     " from the origin of their frame, at " + extent_text(question.model) +
+                     ". A pose turns and moves the model about that origin. Is the model in the "
+                     "scan's coordinates? Move its reference point to 0, 0, 0",
            {{"distance", away}, {"model_longest", longest}});
 }
 
@@ -156,12 +168,12 @@ void warn_of_mirror(const Question& question, MessageLog& log) {
   };
   const auto count = std::ranges::count_if(question.query.poses, mirrors);
   if (count == 0) return;
-  log.warn(
-      "mirrored-poses",
-      counted(static_cast<std::uint64_t>(count), "pose mirrors", "poses mirror") +
-          " the model, so that its left side meets what is on the right: two axes are swapped, "
-          "or one has the wrong sign",
-      {{"poses", static_cast<double>(count)}});
+  log.warn("mirrored-poses",
+           counted(static_cast<std::uint64_t>(count), "pose mirrors", "poses mirror") + " the " +
+               question.words().mover +
+               ", so that its left side meets what is on the right: two axes are swapped, "
+               "or one has the wrong sign",
+           {{"poses", static_cast<double>(count)}});
 }
 
 }  // namespace
@@ -169,7 +181,7 @@ void warn_of_mirror(const Question& question, MessageLog& log) {
 void check_model(const Question& question, MessageLog& log) {
   warn_of_size(question, log);
   warn_of_origin(question, log);
-  warn_of_same(question, log);
+  if (!question.is_load()) warn_of_same(question, log);
   warn_of_scale(question, log);
   warn_of_mirror(question, log);
 }

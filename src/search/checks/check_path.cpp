@@ -11,6 +11,7 @@
 #include "core/geometry/point_box.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/section/section_poses.hpp"
 #include "core/trajectory/trajectory_doubts.hpp"
 #include "core/trajectory/trajectory_summary.hpp"
 #include "core/util/format.hpp"
@@ -34,6 +35,14 @@ double coarse_bound(const Pose& a, const Pose& b, double reach) {
     moved += d * d;
   }
   return std::sqrt(moved) + std::sqrt(turned) * reach;
+}
+
+/// The distance from which on a motion that is not searched matters: the radius. The margin of a
+/// section may be 0, because it only bounds what later checks may keep.
+double least_motion(const Question& question) {
+  constexpr double kLeastOfLoad = 0.15;  // metres
+  const double asked = question.query.radius;
+  return question.is_load() ? std::max(asked, kLeastOfLoad * question.metre) : asked;
 }
 
 /// Poses from which steps start, as users count them, in ascending order.
@@ -64,7 +73,7 @@ std::vector<Jump> jumps_in(const Question& question) {
   std::vector<Jump> jumps;
   for (const auto& run : runs_of(question)) {
     const auto steps = step_lengths(poses_of(question, run));
-    for (Jump jump : jumps_of(steps, question.query.radius)) {
+    for (Jump jump : jumps_of(steps, least_motion(question))) {
       jump.pose = question.number_of(run.first + static_cast<std::uint32_t>(jump.pose));
       jumps.push_back(jump);
     }
@@ -100,7 +109,7 @@ std::vector<Deviation> deviations_above(const Question& question, double least,
 Steps check_straight_ways(const Question& question, const std::vector<Jump>& jumps,
                           MessageLog& log) {
   constexpr double kToBeNoted = 0.1;  // share of the radius
-  const double radius = question.query.radius;
+  const double radius = least_motion(question);
   std::uint64_t steps = 0;
   std::vector<Deviation> found = deviations_above(question, kToBeNoted * radius, steps);
   if (found.empty()) return {};
@@ -112,14 +121,15 @@ Steps check_straight_ways(const Question& question, const std::vector<Jump>& jum
   const double turned = turn_between(a, b) / kDegree;
   const double moved = std::sqrt(squared_distance(a.position(), b.position()));
   const std::uint32_t number = question.number_of(worst.pose);
-  std::string text =
-      "at " + format_count(found.size()) + " of " + counted(steps, "step") +
-      " the true motion can leave the straight way between two poses, which is "
-      "what is searched, by more than " +
-      (warns ? "" : "a tenth of ") + "the radius of " + length_text(radius, question.unit) +
-      ": by up to " + length_text(worst.distance, question.unit) + " after pose " +
-      std::to_string(number) + ", where the model goes on by " + length_text(moved, question.unit) +
-      " and turns by " + figure(turned) + " degrees";
+  std::string text = "at " + format_count(found.size()) + " of " + counted(steps, "step") +
+                     " the true motion can leave the straight way between two poses, which is "
+                     "what is searched, by more than " +
+                     (warns ? "" : "a tenth of ") + (question.is_load() ? "" : "the radius of ") +
+                     length_text(radius, question.unit) + ": by up to " +
+                     length_text(worst.distance, question.unit) + " after pose " +
+                     std::to_string(number) + ", where the " + question.words().mover +
+                     " goes on by " + length_text(moved, question.unit) + " and turns by " +
+                     figure(turned) + " degrees";
   const auto jump = std::ranges::find(jumps, std::size_t{number}, &Jump::pose);
   if (warns && jump != jumps.end()) {
     text += ". This step is " + figure(jump->length / jump->usual) +
@@ -176,6 +186,108 @@ void check_poses_alone(const Question& question, const Steps& known, MessageLog&
             {"pose", static_cast<double>(at)}});
 }
 
+/// A step of a load between whose ends it is not searched.
+struct LoadStep {
+  std::uint32_t pose = 0;  ///< index in the question of the pose from which the step starts
+  double length = 0;       ///< from position to position
+  double across = 0;       ///< how far the load moves across, as seen from itself
+};
+
+/// The steps of a load, without those that are `known`.
+std::vector<LoadStep> steps_of_load(const Question& question, const Steps& known) {
+  std::vector<LoadStep> steps;
+  const std::vector<Pose>& poses = question.query.poses;
+  for (const auto& [first, end] : runs_of(question)) {
+    for (std::uint32_t i = first; i + 1 < end; ++i) {
+      if (has(known, question.number_of(i))) continue;
+      steps.push_back({i, std::sqrt(squared_distance(poses[i].position(), poses[i + 1].position())),
+                       motion_of_step(poses[i], poses[i + 1], question.model).across});
+    }
+  }
+  return steps;
+}
+
+/// The steps as stretches of the path, each from the pose where steps begin to that where they end.
+std::vector<PoseRange> stretches_of(const Question& question, const std::vector<LoadStep>& steps) {
+  std::vector<PoseRange> stretches;
+  for (const LoadStep& step : steps) {
+    const std::uint32_t first = question.number_of(step.pose);
+    if (stretches.empty() || stretches.back().last < first) stretches.push_back({first, first});
+    stretches.back().last = first + 1;
+  }
+  return stretches;
+}
+
+void warn_of_gaps(const Question& question, std::vector<LoadStep> steps, double length,
+                  MessageLog& log) {
+  std::erase_if(steps, [&](const LoadStep& step) { return !(step.length > length); });
+  const LoadStep longest = *std::ranges::max_element(steps, {}, &LoadStep::length);
+  const SectionParameters& asked = *question.section;
+  log.warn("large-steps",
+           "the longest step, from pose " + std::to_string(question.number_of(longest.pose)) +
+               ", is " + length_text(longest.length, question.unit) + " and the load is " +
+               length_text(asked.front - asked.rear, question.unit) +
+               " long: what lies between two poses may block nothing",
+           {{"step", longest.length}, {"length", length}}, stretches_of(question, steps));
+}
+
+/// Warns where the load moves across by more than what matters on a step, and notes where by more
+/// than two cells. While a point is in the range of the load, it is seen at every pose; but where
+/// it comes into the range between two poses, or leaves it, it may have reached deeper by as much.
+void check_across(const Question& question, std::vector<LoadStep> steps, MessageLog& log) {
+  constexpr double kCellsToBeNoted = 2;
+  const double matters = least_motion(question), noted = kCellsToBeNoted * question.section->cell;
+  const auto all = steps.size();
+  const LoadStep worst = *std::ranges::max_element(steps, {}, &LoadStep::across);
+  const bool warns = worst.across > matters;
+  const double least = warns ? matters : noted;
+  std::erase_if(steps, [&](const LoadStep& step) { return !(step.across > least); });
+  if (steps.empty()) return;
+  log.add({warns ? Message::Severity::kWarning : Message::Severity::kNote,
+           "large-steps",
+           "at " + format_count(steps.size()) + " of " + counted(all, "step") +
+               " the load turns so far that it moves across by more than " +
+               length_text(least, question.unit) + ": by up to " +
+               length_text(worst.across, question.unit) + " after pose " +
+               std::to_string(question.number_of(worst.pose)) + ", where it goes on by " +
+               length_text(worst.length, question.unit) +
+               ". What comes beside it between two poses can reach deeper into it than at either",
+           {{"share", static_cast<double>(steps.size()) / static_cast<double>(all)},
+            {"largest", worst.across},
+            {"pose", static_cast<double>(question.number_of(worst.pose))},
+            {"step", worst.length}},
+           stretches_of(question, steps)});
+}
+
+/// Warns of what the load of a section passes between two poses, of which only the poses are
+/// searched. known: steps that another warning is given for.
+void check_load_at_poses(const Question& question, const Steps& known, MessageLog& log) {
+  std::vector<LoadStep> steps = steps_of_load(question, known);
+  if (steps.empty()) return;
+  const SectionParameters& asked = *question.section;
+  const double length = asked.front - asked.rear + 2 * asked.margin;
+  if (std::ranges::any_of(steps, [&](const LoadStep& step) { return step.length > length; })) {
+    warn_of_gaps(question, std::move(steps), length, log);
+  } else {
+    check_across(question, std::move(steps), log);
+  }
+}
+
+/// Warns where the load of a section moves across by more than a cell between two poses, because
+/// with motion between poses a check keeps half of that.
+void check_growth(const Question& question, MessageLog& log) {
+  const SectionParameters& asked = *question.section;
+  const SectionMotion motion = section_motion(question.query.poses, asked);
+  if (!(motion.across > asked.cell)) return;
+  log.warn("motion-exceeds-cell",
+           "from a pose to the next the load moves by up to " +
+               length_text(motion.across, question.unit) + " across, and the cells are " +
+               length_text(asked.cell, question.unit) +
+               ": a check keeps half of that motion as a distance, so it stops loads that "
+               "pass. Poses that are closer together keep less",
+           {{"along", motion.along}, {"across", motion.across}});
+}
+
 Steps starts_of(const std::vector<Jump>& jumps) {
   Steps steps;
   for (const Jump& jump : jumps) steps.push_back(static_cast<std::uint32_t>(jump.pose));
@@ -189,7 +301,8 @@ void warn_of_jumps(const Question& question, std::vector<Jump> jumps, const Step
   if (jumps.empty()) return;
   log.add(jump_warning(jumps, prefix, unit_name(question.unit),
                        question.query.between_poses
-                           ? ". The model is searched on the straight way there"
+                           ? std::string(". The ") + question.words().mover +
+                                 " is searched on the straight way there"
                            : ". Nothing is searched on the way there"));
 }
 
@@ -206,7 +319,10 @@ StepChecks::StepChecks(const Question& path) : path_jumps_(starts_of(jumps_in(pa
 void StepChecks::check(const Question& question, MessageLog& log) {
   const std::vector<Jump> jumps = jumps_in(question);
   if (question.query.between_poses) {
+    if (question.is_load()) check_growth(question, log);
     told_ = united_steps(told_, check_straight_ways(question, jumps, log));
+  } else if (question.is_load()) {
+    check_load_at_poses(question, starts_of(jumps), log);
   } else {
     check_poses_alone(question, united_steps(path_jumps_, starts_of(jumps)), log);
   }
@@ -250,7 +366,7 @@ const char* misreading(const Drive& drive) {
   return nullptr;
 }
 
-bool warn_of_rotations(const Drive& drive, MessageLog& log) {
+bool warn_of_rotations(const Question& question, const Drive& drive, MessageLog& log) {
   const double share = greatest_share(drive.along_axes());
   if (share >= kAlongAxis) return false;
   constexpr double kTurns = 0.97;
@@ -263,19 +379,20 @@ bool warn_of_rotations(const Drive& drive, MessageLog& log) {
               : "Check order, sign and zero direction of the angles, and the frame that the poses "
                 "are of";
   log.warn("rotations",
-           "the model does not move along one of its own axes: only " + share_text(share) +
+           "the " + std::string(question.words().mover) +
+               " does not move along one of its own axes: only " + share_text(share) +
                " of the motion is along the likeliest. " + why,
            {{"share", share}});
   return true;
 }
 
-bool warn_of_tilt(const Drive& drive, MessageLog& log) {
+bool warn_of_tilt(const Question& question, const Drive& drive, MessageLog& log) {
   const double upright = drive.upright();
   constexpr double kTilted = 0.5;  // 60 degrees on average
   if (upright >= kTilted) return false;
   const char* other = misreading(drive);
   log.warn("tilted",
-           std::string("the model's z axis ") +
+           "the " + std::string(question.words().mover) + "'s z axis " +
                (upright < -kTilted ? "points down" : "does not point up") +
                " along the path: the poses seem to be of a frame with other axes, such as a "
                "camera's, or with z down" +
@@ -286,7 +403,7 @@ bool warn_of_tilt(const Drive& drive, MessageLog& log) {
 
 /// Warns where the model leans steadily to one side. Roads bank by 4 degrees at most, and rails by
 /// 7 degrees in curves, towards the inside.
-void warn_of_lean(const Drive& drive, MessageLog& log) {
+void warn_of_lean(const Question& question, const Drive& drive, MessageLog& log) {
   constexpr double kLeans = 4.5, kSteady = 1.5;  // degrees
   constexpr double kCurve = 0.8;
   std::vector<double> leans = drive.leans();
@@ -300,8 +417,8 @@ void warn_of_lean(const Drive& drive, MessageLog& log) {
   const double right = drive.right_turns();
   if ((lean > 0 ? right : 1 - right) >= kCurve) return;  // it leans into a curve
   log.warn("leans",
-           "along the whole path the model leans to the " +
-               std::string(lean > 0 ? "right" : "left") + " by " + figure(std::abs(lean)) +
+           "along the whole path the " + std::string(question.words().mover) + " leans to the " +
+               (lean > 0 ? "right" : "left") + " by " + figure(std::abs(lean)) +
                " degrees, also where it does not turn: are the poses of a scanner or an inertial "
                "unit that is mounted askew? If the ground has this slope, this is all right",
            {{"degrees", lean}});
@@ -332,24 +449,28 @@ void warn_sideways(const Question& question, const Drive& drive, MessageLog& log
   const bool across = longest != 2 && other > kLonger * side;
   if (axis != 2 && !across) return;
   log.warn("sideways",
-           std::string("the model moves along its ") + "xyz"[axis] + " axis, but is " +
-               size_text(question.model, question.unit) +
+           "the " + std::string(question.words().mover) + " moves along its " + "xyz"[axis] +
+               " axis, but " +
+               (question.is_load() ? "its range is along x"
+                                   : "is " + size_text(question.model, question.unit)) +
                (axis == 2 ? ": z is expected to point up. " : ": it drives sideways. ") +
-               "Turn the model, or the rotations of the poses",
+               (question.is_load() ? "Turn the rotations of the poses"
+                                   : "Turn the model, or the rotations of the poses"),
            {{"share", shares[axis]}});
 }
 
 /// Notes that the model moves backwards. This is not a mistake where the vehicle reverses, or its
 /// front points along -x; otherwise its parts meet the scan on the wrong side.
-void tell_backwards(const Drive& drive, MessageLog& log) {
+void tell_backwards(const Question& question, const Drive& drive, MessageLog& log) {
   const double along = drive.forwards(0);
   if (along > -kAlongAxis) return;
-  log.add(
-      {Message::Severity::kNote,
-       "drives-backwards",
-       "the model moves backwards, against its x axis: if it does not reverse, turn the poses or "
-       "the model by 180 degrees, because left and right are swapped",
-       {{"share", -along}}});
+  log.add({Message::Severity::kNote,
+           "drives-backwards",
+           "the " + std::string(question.words().mover) +
+               " moves backwards, against its x axis: if it does not reverse, turn the poses" +
+               (question.is_load() ? "" : " or the model") +
+               " by 180 degrees, because left and right are swapped",
+           {{"share", -along}}});
 }
 
 /// Whether the poses hardly turn the model. If so, it is not a crane that slews on the spot.
@@ -387,7 +508,7 @@ void warn_of_tiny_path(const Question& question, MessageLog& log) {
   if (!hardly_turns(question) && !is_small_drive(question, across)) return;
   log.warn("tiny-path",
            "all " + format_count(poses.size()) + " poses lie within " +
-               length_text(across, question.unit) + ", and the model is " +
+               length_text(across, question.unit) + ", and the " + question.words().mover + " is " +
                length_text(longest, question.unit) +
                " long: is the path in another unit, such as kilometres or degrees?",
            {{"path", across}, {"model_longest", longest}});
@@ -410,10 +531,10 @@ void check_heading(const Question& question, std::span<const Message> told, Mess
   warn_of_tiny_path(question, log);
   const Drive drive(question);
   if (!drive.is_one() || is_diagnosed(told)) return;
-  if (warn_of_tilt(drive, log) || warn_of_rotations(drive, log)) return;
-  warn_of_lean(drive, log);
+  if (warn_of_tilt(question, drive, log) || warn_of_rotations(question, drive, log)) return;
+  warn_of_lean(question, drive, log);
   warn_sideways(question, drive, log);
-  tell_backwards(drive, log);
+  tell_backwards(question, drive, log);
 }
 
 }  // namespace clearway

@@ -152,7 +152,9 @@ class Trial {
   /// place, wherever the path belongs.
   std::string doubts(Change change) const {
     std::string text;
-    if (!meets_ground(change)) text += ". But then the model would not stand on the ground";
+    if (!meets_ground(change))
+      text += std::string(". But then the ") + question_.words().mover +
+              " would not stand on the ground";
     if (fits_by_shift())
       text += ". Or the path is of another place: a shift by about " + shift_text() +
               " would bring it to the scan's middle";
@@ -254,8 +256,9 @@ Box swept_box(const Question& question) {
 }
 
 std::string boxes_text(const Question& question, const Box& swept) {
-  return "Environment: " + extent_text(question.environment) +
-         ". Model on its path: " + extent_text(swept) +
+  const std::string text = "Environment: " + extent_text(question.environment);
+  if (question.is_load()) return text + ". Load on its path: about " + extent_text(swept);
+  return text + ". Model on its path: " + extent_text(swept) +
          ". Model: " + size_text(question.model, question.unit);
 }
 
@@ -279,11 +282,11 @@ void warn_leaves_scan(const Question& question, const PathCover& cover, const Bo
   const std::uint32_t first = question.number_of(cover.first_outside());
   const std::uint32_t last = question.number_of(cover.last_outside());
   std::string text = "nothing was scanned within " + length_text(cover.reach(), question.unit) +
-                     " of the model at " + share_text(share) + " of the poses, on " +
-                     length_text(cover.length_outside(), question.unit) + " of the " +
-                     length_text(cover.length(), question.unit) + " of the path, between pose " +
-                     std::to_string(first) + " and pose " + std::to_string(last) +
-                     ": there the result says nothing. ";
+                     " of the " + question.words().mover + " at " + share_text(share) +
+                     " of the poses, on " + length_text(cover.length_outside(), question.unit) +
+                     " of the " + length_text(cover.length(), question.unit) +
+                     " of the path, between pose " + std::to_string(first) + " and pose " +
+                     std::to_string(last) + ": there the result says nothing. ";
   constexpr double kWrongFrame = 0.5;
   if (share >= kWrongFrame) {
     text += boxes_text(question, swept) + ". " + likely_remedy(question, cover);
@@ -356,14 +359,14 @@ bool stays_above_ground(const Question& question, const PathLooks& looks, Messag
   const Heights heights(high);
   const double usual = heights.at(0.5), spread = heights.spread();
   if (spread > std::max(kSteady * question.metre, usual / 4)) return false;
-  log.warn(
-      "floats",
-      "along the path the model stays " + length_text(usual, question.unit) +
-          " above the highest point below it, and touches no ground. Does it fly or hang? If "
-          "not, the heights of the path are not those of the wheels: they may be those of an "
-          "antenna, or count from the ellipsoid and not from the sea, or z = 0 of the model is "
-          "not where it stands",
-      {{"height", usual}, {"spread", spread}});
+  log.warn("floats",
+           "along the path the " + std::string(question.words().mover) + " stays " +
+               length_text(usual, question.unit) +
+               " above the highest point below it, and touches no ground. Does it fly or hang? If "
+               "not, the heights of the path are not those of the wheels: they may be those of an "
+               "antenna, or count from the ellipsoid and not from the sea, or z = 0 of the " +
+               question.words().mover + " is not where it stands",
+           {{"height", usual}, {"spread", spread}});
   return true;
 }
 
@@ -380,7 +383,8 @@ void check_stretches_above(const Question& question, const PathLooks& looks, Mes
   auto numbers = told.numbers;
   numbers.insert(numbers.end(), {{"height", here.at(0.5)}, {"height_elsewhere", rest.at(0.5)}});
   log.warn("floats",
-           told.where + " the model is " + length_text(here.at(0.5), question.unit) +
+           told.where + " the " + question.words().mover + " is " +
+               length_text(here.at(0.5), question.unit) +
                " above the highest point below it, and on the rest of the path " +
                length_text(rest.at(0.5), question.unit) +
                ": a part of the scan may be registered at another height, the ground may be "

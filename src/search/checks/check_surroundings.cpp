@@ -37,11 +37,12 @@ std::string beside_text(const Question& question) {
          " and at its height";
 }
 
-void warn_nothing_below(const PathLooks& looks, MessageLog& log) {
+void warn_nothing_below(const Question& question, const PathLooks& looks, MessageLog& log) {
   const double share = 1 - looks.share(has_below);
   log.warn("nothing-below",
-           "on " + share_text(share) +
-               " of the path nothing was scanned below the model. Does the path run below the "
+           "on " + share_text(share) + " of the path nothing was scanned below the " +
+               question.words().mover +
+               ". Does the path run below the "
                "ground, or is it in another place? Did the scanner leave out what was near it? If "
                "you removed the ground on purpose, this is all right",
            {{"share", share}});
@@ -50,8 +51,8 @@ void warn_nothing_below(const PathLooks& looks, MessageLog& log) {
 void warn_nothing_beside(const Question& question, const PathLooks& looks, MessageLog& log) {
   const double share = 1 - std::max(looks.share(has_left), looks.share(has_right));
   log.warn("nothing-beside",
-           "on " + share_text(share) + " of the path nothing was scanned beside the model, " +
-               beside_text(question) +
+           "on " + share_text(share) + " of the path nothing was scanned beside the " +
+               question.words().mover + ", " + beside_text(question) +
                ". Was only the ground scanned, or does the path run above a "
                "roof? Compare the heights of path and scan",
            {{"share", share}});
@@ -63,7 +64,7 @@ void warn_one_side(const Question& question, const PathLooks& looks, MessageLog&
   const double empty = 1 - std::min(left, right);
   log.warn("one-side",
            "on " + share_text(empty) + " of the path nothing was scanned on the " + side +
-               " of the model, " + beside_text(question) +
+               " of the " + question.words().mover + ", " + beside_text(question) +
                ". On the other side there is something. Was the " + side + " side scanned?",
            {{"share", empty}, {"left", left}, {"right", right}});
 }
@@ -82,8 +83,8 @@ class Stretches {
     if (runs.empty()) return;
     const ToldStretches told(question_, looks_, runs);
     log.warn("nothing-below",
-             told.where +
-                 " nothing was scanned below the model, though there is ground below it on the "
+             told.where + " nothing was scanned below the " + question_.words().mover +
+                 ", though there is ground below it on the "
                  "rest of the path: the scan may have a hole there, or a part of it may be "
                  "registered at another height. Then what stands there is missing too. If you "
                  "removed the ground on purpose, this is all right" +
@@ -97,7 +98,8 @@ class Stretches {
     if (runs.empty() || !is_usual(has_either, runs)) return;
     const ToldStretches told(question_, looks_, runs);
     log.warn("nothing-beside",
-             told.where + " nothing was scanned beside the model, " + beside_text(question_) +
+             told.where + " nothing was scanned beside the " + question_.words().mover + ", " +
+                 beside_text(question_) +
                  ", though there is something on the rest of the path. Was only the ground "
                  "scanned there? If the site is open there, this is all right" +
                  told.others,
@@ -116,8 +118,8 @@ class Stretches {
     const ToldStretches told(question_, looks_, runs);
     const std::string side = left_is_longer ? "left" : "right";
     log.warn("one-side",
-             told.where + " nothing was scanned on the " + side + " of the model, " +
-                 beside_text(question_) +
+             told.where + " nothing was scanned on the " + side + " of the " +
+                 question_.words().mover + ", " + beside_text(question_) +
                  ". On the other side there is something, and on the rest of the path on both "
                  "sides. Was the " +
                  side + " side scanned there? If the site is open there, this is all right" +
@@ -184,8 +186,8 @@ void tell_resolution(const Question& question, const PathLooks& looks, MessageLo
   const double longest = Sides(question.model).longest;
   const double resolved = 2 * looks.apart();
   if (!(resolved > std::max(kLeastBelow * question.metre, longest))) return;
-  log.note("the scan below and beside the model is looked at every " +
-           length_text(looks.apart(), question.unit) +
+  log.note("the scan below and beside the " + std::string(question.words().mover) +
+           " is looked at every " + length_text(looks.apart(), question.unit) +
            " of the path: a stretch that is not scanned and shorter than " +
            length_text(resolved, question.unit) + " can stay without a warning");
 }
@@ -200,7 +202,7 @@ void check_surroundings(const Question& question, const PathLooks& looks, bool f
   const Stretches stretches(question, looks);
   tell_resolution(question, looks, log);
   if (looks.share(has_below) < kMissing) {
-    warn_nothing_below(looks, log);
+    warn_nothing_below(question, looks, log);
     return;
   }
   stretches.check_below(log);
@@ -230,9 +232,10 @@ void warn_of_large_radius(const Question& question, MessageLog& log) {
   const bool above_model = longest > 0 && radius > longest;
   if (!above_model && radius <= kLargestRadius * question.metre) return;
   log.warn("radius-size",
-           "the radius is " + length_text(radius, question.unit) + ", the model's longest side " +
-               length_text(longest, question.unit) +
-               ". Is the radius meant in another unit, such as millimetres?",
+           "the " + std::string(question.words().distance) + " is " +
+               length_text(radius, question.unit) + ", the " + question.words().mover +
+               "'s longest side " + length_text(longest, question.unit) + ". Is the " +
+               question.words().distance + " meant in another unit, such as millimetres?",
            {{"radius", radius}, {"model_longest", longest}});
 }
 
@@ -240,14 +243,16 @@ void warn_of_fine_radius(const Question& question, MessageLog& log) {
   const double* scale = question.cloud.quantisation().scale;
   const double step = *std::max_element(scale, scale + 3);
   const double radius = question.query.radius;
+  if (question.is_load() && radius == 0) return;  // points count where they touch the load
   // A radius of ten steps as typed is not warned of because of its rounding.
   if (radius >= kSteps * step * (1 - 1e-9)) return;
-  log.warn("fine-radius",
-           "the radius is " + length_text(radius, question.unit) +
-               ", the scan's coordinates are in steps of " + length_text(step, question.unit) +
-               ": rounding decides which points collide. Check the radius' unit, or store the "
-               "scan in finer steps",
-           {{"radius", radius}, {"step", step}});
+  log.warn(
+      "fine-radius",
+      "the " + std::string(question.words().distance) + " is " +
+          length_text(radius, question.unit) + ", the scan's coordinates are in steps of " +
+          length_text(step, question.unit) + ": rounding decides which points collide. Check the " +
+          (question.is_load() ? "margin's" : "radius'") + " unit, or store the scan in finer steps",
+      {{"radius", radius}, {"step", step}});
 }
 
 /// Warns of a scan whose points are far apart, because it says nothing about what lies between
@@ -269,10 +274,14 @@ void check_coarse_scan(const Question& question, MessageLog& log) {
   }
   log.warn("coarse-scan",
            "the scan's points are typically " + length_text(spacing, question.unit) +
-               " apart. The radius is " + length_text(question.query.radius, question.unit) +
-               " and the model " + length_text(width, question.unit) +
+               " apart. The " + question.words().distance + " is " +
+               length_text(question.query.radius, question.unit) + " and the " +
+               question.words().mover + (question.is_load() ? " may be " : " ") +
+               length_text(width, question.unit) +
                " wide: it can pass between the points of what stands in its way. Take a denser "
-               "scan or a larger radius, and check that scan and model have one unit",
+               "scan or a larger " +
+               question.words().distance + ", and check that scan and " +
+               (question.is_load() ? "path" : "model") + " have one unit",
            {{"scan_spacing", spacing}, {"radius", radius}, {"model_width", width}});
 }
 

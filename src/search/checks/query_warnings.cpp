@@ -14,9 +14,12 @@
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
+#include "search/check_query.hpp"
 #include "search/checks/checks.hpp"
 #include "search/checks/question.hpp"
 #include "search/checks/told_stretches.hpp"
+#include "search/ignored.hpp"
+#include "search/section.hpp"
 
 namespace clearway {
 namespace {
@@ -125,21 +128,21 @@ void tell_of_bodies(const std::vector<BodyMessages>& bodies, MessageLog& log) {
 
 namespace {
 
-void warn_of_unit(LengthUnit unit, std::span<const Message> told, MessageLog& log) {
+void warn_of_unit(LengthUnit unit, const QuestionWords& words, std::span<const Message> told,
+                  MessageLog& log) {
   if (unit == LengthUnit::kUnknown) {
     log.note("the environment names no unit of length, so metres are assumed");
   }
   const bool is_told = std::ranges::find(told, "feet", &Message::code) != told.end();
   if ((unit == LengthUnit::kFoot || unit == LengthUnit::kUsSurveyFoot) && !is_told) {
-    log.warn(
-        "feet",
-        "the environment is in feet: lengths, model and trajectory without a unit of their own are "
-        "taken in feet too");
+    log.warn("feet", std::string("the environment is in feet: lengths, ") + words.mover +
+                         " and trajectory without a unit of their own are taken in feet too");
   }
   if (unit == LengthUnit::kDegrees) {
-    log.warn("degrees",
-             "the environment is in degrees: radius, model and trajectory are taken in degrees "
-             "too. Distances in degrees mean nothing: convert the scan to metres");
+    log.warn("degrees", std::string("the environment is in degrees: ") + words.distance + ", " +
+                            words.mover +
+                            " and trajectory are taken in degrees too. Distances in degrees mean "
+                            "nothing: convert the scan to metres");
   }
 }
 
@@ -158,13 +161,18 @@ void warn_of_flat_scan(const Question& question, MessageLog& log) {
 /// Notes the sizes as they were understood, for people to compare with what they meant.
 void note_sizes(const Question& question, MessageLog& log) {
   const double length = path_length(question.query.poses);
-  log.note("model " + size_text(question.model, question.unit) + ", path " +
-           length_text(length, question.unit) + " long, environment " +
-           size_text(question.environment, question.unit) + ", radius " +
+  const SectionParameters* const asked = question.section;
+  log.note((asked == nullptr ? "model " + size_text(question.model, question.unit)
+                             : "load from x = " + figure(asked->rear) + " to " +
+                                   length_text(asked->front, question.unit)) +
+           ", path " + length_text(length, question.unit) + " long, environment " +
+           size_text(question.environment, question.unit) + ", " + question.words().distance + " " +
            length_text(question.query.radius, question.unit));
 }
 
+/// Of a load only the range is known, so nothing is looked for in its points.
 void check_model_itself(const Question& question, MessageLog& log) {
+  if (question.is_load()) return check_model(question, log);
   const ModelForm form = question.looks.form();
   const bool close = form != ModelForm::kCoarseSurface;  // otherwise gaps are those between samples
   if (close) check_inside(question, log);
@@ -188,6 +196,18 @@ void check_what_is_around(const Question& question, const PathCover& cover, bool
   check_surroundings(question, *looks, floats && !of_body, log);
 }
 
+/// The checks of what moves along a path: a model, a body of a vehicle or the load of a section.
+void check_question(const Question& question, bool of_body, std::span<const Message> told,
+                    StepChecks& steps, MessageLog& log) {
+  const PathCover cover(question);
+  check_reach(question, cover, log);
+  check_what_is_around(question, cover, of_body, log);
+  check_model_itself(question, log);
+  check_radius(question, log);
+  steps.check(question, log);
+  check_heading(question, told, log);
+}
+
 /// Checks one body by itself. Whether its warnings matter depends on the other bodies.
 void warn_of_body(const StoreReader& store, const Body& body, const Query& query,
                   const ModelLooks& looks, std::span<const double> chainage,
@@ -199,13 +219,7 @@ void warn_of_body(const StoreReader& store, const Body& body, const Query& query
   const Query own(body.model, body.poses, query);
   const Question question(store, store.metadata().unit, own, looks, body.path_pose, chainage);
   note_sizes(question, log);
-  const PathCover cover(question);
-  check_reach(question, cover, log);
-  check_what_is_around(question, cover, true, log);
-  check_model_itself(question, log);
-  check_radius(question, log);
-  steps.check(question, log);
-  check_heading(question, told, log);
+  check_question(question, true, told, steps, log);
 }
 
 /// The indices of the path's poses at which a body has none, ascending.
@@ -257,24 +271,31 @@ void warn_of_bodies(const StoreReader& store, const Question& path, const Query&
   steps.check_path(path, log);
 }
 
-}  // namespace
-
-void warn_of_query(const StoreReader& store, const Query& query, const LooksOf& looks_of,
-                   std::span<const Message> told, MessageLog& log) {
+/// Warns of scan and path as they are. Returns whether there is more to check.
+bool warn_of_inputs(const StoreReader& store, std::size_t poses, const QuestionWords& words,
+                    std::span<const Message> told, MessageLog& log) {
   for (Message& warning : store_warnings(store.metadata())) log.add(std::move(warning));
   const LengthUnit unit = store.metadata().unit;
-  if (query.poses.empty()) {
-    log.warn("no-poses", "the trajectory has no poses: nothing can collide");
+  if (poses == 0) {
+    log.warn("no-poses", std::string("the trajectory has no poses: ") + words.nothing);
   }
-  warn_of_unit(unit, told, log);
+  warn_of_unit(unit, words, told, log);
   if (store.point_count() == 0) {
-    log.warn("no-points", "the environment has no points: nothing can collide");
-    return;
+    log.warn("no-points", std::string("the environment has no points: ") + words.nothing);
+    return false;
   }
-  if (query.poses.empty() || unit == LengthUnit::kDegrees) return;
-  if (query.poses.size() == 1) {
-    log.note("the trajectory has one pose: the model is checked at that place alone");
+  if (poses == 0 || unit == LengthUnit::kDegrees) return false;
+  if (poses == 1) {
+    log.note(std::string("the trajectory has one pose: the ") + words.mover +
+             " is checked at that place alone");
   }
+  return true;
+}
+
+void check_motion(const StoreReader& store, const Query& query, const LooksOf& looks_of,
+                  std::span<const Message> told, MessageLog& log) {
+  if (!warn_of_inputs(store, query.poses.size(), kWordsOfModel, told, log)) return;
+  const LengthUnit unit = store.metadata().unit;
   if (!query.bodies.empty()) {
     const Query points({Vec3{}}, query.poses, query);
     const ModelLooks looks(points.model, points.radius);
@@ -287,21 +308,53 @@ void warn_of_query(const StoreReader& store, const Query& query, const LooksOf& 
   const Question question(store, unit, query, *looks);
   note_sizes(question, log);
   warn_of_flat_scan(question, log);
-  const PathCover cover(question);
-  check_reach(question, cover, log);
-  check_what_is_around(question, cover, false, log);
-  check_model_itself(question, log);
-  check_radius(question, log);
-  StepChecks().check(question, log);
-  check_heading(question, told, log);
+  StepChecks steps;
+  check_question(question, false, told, steps, log);
 }
 
-void warn_of_query(const StoreReader& store, const Query& query, std::span<const Message> told,
-                   MessageLog& log) {
+void check_load(const StoreReader& store, const SectionParameters& asked, const Body& load,
+                std::span<const double> chainage, std::span<const Message> told, MessageLog& log) {
+  if (!warn_of_inputs(store, chainage.size(), kWordsOfLoad, told, log) || load.poses.empty()) {
+    return;
+  }
+  Query query({}, load.poses, ignored_by(asked));
+  query.radius = asked.margin;
+  query.between_poses = asked.between_poses;
+  const Box box = assumed_load(asked, metre_of(store));
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    query.model.vertices.push_back(box.corner(corner));
+  }
+  const ModelLooks looks(query.model, query.radius);
+  const Question question(store, store.metadata().unit, query, looks, load.path_pose, chainage,
+                          &asked);
+  note_sizes(question, log);
+  warn_of_flat_scan(question, log);
+  StepChecks steps;
+  check_question(question, false, told, steps, log);
+}
+
+}  // namespace
+
+void warn_of_query(const StoreReader& store, const Query& query, const IgnoredPointCounts& ignored,
+                   const LooksOf& looks_of, std::span<const Message> told, MessageLog& log) {
+  check_motion(store, query, looks_of, told, log);
+  warn_of_ignored(store, query, ignored, log);
+}
+
+void warn_of_query(const StoreReader& store, const Query& query, const IgnoredPointCounts& ignored,
+                   std::span<const Message> told, MessageLog& log) {
   const auto make = [&](const Model& model) {
     return std::make_shared<const ModelLooks>(model, query.radius);
   };
-  warn_of_query(store, query, make, told, log);
+  warn_of_query(store, query, ignored, make, told, log);
+}
+
+void warn_of_section(const StoreReader& store, const SectionParameters& asked,
+                     const IgnoredPointCounts& ignored, const Body& load,
+                     std::span<const double> chainage, std::span<const Message> told,
+                     MessageLog& log) {
+  check_load(store, asked, load, chainage, told, log);
+  warn_of_ignored(store, ignored_by(asked), ignored, log);
 }
 
 void warn_of_floats(const StoreReader& store, const Query& query, MessageLog& log) {

@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "clearway/ignored.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/query.hpp"
+#include "clearway/section.hpp"
 #include "core/util/messages.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/checks/facts/model_looks.hpp"
@@ -26,18 +28,27 @@ struct BodyMessages {
 void tell_of_bodies(const std::vector<BodyMessages>& bodies, MessageLog& log);
 
 /// Warns where a query may answer something other than was meant, because of a path in another
-/// frame, a model in another unit, or steps that skip things. Reads the store's index, and the
-/// points below a few poses. The model is not empty. Deterministic. told: what reading the inputs
-/// has told already, such as which poses a body lacks; it is not told again.
-void warn_of_query(const StoreReader& store, const Query& query, std::span<const Message> told,
-                   MessageLog& log);
+/// frame, a model in another unit, steps that skip things, or what it ignores. Reads the store's
+/// index, and the points below a few poses. The model is not empty. Deterministic. ignored:
+/// count_ignored() of the query. told: messages of reading the inputs, such as which poses a body
+/// lacks; what they say is not said again.
+void warn_of_query(const StoreReader& store, const Query& query, const IgnoredPointCounts& ignored,
+                   std::span<const Message> told, MessageLog& log);
 
 /// Gives what is known of a model for the radius of the query.
 using LooksOf = std::function<std::shared_ptr<const ModelLooks>(const Model&)>;
 
 /// Warns as above, for models that may have been looked at before: looks_of gives what is known.
-void warn_of_query(const StoreReader& store, const Query& query, const LooksOf& looks_of,
-                   std::span<const Message> told, MessageLog& log);
+void warn_of_query(const StoreReader& store, const Query& query, const IgnoredPointCounts& ignored,
+                   const LooksOf& looks_of, std::span<const Message> told, MessageLog& log);
+
+/// Warns as above for the load of a section, of which the range is known and the outline is not:
+/// the checks are those of its path, its place and the scan. asked: with the defaults filled in.
+/// load: load_of_section(). chainage: of all poses of the path.
+void warn_of_section(const StoreReader& store, const SectionParameters& asked,
+                     const IgnoredPointCounts& ignored, const Body& load,
+                     std::span<const double> chainage, std::span<const Message> told,
+                     MessageLog& log);
 
 /// Warns where single precision alone decides and its numbers are too far apart at these
 /// coordinates to tell distances such as the radius: "coarse-floats".

@@ -8,9 +8,21 @@
 
 namespace clearway {
 
+Box assumed_load(const SectionParameters& asked, double metre) {
+  constexpr double kWidest = 2.5, kHighest = 2.5, kShortest = 1;  // metres
+  const SectionWindow& window = *asked.window;
+  const double length = std::max(asked.front - asked.rear, kShortest * metre);
+  const double width = std::min({kWidest * metre, length / 2, window.y_to - window.y_from});
+  const double height = std::min(kHighest * metre, length / 4);
+  const double x = (asked.rear + asked.front) / 2;
+  const double y = std::max(window.y_from + width / 2, std::min(window.y_to - width / 2, 0.0));
+  return {{x - length / 2, y - width / 2, 0}, {x + length / 2, y + width / 2, height}};
+}
+
 Question::Question(const PackedCloud& environment_points, LengthUnit length_unit,
                    const Query& asked, const ModelLooks& of_model,
-                   std::span<const std::uint32_t> numbers, std::span<const double> chainages)
+                   std::span<const std::uint32_t> numbers, std::span<const double> chainages,
+                   const SectionParameters* of_section)
     : cloud(environment_points),
       unit(length_unit),
       query(asked),
@@ -18,6 +30,7 @@ Question::Question(const PackedCloud& environment_points, LengthUnit length_unit
       points(of_model.points(asked.model)),
       path_pose(numbers),
       path_chainage(chainages),
+      section(of_section),
       environment(position_box(cloud.quantisation(), cloud.tree()[0].box)),
       model(of_model.box()),
       // An international foot also stands for a US survey foot: the checks need no more digits.

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
 
 #include "clearway/query.hpp"
+#include "clearway/section.hpp"
 #include "core/cloud/packed_cloud.hpp"
 #include "core/geometry/box.hpp"
 #include "core/geometry/sweep_bounds.hpp"
@@ -14,14 +16,35 @@
 
 namespace clearway {
 
+/// How messages call what a question is about.
+struct QuestionWords {
+  const char* mover;     ///< what moves
+  const char* distance;  ///< the distance that it keeps
+  const char* nothing;   ///< what follows where there are no points or poses
+};
+inline constexpr QuestionWords kWordsOfModel{"model", "radius", "nothing can collide"};
+inline constexpr QuestionWords kWordsOfLoad{"load", "margin", "nothing blocks a load"};
+
+/// The box that the checks assume for the load of a section, whose outline is not known yet, in the
+/// frame of the load: it stands on z = 0 in the middle of the lane, and is longer than it is wide.
+/// metre: the length of a metre. The defaults of `asked` are filled in.
+Box assumed_load(const SectionParameters& asked, double metre);
+
+/// The least z at which the load of a section may begin: 0, where its wheels stand, or below that
+/// where the window begins there. The defaults of `asked` are filled in.
+inline double lowest_place(const SectionParameters& asked) {
+  return std::min(0.0, asked.window->z_from);
+}
+
 /// The query, the environment and derived sizes that the checks of a query look at. Owns nothing.
 struct Question {
   /// The environment and the model have at least one point, and the trajectory at least one pose.
   /// looks: those of the query's model and radius. For a body, path_pose is the one of Body, and
-  /// path_chainage the chainage of all poses of the path that it follows.
+  /// path_chainage the chainage of all poses of the path that it follows. For the load of a
+  /// section, the model has the corners of assumed_load(), and the radius is the margin.
   Question(const PackedCloud& environment, LengthUnit length_unit, const Query& asked,
            const ModelLooks& looks, std::span<const std::uint32_t> path_pose = {},
-           std::span<const double> path_chainage = {});
+           std::span<const double> path_chainage = {}, const SectionParameters* section = nullptr);
 
   /// The number by which users know a pose.
   std::uint32_t number_of(std::uint32_t pose) const {
@@ -29,6 +52,12 @@ struct Question {
   }
   /// Metres along the positions of the path up to the pose that users know as number_of(pose).
   double chainage(std::uint32_t pose) const;
+
+  bool is_load() const { return section != nullptr; }
+  const QuestionWords& words() const { return is_load() ? kWordsOfLoad : kWordsOfModel; }
+  /// The least z, in its own frame, at which the load may begin: the window of a section may reach
+  /// below the wheels, on which z is 0.
+  double lowest_of_load() const { return lowest_place(*section); }
 
   const PackedCloud& cloud;
   LengthUnit unit;
@@ -40,6 +69,7 @@ struct Question {
   /// Chainage of the path's poses for a body; empty otherwise, since it then follows from the
   /// poses.
   std::span<const double> path_chainage;
+  const SectionParameters* section;  ///< null for a model
   /// The box around all points.
   Box environment;
   /// The box of `points`, in the model's own frame.

@@ -91,6 +91,10 @@ TEST_CASE("a load that leaves the window or asks for more than the margin is unk
   CHECK(check(box(-4, 5, 0, 6), 2).verdict == SectionVerdict::kStopped);
   CHECK_THROWS_WITH(check(box(-1, 1, 1, 3), -1), Contains("expected 0 or more"));
   CHECK_THROWS_WITH(check({{0, 0}, {1, 1}}, 0), Contains("corners"));
+  // Without a margin, that of the section counts, which is 1.
+  CHECK(section.check(box(-1, 1, 1, 3)).verdict == SectionVerdict::kPasses);
+  CHECK_THAT(section.check(box(-1, 1, 0.9, 3)).reason, Contains("leaves the window"));
+  CHECK((section.free_cells() == section.free_cells(1)));
   CHECK_THROWS_WITH(check({{0, 0}, {1, 1}, {1, 0}, {0, 1}}, 0), Contains("cross or touch"));
 }
 
@@ -215,7 +219,7 @@ TEST_CASE("widths need the middle and a band in the window") {
   const Section section(section_of({}));
   CHECK_THROWS_WITH(section_bands(section, {.band = 0.1, .base = 5}), Contains("no band"));
   CHECK_THROWS_WITH(section_bands(section, {.band = -1}), Contains("above 0"));
-  CHECK(section_bands(section, {.band = 2, .base = -1}).size() == 2);  // from 1 to 3 and to 5
+  CHECK_THROWS_WITH(section_bands(section, {.band = 2, .base = -1}), Contains("below the window"));
 }
 
 TEST_CASE("the largest outline passes, and no wider one does") {

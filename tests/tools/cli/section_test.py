@@ -28,6 +28,34 @@ def clearway(words, folder, timeout=120):
                           check=False, timeout=timeout, errors="replace")
 
 
+def text_of(corners):
+    return "".join(f"{y!r},{z!r}\n" for y, z in corners)
+
+
+class Drawing:
+    """A DXF file in the form of release 12: pairs of a code and a value, a line each."""
+
+    def __init__(self, path):
+        lines = path.read_text().split("\n")
+        self.comments, self.texts, self.corners = [], [], []
+        entity = {}
+        for code, value in zip(map(str.strip, lines[::2]), lines[1::2]):
+            if code == "999":
+                self.comments.append(value)
+            elif code == "0":
+                self.end(entity)
+                entity = {"0": value}
+            else:
+                entity[code] = value
+        assert entity == {"0": "EOF"}, entity
+
+    def end(self, entity):
+        if entity.get("0") == "VERTEX":
+            self.corners.append((float(entity["10"]), float(entity["20"])))
+        elif entity.get("0") == "TEXT":
+            self.texts.append(entity["1"])
+
+
 def tube(random, count, length):
     """Points on the walls of a tube of 4 x 3 m around the x axis."""
     points = np.stack([random.uniform(-3, length + 3, count), random.uniform(-2, 2, count),
@@ -169,6 +197,12 @@ class Outlines(Sections):
         self.assertEqual((more["verdict"], more["first_pose"]), ("unknown", None))
         self.assertIn("margins up to 0.2", more["reason"])
         self.assertEqual(self.verdict(wide, "--margin 0.3")["verdict"], "stopped")
+        # Without --margin, that of the section counts.
+        close = RECTANGLE.replace("0.5,", "1.8,")
+        self.assertEqual(self.verdict(close, "--margin 0.1")["verdict"], "passes")
+        by_default = self.verdict(close)
+        self.assertEqual((by_default["verdict"], by_default["margin"]), ("stopped", 0.2))
+        self.assertEqual(self.verdict(close, "--margin 0.2"), by_default)
         leaves = self.verdict("-0.2,3.2\n0.2,3.2\n0.2,3.99\n-0.2,3.99\n", "--margin 0.05")
         self.assertEqual(leaves["verdict"], "unknown")
         self.assertIn("leaves the window", leaves["reason"])
@@ -182,9 +216,16 @@ class Outlines(Sections):
         done = self.run_("section check section.h5 --outline outline.csv --margin 0.1")
         self.assertEqual(done.stdout,
                          "passes: the load passes everywhere on the path with a margin of 0.1 m\n")
+        done = self.run_("section check section.h5 --outline outline.csv")
+        self.assertEqual(done.stdout,
+                         "passes: the load passes everywhere on the path with a margin of 0.2 m\n")
+        done = self.run_("section check section.h5 --outline outline.csv --margin 0")
+        self.assertEqual(done.stdout,
+                         "passes: the load passes everywhere on the path without a margin\n")
         (self.folder / "outline.csv").write_text(RECTANGLE.replace("0.5,", "2.2,"))
         done = self.run_("section check section.h5 --outline outline.csv")
-        self.assertRegex(done.stdout, r"^stopped: the load is stopped at pose 0, 0 m along the path, "
+        self.assertRegex(done.stdout, r"^stopped: the load is stopped with a margin of 0.2 m at pose "
+                                      r"0, 0 m along the path, "
                                       r".* m to the (left|right) at a height of .* m, and in 5 "
                                       r"stretches in all\n$")
 
@@ -350,8 +391,8 @@ class Finding(Sections):
         for more in ("", "--unit ft", "--unit ift"):
             self.assertEqual(self.verdict(feet, f"{more} --margin 0.3", "out.h5")["verdict"], "passes")
         wide = RECTANGLE.replace("0.5,", "1.9,")
-        self.assertEqual(self.verdict(wide, "--unit m", "out.h5")["verdict"], "passes")
-        self.assertEqual(self.verdict(wide, "", "out.h5")["verdict"], "passes")
+        self.assertEqual(self.verdict(wide, "--unit m --margin 0", "out.h5")["verdict"], "passes")
+        self.assertEqual(self.verdict(wide, "--margin 0", "out.h5")["verdict"], "passes")
         self.assertEqual(self.verdict(wide, "--unit m --margin 0.1m", "out.h5")["verdict"], "stopped")
         self.assertEqual(self.verdict(wide, "--margin 0.05m", "out.h5")["verdict"], "passes")
         self.ok("section export out.h5 --table bands --band 1ft --base 1ft -o t.csv --force")
@@ -408,14 +449,14 @@ class Seen(Sections):
         section = "seen-section.h5"
         self.assertEqual(self.verdict(RECTANGLE, "--margin 0.2", section)["verdict"], "passes")
         outside = "-2.9,3.3\n2.9,3.3\n2.9,3.8\n-2.9,3.8\n"
-        answer = self.verdict(outside, "", section)
+        answer = self.verdict(outside, "--margin 0", section)
         self.assertEqual((answer["verdict"], answer["first_pose"], answer["stops"]),
                          ("unknown", None, []))
         self.assertRegex(answer["reason"], "no beam .* first at pose 0, 0 along the path")
         self.assertEqual([p["bin"] for p in answer["unknowns"]], [0, 1, 2, 3, 4])
         self.ok(f"section find --env seen.h5 --trajectory path.txt --x-range=-1,1 --force "
                 f"{self.ASKED.split('--seen')[0]} -o plain.h5")
-        plain = self.verdict(outside, "", "plain.h5")
+        plain = self.verdict(outside, "--margin 0", "plain.h5")
         self.assertEqual(plain["verdict"], "passes")
         self.assertNotIn("unknowns", plain)
         self.assertNotIn("seen", json.loads(self.find("--json", env="seen.h5").stdout))
@@ -444,10 +485,10 @@ class Seen(Sections):
         self.assertIn(hidden, cells)
         self.assertTrue(14 <= cells[hidden] <= 17, cells[hidden])
         outline = "1.4,1.3\n1.7,1.3\n1.7,1.7\n1.4,1.7\n"
-        answer = self.verdict(outline, "", "board-section.h5")
+        answer = self.verdict(outline, "--margin 0", "board-section.h5")
         self.assertEqual(answer["verdict"], "unknown")
         self.assertTrue(25 <= answer["unknowns"][0]["cell"][1] <= 34)
-        self.assertEqual(self.verdict(outline, "", "seen-section.h5")["verdict"], "passes")
+        self.assertEqual(self.verdict(outline, "--margin 0", "seen-section.h5")["verdict"], "passes")
         self.assertGreater(found["seen"]["unknown"], 0)
 
     def test_the_file(self):
@@ -571,15 +612,66 @@ class Exports(Sections):
 
     def test_the_largest_outline_passes(self):
         self.ok("section export section.h5 --outline --base 0.1 --band 0.2 -o o.dxf --force")
-        text = (self.folder / "o.dxf").read_text().split("\n")
-        pairs = list(zip(text[::2], text[1::2]))
-        y = [-float(v) for code, v in pairs if code.strip() == "10"]
-        z = [float(v) for code, v in pairs if code.strip() == "20"]
-        self.assertGreater(len(y), 3)
-        outline = "".join(f"{a!r},{b!r}\n" for a, b in zip(y, z))
-        self.assertEqual(self.verdict(outline)["verdict"], "passes")
-        wider = "".join(f"{a * 1.01!r},{b!r}\n" for a, b in zip(y, z))
-        self.assertEqual(self.verdict(wider)["verdict"], "stopped")
+        outline = [(-x, y) for x, y in Drawing(self.folder / "o.dxf").corners]
+        self.assertGreater(len(outline), 3)
+        self.assertEqual(self.verdict(text_of(outline), "--margin 0")["verdict"], "passes")
+        wider = text_of([(1.01 * y, z) for y, z in outline])
+        self.assertEqual(self.verdict(wider, "--margin 0")["verdict"], "stopped")
+
+    def test_drawings_look_forward(self):
+        """50 sections of tubes with a post on one side: what is right of the path is right in the
+        drawing, which says so, and mirrored it is the outline that the section lets pass."""
+        random = np.random.default_rng(17)
+        for trial in range(50):
+            side = [-1, 1][trial % 2]  # -1: the post is on the right
+            post = random.uniform(0.3, 1.2)
+            bottom = [-0.5, 0, 0.42][trial % 3]
+            scan = np.concatenate([self.points[::3], np.stack([
+                np.full(200, random.uniform(5, 15)), np.full(200, side * post),
+                np.linspace(0.6, 2.4, 200)], 1)])
+            self.write_scan("post.xyz", scan)
+            self.ok("convert post.xyz --unit m -o post.h5 --force")
+            self.find(f"--window=-3,3,{bottom},4 --cell 0.05", env="post.h5")
+            base = max(0.1, bottom)
+            more = "" if bottom > 0 else f"--base {base}"
+            self.ok(f"section export out.h5 --outline {more} --band 0.25 -o o.dxf --force")
+            with self.subTest(trial):
+                drawing = Drawing(self.folder / "o.dxf")
+                self.assertIn("Looking forward: x is to the right, y is up", drawing.comments)
+                self.assertIn("y to the left instead: y = -x", " ".join(drawing.comments))
+                self.assertEqual(drawing.texts, ["Looking forward: x is to the right, y is up"])
+                least = {sign: min(abs(x) for x, _ in drawing.corners if x * sign > 0)
+                         for sign in (-1, 1)}  # 1: on the right of the drawing
+                self.assertGreater(least[side], 1.9)
+                self.assertTrue(post - 0.1 < least[-side] < post, (post, least))
+                outline = text_of([(-a, b) for a, b in drawing.corners])
+                self.assertEqual(self.verdict(outline, "", "out.h5")["verdict"], "passes")
+                mirrored = text_of(drawing.corners)
+                self.assertEqual(self.verdict(mirrored, "", "out.h5")["verdict"], "stopped")
+
+    def test_a_window_above_the_base(self):
+        self.find("--window=-3,3,0.42,4 --cell 0.02")
+        for table in ("bands", "boxes", "stations"):
+            words = f"section export out.h5 --table {table} --band 0.5 -o t.csv --force"
+            self.refused(self.run_(words + " --base 0"), "base z = 0 is below the window.*z = 0.42", 2)
+            self.ok(words)
+            lines = (self.folder / "t.csv").read_text().splitlines()
+            self.assertIn("# The base is the bottom of the window, z = 0.42", lines)
+            first = next(line for line in lines if line[0].isdigit()).split(",")
+            self.assertAlmostEqual(float(first[{"bands": 0, "boxes": 0, "stations": 3}[table]]),
+                                   0.92 if table == "boxes" else 0.42)
+        self.refused(self.run_("section export out.h5 --outline --base 0 -o no.dxf"),
+                     "below the window", 2)
+        self.refused(self.run_("section report out.h5 --base 0 -o no.html"), "below the window", 2)
+        self.ok("section report out.h5 -o page.html --force")
+
+    def test_a_section_in_doubt_has_no_widths(self):
+        self.write_path("far.txt", 5, 0.5, lambda i: (5000, 0))
+        self.find("", path="far.txt")
+        for words in ("--table bands", "--table boxes", "--table stations", "--outline"):
+            with self.subTest(words):
+                self.refused(self.run_(f"section export out.h5 {words} -o no.csv"), "out-of-reach", 2)
+        self.ok("section export out.h5 --table cells -o t.csv --force")
 
 
 if __name__ == "__main__":

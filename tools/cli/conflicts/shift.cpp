@@ -114,7 +114,13 @@ std::string range_text(const ShiftTable& table, const std::string& unit) {
 std::string shift_text(const StretchShift& row, const ShiftTable& table, const std::string& unit) {
   if (!row.shift) return "no shift " + range_text(table, unit) + " frees it";
   if (*row.shift == 0) return "it is free";
-  return format_number(std::abs(*row.shift)) + " " + unit + " to the " + side_of(row) + " frees it";
+  const std::string text =
+      format_number(std::abs(*row.shift)) + " " + unit + " to the " + side_of(row) + " frees it";
+  if (row.warned_of.empty()) return text;
+  std::string codes;
+  for (const std::string& code : row.warned_of) codes += (codes.empty() ? "" : ", ") + code;
+  return text + ", but its place causes the " +
+         (row.warned_of.size() == 1 ? "warning " : "warnings ") + codes;
 }
 
 std::string row_text(const StretchShift& row, const ShiftTable& table, const std::string& unit) {

@@ -23,6 +23,8 @@
 namespace clearway {
 namespace {
 
+constexpr const char* kWarnedOf = "warned_of";
+
 std::vector<ConflictField> fields_of(const StretchShift& row) {
   const char* side = side_of(row);
   return {{"conflict", std::uint64_t{row.conflict}},
@@ -41,17 +43,21 @@ std::vector<ConflictField> fields_of(const StretchShift& row) {
 void write_csv(const ShiftTable& table, const File& file) {
   TextWriter out(file);
   const auto write = [&](const StretchShift& row, auto text_of) {
+    for (const ConflictField& field : fields_of(row)) out << text_of(field) << ",";
+  };
+  write({}, [](const ConflictField& field) { return std::string(field.name); });
+  out << kWarnedOf << "\n";
+  const auto value = [&](const StretchShift& row) {
+    write(row, [](const ConflictField& field) { return csv_value(field.value); });
     const char* between = "";
-    for (const ConflictField& field : fields_of(row)) {
-      out << between << text_of(field);
-      between = ",";
+    for (const std::string& code : row.warned_of) {
+      out << between << code;
+      between = " ";
     }
     out << "\n";
   };
-  write({}, [](const ConflictField& field) { return std::string(field.name); });
-  const auto value = [](const ConflictField& field) { return csv_value(field.value); };
-  write(table.path, value);
-  for (const StretchShift& row : table.conflicts) write(row, value);
+  value(table.path);
+  for (const StretchShift& row : table.conflicts) value(row);
   out.flush();
 }
 
@@ -60,7 +66,7 @@ std::string row_json(const StretchShift& row) {
   for (const ConflictField& field : fields_of(row)) {
     out += (out.empty() ? "" : ", ") + json_string(field.name) + ": " + json_value(field.value);
   }
-  return "{" + out + "}";
+  return "{" + out + ", " + json_string(kWarnedOf) + ": " + json_strings(row.warned_of) + "}";
 }
 
 /// A hash of everything that the shifts of a result depend on, besides their own options: what was
@@ -119,6 +125,10 @@ class ShiftReader {
     out.shift = number_or_none(of.at("shift"));
     out.least_distance = number_or_none(of.at("least_distance"));
     out.searches = count(of.at("searches"), kMostSearches);
+    const KeyReader codes = of.at(kWarnedOf);
+    if (!codes.value().is_array()) codes.refuse("expected a list, in brackets");
+    if (codes.value().empty()) return out;
+    for (const KeyReader& code : codes.elements()) out.warned_of.push_back(code.text());
     return out;
   }
 

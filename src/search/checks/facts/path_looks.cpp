@@ -73,7 +73,9 @@ class Looking {
         cover_(cover),
         points_(question.cloud),
         slice_(body_slice(question.model)),
-        inner_(inner_body(question.model, question.metre)) {}
+        inner_(inner_body(question.model, question.metre)) {
+    if (question.is_load()) inner_.lo.z = question.lowest_of_load();
+  }
 
   /// look.covered is known already.
   void at(Look& look) const {

@@ -116,7 +116,7 @@ TEST_CASE("shift says what frees the path and each conflict, as a table, in JSON
   REQUIRE(rows.size() == 4);
   CHECK(rows[0] ==
         "conflict,chainage_from,chainage_to,station_from,station_to,first_pose,last_pose,shift,"
-        "side,least_distance,searches");
+        "side,least_distance,searches,warned_of");
   CHECK_THAT(rows[1], Catch::StartsWith("0,0,12,,,0,24,-0.81,right,"));
   CHECK_THAT(rows[2], Catch::StartsWith("1,2,5,,,4,10,-0.11,right,0.0"));
 }

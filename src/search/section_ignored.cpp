@@ -1,0 +1,87 @@
+#include "search/section_ignored.hpp"
+
+#include <string>
+
+#include "core/query/ignored_points.hpp"
+#include "core/util/format.hpp"
+#include "search/checks/question.hpp"
+#include "search/ignored.hpp"
+#include "search/section.hpp"
+
+namespace clearway {
+namespace {
+
+/// For each cell of the lattice, whether it is blocked in any bin.
+std::vector<bool> blocked_anywhere(const SectionMaps& maps, std::size_t bins,
+                                   const SectionLattice& lattice) {
+  std::vector<bool> anywhere(lattice.cells());
+  for (std::size_t bin = 0; bin < bins; ++bin) {
+    const std::uint32_t* const firsts = maps.firsts(bin);
+    for (std::size_t cell = 0; cell < anywhere.size(); ++cell) {
+      if (firsts[cell] != kNotBlocked) anywhere[cell] = true;
+    }
+  }
+  return anywhere;
+}
+
+}  // namespace
+
+CellsOfIgnored cells_of_ignored(const SectionMaps& maps, const SectionMaps& ignored,
+                                const SectionLattice& lattice, std::span<const SectionBin> bins,
+                                std::span<const std::uint32_t> path_pose, double high_from) {
+  const std::vector<bool> others = blocked_anywhere(maps, bins.size(), lattice);
+  std::vector<bool> high(lattice.cells());
+  CellsOfIgnored out;
+  const std::vector<bool> all = blocked_anywhere(ignored, bins.size(), lattice);
+  for (std::size_t cell = 0; cell < all.size(); ++cell) {
+    if (!all[cell] || others[cell]) continue;
+    ++out.blocked;
+    const double k = lattice.k_from + static_cast<double>(cell / lattice.columns);
+    if (!(k * lattice.cell > high_from)) continue;
+    ++out.high;
+    high[cell] = true;
+  }
+  for (std::size_t bin = 0; bin < bins.size() && out.high > 0; ++bin) {
+    const std::uint32_t* const firsts = ignored.firsts(bin);
+    bool has_high = false;
+    for (std::size_t cell = 0; cell < high.size() && !has_high; ++cell) {
+      has_high = high[cell] && firsts[cell] != kNotBlocked;
+    }
+    if (!has_high) continue;
+    const SectionBin& of = bins[bin];
+    const std::uint32_t first = path_pose[of.first], last = path_pose[of.first + of.count - 1];
+    std::vector<PoseRange>& stretches = out.high_stretches;
+    const bool follows = !stretches.empty() && stretches.back().last + 1 == first;
+    if (!follows) stretches.push_back({first, last});
+    stretches.back().last = last;
+  }
+  return out;
+}
+
+void warn_of_cells_of_ignored(const SectionData& section, const CellsOfIgnored& found,
+                              std::uint64_t blocked, LengthUnit unit, MessageLog& log) {
+  const QueryParameters ignoring = ignored_by(section.parameters);
+  const std::string because = " free only because " + counted(section.ignored_points, "point") +
+                              (section.ignored_points == 1 ? " is" : " are") + " ignored (" +
+                              ignored_text(ignoring) + ")";
+  const auto are = [](std::uint64_t cells) { return cells == 1 ? " is" : " are"; };
+  if (found.blocked > blocked) {
+    log.warn("ignored-collide",
+             counted(found.blocked, "cell") + " of the cross-section" + are(found.blocked) +
+                 because + ", and the other points block only " + counted(blocked, "cell") +
+                 ": a load may pass because of what was ignored. If it is the ground below the "
+                 "wheels, begin the window above it instead of ignoring it",
+             {{"cells", static_cast<double>(found.blocked)}});
+  }
+  if (found.high > 0) {
+    log.warn("ignored-high",
+             counted(found.high, "cell") + " of the cross-section, more than " +
+                 length_text(suspicious_height(unit), unit) + " above the lowest place of a load," +
+                 are(found.high) + because +
+                 ". No ground is so high, so a load may pass because of what was ignored. Ignore "
+                 "the ground alone",
+             {{"cells", static_cast<double>(found.high)}}, found.high_stretches);
+  }
+}
+
+}  // namespace clearway

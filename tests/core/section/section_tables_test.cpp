@@ -1,0 +1,185 @@
+// Tables of widths against a program that knows only their definition.
+#include "core/section/section_tables.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "clearway/error.hpp"
+#include "clearway/section.hpp"
+#include "support/scenes.hpp"
+
+using namespace clearway;
+using Catch::Contains;
+
+namespace {
+
+struct Cell {
+  int bin, j, k, pose;
+};
+
+/// A section of random cells in a random window, and heights of its tables.
+struct TableTrial {
+  explicit TableTrial(Random& random) {
+    const double sides[] = {0.02, 0.05, 0.1, 0.25, uniform(random, 0.01, 0.4)};
+    cell = sides[below(random, 5)];
+    const auto length = [&](double from, double to) {
+      const double any = uniform(random, from, to);
+      return below(random, 2) == 0 ? any : std::round(any / 0.01) * 0.01;
+    };
+    window = {length(-3, -0.3), length(0.3, 3), 0, 0};
+    window.z_from = below(random, 3) == 0 ? 0 : length(-2, 1);
+    window.z_to = window.z_from + length(1, 4);
+    j_from = static_cast<int>(std::floor(window.y_from / cell));
+    j_to = static_cast<int>(std::ceil(window.y_to / cell));
+    k_from = static_cast<int>(std::floor(window.z_from / cell));
+    k_to = static_cast<int>(std::ceil(window.z_to / cell));
+    std::set<std::array<int, 3>> places;  // bin, k, j
+    for (std::uint64_t n = below(random, 40); n > 0; --n) {
+      places.insert(
+          {static_cast<int>(below(random, 3)),
+           k_from + static_cast<int>(below(random, static_cast<std::uint64_t>(k_to - k_from))),
+           j_from + static_cast<int>(below(random, static_cast<std::uint64_t>(j_to - j_from)))});
+    }
+    for (const auto& [bin, k, j] : places) cells.push_back({bin, j, k, 5 * bin});
+    if (below(random, 3) > 0) heights.base = length(window.z_from - 0.5, window.z_to - 0.3);
+    heights.band = below(random, 4) == 0 ? 0 : length(0.05, 0.8);
+  }
+
+  Section section() const {
+    SectionData data;
+    data.parameters = {
+        .rear = -1, .front = 1, .window = window, .cell = cell, .bin = 5, .margin = 0};
+    data.rounding = 1e-9;
+    data.environment_points = 1000;
+    data.length_unit = "metre";
+    data.poses = data.load_poses = 15;
+    for (int i = 0; i < 15; ++i) data.chainage.push_back(i);
+    data.bins = {0, 1, 2};
+    for (const Cell& at : cells) {
+      data.bin_cells.bin.push_back(static_cast<std::uint32_t>(at.bin));
+      data.bin_cells.j.push_back(at.j);
+      data.bin_cells.k.push_back(at.k);
+      data.bin_cells.first_pose.push_back(static_cast<std::uint32_t>(at.pose));
+    }
+    return Section(std::move(data));
+  }
+
+  double cell = 0;
+  SectionWindow window{};
+  int j_from = 0, j_to = 0, k_from = 0, k_to = 0;
+  std::vector<Cell> cells;
+  SectionHeights heights;
+};
+
+/// By the definition: the widths between two heights, of one bin or of all.
+struct Widths {
+  std::optional<double> left, right;
+
+  Widths(const TableTrial& trial, double z_from, double z_to, std::optional<int> bin) {
+    const double g = trial.cell, same = 1e-6 * g;
+    for (const Cell& at : trial.cells) {
+      if (bin && at.bin != *bin) continue;
+      const double common = std::min(z_to, (at.k + 1) * g) - std::max(z_from, at.k * g);
+      if (common <= same) continue;
+      if (at.j >= 0 && (!left || at.j * g < *left)) left = at.j * g;
+      if (at.j < 0 && (!right || (-at.j - 1) * g < *right)) right = (-at.j - 1) * g;
+    }
+  }
+};
+
+void check_band(const TableTrial& trial, const SectionBand& band, double z_from, double z_to,
+                std::optional<int> bin) {
+  const Widths expected(trial, z_from, z_to, bin);
+  INFO("z " << z_from << " to " << z_to << ", cells of " << trial.cell);
+  CHECK(std::abs(band.z_from - z_from) < 1e-9);
+  CHECK(std::abs(band.z_to - z_to) < 1e-9);
+  const auto same = [](const std::optional<HalfWidth>& half, const std::optional<double>& width) {
+    return half.has_value() == width.has_value() &&
+           (!half || std::abs(half->width - *width) < 1e-9);
+  };
+  CHECK(same(band.left, expected.left));
+  CHECK(same(band.right, expected.right));
+}
+
+}  // namespace
+
+TEST_CASE("tables of widths are those of their cells, whatever window, base and band") {
+  Random random(2026);
+  int refused = 0, rows = 0, open = 0, above_ground = 0;
+  for (int i = 0; i < 240; ++i) {
+    const TableTrial trial(random);
+    const Section section = trial.section();
+    const double bottom = trial.k_from * trial.cell, top = trial.k_to * trial.cell;
+    const double band = trial.heights.band == 0 ? 0.1 : trial.heights.band;
+    INFO("trial " << i << ", window z " << bottom << " to " << top << ", band " << band);
+    if (trial.heights.base && *trial.heights.base < bottom - 1e-6 * trial.cell) {
+      CHECK_THROWS_WITH(section_bands(section, trial.heights), Contains("below the window"));
+      CHECK_THROWS_WITH(section_boxes(section, trial.heights), Contains("below the window"));
+      CHECK_THROWS_WITH(section_stations(section, trial.heights), Contains("below the window"));
+      CHECK_THROWS_WITH(largest_outline(section, trial.heights), Contains("below the window"));
+      ++refused;
+      continue;
+    }
+    const double base = trial.heights.base.value_or(bottom <= 0 && top > 0 ? 0 : bottom);
+    std::vector<std::pair<double, double>> expected;
+    for (int n = 0; base + (n + 1) * band <= top + 1e-6 * band; ++n) {
+      expected.push_back({base + n * band, base + (n + 1) * band});
+    }
+    if (expected.empty()) {
+      CHECK_THROWS_WITH(section_bands(section, trial.heights), Contains("no band"));
+      continue;
+    }
+    above_ground += bottom > 0 && !trial.heights.base ? 1 : 0;
+    const auto bands = section_bands(section, trial.heights);
+    const auto boxes = section_boxes(section, trial.heights);
+    const auto stations = section_stations(section, trial.heights);
+    REQUIRE(bands.size() == expected.size());
+    REQUIRE(boxes.size() == expected.size());
+    REQUIRE(stations.size() == 3);
+    for (std::size_t n = 0; n < expected.size(); ++n) {
+      const auto [from, to] = expected[n];
+      check_band(trial, bands[n], from, to, {});
+      check_band(trial, boxes[n], base, to, {});
+      for (int bin = 0; bin < 3; ++bin) {
+        check_band(trial, stations[static_cast<std::size_t>(bin)].bands[n], from, to, bin);
+      }
+      ++rows;
+      const Widths widths(trial, from, to, {});
+      const auto symmetric = symmetric_width(section.data(), bands[n]);
+      CHECK(symmetric.has_value() == (widths.left || widths.right));
+      if (!symmetric) {
+        ++open;
+        continue;
+      }
+      // An open side ends at the border of the window.
+      const double least = std::min(widths.left.value_or(trial.j_to * trial.cell),
+                                    widths.right.value_or(-trial.j_from * trial.cell));
+      CHECK(std::abs(*symmetric - std::max(0.0, 2 * least - 2e-9)) < 1e-9);
+    }
+  }
+  CAPTURE(refused, rows, open, above_ground);
+  CHECK(refused > 15);
+  CHECK(rows > 1000);
+  CHECK(open > 100);
+  CHECK(above_ground > 10);
+}
+
+TEST_CASE("a section in doubt has no widths") {
+  Random random(3);
+  TableTrial trial(random);
+  trial.heights = {};
+  for (const char* code : {"no-points", "no-poses", "all-ignored", "out-of-reach"}) {
+    SectionData data = trial.section().data();
+    data.warnings.push_back({Message::Severity::kWarning, code, "text"});
+    const Section section(std::move(data));
+    CHECK_THROWS_WITH(section_bands(section, {}), Contains(code));
+    CHECK_THROWS_WITH(section_boxes(section, {}), Contains(code));
+    CHECK_THROWS_WITH(section_stations(section, {}), Contains(code));
+    CHECK_THROWS_WITH(largest_outline(section, {}), Contains(code));
+  }
+}
