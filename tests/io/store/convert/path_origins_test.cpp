@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "io/store/convert/distribute.hpp"
+#include "io/store/convert/origin_table.hpp"
 #include "support/bytes/laz/laz_samples.hpp"
 #include "support/clouds.hpp"
 #include "support/origins.hpp"
