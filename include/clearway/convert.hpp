@@ -52,6 +52,8 @@ struct ConvertOptions {
   /// Where the scanner is in the frame of the poses of origins_path, metres whatever the unit of
   /// the environment: it is at p + R lever_arm for a pose with the position p and the rotation R.
   Vec3 lever_arm{0, 0, 0};
+  /// Keeps points with the flag `withheld` of LAS and LAZ, which otherwise are left out as deleted.
+  bool keep_withheld = false;
   bool skip_unreadable = false;  ///< leaves out files that cannot be read, with a warning
   bool strict = false;           ///< refuses any warning: all are told, then no store is written
   bool overwrite = false;        ///< replaces an existing store
@@ -90,6 +92,9 @@ struct ConvertReport {
   std::uint64_t non_finite_points = 0;
   /// Number of records without a point, such as beams without a return
   std::uint64_t absent_points = 0;
+  /// Number of points left out because they have the flag `withheld`, and of those that were stored
+  /// although they have it, as ConvertOptions::keep_withheld wants
+  std::uint64_t withheld_points = 0, kept_withheld_points = 0;
   /// Number of distinct places from which points were seen; 0 if that is known for no point
   std::uint64_t origins = 0;
   /// Number of stored points for which it is not known from where they were seen

@@ -24,7 +24,7 @@ enum class Remedy {
   kScale,        ///< amount: a step in metres that fits, 0: any coarser one
   kOneScale,     ///< one scale for all inputs; amount: a step in metres, 0: the caller's choice
   kAcceptScale,  ///< amount: the step in metres that the range needs, if that is accepted
-  kColumns,      ///< the caller can name the columns of a text file
+  kColumns,      ///< name the columns of a text; amount: a likely one of x, from 1, 0 if not known
   /// Give a path from which the file can be read to its end, instead of standard input
   kStandardInput,
   kSampleMesh,         ///< the file is a mesh where points are expected; its surface can be sampled

@@ -294,6 +294,10 @@ void add_convert_report(py::module_& module) {
                     "How many points were left out because a coordinate was not a finite number.")
       .def_readonly("absent_points", &Report::absent_points,
                     "How many records of the scans have no point, such as beams that hit nothing.")
+      .def_readonly("withheld_points", &Report::withheld_points,
+                    "How many points were left out because they have the flag withheld.")
+      .def_readonly("kept_withheld_points", &Report::kept_withheld_points,
+                    "How many points were stored although they have the flag withheld.")
       .def_readonly("origins", &Report::origins,
                     "From how many distinct places the points were seen; 0 where no input tells.")
       .def_readonly("points_without_origin", &Report::points_without_origin,
@@ -344,8 +348,8 @@ void add_convert(py::module_& module) {
          const py::object& origins_path, const std::array<double, 3>& lever_arm,
          const std::string& format, const std::string& angle_unit, const std::string& angle_frame,
          const std::string& crs, const std::string& datum, const UnitArgument& metres_per_unit,
-         bool skip_unreadable, bool strict, bool overwrite, bool resume, py::object progress,
-         py::object message, py::object stop) {
+         bool keep_withheld, bool skip_unreadable, bool strict, bool overwrite, bool resume,
+         py::object progress, py::object message, py::object stop) {
         ConvertOptions options{
             .scale = scale,
             .cell_points = cell_points,
@@ -362,6 +366,7 @@ void add_convert(py::module_& module) {
             .origins_path_options = trajectory_options(format, false, angle_unit, angle_frame, crs,
                                                        "", datum, metres_per_unit, 1.0, {0, 0, 0}),
             .lever_arm = {lever_arm[0], lever_arm[1], lever_arm[2]},
+            .keep_withheld = keep_withheld,
             .skip_unreadable = skip_unreadable,
             .strict = strict,
             .overwrite = overwrite,
@@ -379,10 +384,10 @@ void add_convert(py::module_& module) {
       "origins"_a = py::none(), "origins_path"_a = py::none(),
       "lever_arm"_a = std::array<double, 3>{0, 0, 0}, "format"_a = "auto",
       "angle_unit"_a = "declared", "angle_frame"_a = "declared", "crs"_a = "", "datum"_a = "",
-      "metres_per_unit"_a = 0.0, "skip_unreadable"_a = false, "strict"_a = false,
-      "overwrite"_a = false, "resume"_a = false, "progress"_a = py::none(),
+      "metres_per_unit"_a = 0.0, "keep_withheld"_a = false, "skip_unreadable"_a = false,
+      "strict"_a = false, "overwrite"_a = false, "resume"_a = false, "progress"_a = py::none(),
       "message"_a = py::none(), "stop"_a = py::none(),
-      R"(convert(inputs, output, *, scale=None, cell_points=65536, regular_size=None, memory_bytes=4294967296, threads=0, unit=0.0, unit_z=0.0, ignore_crs=False, columns=(), origins=None, origins_path=None, lever_arm=(0.0, 0.0, 0.0), format='auto', angle_unit='declared', angle_frame='declared', crs='', datum='', metres_per_unit=0.0, skip_unreadable=False, strict=False, overwrite=False, resume=False, progress=None, message=None, stop=None)
+      R"(convert(inputs, output, *, scale=None, cell_points=65536, regular_size=None, memory_bytes=4294967296, threads=0, unit=0.0, unit_z=0.0, ignore_crs=False, columns=(), origins=None, origins_path=None, lever_arm=(0.0, 0.0, 0.0), format='auto', angle_unit='declared', angle_frame='declared', crs='', datum='', metres_per_unit=0.0, keep_withheld=False, skip_unreadable=False, strict=False, overwrite=False, resume=False, progress=None, message=None, stop=None)
 --
 
 Turn scans into a store, the one file that searches read. Returns a ConvertReport.
@@ -408,6 +413,7 @@ origins_path: the path of a moving scanner, a trajectory with times: each point 
 lever_arm: where the scanner is in the frame of the poses of origins_path: x, y and z, metres.
 format, angle_unit, angle_frame, crs, datum, metres_per_unit: how origins_path is read, as
     read_trajectory() takes them.
+keep_withheld: keeps points of LAS and LAZ with the flag withheld, which are left out otherwise.
 skip_unreadable: leaves out files that cannot be read, with a warning.
 strict: raises InputError where anything is warned of.
 overwrite: replaces an existing store.

@@ -52,7 +52,7 @@ struct ReadCloud {
   CloudInfo info;  ///< what the reader tells after the last point
   std::vector<std::array<std::int32_t, 3>> quanta;
   std::vector<Vec3> positions;
-  std::vector<std::uint8_t> classes;
+  std::vector<std::uint8_t> classes, flags;
 
   std::size_t size() const { return quanta.size() + positions.size(); }
 };
@@ -64,6 +64,7 @@ inline ReadCloud read_all(PointReader& reader) {
     cloud.quanta.insert(cloud.quanta.end(), batch.quanta.begin(), batch.quanta.end());
     cloud.positions.insert(cloud.positions.end(), batch.positions.begin(), batch.positions.end());
     cloud.classes.insert(cloud.classes.end(), batch.classes.begin(), batch.classes.end());
+    cloud.flags.insert(cloud.flags.end(), batch.flags.begin(), batch.flags.end());
   }
   if (batch.size() != 0) throw std::logic_error("a batch at the end");
   cloud.info = reader.info();

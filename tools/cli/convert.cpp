@@ -79,8 +79,11 @@ nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertCommand
   out["was_finished"] = report.was_finished;
   out["points"] = metadata.point_count;
   out["cells"] = store.cells().size();
-  out["non_finite"] = metadata.input_points - metadata.point_count;
+  out["non_finite"] = metadata.points_without_place();
   out["absent"] = nullptr;
+  const StoreWithheld withheld = metadata.withheld.value_or(StoreWithheld());
+  out["withheld"] = withheld.left_out();
+  out["withheld_kept"] = withheld.points - withheld.left_out();
   out["scale"] = metadata.quantisation.scale;
   out["offset"] = metadata.quantisation.offset;
   out["box"] = box_json(store);
@@ -221,6 +224,10 @@ void add_options(CLI::App& command, ConvertCommand& options) {
                         "metres (default: 0,0,0)");
   }
   add_options_of_reading(command, conversion.origins_path_options);
+  command
+      .add_flag("--keep-withheld", conversion.keep_withheld,
+                "Keep points of LAS and LAZ with the flag withheld, which are left out otherwise")
+      ->group(title_of(OptionGroup::kInputs));
   command
       .add_flag("--skip-unreadable", conversion.skip_unreadable,
                 "Leave out files that cannot be read, and list them; reads all once more")

@@ -60,7 +60,7 @@ ordered_json describe(const StoreReader& store) {
   ordered_json description{{"kind", "store"},
                            {"version", kStoreVersion},
                            {"points", m.point_count},
-                           {"non_finite_points", m.input_points - m.point_count},
+                           {"non_finite_points", m.points_without_place()},
                            {"layout", m.layout},
                            {"cells", store.cells().size()},
                            {"cell_points", m.cell_points},
@@ -76,6 +76,11 @@ ordered_json describe(const StoreReader& store) {
                            {"sources", sources_json(m)},
                            {"warnings", warnings_json(store_warnings(m))}};
   if (m.height_unit != 0) description["height_unit"] = m.height_unit;
+  if (m.withheld) {
+    description["withheld"] = {{"points", m.withheld->points},
+                               {"kept", m.withheld->kept},
+                               {"cubes", m.withheld->cubes.size()}};
+  }
   if (m.origins) description["origins"] = origins_json(*m.origins);
   return description;
 }
@@ -239,6 +244,12 @@ ordered_json describe_points(const std::filesystem::path& file) {
   }
   if (points.info.height_unit != 0) description["height_unit"] = points.info.height_unit;
   if (points.spacing) description["spacing"] = *points.spacing;
+  if (points.flags) {
+    description["flags"] = {{"synthetic", points.flags->synthetic},
+                            {"key_point", points.flags->key_point},
+                            {"withheld", points.flags->withheld},
+                            {"overlap", points.flags->overlap}};
+  }
   return description;
 }
 
@@ -324,6 +335,19 @@ std::string text_of(const ordered_json& description) {
       for (const auto& one : value["rest_on"]) {
         text += fmt::format("{:<{}}  {}: {}\n", "origins", width, one["what"].get<std::string>(),
                             counted(one["points"].get<std::uint64_t>(), "point"));
+      }
+    } else if (key == "withheld") {
+      text +=
+          fmt::format("{:<{}}  {}\n", key, width,
+                      counted(value["points"].get<std::uint64_t>(), "point") +
+                          (value["kept"].get<bool>()
+                               ? ", kept"
+                               : ", left out, in " + counted(value["cubes"].get<std::uint64_t>(),
+                                                             "cube of 1 m", "cubes of 1 m")));
+    } else if (key == "flags") {
+      for (const auto& [flag, points] : value.items()) {
+        text += fmt::format("{:<{}}  {}: {}\n", "flag", width, flag,
+                            counted(points.get<std::uint64_t>(), "point"));
       }
     } else if (key == "warnings" && value.is_array()) {
       for (const auto& one : value) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
+#include <functional>
+#include <map>
 #include <type_traits>
 #include <utility>
 
@@ -50,6 +52,61 @@ void XmlText::refuse_at(pugi::xml_node node, const std::string& what) const {
   refuse_offset(offset, "XML element " + excerpt(node.name()) + ": " + what);
 }
 
+namespace {
+
+/// The element after this one in the order of the text; empty after the last one.
+pugi::xml_node next_element(pugi::xml_node node) {
+  const auto is_element = [](pugi::xml_node n) { return n.type() == pugi::node_element; };
+  pugi::xml_node next = node.find_child(is_element);
+  for (; !next && node; node = node.parent()) {
+    for (next = node.next_sibling(); next && !is_element(next);) next = next.next_sibling();
+    if (next) break;
+  }
+  return next;
+}
+
+/// The prefix of a qualified name, "lx" of "lx:LandXML"; empty where it has none.
+std::string_view prefix_of(std::string_view name) {
+  const std::size_t colon = name.find(':');
+  return colon == std::string_view::npos ? std::string_view() : name.substr(0, colon);
+}
+
+}  // namespace
+
+/// Removes from the names of elements the prefixes that stand for the root's namespace. Throws
+/// where such a prefix stands for another namespace elsewhere.
+void XmlText::drop_prefixes() {
+  constexpr std::string_view kDeclares = "xmlns:";
+  const pugi::xml_node root = document_.document_element();
+  const std::string own(prefix_of(root.name()));
+  const std::string uri =
+      root.attribute(own.empty() ? "xmlns" : (std::string(kDeclares) + own).c_str()).value();
+  std::map<std::string, bool, std::less<>> is_own;
+  if (!own.empty()) is_own[own] = true;
+  for (pugi::xml_node node = root; node; node = next_element(node)) {
+    for (const pugi::xml_attribute declared : node.attributes()) {
+      std::string_view name = declared.name();
+      if (!name.starts_with(kDeclares)) continue;
+      name.remove_prefix(kDeclares.size());
+      const bool same = !uri.empty() && declared.value() == uri;
+      const auto [found, added] = is_own.emplace(name, same);
+      if (!added && found->second != same) {
+        refuse_at(node, "declares the prefix " + excerpt(name) +
+                            " for another namespace than elsewhere; expected one namespace each");
+      }
+    }
+  }
+  for (pugi::xml_node node = root; node; node = next_element(node)) {
+    const std::string_view name = node.name();
+    const std::string_view prefix = prefix_of(name);
+    if (prefix.empty()) continue;
+    const auto found = is_own.find(prefix);
+    if (found == is_own.end() || !found->second) continue;
+    // Copied, because pugixml writes the new name in the place of the old one.
+    node.set_name(std::string(name.substr(prefix.size() + 1)).c_str());
+  }
+}
+
 void XmlText::parse(std::vector<char> text, std::uint64_t most_markup, const char* root) {
   bytes_ = std::move(text);
   const auto markup = static_cast<std::uint64_t>(
@@ -66,6 +123,7 @@ void XmlText::parse(std::vector<char> text, std::uint64_t most_markup, const cha
         static_cast<std::uint64_t>(std::max<std::ptrdiff_t>(parsed.offset, 0)),
         what_ + " is malformed (" + parsed.description() + "); expected well-formed XML in UTF-8");
   }
+  drop_prefixes();
   root_ = document_.document_element();
   if (std::string_view(root_.name()) != root) {
     refuse_offset(0, what_ + " holds the element " + excerpt(root_.name()) + "; expected " + root);

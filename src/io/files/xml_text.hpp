@@ -38,13 +38,16 @@ class XmlText {
   /// section". place: called only for messages.
   XmlText(std::string name, std::string what, Place place);
 
-  /// Parses the text, which is in UTF-8 and has a root element of this name. most_markup: greatest
-  /// number of tags and attributes together; pugixml keeps up to 64 bytes for each.
+  /// Parses the text, which is in UTF-8 and has a root element of this name. Elements in the
+  /// namespace of the root are known by their names without a prefix afterwards. most_markup:
+  /// greatest number of tags and attributes together; pugixml keeps up to 64 bytes for each.
   void parse(std::vector<char> text, std::uint64_t most_markup, const char* root);
   [[noreturn]] void refuse_offset(std::uint64_t offset, const std::string& what) const;
   pugi::xml_node first_node() const { return document_.first_child(); }
 
  private:
+  void drop_prefixes();
+
   std::string name_, what_;
   Place place_;
   std::vector<char> bytes_;

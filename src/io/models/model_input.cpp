@@ -35,12 +35,15 @@ void tell(std::vector<Message>& messages, const ModelInput& input, const std::st
       {severity, std::move(code), input.path.string() + ": " + text, std::move(numbers)});
 }
 
-/// Appends the points of a batch. first: number of the batch's first record, where records without
-/// a point count too.
+/// Appends the points of a batch, without those that are withheld. first: number of the batch's
+/// first record, where records without a point count too.
 void append(const PointBatch& batch, const CloudInfo& info, std::uint64_t first,
             const std::string& name, std::vector<Vec3>& points) {
-  for (const auto& q : batch.quanta) {
-    points.push_back(position(*info.quantisation, q[0], q[1], q[2]));
+  for (std::size_t i = 0; i < batch.quanta.size(); ++i) {
+    const auto& q = batch.quanta[i];
+    if (!batch.is_withheld(i)) {
+      points.push_back(position(*info.quantisation, q[0], q[1], q[2]));
+    }
   }
   std::size_t absent = 0;
   for (std::size_t i = 0; i < batch.positions.size(); ++i) {
@@ -61,10 +64,18 @@ void append(const PointBatch& batch, const CloudInfo& info, std::uint64_t first,
 void read_points(ModelInput& input) {
   const auto reader = open_point_file(input.path);
   PointBatch batch;
+  std::uint64_t withheld = 0;
   for (std::uint64_t first = 0; reader->read(batch); first += batch.size()) {
     append(batch, reader->info(), first, input.path.string(), input.mesh.vertices);
+    for (std::size_t i = 0; i < batch.flags.size(); ++i) withheld += batch.is_withheld(i) ? 1 : 0;
   }
   input.messages = reader->info().remarks;
+  if (withheld > 0) {
+    tell(input.messages, input,
+         counted(withheld, "point") + " with the flag `withheld` " +
+             (withheld == 1 ? "is" : "are") + " left out of the model as deleted",
+         {{"points", static_cast<double>(withheld)}}, "withheld-model-points");
+  }
   input.sampled_spacing = reader->info().model_spacing;
   const CloudInfo& info = reader->info();
   const std::string trouble = heights_trouble(info.height_unit, info.unit);

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "clearway/progress.hpp"
+#include "core/util/format.hpp"
+#include "io/files/input_error.hpp"
 
 namespace clearway {
 
@@ -21,5 +25,16 @@ struct Remarks {
     remarks.push_back({Message::Severity::kWarning, code, std::move(text), std::move(numbers)});
   }
 };
+
+/// Names for a message, in quotes, of which a file may have thousands.
+inline std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 8;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
+    list += (i == 0 ? "" : ", ") + excerpt(names[i]);
+  }
+  return names.size() > kMost ? list + " and " + format_count(names.size() - kMost) + " more"
+                              : list;
+}
 
 }  // namespace clearway

@@ -16,15 +16,15 @@ struct Ending {
 };
 
 constexpr Ending kEndings[] = {
-    {".las", PointFormat::kLas, true},   {".laz", PointFormat::kLas, true},
-    {".ply", PointFormat::kPly, true},   {".xyz", PointFormat::kXyz, true},
-    {".pts", PointFormat::kXyz, true},   {".asc", PointFormat::kXyz, true},
-    {".txt", PointFormat::kXyz, false},  {".csv", PointFormat::kXyz, false},
-    {".e57", PointFormat::kE57, true},   {".pcd", PointFormat::kPcd, true},
-    {".ptx", PointFormat::kPtx, true},   {".3d", PointFormat::k3dtk, true},
-    {".obj", PointFormat::kMesh, false}, {".stl", PointFormat::kMesh, false},
-    {".off", PointFormat::kMesh, false}, {".gltf", PointFormat::kMesh, false},
-    {".glb", PointFormat::kMesh, false}, {".dae", PointFormat::kMesh, false}};
+    {".las", PointFormat::kLas, true},         {".laz", PointFormat::kLas, true},
+    {".ply", PointFormat::kPly, true},         {".xyz", PointFormat::kXyz, true},
+    {".pts", PointFormat::kXyz, true},         {".asc", PointFormat::kXyz, true},
+    {".txt", PointFormat::kXyz, false},        {".csv", PointFormat::kXyz, false},
+    {".e57", PointFormat::kE57, true},         {".pcd", PointFormat::kPcd, true},
+    {".ptx", PointFormat::kPtx, true},         {".3d", PointFormat::k3dtk, true},
+    {".obj", PointFormat::kMesh, false},       {".stl", PointFormat::kMesh, false},
+    {".off", PointFormat::kMesh, false},       {".gltf", PointFormat::kUnreadMesh, false},
+    {".glb", PointFormat::kUnreadMesh, false}, {".dae", PointFormat::kUnreadMesh, false}};
 
 const Ending* ending_of(const std::filesystem::path& path) {
   const std::string ending = file_ending(path);
@@ -75,6 +75,11 @@ void refuse_unless_read(PointFormat format, const std::string& name) {
   switch (format) {
     case PointFormat::kMesh:
       refuse(name, "a mesh is read as a model alone; expected points", Remedy::kSampleMesh);
+    case PointFormat::kUnreadMesh:
+      refuse(name,
+             "a mesh in a format that is not read; expected points. Export the mesh as STL, OBJ or "
+             "PLY first",
+             Remedy::kSampleMesh);
     case PointFormat::kE57:
     case PointFormat::kLas:
     case PointFormat::kPly:

@@ -7,7 +7,9 @@
 
 namespace clearway {
 
-enum class PointFormat { kLas, kPly, kXyz, kE57, kPcd, kPtx, k3dtk, kMesh };
+/// kMesh: a mesh that can be read as a model. kUnreadMesh: one that is not read at all, such as
+/// glTF.
+enum class PointFormat { kLas, kPly, kXyz, kE57, kPcd, kPtx, k3dtk, kMesh, kUnreadMesh };
 
 /// The format as recognised by a file's first bytes; nullopt where they do not tell.
 std::optional<PointFormat> format_of_content(std::span<const std::byte> first_bytes);

@@ -56,6 +56,14 @@ struct CloudInfo : StatedCrs {
   void set(StatedCrs stated) { static_cast<StatedCrs&>(*this) = std::move(stated); }
 };
 
+/// Bits of PointBatch::flags. Source: LAS 1.4 R15 (ASPRS), "Classification Flags".
+struct PointFlags {
+  static constexpr std::uint8_t kSynthetic = 1;  ///< made by something other than a scan
+  static constexpr std::uint8_t kKeyPoint = 2;
+  static constexpr std::uint8_t kWithheld = 4;  ///< deleted, though its record is still there
+  static constexpr std::uint8_t kOverlap = 8;   ///< in the overlap of two swaths
+};
+
 /// Consecutive points of a file, in its order: integers where the file has a quantisation,
 /// otherwise positions. The other of the two vectors is empty.
 struct PointBatch {
@@ -66,11 +74,16 @@ struct PointBatch {
   std::vector<std::uint32_t> absent;
   /// The class of each point, as ASPRS numbers them. Empty where the format has no classes.
   std::vector<std::uint8_t> classes;
+  /// The flags of each point, bits of PointFlags. Empty where the file has no flags.
+  std::vector<std::uint8_t> flags = {};
   /// The GPS time of each point. Empty unless PointReadOptions::with_times asks for them and the
   /// file has them.
   std::vector<double> times = {};
 
   std::size_t size() const { return quanta.size() + positions.size(); }
+  bool is_withheld(std::size_t point) const {
+    return !flags.empty() && (flags[point] & PointFlags::kWithheld) != 0;
+  }
 };
 
 /// The bytes of a file from which a piece of its points was read.

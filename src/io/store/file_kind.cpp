@@ -106,6 +106,7 @@ std::string point_format_name(const std::filesystem::path& path) {
     case PointFormat::k3dtk:
       return "3DTK";
     case PointFormat::kMesh:
+    case PointFormat::kUnreadMesh:
       return "mesh";
     default:
       return "text";
@@ -131,7 +132,9 @@ FileDescription describe_file(const std::filesystem::path& path) {
     return {FileKind::kPoints, "a scan (" + point_format_name(path) + ")"};
   }
   const auto named = format_of_name(path);
-  if (named == PointFormat::kMesh) return {FileKind::kMesh, "a mesh"};
+  if (named == PointFormat::kMesh || named == PointFormat::kUnreadMesh) {
+    return {FileKind::kMesh, "a mesh"};
+  }
   if (text.find('\0') != std::string_view::npos) return {};
   if (named && *named != PointFormat::kXyz) {
     return {FileKind::kTextPoints, "a scan (" + point_format_name(path) + ")"};

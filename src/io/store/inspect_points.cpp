@@ -1,6 +1,7 @@
 #include "io/store/inspect_points.hpp"
 
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "core/geometry/model_tree.hpp"
@@ -16,6 +17,7 @@ class Inspection {
  public:
   void add(const PointBatch& batch, const CloudInfo& info) {
     description_.absent += batch.absent.size();
+    count_flags(batch.flags);
     for (const auto& q : batch.quanta) add(position(*info.quantisation, q[0], q[1], q[2]));
     for (const Vec3& p : batch.positions) {
       if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) {
@@ -36,6 +38,18 @@ class Inspection {
   }
 
  private:
+  void count_flags(std::span<const std::uint8_t> flags) {
+    if (flags.empty()) return;
+    if (!description_.flags) description_.flags.emplace();
+    FlagCounts& counts = *description_.flags;
+    for (const std::uint8_t flag : flags) {
+      counts.synthetic += (flag & PointFlags::kSynthetic) != 0 ? 1 : 0;
+      counts.key_point += (flag & PointFlags::kKeyPoint) != 0 ? 1 : 0;
+      counts.withheld += (flag & PointFlags::kWithheld) != 0 ? 1 : 0;
+      counts.overlap += (flag & PointFlags::kOverlap) != 0 ? 1 : 0;
+    }
+  }
+
   void add(const Vec3& p) {
     Box& box = description_.box;
     if (description_.points++ == 0) box = {p, p};

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -78,10 +79,31 @@ struct StoreOrigins {
   friend bool operator==(const StoreOrigins&, const StoreOrigins&) = default;
 };
 
+/// The index of a cube of 1 m along x, y and z: floor(coordinate / edge), where the edge is 1 m in
+/// the unit of the coordinates. What lies beyond 32 bits counts to the outermost cubes.
+using MetreCube = std::array<std::int32_t, 3>;
+
+/// The edge of a MetreCube in this unit; 1 where the unit is not known or no length.
+inline double metre_cube_edge(LengthUnit unit) {
+  const double metres = metres_of(unit);
+  return metres > 0 ? 1 / metres : 1;
+}
+
+/// The points of the inputs that have the flag `withheld`.
+struct StoreWithheld {
+  std::uint64_t points = 0;
+  bool kept = false;  ///< whether they are among the points of the store
+  /// The cubes in which those lie that were left out, ascending lexicographically.
+  std::vector<MetreCube> cubes = {};
+
+  std::uint64_t left_out() const { return kept ? 0 : points; }
+  friend bool operator==(const StoreWithheld&, const StoreWithheld&) = default;
+};
+
 /// The description of a store (docs/design/store-format.md), without its cells.
 struct StoreMetadata {
   std::uint64_t point_count = 0;
-  /// Points of the inputs, including non-finite ones, which are not stored.
+  /// Points of the inputs, including non-finite and withheld ones, which are not stored.
   std::uint64_t input_points = 0;
   std::uint32_t cell_points = 0;
   Quantisation quantisation{};
@@ -98,7 +120,14 @@ struct StoreMetadata {
   std::vector<std::uint64_t> source_points = {};
   std::optional<StoreClasses> classes = {};  ///< only where some point has a class above 0
   std::optional<StoreOrigins> origins = {};  ///< only where some point has an origin
-  std::vector<Message> warnings = {};        ///< warnings of the conversion, for users of the store
+  /// Only where some point of the inputs has the flag `withheld`
+  std::optional<StoreWithheld> withheld = {};
+  std::vector<Message> warnings = {};  ///< warnings of the conversion, for users of the store
+
+  /// Points of the inputs that are not stored because they hold no finite place.
+  std::uint64_t points_without_place() const {
+    return input_points - point_count - (withheld ? withheld->left_out() : 0);
+  }
 
   /// Number of points of a source file, by its index in `sources`; nullopt where it is not known.
   std::optional<std::uint64_t> points_of_source(std::size_t source) const {
@@ -131,6 +160,16 @@ inline constexpr const char* kHeightUnit = "height_unit";
 
 /// Dataset of /sources; only where there are several files.
 inline constexpr const char* kSourcePoints = "points";
+
+/// Attributes and dataset of withheld points; only where the inputs have some. The dataset is
+/// missing where the points were kept.
+inline constexpr const char* kWithheldPoints = "withheld_points";
+inline constexpr const char* kWithheldHash = "withheld_hash";
+inline constexpr const char* kWithheld = "withheld";
+
+inline std::span<const std::int32_t> coordinates_of(const std::vector<MetreCube>& cubes) {
+  return {cubes.empty() ? nullptr : cubes.front().data(), 3 * cubes.size()};
+}
 
 /// The datasets of /cells, row-major. Each cell has four chunks: x, y, z, source.
 struct CellIndex {

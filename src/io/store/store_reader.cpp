@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <span>
 #include <string>
 
@@ -68,6 +69,32 @@ std::vector<std::uint64_t> read_source_points(const hdf5::Id& file, const std::s
   return points;
 }
 
+/// Reads what the store says of withheld points; nullopt where the inputs have none.
+std::optional<StoreWithheld> read_withheld(const hdf5::Id& file, const std::string& name) {
+  if (!hdf5::has_attribute(file, kWithheldPoints, name)) return std::nullopt;
+  StoreWithheld withheld{.points = hdf5::read_number<std::uint64_t>(file, kWithheldPoints, name)};
+  withheld.kept = H5Lexists(file.get(), kWithheld, H5P_DEFAULT) <= 0;
+  if (withheld.kept) return withheld;
+  const std::uint64_t rows = hdf5::dataset_rows(file, kWithheld, name);
+  const auto numbers = hdf5::read_dataset<std::int32_t>(file, kWithheld, rows, 3, name);
+  ColumnHashes hashes;
+  hashes.add(std::array{withheld.points});
+  hashes.add(numbers);
+  if (hashes.digest() != hdf5::read_number<std::uint64_t>(file, kWithheldHash, name)) {
+    refuse(name, "dataset 'withheld' is damaged (its hash is not the one recorded)");
+  }
+  for (std::uint64_t i = 0; i < rows; ++i) {
+    withheld.cubes.push_back({numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]});
+  }
+  const bool ascends = std::ranges::adjacent_find(withheld.cubes, std::ranges::greater_equal()) ==
+                       withheld.cubes.end();
+  if (rows == 0 || rows > withheld.points || !ascends) {
+    refuse(name,
+           "dataset 'withheld': expected ascending cubes, one at least and no more than points");
+  }
+  return withheld;
+}
+
 StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name, ColumnHashes& hashes) {
   if (!hdf5::has_attribute(file, "format", name) ||
       hdf5::read_text_attribute(file, "format", name) != kStoreFormat) {
@@ -106,6 +133,12 @@ StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name, Colum
     refuse(name, "attribute 'input_points' is " + std::to_string(metadata.input_points) +
                      ", expected at least the points stored, " +
                      std::to_string(metadata.point_count));
+  }
+  metadata.withheld = read_withheld(file, name);
+  const std::uint64_t not_stored = metadata.input_points - metadata.point_count;
+  if (metadata.withheld && metadata.withheld->left_out() > not_stored) {
+    refuse(name, "attribute 'withheld_points' is " + std::to_string(metadata.withheld->points) +
+                     ", expected at most the points not stored, " + std::to_string(not_stored));
   }
   if (H5Lexists(file.get(), "warnings", H5P_DEFAULT) > 0) {
     metadata.warnings = read_warnings(file, name);
@@ -420,6 +453,10 @@ std::uint64_t StoreReader::fingerprint() const {
   add(metadata().quantisation.scale);
   add(metadata().quantisation.offset);
   add(metadata().crs_wkt);
+  if (metadata().withheld) {
+    add(std::array{metadata().withheld->points});
+    add(metadata().withheld->cubes);
+  }
   if (has_classes()) add(index_.classes.xxh64);
   if (has_origins()) {
     add(index_.origins.xxh64);
@@ -465,7 +502,8 @@ std::uint64_t StoreReader::allocated_bytes() const {
          bytes(tree_) + bytes(index_.blocks) + bytes(checked_) + bytes(read_) +
          bytes(sources_checked_) + index_.classes.allocated_bytes() + bytes(classes_checked_) +
          index_.origins.allocated_bytes() + bytes(origins_checked_) +
-         (has_origins() ? bytes(metadata().origins->quanta) : 0);
+         (has_origins() ? bytes(metadata().origins->quanta) : 0) +
+         (metadata().withheld ? bytes(metadata().withheld->cubes) : 0);
 }
 
 Store::Store(const std::filesystem::path& path)

@@ -138,6 +138,16 @@ hdf5::Id create_packed(const hdf5::Id& group, const char* name, std::uint64_t ce
           H5Dclose, std::string("create dataset ") + name};
 }
 
+void write_withheld(const hdf5::Id& file, const StoreWithheld& withheld) {
+  hdf5::write_number(file, kWithheldPoints, withheld.points);
+  if (withheld.kept) return;
+  ColumnHashes hashes;
+  hashes.add(std::array{withheld.points});
+  hashes.add(coordinates_of(withheld.cubes));
+  hdf5::write_dataset<std::int32_t>(file, kWithheld, coordinates_of(withheld.cubes), 3);
+  hdf5::write_number(file, kWithheldHash, hashes.digest());
+}
+
 /// Writes the attributes and /sources, whose datasets are the first of `hashes`.
 void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata, ColumnHashes& hashes) {
   hdf5::write_attribute(file, "format", kStoreFormat);
@@ -153,6 +163,7 @@ void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata, ColumnH
   hdf5::write_attribute(file, "crs_wkt", metadata.crs_wkt);
   if (metadata.height_unit != 0) hdf5::write_number(file, kHeightUnit, metadata.height_unit);
 
+  if (metadata.withheld) write_withheld(file, *metadata.withheld);
   if (!metadata.warnings.empty()) write_warnings(file, metadata.warnings);
 
   std::vector<std::uint8_t> names;

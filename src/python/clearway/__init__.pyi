@@ -76,6 +76,8 @@ class ConvertReport:
     cells: Final[int]
     non_finite_points: Final[int]
     absent_points: Final[int]
+    withheld_points: Final[int]
+    kept_withheld_points: Final[int]
     origins: Final[int]
     points_without_origin: Final[int]
     origins_path: Final[OriginsPathReport | None]
@@ -635,8 +637,8 @@ def convert(
     lever_arm: Sequence[float] = (0.0, 0.0, 0.0), format: str = "auto",
     angle_unit: Literal["declared", "deg", "rad"] = "declared",
     angle_frame: Literal["declared", "ned", "enu"] = "declared", crs: str = "", datum: str = "",
-    metres_per_unit: float | str = 0.0, skip_unreadable: bool = False, strict: bool = False, overwrite: bool = False,
-    resume: bool = False, progress: _Progress | None = None, message: _Tell | None = None,
+    metres_per_unit: float | str = 0.0, keep_withheld: bool = False, skip_unreadable: bool = False,
+    strict: bool = False, overwrite: bool = False, resume: bool = False, progress: _Progress | None = None, message: _Tell | None = None,
     stop: _Stop | None = None,
 ) -> ConvertReport: ...
 def search(

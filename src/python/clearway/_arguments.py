@@ -173,7 +173,7 @@ _CHECKS = {
     **dict.fromkeys(("memory_bytes", "device_memory_bytes", "max_points", "min_points",
                      "model_left_out"), _bytes),
     **dict.fromkeys(("first_pose", "between_poses", "allow_non_rigid", "vertices_only",
-                     "ignore_crs", "skip_unreadable", "strict", "overwrite", "resume",
+                     "ignore_crs", "keep_withheld", "skip_unreadable", "strict", "overwrite", "resume",
                      "float_precision", "end_gpus", "model_is_cut", "seen", "reverse", "mirror"),
                     _flag),
     **dict.fromkeys(("name", "model_as", "format", "angle_unit", "angle_frame", "crs",

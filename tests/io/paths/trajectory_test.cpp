@@ -95,6 +95,27 @@ TEST_CASE("a CSV header names the columns, in any order") {
   CHECK_THAT(refusal_of_text("1,2,3,0,0,0,1\n", TrajectoryFormat::kCsv), Contains("header"));
 }
 
+TEST_CASE("columns of a table that make no pose are listed, and a cant is doubted") {
+  const auto codes = [](const std::string& more) {
+    const ReaderScratch scratch;
+    std::vector<Message> remarks;
+    const std::string text = "t,x,y,z,qx,qy,qz,qw," + more + "\n1,7,8,9,0,0,0,1,5\n";
+    read_trajectory(scratch.write("path.csv", text), {}, &remarks);
+    std::string all;
+    for (const Message& remark : remarks) {
+      all += (remark.severity == Message::Severity::kNote ? "note " : "warning ") + remark.code;
+    }
+    return all;
+  };
+  CHECK(codes("station") == "");
+  CHECK(codes("name") == "");
+  CHECK(codes("speed") == "note unread-columns");
+  CHECK(codes("roll") == "note unread-columns");  // the quaternion says it
+  CHECK(codes("height") == "note unread-columns");
+  CHECK(codes("cant") == "warning unread-columns");
+  CHECK(codes("Superelevation [mm]") == "warning unread-columns");
+}
+
 TEST_CASE("a quaternion is normalised, and refused far from norm 1") {
   const auto poses = poses_of("0 0 0 0 0 0 0 0.995\n");
   REQUIRE(poses.size() == 1);

@@ -33,6 +33,10 @@ TEST_CASE("what is not read is refused by the name of its format, with advice") 
   };
   CHECK_THAT(refusal("c.e57", ""), Contains("E57 header"));
   CHECK_THAT(refusal("c.obj", "v 1 2 3\n"), Contains("mesh") && Contains("expected points"));
+  for (const std::string name : {"c.glb", "c.gltf", "c.dae"}) {
+    // A mesh that is not read cannot be sampled before it is exported.
+    CHECK_THAT(refusal(name, "glTF"), Contains("not read") && Contains("STL, OBJ or PLY first"));
+  }
   CHECK_THAT(refusal("c.las", "1 2 3\n"), Contains("LAS header"));
   CHECK_THAT(refusal("d.las", std::string(500, ' ')), Contains("LASF"));
   CHECK_THAT(refusal("c.ply", "1 2 3\n"), Contains("`ply`"));

@@ -153,6 +153,10 @@ TEST_CASE("nothing is doubted in the real trajectories") {
     INFO(name);
     std::vector<Message> remarks;
     read_trajectory(data_folder() / name, {}, &remarks);
+    // EuRoC has columns of velocities and biases, which a note lists.
+    std::erase_if(remarks, [](const Message& remark) {
+      return remark.severity == Message::Severity::kNote && remark.code == "unread-columns";
+    });
     CHECK(remarks.empty());
   }
 }

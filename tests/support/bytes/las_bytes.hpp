@@ -27,6 +27,8 @@ struct LasBytes {
       {1, 2, 3}, {-4, 5, -6}, {2147483647, -2147483647 - 1, 0}};
   std::vector<double> times{};                 ///< GPS times, one for each point; empty: any
   std::vector<std::uint8_t> bytes_of_class{};  ///< one for each point, flags included; empty: any
+  /// Byte 15 of each point in formats 6 to 10, whose lowest bits are flags; empty: any
+  std::vector<std::uint8_t> bytes_of_flags{};
   std::vector<Record> vlrs;
   std::vector<Record> evlrs;  ///< 1.4: any number; 1.3: one
 
@@ -79,6 +81,7 @@ struct LasBytes {
       for (unsigned k = 0; k < 3; ++k) put(one, 4 * k, points[i][k]);
       if (!times.empty()) put(one, format < 6 ? 20 : 22, times[i]);
       if (!bytes_of_class.empty()) put(one, format < 6 ? 15 : 16, bytes_of_class[i]);
+      if (!bytes_of_flags.empty()) put(one, 15, bytes_of_flags[i]);
       bytes += one;
     }
     for (const Record& record : evlrs) append(bytes, record, 60);

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/bytes/las_bytes.hpp"
+#include "support/clouds.hpp"
 #include "tools/cli/support/hall.hpp"
 
 using namespace clearway;
@@ -46,6 +47,73 @@ TEST_CASE("convert --json tells what was made") {
   CHECK(report["warnings"][0]["code"] == "non-finite-points");
   CHECK(report["warnings"][0]["numbers"]["points"] == 1);
   CHECK_THAT(outcome.err, Contains(report["warnings"][0]["message"].get<std::string>()));
+}
+
+TEST_CASE("withheld points are told by convert and info, from files and from standard input") {
+  const Work work;
+  LasBytes las;
+  las.minor = 4;
+  las.format = 6;
+  las.points = cube_cloud(200, -3000, 3000, 1);
+  for (unsigned i = 0; i < 200; ++i) {
+    las.bytes_of_flags.push_back(i % 4 == 3 ? 4 : i % 4 == 2 ? 9 : 0);
+  }
+  put_bytes(work.folder / "a.las", las.build());
+  const std::string end = " --json -o " + work.path("a.h5") + " --force";
+  const auto info = [&](const std::string& file) {
+    return json::parse(work.run("info --json " + work.path(file)).out);
+  };
+  for (const bool pipe : {false, true}) {
+    INFO((pipe ? "standard input" : "file"));
+    const std::string input = pipe ? "-" : work.path("a.las");
+    const fs::path from = pipe ? work.folder / "a.las" : fs::path();
+    const Outcome left_out = work.run("convert " + input + end, from);
+    REQUIRE(left_out.exit_code == 0);
+    CHECK_THAT(left_out.err, Contains("50 of 200 points (25 %)") && Contains("--keep-withheld"));
+    const json report = json::parse(left_out.out);
+    CHECK(report["points"] == 150);
+    CHECK(report["non_finite"] == 0);
+    CHECK(report["withheld"] == 50);
+    CHECK(report["withheld_kept"] == 0);
+    CHECK(report["warnings"][0]["code"] == "withheld-points");
+    json store = info("a.h5");
+    CHECK(store["non_finite_points"] == 0);
+    CHECK(store["withheld"]["points"] == 50);
+    CHECK(store["withheld"]["kept"] == false);
+    CHECK(store["withheld"]["cubes"] > 10);
+    CHECK_THAT(work.run("info " + work.path("a.h5")).out, Contains("50 points, left out, in "));
+
+    const Outcome kept = work.run("convert --keep-withheld " + input + end, from);
+    CHECK_THAT(kept.err, !Contains("--keep-withheld"));
+    CHECK(json::parse(kept.out)["withheld_kept"] == 50);
+    store = info("a.h5");
+    CHECK(store["points"] == 200);
+    CHECK(store["withheld"]["kept"] == true);
+  }
+  const json scan = info("a.las");
+  CHECK(scan["points"] == 200);
+  CHECK(scan["flags"] ==
+        json{{"synthetic", 50}, {"key_point", 0}, {"withheld", 50}, {"overlap", 50}});
+}
+
+TEST_CASE("a table whose first columns are no coordinates is refused with columns that read it") {
+  const Work work;
+  std::string grid, times;
+  for (int i = 0; i < 40; ++i) {
+    const std::string place = " " + std::to_string(0.25 * (i % 7)) + " " +
+                              std::to_string(0.5 * (i * i % 11)) + " " +
+                              std::to_string(1.5 + i % 3);
+    grid += std::to_string(i / 8) + " " + std::to_string(i % 8) + place + "\n";
+    times += std::to_string(345600.25 + 0.01 * i) + place + "\n";
+  }
+  put_bytes(work.folder / "grid.txt", grid);
+  put_bytes(work.folder / "times.txt", times);
+  for (const auto& [name, advice] : {std::pair("grid.txt", std::string("--columns 3,4,5")),
+                                     std::pair("times.txt", std::string("--columns 2,3,4"))}) {
+    const std::string convert = "convert --force " + work.path(name) + " -o " + work.path("a.h5");
+    check_refused(work.run(convert), 3, advice);
+    CHECK(work.run(convert + " " + advice).exit_code == 0);
+  }
 }
 
 TEST_CASE("convert --strict refuses warnings, and is silent where nothing is wrong") {

@@ -40,6 +40,12 @@ std::string option_of_length(double metres) {
   return "UNIT";
 }
 
+/// Three columns from `first` on, counted from 1, as --columns takes them; from 2 on for 0.
+std::string columns_from(double first) {
+  const auto x = first > 0 ? static_cast<unsigned>(first) : 2u;
+  return std::to_string(x) + "," + std::to_string(x + 1) + "," + std::to_string(x + 2);
+}
+
 }  // namespace
 
 std::string advice_on(const Error& error) {
@@ -85,7 +91,8 @@ std::string advice_on(const Error& error) {
     case Remedy::kAcceptScale:
       return "; --scale " + format_number(error.amount()) + " accepts that step";
     case Remedy::kColumns:
-      return "; --columns says which ones hold x, y and z, for example --columns 2,3,4";
+      return "; --columns says which ones hold x, y and z, for example --columns " +
+             columns_from(error.amount());
     case Remedy::kStandardInput:
       return "; clearway convert - < FILE takes it as standard input";
     case Remedy::kSampleMesh:
@@ -171,6 +178,12 @@ std::string advice_on(const Message& message) {
   }
   if (message.code == "loose-vertices") {
     return ", or search all vertices, and nothing else of the file, with --model-vertices";
+  }
+  if (message.code == "withheld-points") {
+    const bool kept = std::ranges::any_of(message.numbers, [](const auto& n) {
+      return n == std::pair{std::string("kept"), 1.0};
+    });
+    return kept ? "" : "; --keep-withheld keeps them";
   }
   if (message.code == "sideways") {
     return ". clearway run --forward and --up turn the model when it is read";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace clearway {
@@ -74,6 +75,22 @@ SlopedValue AlignmentProfile::at(double station) const {
                                                      : on_parabola(piece.point, station);
 }
 
+SlopedValue along_ramp(CantRamp ramp, double share) {
+  using std::numbers::pi;
+  const double t = share;
+  switch (ramp) {
+    case CantRamp::kLinear:
+      break;
+    case CantRamp::kBloss:
+      return {t * t * (3 - 2 * t), 6 * t * (1 - t)};
+    case CantRamp::kSinusoid:
+      return {t - std::sin(2 * pi * t) / (2 * pi), 1 - std::cos(2 * pi * t)};
+    case CantRamp::kCosine:
+      return {(1 - std::cos(pi * t)) / 2, pi * std::sin(pi * t) / 2};
+  }
+  return {t, 1};
+}
+
 SlopedValue AlignmentCant::at(double station) const {
   const auto next =
       std::upper_bound(points_.begin(), points_.end(), station,
@@ -81,8 +98,12 @@ SlopedValue AlignmentCant::at(double station) const {
   if (next == points_.begin()) return {points_.front().cant, 0};
   if (next == points_.end()) return {points_.back().cant, 0};
   const CantPoint &from = *(next - 1), &to = *next;
-  const double slope = (to.cant - from.cant) / (to.station - from.station);
-  return {from.cant + slope * (station - from.station), slope};
+  const double way = to.station - from.station, slope = (to.cant - from.cant) / way;
+  if (from.ramp == CantRamp::kLinear) {
+    return {from.cant + slope * (station - from.station), slope};
+  }
+  const SlopedValue part = along_ramp(from.ramp, (station - from.station) / way);
+  return {from.cant + (to.cant - from.cant) * part.value, slope * part.slope};
 }
 
 namespace {

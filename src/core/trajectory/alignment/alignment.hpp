@@ -64,12 +64,25 @@ class AlignmentProfile {
   std::vector<Piece> pieces_;
 };
 
+/// How the cant changes from one point to the next. t is the share of the way, from 0 to 1.
+enum class CantRamp {
+  kLinear,    ///< t
+  kBloss,     ///< 3 t^2 - 2 t^3
+  kSinusoid,  ///< t - sin(2 pi t) / (2 pi)
+  kCosine     ///< (1 - cos(pi t)) / 2
+};
+
+/// The share of a ramp's change that is reached at a share of its way, and the derivative of the
+/// one by the other.
+SlopedValue along_ramp(CantRamp ramp, double share);
+
 /// The cant at a station: how far the left rail is above the right one, in metres.
 struct CantPoint {
   double station = 0, cant = 0;
+  CantRamp ramp = CantRamp::kLinear;  ///< from here to the next point
 };
 
-/// The cant of an alignment, which changes evenly between its points and is kept beyond them.
+/// The cant of an alignment, which has ramps between its points and is kept beyond them.
 class AlignmentCant {
  public:
   /// points: at least one, with ascending stations.

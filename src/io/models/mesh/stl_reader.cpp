@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/util/format.hpp"
 #include "io/files/bytes.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
@@ -199,10 +200,14 @@ MeshFile read_stl(InputBuffer input) {
                              " bytes; expected a binary STL file with 84 or more, or text that "
                              "starts with `solid`");
   }
+  const bool longer = size > expected;
   refuse_byte(input.name(), 80,
               "declares " + std::to_string(start.triangles) + " triangles, that is " +
                   std::to_string(expected) + " bytes in all; the file has " + std::to_string(size) +
-                  ". It may be cut; export it again");
+                  (longer ? ", which is " + counted(size - expected, "byte") +
+                                " more. Triangles may be missing in the number, or something else "
+                                "was appended; export it again"
+                          : ". It may be cut; export it again"));
 }
 
 }  // namespace clearway

@@ -144,9 +144,8 @@ void remark_feet(const LandXml& xml, const AlignmentPlan& plan, AlignmentFile& o
            {{"metres", moved}});
 }
 
-/// The EPSG code of the coordinates; 0 where the file names none.
-long epsg_of(const LandXml& xml) {
-  const pugi::xml_node system = xml.root().child("CoordinateSystem");
+/// The EPSG code of a CoordinateSystem; 0 where it names none.
+long epsg_of(const LandXml& xml, pugi::xml_node system) {
   for (const char* name : {"epsgCode", "horizontalDatum"}) {
     std::string_view text = xml.attribute(system, name).value_or("");
     if (text.starts_with("EPSG:")) text.remove_prefix(5);
@@ -159,7 +158,20 @@ long epsg_of(const LandXml& xml) {
 }
 
 void remark_crs(const LandXml& xml, const std::string& environment, AlignmentFile& out) {
-  const long code = epsg_of(xml);
+  long code = 0;
+  for (const pugi::xml_node system : xml.root().children("CoordinateSystem")) {
+    const long found = epsg_of(xml, system);
+    if (code != 0 && found != 0 && found != code) {
+      out.warn("alignment-crs",
+               xml.name() + ": names two coordinate systems, EPSG:" + std::to_string(code) +
+                   " and EPSG:" + std::to_string(found) +
+                   "; the coordinates were not converted, so make sure that they are in that of "
+                   "the environment",
+               {{"alignment", static_cast<double>(code)}, {"other", static_cast<double>(found)}});
+      return;
+    }
+    if (code == 0) code = found;
+  }
   if (const auto other = other_epsg(code, environment)) {
     out.warn("alignment-crs", other_crs_text(xml.name(), code, *other, "alignment"),
              {{"alignment", static_cast<double>(code)}, {"environment", *other}});

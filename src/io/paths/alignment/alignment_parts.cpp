@@ -299,11 +299,8 @@ void remark_declared(const LandXml& xml, pugi::xml_node alignment, const PlanRea
 
 AlignmentPlan read_plan(const LandXml& xml, pugi::xml_node alignment,
                         const AlignmentOptions& options, AlignmentFile& out) {
-  const pugi::xml_node geometry = alignment.child("CoordGeom");
+  const pugi::xml_node geometry = xml.only_child(alignment, "CoordGeom");
   if (!geometry) xml.refuse_at(alignment, "has no CoordGeom; expected the elements of the plan");
-  if (const pugi::xml_node second = geometry.next_sibling("CoordGeom")) {
-    xml.refuse_at(second, "stands twice in its Alignment; expected it once");
-  }
   PlanReader read(xml, options);
   for (const pugi::xml_node node : geometry.children()) {
     if (node.type() == pugi::node_element) read.add(node);
@@ -326,21 +323,6 @@ AlignmentPlan read_plan(const LandXml& xml, pugi::xml_node alignment,
   remark_declared(xml, alignment, read, plan, out, name);
   return plan;
 }
-
-namespace {
-
-/// A list of names for a message, of which a file may have thousands.
-std::string listed(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 8;
-  std::string list;
-  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
-    list += (i == 0 ? "" : ", ") + excerpt(names[i]);
-  }
-  return names.size() > kMost ? list + " and " + format_count(names.size() - kMost) + " more"
-                              : list;
-}
-
-}  // namespace
 
 pugi::xml_node choose_by_name(const LandXml& xml, const std::vector<pugi::xml_node>& nodes,
                               const std::string& wanted, const std::string& noun,
@@ -399,6 +381,7 @@ class ProfileReader {
       point.curve = ProfilePoint::Curve::kCircle;
       point.radius = radius;
     }
+    if (!points.empty() && joins_last(node, point)) return;
     if (!points.empty() && !(point.station > points.back().station)) {
       xml_.refuse_at(node, "stands at station " + brief(numbers[0]) +
                                ", not after the point before it; expected ascending stations");
@@ -411,6 +394,28 @@ class ProfileReader {
   std::vector<pugi::xml_node> nodes;
 
  private:
+  /// Joins a PVI and the curve at it, which some programs write as two elements, to one point: the
+  /// curve. Returns false where this point and the one before it are no such pair.
+  bool joins_last(pugi::xml_node node, const ProfilePoint& point) {
+    ProfilePoint& before = points.back();
+    const bool is_pvi = kind_of(node) == "PVI", was_pvi = kind_of(nodes.back()) == "PVI";
+    if (is_pvi == was_pvi || !(std::abs(point.station - before.station) <= kSameStation)) {
+      return false;
+    }
+    if (!(std::abs(point.height - before.height) <= kDeclared)) {
+      const double unit = xml_.metres_per_unit();
+      xml_.refuse_at(node, "has the height " + brief(point.height / unit) + ", and " +
+                               excerpt(nodes.back().name()) + " at the same station " +
+                               brief(point.station / unit) + " has " + brief(before.height / unit) +
+                               "; expected one height at a station");
+    }
+    if (was_pvi) {
+      before = point;
+      nodes.back() = node;
+    }
+    return true;
+  }
+
   double positive(pugi::xml_node node, const char* name, const char* what) const {
     const double length = xml_.required_length(node, name, what);
     if (!(length >= 0)) {
@@ -491,6 +496,62 @@ constexpr NamedLine kLines[] = {{"center", CantLine::kCenter},
                                 {"leftRail", CantLine::kLeftRail},
                                 {"rightRail", CantLine::kRightRail}};
 
+struct NamedRamp {
+  std::string_view name;
+  CantRamp ramp;
+};
+
+/// The values of transitionType that are read. A clothoid's cant changes as its curvature does.
+constexpr NamedRamp kRamps[] = {{"linear", CantRamp::kLinear}, {"clothoid", CantRamp::kLinear},
+                                {"bloss", CantRamp::kBloss},   {"sinusoid", CantRamp::kSinusoid},
+                                {"cosine", CantRamp::kCosine}, {"sineHalfWave", CantRamp::kCosine}};
+
+/// How the cant changes from a station to the next one; nullopt where the file does not say.
+std::optional<CantRamp> ramp_of(const LandXml& xml, pugi::xml_node node) {
+  const auto type = xml.attribute(node, "transitionType");
+  if (!type) return std::nullopt;
+  const auto* const found =
+      std::ranges::find(kRamps, without_space_around(*type), &NamedRamp::name);
+  if (found != std::end(kRamps)) return found->ramp;
+  std::string known;
+  for (const NamedRamp& ramp : kRamps) {
+    known += (known.empty() ? "" : ", ") + std::string(ramp.name);
+  }
+  xml.refuse_at(node, "has transitionType=" + excerpt(*type) +
+                          ", a ramp of cant that is not read; expected " + known +
+                          ", or --cant none");
+}
+
+/// Warns where a station names a ramp that begins nowhere, while the ramp that ends there is of
+/// another kind, because the file may mean that one.
+void remark_ramps(const LandXml& xml, const std::vector<CantPoint>& points,
+                  const std::vector<bool>& named, AlignmentFile& out) {
+  constexpr int kSteps = 100;
+  std::size_t count = 0;
+  double most = 0, at = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const double change = points[i].cant - points[i - 1].cant;
+    const bool begins_none = i + 1 == points.size() || points[i + 1].cant == points[i].cant;
+    if (!named[i] || !begins_none || change == 0 || points[i].ramp == points[i - 1].ramp) continue;
+    ++count;
+    for (int step = 1; step < kSteps; ++step) {
+      const double share = static_cast<double>(step) / kSteps;
+      const double apart = std::abs(change * (along_ramp(points[i].ramp, share).value -
+                                              along_ramp(points[i - 1].ramp, share).value));
+      if (apart > most) at = points[i].station / xml.metres_per_unit();
+      most = std::max(most, apart);
+    }
+  }
+  if (count == 0) return;
+  out.warn("cant-transition",
+           xml.name() + ": " + counted(count, "station") +
+               " of cant names a transitionType where no ramp begins, and the ramp that ends there "
+               "has another one. A type was taken for the ramp that begins at its station; "
+               "otherwise the cant would differ by up to " +
+               metres_text(most) + " m before station " + metres_text(at),
+           {{"stations", static_cast<double>(count)}, {"metres", most}, {"station", at}});
+}
+
 /// The cant of a station, positive with the left rail high.
 CantPoint cant_point(const LandXml& xml, pugi::xml_node node) {
   const double station = xml.required_length(node, "station", "the internal station");
@@ -512,10 +573,14 @@ CantPoint cant_point(const LandXml& xml, pugi::xml_node node) {
   return {station, metres * ((curvature == "cw") == turned ? -1 : 1)};
 }
 
-std::vector<CantPoint> cant_points(const LandXml& xml, pugi::xml_node cant) {
+std::vector<CantPoint> cant_points(const LandXml& xml, pugi::xml_node cant, AlignmentFile& out) {
   std::vector<CantPoint> points;
+  std::vector<bool> named;  // whether the station of each point names its ramp
   for (const pugi::xml_node node : cant.children("CantStation")) {
-    const CantPoint point = cant_point(xml, node);
+    CantPoint point = cant_point(xml, node);
+    const auto ramp = ramp_of(xml, node);
+    point.ramp = ramp.value_or(CantRamp::kLinear);
+    named.push_back(ramp.has_value());
     if (!points.empty() && !(point.station > points.back().station)) {
       xml.refuse_at(node, "stands at station " + brief(point.station / xml.metres_per_unit()) +
                               ", not after the one before it; expected ascending stations");
@@ -525,6 +590,7 @@ std::vector<CantPoint> cant_points(const LandXml& xml, pugi::xml_node cant) {
   if (points.empty()) {
     xml.refuse_at(cant, "has no CantStation; expected at least one, or --cant none");
   }
+  remark_ramps(xml, points, named, out);
   return points;
 }
 
@@ -579,18 +645,15 @@ double rail_distance_of(const LandXml& xml, pugi::xml_node cant, std::optional<d
 
 void read_cant(const LandXml& xml, pugi::xml_node alignment, const AlignmentOptions& options,
                Alignment& track, AlignmentFile& out) {
-  const pugi::xml_node cant = alignment.child("Cant");
+  if (options.cant == CantLine::kNone && alignment.child("Cant")) return;
+  const pugi::xml_node cant = xml.only_child(alignment, "Cant", ", or --cant none");
   if (!cant) {
     if (options.cant == CantLine::kFile && !options.rail_distance) return;
     out.note("no-cant",
              xml.name() + ": the alignment has no cant, so options of cant change nothing");
     return;
   }
-  if (options.cant == CantLine::kNone) return;
-  if (const pugi::xml_node second = cant.next_sibling("Cant")) {
-    xml.refuse_at(second, "stands twice in its Alignment; expected it once, or --cant none");
-  }
-  std::vector<CantPoint> points = cant_points(xml, cant);
+  std::vector<CantPoint> points = cant_points(xml, cant, out);
   double most = 0;
   for (const CantPoint& point : points) most = std::max(most, std::abs(point.cant));
   const auto gauge = gauge_of(xml, cant);

@@ -99,11 +99,12 @@ LandXml::LandXml(const std::filesystem::path& path)
 }
 
 void LandXml::read_unit() {
-  const pugi::xml_node units = root().child("Units");
+  const pugi::xml_node units = only_child(root(), "Units");
   if (!units) {
     refuse_at(root(), "has no Units; expected Metric or Imperial with the attribute linearUnit");
   }
-  const pugi::xml_node metric = units.child("Metric"), imperial = units.child("Imperial");
+  const pugi::xml_node metric = only_child(units, "Metric");
+  const pugi::xml_node imperial = only_child(units, "Imperial");
   if (bool(metric) == bool(imperial)) {
     refuse_at(units, std::string(metric ? "has both Metric and" : "has neither Metric nor") +
                          " Imperial; expected one of them");
@@ -137,6 +138,16 @@ void LandXml::check_heights(pugi::xml_node system) const {
   }
   refuse_at(system, "has elevationUnit=" + excerpt(*name) + " and linearUnit=" +
                         excerpt(unit_name_) + "; expected one unit for heights and lengths");
+}
+
+pugi::xml_node LandXml::only_child(pugi::xml_node parent, const char* name,
+                                   const char* otherwise) const {
+  const pugi::xml_node node = parent.child(name);
+  if (const pugi::xml_node second = node.next_sibling(name)) {
+    refuse_at(second, "stands twice in its " + excerpt(parent.name()) + "; expected it once" +
+                          std::string(otherwise));
+  }
+  return node;
 }
 
 std::string LandXml::name_of(pugi::xml_node node) const {
@@ -192,11 +203,8 @@ std::vector<double> LandXml::numbers(pugi::xml_node node, std::size_t least, std
 
 std::optional<std::complex<double>> LandXml::find_point(pugi::xml_node parent,
                                                         const char* name) const {
-  const pugi::xml_node node = parent.child(name);
+  const pugi::xml_node node = only_child(parent, name);
   if (!node) return std::nullopt;
-  if (const pugi::xml_node second = node.next_sibling(name)) {
-    refuse_at(second, "stands twice in its " + excerpt(parent.name()) + "; expected it once");
-  }
   if (attribute(node, "pntRef")) {
     refuse_at(node,
               "refers to a point by pntRef, which is not read; expected its coordinates. "

@@ -27,6 +27,11 @@ class LandXml : public XmlText {
   const std::string& unit_name() const { return unit_name_; }
   bool is_imperial() const { return imperial_; }
 
+  /// The only child of that name; an empty node where there is none. Throws where there are two.
+  /// otherwise: another remedy than to have it once, for the message, such as ", or --cant none".
+  pugi::xml_node only_child(pugi::xml_node parent, const char* name,
+                            const char* otherwise = "") const;
+
   /// The attribute `name` of an element, in UTF-8; empty where it has none.
   std::string name_of(pugi::xml_node node) const;
 

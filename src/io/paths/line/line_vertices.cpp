@@ -16,6 +16,7 @@
 #include "io/files/json.hpp"
 #include "io/files/text_number.hpp"
 #include "io/paths/text/pose_rows.hpp"
+#include "io/paths/unread_columns.hpp"
 #include "io/scans/input_buffer.hpp"
 #include "io/scans/length_unit.hpp"
 #include "io/scans/text/point_blocks.hpp"
@@ -48,6 +49,7 @@ struct LineColumns {
   PlanColumns plan{};
   std::optional<std::size_t> station{}, cant{};
   std::string station_unit{}, cant_unit{};
+  std::vector<std::string> unread{};  ///< names of the other columns
 };
 
 constexpr std::string_view kStation[] = {"station", "chainage"}, kCant[] = {"cant"};
@@ -84,6 +86,8 @@ class LineTable {
                    {{"line", static_cast<double>(input_.line())}});
     }
     check_cant();
+    remark_unread_columns(name_, columns_->unread,
+                          columns_->plan.z ? PathTable::kRaisedLine : PathTable::kLine, remarks);
     return std::move(out_);
   }
 
@@ -109,6 +113,11 @@ class LineTable {
     LineColumns found{.separator = header.separator, .fields = header.names.size(), .plan = *plan};
     found.station = optional_column(header, kStation, found.station_unit);
     found.cant = optional_column(header, kCant, found.cant_unit);
+    for (std::size_t i = 0; i < header.names.size(); ++i) {
+      const bool read =
+          i == plan->x || i == plan->y || i == plan->z || i == found.station || i == found.cant;
+      if (!read && !header.names[i].empty()) found.unread.push_back(header.names[i]);
+    }
     std::vector<std::string> units{header.units[plan->x], header.units[plan->y]};
     if (plan->z) units.push_back(header.units[*plan->z]);
     set_unit(units, options_, name_, out_);

@@ -15,6 +15,7 @@
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
 #include "io/paths/text/pose_rows.hpp"
+#include "io/paths/unread_columns.hpp"
 #include "io/scans/text/point_blocks.hpp"
 #include "io/scans/text/table_header.hpp"
 
@@ -53,6 +54,7 @@ class TextTrajectory {
     }
     out.format = format_;
     if (rows_) rows_->finish(out);
+    remark_unread_columns(input_.name(), unread_, PathTable::kPoses, out);
     if (ends_in_number_) {
       out.warn("cut-text",
                input_.name() +
@@ -152,6 +154,7 @@ class TextTrajectory {
         guess(line);
       }
     }
+    if (columns_) unread_ = columns_->unread;
     rows_.emplace(format_, std::move(columns_), options_, input_.name());
   }
 
@@ -183,6 +186,7 @@ class TextTrajectory {
   TrajectoryOptions options_;
   TrajectoryFormat format_;             ///< kAuto before the first line of numbers
   std::optional<PoseColumns> columns_;  ///< columns that a header or a comment has named
+  std::vector<std::string> unread_;     ///< names of the columns that are not read
   bool started_ = false;                ///< whether a header has been read
   bool ends_in_number_ = false;   ///< whether the file ends in a number, as one that was cut may
   std::optional<PoseRows> rows_;  ///< exists from the first line of numbers on

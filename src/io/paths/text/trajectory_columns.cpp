@@ -170,6 +170,15 @@ std::optional<PoseColumns> pose_columns(const ColumnNames& given) {
   if (columns.station) columns.station_unit = header.units[*columns.station];
   columns.name = find_one(header, kName);
   if (!columns.name) columns.name = find_one(header, kIndex);
+  // `trajectory follow` writes the column path_pose for people.
+  constexpr std::string_view kForPeople = "path_pose";
+  for (std::size_t i = 0; i < given.names.size(); ++i) {
+    if (given.names[i] == kForPeople) continue;
+    const bool read = std::ranges::find(columns.position, i) != columns.position.end() ||
+                      std::ranges::find(columns.rotation, i) != columns.rotation.end() ||
+                      i == columns.time || i == columns.station || i == columns.name;
+    if (!read && !given.names[i].empty()) columns.unread.push_back(given.names[i]);
+  }
   return columns;
 }
 

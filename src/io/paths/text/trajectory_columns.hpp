@@ -28,6 +28,7 @@ struct PoseColumns {
   std::optional<std::size_t> name{};     ///< column with a name or an index
   std::optional<std::size_t> station{};  ///< column called station, whose texts may be numbers
   std::string station_unit{};            ///< its unit in the header, in lower case, or empty
+  std::vector<std::string> unread{};     ///< names of the columns that no pose is made from
 };
 
 /// The columns that a header names; nullopt where one is missing or named twice.

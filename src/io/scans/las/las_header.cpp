@@ -157,6 +157,7 @@ LasPublicHeader read_las_header(InputBuffer& input) {
   header.points = load<std::uint32_t>(bytes + 107);
   header.point_format = load<std::uint8_t>(bytes + 104) & kFormatBits;
   header.compressed = (load<std::uint8_t>(bytes + 104) & ~kFormatBits) != 0;
+  header.has_flags = minor > 0;
   header.quantisation = read_quantisation(input, bytes);
   header.box = read_box(bytes);
 

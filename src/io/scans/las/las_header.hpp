@@ -32,6 +32,20 @@ constexpr LasClassField las_class_field(unsigned point_format) {
   return point_format < 6 ? LasClassField{15, 0x1F} : LasClassField{16, 0xFF};
 }
 
+/// The flags in the class byte of point formats 0 to 5, as bits of PointFlags. Points in an overlap
+/// have class 12 there.
+constexpr std::uint8_t las_flags_of_class_byte(std::uint8_t byte) {
+  constexpr std::uint8_t kMask = 0x1F, kOverlapClass = 12;
+  return static_cast<std::uint8_t>(byte >> 5 |
+                                   ((byte & kMask) == kOverlapClass ? PointFlags::kOverlap : 0));
+}
+
+/// The flags of a record in a point format, as bits of PointFlags.
+inline std::uint8_t las_flags_of(const std::byte* record, unsigned point_format) {
+  const auto byte = std::to_integer<std::uint8_t>(record[15]);
+  return point_format < 6 ? las_flags_of_class_byte(byte) : static_cast<std::uint8_t>(byte & 0x0F);
+}
+
 /// The byte at which the GPS time, a double, begins in the records of a point format; nullopt where
 /// it has none.
 constexpr std::optional<std::size_t> las_time_byte(unsigned point_format) {
@@ -84,6 +98,7 @@ struct LasPublicHeader {
   std::uint64_t points;
   unsigned point_format;   ///< 0 to 10
   bool compressed;         ///< whether the file is LAZ
+  bool has_flags;          ///< whether points have flags; in LAS 1.0 their bits belong to the class
   std::uint16_t encoding;  ///< the bits of "global encoding"
   Quantisation quantisation;
   std::optional<Box> box;     ///< declared box of all points, where it holds finite numbers

@@ -89,6 +89,7 @@ class LasReader final : public PointReader {
     batch.positions.clear();
     batch.quanta.clear();
     batch.classes.clear();
+    batch.flags.clear();
     batch.times.clear();
     const std::size_t most = InputBuffer::kCapacity / header_.record_bytes;
     while (batch.quanta.size() < kBatchPoints) {
@@ -119,6 +120,7 @@ class LasReader final : public PointReader {
     input_.read_at(read.first, read.span());
     batch.quanta.clear();
     batch.classes.clear();
+    batch.flags.clear();
     batch.times.clear();
     append(read.span(), batch);
     if (bytes) *bytes = std::move(read);
@@ -187,6 +189,11 @@ class LasReader final : public PointReader {
       std::memcpy(point++, record, sizeof *point);
       *of_point++ = field.of(record);
     }
+    if (header_.has_flags) {
+      for (record = bytes.data(); record != end; record += stride) {
+        out.flags.push_back(las_flags_of(record, header_.point_format));
+      }
+    }
     if (!time_byte_) return;
     for (record = bytes.data(); record != end; record += stride) {
       out.times.push_back(load<double>(record + *time_byte_));
@@ -233,6 +240,7 @@ std::unique_ptr<PointReader> read_compressed(InputBuffer input, const LasPublicH
   laz::Scheme scheme =
       laz::read_scheme(name, records.laz, header.point_format, header.record_bytes);
   scheme.with_times = with_times && scheme.has_times();
+  scheme.with_flags = header.has_flags;
   read_las_tail(input, header, records.crs);
   CloudInfo info;
   info.quantisation = header.quantisation;

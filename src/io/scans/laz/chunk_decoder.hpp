@@ -13,17 +13,19 @@ namespace clearway::laz {
 
 using Quanta = std::array<std::int32_t, 3>;
 
-/// Room for `count` points and, in the same order, their classes and GPS times. times: null unless
-/// the scheme asks for them.
+/// Room for `count` points and, in the same order, their classes, flags (bits of PointFlags) and
+/// GPS times. flags, times: null unless the scheme asks for them.
 struct PointRoom {
   Quanta* quanta = nullptr;
   std::uint8_t* classes = nullptr;
+  std::uint8_t* flags = nullptr;
   double* times = nullptr;
   std::size_t count = 0;
 
-  PointRoom first(std::size_t points) const { return {quanta, classes, times, points}; }
+  PointRoom first(std::size_t points) const { return {quanta, classes, flags, times, points}; }
   PointRoom behind(std::size_t points) const {
-    return {quanta + points, classes + points, times ? times + points : nullptr, count - points};
+    return {quanta + points, classes + points, flags ? flags + points : nullptr,
+            times ? times + points : nullptr, count - points};
   }
 };
 

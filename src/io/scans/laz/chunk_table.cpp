@@ -176,6 +176,7 @@ std::uint64_t threads() {
 
 ChunkGroups::ChunkGroups(const Scheme& scheme)
     : one_at_a_time_(scheme.record_bytes > kMostRecordBytes),
+      with_flags_(scheme.with_flags),
       with_times_(scheme.with_times),
       decoders_([scheme] { return make_chunk_decoder(scheme); }) {}
 
@@ -201,9 +202,10 @@ std::size_t ChunkGroups::decode(const InputBuffer& input, std::span<const Chunk>
   const std::size_t taken = begins.size() - 1;
   points_.resize(begins.back());
   classes_.resize(begins.back());
+  if (with_flags_) flags_.resize(begins.back());
   if (with_times_) times_.resize(begins.back());
-  const PointRoom room{points_.data(), classes_.data(), with_times_ ? times_.data() : nullptr,
-                       points_.size()};
+  const PointRoom room{points_.data(), classes_.data(), with_flags_ ? flags_.data() : nullptr,
+                       with_times_ ? times_.data() : nullptr, points_.size()};
   std::vector<std::optional<DamagedChunk>> damages(taken);
   const auto decode_one = [&](std::size_t i) {
     try {

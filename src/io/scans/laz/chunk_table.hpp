@@ -47,14 +47,17 @@ class ChunkGroups {
   void decode_alone(const InputBuffer& input, const Chunk& chunk, PointRoom points);
   std::span<const Quanta> points() const { return points_; }
   std::span<const std::uint8_t> classes() const { return classes_; }  ///< classes of points()
+  /// Flags of points(); empty unless the scheme asks for them.
+  std::span<const std::uint8_t> flags() const { return flags_; }
   /// GPS times of points(); empty unless the scheme asks for them.
   std::span<const double> times() const { return times_; }
 
  private:
   bool one_at_a_time_;
-  bool with_times_;
+  bool with_flags_, with_times_;
   std::vector<Quanta> points_;
   std::vector<std::uint8_t> classes_;
+  std::vector<std::uint8_t> flags_;
   std::vector<double> times_;
   tbb::enumerable_thread_specific<std::unique_ptr<ChunkDecoder>> decoders_;
 };

@@ -1,5 +1,5 @@
 // Decoder for point formats 6 to 10. The attributes of a chunk's points are in separate layers, so
-// only those of the coordinates, of the class and, where wanted, of the GPS time are read.
+// only those of the coordinates, of the class and, where wanted, of flags and GPS time are read.
 #include <array>
 #include <numeric>
 
@@ -41,6 +41,7 @@ class LayeredDecoder final : public ChunkDecoder {
     std::array<std::byte, kPointBytes> point;
     std::copy_n(record.begin(), kPointBytes, point.begin());
     class_ = las_class_field(6).of(point.data());
+    flags_of_first_ = las_flags_of(point.data(), 6);
     time_ = load<double>(point.data() + *las_time_byte(6));
     const auto points = take_number(cursor);
     if (points != chunk.points) {
@@ -64,6 +65,8 @@ class LayeredDecoder final : public ChunkDecoder {
     classes_.open(input, layers + sizes[0] + sizes[1], sizes[2]);
     has_heights_ = sizes[1] > 0;
     has_classes_ = sizes[2] > 0;
+    has_flags_ = scheme_.with_flags && sizes[3] > 0;
+    if (has_flags_) flags_.open(input, layers + sizes[0] + sizes[1] + sizes[2], sizes[3]);
     has_times_ = scheme_.with_times && sizes[kTimeLayer] > 0;
     if (!has_times_) return;
     point_.begin_times(time_);
@@ -75,6 +78,7 @@ class LayeredDecoder final : public ChunkDecoder {
     if (is_first_ && points.count > 0) {
       points.quanta[0] = first_;
       points.classes[0] = class_;
+      if (points.flags) points.flags[0] = flags_of_first_;
       if (points.times) points.times[0] = time_;
       points = points.behind(1);
       is_first_ = false;
@@ -82,15 +86,17 @@ class LayeredDecoder final : public ChunkDecoder {
     if (points.count == 0) return;
     if (has_times_) {
       run<true, true>(points);
-    } else if (has_classes_) {
+    } else if (has_classes_ || has_flags_) {
       run<true, false>(points);
     } else {
       run<false, false>(points);
     }
     if (!has_classes_) std::fill_n(points.classes, points.count, class_);
+    if (!has_flags_ && points.flags) std::fill_n(points.flags, points.count, flags_of_first_);
     if (!has_times_ && points.times) std::fill_n(points.times, points.count, time_);
     if (plane_.decoder.damaged() || (has_heights_ && heights_.decoder.damaged()) ||
-        (has_classes_ && classes_.decoder.damaged()) || (has_times_ && times_.decoder.damaged())) {
+        (has_classes_ && classes_.decoder.damaged()) || (has_flags_ && flags_.decoder.damaged()) ||
+        (has_times_ && times_.decoder.damaged())) {
       throw DamagedChunk{"holds bits that no encoder writes"};
     }
   }
@@ -100,6 +106,7 @@ class LayeredDecoder final : public ChunkDecoder {
       plane_.check();
       if (has_heights_) heights_.check();
       if (has_classes_) classes_.check();
+      if (has_flags_) flags_.check();
       if (has_times_) times_.check();
     }
     return end_;
@@ -111,10 +118,12 @@ class LayeredDecoder final : public ChunkDecoder {
   static constexpr std::size_t kPointLayers = 9;  // layers of POINT14
   static constexpr std::size_t kTimeLayer = 8;
 
+  /// kMayHaveClasses: whether there may be layers of classes or flags.
   template <bool kMayHaveClasses, bool kHasTimes>
   void run(PointRoom points) {
     ArithmeticDecoder plane = plane_.decoder, heights = heights_.decoder;
-    ArithmeticDecoder classes = classes_.decoder, times = times_.decoder;
+    ArithmeticDecoder classes = classes_.decoder, flags = flags_.decoder;
+    ArithmeticDecoder times = times_.decoder;
     for (std::size_t i = 0; i < points.count; ++i) {
       plane.move_to(plane_.window.ahead(plane.cursor()));
       if (has_heights_) heights.move_to(heights_.window.ahead(heights.cursor()));
@@ -122,6 +131,10 @@ class LayeredDecoder final : public ChunkDecoder {
       if (kMayHaveClasses && has_classes_) {
         classes.move_to(classes_.window.ahead(classes.cursor()));
         points.classes[i] = point_.next_class(classes);
+      }
+      if (kMayHaveClasses && has_flags_) {
+        flags.move_to(flags_.window.ahead(flags.cursor()));
+        points.flags[i] = point_.next_flags(flags);
       }
       if constexpr (kHasTimes) {
         times.move_to(times_.window.ahead(times.cursor()));
@@ -131,6 +144,7 @@ class LayeredDecoder final : public ChunkDecoder {
     plane_.decoder = plane;
     heights_.decoder = heights;
     classes_.decoder = classes;
+    flags_.decoder = flags;
     times_.decoder = times;
   }
 
@@ -151,17 +165,19 @@ class LayeredDecoder final : public ChunkDecoder {
   }
 
   Scheme scheme_;
-  Layer plane_, heights_, classes_, times_;
+  Layer plane_, heights_, classes_, flags_, times_;
   Point14 point_;
   Quanta first_{};
   /// Class of the first point, and of all points where there is no layer of classes.
   std::uint8_t class_ = 0;
+  /// Flags of the first point, and of all points where there is no layer of flags.
+  std::uint8_t flags_of_first_ = 0;
   /// GPS time of the first point, and of all points where there is no layer of times.
   double time_ = 0;
   std::uint64_t layers_bytes_ = 0;
   std::uint64_t end_ = 0;
   bool is_first_ = false, has_more_ = false;
-  bool has_heights_ = false, has_classes_ = false, has_times_ = false;
+  bool has_heights_ = false, has_classes_ = false, has_flags_ = false, has_times_ = false;
 };
 
 }  // namespace

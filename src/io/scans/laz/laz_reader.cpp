@@ -20,9 +20,11 @@ laz::PointRoom room_in(PointBatch& batch, std::size_t first, std::size_t count,
                        const Scheme& scheme) {
   batch.quanta.resize(first + count);
   batch.classes.resize(first + count);
+  batch.flags.resize(scheme.with_flags ? first + count : 0);
   batch.times.resize(scheme.with_times ? first + count : 0);
+  std::uint8_t* const flags = scheme.with_flags ? batch.flags.data() + first : nullptr;
   double* const times = scheme.with_times ? batch.times.data() + first : nullptr;
-  return {batch.quanta.data() + first, batch.classes.data() + first, times, count};
+  return {batch.quanta.data() + first, batch.classes.data() + first, flags, times, count};
 }
 
 /// Reads a file with a chunk table.
@@ -43,6 +45,7 @@ class TabledReader final : public PointReader {
     batch.positions.clear();
     batch.quanta.clear();
     batch.classes.clear();
+    batch.flags.clear();
     batch.times.clear();
     while (batch.quanta.size() < kBatchPoints) {
       if (!ready_.empty()) {
@@ -50,6 +53,10 @@ class TabledReader final : public PointReader {
         const auto classes = groups_.classes().last(ready_.size()).first(part.size());
         batch.quanta.insert(batch.quanta.end(), part.begin(), part.end());
         batch.classes.insert(batch.classes.end(), classes.begin(), classes.end());
+        if (scheme_.with_flags) {
+          const auto flags = groups_.flags().last(ready_.size()).first(part.size());
+          batch.flags.insert(batch.flags.end(), flags.begin(), flags.end());
+        }
         if (scheme_.with_times) {
           const auto times = groups_.times().last(ready_.size()).first(part.size());
           batch.times.insert(batch.times.end(), times.begin(), times.end());

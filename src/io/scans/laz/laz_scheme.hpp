@@ -28,6 +28,7 @@ struct Scheme {
   std::uint32_t layers = 0;        ///< number of layers of all items, where layered
   /// Whether the GPS times are wanted too; only where the points have some.
   bool with_times = false;
+  bool with_flags = false;  ///< whether the flags are wanted too
 
   /// Whether the points have GPS times.
   bool has_times() const { return chunks == Chunks::kLayered || gps_time_version > 0; }

@@ -104,6 +104,7 @@ class PointwiseDecoder final : public ChunkDecoder {
     const auto record = window_.take(cursor, record_bytes_);
     first_ = load<Quanta>(record.data());
     first_class_ = las_class_field(0).of(record.data());
+    first_flags_ = las_flags_of(record.data(), 0);
     point_.begin(record.data());
     others_.begin(record.data() + kPointBytes);
     is_first_ = true;
@@ -116,6 +117,7 @@ class PointwiseDecoder final : public ChunkDecoder {
     if (is_first_ && points.count > 0) {
       points.quanta[0] = first_;
       points.classes[0] = first_class_;
+      if (points.flags) points.flags[0] = first_flags_;
       if (points.times) points.times[0] = others_.time();
       points = points.behind(1);
       is_first_ = false;
@@ -146,6 +148,7 @@ class PointwiseDecoder final : public ChunkDecoder {
       decoder.move_to(window_.ahead(decoder.cursor()));
       points.quanta[i] = point_.next(decoder);
       points.classes[i] = point_.point_class();
+      if (points.flags) points.flags[i] = point_.flags();
       if constexpr (kHasOthers) {
         decoder = others_.skip(decoder);
         if (points.times) points.times[i] = others_.time();
@@ -162,7 +165,7 @@ class PointwiseDecoder final : public ChunkDecoder {
   Point point_;
   OtherItems others_;
   Quanta first_{};
-  std::uint8_t first_class_ = 0;
+  std::uint8_t first_class_ = 0, first_flags_ = 0;
   bool is_first_ = false;
   bool ends_there_ = true;
   std::uint64_t end_ = 0;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,21 +28,30 @@ class LookAlike {
   /// Takes the next line of data, which has no leading blanks.
   void add(std::string_view line);
 
-  /// What the lines look like, for a message; empty for points.
-  std::string verdict() const;
+  /// What a text holds that is no table of points.
+  struct Verdict {
+    std::string what;  ///< for a message; empty for points
+    /// The column in which x is likely to be, counted from 1.
+    std::size_t first_column = 2;
+  };
+  Verdict verdict() const;
 
  private:
   static constexpr std::size_t kMostNumbers = 20;
+  static constexpr std::size_t kMostForms = 5;  ///< numbers of a line whose form is noted
 
   struct Row {
     std::array<double, kMostNumbers> numbers{};
     std::size_t count = 0;  ///< how many numbers the line starts with
     bool whole = false;     ///< whether the line consists of these numbers alone
-    /// Whether each of the first two is written as a whole number such as 0, 1 or 2.
-    std::array<bool, 2> counting{};
+    /// Whether each of the first numbers is written as a whole number such as 0, 1 or 2.
+    std::array<bool, kMostForms> counting{};
+    /// Digits of each of the first numbers after its decimal point.
+    std::array<std::size_t, kMostForms> decimals{};
   };
 
   std::size_t fewest_numbers() const;
+  std::size_t most_decimals(std::size_t column) const;
   /// How many numbers every line has; 0 where lines differ or hold anything else.
   std::size_t same_numbers() const;
   template <typename Holds>
@@ -52,6 +62,11 @@ class LookAlike {
   bool positions_and_quaternions() const;
   bool index_first() const;
   bool time_first() const;
+  bool evenly_spaced(std::size_t column) const;
+  bool normals_fourth() const;
+  bool varies(std::size_t column) const;
+  bool all_counting(std::size_t column) const;
+  bool grid_first(std::size_t slow, std::size_t fast) const;
 
   std::vector<Row> rows_;
 };
@@ -59,6 +74,7 @@ class LookAlike {
 // Deviation of a norm from 1, as for the poses of a trajectory.
 constexpr double kUnitTolerance = 0.01;
 constexpr double kFarthestMetres = 1e8;    // greater than any coordinate on Earth
+constexpr double kHighestMetres = 2e4;     // greater than any height on Earth
 constexpr std::size_t kFewestIndices = 3;  // lines
 constexpr std::size_t kFewestTimes = 10;   // lines
 
@@ -86,6 +102,14 @@ bool is_counting(const char* begin, const char* end) {
   return begin != end && std::all_of(begin, end, [](char c) { return c >= '0' && c <= '9'; });
 }
 
+/// The digits of a number after its decimal point.
+std::size_t decimals_of(const char* begin, const char* end) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  const char* const point = std::find(begin, end, '.');
+  if (point == end) return 0;
+  return static_cast<std::size_t>(std::find_if_not(point + 1, end, is_digit) - (point + 1));
+}
+
 void LookAlike::add(std::string_view line) {
   Row row;
   const char* at = line.data();
@@ -93,7 +117,10 @@ void LookAlike::add(std::string_view line) {
   while (row.count < kMostNumbers) {
     const char* const start = at;
     if (!parse_number(at, end, row.numbers[row.count])) break;
-    if (row.count < row.counting.size()) row.counting[row.count] = is_counting(start, at);
+    if (row.count < kMostForms) {
+      row.counting[row.count] = is_counting(start, at);
+      row.decimals[row.count] = decimals_of(start, at);
+    }
     ++row.count;
     if (at == end || skip_separator(at, end) == 0) break;
   }
@@ -159,35 +186,100 @@ bool LookAlike::index_first() const {
   return counts(0, 1) && !counts(1, 0) && !counts(1, 1);
 }
 
+std::size_t LookAlike::most_decimals(std::size_t column) const {
+  std::size_t most = 0;
+  for (const Row& row : rows_) most = std::max(most, row.decimals[column]);
+  return most;
+}
+
+/// Whether the numbers of a column ascend or descend by equal steps, as far as their digits say.
+bool LookAlike::evenly_spaced(std::size_t column) const {
+  const double first = rows_[0].numbers[column], last = rows_.back().numbers[column];
+  const double step = (last - first) / static_cast<double>(rows_.size() - 1);
+  const double digit = std::pow(10.0, -static_cast<double>(most_decimals(column)));
+  if (!(std::abs(step) > 0)) return false;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const double even = first + step * static_cast<double>(i);
+    if (!(std::abs(rows_[i].numbers[column] - even) <= 1.01 * digit)) return false;
+  }
+  return true;
+}
+
+bool LookAlike::varies(std::size_t column) const {
+  return !all_rows([&](const Row& row) { return row.numbers[column] == rows_[0].numbers[column]; });
+}
+
+bool LookAlike::all_counting(std::size_t column) const {
+  return all_rows([=](const Row& row) { return row.counting[column]; });
+}
+
+/// Whether the fourth to sixth column are a normal, as behind the coordinates of points.
+bool LookAlike::normals_fourth() const {
+  return fewest_numbers() >= 6 &&
+         all_rows([](const Row& row) { return is_unit(std::span(row.numbers).subspan(3, 3)); });
+}
+
+/// Whether the first column is a time and the next three are coordinates. Points may be sorted by
+/// x, so other signs are needed: docs/design/conversion.md, "Signs of a time".
 bool LookAlike::time_first() const {
-  if (rows_.size() < kFewestTimes || fewest_numbers() < 4) return false;
+  if (rows_.size() < kFewestTimes || fewest_numbers() < 4 || !varies(0)) return false;
   const bool never_back =
       std::is_sorted(rows_.begin(), rows_.end(),
                      [](const Row& a, const Row& b) { return a.numbers[0] < b.numbers[0]; });
-  return never_back && all_rows([](const Row& row) {
-           return row.numbers[0] > kFarthestMetres && std::abs(row.numbers[1]) < kFarthestMetres &&
-                  std::abs(row.numbers[2]) < kFarthestMetres &&
-                  std::abs(row.numbers[3]) < kFarthestMetres;
-         });
+  const auto within = [this](std::size_t column, double limit) {
+    return all_rows([=](const Row& row) { return std::abs(row.numbers[column]) < limit; });
+  };
+  if (!never_back || !within(1, kFarthestMetres) || !within(2, kFarthestMetres) ||
+      !within(3, kFarthestMetres)) {
+    return false;
+  }
+  if (all_rows([](const Row& row) { return row.numbers[0] > kFarthestMetres; })) return true;
+  const auto [fewest, most] = std::minmax({most_decimals(1), most_decimals(2), most_decimals(3)});
+  if (fewest == 0 || normals_fourth() || !varies(1) || !varies(3)) return false;
+  if (most_decimals(0) > most || all_counting(0)) return true;
+  const bool no_height = within(3, kHighestMetres) && all_rows([](const Row& row) {
+                           return std::abs(row.numbers[2]) > kHighestMetres;
+                         });
+  return no_height || (fewest == most && evenly_spaced(0) && !evenly_spaced(1));
 }
 
-std::string LookAlike::verdict() const {
+/// Whether two columns are the row and the column of a grid, of which one runs through while the
+/// other stays, and the next three are coordinates. slow, fast: 0 and 1 in either order.
+bool LookAlike::grid_first(std::size_t slow, std::size_t fast) const {
+  if (rows_.size() < kFewestIndices || fewest_numbers() < 5) return false;
+  if (!all_counting(0) || !all_counting(1)) return false;
+  for (std::size_t column = 2; column < 5; ++column) {
+    if (most_decimals(column) == 0) return false;
+  }
+  const auto goes_on = [=](const Row& a, const Row& b) {
+    const double lines = b.numbers[slow] - a.numbers[slow];
+    const double places = b.numbers[fast] - a.numbers[fast];
+    return lines == 0 ? places > 0 : lines > 0 && places < 0;
+  };
+  return !normals_fourth() &&
+         std::adjacent_find(rows_.begin(), rows_.end(), std::not_fn(goes_on)) == rows_.end();
+}
+
+LookAlike::Verdict LookAlike::verdict() const {
   const std::size_t n = same_numbers();
   // A number may precede or follow each matrix: its index, or its quality.
   for (const std::size_t numbers : {12u, 16u}) {
     if ((n == numbers && matrices(0)) || (n == numbers + 1 && (matrices(0) || matrices(1)))) {
-      return "a trajectory (" + std::to_string(n) + " numbers a line, a rigid " +
-             (numbers == 12 ? "3 x 4" : "4 x 4") + " matrix)";
+      return {"a trajectory (" + std::to_string(n) + " numbers a line, a rigid " +
+              (numbers == 12 ? "3 x 4" : "4 x 4") + " matrix)"};
     }
   }
   if (n >= 8 && times_and_quaternions()) {
-    return "a trajectory (" + std::to_string(n) + " numbers a line: time, position, quaternion)";
+    return {"a trajectory (" + std::to_string(n) + " numbers a line: time, position, quaternion)"};
   }
   if (n == 7 && positions_and_quaternions()) {
-    return "a trajectory (7 numbers a line: position, quaternion)";
+    return {"a trajectory (7 numbers a line: position, quaternion)", 1};
   }
-  if (index_first()) return "a table whose first column is the point's number";
-  if (time_first()) return "a table whose first column is a time";
+  if (grid_first(0, 1) || grid_first(1, 0)) {
+    return {"a table whose first two columns are the row and the column of a grid", 3};
+  }
+  if (index_first()) return {"a table whose first column is the point's number"};
+  if (time_first()) return {"a table whose first column is a time"};
   return {};
 }
 
@@ -414,13 +506,13 @@ class PrologueReader {
     for (std::size_t i = 1; i < LookAlike::kMostLines && next_data_line(input_, line); ++i) {
       look_alike.add(line);
     }
-    const std::string verdict = look_alike.verdict();
-    if (verdict.empty()) return;
-    refuse_line(input_.name(), number,
-                "looks like " + verdict +
-                    "; expected points, with x, y and z in the first three "
-                    "columns",
-                options_.may_choose ? Remedy::kColumns : Remedy::kNone);
+    const LookAlike::Verdict verdict = look_alike.verdict();
+    if (verdict.what.empty()) return;
+    refuse(input_.name(),
+           "line " + std::to_string(number) + ": looks like " + verdict.what +
+               "; expected points, with x, y and z in the first three columns",
+           options_.may_choose ? Remedy::kColumns : Remedy::kNone,
+           static_cast<double>(verdict.first_column));
   }
 
   InputBuffer& input_;

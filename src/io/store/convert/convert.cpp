@@ -43,6 +43,7 @@
 #include "io/store/convert/source_description.hpp"
 #include "io/store/convert/split_tree.hpp"
 #include "io/store/convert/stage_clocks.hpp"
+#include "io/store/convert/withheld_cubes.hpp"
 #include "io/store/store_metadata.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/store/store_writer.hpp"
@@ -233,7 +234,8 @@ class Conversion {
         threads_(threads),
         progress_(progress),
         folder_(folder_of(options.output)),
-        output_(options.output, options.overwrite) {}
+        output_(options.output, options.overwrite),
+        withheld_(options.memory_bytes / 8) {}
 
   ConversionReport run() {
     EnvironmentSource environment(options_.inputs, environment_options(), progress_);
@@ -276,8 +278,9 @@ class Conversion {
     Distribution distribution(tree, in_memory_ ? std::nullopt : std::optional(folder_),
                               static_cast<std::size_t>(threads_));
     distribute(environment, counted.hashes(), lattice, tree, places, distribution, threads_,
-               clocks_, progress_, origins_);
+               clocks_, progress_, origins_, &withheld_);
     progress_.end();
+    if (report_.metadata.withheld) report_.metadata.withheld->cubes = withheld_.take();
     environment.refuse_changed();  // so that the sources' hashes are those of what was converted
     report_.largest_change = environment.largest_change();
     report_.temporary_bytes = distribution.temporary_bytes();
@@ -306,6 +309,7 @@ class Conversion {
             .ignore_crs = options_.ignore_crs,
             .skip_unreadable = options_.skip_unreadable,
             .columns = options_.columns,
+            .keep_withheld = options_.keep_withheld,
             .with_times = !options_.origins_path.empty(),
             .temporary_folder = folder_};
   }
@@ -329,6 +333,11 @@ class Conversion {
       report_.metadata.source_points = environment.points_of_files();
       // Files of poses have 0 points.
       report_.metadata.source_points.resize(report_.metadata.sources.size());
+    }
+    const std::uint64_t withheld = environment.withheld_points();
+    (options_.keep_withheld ? report_.kept_withheld_points : report_.withheld_points) = withheld;
+    if (withheld > 0) {
+      report_.metadata.withheld = {.points = withheld, .kept = options_.keep_withheld};
     }
     report_.absent_points = environment.absent_points();
     report_.non_finite_points = environment.non_finite_points();
@@ -438,6 +447,7 @@ class Conversion {
   std::filesystem::path folder_;
   PendingFile output_;
   ConversionReport report_;
+  WithheldCubes withheld_;
   OriginTable* origins_ = nullptr;  ///< null where no point has an origin
   std::size_t units_in_flight_ = 1;
   bool in_memory_ = false;
@@ -519,7 +529,8 @@ bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
   return found.cell_points == options.cell_points &&
          found.layout == layout_name(options.regular_size) &&
          std::all_of(found.quantisation.scale, found.quantisation.scale + 3, wanted) &&
-         (!options.strict || found.point_count == found.input_points || !found.warnings.empty()) &&
+         (!options.strict || found.points_without_place() == 0 || !found.warnings.empty()) &&
+         (!found.withheld || found.withheld->kept == options.keep_withheld) &&
          has_wanted_unit(options.unit, found.unit) && has_wanted_heights(options, found) &&
          has_wanted_origins(options, found) &&
          (options.ignore_crs || std::ranges::none_of(found.warnings, is_of_ignored_crs));

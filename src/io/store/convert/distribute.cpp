@@ -8,6 +8,7 @@
 #include "io/store/convert/origin_table.hpp"
 #include "io/store/convert/points_hash.hpp"
 #include "io/store/convert/read_points.hpp"
+#include "io/store/convert/withheld_cubes.hpp"
 
 namespace clearway {
 namespace {
@@ -138,7 +139,7 @@ class Places {
 void distribute(EnvironmentSource& environment, const CountedHashes& counted,
                 const Lattice& lattice, const SplitTree& tree, PlaceCounter& places,
                 Distribution& distribution, int threads, StageClocks& clocks, Progress& progress,
-                OriginTable* origins) {
+                OriginTable* origins, WithheldCubes* withheld) {
   const Grouper group(lattice, tree);
   PointsHash hash(environment.quantisation());
   ClassesHash classes;
@@ -158,6 +159,7 @@ void distribute(EnvironmentSource& environment, const CountedHashes& counted,
         has_classes |= !batch.classes.empty();
         order.assign(grouped);
         if (origins) origins->count(batch);
+        if (withheld) withheld->add(batch);
       },
       [&](const GroupedBatch& grouped) {
         const auto running = clocks.measure(Stage::kDistribute);

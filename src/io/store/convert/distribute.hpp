@@ -20,6 +20,7 @@
 namespace clearway {
 
 class OriginTable;
+class WithheldCubes;
 
 /// A point to be distributed to its unit, 20 bytes. As no input has as many as 2^56 points, the
 /// highest byte of the source index holds the point's class.
@@ -85,9 +86,10 @@ class Distribution {
 /// Performs the distribution pass, which puts every point to those of its unit, in source order.
 /// Throws InputError when the input is not what was counted, ResourceError when the disk is full.
 /// places: counts the points at its places. origins: counts the points of each basis, or is null.
+/// withheld: collects the cubes of points that are left out as withheld, or is null.
 void distribute(EnvironmentSource& environment, const CountedHashes& counted,
                 const Lattice& lattice, const SplitTree& tree, PlaceCounter& places,
                 Distribution& distribution, int threads, StageClocks& clocks, Progress& progress,
-                OriginTable* origins = nullptr);
+                OriginTable* origins = nullptr, WithheldCubes* withheld = nullptr);
 
 }  // namespace clearway

@@ -14,6 +14,7 @@
 #include "io/store/convert/coordinate_range.hpp"
 #include "io/store/convert/read_points.hpp"
 #include "io/store/convert/spooled_reader.hpp"
+#include "io/store/convert/withheld_cubes.hpp"
 
 namespace clearway {
 namespace {
@@ -134,7 +135,7 @@ void EnvironmentSource::choose_offset_and_scale(Progress& progress) {
     const std::uint64_t first = file_points_ - count;
     for (std::size_t i = 0; i < count; ++i) {
       const Vec3 p = point_of(records.points, infos_[file_], i);
-      if (is_finite(p)) range.add(p, file_, first + i);
+      if (is_finite(p) && !leaves_out(records.points, i)) range.add(p, file_, first + i);
     }
     progress.advance(count);
   }
@@ -157,7 +158,7 @@ const std::shared_ptr<PointReader>& EnvironmentSource::reader(std::size_t file) 
 void EnvironmentSource::rewind() {
   file_ = piece_ = 0;
   file_points_ = next_source_ = 0;
-  input_points_ = non_finite_points_ = absent_points_ = 0;
+  input_points_ = non_finite_points_ = absent_points_ = withheld_points_ = 0;
   largest_change_ = 0;
   points_of_files_.clear();
   if (stream_) stream_->rewind();
@@ -218,6 +219,8 @@ void EnvironmentSource::note(const QuantaBatch& batch) {
   input_points_ += batch.records;
   non_finite_points_ += batch.non_finite_points;
   absent_points_ += batch.absent_points;
+  if (withheld_points_ == 0) first_withheld_ = batch.first_withheld;
+  withheld_points_ += batch.withheld_points;
   largest_change_ = std::max(largest_change_, batch.largest_change);
 }
 
@@ -267,6 +270,7 @@ void EnvironmentSource::convert(RecordBatch& records, QuantaBatch& batch, bool w
   batch.classes.clear();
   batch.non_finite_points = batch.absent_points = 0;
   batch.largest_change = 0;
+  note_withheld(records, batch);
   if (shifts_.empty() || !infos_[records.file].quantisation) {
     append_rounded(records, batch);
   } else {
@@ -277,7 +281,7 @@ void EnvironmentSource::convert(RecordBatch& records, QuantaBatch& batch, bool w
   records.points = {};
 }
 
-/// Keeps the classes of the points that were not dropped.
+/// Keeps the classes of the points that were not left out.
 void EnvironmentSource::keep_classes(RecordBatch& records, QuantaBatch& out) {
   std::vector<std::uint8_t>& classes = records.points.classes;
   const auto is_set = [](std::uint8_t value) { return value != 0; };
@@ -287,8 +291,49 @@ void EnvironmentSource::keep_classes(RecordBatch& records, QuantaBatch& out) {
   out.classes = std::move(classes);
 }
 
+namespace {
+
+MetreCube cube_of(const Vec3& p, double edge) {
+  MetreCube cube{};
+  for (int k = 0; k < 3; ++k) {
+    const double index = std::floor(p[k] / edge);
+    cube[static_cast<std::size_t>(k)] =
+        static_cast<std::int32_t>(std::clamp(index, kLeastQuantum, kGreatestQuantum));
+  }
+  return cube;
+}
+
+}  // namespace
+
+/// Counts the records that are withheld, and finds their cubes where they are left out.
+void EnvironmentSource::note_withheld(const RecordBatch& records, QuantaBatch& out) const {
+  const PointBatch& batch = records.points;
+  out.withheld_points = 0;
+  out.withheld_cubes.clear();
+  const double edge = metre_cube_edge(crs_.unit);
+  for (std::size_t i = 0; i < batch.flags.size(); ++i) {
+    if (!batch.is_withheld(i)) continue;
+    if (out.withheld_points++ == 0) out.first_withheld = records.first_source + i;
+    if (options_.keep_withheld) continue;
+    const MetreCube cube = cube_of(point_of(batch, infos_[records.file], i), edge);
+    // Neighbours in a file mostly share a cube.
+    if (out.withheld_cubes.empty() || out.withheld_cubes.back() != cube) {
+      out.withheld_cubes.push_back(cube);
+    }
+  }
+  keep_once(out.withheld_cubes);
+}
+
 void EnvironmentSource::append_kept(RecordBatch& records, QuantaBatch& out) const {
   out.quanta = std::move(records.points.quanta);
+  if (!options_.keep_withheld && out.withheld_points > 0) {
+    for (std::uint32_t i = 0; i < out.quanta.size(); ++i) {
+      if (records.points.is_withheld(i)) continue;
+      out.quanta[out.offsets.size()] = out.quanta[i];
+      out.offsets.push_back(i);
+    }
+    out.quanta.resize(out.offsets.size());
+  }
   const std::size_t file = records.file;
   const Quantisation& own = *infos_[file].quantisation;
   if (own == quantisation_) return;
@@ -315,8 +360,11 @@ void EnvironmentSource::append_rounded(const RecordBatch& records, QuantaBatch& 
   auto absent = batch.absent.begin();
   for (std::size_t i = 0; i < batch.size(); ++i) {
     const Vec3 p = point_of(batch, infos_[records.file], i);
-    if (!is_finite(p)) {
-      if (absent != batch.absent.end() && *absent == i) {
+    const bool withheld = leaves_out(batch, i);
+    if (withheld || !is_finite(p)) {
+      if (withheld) {
+        // Counted already.
+      } else if (absent != batch.absent.end() && *absent == i) {
         ++out.absent_points;
         ++absent;
       } else {

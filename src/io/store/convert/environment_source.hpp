@@ -21,6 +21,7 @@ struct EnvironmentOptions {
   bool ignore_crs = false;        ///< see ConvertOptions::ignore_crs
   bool skip_unreadable = false;   ///< whether to leave out files that cannot be read to their end
   std::vector<std::string> columns{};  ///< columns of texts, see PointReadOptions
+  bool keep_withheld = false;          ///< whether points with the flag `withheld` are kept
   bool with_times = false;             ///< whether GPS times are read too, where files have them
   std::filesystem::path temporary_folder = ".";
 };
@@ -94,6 +95,10 @@ class EnvironmentSource {
   const std::vector<std::uint64_t>& points_of_files() const { return points_of_files_; }
   /// Number of records of the files that hold no point, by the rules of their format.
   std::uint64_t absent_points() const { return absent_points_; }
+  /// Number of points with the flag `withheld`.
+  std::uint64_t withheld_points() const { return withheld_points_; }
+  /// The source index of the first of them.
+  std::uint64_t first_withheld() const { return first_withheld_; }
   /// Largest |stored - read| of any coordinate, metres.
   double largest_change() const { return largest_change_; }
 
@@ -106,6 +111,10 @@ class EnvironmentSource {
   std::shared_ptr<PointReader> converted(std::shared_ptr<PointReader> reader) const;
   const std::shared_ptr<PointReader>& reader(std::size_t file);
   void read_piece(RecordBatch& records, PieceBytes* bytes) const;
+  bool leaves_out(const PointBatch& batch, std::size_t point) const {
+    return !options_.keep_withheld && batch.is_withheld(point);
+  }
+  void note_withheld(const RecordBatch& records, QuantaBatch& out) const;
   void append_kept(RecordBatch& records, QuantaBatch& out) const;
   void append_rounded(const RecordBatch& records, QuantaBatch& out) const;
   static void keep_classes(RecordBatch& records, QuantaBatch& out);
@@ -135,6 +144,8 @@ class EnvironmentSource {
   std::uint64_t non_finite_points_ = 0;
   std::uint64_t first_non_finite_ = 0;
   std::uint64_t absent_points_ = 0;
+  std::uint64_t withheld_points_ = 0;
+  std::uint64_t first_withheld_ = 0;
   double largest_change_ = 0;
 };
 

@@ -47,6 +47,8 @@ std::optional<Message> warning_on_skipped(std::span<const std::string> reasons) 
 
 namespace {
 
+// Greatest share of withheld points that causes no more than a note.
+constexpr double kMostWithheld = 0.01;
 constexpr double kMostAbsent = 0.99;  // greatest share of absent records that is not reported
 
 /// A share as a percentage: "12.3 %".
@@ -71,6 +73,19 @@ void warn_of_missing(const EnvironmentSource& environment, const StoreMetadata& 
                  ") with NaN or infinite coordinates are left out; the first is " +
                  name_of(environment, environment.first_non_finite()),
              {{"points", non_finite}, {"share", non_finite / records}});
+  }
+  const auto withheld = static_cast<double>(environment.withheld_points());
+  if (withheld > 0) {
+    const bool kept = metadata.withheld && metadata.withheld->kept;
+    log.add({kept || withheld <= kMostWithheld * records ? Message::Severity::kNote
+                                                         : Message::Severity::kWarning,
+             "withheld-points",
+             format_count(environment.withheld_points()) + " of " +
+                 format_count(metadata.input_points) + " points (" +
+                 percentage(withheld / records) + ") have the flag `withheld` and are " +
+                 (kept ? "kept; the first is " : "left out as deleted; the first is ") +
+                 name_of(environment, environment.first_withheld()),
+             {{"points", withheld}, {"share", withheld / records}, {"kept", kept ? 1.0 : 0.0}}});
   }
   if (absent > kMostAbsent * records && metadata.point_count > 0) {
     log.warn("absent-points",

@@ -183,7 +183,9 @@ PathOrigins::OfBatch PathOrigins::origins_of(const QuantaBatch& batch) const {
   }
   std::size_t step = 0;
   double added = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t i = 0; i < batch.times.size(); ++i) {
+  if (batch.quanta.empty()) out.runs.push_back({batch.first_source, std::nullopt});
+  for (std::size_t point = 0; point < batch.quanta.size(); ++point) {
+    const std::size_t i = batch.offsets.empty() ? point : batch.offsets[point];
     const double time = batch.times[i];
     std::optional<OriginQuanta> origin;
     if (std::isfinite(time)) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/scans/point_reader.hpp"
+#include "io/store/store_metadata.hpp"
 
 namespace clearway {
 
@@ -20,7 +21,8 @@ struct RecordBatch {
   PointBatch points;  ///< the records, where they have been read
 };
 
-/// Consecutive finite points of the environment in the store's integers.
+/// Consecutive points of the environment in the store's integers, without those that are not finite
+/// or withheld.
 struct QuantaBatch {
   std::size_t file = 0;            ///< number of the input that all points belong to
   std::uint64_t first_source = 0;  ///< source index of the batch's first input point
@@ -37,6 +39,11 @@ struct QuantaBatch {
   /// Source index of the first non-finite point, where there is one.
   std::uint64_t first_non_finite = 0;
   std::uint64_t absent_points = 0;
+  /// Records with the flag `withheld`, and where they are left out the cubes in which they lie,
+  /// each once.
+  std::uint64_t withheld_points = 0;
+  std::uint64_t first_withheld = 0;  ///< source index of the first of them, where there is one
+  std::vector<MetreCube> withheld_cubes;
   double largest_change = 0;  ///< largest |stored - read| of any coordinate, metres
   PieceBytes bytes;           ///< the bytes from which a piece was read, where requested
 

@@ -15,6 +15,7 @@ class SpooledReader final : public PointReader {
         stream_(std::move(stream)),
         file_(File::create_temporary(folder)),
         classes_(File::create_temporary(folder)),
+        flags_(File::create_temporary(folder)),
         times_(File::create_temporary(folder)) {}
 
   const CloudInfo& info() const override { return info_; }
@@ -38,7 +39,9 @@ class SpooledReader final : public PointReader {
     }
     file_.write(std::as_bytes(std::span(batch.quanta)));
     classes_.write(std::as_bytes(std::span(batch.classes)));
+    flags_.write(std::as_bytes(std::span(batch.flags)));
     times_.write(std::as_bytes(std::span(batch.times)));
+    has_flags_ = has_flags_ || !batch.flags.empty();
     has_times_ = has_times_ || !batch.times.empty();
     spooled_ += batch.quanta.size();
     return true;
@@ -50,6 +53,8 @@ class SpooledReader final : public PointReader {
     file_.read_at(next_ * sizeof(Quanta), std::as_writable_bytes(std::span(batch.quanta)));
     batch.classes.resize(batch.quanta.size());
     classes_.read_at(next_, std::as_writable_bytes(std::span(batch.classes)));
+    batch.flags.resize(has_flags_ ? batch.quanta.size() : 0);
+    flags_.read_at(next_, std::as_writable_bytes(std::span(batch.flags)));
     batch.times.resize(has_times_ ? batch.quanta.size() : 0);
     times_.read_at(next_ * sizeof(double), std::as_writable_bytes(std::span(batch.times)));
     next_ += batch.quanta.size();
@@ -60,8 +65,9 @@ class SpooledReader final : public PointReader {
   std::unique_ptr<PointReader> stream_;  // null once read to its end
   File file_;
   File classes_;  ///< one byte per point; streams are LAS, which has classes
+  File flags_;    ///< the flags of each point, where the stream has them
   File times_;    ///< the GPS time of each point, where the stream was asked for them
-  bool has_times_ = false;
+  bool has_flags_ = false, has_times_ = false;
   std::uint64_t spooled_ = 0;
   std::uint64_t next_ = 0;
 };

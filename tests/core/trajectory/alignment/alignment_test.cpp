@@ -123,6 +123,21 @@ TEST_CASE("cant changes evenly between its stations and is kept beyond them") {
   CHECK(cant.at(400).slope == 0);
 }
 
+TEST_CASE("ramps of cant join their ends, and their slopes are the derivatives of their heights") {
+  for (const CantRamp ramp :
+       {CantRamp::kLinear, CantRamp::kBloss, CantRamp::kSinusoid, CantRamp::kCosine}) {
+    const AlignmentCant cant({{100, 0.05, ramp}, {150, -0.1}});
+    INFO(static_cast<int>(ramp));
+    CHECK(cant.at(100).value == 0.05);
+    CHECK(cant.at(125).value == Approx(-0.025));
+    CHECK(cant.at(std::nextafter(150.0, 0.0)).value == Approx(-0.1));
+    for (double station = 100.5; station < 150; station += 0.5) {
+      const double rise = cant.at(station + 1e-4).value - cant.at(station - 1e-4).value;
+      CHECK(std::abs(rise / 2e-4 - cant.at(station).slope) < 1e-8);
+    }
+  }
+}
+
 TEST_CASE("a track without cant stands upright on its slope") {
   Alignment track = straight_track();
   track.level = 7;

@@ -86,7 +86,9 @@ TEST_CASE("STL that is cut, lies or holds what it cannot is refused") {
   const std::string binary = binary_stl(unit_cube());
   CHECK_THAT(refusal("a.stl", binary.substr(0, 600)),
              Contains("byte 80") && Contains("12 triangles") && Contains("684 bytes"));
-  CHECK_THAT(refusal("a.stl", binary + "more"), Contains("byte 80"));
+  const std::string longer = refusal("a.stl", binary + "more");
+  CHECK_THAT(longer, Contains("byte 80") && Contains("688") && Contains("4 bytes more") &&
+                         !Contains("cut"));
   CHECK_THAT(refusal("a.stl", "short"), Contains("84 or more"));
   CHECK_THAT(refusal("a.stl", ""), Contains("84 or more"));
   std::string nan = binary;
@@ -284,6 +286,24 @@ TEST_CASE("meshes and drawings of other formats are refused by name") {
     CHECK_THAT(refusal(name, "any text"), Contains("Export the model as STL, OBJ or PLY"));
   }
   CHECK_THAT(refusal("a.dat", "ISO-10303-21;\n"), Contains("STEP"));
+}
+
+TEST_CASE("a mesh that is longer than it declares is refused as longer") {
+  const TriangleMesh cube = unit_cube();
+  struct Row {
+    std::string name, bytes, what;
+  };
+  const Row rows[] = {
+      {"a.stl", binary_stl(cube) + std::string(50, 't'), "50 bytes more"},
+      {"a.stl", ascii_stl(cube) + "more\n", "expected `solid NAME`"},
+      {"a.off", off_text(cube) + "3 0 1 2\n", "more than the 8 vertices"},
+      {"a.ply", ply_mesh(cube, "ascii") + "3 0 1 2\n", "more than"},
+      {"a.ply", ply_mesh(cube, "binary_little_endian") + "more", "more than the header declares"}};
+  for (const Row& row : rows) {
+    INFO(row.bytes.substr(0, 30));
+    const std::string message = refusal(row.name, row.bytes);
+    CHECK_THAT(message, Contains(row.what) && !Contains("cut"));
+  }
 }
 
 TEST_CASE("a cut mesh that declares its size is refused at every byte") {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -442,6 +443,82 @@ TEST_CASE("profiles that make no sense are refused with their line") {
              Contains("one side"));
   CHECK_THAT(middle("<UnsymParaCurve lengthIn=\"5\">1100 2</UnsymParaCurve>"),
              Contains("lengthOut"));
+}
+
+TEST_CASE("a PVI and the curve at it are one point, in either order") {
+  struct Row {
+    std::string curve;
+    std::string height;  ///< of the PVI at station 1100
+    std::string answer;  ///< "same" as without the PVI, or a part of the refusal
+  };
+  const std::string parabola = R"(<ParaCurve length="40">1100 102</ParaCurve>)";
+  const Row rows[] = {
+      {parabola, "102", "same"},
+      {parabola, "102.0005", "same"},
+      {R"(<UnsymParaCurve lengthIn="20" lengthOut="60">1100 102</UnsymParaCurve>)", "102", "same"},
+      {R"(<CircCurve radius="2000">1100 102</CircCurve>)", "102", "same"},
+      {parabola, "102.25", "102.25"},
+      {parabola, "102.25", "one height"},
+      {parabola + parabola, "102", "ascending stations"},
+      {"<PVI>1100 102</PVI>", "102", "ascending stations"}};
+  const auto file_of = [](const std::string& middle) {
+    return with_profile("<PVI>1000 100</PVI>" + middle + "<PVI>1200 100</PVI>");
+  };
+  for (const Row& row : rows) {
+    const std::string pvi = "<PVI>1100 " + row.height + "</PVI>";
+    for (const std::string& both : {pvi + row.curve, row.curve + pvi}) {
+      INFO(both);
+      if (row.answer != "same") {
+        CHECK_THAT(refusal_of(file_of(both)), Contains(row.answer));
+        continue;
+      }
+      CHECK(made_of(file_of(both)).poses == made_of(file_of(row.curve)).poses);
+    }
+  }
+}
+
+TEST_CASE("a ramp of cant has the form that the station before it names") {
+  struct Row {
+    std::string type;
+    double share;  ///< of the change, after a fifth of the ramp
+  };
+  const Row rows[] = {{"", 0.2},
+                      {"linear", 0.2},
+                      {"clothoid", 0.2},
+                      {"bloss", 0.104},
+                      {"sinusoid", 0.2 - std::sin(0.4 * std::numbers::pi) / (2 * std::numbers::pi)},
+                      {"cosine", (1 - std::cos(0.2 * std::numbers::pi)) / 2},
+                      {" sineHalfWave ", (1 - std::cos(0.2 * std::numbers::pi)) / 2}};
+  const auto file_of = [](const std::string& first, const std::string& second) {
+    const auto station = [](double at, double cant, const std::string& type) {
+      const std::string named = type.empty() ? "" : " transitionType=\"" + type + "\"";
+      return cant_station(at, cant, "curvature=\"cw\"" + named);
+    };
+    return with_more(
+        cant_of(R"(gauge="1.435" rotationPoint="center")",
+                station(1000, 0, first) + station(1100, 150, second) + station(1178.6, 150, "")));
+  };
+  for (const Row& row : rows) {
+    INFO(row.type);
+    const Made made =
+        made_of(file_of(row.type, row.type), {.station_from = 1020, .station_to = 1020});
+    CHECK(made.codes().empty());
+    const double cant = made.poses.at(0).rotation[7] * std::hypot(1, 0.01) * 1.5;
+    CHECK(std::abs(cant - 0.15 * row.share) < 1e-12);
+  }
+  for (const std::string type : {"biquadratic", "revBloss", "weinerBogen", "Bloss", ""}) {
+    INFO(type);
+    const std::string named = "transitionType=\"" + type + "\"";
+    LandFile file = file_of("", "");
+    file.more.insert(file.more.find("curvature"), named + " ");
+    CHECK_THAT(refusal_of(file),
+               Contains(named) && Contains("sinusoid") && Contains("--cant none"));
+    CHECK(refusal_of(file, {.cant = CantLine::kNone}) == "read");
+  }
+  // The type at the end of the ramp may be meant for this ramp.
+  const Made doubtful = made_of(file_of("", "bloss"));
+  REQUIRE(doubtful.codes() == Codes{"cant-transition"});
+  CHECK(doubtful.remarks[0].numbers.at(1).second == Approx(0.01443).epsilon(1e-3));
 }
 
 TEST_CASE("cant turns the track about the line that the file or the caller names") {

@@ -107,6 +107,47 @@ TEST_CASE("what is no LandXML is refused by what it is") {
              Contains("holds no Alignment"));
 }
 
+TEST_CASE("elements with the prefix of the file's namespace are read") {
+  const std::string space = "http://www.landxml.org/schema/LandXML-1.2";
+  std::string prefixed;
+  for (std::size_t i = 0; i < kGood.size(); ++i) {
+    prefixed += kGood[i];
+    const bool closes = kGood[i] == '/' && kGood[i - 1] == '<';
+    const bool opens = kGood[i] == '<' && kGood[i + 1] != '/' && kGood[i + 1] != '?';
+    if (opens || closes) prefixed += "lx:";
+  }
+  const auto declared = [](const std::string& text, const std::string& root,
+                           const std::string& names) {
+    return replaced(text, root, root + " " + names);
+  };
+  const std::string own = "xmlns:lx=\"" + space + "\"", other = "xmlns:x=\"urn:other\"";
+  const std::string root = "<lx:LandXML";
+  CHECK(refusal_of_text(declared(prefixed, root, own)) == "read");
+  CHECK(refusal_of_text(declared(prefixed, root, own + " " + other)) == "read");
+  CHECK(refusal_of_text(declared(prefixed, root, other)) == "read");
+  CHECK(refusal_of_text(declared(kGood, "<LandXML", "xmlns=\"" + space + "\" " + other)) == "read");
+  // A part may have a prefix where the rest has none.
+  const std::string mixed = replaced(
+      replaced(kGood, "<Line ", "<a:Line xmlns:a=\"" + space + "\" "), "</Line>", "</a:Line>");
+  CHECK(refusal_of_text(declared(mixed, "<LandXML", "xmlns=\"" + space + "\"")) == "read");
+  CHECK_THAT(refusal_of_text(mixed), Contains("\"a:Line\"") && Contains("line 7"));
+  const std::string twice = replaced(prefixed, "<lx:Units", "<lx:Units xmlns:lx=\"urn:other\"");
+  CHECK_THAT(refusal_of_text(declared(twice, root, own)), Contains("prefix \"lx\""));
+  // Messages name the line also where names were shortened.
+  const std::string wrong =
+      replaced(declared(prefixed, root, own), "length=\"100\"", "length=\"a\"");
+  CHECK_THAT(refusal_of_text(wrong), Contains("line 7: XML element \"Line\""));
+}
+
+TEST_CASE("what may stand once is refused where it stands twice") {
+  const std::string metric = R"(<Metric linearUnit="meter"/>)";
+  CHECK_THAT(refusal_with("<Units>", "<Units>" + metric + "</Units><Units>"),
+             Contains("\"Units\"") && Contains("stands twice"));
+  CHECK_THAT(refusal_with(metric, metric + metric), Contains("\"Metric\"") && Contains("twice"));
+  CHECK_THAT(refusal_with("<Profile>", "<CoordGeom/><Profile>"),
+             Contains("\"CoordGeom\"") && Contains("twice"));
+}
+
 TEST_CASE("empty lists and missing parts are refused by name") {
   CHECK_THAT(refusal_with("<CoordGeom>", "<CoordGeom/><Other>"), Contains("malformed"));
   LandFile empty;

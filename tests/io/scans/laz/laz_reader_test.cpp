@@ -29,10 +29,12 @@ void check_reads(const LazBytes& laz) {
   const ReadCloud read = read_all(*reader);
   CHECK(read.quanta == expected);
   CHECK(read.classes == classes_of(laz));
+  CHECK(read.flags == flags_of(laz));
   reader->rewind();
   const ReadCloud again = read_all(*reader);
   CHECK(again.quanta == expected);
   CHECK(again.classes == classes_of(laz));
+  CHECK(again.flags == flags_of(laz));
   const auto stream = open_las_stream(File::open_for_reading(path), scratch.folder());
   CHECK(stream->can_rewind());
   CHECK(read_all(*stream).quanta == expected);
@@ -75,6 +77,22 @@ TEST_CASE("LAZ holds the integers of its points, in every format and division in
     }
   }
   check_reads(laz);
+}
+
+TEST_CASE("the flags of LAZ are those of its points, where they change often, once or never") {
+  const unsigned format = GENERATE(from_range(std::begin(kLazFormats), std::end(kLazFormats)));
+  CAPTURE(format);
+  LazBytes laz = laz_bytes(format, 3000);
+  laz.chunks = {700};
+  std::mt19937 random(format);
+  for (const bool often : {true, false}) {
+    for (std::size_t i = 0; i < laz.points.size(); ++i) {
+      const auto bits = static_cast<unsigned>(often ? random() % 16 : i < 1000 ? 4 : 2);
+      laz.points[i].flags = static_cast<std::uint8_t>(bits);
+      laz.points[i].classification = static_cast<std::uint8_t>(bits << 5 | 12);
+    }
+    check_reads(laz);
+  }
 }
 
 TEST_CASE("GPS times of LAZ are those of its points, where they are asked for") {

@@ -30,13 +30,14 @@ std::vector<Vec3> points_of_columns(const std::string& text, const Columns& colu
 struct Refusal {
   std::string text;
   Remedy remedy = Remedy::kNone;
+  double amount = 0;
 };
 
 Refusal refusal_of_columns(const std::string& text, const Columns& columns = {}) {
   try {
     cloud_of(text, columns);
   } catch (const InputError& error) {
-    return {error.what(), error.remedy()};
+    return {error.what(), error.remedy(), error.amount()};
   }
   return {};
 }
@@ -210,6 +211,97 @@ TEST_CASE("what looks like something else than points is refused with what it lo
   check(
       table(20, [](int i) { return print("%.6f %.3f 8.1 2.7", 1623423423.25 + 0.1 * i, 0.3 * i); }),
       "time");
+}
+
+TEST_CASE("times and grid indices before the coordinates are recognised") {
+  struct Row {
+    const char* what;
+    double first_column;
+    std::function<std::string(int)> line;
+  };
+  const auto places = [](int i) {  // a beam that turns
+    return print("%.3f %.3f %.3f", 5 * std::cos(0.07 * i), 5 * std::sin(0.07 * i), 0.3 + 0.01 * i);
+  };
+  const auto far = [](int i) {
+    return print("%.3f %.3f %.3f", 5e5 + 0.7 * i * i, 5.4e6 - 0.3 * i * i, 101.0 + 0.1 * i);
+  };
+  const Row rows[] = {
+      {"time", 2, [&](int i) { return print("%.6f ", 388721.25 + 1e-5 * i) + places(i); }},
+      // Two returns of a beam have one time.
+      {"time", 2, [&](int i) { return print("%.6f ", 388721.25 + 1e-3 * (i / 2)) + places(i); }},
+      {"time", 2, [&](int i) { return print("%.3f ", 0.1 * i) + places(i) + " 7"; }},
+      {"time", 2, [&](int i) { return print("%.2f ", 0.05 * i) + places(i) + " 7 8 9"; }},
+      {"time", 2, [&](int i) { return print("%d ", 1000 + 50 * i) + places(i); }},
+      {"time", 2, [&](int i) { return print("%d ", 1000 + 7 * i + i % 3) + places(i); }},
+      // With as many digits as the coordinates and steps that differ, a map tells.
+      {"time", 2, [&](int i) { return print("%.3f ", 12.0 + 0.01 * i * i) + far(i); }},
+      {"row", 3, [&](int i) { return print("%d %d ", i / 7, i % 7) + places(i); }},
+      {"row", 3, [&](int i) { return print("%d %d ", i % 7, i / 7) + places(i) + " 0.5"; }},
+      {"row", 3, [&](int i) { return print("0 %d ", 3 * i) + places(i) + " 9 8 7"; }},
+      {"row", 3, [&](int i) { return print("%d %d ", 1 + i / 5, 1 + 2 * (i % 5)) + far(i); }}};
+  for (const Row& row : rows) {
+    for (const int lines : {12, 100, 250}) {
+      const std::string text = table(lines, row.line);
+      INFO(text.substr(0, 200));
+      const Refusal refusal = refusal_of_columns(text);
+      CHECK_THAT(refusal.text, Contains(row.what) && Contains("line 1"));
+      CHECK(refusal.remedy == Remedy::kColumns);
+      CHECK(refusal.amount == row.first_column);
+      const auto x = static_cast<int>(row.first_column);
+      CHECK(
+          points_of_columns(text, {std::to_string(x), std::to_string(x + 1), std::to_string(x + 2)})
+              .size() == static_cast<std::size_t>(lines));
+    }
+  }
+}
+
+TEST_CASE("points that are sorted or lie in a grid are no times and no indices") {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> share(0, 1);
+  const std::vector<std::function<std::string(int)>> layouts{
+      // Profiles by ascending x: along an axis, across it, along a curve, with attributes.
+      [&](int i) { return print("%.3f 5.250 %.3f %.3f", 0.05 * i, share(random), share(random)); },
+      [&](int i) { return print("%.3f %.3f %.3f 0.5", 0.05 * i, 0.02 * i, share(random)); },
+      [&](int i) { return print("%.3f %.3f %.3f 17", 0.05 * i, share(random), share(random)); },
+      [&](int i) {
+        return print("%.3f %.3f %.3f %.1f", 0.05 * i, share(random), share(random),
+                     -9 * share(random));
+      },
+      [&](int i) {
+        return print("%.3f %.3f %.3f %.3f", 0.05 * i + 0.03 * share(random), 9 * share(random),
+                     share(random), share(random));
+      },
+      [&](int i) {
+        return print("%.3f %.3f %.3f %d %d %d", 0.05 * i, share(random), share(random), i % 255, 7,
+                     9);
+      },
+      [&](int i) {
+        return print("%.3f %.3f %.3f %.3f %.3f 0.000", 0.05 * i, std::sin(0.1 * i), 1.0 * i,
+                     std::cos(0.3 * i), std::sin(0.3 * i));
+      },
+      [&](int i) {
+        return print("%.2f %.2f %.2f %.6f", 5e5 + 0.05 * i, 5.4e6 + share(random), share(random),
+                     4e5 + 1e-5 * i);
+      },
+      [&](int i) { return print("%g %g %g", 0.5 * i, share(random), share(random)); },
+      // Whole numbers, and heights above a grid of them.
+      [&](int i) { return print("%d %d %d %d", i / 7, i % 7, i % 3, i % 5); },
+      [&](int i) { return print("%d %d %.2f 1 2 3", i / 7, i % 7, share(random)); },
+      [&](int i) { return print("%d %d %.2f %.2f", i / 7, i % 7, share(random), share(random)); },
+      [&](int i) {
+        return print("%d %d %.2f %.4f %.4f 0.0000", i / 7, i % 7, share(random), std::cos(0.3 * i),
+                     std::sin(0.3 * i));
+      },
+      [&](int i) {
+        return print("%d %d %.2f %.2f %.2f", i / 7, (5 * i) % 7, share(random), share(random),
+                     share(random));
+      }};
+  for (std::size_t k = 0; k < layouts.size(); ++k) {
+    for (const int lines : {12, 100, 250}) {
+      INFO("layout " << k << ", " << lines << " lines");
+      CHECK(refusal_of_columns(table(lines, layouts[k])).text.empty());
+    }
+  }
 }
 
 TEST_CASE("rows of scans in every usual layout pass") {

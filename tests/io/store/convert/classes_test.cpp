@@ -44,7 +44,7 @@ TEST_CASE("a store of points without classes, or all of class 0, says nothing of
   const auto points = cube_cloud(300, -4000, 4000, 3);
   SECTION("class 0") { write_classed(folder / "a.las", points, random_classes(300, 0)); }
   SECTION("class 0 with flags") {
-    write_classed(folder / "a.las", points, std::vector<std::uint8_t>(300, 0xE0), 3);
+    write_classed(folder / "a.las", points, std::vector<std::uint8_t>(300, 0x60), 3);
   }
   std::filesystem::path input = folder / "a.las";
   SECTION("another format") {

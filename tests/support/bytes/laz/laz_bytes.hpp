@@ -91,7 +91,7 @@ struct LazBytes {
     const std::size_t next = layered() ? 16 : 15;
     LasBytes::put(bytes, next, point.classification);
     if (layered()) {
-      LasBytes::put(bytes, 15, static_cast<std::uint8_t>(point.channel << 4));
+      LasBytes::put(bytes, 15, static_cast<std::uint8_t>(point.channel << 4 | point.flags));
     } else {
       LasBytes::put(bytes, 16, point.angle);
     }
@@ -130,6 +130,7 @@ struct LazBytes {
     bytes += classes;
     for (unsigned i = 3; i < layers; ++i) {
       std::string layer(i % 4, 'l');
+      if (i == 3) layer = coder.flags_change ? coder.flags.finish() : "";
       if (i == 8) layer = coder.times_change ? coder.times.finish() : "";
       add(sizes, static_cast<std::uint32_t>(layer.size()));
       bytes += layer;

@@ -18,6 +18,7 @@ struct LazPoint {
   unsigned channel = 0;              ///< the scanner channel; formats 6 to 8
   std::uint16_t intensity = 0, source = 0;
   std::uint8_t classification = 0, user_data = 0;
+  std::uint8_t flags = 0;  ///< four bits; formats 6 to 8
   std::int8_t angle = 0;
   std::uint64_t gps_time = 0;  ///< the bits of the double
   std::array<std::uint16_t, 4> colour{};
@@ -194,8 +195,8 @@ class ColourCoder {
   std::vector<SymbolCoder> bytes_ = std::vector<SymbolCoder>(6, SymbolCoder(256));
 };
 
-/// Encodes the layers of POINT14 that hold coordinates, classes and GPS times. Pulses have at most
-/// two returns.
+/// Encodes the layers of POINT14 that hold coordinates, classes, flags and GPS times. Pulses have
+/// at most two returns.
 class Point14Coder {
  public:
   explicit Point14Coder(const LazPoint& first) : current_(first.channel) { start(current_, first); }
@@ -231,15 +232,17 @@ class Point14Coder {
         channel->classes.try_emplace((last.classification & 31u) * 2 + single, 256u).first->second,
         point.classification);
     classes_change = classes_change || point.classification != last.classification;
+    flags.symbol(channel->flags.try_emplace(last.flags, 64u).first->second, point.flags);
+    flags_change = flags_change || point.flags != last.flags;
     if (time) channel->gps_time.front().encode(times, point.gps_time);
     times_change = times_change || time;
     channel->last = point;
     channel->time_changed = time;
   }
 
-  ArithmeticEncoder plane, height, classes, times;
+  ArithmeticEncoder plane, height, classes, flags, times;
   bool classes_change = false;  ///< if no class differs from the last, their layer is left out
-  bool times_change = false;    ///< likewise
+  bool flags_change = false, times_change = false;  ///< likewise
 
  private:
   struct Channel {
@@ -248,7 +251,7 @@ class Point14Coder {
     std::vector<SymbolCoder> changed = std::vector<SymbolCoder>(8, SymbolCoder(128));
     SymbolCoder next_channel{3}, number_same_time{13};
     std::map<unsigned, SymbolCoder> returns, number;
-    CodersByValue classes;
+    CodersByValue classes, flags;
     PositionCoder position;
     std::vector<GpsTimeCoder> gps_time;  ///< one, since the channel began
   };

@@ -8,7 +8,7 @@
 
 namespace clearway::test {
 
-/// Points that take the coder through all its widths, contexts and changes.
+/// Points that take the coder through all its widths, contexts and changes. None is withheld.
 inline std::vector<LazPoint> laz_points(std::size_t count, bool formats_6_to_8, unsigned seed = 1) {
   std::mt19937 random(seed);
   const auto below = [&](unsigned n) { return static_cast<unsigned>(random() % n); };
@@ -26,7 +26,10 @@ inline std::vector<LazPoint> laz_points(std::size_t count, bool formats_6_to_8, 
     point.number = 1 + below(point.returns);
     if (formats_6_to_8 && below(5) == 0) point.channel = below(4);
     if (below(2)) point.intensity = static_cast<std::uint16_t>(random());
-    if (below(6) == 0) point.classification = static_cast<std::uint8_t>(random());
+    if (below(6) == 0) {
+      point.classification = static_cast<std::uint8_t>(random() & (formats_6_to_8 ? 255 : 127));
+    }
+    if (formats_6_to_8 && below(6) == 0) point.flags = static_cast<std::uint8_t>(random() & 11);
     if (below(6) == 0) point.user_data = static_cast<std::uint8_t>(random());
     if (below(6) == 0) point.source = static_cast<std::uint16_t>(random());
     if (below(6) == 0) point.angle = static_cast<std::int8_t>(random());
@@ -61,6 +64,17 @@ inline std::vector<std::uint8_t> classes_of(const LazBytes& laz) {
         static_cast<std::uint8_t>(point.classification & (laz.las.format < 6 ? 31 : 255)));
   }
   return classes;
+}
+
+/// The flags of the points, as bits of PointFlags.
+inline std::vector<std::uint8_t> flags_of(const LazBytes& laz) {
+  std::vector<std::uint8_t> flags;
+  for (const LazPoint& point : laz.points) {
+    const unsigned overlap = (point.classification & 31) == 12 ? 8 : 0;
+    flags.push_back(static_cast<std::uint8_t>(
+        laz.las.format < 6 ? point.classification >> 5 | overlap : point.flags));
+  }
+  return flags;
 }
 
 constexpr unsigned kLazFormats[] = {0, 1, 2, 3, 6, 7, 8};

@@ -308,9 +308,10 @@ class IntegerModel {
   CorrectorModel<kBits> corrector_;
 };
 
-/// A model of a byte for each value that the byte had in the point before. Models are created when
-/// first needed.
-class ModelsByValue {
+/// A model of a value below kValues, at most 256, for each value that it had in the point before.
+/// Models are created when first needed.
+template <unsigned kValues>
+class ModelsByValueOf {
  public:
   void renew() { used_.fill(false); }
 
@@ -325,8 +326,10 @@ class ModelsByValue {
     used_[last] = true;
   }
 
-  std::array<std::unique_ptr<SymbolModel<256>>, 256> models_;
-  std::array<bool, 256> used_{};
+  std::array<std::unique_ptr<SymbolModel<kValues>>, kValues> models_;
+  std::array<bool, kValues> used_{};
 };
+
+using ModelsByValue = ModelsByValueOf<256>;  ///< of a byte
 
 }  // namespace clearway::laz

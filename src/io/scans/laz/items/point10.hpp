@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "io/scans/las/las_header.hpp"
 #include "io/scans/laz/coding/entropy_models.hpp"
 #include "io/scans/laz/items/coordinate_models.hpp"
 
@@ -25,6 +26,7 @@ struct Point10Fields {
   unsigned number_of_returns() const { return returns >> 3 & 7u; }
   unsigned scan_direction() const { return returns >> 6 & 1u; }
   std::uint8_t point_class() const { return classification & 0x1F; }
+  std::uint8_t flags() const { return las_flags_of_class_byte(classification); }
 };
 
 /// The bits of `changed` in the item POINT10.
@@ -43,8 +45,9 @@ class Point10Version2 {
   void begin(const std::byte* record);
   /// Decodes the next point and returns its position.
   [[gnu::always_inline]] inline Quanta next(ArithmeticDecoder& decoder);
-  /// Class of the last decoded point.
+  /// Class of the last decoded point, and its flags as bits of PointFlags.
   std::uint8_t point_class() const { return last_.point_class(); }
+  std::uint8_t flags() const { return last_.flags(); }
 
  private:
   struct Models {
@@ -73,6 +76,7 @@ class Point10Version1 {
   void begin(const std::byte* record);
   [[gnu::always_inline]] inline Quanta next(ArithmeticDecoder& decoder);
   std::uint8_t point_class() const { return last_.point_class(); }
+  std::uint8_t flags() const { return last_.flags(); }
 
  private:
   struct Models {

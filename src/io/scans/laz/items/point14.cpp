@@ -12,6 +12,7 @@ void Point14::begin(const std::byte* record, bool has_heights) {
   Channel first;
   first.position = load<Quanta>(record);
   first.point_class = load<std::uint8_t>(record + 16);
+  first.flags = static_cast<std::uint8_t>((flags & 15u) | (flags >> 6 & 3u) << 4);
   first.return_number = returns & 15u;
   first.number_of_returns = returns >> 4;
   current_ = flags >> 4 & 3u;
@@ -47,11 +48,14 @@ double Point14::next_time(ArithmeticDecoder& layer) {
 /// Begins a channel with the last point of another one.
 void Point14::start(Channel& channel, const Channel& from) {
   renew(channel.models);
-  class_models_[static_cast<std::size_t>(&channel - channels_.data())].renew();
+  const auto index = static_cast<std::size_t>(&channel - channels_.data());
+  class_models_[index].renew();
+  flag_models_[index].renew();
   channel.used = true;
   channel.position = from.position;
   channel.heights.fill(from.position[2]);
   channel.point_class = from.point_class;
+  channel.flags = from.flags;
   channel.number_of_returns = from.number_of_returns;
   channel.return_number = from.return_number;
   channel.time_changed = false;

@@ -13,8 +13,8 @@ namespace clearway::laz {
 /// Most bytes that a point takes in any layer.
 constexpr std::size_t kMostBytesPoint14 = 64;
 
-/// Decodes four layers of the item POINT14: one of scanner channels, returns, x and y, one of z,
-/// one of classes, and one of GPS times. Versions 2 to 4 do not differ in these.
+/// Decodes five layers of the item POINT14: one of scanner channels, returns, x and y, one of z,
+/// one of classes, one of flags, and one of GPS times. Versions 2 to 4 do not differ in these.
 class Point14 {
  public:
   using Quanta = std::array<std::int32_t, 3>;
@@ -28,6 +28,9 @@ class Point14 {
   /// Decodes the class of the point that next() decoded, from the layer of classes. Only where that
   /// layer exists; otherwise no class changes.
   [[gnu::always_inline]] inline std::uint8_t next_class(ArithmeticDecoder& classes);
+  /// Decodes the flags of the point that next() decoded, bits of PointFlags, from the layer of
+  /// flags. Only where that layer exists; otherwise no flag changes.
+  [[gnu::always_inline]] inline std::uint8_t next_flags(ArithmeticDecoder& flags);
   /// Called after begin() where the layer of times exists and is read. time: that of the first
   /// record.
   void begin_times(double time);
@@ -63,6 +66,8 @@ class Point14 {
     unsigned number_of_returns = 0, return_number = 0;
     bool time_changed = false;
     std::uint8_t point_class = 0;
+    /// The flags, above them the direction of the scan and the edge of the flight line
+    std::uint8_t flags = 0;
   };
 
   void start(Channel& channel, const Channel& from);
@@ -71,8 +76,9 @@ class Point14 {
   ArithmeticDecoder next_returns(ArithmeticDecoder plane, unsigned changed);
 
   std::array<Channel, 4> channels_;
-  std::array<ModelsByValue, 4> class_models_;    ///< models of the class for each channel
-  std::array<std::unique_ptr<Times>, 4> times_;  ///< GPS times of each channel; null before used
+  std::array<ModelsByValue, 4> class_models_;       ///< models of the class for each channel
+  std::array<ModelsByValueOf<64>, 4> flag_models_;  ///< models of the flags for each channel
+  std::array<std::unique_ptr<Times>, 4> times_;     ///< GPS times of each channel; null before used
   unsigned last_timed_ = 0;  ///< channel of the point before, where times are read
   unsigned current_ = 0;
   bool has_heights_ = false;
@@ -117,6 +123,12 @@ inline std::uint8_t Point14::next_class(ArithmeticDecoder& classes) {
       static_cast<std::uint8_t>((channel.point_class & 0x1Fu) << 1 | (single ? 1u : 0u));
   channel.point_class = class_models_[current_].decode(classes, context);
   return channel.point_class;
+}
+
+inline std::uint8_t Point14::next_flags(ArithmeticDecoder& flags) {
+  Channel& channel = channels_[current_];
+  channel.flags = flag_models_[current_].decode(flags, channel.flags);
+  return channel.flags & 0x0F;
 }
 
 }  // namespace clearway::laz
