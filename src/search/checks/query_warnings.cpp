@@ -182,6 +182,8 @@ void check_what_is_around(const Question& question, const PathCover& cover, bool
   } catch (const InputError&) {
     return;  // a damaged cell is reported by the search, where it matters
   }
+  // What is missing below or beside a model that is in the ground needs no warning of its own.
+  if (check_depth(question, *looks, log)) return;
   const bool floats = check_height(question, *looks, log);
   // For a body, what is beside it is checked in any case, because other bodies may stand on the
   // ground.
@@ -206,6 +208,12 @@ void warn_of_body(const StoreReader& store, const Body& body, const Query& query
   check_radius(question, log);
   steps.check(question, log);
   check_heading(question, told, log);
+}
+
+/// The lowest height of the whole model where reading it left out its lowest part.
+std::optional<double> bottom_before_cut(std::span<const Message> told) {
+  const auto cut = std::ranges::find(told, "model-cut", &Message::code);
+  return cut == told.end() ? std::nullopt : number_in(*cut, "bottom");
 }
 
 /// The indices of the path's poses at which a body has none, ascending.
@@ -271,6 +279,7 @@ void warn_of_query(const StoreReader& store, const Query& query, const LooksOf& 
     log.warn("no-points", "the environment has no points: nothing can collide");
     return;
   }
+  check_errors(query, log);
   if (query.poses.empty() || unit == LengthUnit::kDegrees) return;
   if (query.poses.size() == 1) {
     log.note("the trajectory has one pose: the model is checked at that place alone");
@@ -280,11 +289,15 @@ void warn_of_query(const StoreReader& store, const Query& query, const LooksOf& 
     const ModelLooks looks(points.model, points.radius);
     const Question path(store, unit, points, looks);
     warn_of_flat_scan(path, log);
+    check_path_digits(path, log);
     warn_of_bodies(store, path, query, looks_of, told, log);
     return;
   }
   const std::shared_ptr<const ModelLooks> looks = looks_of(query.model);
-  const Question question(store, unit, query, *looks);
+  Question question(store, unit, query, *looks);
+  if (const auto bottom = bottom_before_cut(told)) {
+    question.bottom = std::min(question.bottom, *bottom);
+  }
   note_sizes(question, log);
   warn_of_flat_scan(question, log);
   const PathCover cover(question);
@@ -293,6 +306,7 @@ void warn_of_query(const StoreReader& store, const Query& query, const LooksOf& 
   check_model_itself(question, log);
   check_radius(question, log);
   StepChecks().check(question, log);
+  check_path_digits(question, log);
   check_heading(question, told, log);
 }
 
