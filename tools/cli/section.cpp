@@ -291,7 +291,9 @@ ordered_json json_of(const SectionCheck& check, const Witnesses& witnesses, cons
     for (const SectionStop& place : check.unknowns) unknowns.push_back(stop_json(place));
     out["unknowns"] = std::move(unknowns);
   }
-  out["warnings"] = warnings_json(section.data().warnings);
+  std::vector<Message> warnings = section.data().warnings;
+  warnings.insert(warnings.end(), options.load.messages.begin(), options.load.messages.end());
+  out["warnings"] = warnings_json(warnings);
   return out;
 }
 
