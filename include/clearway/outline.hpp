@@ -6,6 +6,7 @@
 
 #include "clearway/file_unit.hpp"
 #include "clearway/model.hpp"
+#include "clearway/progress.hpp"
 
 /// Models that are made from a few numbers: boxes, and loads or gauges with one cross-section.
 namespace clearway {
@@ -44,8 +45,10 @@ struct OutlineOptions {
 /// Reads the outline in a file of text: two numbers in each line, separated by a comma, a semicolon
 /// or blanks, after one line of names, "y,z" or "height,half_width", which may be missing. A last
 /// corner that equals the first is left out. Throws InputError, which names the line, for anything
-/// else in the file, and for names that contradict the options.
+/// else in the file, and for names that contradict the options. messages: where given, a warning is
+/// appended for one half of an outline that is not mirrored ("half-outline").
 std::vector<OutlinePoint> read_outline(const std::filesystem::path& path,
-                                       const OutlineOptions& options = {});
+                                       const OutlineOptions& options = {},
+                                       std::vector<Message>* messages = nullptr);
 
 }  // namespace clearway

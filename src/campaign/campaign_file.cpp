@@ -214,6 +214,7 @@ class EntryReader {
       for (const fs::path& path : files_of(file, folder_)) {
         kind.name = is_pattern(file.text()) ? path.stem().string() : member.name();
         kind.file = fs::absolute(path).lexically_normal();
+        kind.is_match = is_pattern(file.text()) && path != folder_ / file.text();
         add(file, kind, out);
       }
     }
@@ -245,6 +246,83 @@ std::size_t environment_of(const KeyReader& route, const std::vector<Entry>& env
   if (found == environments.end()) at.refuse(at.text() + ": no environment has that name");
   return static_cast<std::size_t>(found - environments.begin());
 }
+
+/// The ending of a file's name in small letters.
+std::string ending_of(const fs::path& file) {
+  std::string ending = file.extension().string();
+  for (char& c : ending) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return ending;
+}
+
+/// Notes which files a pattern leaves out: those in the folders of its matches that have an ending
+/// like theirs, and that nothing in the campaign names.
+class LeftOutFiles {
+ public:
+  /// campaign: the file itself, which is none of its inputs.
+  explicit LeftOutFiles(const fs::path& campaign) { named_.insert(campaign); }
+
+  template <typename Kind>
+  void add(const std::vector<Kind>& entries) {
+    for (const Entry& entry : entries) {
+      named_.insert(entry.file);
+      if (entry.is_match) matches_[entry.key].push_back(entry.file);
+    }
+  }
+
+  std::vector<Message> notes() const {
+    std::vector<Message> notes;
+    for (const auto& [key, matches] : matches_) {
+      const std::vector<std::string> names = beside(matches);
+      if (names.empty()) continue;
+      notes.push_back({Message::Severity::kNote,
+                       "unmatched-files",
+                       key + ": the pattern matches " + counted(matches.size(), "file") +
+                           " and leaves out " + counted(names.size(), "file") +
+                           " beside them with the same ending: " + listed(names),
+                       {{"matched", static_cast<double>(matches.size())},
+                        {"left_out", static_cast<double>(names.size())}}});
+    }
+    return notes;
+  }
+
+ private:
+  /// Names of the files beside `matches`, sorted.
+  std::vector<std::string> beside(const std::vector<fs::path>& matches) const {
+    std::error_code unreadable;
+    std::set<std::pair<fs::path, std::string>> kinds;
+    for (const fs::path& match : matches) {
+      if (!fs::is_regular_file(match, unreadable)) continue;
+      kinds.insert({match.parent_path(), ending_of(match)});
+    }
+    std::set<fs::path> found;
+    for (const auto& [folder, ending] : kinds) {
+      fs::directory_iterator at(folder, unreadable);
+      for (; !unreadable && at != fs::directory_iterator(); at.increment(unreadable)) {
+        const fs::path& file = at->path();
+        const bool is_hidden = file.filename().string().starts_with('.');
+        if (is_hidden || ending_of(file) != ending || named_.contains(file)) continue;
+        if (fs::is_regular_file(file, unreadable)) found.insert(file);
+      }
+    }
+    std::vector<std::string> names;
+    for (const fs::path& file : found) names.push_back(valid_utf8(file.filename().string()));
+    return names;
+  }
+
+  static std::string listed(const std::vector<std::string>& names) {
+    constexpr std::size_t kMost = 5;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
+      text += (i == 0 ? "" : ", ") + names[i];
+    }
+    return names.size() > kMost ? text + " and others" : text;
+  }
+
+  std::set<fs::path> named_;
+  std::map<std::string, std::vector<fs::path>> matches_;  ///< by the key of the pattern
+};
 
 void read_entries(const KeyReader& file, const fs::path& folder, Campaign& campaign) {
   EntryReader<Entry> environments(folder, "store", {});
@@ -354,6 +432,11 @@ Campaign read_campaign(const fs::path& path) {
   campaign.name = file.at("name").text();
   check_name(file.at("name"), campaign.name);
   read_entries(file, fs::absolute(path).parent_path(), campaign);
+  LeftOutFiles left_out(fs::absolute(path).lexically_normal());
+  left_out.add(campaign.environments);
+  left_out.add(campaign.vehicles);
+  left_out.add(campaign.routes);
+  campaign.notes = left_out.notes();
   read_radii(file.at("radii"), campaign);
   if (file.has("query")) {
     file.at("query").allow(names_of(kQueryKeys, {}));

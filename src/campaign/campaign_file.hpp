@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "clearway/progress.hpp"
 #include "io/files/json.hpp"
 
 namespace clearway::campaign {
@@ -54,6 +55,7 @@ struct Entry {
   /// The key in campaign.json that names its file, for messages.
   std::string key;
   std::filesystem::path file;
+  bool is_match = false;  ///< whether a pattern names the file
   Arguments arguments;
 };
 
@@ -92,6 +94,8 @@ struct Campaign {
   /// A run that is estimated to take longer is divided into shards; 0: no run is.
   double shard_seconds = 0;
   std::vector<std::string> slurm;  ///< options of sbatch
+  /// Notes on files that the patterns may be meant to match, and do not.
+  std::vector<Message> notes;
 };
 
 /// Reads a campaign.json. Paths in it are relative to its folder. Throws InputError that names the

@@ -268,9 +268,12 @@ outline: corners y, z of a simple polygon, n x 2, metres; y is to the left, z up
 rear, front: where the solid begins and ends along x, metres.)");
   module.def(
       "read_outline",
-      [](const py::object& path, bool mirror, const UnitArgument& unit) {
-        const auto corners =
-            read_outline(path_of(path), {.mirror = mirror, .unit = file_unit(unit)});
+      [](const py::object& path, bool mirror, const UnitArgument& unit,
+         const py::object& messages) {
+        const OutlineOptions options{.mirror = mirror, .unit = file_unit(unit)};
+        const auto corners = read_noting(messages, [&, file = path_of(path)](auto* noted) {
+          return read_outline(file, options, noted);
+        });
         py::array_t<double> array({static_cast<py::ssize_t>(corners.size()), py::ssize_t{2}});
         double* at = array.mutable_data();
         for (const auto& [y, z] : corners) {
@@ -279,15 +282,16 @@ rear, front: where the solid begins and ends along x, metres.)");
         }
         return array;
       },
-      "path"_a, py::kw_only(), "mirror"_a = false, "unit"_a = 0.0,
-      R"(read_outline(path, *, mirror=False, unit=0.0)
+      "path"_a, py::kw_only(), "mirror"_a = false, "unit"_a = 0.0, "messages"_a = py::none(),
+      R"(read_outline(path, *, mirror=False, unit=0.0, messages=None)
 --
 
 Read an outline from a file of text, two numbers in each line. Returns its corners y, z in metres.
 
 path: the file, with the names y,z in its first line or none.
 mirror: the file has height,half_width of one half of a symmetric outline.
-unit: unit of the file: 'mm', 'cm', 'm', 'in', 'ift', 'us-ft' or its length in metres; 0: metres.)");
+unit: unit of the file: 'mm', 'cm', 'm', 'in', 'ift', 'us-ft' or its length in metres; 0: metres.
+messages: a list to which a warning of half an outline is appended.)");
 }
 
 }  // namespace

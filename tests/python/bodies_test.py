@@ -65,7 +65,7 @@ class BodyTest(SceneTest):
             found = np.hypot(body.poses[-1, 0, 3], body.poses[-1, 1, 3] - 15)
             self.assertLess(abs(found - radius), 1e-5)
             self.assertEqual(len(body.poses), len(path))
-        self.assertEqual([(m.code, m.severity) for m in messages], [("body-transient", "note")])
+        self.assertEqual([(m.code, m.severity) for m in messages], [("body-transient", "warning")])
         (self.folder / "model.xyz").write_text("0 0 0\n1 0 1\n")
         bodies = clearway.read_vehicle(self.write_vehicle([
             {"name": "second", "model": "model.xyz",
@@ -126,6 +126,10 @@ class BodyTest(SceneTest):
         np.testing.assert_allclose(outline, [[0.9, 0], [0.9, 1.4], [-0.9, 1.4], [-0.9, 0]])
         solid = clearway.outline_model(outline, -2, 2)
         self.assertEqual(sorted(map(tuple, solid.vertices)), sorted(map(tuple, box.vertices)))
+        (self.folder / "unmirrored.csv").write_text("y,z\n0,0\n1,0\n1,2\n0,2\n")
+        messages = []
+        clearway.read_outline(self.folder / "unmirrored.csv", messages=messages)
+        self.assertEqual([(m.code, m.severity) for m in messages], [("half-outline", "warning")])
         with self.assertRaisesRegex(clearway.UsageError, "cross or touch"):
             clearway.outline_model([[0, 0], [1, 1], [1, 0], [0, 1]], 0, 1)
         with self.assertRaisesRegex(clearway.InputError, "is to be mirrored"):

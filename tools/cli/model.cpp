@@ -203,7 +203,9 @@ void add_outline(CLI::App& model) {
   command->callback([options] {
     refuse_overwriting(options->output, {options->outline});
     options->lengths.convert(1);
-    const auto outline = read_outline(options->outline, options->how);
+    std::vector<Message> messages;
+    const auto outline = read_outline(options->outline, options->how, &messages);
+    for (const Message& message : messages) log_message(message);
     try {
       write_solid(*options, outline_model(outline, (*options->x)[0], (*options->x)[1]));
     } catch (const UsageError& error) {

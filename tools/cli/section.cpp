@@ -301,7 +301,9 @@ ordered_json json_of(const SectionCheck& check, double margin, const Witnesses& 
     for (const SectionStop& place : check.unknowns) unknowns.push_back(stop_json(place));
     out["unknowns"] = std::move(unknowns);
   }
-  out["warnings"] = warnings_json(section.data().warnings);
+  std::vector<Message> warnings = section.data().warnings;
+  warnings.insert(warnings.end(), options.load.messages.begin(), options.load.messages.end());
+  out["warnings"] = warnings_json(warnings);
   return out;
 }
 

@@ -23,6 +23,7 @@ struct LoadInput {
   std::filesystem::path outline;
   OutlineOptions how;
   std::optional<double> margin;
+  std::vector<Message> messages = {};  ///< of reading the outline
 };
 
 /// What --base is.
@@ -39,8 +40,8 @@ double convert_for(const LengthOptions& lengths, const Section& section,
                    const std::filesystem::path& file);
 
 /// The outline in the unit of the section, which has so many metres. Where no unit is named, the
-/// file is in that unit.
-std::vector<OutlinePoint> read_load(const LoadInput& load, const Section& section, double metres);
+/// file is in that unit. Logs what is odd about the outline, and keeps it in load.messages.
+std::vector<OutlinePoint> read_load(LoadInput& load, const Section& section, double metres);
 
 /// Store and path of a section, from which the points that block cells are found.
 struct SiteInput {

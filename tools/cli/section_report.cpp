@@ -52,8 +52,10 @@ double convert_for(const LengthOptions& lengths, const Section& section,
   return metres;
 }
 
-std::vector<OutlinePoint> read_load(const LoadInput& load, const Section& section, double metres) {
-  std::vector<OutlinePoint> outline = read_outline(load.outline, {.mirror = load.how.mirror});
+std::vector<OutlinePoint> read_load(LoadInput& load, const Section& section, double metres) {
+  std::vector<OutlinePoint> outline =
+      read_outline(load.outline, {.mirror = load.how.mirror}, &load.messages);
+  for (const Message& message : load.messages) log_message(message);
   const FileUnit& unit = load.how.unit;
   if (!unit.is_known()) return outline;
   if (length_unit_of(section.data().length_unit) == LengthUnit::kUnknown &&
@@ -153,6 +155,8 @@ void run_report(ReportOfSection& options) {
   if (page.date.empty()) page.date = now_in_utc();
   if (!options.load.outline.empty()) {
     page.outline = read_load(options.load, section, metres);
+    page.warnings.insert(page.warnings.end(), options.load.messages.begin(),
+                         options.load.messages.end());
     page.margin = options.load.margin;
     page.outline_name = options.load.outline.filename().string();
   }

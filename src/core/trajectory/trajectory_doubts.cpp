@@ -381,7 +381,58 @@ std::optional<Message> upside_down(const TrajectorySummary& summary, RotationSou
                  {{"cosine", -summary.up.cosine}});
 }
 
+/// A warning of roll with the wrong sign. The path has to be level outside of its curves, because
+/// on a slope a path may lean outwards wherever it turns uphill.
+std::optional<Message> wrong_roll(std::span<const Pose> poses, const std::string& name) {
+  constexpr double kLevel = 0.015 / kUsualRails, kEnough = 0.2;
+  const CurveLean lean = lean_in_curves(poses, kWrongCant / kUsualRails);
+  if (!lean.is_mostly_outwards() || lean.elsewhere > kLevel) return std::nullopt;
+  if (lean.straight < kEnough * (lean.straight + lean.curved)) return std::nullopt;
+  const double share = lean.outwards / lean.curved;
+  return warning("cant-side",
+                 name + ": on " + number(100 * share) +
+                     " % of the length of its curves the model leans outwards, by up to " +
+                     number(lean.greatest / kDegree) +
+                     " degrees, and elsewhere it is level; roll or cant may have the wrong sign",
+                 {{"share", share}, {"degrees", lean.greatest / kDegree}});
+}
+
 }  // namespace
+
+CurveLean lean_in_curves(std::span<const Pose> poses, double least) {
+  // Chords are long, so that noise of the positions bends the path less than a curve does.
+  constexpr double kPieces = 50, kShortest = 1, kLongest = 10, kLeastCurvature = 1.0 / 2000;
+  const double length = summarize_trajectory(poses).length;
+  const auto chords = chords_of(poses, std::clamp(length / kPieces, kShortest, kLongest));
+  // Positive to the left of the way.
+  const auto lean_of = [&](const Chord& chord) {
+    const double* r = poses[chord.middle].rotation;
+    const Vec3& d = chord.direction;
+    const double level = std::hypot(d.x, d.y);
+    const double left = level > 0 ? (r[5] * d.x - r[2] * d.y) / level : 0;
+    return std::asin(std::clamp(left, -1.0, 1.0));
+  };
+  CurveLean out;
+  std::vector<double> elsewhere;
+  for (std::size_t i = 1; i < chords.size(); ++i) {
+    const Chord &a = chords[i - 1], &b = chords[i];
+    const Vec3 &from = a.direction, &to = b.direction;
+    const double turn = std::atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y);
+    const double way = (a.length + b.length) / 2;
+    const double lean = (lean_of(a) + lean_of(b)) / 2;
+    if (std::abs(turn) < kLeastCurvature * way) {
+      out.straight += way;
+      elsewhere.push_back(std::abs(lean));
+      continue;
+    }
+    const double outwards = turn > 0 ? -lean : lean;
+    out.curved += way;
+    if (outwards > least) out.outwards += way;
+    out.greatest = std::max(out.greatest, outwards);
+  }
+  if (!elsewhere.empty()) out.elsewhere = median_of(elsewhere);
+  return out;
+}
 
 std::vector<Message> doubts_about(std::span<const Pose> poses, RotationSource source,
                                   const std::string& name) {
@@ -400,6 +451,7 @@ std::vector<Message> doubts_about(std::span<const Pose> poses, RotationSource so
   if (doubts.empty() && path_turn > kTurnThatTells) {
     add(other_rotation(poses, summary.length, source, name));
   }
+  if (doubts.empty()) add(wrong_roll(poses, name));
   return doubts;
 }
 

@@ -47,13 +47,37 @@ double farthest_from_origin(std::span<const Vec3> points);
 /// is 0. docs/design/numerics.md, "Between poses".
 std::vector<double> chord_deviations(std::span<const Pose> poses, double reach);
 
+/// How the poses lean where the path curves and where it does not.
+struct CurveLean {
+  double curved = 0;    ///< length of the path in curves of less than 2 km radius, metres
+  double outwards = 0;  ///< the part of it that leans outwards by more than what was asked
+  double greatest = 0;  ///< the greatest angle by which a curve leans outwards, radians
+  double straight = 0;  ///< length of the rest of the path, metres
+  /// The median of the angles by which the rest leans to either side, radians; 0 where there is
+  /// none.
+  double elsewhere = 0;
+
+  bool is_mostly_outwards() const { return outwards > curved / 2; }
+};
+
+/// The lean of the poses, of whatever is above `least` radians. Cant and the camber of roads lean
+/// inwards, or hardly at all. The poses' z axis points up.
+CurveLean lean_in_curves(std::span<const Pose> poses, double least);
+
+/// The least cant in metres, on rails whose middles are `kUsualRails` apart, that counts as one to
+/// the wrong side.
+inline constexpr double kWrongCant = 0.05;
+/// Distance between the middles of the rails of standard gauge, metres.
+inline constexpr double kUsualRails = 1.5;
+
 /// The form in which a file held rotations.
 enum class RotationSource { kMatrices, kQuaternions, kAngles };
 
 /// Warnings of poses that are hardly meant so: rotations that are missing, in another unit or turn
-/// against the path; inverse poses; quaternions in another order. Silent if the path does not turn
-/// enough to tell. Steps between poses are judged by the functions above, once the
-/// radius is known. name: the file's name for the messages. docs/design/trajectory.md, "Doubts".
+/// against the path; inverse poses; quaternions in another order; roll with the wrong sign. Silent
+/// if the path does not turn enough to tell. Steps between poses are judged by the functions above,
+/// once the radius is known. name: the file's name for the messages. docs/design/trajectory.md,
+/// "Doubts".
 std::vector<Message> doubts_about(std::span<const Pose> poses, RotationSource source,
                                   const std::string& name);
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -225,6 +226,16 @@ Model sampled(const ModelInput& input, const ModelOptions& options,
   return shape;
 }
 
+/// The lowest height of points, without the lowest thousandth of them, which may be noise.
+double bottom_of(std::span<const Vec3> points) {
+  constexpr std::size_t kNoise = 1000;
+  std::vector<double> heights;
+  for (const Vec3& p : points) heights.push_back(p.z);
+  const auto bottom = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / kNoise);
+  std::nth_element(heights.begin(), bottom, heights.end());
+  return *bottom;
+}
+
 void leave_out_below(const ModelInput& input, double above, std::vector<Vec3>& points,
                      std::vector<Message>& messages) {
   const std::size_t all = points.size();
@@ -233,6 +244,7 @@ void leave_out_below(const ModelInput& input, double above, std::vector<Vec3>& p
                      " m as the lowest height of the model; expected a finite number");
   }
   const double highest = std::ranges::max_element(points, {}, [](const Vec3& p) { return p.z; })->z;
+  const double bottom = bottom_of(points);
   std::erase_if(points, [above](const Vec3& p) { return p.z < above; });
   if (points.empty()) {
     refuse(input.path.string(), "all " + format_count(all) +
@@ -241,10 +253,11 @@ void leave_out_below(const ModelInput& input, double above, std::vector<Vec3>& p
                                     " m; expected one at least that is not left out");
   }
   const std::size_t left_out = all - points.size();
-  tell(messages, input,
-       format_count(left_out) + " of " + format_count(all) +
-           " model points are below z = " + format_number(above) + " m, and are left out",
-       {{"left_out", static_cast<double>(left_out)}, {"above", above}});
+  messages.push_back(cut_note(input,
+                              format_count(left_out) + " of " + format_count(all) +
+                                  " model points are below z = " + format_number(above) +
+                                  " m, and are left out",
+                              left_out, above, bottom));
 }
 
 /// A model of all vertices of a mesh, or of all points of another file.
@@ -330,6 +343,14 @@ std::string contents_of(const ModelInput& input) {
   if (segments > 0) text += (points > 0 ? ", " : " and ") + counted(segments, "line segment");
   if (points > 0) text += " and " + counted(points, "single point");
   return text;
+}
+
+Message cut_note(const ModelInput& input, const std::string& text, std::uint64_t left_out,
+                 double above, double bottom) {
+  return {Message::Severity::kNote,
+          "model-cut",
+          input.path.string() + ": " + text,
+          {{"left_out", static_cast<double>(left_out)}, {"above", above}, {"bottom", bottom}}};
 }
 
 Message loose_vertices_warning(const ModelInput& input, std::uint64_t vertices) {

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -71,10 +73,24 @@ std::vector<Row> rows_of(const std::filesystem::path& path, bool mirror) {
   return rows;
 }
 
+/// Whether the outline lies on one side of the vehicle's middle and has an edge on it, as one half
+/// of a symmetric outline has.
+bool is_half(std::span<const OutlinePoint> outline) {
+  const bool left = std::ranges::all_of(outline, [](const OutlinePoint& p) { return p.y >= 0; });
+  const bool right = std::ranges::all_of(outline, [](const OutlinePoint& p) { return p.y <= 0; });
+  if (left == right) return false;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const OutlinePoint &a = outline[i], &b = outline[(i + 1) % outline.size()];
+    if (a.y == 0 && b.y == 0 && a.z != b.z) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<OutlinePoint> read_outline(const std::filesystem::path& path,
-                                       const OutlineOptions& options) {
+                                       const OutlineOptions& options,
+                                       std::vector<Message>* messages) {
   const std::vector<Row> rows = rows_of(path, options.mirror);
   const UnitFactor metres(options.unit.is_known() ? options.unit.metres_in(1) : 1);
   std::vector<OutlinePoint> outline;
@@ -89,6 +105,15 @@ std::vector<OutlinePoint> read_outline(const std::filesystem::path& path,
     }
   }
   if (outline.size() > 1 && outline.front() == outline.back()) outline.pop_back();
+  if (messages != nullptr && !options.mirror && is_half(outline)) {
+    messages->push_back(
+        {Message::Severity::kWarning,
+         "half-outline",
+         path.string() +
+             ": all corners are on one side of the middle, y = 0, and an edge runs along it, as in "
+             "one half of a symmetric outline. The other side is taken to be free",
+         {}});
+  }
   return outline;
 }
 

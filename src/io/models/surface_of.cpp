@@ -73,6 +73,8 @@ void leave_out_below(const ModelInput& input, double above, TriangleMesh& mesh,
     throw UsageError(input.path.string() + ": " + shown(above) +
                      " m as the lowest height of the model; expected a finite number");
   }
+  const double bottom =
+      std::ranges::min_element(mesh.vertices, {}, [](const Vec3& p) { return p.z; })->z;
   HeightCut cut(mesh, above);
   mesh = cut.take();
   if (mesh.triangles.empty()) {
@@ -80,14 +82,13 @@ void leave_out_below(const ModelInput& input, double above, TriangleMesh& mesh,
                                     ") is below z = " + format_number(above) +
                                     " m; expected some of it above that height");
   }
-  messages.push_back({Message::Severity::kNote,
-                      "",
-                      input.path.string() + ": " + format_count(cut.left_out()) + " of " +
-                          format_count(all) +
-                          (has_lines ? " triangles, lines and points" : " triangles") +
-                          " are below z = " + format_number(above) + " m, and are left out; " +
-                          format_count(cut.cut()) + " are cut there",
-                      {{"left_out", static_cast<double>(cut.left_out())}, {"above", above}}});
+  messages.push_back(cut_note(input,
+                              format_count(cut.left_out()) + " of " + format_count(all) +
+                                  (has_lines ? " triangles, lines and points" : " triangles") +
+                                  " are below z = " + format_number(above) +
+                                  " m, and are left out; " + format_count(cut.cut()) +
+                                  " are cut there",
+                              cut.left_out(), above, bottom));
 }
 
 /// Removes the vertices that no triangle uses and returns their number.

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "clearway/file_unit.hpp"
+#include "core/trajectory/trajectory_doubts.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/scans/scan_crs.hpp"
@@ -51,6 +53,32 @@ void turn_round(std::vector<Pose>& poses, std::vector<double>& stations) {
       }
     }
   }
+}
+
+void remark_cant(const std::string& name, const AlignmentCant& cant, double rail_distance,
+                 std::span<const Pose> poses, Remarks& out) {
+  constexpr double kLeast = 0.002, kMost = 0.3;  // metres
+  double greatest = 0;
+  for (const CantPoint& point : cant.points()) greatest = std::max(greatest, std::abs(point.cant));
+  if (greatest > 0 && (greatest < kLeast || greatest > kMost)) {
+    out.warn("cant-unit",
+             name + ": the greatest cant is " + format_brief(greatest / kMetresPerMillimetre) +
+                 " mm. Tracks have up to about 200 mm, so the cant may be in another unit",
+             {{"greatest", greatest}});
+    return;
+  }
+  const CurveLean lean =
+      lean_in_curves(poses, std::asin(std::min(1.0, kWrongCant / rail_distance)));
+  if (!lean.is_mostly_outwards()) return;
+  const double share = lean.outwards / lean.curved;
+  const double wrong = rail_distance * std::sin(lean.greatest);
+  out.warn("cant-side",
+           name + ": on " + format_brief(100 * share) +
+               " % of the length of its curves the outer rail is lower than the inner one, by up "
+               "to " +
+               format_brief(wrong / kMetresPerMillimetre) +
+               " mm, so the cant may be to the wrong side",
+           {{"share", share}, {"cant", wrong}});
 }
 
 std::optional<std::int32_t> other_epsg(long code, const std::string& environment) {

@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "clearway/pose.hpp"
 #include "clearway/trajectory.hpp"
+#include "core/trajectory/alignment/alignment.hpp"
 #include "io/paths/remarks.hpp"
 
 /// What alignments and lines share when poses are made along them.
@@ -35,6 +37,11 @@ std::vector<double> even_stations(double from, double to, double step);
 /// Turns poses round for travel in the other direction: their order, and their axes x and y.
 /// stations: of the poses, or empty.
 void turn_round(std::vector<Pose>& poses, std::vector<double>& stations);
+
+/// Warns of a cant that is in another unit or to the wrong side: "cant-unit", "cant-side". poses:
+/// made along the track with this cant.
+void remark_cant(const std::string& name, const AlignmentCant& cant, double rail_distance,
+                 std::span<const Pose> poses, Remarks& out);
 
 /// The EPSG code of the environment where it is another system than that of `code`; nullopt where
 /// they agree or one of them is not known. code: 0 where it is not known. environment: well-known

@@ -10,6 +10,7 @@
 #include "search/checks/facts/path_facts.hpp"
 #include "search/checks/facts/scan_facts.hpp"
 #include "search/checks/question.hpp"
+#include "search/checks/single_floats.hpp"
 
 namespace clearway {
 namespace {
@@ -176,6 +177,17 @@ void warn_of_mirror(const Question& question, MessageLog& log) {
            {{"poses", static_cast<double>(count)}});
 }
 
+/// Warns where the model's own points have lost digits, as those of a mesh far from its origin do
+/// in formats that hold single precision alone.
+void warn_of_digits(const Question& question, MessageLog& log) {
+  constexpr std::size_t kSample = 4096;
+  const std::vector<Vec3>& own = question.query.model.vertices;
+  std::vector<Vec3> places;
+  for (const std::uint32_t i : spread_poses(own.size(), kSample)) places.push_back(own[i]);
+  warn_of_single_precision(question, places, "the coordinates of the model",
+                           "Move its reference point to 0, 0, 0 before it is exported", log);
+}
+
 }  // namespace
 
 void check_model(const Question& question, MessageLog& log) {
@@ -184,6 +196,7 @@ void check_model(const Question& question, MessageLog& log) {
   if (!question.is_load()) warn_of_same(question, log);
   warn_of_scale(question, log);
   warn_of_mirror(question, log);
+  warn_of_digits(question, log);
 }
 
 namespace {

@@ -18,6 +18,7 @@
 #include "search/checks/checks.hpp"
 #include "search/checks/facts/path_facts.hpp"
 #include "search/checks/question.hpp"
+#include "search/checks/single_floats.hpp"
 
 namespace clearway {
 namespace {
@@ -526,6 +527,13 @@ bool is_diagnosed(std::span<const Message> told) {
 }
 
 }  // namespace
+
+void check_path_digits(const Question& question, MessageLog& log) {
+  std::vector<Vec3> places;
+  for (const Pose& pose : question.query.poses) places.push_back(pose.position());
+  warn_of_single_precision(question, places, "the positions of the path",
+                           "Export the path in double precision", log);
+}
 
 void check_heading(const Question& question, std::span<const Message> told, MessageLog& log) {
   warn_of_tiny_path(question, log);

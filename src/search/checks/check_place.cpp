@@ -328,6 +328,8 @@ constexpr double kLeastFloating = 5;
 /// The share of looks that have to be high above the ground. The others may be beside vegetation or
 /// noise.
 constexpr double kMostHigh = 0.75;
+/// The share of looks where the model has to reach below the ground.
+constexpr double kMostDeep = 0.5;
 
 /// Heights above ground in ascending order; at(share) is the quantile.
 class Heights {
@@ -394,6 +396,28 @@ void check_stretches_above(const Question& question, const PathLooks& looks, Mes
 }
 
 }  // namespace
+
+bool check_depth(const Question& question, const PathLooks& looks, MessageLog& log) {
+  std::vector<double> depths;
+  for (const Look& look : looks.all()) {
+    if (look.depth) depths.push_back(*look.depth);
+  }
+  const double share = static_cast<double>(depths.size()) /
+                       static_cast<double>(std::max<std::size_t>(looks.covered(), 1));
+  if (!(share > kMostDeep)) return false;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  const bool is_cut = question.bottom < question.model.lo.z;
+  log.warn("below-ground",
+           "on " + share_text(share) + " of the path the model reaches below the ground, by " +
+               length_text(*middle, question.unit) + " on the median" +
+               (is_cut ? ", with its lowest part, which is left out of the search" : "") +
+               ". Where the ground or the model's lowest part is left out, the answer can be clear "
+               "although the vehicle does not stand there. Either y points up in the model's file, "
+               "or its origin is in its middle, or the path is too low",
+           {{"depth", *middle}, {"share", share}});
+  return true;
+}
 
 bool check_height(const Question& question, const PathLooks& looks, MessageLog& log) {
   if (stays_above_ground(question, looks, log)) return true;

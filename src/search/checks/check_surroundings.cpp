@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "core/geometry/angle.hpp"
 #include "search/checks/checks.hpp"
 #include "search/checks/facts/path_looks.hpp"
 #include "search/checks/facts/scan_facts.hpp"
@@ -286,6 +287,28 @@ void check_coarse_scan(const Question& question, MessageLog& log) {
 }
 
 }  // namespace
+
+void check_errors(const QueryParameters& query, MessageLog& log) {
+  constexpr double kLeastSigmas = 1;
+  constexpr double kLeastAngle = 0.001 * kDegree;
+  const double angle = query.error_angle.value_or(0);
+  const double deviations = std::max({query.error_scan.value_or(0), query.error_pose.value_or(0),
+                                      query.error_registration.value_or(0), angle});
+  if (query.sigmas < kLeastSigmas && deviations > 0) {
+    log.warn("few-sigmas",
+             "the error budget counts " + figure(query.sigmas) +
+                 " standard deviations, which most errors exceed, so that it says little about "
+                 "what is certain. Usual are 2 or 3. Is it an error in metres?",
+             {{"sigmas", query.sigmas}});
+  }
+  if (angle > 0 && angle < kLeastAngle) {
+    log.warn("small-error-angle",
+             "the standard deviation of the angles is " + figure(angle / kDegree) +
+                 " degrees, which no vehicle's rotation is known to. Was an angle in radians taken "
+                 "for one in degrees?",
+             {{"degrees", angle / kDegree}});
+  }
+}
 
 void check_radius(const Question& question, MessageLog& log) {
   warn_of_large_radius(question, log);

@@ -17,6 +17,10 @@ namespace clearway {
 /// Warns where the path passes where nothing was scanned: "out-of-reach", "leaves-scan".
 void check_reach(const Question& question, const PathCover& cover, MessageLog& log);
 
+/// Warns where the whole model, also what is left out of the search, reaches below the ground at
+/// most places of the path: "below-ground". Returns whether it warned.
+bool check_depth(const Question& question, const PathLooks& looks, MessageLog& log);
+
 /// Warns where the model stays above the ground on the whole path or on a stretch of it: "floats".
 /// Returns whether it warned of the whole path.
 bool check_height(const Question& question, const PathLooks& looks, MessageLog& log);
@@ -28,7 +32,7 @@ void check_surroundings(const Question& question, const PathLooks& looks, bool f
                         MessageLog& log);
 
 /// Warns of a wrong unit or frame of the model: "model-size", "model-origin",
-/// "model-is-environment", "scaled-poses", "mirrored-poses".
+/// "model-is-environment", "scaled-poses", "mirrored-poses", "single-precision".
 void check_model(const Question& question, MessageLog& log);
 
 /// Warns where the model stands over something at the first pose: "inside-model". Reads the points
@@ -40,6 +44,9 @@ void check_open_model(const Question& question, MessageLog& log);
 
 /// Warns of holes between the model's points: "model-spacing".
 void check_model_spacing(const Question& question, MessageLog& log);
+
+/// Warns of an error budget whose numbers are hardly meant so: "few-sigmas", "small-error-angle".
+void check_errors(const QueryParameters& query, MessageLog& log);
 
 /// Compares the radius with model and scan: "radius-size", "fine-radius", "coarse-scan".
 void check_radius(const Question& question, MessageLog& log);
@@ -62,6 +69,10 @@ class StepChecks {
   /// Poses from which a step starts, ascending.
   std::vector<std::uint32_t> path_jumps_, told_;
 };
+
+/// Warns where the positions of the path have lost digits that matter beside the radius:
+/// "single-precision".
+void check_path_digits(const Question& question, MessageLog& log);
 
 /// Compares the motion with the model's own axes: "tilted", "rotations", "leans", "sideways",
 /// "flat-model", "drives-backwards", "tiny-path". told: what reading the trajectory has told; where

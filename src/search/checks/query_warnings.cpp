@@ -190,6 +190,8 @@ void check_what_is_around(const Question& question, const PathCover& cover, bool
   } catch (const InputError&) {
     return;  // a damaged cell is reported by the search, where it matters
   }
+  // What is missing below or beside a model that is in the ground needs no warning of its own.
+  if (check_depth(question, *looks, log)) return;
   const bool floats = check_height(question, *looks, log);
   // For a body, what is beside it is checked in any case, because other bodies may stand on the
   // ground.
@@ -205,6 +207,7 @@ void check_question(const Question& question, bool of_body, std::span<const Mess
   check_model_itself(question, log);
   check_radius(question, log);
   steps.check(question, log);
+  if (!of_body) check_path_digits(question, log);
   check_heading(question, told, log);
 }
 
@@ -220,6 +223,12 @@ void warn_of_body(const StoreReader& store, const Body& body, const Query& query
   const Question question(store, store.metadata().unit, own, looks, body.path_pose, chainage);
   note_sizes(question, log);
   check_question(question, true, told, steps, log);
+}
+
+/// The lowest height of the whole model where reading it left out its lowest part.
+std::optional<double> bottom_before_cut(std::span<const Message> told) {
+  const auto cut = std::ranges::find(told, "model-cut", &Message::code);
+  return cut == told.end() ? std::nullopt : number_in(*cut, "bottom");
 }
 
 /// The indices of the path's poses at which a body has none, ascending.
@@ -294,6 +303,7 @@ bool warn_of_inputs(const StoreReader& store, std::size_t poses, const QuestionW
 
 void check_motion(const StoreReader& store, const Query& query, const LooksOf& looks_of,
                   std::span<const Message> told, MessageLog& log) {
+  check_errors(query, log);
   if (!warn_of_inputs(store, query.poses.size(), kWordsOfModel, told, log)) return;
   const LengthUnit unit = store.metadata().unit;
   if (!query.bodies.empty()) {
@@ -301,11 +311,15 @@ void check_motion(const StoreReader& store, const Query& query, const LooksOf& l
     const ModelLooks looks(points.model, points.radius);
     const Question path(store, unit, points, looks);
     warn_of_flat_scan(path, log);
+    check_path_digits(path, log);
     warn_of_bodies(store, path, query, looks_of, told, log);
     return;
   }
   const std::shared_ptr<const ModelLooks> looks = looks_of(query.model);
-  const Question question(store, unit, query, *looks);
+  Question question(store, unit, query, *looks);
+  if (const auto bottom = bottom_before_cut(told)) {
+    question.bottom = std::min(question.bottom, *bottom);
+  }
   note_sizes(question, log);
   warn_of_flat_scan(question, log);
   StepChecks steps;

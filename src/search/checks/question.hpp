@@ -74,6 +74,9 @@ struct Question {
   Box environment;
   /// The box of `points`, in the model's own frame.
   Box model;
+  /// The lowest height of the whole model in its own frame. It is below the box where the lowest
+  /// part of the model was left out.
+  double bottom;
   /// The length of a metre in the environment's unit.
   double metre;
 };

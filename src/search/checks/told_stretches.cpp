@@ -8,15 +8,6 @@
 #include "search/checks/question.hpp"
 
 namespace clearway {
-namespace {
-
-std::optional<double> number_in(const Message& message, const std::string& name) {
-  const auto found =
-      std::ranges::find(message.numbers, name, [](const auto& n) { return n.first; });
-  return found == message.numbers.end() ? std::nullopt : std::optional(found->second);
-}
-
-}  // namespace
 
 ToldStretches::ToldStretches(const Question& question, const PathLooks& looks,
                              const std::vector<LookRun>& runs)
@@ -45,6 +36,12 @@ ToldStretches::ToldStretches(const Question& question, const PathLooks& looks,
              {"stretches", static_cast<double>(runs.size())},
              {"length", sum},
              {"share", sum / looks.all().back().along}};
+}
+
+std::optional<double> number_in(const Message& message, std::string_view name) {
+  const auto found =
+      std::ranges::find(message.numbers, name, [](const auto& n) { return n.first; });
+  return found == message.numbers.end() ? std::nullopt : std::optional(found->second);
 }
 
 bool is_of_stretch(const Message& message) {

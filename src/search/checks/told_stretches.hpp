@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -27,6 +29,9 @@ struct ToldStretches {
   /// All stretches, by the numbers of the poses that users know.
   std::vector<PoseRange> stretches;
 };
+
+/// A number of a message by its name; nothing where the message has none of that name.
+std::optional<double> number_in(const Message& message, std::string_view name);
 
 /// Whether a warning is about a stretch of the path and not about the whole path.
 bool is_of_stretch(const Message& message);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "core/geometry/angle.hpp"
 #include "support/attitudes.hpp"
 
 using namespace clearway;
@@ -177,4 +178,32 @@ TEST_CASE("a model that stands on its head is doubted") {
     for (const int k : {1, 2, 4, 5, 7, 8}) pose.rotation[k] *= -1;
   });
   CHECK(doubts(turned) == "upside-down");
+}
+
+TEST_CASE("roll to the outside of curves is doubted where the path is level elsewhere") {
+  struct Row {
+    double inwards, slope;  // degrees: in curves, and everywhere to the left
+    std::string codes;
+  };
+  // A straight of 100 m, a curve of 80 m to the left, a straight, and a curve to the right.
+  const auto path = [](const Row& row) {
+    std::vector<Pose> poses;
+    double x = 5e5, y = 5.3e6, heading = 0.4;
+    for (int i = 0; i < 3600; ++i) {
+      const int part = i / 900;
+      const bool curves = i % 900 >= 450;
+      const double turn = curves ? (part % 2 == 0 ? 1 : -1) / 100.0 : 0;
+      heading += 0.1 * turn;
+      x += 0.1 * std::cos(heading);
+      y += 0.1 * std::sin(heading);
+      const double to_right = (turn > 0 ? -1 : turn < 0 ? 1 : 0) * row.inwards - row.slope;
+      poses.push_back(pose_at(about_z(heading) * about_x(to_right * kDegree), x, y, 300));
+    }
+    return poses;
+  };
+  for (const Row& row : {Row{-5, 0, "cant-side"}, Row{-2.2, 0, "cant-side"}, Row{5, 0, ""},
+                         Row{-1.5, 0, ""}, Row{0, 4, ""}, Row{-5, 4, ""}}) {
+    CAPTURE(row.inwards, row.slope);
+    CHECK(doubts(path(row)) == row.codes);
+  }
 }

@@ -21,6 +21,27 @@ TEST_CASE("an outline is read as y and z, or as one half of a symmetric one") {
                      {.mirror = true}) == gauge);
 }
 
+TEST_CASE("one half of an outline that is not mirrored is warned of") {
+  struct Row {
+    const char* text;
+    bool mirror, warned;
+  };
+  ReaderScratch scratch;
+  for (const Row& row :
+       {Row{"0,0\n1.5,0\n1.5,3\n0,4\n", false, true},
+        Row{"y,z\n-1.5,0\n0,0\n0,4\n-1.5,3\n", false, true},
+        Row{"1.5,0\n1.5,3\n0,4\n0,0\n1.5,0\n", false, true},
+        Row{"-1.5,0\n1.5,0\n1.5,3\n0,4\n-1.5,3\n", false, false},
+        Row{"0.1,0\n1.5,0\n1.5,3\n0.1,3\n", false, false}, Row{"0,0\n1.5,1\n1.5,3\n", false, false},
+        Row{"0,1.5\n3,1.5\n4,0\n", true, false}}) {
+    CAPTURE(row.text);
+    std::vector<Message> messages;
+    read_outline(scratch.write("a.csv", row.text), {.mirror = row.mirror}, &messages);
+    CHECK((messages.size() == 1 && messages[0].code == "half-outline") == row.warned);
+    CHECK((messages.empty() || row.warned));
+  }
+}
+
 TEST_CASE("an outline that is malformed is refused with its line") {
   ReaderScratch scratch;
   const auto refused = [&](const std::string& text, bool mirror, const std::string& words) {

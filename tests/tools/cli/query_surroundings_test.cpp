@@ -116,6 +116,44 @@ TEST_CASE("a path below the ground or above the roof is warned of") {
   CHECK(codes_of(up_and_down.ask()) == "nothing-beside");
 }
 
+TEST_CASE("a model that reaches below the ground is warned of, also with what is left out of it") {
+  const double ground = bottom_of(Asked().model) - 0.5;
+  const auto y_up = [](const Vec3& p) { return Vec3{p.x, p.z, p.y}; };
+  const auto lowered_by = [](double depth) {
+    return [depth](const Vec3& p) { return Vec3{p.x, p.y, p.z - depth}; };
+  };
+  struct Row {
+    std::function<Vec3(const Vec3&)> change;  ///< of a car that stands on z = 0
+    bool is_cut;  ///< whether all up to 0.15 m above the ground is left out
+    bool warned;
+  };
+  for (const Row& row : {Row{lowered_by(0.75), true, true}, Row{lowered_by(0.75), false, true},
+                         Row{lowered_by(0.4), true, true}, Row{y_up, true, true},
+                         Row{lowered_by(0.2), true, false}, Row{lowered_by(0), true, false},
+                         Row{lowered_by(-0.3), true, false}, Row{lowered_by(-0.3), false, false}}) {
+    CAPTURE(row.is_cut, row.warned);
+    Asked asked;
+    asked.model = shell({-2.2, -0.9, 0}, {2.2, 0.9, 1.5}, true);
+    asked.move_model([&](const Vec3& p) {
+      const Vec3 changed = row.change(p);
+      return Vec3{changed.x, changed.y, changed.z + ground};
+    });
+    if (row.is_cut) asked.options = "--model-above " + std::to_string(ground + 0.15);
+    const Outcome outcome = asked.ask();
+    // What is inside the model causes a warning of its own.
+    const std::string codes = codes_of(outcome);
+    CAPTURE(codes);
+    CHECK((codes.find("below-ground") != std::string::npos) == row.warned);
+    CHECK((outcome.err.find("left out of the search") != std::string::npos) ==
+          (row.warned && row.is_cut));
+  }
+}
+
+TEST_CASE("a path in the ground is warned of once, by how deep the model is") {
+  CHECK(codes_at_height(-1.1) == "below-ground");
+  CHECK(codes_at_height(-0.6).empty());
+}
+
 TEST_CASE("a scan that lacks what the model could meet is warned of") {
   CHECK(codes_of_part([](const Relative& p) { return p.away > 3; }) == "nothing-below");
   CHECK(codes_of_part([](const Relative& p) { return p.height > 4; }) == "nothing-below");

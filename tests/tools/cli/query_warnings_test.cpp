@@ -396,3 +396,44 @@ TEST_CASE("warnings are in the JSON, and the last line names them") {
   const std::string last = doubtful.err.substr(doubtful.err.rfind("info: "));
   CHECK_THAT(last, Contains("but see the") && Contains("warnings above"));
 }
+
+TEST_CASE("a path in single precision at large coordinates is warned of") {
+  // 150 km from the origin, where such numbers are 16 mm apart.
+  const auto shifted = [](const Vec3& p) { return Vec3{p.x + 150'000, p.y + 160'000, p.z}; };
+  const auto single = [](double v) { return static_cast<double>(static_cast<float>(v)); };
+  const auto whole = [](double v, double step) { return std::round(v / step) * step; };
+  const ScratchFolder folder;
+  const std::string store = Scene::hall().moved_store(folder, shifted);
+  struct Row {
+    std::function<Vec3(const Vec3&)> change;
+    const char *radius, *code;
+  };
+  const auto singles = [&](const Vec3& p) { return Vec3{single(p.x), single(p.y), single(p.z)}; };
+  for (const Row& row : {Row{singles, "0.1", "single-precision"}, Row{singles, "0.5", ""},
+                         Row{[](const Vec3& p) { return p; }, "0.1", ""},
+                         Row{[&](const Vec3& p) {
+                               return Vec3{whole(p.x, 0.01), whole(p.y, 0.01), p.z};
+                             },
+                             "0.1", ""}}) {
+    CAPTURE(row.radius, row.code);
+    Asked asked;
+    asked.radius = row.radius;
+    asked.move_path([&](const Vec3& p) { return row.change(shifted(p)); });
+    const Outcome outcome = asked.ask(store);
+    CHECK(codes_of(outcome) == row.code);
+  }
+}
+
+TEST_CASE("error budgets that are hardly meant so are warned of") {
+  for (const auto& [options, code] : std::vector<std::array<const char*, 2>>{
+           {"--error-pose 1cm --sigmas 0.003", "few-sigmas"},
+           {"--error-angle 0.0005deg", "small-error-angle"},
+           {"--error-pose 1cm --sigmas 1 --error-angle 0.02deg", ""},
+           {"--error-model 1cm --sigmas 0.5", ""},
+           {"--error-pose 1cm --error-angle 0", ""}}) {
+    CAPTURE(options);
+    Asked asked;
+    asked.options = std::string("--first-pose ") + options;
+    CHECK(codes_of(asked.ask()) == code);
+  }
+}

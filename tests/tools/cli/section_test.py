@@ -126,6 +126,17 @@ class Sections(unittest.TestCase):
 
 
 class Outlines(Sections):
+    def test_half_an_outline_is_warned_of(self):
+        half = "0,0.5\n0.5,0.5\n0.5,1.5\n0,1.5\n"
+        for outline, codes in ((RECTANGLE, []), (half, ["half-outline"])):
+            answer = self.verdict(outline)
+            self.assertEqual([w["code"] for w in answer["warnings"]], codes)
+        report = self.ok("section report section.h5 --outline outline.csv --json -o page.html --force")
+        self.assertIn("half-outline", report.stdout)
+        self.assertIn("--mirror", report.stderr)
+        (self.folder / "outline.csv").write_text(half)
+        self.assertIn("--mirror", self.ok("model outline outline.csv --x=-1,1 -o half.off").stderr)
+
     def test_hostile_outlines_are_refused_by_name(self):
         far = "-0.5,0.5\n0.5,0.5\n1e308,1e308\n"
         cases = {

@@ -87,6 +87,7 @@ std::string counted(std::size_t count, const char* one, const char* several) {
 
 void run_plan(const CampaignPlanOptions& options) {
   const campaign::Campaign asked = campaign::read_campaign(options.file);
+  for (const Message& note : asked.notes) log_message(note);
   const campaign::Plan plan = plan_of(asked, options.file);
   const std::string text = campaign::plan_text(plan);
   const fs::path planned = options.folder / campaign::kPlanName;

@@ -176,6 +176,12 @@ std::string advice_on(const Message& message) {
   if (message.code == "line-curved") {
     return "; --corner-radius keeps legs straight and rounds their corners";
   }
+  if (message.code == "half-outline") {
+    return "; --mirror completes a half, as rows of height,half_width";
+  }
+  if (message.code == "below-ground") {
+    return ". clearway run --forward and --up turn the model when it is read";
+  }
   if (message.code == "loose-vertices") {
     return ", or search all vertices, and nothing else of the file, with --model-vertices";
   }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "clearway/error.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/util/format.hpp"
 
 namespace clearway {
@@ -217,6 +218,39 @@ const MountTexts& texts_of(const BodyMount& mount) {
   return std::holds_alternative<BodyPivots>(mount) ? kOnPivots : kAtStation;
 }
 
+/// The poses as stretches of consecutive ones. poses: ascending.
+std::vector<PoseRange> stretches_of(const std::vector<std::uint64_t>& poses) {
+  std::vector<PoseRange> stretches;
+  for (const std::uint64_t pose : poses) {
+    const auto number = static_cast<std::uint32_t>(pose);
+    const bool goes_on = !stretches.empty() && stretches.back().last + std::uint64_t{1} == pose;
+    if (!goes_on) stretches.push_back({number, number});
+    stretches.back().last = number;
+  }
+  return stretches;
+}
+
+/// What is said of the beginning of a towed body. A warning where its tower turns meanwhile,
+/// because then the body was hardly in line with it.
+Message transient_message(const FollowedPath& followed, const std::string& where) {
+  constexpr double kStraight = 5 * kDegree;
+  const bool bends = followed.transient_turn > kStraight;
+  Message out = message(
+      bends ? Message::Severity::kWarning : Message::Severity::kNote, "body-transient",
+      where +
+          "where the body stands when the path begins is not known, so it begins in line with its "
+          "tower. That still matters while the hitch goes three times as far as from the hitch to "
+          "the axle" +
+          (bends ? ", and the tower turns by " + format_brief(followed.transient_turn / kDegree) +
+                       " degrees meanwhile, so where the body is there is a guess"
+                 : std::string()) +
+          ". Begin the path earlier, where it is straight",
+      followed.transient);
+  out.numbers.push_back({"turn_degrees", followed.transient_turn / kDegree});
+  if (bends) out.stretches = stretches_of(followed.transient);
+  return out;
+}
+
 }  // namespace
 
 std::vector<Message> doubts_about(const FollowedPath& followed, const PathStations& path,
@@ -244,10 +278,9 @@ std::vector<Message> doubts_about(const FollowedPath& followed, const PathStatio
        "the path turns back between the pivots. They are closer together than half their way "
        "along the path. Split the path where it turns back");
   tell(kWarning, "body-turned", followed.turned, texts.turned);
-  tell(kNote, "body-transient", followed.transient,
-       "where the body stands when the path begins is not known, so it begins in line with its "
-       "tower. That still matters while the hitch goes three times as far as from the hitch to the "
-       "axle. Begin the path earlier, where it is straight");
+  if (!followed.transient.empty()) {
+    doubts.push_back(transient_message(followed, share_text(name, followed.transient, count)));
+  }
   tell(kNote, "body-rolls-back", followed.rolled_back,
        "the hitch goes back a little, or has not come as far again. The body does not turn while "
        "its hitch goes back");

@@ -29,6 +29,9 @@ struct FollowedPath {
   /// Poses of a towed body that lie in the first three lengths from its hitch to its axle, where
   /// the straight line in which it begins still matters
   std::vector<std::uint64_t> transient;
+  /// The greatest angle in plan by which the tower of a towed body turns away from its first
+  /// heading meanwhile, radians
+  double transient_turn = 0;
   /// Poses in or before whose next way the hitch of a towed body goes back a little
   std::vector<std::uint64_t> rolled_back;
   /// The pose from whose next way on the hitch of a towed body goes back too far, so that its poses

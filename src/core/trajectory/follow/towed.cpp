@@ -58,13 +58,16 @@ class TowedMotion {
   /// Whether the hitch left at once in another direction than the tower's x axis.
   bool began_askew() const { return began_askew_; }
   bool is_transient() const { return way_ <= kTransientLengths * length_; }
+  /// The angle between the tower's heading and that with which the body began, radians.
+  double turn_since_begin(const Pose& tower) const {
+    return std::abs(std::remainder(heading_of(tower) - first_heading_, 2 * std::numbers::pi));
+  }
 
   /// Puts the body in line with its tower.
   void begin(const Pose& tower) {
     hitch_ = hitch_on(tower, tow_.at);
     from_ = hitch_.place;
-    const Vec3 x = tower.rotated({1, 0, 0});
-    heading_ = std::atan2(x.y, x.x);
+    heading_ = first_heading_ = heading_of(tower);
     track_ = {{0, hitch_.place.z, hitch_.up}};
     has_begun_ = true;
   }
@@ -98,6 +101,12 @@ class TowedMotion {
   }
 
  private:
+  /// In plan, radians from the x axis of the world.
+  static double heading_of(const Pose& tower) {
+    const Vec3 x = tower.rotated({1, 0, 0});
+    return std::atan2(x.y, x.x);
+  }
+
   /// The height and the up direction of the hitch when it had gone `way` metres.
   struct Sample {
     double way, height;
@@ -147,12 +156,13 @@ class TowedMotion {
   BodyTowed tow_;
   double length_, most_back_, still_;
   Hitch hitch_{};
-  Vec3 from_{};          ///< the place to which the body has followed the hitch
-  double heading_ = 0;   ///< of the body in the plane, radians from the x axis of the world
-  double way_ = 0;       ///< how far the hitch has gone in the plane, back and again left out
-  double back_ = 0;      ///< how far the hitch is behind the end of that way
-  double regained_ = 0;  ///< what it has lately gone again after going back
-  double stretch_ = 0;   ///< the way back that the hitch is on, in one stretch
+  Vec3 from_{};               ///< the place to which the body has followed the hitch
+  double heading_ = 0;        ///< of the body in the plane, radians from the x axis of the world
+  double first_heading_ = 0;  ///< with which the body began
+  double way_ = 0;            ///< how far the hitch has gone in the plane, back and again left out
+  double back_ = 0;           ///< how far the hitch is behind the end of that way
+  double regained_ = 0;       ///< what it has lately gone again after going back
+  double stretch_ = 0;        ///< the way back that the hitch is on, in one stretch
   std::deque<Sample> track_;
   bool has_begun_ = false, is_first_move_ = true, is_pushed_ = false, began_askew_ = false;
 };
@@ -287,7 +297,10 @@ class ChainDrive {
     if (!step.is_pose() || link.motion.is_pushed()) return;
     const std::uint64_t number = pose_number(step.way);
     add_pose(followed, number, link.now);
-    if (link.now.exists() && link.motion.is_transient()) followed.transient.push_back(number);
+    if (!link.now.exists() || !link.motion.is_transient()) return;
+    followed.transient.push_back(number);
+    followed.transient_turn =
+        std::max(followed.transient_turn, link.motion.turn_since_begin(tower.pose));
   }
 
   void follow(const SubStep& step, Link& link, const Pose& tower) {

@@ -240,6 +240,7 @@ AlignmentFile read_alignment_file(const std::filesystem::path& path,
   remark_crs(xml, options.environment_crs, out);
   out.stations = even_stations(reach.from, reach.to, options.step);
   add_poses(xml, track, out);
+  if (track.cant) remark_cant(xml.name(), *track.cant, track.rail_distance, out.poses, out);
   if (options.reverse) turn_round(out.poses, out.stations);
   return out;
 }

@@ -10,6 +10,7 @@
 #include "clearway/store.hpp"
 #include "core/geometry/angle.hpp"
 #include "core/trajectory/line/line_path.hpp"
+#include "core/trajectory/trajectory_doubts.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/paths/line/line_ground.hpp"
@@ -19,9 +20,6 @@
 
 namespace clearway {
 namespace {
-
-/// Distance in metres between the middles of the rails of standard gauge.
-constexpr double kStandardRailDistance = 1.5;
 
 void check_number(const std::optional<double>& value, const char* name, bool above_0,
                   const char* expected) {
@@ -339,9 +337,9 @@ void set_cant(const std::string& name, const LineVertices& line, const LineOptio
              name +
                  ": the cant was measured over a distance of 1.5 m between the middles of the "
                  "rails, as on standard gauge",
-             {{"metres", kStandardRailDistance}});
+             {{"metres", kUsualRails}});
   }
-  path.rail_distance = options.rail_distance.value_or(kStandardRailDistance);
+  path.rail_distance = options.rail_distance.value_or(kUsualRails);
   path.cant_line = options.cant == CantLine::kFile ? CantLine::kCenter : options.cant;
   std::vector<CantPoint> points;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -417,6 +415,8 @@ LineFile read_line_file(const std::filesystem::path& path, const LineOptions& gi
   }
   const std::vector<double> places = even_stations(reach.from, reach.to, options.step);
   for (const double place : places) out.poses.push_back(along.pose_at(place));
+  const bool is_given = along.cant && options.ground == nullptr;
+  if (is_given) remark_cant(name, *along.cant, along.rail_distance, out.poses, out);
   out.stations = stations_at(line, along.plan, places);
   if (options.reverse) turn_round(out.poses, out.stations);
   out.format = line.format;

@@ -27,9 +27,9 @@ constexpr double kPartOfGround = 1.0 / 32;
 /// By how much a box beside the model is extended along the path, so that it is long enough for the
 /// scan to have points in it.
 constexpr double kBesideMargin = 1;
-/// How far the ground may reach above the model's lowest point.
-constexpr double kIntoModel = 0.3;
 constexpr double kAbove = 3;
+/// How far below the model's lowest point a surface counts as its ground.
+constexpr double kUnder = 1.5;
 /// Bounds of the distance between looks, which short and long vehicles reach.
 constexpr double kClosestApart = 0.5, kFarthestApart = 2;
 /// How far around a scanner on a tripod or a vehicle nothing is scanned, because it stands there.
@@ -84,6 +84,7 @@ class Looking {
     if (!look.covered) return;
     const Box ground = below(pose);
     look.below = points_.has(ground, pose, surely_below(ground, pose));
+    look.depth = depth(pose);
     look.left = is_beside(1, pose);
     look.right = is_beside(-1, pose);
   }
@@ -127,8 +128,36 @@ class Looking {
       widen(box, k, std::max(spacing(pose), to_shadow), pose);
     }
     box.lo.z = points_.bottom_of_scan(box, pose);
-    box.hi.z = question_.model.lo.z + kIntoModel * metre(pose);
+    box.hi.z = question_.model.lo.z + kDeepest * metre(pose);
     return box;
+  }
+
+  /// Look::depth. Where there is ground at the height of the model's lowest point, as below every
+  /// sound vehicle, some of it is found at once, and nothing else is read. It is sought as widely
+  /// as for Look::below, and the surface inside the model only in its inner part, where no
+  /// platform, wall or tree beside the path is taken for the ground.
+  std::optional<double> depth(const Pose& pose) const {
+    constexpr double kUpright = 0.7;  // the cosine of 45 degrees
+    if (!(pose.rotation[8] >= kUpright * scale_of(pose))) return std::nullopt;
+    Box under = below(pose);
+    under.lo.z = question_.bottom - kUnder * metre(pose);
+    under.hi.z = question_.bottom + kDeepest * metre(pose);
+    Box inside = inner_;
+    inside.lo.z = under.hi.z;
+    inside.hi.z = question_.model.hi.z;
+    if (inside.hi.z <= inside.lo.z) return std::nullopt;
+    if (points_.has(under, pose, surely_below(under, pose))) return std::nullopt;
+    std::vector<double> heights;
+    points_.visit(inside, pose, [&](const Vec3& p) {
+      heights.push_back(p.z);
+      return true;
+    });
+    if (heights.size() < surely_below(inside, pose)) return std::nullopt;
+    constexpr std::size_t kLowest = 10;  // a tenth of the points lies lower
+    const auto surface =
+        heights.begin() + static_cast<std::ptrdiff_t>((heights.size() - 1) / kLowest);
+    std::nth_element(heights.begin(), surface, heights.end());
+    return (*surface - question_.bottom) * scale_of(pose);
   }
 
   /// Whether the scan has points beside the model at a pose. side: 1 for the left of a model whose

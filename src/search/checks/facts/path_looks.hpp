@@ -22,6 +22,10 @@ struct Look {
   /// Height of the model above the highest point below its inner part: 0 where it touches a point,
   /// and nothing where there is no point below.
   std::optional<double> height = {};
+  /// How far the whole model reaches below the lowest surface that was scanned under or inside it,
+  /// its lowest part included even if that is not searched; nothing where that is at most
+  /// kDeepest, or where no surface was scanned there.
+  std::optional<double> depth = {};
 };
 
 /// Consecutive looks from the first to the last one, as indices into PathLooks::all().
@@ -74,5 +78,9 @@ class PathLooks {
 
 /// How far beside the model the scan is looked at, at the model's height, in metres.
 inline constexpr double kLooksBeside = 20;
+
+/// How far the ground may reach above the model's lowest point, in metres: rails, kerbs and rough
+/// ground do.
+inline constexpr double kDeepest = 0.3;
 
 }  // namespace clearway

@@ -417,7 +417,7 @@ TEST_CASE("a recorded path that stands and jitters by millimetres leaves a trail
   const BodyMount tow = BodyTowed{"", -0.6, 8, 0};
   const auto jittering = follow_all(path, {tow}, &told), still = follow_all(clean, {tow});
   CHECK(with_code(told, "body-rolls-back").size() == 1);
-  for (const Message& message : told) CHECK(message.severity == Message::Severity::kNote);
+  CHECK(told.size() == 2);  // and "body-transient", because the path begins in a bend
   const Pose& standing = jittering[0].poses[3400];
   CHECK(distance(standing.position(), still[0].poses[400].position()) < 0.03);
   CHECK(distance(axis_of(standing, 0), axis_of(still[0].poses[400], 0)) < 0.004);
@@ -462,6 +462,35 @@ TEST_CASE("the first three lengths are said to be transient") {
   REQUIRE(told.size() == 1);
   CHECK(told[0].code == "body-transient");
   CHECK_THAT(told[0].text, Contains("poses 0-150"));
+}
+
+TEST_CASE("a path that begins in a bend is warned of for what is towed") {
+  struct Row {
+    double straight, curvature;  // metres before the bend, 1/m
+    bool warned;
+  };
+  // A body of 5 m, for which 15 m matter.
+  for (const Row& row : {Row{0, 0.025, true}, Row{0, -0.025, true}, Row{10, 0.025, true},
+                         Row{0, 0, false}, Row{0, 0.005, false}, Row{16, 0.025, false}}) {
+    CAPTURE(row.straight, row.curvature);
+    std::vector<Pose> path;
+    double x = 0, y = 0, heading = 0;
+    for (int i = 0; i < 500; ++i) {
+      path.push_back(rotation({0, 0, 1}, heading, {x, y, 0}));
+      if (0.1 * i >= row.straight) heading += 0.1 * row.curvature;
+      x += 0.1 * std::cos(heading);
+      y += 0.1 * std::sin(heading);
+    }
+    std::vector<Message> told;
+    follow_all(path, {BodyTowed{"", 0, 5, 0}}, &told);
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].code == "body-transient");
+    CHECK((told[0].severity == Message::Severity::kWarning) == row.warned);
+    REQUIRE(told[0].stretches.size() == (row.warned ? 1 : 0));
+    if (!row.warned) continue;
+    CHECK(told[0].stretches[0].first == 0);
+    CHECK(std::abs(static_cast<double>(told[0].stretches[0].last) - 150) <= 1);
+  }
 }
 
 TEST_CASE("poses of a camera are warned of where they tow") {

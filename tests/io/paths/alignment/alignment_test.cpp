@@ -572,6 +572,30 @@ TEST_CASE("the side and the unit of cant follow the file") {
         1e-3);
 }
 
+TEST_CASE("cant to the wrong side or in another unit is warned of") {
+  struct Row {
+    double cant;
+    const char* side;
+    Codes codes;
+  };
+  // The curve of the file turns to the left, so its right rail is the outer one.
+  for (const Row& row : {Row{100, "ccw", {}}, Row{40, "cw", {}}, Row{100, "cw", {"cant-side"}},
+                         Row{0.1, "ccw", {"cant-unit"}}, Row{2, "ccw", {}},
+                         Row{310, "ccw", {"cant-unit"}}, Row{180, "ccw", {}}}) {
+    CAPTURE(row.cant, row.side);
+    const std::string more = "curvature=\"" + std::string(row.side) + "\"";
+    const LandFile file = with_more(
+        cant_of(R"(gauge="1.435" rotationPoint="center")",
+                cant_station(1000, row.cant, more) + cant_station(1178.6, row.cant, more)));
+    const Made ahead = made_of(file, {.step = 1});
+    CHECK(ahead.codes() == row.codes);
+    CHECK(made_of(file, {.step = 1, .reverse = true}).codes() == row.codes);
+    if (row.codes == Codes{"cant-side"}) {
+      CHECK_THAT(ahead.remarks[0].text, Contains("on 100 % of the length") && Contains("100 mm"));
+    }
+  }
+}
+
 TEST_CASE("cant beyond its stations is told, and warned of where it is kept") {
   const auto codes = [](const std::string& stations) {
     return made_of(with_more(cant_of(R"(gauge="1.435" rotationPoint="center")", stations)),

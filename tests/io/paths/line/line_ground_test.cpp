@@ -98,6 +98,16 @@ TEST_CASE("a path on sloping ground has its height, climb and roll") {
   CHECK(back.front().rotation[7] == -poses.back().rotation[7]);
 }
 
+TEST_CASE("roll that the ground gives is not judged as cant") {
+  // Level ground, and one that falls to the outside of the line's bend.
+  for (const double slope : {0.0, 0.1}) {
+    CAPTURE(slope);
+    Site site([&](double, double y) { return 7 + slope * y; });
+    site.poses("x,y\n0,1001\n7.5,999.9\n15,999.5\n22.5,999.9\n30,1001\n");
+    for (const std::string& code : site.codes()) CHECK(!code.starts_with("cant-"));
+  }
+}
+
 TEST_CASE("a store in feet has its ground in metres, and its unit counts") {
   const Height ground = [](double x, double y) { return 7 + 0.05 * x + 0.1 * y; };
   Site metres(ground), feet(ground, 0.3048);

@@ -288,6 +288,25 @@ TEST_CASE("stations of vertices become those of poses") {
   CHECK_THAT(refusal_by("x,y,z,station [s]\n0,0,0,0\n100,0,0,328\n"), Contains("the station in"));
 }
 
+TEST_CASE("cant of a line to the wrong side or in another unit is warned of") {
+  struct Row {
+    const char *unit, *cant;
+    Codes codes;
+  };
+  for (const Row& row : {Row{" [mm]", "120", {}}, Row{" [m]", "0.12", {}},
+                         Row{" [mm]", "-120", {"cant-side"}}, Row{" [mm]", "-45", {}},
+                         Row{" [mm]", "0.12", {"cant-unit"}}, Row{" [mm]", "400", {"cant-unit"}}}) {
+    CAPTURE(row.unit, row.cant);
+    std::string text = "x,y,z,cant" + std::string(row.unit) + "\n";
+    for (int i = 0; i <= 240; ++i) {  // an arc of 300 m to the right
+      const double angle = i / 240.0;
+      text += std::to_string(300 * std::sin(angle)) + "," + std::to_string(300 * std::cos(angle)) +
+              ",5," + row.cant + "\n";
+    }
+    CHECK(made_of(text, {.rail_distance = 1.5}).codes() == row.codes);
+  }
+}
+
 TEST_CASE("cant turns the path about the line that the option names") {
   const std::string text = "x,y,z,cant [mm]\n0,0,5,0\n100,0,5,150\n";
   const auto at_50 = [&](const LineOptions& options) {

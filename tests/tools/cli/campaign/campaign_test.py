@@ -38,6 +38,22 @@ class Test:
         expect(not (self.work / "refused").exists(), "a refused plan was written")
 
 
+def files_that_a_pattern_misses_are_named(test):
+    """Only files with an ending like those that match, and that nothing else names."""
+    for routes, missed in (({"all": "routes/*.txt"}, ""),
+                           ({"first": "routes/r00.t*"}, "1 file beside them"),
+                           ({"first": "routes/r00.t*", "rest": "routes/r0[1-9].txt"}, ""),
+                           ({"first": "routes/r00.txt"}, "")):
+        done = test.plan(path=test.work / "missed", routes=routes)
+        expect(done.returncode == 0, f"{routes}: {done.stderr}")
+        expect((missed in done.stderr) if missed else ("leaves out" not in done.stderr),
+               f"{routes}: {done.stderr}")
+        if missed:
+            expect("routes.first: the pattern matches 1 file" in done.stderr
+                   and "r01.txt" in done.stderr, done.stderr)
+        shutil.rmtree(test.work / "missed")
+
+
 def errors_name_the_key(test):
     model = "vehicles/v00.ply"
     test.refused("colour: unknown key; expected one of name,", colour="red")
@@ -296,7 +312,7 @@ def misuse(test):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         test = Test(pathlib.Path(folder))
-        for check in [errors_name_the_key, plans_are_stable, tasks_are_idempotent, by_hand,
+        for check in [errors_name_the_key, files_that_a_pattern_misses_are_named, plans_are_stable, tasks_are_idempotent, by_hand,
                       one_at_a_time, new_plans_keep_results, stores_are_opened_once, failures, signals, crashes, page, misuse]:
             begin = time.monotonic()
             check(test)
