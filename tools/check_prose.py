@@ -7,6 +7,9 @@ It fails, with file and line, on
   with or without its ending,
 - a command or option in README.md or docs/guide that the program does not have,
 - an option of a program that docs/guide does not describe,
+- a file, type, function or constant in a code span that no source has,
+- a command of a program that docs/guide/command-line.md does not have in its first table,
+- a text of the Python module that lists names of an enumeration, but not all of them,
 - a code of a warning or note that the sources have and docs/guide/warnings.md does not list, or
   the other way round,
 - a term that docs/design/glossary.md defines twice, and a word that its section "Words that are
@@ -26,12 +29,13 @@ import sys
 from pathlib import Path
 from urllib.parse import unquote
 
-from prose import codes, markdown, terms
+from prose import codes, markdown, names, terms
 from prose.program import OPTION, Program
 
 OUTPUT_LANGUAGES = {"text", "json", "csv", "console"}
 PREFIXES = {"$", "time", "nice", "sudo"}
 SOURCE_PATH = re.compile(r"(?:src|include|tools|tests|examples|cmake|docs)/[\w./-]*\w")
+COMMAND_LINE = "docs/guide/command-line.md"
 ENDINGS = ("", ".hpp", ".cpp", ".cu", ".py", ".sh")
 
 
@@ -58,11 +62,14 @@ class Checker:
     def run(self):
         glossary = terms.Glossary(self.root)
         self.problems.extend(glossary.problems())
+        sources = names.Names(self.root, self.files)
+        self.problems.extend(sources.incomplete())
         for path, blocks in self.blocks.items():
             name = str(path.relative_to(self.root))
             self._check_links(path, name, blocks)
             if name != "CHANGELOG.md":  # which names files of earlier versions too
                 self._check_source_paths(name, blocks)
+                self.problems.extend(sources.unknown(name, blocks))
             if name == "README.md" or name.startswith("docs/guide/"):
                 for block in blocks:
                     if block.kind != "code":
@@ -72,6 +79,7 @@ class Checker:
             for where, text in program.prose:
                 self.problems.extend(glossary.not_used(where, 0, text))
             self._check_described(program)
+            self._check_table(program)
         self.problems.extend(codes.problems(self.root, self.files))
 
     def _check_links(self, path, name, blocks):
@@ -180,6 +188,19 @@ class Checker:
                 place = f"below the heading {heading}" if heading else "anywhere"
                 self.problems.append(
                     f"docs/guide: {option} of {command}: not described {place}")
+
+    def _check_table(self, program):
+        """Every command of the program whose page this is stands in the first table of the page."""
+        rows, last = "", None
+        for block in self.blocks.get(self.root / COMMAND_LINE, []):
+            if block.kind == "table" and last in (None, block.line - 1):
+                rows, last = f"{rows}{block.text}\n", block.line
+        if f"`{program.name} " not in rows:
+            return
+        for command in program.subcommands[program.name]:
+            if f"| `{program.name} {command}` |" not in rows:
+                self.problems.append(
+                    f"{COMMAND_LINE}: {program.name} {command} is not in the first table")
 
     def report(self):
         for problem in sorted(set(self.problems)):

@@ -53,6 +53,7 @@ enum class Remedy {
   kMerge,         ///< merge the parts first: the file is one part of a result
   /// Search or ask with points of the surface, where the surface itself is not possible
   kModelPoints,
+  kFreeDisk,   ///< free some room on the disk, or write to another one
   kOtherPart,  ///< the output belongs to another part, or to the whole, than the one asked for
 };
 

@@ -37,6 +37,9 @@ struct Message {
   /// The stretches of the path that the message is about, ascending and apart from each other;
   /// empty for a message about the whole question
   std::vector<PoseRange> stretches = {};
+  /// The name of the one body that the message is about; empty where it is about several or about
+  /// the whole question. Files do not hold it.
+  std::string body = {};
 };
 
 /// Callbacks that watch a call. They are never called from two threads at once, but may be called

@@ -9,6 +9,7 @@
 #include "clearway/answer.hpp"
 #include "clearway/body.hpp"
 #include "clearway/conflicts.hpp"
+#include "clearway/follow.hpp"
 #include "clearway/model.hpp"
 #include "clearway/outline.hpp"
 #include "clearway/pose.hpp"
@@ -55,6 +56,8 @@ struct ReportOptions {
   std::optional<ShiftTable> shifts = {};
   /// Bodies of the search, for the result of a vehicle; then the model is empty.
   std::vector<Body> bodies = {};
+  /// How each of these bodies follows the path, for the page to say its axles and pivots; or empty.
+  std::vector<BodyMount> mounts = {};
   /// A section of the same path through the same environment, which the page shows; or null. It
   /// must outlive the call.
   const Section* section = nullptr;

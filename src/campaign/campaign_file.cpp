@@ -11,6 +11,7 @@
 #include "core/query/query_fields.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
+#include "io/models/model_input.hpp"
 #include "io/result/conflicts/json_text.hpp"
 
 namespace clearway::campaign {
@@ -20,11 +21,14 @@ std::string number_text(const nlohmann::ordered_json& number) {
   return number.is_number_float() ? format_number(number.get<double>()) : number.dump();
 }
 
-std::string list_text(const KeyReader& value) {
+std::string value_text(const KeyReader& value, ValueKind kind);
+
+/// A text as on a command line, or a list of values of this kind.
+std::string list_text(const KeyReader& value, ValueKind element_kind) {
   if (value.value().is_string()) return value.text();
   std::string list;
   for (const KeyReader& element : value.elements()) {
-    list += (list.empty() ? "" : ",") + length_text(element);
+    list += (list.empty() ? "" : ",") + value_text(element, element_kind);
   }
   return list;
 }
@@ -34,15 +38,26 @@ std::string value_text(const KeyReader& value, ValueKind kind) {
     case ValueKind::kLength:
       return length_text(value);
     case ValueKind::kCount:
-      if (!value.value().is_number_integer()) value.refuse("expected a whole number");
+      if (!value.value().is_number_unsigned()) {
+        value.refuse("expected a whole number, 0 or more");
+      }
       return value.value().dump();
     case ValueKind::kNumber:
       if (!value.value().is_number()) value.refuse("expected a number");
       return number_text(value.value());
     case ValueKind::kSize:
-      return value.value().is_number_integer() ? value.value().dump() : value.text();
-    case ValueKind::kList:
-      return list_text(value);
+      if (value.value().is_number_integer()) return value.value().dump();
+      if (!value.value().is_string()) {
+        value.refuse("expected bytes as a whole number, or a size in quotes, as \"4G\"");
+      }
+      return value.text();
+    case ValueKind::kLengths:
+    case ValueKind::kBoxes:
+      return list_text(value, ValueKind::kLength);
+    case ValueKind::kCounts:
+      return list_text(value, ValueKind::kCount);
+    case ValueKind::kTexts:
+      return list_text(value, ValueKind::kText);
     default:
       return value.text();
   }
@@ -65,9 +80,9 @@ Arguments arguments_of(const KeyReader& object, const std::vector<OptionKey>& ta
     const KeyReader value = object.at(name);
     if (kind == ValueKind::kFlag) {
       if (value.flag()) out.push_back({value.key(), option, option});
-    } else if (kind == ValueKind::kLists) {
+    } else if (kind == ValueKind::kBoxes) {
       for (const KeyReader& one : value.elements()) {
-        out.push_back({one.key(), option, option + ("=" + list_text(one))});
+        out.push_back({one.key(), option, option + ("=" + value_text(one, kind))});
       }
     } else {
       out.push_back({value.key(), option, option + ("=" + value_text(value, kind))});
@@ -98,11 +113,11 @@ const std::vector<OptionKey> kAxisKeys{{"forward", "--forward", ValueKind::kText
 const std::vector<OptionKey> kTrajectoryKeys{
     {"format", "--trajectory-format", ValueKind::kText},
     {"allow_non_rigid", "--allow-non-rigid", ValueKind::kFlag},
-    {"angles", "--angles", ValueKind::kList},
+    {"angles", "--angles", ValueKind::kTexts},
     {"crs", "--trajectory-crs", ValueKind::kText},
     {"datum", "--trajectory-datum", ValueKind::kText},
     {"unit", "--trajectory-unit", ValueKind::kText},
-    {"lever_arm", "--lever-arm", ValueKind::kList}};
+    {"lever_arm", "--lever-arm", ValueKind::kLengths}};
 const std::vector<OptionKey> kChainageKeys{
     {"chainage_start", "--chainage-start", ValueKind::kLength}};
 template <typename Value>
@@ -126,8 +141,8 @@ std::vector<OptionKey> query_keys() {
                     : is_number(field)                        ? ValueKind::kNumber
                     : is_length<Value>                        ? ValueKind::kLength
                     : std::is_same_v<Value, std::uint32_t>    ? ValueKind::kCount
-                    : std::is_same_v<Value, std::vector<Box>> ? ValueKind::kLists
-                                                              : ValueKind::kList});
+                    : std::is_same_v<Value, std::vector<Box>> ? ValueKind::kBoxes
+                                                              : ValueKind::kCounts});
   };
   for_each_value_field(add);
   keys.push_back({"precision", "--precision", ValueKind::kText});
@@ -142,7 +157,7 @@ const std::vector<OptionKey> kConflictKeys{{"gap", "--gap", ValueKind::kLength},
 const std::vector<OptionKey> kSearchKeys{
     {"engine", "--engine", ValueKind::kText},
     {"device", "--device", ValueKind::kText},
-    {"gpus", "--gpus", ValueKind::kList},
+    {"gpus", "--gpus", ValueKind::kCounts},
     {"device_memory", "--device-memory", ValueKind::kSize},
     {"field_voxel", "--field-voxel", ValueKind::kLength},
     {"grid_cell", "--grid-cell", ValueKind::kLength},
@@ -172,9 +187,11 @@ void check_utf8(const KeyReader& at, const fs::path& path) {
 
 bool is_pattern(const std::string& text) { return text.find_first_of("*?[") != std::string::npos; }
 
-/// The file that is named, or the files that match a pattern, sorted by name.
-std::vector<fs::path> files_of(const KeyReader& at, const fs::path& folder) {
+/// The file that is named, or the files that match a pattern, sorted by name. takes_boxes: whether
+/// a box that is named by its size may stand instead of a file.
+std::vector<fs::path> files_of(const KeyReader& at, const fs::path& folder, bool takes_boxes) {
   const std::string given = at.text();
+  if (takes_boxes && names_box(given)) return {given};
   const fs::path path = folder / given;
   std::error_code unknown;
   if (!is_pattern(given) || fs::exists(path, unknown)) {
@@ -196,8 +213,12 @@ std::vector<fs::path> files_of(const KeyReader& at, const fs::path& folder) {
 template <typename Kind>
 class EntryReader {
  public:
-  EntryReader(fs::path folder, const char* file_key, std::vector<std::string> others)
-      : folder_(std::move(folder)), file_key_(file_key), known_(std::move(others)) {
+  EntryReader(fs::path folder, const char* file_key, std::vector<std::string> others,
+              bool takes_boxes = false)
+      : folder_(std::move(folder)),
+        file_key_(file_key),
+        known_(std::move(others)),
+        takes_boxes_(takes_boxes) {
     known_.insert(known_.begin(), file_key);
   }
 
@@ -211,9 +232,9 @@ class EntryReader {
       const KeyReader file = in_short ? member : member.at(file_key_);
       describe(member, kind);
       kind.key = file.key();
-      for (const fs::path& path : files_of(file, folder_)) {
+      for (const fs::path& path : files_of(file, folder_, takes_boxes_)) {
         kind.name = is_pattern(file.text()) ? path.stem().string() : member.name();
-        kind.file = fs::absolute(path).lexically_normal();
+        kind.file = names_box(path) ? path : fs::absolute(path).lexically_normal();
         kind.is_match = is_pattern(file.text()) && path != folder_ / file.text();
         add(file, kind, out);
       }
@@ -233,6 +254,7 @@ class EntryReader {
   fs::path folder_;
   const char* file_key_;
   std::vector<std::string> known_;
+  bool takes_boxes_;
   std::map<std::string, std::string> seen_;
 };
 
@@ -330,7 +352,7 @@ void read_entries(const KeyReader& file, const fs::path& folder, Campaign& campa
       environments.read(file.at("environments"), [](const KeyReader&, Entry&) {});
   EntryReader<Vehicle> vehicles(
       folder, "model",
-      names_of(kModelKeys, names_of(kModelKindKeys, names_of(kAxisKeys, {"turn"}))));
+      names_of(kModelKeys, names_of(kModelKindKeys, names_of(kAxisKeys, {"turn"}))), true);
   campaign.vehicles =
       vehicles.read(file.at("vehicles"), [](const KeyReader& member, Vehicle& vehicle) {
         vehicle.arguments = arguments_of(member, kModelKeys);
@@ -387,7 +409,7 @@ void read_outputs(const KeyReader& file, Campaign& campaign) {
     read_conflict_formats(outputs, campaign);
     campaign.report = outputs.has("report") && outputs.at("report").flag();
   }
-  campaign.classes = arguments_of(file, {{"classes", "--classes", ValueKind::kList}});
+  campaign.classes = arguments_of(file, {{"classes", "--classes", ValueKind::kLengths}});
   if (!campaign.classes.empty() && !campaign.report) {
     file.at("classes").refuse("needs \"report\": true in outputs");
   }

@@ -28,8 +28,10 @@ enum class ValueKind {
   kCount,
   kSize,
   kNumber,
-  kList,
-  kLists  ///< a list of lists: the option is repeated for each inner list
+  kTexts,
+  kLengths,
+  kCounts,
+  kBoxes  ///< a list of lists of lengths: the option is repeated for each inner list
 };
 
 /// A key and the option that it stands for.

@@ -163,17 +163,15 @@ class RunCommands {
   }
 
  private:
-  /// The command that finds the conflicts. It needs the model where pictures show it or where sides
-  /// are seen from bodies; otherwise the trajectory is enough.
+  /// The command that finds the conflicts. The model gives the shifts and the sides, and pictures
+  /// show it.
   std::pair<Command, Arguments> conflicts() const {
     Command command{"conflicts", kResultName, "--force", "--show=0"};
-    bool needs_model = vehicle_.has_bodies();
     for (const std::string& format : campaign_.conflict_formats) {
       command.push_back("--output=conflicts." + format);
-      needs_model = needs_model || format == "bcf";
     }
-    return {std::move(command), path_ + (needs_model ? model_ : Arguments{}) + vehicle_.axes +
-                                    route_.chainage + campaign_.conflicts};
+    return {std::move(command),
+            path_ + model_ + vehicle_.axes + route_.chainage + campaign_.conflicts};
   }
 
   const Campaign& campaign_;

@@ -1,5 +1,7 @@
 #include "campaign/slurm_script.hpp"
 
+#include "core/util/exit_code.hpp"
+
 namespace clearway::campaign {
 namespace {
 
@@ -23,7 +25,8 @@ std::string resources(const SlurmJob& job) {
   return text;
 }
 
-constexpr const char* kTaskScript = R"sh(
+std::string task_script() {
+  return R"sh(
 # Slurm sends TERM 60 seconds before the end. The task then keeps what it found and ends with 5.
 set -u
 task=$((SLURM_ARRAY_TASK_ID + ${CLEARWAY_FIRST:-0}))
@@ -37,8 +40,9 @@ while kill -0 "$child" 2>/dev/null; do wait "$child"; code=$?; done  # a trap en
 # merge without all of its parts.
 again=no
 case $code in
-  5) again=yes ;;
-  4|137) if [ "${SLURM_RESTART_COUNT:-0}" -lt 2 ]; then again=yes; fi ;;
+)sh" + ("  " + std::to_string(kInterrupted)) +
+         ") again=yes ;;\n  " + std::to_string(kResource) +
+         R"sh(|137) if [ "${SLURM_RESTART_COUNT:-0}" -lt 2 ]; then again=yes; fi ;;
 esac
 # A job that was cancelled is not to come back.
 job=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID
@@ -48,10 +52,33 @@ if [ $again = yes ] && [ "$(squeue -h -j "$job" -o %T 2>/dev/null)" = RUNNING ];
 fi
 exit $code
 )sh";
+}
 
 constexpr const char* kSubmitScript = R"sh(
 set -euo pipefail
+fail() { echo "error: $1" >&2; exit "$2"; }
+
+# Without an argument all tasks are submitted. An empty list has no task.
+if [ $# -gt 1 ]; then fail "expected one list of tasks, such as 3,7-9, or none for all tasks" 2; fi
+list=${1-0-$last}
+list=${list//[[:space:]]/}
+if [ -z "$list" ]; then
+  echo "nothing is submitted, because the list of tasks is empty"
+  exit 0
+fi
+if ! [[ $list =~ ^[0-9]{1,8}(-[0-9]{1,8})?(,[0-9]{1,8}(-[0-9]{1,8})?)*$ ]]; then
+  fail "$1: expected numbers of tasks from 0 to $last, such as 3,7-9" 2
+fi
+IFS=, read -ra parts <<< "$list"
+for part in "${parts[@]}"; do
+  if [ "${part%-*}" -gt "${part#*-}" ] || [ "${part#*-}" -gt "$last" ]; then
+    fail "$part: expected numbers of tasks that ascend, from 0 to $last" 2
+  fi
+done
 most=$(scontrol show config | awk '/^MaxArraySize/ {print $3}')
+if ! [[ $most =~ ^[1-9][0-9]*$ ]]; then
+  fail "scontrol show config: expected a MaxArraySize above 0, found \"$most\"" 4
+fi
 
 numbers_of() {  # 3,7-9: a number a line
   local part parts
@@ -92,7 +119,7 @@ submit() {  # numbers and options of sbatch in the variables of these names, gpu
 declare -A is_merge=()
 for number in $(numbers_of "$merges"); do is_merge[$number]=1; done
 runs=() later=()
-for number in $(numbers_of "$list"); do
+for number in $(numbers_of "$list" | sort -nu); do
   if [ -n "${is_merge[$number]:-}" ]; then later+=("$number"); else runs+=("$number"); fi
 done
 jobs= options=() gpu=yes numbers=(${runs[@]+"${runs[@]}"})
@@ -101,7 +128,7 @@ if [ -n "$jobs" ]; then options=(--dependency="afterany$jobs"); fi
 gpu=no numbers=(${later[@]+"${later[@]}"})
 submit
 report=$(sbatch --parsable --dependency="afterany$jobs" --job-name="$name-report" \
-  --output="$folder/slurm/report.log" "${report_options[@]}" \
+  --output="$folder/slurm/report.log" ${report_options[@]+"${report_options[@]}"} \
   --wrap="exec $(printf '%q ' "$program" campaign report "$folder" --force)")
 echo "tasks: job ${jobs#:}; report: job ${report%%;*}"
 )sh";
@@ -132,7 +159,7 @@ std::string sbatch_text(const SlurmJob& job) {
          sbatch_word((job.folder / "slurm").string()) +
          "/%A_%a.log\"\n#SBATCH --open-mode=append\n#SBATCH --requeue\n"
          "#SBATCH --signal=B:TERM@60\n" +
-         resources(job) + variables(job) + kTaskScript;
+         resources(job) + variables(job) + task_script();
 }
 
 std::string submit_text(const SlurmJob& job) {
@@ -142,7 +169,7 @@ std::string submit_text(const SlurmJob& job) {
   return "#!/usr/bin/env bash\n"
          "# Submits a campaign to Slurm: submit.sh [TASKS], for example\n"
          "#   submit.sh \"$(clearway campaign status DIR --missing)\"\n" +
-         variables(job) + "list=${1:-0-" + last + "}\nmerges=" + task_list_text(job.merges) +
+         variables(job) + "last=" + last + "\nmerges=" + task_list_text(job.merges) +
          "  # wait for their shards\n" + options + ")" + kSubmitScript;
 }
 

@@ -27,7 +27,7 @@ struct SlurmJob {
 std::string sbatch_text(const SlurmJob& job);
 
 /// The text of submit.sh, which submits all tasks, or those of a list, the merges after the shards,
-/// and the report after all of them.
+/// and the report after all of them. An empty list submits nothing, not even the report.
 std::string submit_text(const SlurmJob& job);
 
 }  // namespace clearway::campaign

@@ -13,6 +13,7 @@
 #include "campaign/plan.hpp"
 #include "clearway/answer.hpp"
 #include "clearway/error.hpp"
+#include "core/util/exit_code.hpp"
 #include "core/util/format.hpp"
 #include "io/files/file.hpp"
 #include "io/files/input_error.hpp"
@@ -40,8 +41,9 @@ std::vector<std::pair<std::string, fs::path>> files_of_bodies(const fs::path& ve
   std::vector<std::pair<std::string, fs::path>> files;
   try {
     for (const BodyEntry& body : read_vehicle_file(vehicle, 1)) {
-      files.emplace_back("model", body.model);
-      if (!body.trajectory.empty()) files.emplace_back("trajectory", body.trajectory);
+      for (const fs::path& file : body.files()) {
+        files.emplace_back(file == body.trajectory ? "trajectory" : "model", file);
+      }
     }
   } catch (const Error&) {
     files.clear();
@@ -315,7 +317,6 @@ TaskLook look_at(const Task& task, const fs::path& campaign) {
 }
 
 bool may_succeed(const TaskLook& look) {
-  constexpr int kResource = 4;
   if (look.status != TaskStatus::kFailed) return true;
   return look.state->exit_code == kResource || look.state->inputs_changed;
 }

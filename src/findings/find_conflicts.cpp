@@ -1,5 +1,4 @@
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -553,10 +552,9 @@ Conflicts find_conflicts(const Result& result, const std::vector<Pose>& poses,
                          const ConflictOptions& options, std::vector<std::uint32_t>* conflict_of) {
   check_conflicts(result.reader(), poses, options);
   CallbackProgress progress(options.progress, options.stop);
-  const int threads =
-      options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
-  return ThreadLimit(threads).run(
-      [&] { return ConflictSearch(result, poses, options, progress).run(conflict_of); });
+  return in_threads(options.threads, [&] {
+    return ConflictSearch(result, poses, options, progress).run(conflict_of);
+  });
 }
 
 }  // namespace clearway

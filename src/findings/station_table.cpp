@@ -1,5 +1,3 @@
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -395,10 +393,9 @@ StationTable station_table(const Result& result, const std::vector<Pose>& poses,
                            const StationOptions& options) {
   check_options(result.reader(), poses, options);
   CallbackProgress progress(options.progress, options.stop);
-  const int threads =
-      options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
-  return ThreadLimit(threads).run(
-      [&] { return TableMaker(result, poses, options, threads, progress).run(); });
+  const int threads = threads_or_all(options.threads);
+  return in_threads(threads,
+                    [&] { return TableMaker(result, poses, options, threads, progress).run(); });
 }
 
 }  // namespace clearway

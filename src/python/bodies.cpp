@@ -102,9 +102,8 @@ Body followed(Body body, const std::vector<Pose>& path, const Motion& motion,
   std::vector<Message> all;
   body = std::move(follow(std::move(bodies), path, mounts, &all).front());
   // What is odd about the towers was told when they were placed.
-  const std::string name = "body " + motion.name + ": ";
   for (Message& doubt : all) {
-    if (doubt.text.starts_with(name)) doubts.push_back(std::move(doubt));
+    if (doubt.body == motion.name) doubts.push_back(std::move(doubt));
   }
   return body;
 }
@@ -227,8 +226,8 @@ void add_read_vehicle(py::module_& module) {
             poses_of(poses_array(poses, "poses"), "poses"));
         std::vector<Body> read = read_noting(messages, [&, from = path_of(file)](auto* noted) {
           std::vector<Body> bodies = read_vehicle(from, *path, options, noted);
-          check_unit_is_given(environment_unit, file_unit(unit).is_known() ? unit : metres_per_unit,
-                              *noted);
+          check_unit_is_given(from, environment_unit,
+                              file_unit(unit).is_known() ? unit : metres_per_unit, *noted);
           return bodies;
         });
         std::vector<PlacedBody> placed;

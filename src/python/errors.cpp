@@ -94,6 +94,8 @@ const char* name_of(Remedy remedy) {
       return "model_points";
     case Remedy::kMerge:
       return "merge";
+    case Remedy::kFreeDisk:
+      return "free_disk";
     case Remedy::kOtherPart:
       return "other_part";
     case Remedy::kResume:

@@ -80,7 +80,7 @@ void add_read_trajectory(py::module_& module) {
         PoseLabels found;
         const auto poses = read_noting(messages, [&, file = path_of(path)](auto* noted) {
           auto read = read_trajectory(file, options, noted, &found);
-          check_unit_is_given(environment_unit, metres_per_unit, *noted);
+          check_unit_is_given(file, environment_unit, metres_per_unit, *noted);
           return read;
         });
         if (labels != nullptr) *labels = std::move(found);

@@ -121,7 +121,7 @@ void add_read_model_points(py::module_& module) {
             ModelAs::kPoints, spacing, unit, environment_unit, vertices_only, above, forward, up);
         return to_array(read_noting(messages, [&, file = path_of(path)](auto* noted) {
           auto read = read_model_points(file, options, noted);
-          check_unit_is_given(environment_unit, unit, *noted);
+          check_unit_is_given(file, environment_unit, unit, *noted);
           return read;
         }));
       },
@@ -164,7 +164,7 @@ void add_read_model(py::module_& module) {
                           vertices_only, above, forward, up);
         return read_noting(messages, [&, file = path_of(path)](auto* noted) {
           Model read = read_model(file, options, noted);
-          check_unit_is_given(environment_unit, unit, *noted);
+          check_unit_is_given(file, environment_unit, unit, *noted);
           return read;
         });
       },

@@ -105,6 +105,9 @@ void add_write_report(py::module_& module) {
         const Model moved = has_no_model ? Model() : model_of(model);
         const std::vector<Pose> path = poses_of(poses_array(poses, "poses"), "poses");
         options.bodies = bodies_on(bodies, path);
+        for (const PlacedBody& body : bodies) {
+          options.mounts.push_back(body.motion ? body.motion->mount : BodyOwnPoses{});
+        }
         return watch.run([&, to = path_of(output)] {
           return in_turn(store, options.conflicts.stop, [&](const Store& own) {
             return write_report(result, own, moved, path, to, options);

@@ -107,8 +107,8 @@ void add_answer(py::module_& module) {
           "no colliding point.")
       .def_property_readonly(
           "reasons", reasons_of,
-          "Why the verdict is undecided: a list of 'near', 'few', 'errors-exceed-margin' and "
-          "'question-in-doubt'; otherwise empty.")
+          "Why the verdict is undecided: a list of 'near', 'few', 'errors-exceed-margin', "
+          "'not-scanned' and 'question-in-doubt'; otherwise empty.")
       .def_property_readonly(
           "margins",
           [](const Answer& a) -> py::object {

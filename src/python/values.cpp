@@ -7,6 +7,7 @@
 #include "clearway/found_place.hpp"
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
+#include "core/util/format.hpp"
 #include "python/arrays.hpp"
 #include "python/watch.hpp"
 
@@ -36,6 +37,9 @@ void add_messages(py::module_& module) {
           "What is told, in one or more sentences.")
       .def_property_readonly("numbers", numbers_of,
                              "The numbers that the text gives, for programs: a dict by name.")
+      .def_property_readonly(
+          "body", [](const Message& m) { return text(m.body); },
+          "The name of the one body that it is about; '' where it is about several or all.")
       .def("__str__", [](const Message& m) { return text(m.text); })
       .def("__repr__", [](const Message& m) {
         return text(std::string("<") + severity_of(m) + (m.code.empty() ? "" : " ") + m.code +
@@ -143,17 +147,21 @@ EnvironmentUnit environment_unit_of(const EnvironmentUnitArgument& unit) {
   return {.metres = file_unit(*unit).metres()};
 }
 
-void check_unit_is_given(const EnvironmentUnitArgument& environment_unit,
+void check_unit_is_given(const std::filesystem::path& file,
+                         const EnvironmentUnitArgument& environment_unit,
                          const UnitArgument& of_file, std::vector<Message>& noted) {
   if (environment_unit) return;
   const auto is_assumed = [](const Message& message) { return message.code == "unit-assumed"; };
   const auto found = std::ranges::find_if(noted, is_assumed);
   if (found == noted.end()) return;
-  // "path.csv: its positions are in international feet and were converted ..."
-  const std::string what = found->text.substr(0, found->text.find(" and were converted"));
+  const auto metres =
+      std::ranges::find(found->numbers, "metres", [](const auto& n) { return n.first; });
+  const std::string unit = metres == found->numbers.end()
+                               ? "another unit than the metre"
+                               : "units of " + format_number(metres->second) + " m";
   std::erase_if(noted, is_assumed);
   if (file_unit(of_file).is_known()) return;
-  throw UsageError(what +
+  throw UsageError(file.string() + ": has lengths in " + unit +
                    ", and nothing says into which unit to convert them. Give "
                    "environment_unit=store.metres_per_unit(), or environment_unit=1.0 for a store "
                    "in metres");

@@ -53,11 +53,12 @@ struct EnvironmentUnit {
 };
 EnvironmentUnit environment_unit_of(const EnvironmentUnitArgument& unit);
 
-/// Throws UsageError where a file that was read names a unit that is not the metre, since nothing
-/// says into which unit it is to be converted, unless environment_unit was given. of_file: the
-/// argument that names the unit of the file, which overrides the file's own. noted: the messages of
-/// reading it, from which those about the assumed unit are taken.
-void check_unit_is_given(const EnvironmentUnitArgument& environment_unit,
+/// Throws UsageError where `file`, which was read, names a unit that is not the metre, since
+/// nothing says into which unit it is to be converted, unless environment_unit was given. of_file:
+/// the argument that names the unit of the file, which overrides the file's own. noted: the
+/// messages of reading it, from which those about the assumed unit are taken.
+void check_unit_is_given(const std::filesystem::path& file,
+                         const EnvironmentUnitArgument& environment_unit,
                          const UnitArgument& of_file, std::vector<Message>& noted);
 
 /// The warnings in words, for example "; 2 warnings: no-poses, steps"; empty where there are none.

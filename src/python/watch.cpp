@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <system_error>
 #include <utility>
+
+#include "core/util/threads.hpp"
 
 namespace clearway::python {
 namespace {
@@ -45,7 +48,11 @@ class Joined {
     Calls& all = calls();
     const std::lock_guard lock(all.mutex);
     if (all.ending) stop_ = true;
-    thread_ = std::thread(work);
+    try {
+      thread_ = std::thread(work);
+    } catch (const std::system_error& error) {
+      refuse_threads(2, error.what());
+    }
     all.stops[&stop_] = getpid();
   }
   Joined(const Joined&) = delete;

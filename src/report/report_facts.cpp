@@ -23,6 +23,7 @@
 #include "io/store/store_metadata.hpp"
 #include "io/store/store_reader.hpp"
 #include "report/facts_text.hpp"
+#include "report/on_site.hpp"
 #include "report/shown_poses.hpp"
 
 namespace clearway {
@@ -500,6 +501,7 @@ std::string json_of(const ReportFacts& facts) {
   write_query(json, facts);
   write_inputs(json, facts);
   write_unsearched(json, facts);
+  write_on_site(json, facts);
   write_warnings(json, facts.options.warnings);
   write_classes(json, facts);
   write_conflicts(json, facts);

@@ -37,6 +37,7 @@ struct ReportFacts {
   Answer answer;
   const Store& store;
   const ReportOptions& options;
+  std::span<const Pose> poses;  ///< of the path
   std::string title;
   Box model_box{};
   std::span<const DrawnBody> bodies;  ///< the model alone where there is no vehicle

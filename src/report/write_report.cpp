@@ -1,5 +1,3 @@
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -319,6 +317,7 @@ class Report {
          .answer = answer_,
          .store = store_,
          .options = options_,
+         .poses = poses_,
          .title = title(),
          .model_box = model_box_,
          .bodies = bodies_,
@@ -406,9 +405,8 @@ ReportSummary write_report(const Result& result, const Store& store, const Model
     check_section(result.reader().header(), options.section->data());
   }
   PendingFile file(output, options.overwrite);
-  const int threads = options.conflicts.threads;
   ReportSummary summary;
-  ThreadLimit(threads > 0 ? threads : tbb::this_task_arena::max_concurrency()).run([&] {
+  in_threads(options.conflicts.threads, [&] {
     ReportOptions complete = options;
     add_query_warnings(result, store, model, poses, complete);
     Report report(result, store, model, poses, complete);

@@ -11,9 +11,9 @@
 #include "core/util/stopwatch.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "cpu/section_search.hpp"
+#include "io/files/thread_limit.hpp"
 #include "search/choose_engine.hpp"
 #include "search/kinds/cuda_kind.hpp"
-#include "search/threads.hpp"
 
 namespace clearway {
 namespace {

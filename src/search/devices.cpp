@@ -7,10 +7,10 @@
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
+#include "io/files/thread_limit.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/check_query.hpp"
 #include "search/choose_engine.hpp"
-#include "search/threads.hpp"
 
 namespace clearway {
 namespace {

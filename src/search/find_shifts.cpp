@@ -1,3 +1,7 @@
+#include <tbb/parallel_for.h>
+#include <tbb/task.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -12,7 +16,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -26,13 +29,13 @@
 #include "core/util/format.hpp"
 #include "core/util/progress.hpp"
 #include "core/util/stopwatch.hpp"
-#include "cpu/first_failure.hpp"
+#include "core/util/tsan_annotations.hpp"
 #include "findings/check_conflicts.hpp"
 #include "io/files/input_error.hpp"
+#include "io/files/thread_limit.hpp"
 #include "io/result/result.hpp"
 #include "search/checks/query_warnings.hpp"
 #include "search/kept_models.hpp"
-#include "search/threads.hpp"
 
 namespace clearway {
 namespace {
@@ -451,26 +454,22 @@ class ShiftSearch {
     return sample.points();
   }
 
-  /// Calls visit(i) for each i below `count`, from a few threads.
+  /// Calls visit(i) for each i below `count`, several at once. A thread that waits within visit()
+  /// for the tasks of its own search does not begin another visit meanwhile.
   template <typename Visit>
   void in_parallel(std::size_t count, const Visit& visit) const {
     std::atomic<std::size_t> next = 0;
-    FirstFailure failure;
-    const auto work = [&] {
-      for (std::size_t i = next++; i < count && !failure.happened(); i = next++) {
-        try {
-          visit(i);
-        } catch (...) {
-          failure.keep_current();
-        }
+    const ParallelScope scope;
+    const auto piece = piece_of(scope, [&](std::size_t) {
+      for (std::size_t i = next++; i < count && !tbb::is_current_task_group_canceling();
+           i = next++) {
+        tbb::this_task_arena::isolate([&] { visit(i); });
       }
-    };
-    const std::size_t threads = std::min({count, static_cast<std::size_t>(threads_), kMostAtOnce});
-    std::vector<std::thread> others;
-    for (std::size_t t = 1; t < threads; ++t) others.emplace_back(work);
-    work();
-    for (std::thread& other : others) other.join();
-    failure.rethrow();
+    });
+    in_threads(threads_, [&] {
+      scope.begin();
+      tbb::parallel_for(std::size_t{0}, std::min(count, kMostAtOnce), piece);
+    });
   }
 
   /// Finds the first candidate from `rank` on that frees the stretch of the row. points: further

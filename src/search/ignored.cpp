@@ -17,10 +17,10 @@
 #include "core/query/search_result.hpp"
 #include "core/util/format.hpp"
 #include "core/util/tsan_annotations.hpp"
+#include "io/files/thread_limit.hpp"
 #include "io/scans/length_unit.hpp"
 #include "search/checks/question.hpp"
 #include "search/page_search.hpp"
-#include "search/threads.hpp"
 
 namespace clearway {
 namespace {

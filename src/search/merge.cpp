@@ -9,12 +9,12 @@
 #include "core/util/progress.hpp"
 #include "findings/certain_points.hpp"
 #include "io/files/pending_file.hpp"
+#include "io/files/thread_limit.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/check_results.hpp"
 #include "io/result/merge_parts.hpp"
 #include "search/ignored.hpp"
 #include "search/seen_space.hpp"
-#include "search/threads.hpp"
 
 namespace clearway {
 namespace {

@@ -12,6 +12,7 @@
 #include "core/util/stopwatch.hpp"
 #include "findings/certain_points.hpp"
 #include "io/files/pending_file.hpp"
+#include "io/files/thread_limit.hpp"
 #include "io/paths/content_hash.hpp"
 #include "io/result/answer.hpp"
 #include "search/answer_question.hpp"
@@ -31,7 +32,6 @@
 #include "search/seen_space.hpp"
 #include "search/session_state.hpp"
 #include "search/shard_cells.hpp"
-#include "search/threads.hpp"
 #include "stream/gather_rows.hpp"
 #include "stream/write_result.hpp"
 

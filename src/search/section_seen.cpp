@@ -11,8 +11,8 @@
 #include "core/seen/brick_map.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "cpu/section_cubes.hpp"
+#include "io/files/thread_limit.hpp"
 #include "search/seen_space.hpp"
-#include "search/threads.hpp"
 
 namespace clearway {
 namespace {

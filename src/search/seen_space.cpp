@@ -27,10 +27,10 @@
 #include "core/util/stopwatch.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "io/files/input_error.hpp"
+#include "io/files/thread_limit.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/question.hpp"
 #include "search/page_search.hpp"
-#include "search/threads.hpp"
 
 namespace clearway {
 namespace {

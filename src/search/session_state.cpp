@@ -5,8 +5,8 @@
 
 #include "clearway/error.hpp"
 #include "core/util/stopwatch.hpp"
+#include "io/files/thread_limit.hpp"
 #include "search/ignored.hpp"
-#include "search/threads.hpp"
 
 namespace clearway {
 

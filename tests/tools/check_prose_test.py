@@ -130,6 +130,38 @@ class CheckProse(unittest.TestCase):
         self.append("README.md", "\nIn `src/core/weep`.\n")
         self.assert_fault("src/core/weep: no such file or folder")
 
+    def test_names_that_no_source_has(self):
+        self.write("src/core/sweep.hpp", "struct SweepTree { int find_all(int); };\n"
+                                         "inline constexpr int kMostTrees = 3;\n"
+                                         'const char* made = "index.html";\n')
+        self.append("README.md", "\n`SweepTree`, `SweepTree::find_all()`, `find_all(tree)`, `kMostTrees`, "
+                                 "`sweep.hpp`, `core/sweep.hpp`, `out/index.html`, `NAME_reader.hpp`, "
+                                 "`LAS`, `Clear`, `a(b) - c(d)`.\n\n    GoneType gone.cpp\n")
+        self.assert_clean()
+        for name in ("SweepTrees", "SweepTree::find_one()", "find_some()", "kMostLeaves", "sweeps.hpp"):
+            with self.subTest(name):
+                readme = (self.root / "README.md").read_text(encoding="utf-8")
+                self.append("README.md", f"\nSee `{name}`.\n")
+                self.assert_fault(f"{name}: no source has this name")
+                self.write("README.md", readme)
+
+    def test_a_list_of_names_that_is_not_complete(self):
+        names = ("near", "few", "unseen", "unknown", "doubt")
+        self.write("src/answer.cpp", "const char* name_of(Reason reason) {\n  switch (reason) {\n" +
+                   "".join(f'    return "{name}";\n' for name in names) + "  }\n}\n")
+        self.write("src/python/answer.cpp", "\"A list of 'near', 'few', \"\n\"'unseen' and 'doubt'.\"")
+        self.assert_clean()
+        self.write("src/python/answer.cpp", "\n\"A list of 'near', 'few' \"\n\"and 'doubt'.\"")
+        self.assert_fault("src/python/answer.cpp:2: a list of Reason lacks unseen")
+
+    def test_a_command_that_the_first_table_lacks(self):
+        self.write("docs/guide/command-line.md", "# All\n\n| command | what |\n|---|---|\n"
+                                                 "| `toy run` | searches |\n")
+        self.assert_clean()
+        self.write("docs/guide/command-line.md", "# All\n\n| command | what |\n|---|---|\n"
+                                                 "| `toy run --force` | writes |\n\n| `toy run` | x |\n")
+        self.assert_fault("toy run is not in the first table")
+
     def test_a_word_that_a_term_replaces(self):
         self.write("docs/design/glossary.md", GLOSSARY)
         self.assert_clean()

@@ -83,9 +83,9 @@ int run_bench(const Experiment& experiment, const BenchOptions& options) {
     });
   } catch (const ResultsDiffer& differ) {
     spdlog::error("{}", differ.what());
-    return tool::kDiffers;
+    return kDiffers;
   }
-  return tool::kDone;
+  return kDone;
 }
 
 void add_files(CLI::App& command, BenchOptions& options) {

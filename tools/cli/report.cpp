@@ -23,6 +23,7 @@
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "core/util/format.hpp"
 #include "io/files/pending_file.hpp"
+#include "io/models/vehicle_file.hpp"
 #include "io/result/conflicts/shift_file.hpp"
 
 namespace clearway::tool {
@@ -67,6 +68,10 @@ void read_model_again(ReportCommand& options, const Result& result, Query& query
   query.bodies = read_bodies_of(options.vehicle, options.model_options, options, query.poses,
                                 result, warnings);
   options.report.bodies = query.bodies;
+  for (const BodyEntry& body :
+       read_vehicle_file(options.vehicle, options.model_options.environment_unit)) {
+    options.report.mounts.push_back(body.mount);
+  }
 }
 
 Query read_query_again(ReportCommand& options, const Result& result, const Store& store) {

@@ -38,7 +38,7 @@
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/files/pending_file.hpp"
-#include "search/threads.hpp"
+#include "io/files/thread_limit.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -275,14 +275,14 @@ Store open_environment(const std::filesystem::path& path) {
   }
 }
 
-/// Prints the verdict. Where standard output fails, the sentence is logged and the command does not
-/// fail, because without --json the result file is the answer.
+/// Prints the verdict. Where standard output fails, the sentence is logged, because it is the
+/// answer, and the command fails.
 void print_verdict(const std::string& sentence) {
   try {
     print(sentence + "\n");
-  } catch (const ResourceError& error) {
+  } catch (const ResourceError&) {
     spdlog::info("{}", sentence);
-    spdlog::warn("{}", error.what());
+    throw;
   }
 }
 

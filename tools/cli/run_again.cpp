@@ -103,6 +103,13 @@ struct Missing {
   const char* ending;
 };
 
+/// Whether a search with this header found nothing of what the remedy asks for.
+bool lacks(const ResultHeader& header, Remedy missing) {
+  return (missing == Remedy::kAskForFirstPose && !header.first_pose) ||
+         (missing == Remedy::kAskForClearance && !(header.clearance > 0)) ||
+         (missing == Remedy::kAskForProfile && !(header.profile > 0));
+}
+
 std::optional<Missing> missing_of(Remedy remedy) {
   switch (remedy) {
     case Remedy::kAskForFirstPose:
@@ -151,12 +158,12 @@ void advising_to_run_again(const CLI::App& command, const std::vector<ReadResult
   } catch (const UsageError& error) {
     const auto missing = missing_of(error.remedy());
     if (!missing) throw;
-    const std::string what = error.what();
     for (const ReadResult& read : results) {
       const ResultReader result(read.path);
-      if (!what.starts_with(result.name() + ":")) continue;
+      if (results.size() > 1 && !lacks(result.header(), error.remedy())) continue;
       const std::string run = run_again(result, command, read.trajectory, error.remedy());
-      if (!run.empty()) throw UsageError(what + ". " + advice(*missing, run));
+      if (!run.empty()) throw UsageError(error.what() + (". " + advice(*missing, run)));
+      break;
     }
     throw;
   }

@@ -14,6 +14,7 @@
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
 #include "core/util/format.hpp"
+#include "io/files/file.hpp"
 #include "io/files/pending_file.hpp"
 #include "scene/write.hpp"
 
@@ -92,7 +93,7 @@ void make_scene_files(const SceneOptions& options) {
   std::error_code error;
   std::filesystem::create_directories(options.folder, error);
   if (error) {
-    throw ResourceError(options.folder.string() + ": cannot create the folder: " + error.message());
+    throw system_failure(options.folder.string() + ": cannot create the folder", error.value());
   }
   PendingFile model(options.folder / "model.ply", options.force);
   PendingFile trajectory(options.folder / "trajectory.txt", options.force);

@@ -27,8 +27,8 @@
 #include "cli/support/trajectory_options.hpp"
 #include "core/util/format.hpp"
 #include "io/files/pending_file.hpp"
+#include "io/files/thread_limit.hpp"
 #include "report/section_words.hpp"
-#include "search/threads.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -337,8 +337,8 @@ int run_check(CheckCommand& options) {
     print(sentence + "\n");
   }
   return check.verdict == SectionVerdict::kPasses    ? kDone
-         : check.verdict == SectionVerdict::kStopped ? 1
-                                                     : 6;
+         : check.verdict == SectionVerdict::kStopped ? kDiffers
+                                                     : kUndecided;
 }
 
 void add_section_check(CLI::App& section, int& exit_code) {

@@ -19,7 +19,7 @@ namespace clearway {
 namespace {
 
 [[noreturn]] void fail(const std::string& name, const char* what) {
-  throw ResourceError(name + ": cannot " + what + ": " + std::strerror(errno));
+  throw system_failure(name + ": cannot " + what, errno);
 }
 
 int checked_open(const std::filesystem::path& path, int flags, const char* what) {
@@ -38,6 +38,12 @@ struct stat status_of(int descriptor, const std::string& name) {
 }
 
 }  // namespace
+
+ResourceError system_failure(const std::string& what, int error) {
+  const bool full = error == ENOSPC || error == EDQUOT;
+  return ResourceError(what + ": " + std::strerror(error),
+                       full ? Remedy::kFreeDisk : Remedy::kNone);
+}
 
 File File::open_for_reading(const std::filesystem::path& path) {
   File file(checked_open(path, O_RDONLY, "open"), path.string());

@@ -6,6 +6,8 @@
 #include <span>
 #include <string>
 
+#include "clearway/error.hpp"
+
 namespace clearway {
 
 /// Owner of an open file descriptor. Every failure throws ResourceError with the file's name and
@@ -73,6 +75,10 @@ class File {
   int descriptor_ = -1;
   std::string name_;
 };
+
+/// The error of a call that failed: "`what`: the system's reason", which kFreeDisk helps against
+/// where the disk is full. error: the value of errno.
+ResourceError system_failure(const std::string& what, int error);
 
 /// The folder that contains a path; "." for a bare name.
 std::filesystem::path folder_of(const std::filesystem::path& path);

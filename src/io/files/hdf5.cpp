@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <mutex>
 #include <optional>
@@ -64,43 +65,51 @@ void check_superblock(const File& file) {
   }
 }
 
-/// The innermost description of HDF5's last failure.
-std::string description() {
+/// HDF5's last failure: what its innermost call says, and the value of errno where that was a
+/// system call, otherwise 0.
+struct LastFailure {
   std::string text;
-  const auto take = [](unsigned, const H5E_error2_t* error, void* out) -> herr_t {
-    auto& reason = *static_cast<std::string*>(out);
-    if (reason.empty() && error->desc != nullptr) reason = error->desc;
+  int error = 0;
+};
+
+/// To be called before anything else may change errno.
+LastFailure last_failure() {
+  const int error = errno;
+  struct Innermost {
+    std::string text;
+    hid_t major = -1, minor = -1;
+  } innermost;
+  const auto take = [](unsigned depth, const H5E_error2_t* entry, void* out) -> herr_t {
+    if (depth > 0) return 0;
+    *static_cast<Innermost*>(out) = {entry->desc == nullptr ? "" : entry->desc, entry->maj_num,
+                                     entry->min_num};
     return 0;
   };
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take, &text);
-  return text;
-}
-
-/// The system's reason where a system call failed, without HDF5's addresses and time.
-std::optional<std::string> system_reason() {
-  const std::string text = description();
-  const std::string quote = "error message = '";
-  const auto begin = text.find(quote);
-  if (begin == std::string::npos) return std::nullopt;
-  const auto words = begin + quote.size();
-  return text.substr(words, text.find('\'', words) - words);
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take, &innermost);
+  // What reads, writes, cuts and closes files, and what opens them. create_file() and open_file()
+  // begin with errno 0, because a file may also be refused without a system call.
+  const bool of_system = innermost.major == H5E_IO ||
+                         (innermost.major == H5E_FILE && innermost.minor == H5E_CANTOPENFILE);
+  return {std::move(innermost.text), of_system ? error : 0};
 }
 
 }  // namespace
 
 std::string reason() {
-  if (const auto words = system_reason()) return *words;
-  const std::string text = description();
-  return text.empty() ? "HDF5 gives no reason" : text;
+  const LastFailure last = last_failure();
+  if (last.error != 0) return std::strerror(last.error);
+  return last.text.empty() ? "HDF5 gives no reason" : last.text;
 }
 
 void fail(const std::string& what) {
-  if (const auto words = system_reason()) throw ResourceError(what + ": " + *words);
+  const LastFailure last = last_failure();
+  if (last.error != 0) throw CallFailure(system_failure(what, last.error));
   throw Failure(what + ": " + reason());
 }
 
 void malformed(const std::string& file, const std::string& name, const std::string& expected) {
-  if (const auto words = system_reason()) throw ResourceError(file + ": cannot read: " + *words);
+  const LastFailure last = last_failure();
+  if (last.error != 0) throw system_failure(file + ": cannot read", last.error);
   throw InputError(file + ": dataset or attribute '" + name + "': expected " + expected);
 }
 
@@ -189,16 +198,19 @@ Id create_file(const std::filesystem::path& path) {
   // heap, which has no checksum for attributes of a few kilobytes or more.
   check(H5Pset_attr_phase_change(creation.get(), kRootAttributes, 0), "HDF5 attribute storage");
   const Id access = latest_format();
+  errno = 0;
   return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose,
-          path.string() + ": cannot create"};
+          "cannot create"};
 }
 
 Id open_file(const std::filesystem::path& path) {
   check_superblock(File::open_regular(path));
   // With default properties a process may open a file twice, as h5py opens it in the same way.
+  errno = 0;
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (id < 0) {
-    if (const auto words = system_reason()) throw ResourceError(path.string() + ": " + *words);
+    const LastFailure last = last_failure();
+    if (last.error != 0) throw system_failure(path.string(), last.error);
     throw InputError(path.string() + ": damaged HDF5 file: " + reason());
   }
   return {id, H5Fclose, path.string()};

@@ -17,10 +17,16 @@
 /// damaged metadata is noticed (docs/design/store-format.md).
 namespace clearway::hdf5 {
 
+/// A call of HDF5 that failed. Its text does not name the file; naming() adds that.
+struct CallFailure : ResourceError {
+  using ResourceError::ResourceError;
+  explicit CallFailure(const ResourceError& error) : ResourceError(error) {}
+};
+
 /// Failure of HDF5 without a failed system call. For a file that is read, this means damaged
 /// contents.
-struct Failure : ResourceError {
-  using ResourceError::ResourceError;
+struct Failure : CallFailure {
+  using CallFailure::CallFailure;
 };
 
 /// During its lifetime, HDF5 prints nothing on this thread and loads no filter plug-ins, because a
@@ -63,19 +69,18 @@ class Id {
   Close close_ = nullptr;
 };
 
-/// Runs `call` quietly. A failure whose message lacks the file's name gets it in front.
+/// Runs `call` quietly. A CallFailure becomes a ResourceError with the file's name in front.
 template <typename Call>
 auto naming(const std::string& file, Call call) {
   const QuietScope quiet;
   try {
     return call();
-  } catch (const ResourceError& error) {
-    const std::string what = error.what();
-    throw ResourceError(what.starts_with(file) ? what : file + ": " + what);
+  } catch (const CallFailure& error) {
+    throw ResourceError(file + ": " + error.what(), error.remedy(), error.amount());
   }
 }
 
-/// Throws ResourceError "`what`: reason", a Failure unless a system call failed, when status < 0.
+/// Throws CallFailure "`what`: reason", a Failure unless a system call failed, when status < 0.
 void check(herr_t status, const std::string& what);
 
 Id create_file(const std::filesystem::path& path);

@@ -11,7 +11,7 @@ namespace clearway::hdf5 {
 /// HDF5's innermost reason for its last failure.
 std::string reason();
 
-/// Throws ResourceError "`what`: reason", a Failure unless a system call failed.
+/// Throws CallFailure "`what`: reason", a Failure unless a system call failed.
 [[noreturn]] void fail(const std::string& what);
 
 /// Throws ResourceError where HDF5's last failure was that of a system call, otherwise InputError

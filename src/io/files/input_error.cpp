@@ -68,7 +68,7 @@ void replace_file(const fs::path& path, std::string_view text) {
   }
   std::error_code failed;
   fs::rename(written, path, failed);
-  if (failed) throw ResourceError(path.string() + ": cannot write: " + failed.message());
+  if (failed) throw system_failure(path.string() + ": cannot write", failed.value());
 }
 
 }  // namespace clearway

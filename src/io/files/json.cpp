@@ -42,39 +42,128 @@ void check_nesting(std::string_view text) {
   }
 }
 
-/// What is wrong with a JSON file, worded for the people who wrote it. what: the library's own
-/// description.
-std::string in_plain_words(const std::string& what) {
-  const auto has = [&](const char* part) { return what.find(part) != std::string::npos; };
-  const std::string place = what.substr(0, what.find(": ") + 2);  // "parse error at line 3, ...: "
-  std::string last;
-  if (const auto begin = what.find("; last read: "); begin != std::string::npos) {
-    last = what.substr(begin + 2, what.find("'; ", begin) - begin - 1);
+/// What is open where the text was refused.
+enum class Within { kNothing, kObject, kArray };
+
+/// Says what is wrong with a text that the library refused, from the text itself.
+class SyntaxFault {
+ public:
+  /// read: bytes that the library had read when it refused the text, more than it has at its end.
+  SyntaxFault(std::string_view text, std::size_t read)
+      : text_(text), at_(std::min(std::max<std::size_t>(read, 1) - 1, text.size())) {
+    bool escaped = false;
+    for (std::size_t i = 0; i < at_; ++i) {
+      if (text_[i] == '\n') {
+        ++line_;
+        line_begin_ = i + 1;
+      }
+      if (escaped) {
+        escaped = false;
+      } else if (in_string_ && text_[i] == '\\') {
+        escaped = true;
+        escape_ = i;
+      } else if (text_[i] == '"') {
+        in_string_ = !in_string_;
+        if (in_string_) token_ = i;
+      }
+    }
+    closes_string_ = in_string_ && at_ < text_.size() && text_[at_] == '"' && !escaped;
+    if (in_string_) {
+      end_ = std::min(at_ + 1, text_.size());
+    } else {
+      find_token();
+    }
   }
-  if (has("ill-formed UTF-8") || !has("syntax error")) return what;
-  if (has("unexpected end of input")) {
-    return place + "the text ends too early; a bracket, a brace or a quote is not closed";
+
+  /// within: what was open; after_name: whether the last thing that was taken is a name in an
+  /// object; is_over: whether the whole value was taken before.
+  std::string words(Within within, bool after_name, bool is_over) const {
+    return "parse error at line " + std::to_string(line_) + ", column " +
+           std::to_string(at_ - line_begin_ + 1) + ": " + reason(within, after_name, is_over);
   }
-  if (has("missing closing quote")) return place + "a text in quotes has no closing quote";
-  if (has("invalid literal")) {
-    return place + "a word that is not JSON; texts and names stand in double quotes (" + last + ")";
+
+ private:
+  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+  static bool is_mark(char c) { return std::string_view("[]{},:\"").find(c) != std::string::npos; }
+
+  /// The word or number around the place, which the library may have refused in its middle.
+  void find_token() {
+    const auto belongs = [&](std::size_t i) { return !is_blank(text_[i]) && !is_mark(text_[i]); };
+    token_ = at_;
+    while (token_ > 0 && belongs(token_ - 1)) --token_;
+    end_ = at_;
+    while (end_ < text_.size() && belongs(end_)) ++end_;
   }
-  if (has("object key - unexpected '}'")) return place + "a comma too many, before '}'";
-  if (has("parsing value - unexpected ']'")) {
-    return place + "a comma too many or a value too few, before ']'";
+
+  std::string reason(Within within, bool after_name, bool is_over) const {
+    if (at_ == text_.size()) {
+      return "the text ends too early; a bracket, a brace or a quote is not closed";
+    }
+    if (in_string_ &&
+        (!closes_string_ || !ordered_json::accept(text_.substr(token_, end_ - token_)))) {
+      return reason_in_string();
+    }
+    const std::string token(text_.substr(token_, end_ - token_));
+    if (!in_string_ && !token.empty() && !ordered_json::accept(token)) {
+      const bool number = std::string_view("+-.0123456789").find(token[0]) != std::string::npos;
+      return std::string(number
+                             ? "a number that JSON does not have, or one that is too large"
+                             : "a word that is not JSON; texts and names stand in double quotes") +
+             " (" + token + ")";
+    }
+    return unexpected(within, after_name, is_over);
   }
-  if (has("parsing value - unexpected '}'")) return place + "a value is missing before '}'";
-  if (has("parsing object key")) return place + "a name in double quotes is expected here";
-  if (has("parsing object separator")) return place + "a colon is missing after the name";
-  if (has("parsing object - unexpected")) return place + "a comma or '}' is missing before this";
-  if (has("parsing array - unexpected")) return place + "a comma or ']' is missing before this";
-  return what;
-}
+
+  std::string reason_in_string() const {
+    const auto c = static_cast<unsigned char>(text_[at_]);
+    if (c == '\n' || c == '\r') return "a text in quotes has no closing quote on its line";
+    if (c < ' ') return "a text in quotes has a control character; expected an escape, as \\t";
+    if (c >= 0x80 || static_cast<unsigned char>(text_[at_ - 1]) >= 0x80) {
+      return "a text in quotes is not UTF-8";
+    }
+    return "a text in quotes has an escape that JSON does not have (" +
+           std::string(text_.substr(escape_, at_ + 1 - escape_)) +
+           "); a backslash is written twice";
+  }
+
+  /// About a mark, or a whole value or name, in the wrong place.
+  std::string unexpected(Within within, bool after_name, bool is_over) const {
+    const char mark = text_[at_];
+    std::size_t before = in_string_ || !is_mark(mark) ? token_ : at_;
+    while (before > 0 && is_blank(text_[before - 1])) --before;
+    const char last = before > 0 ? text_[before - 1] : ' ';
+    const std::string named = std::string("'") + mark + "'";
+    const bool ends = mark == '}' || mark == ']' || mark == ',' || mark == ':';
+    if (is_over) return "the text goes on after its end";
+    if (after_name && last != ':') return "a colon is missing after the name";
+    if (last == ':') return "a value is missing before " + (ends ? named : "this");
+    if (within == Within::kObject && last == ',' && mark == '}') {
+      return "a comma too many, before '}'";
+    }
+    if (last == ',' && mark == ']') return "a comma too many or a value too few, before ']'";
+    if (last == ',' || last == '[' || last == '{' || within == Within::kNothing) {
+      return within == Within::kObject ? "a name in double quotes is expected here"
+                                       : "a value is missing before " + (ends ? named : "this");
+    }
+    return std::string("a comma or '") + (within == Within::kObject ? '}' : ']') +
+           "' is missing before this";
+  }
+
+  std::string_view text_;
+  std::size_t at_;  ///< byte at which the text was refused
+  std::size_t line_ = 1, line_begin_ = 0;
+  bool in_string_ = false, closes_string_ = false;
+  std::size_t escape_ = 0;           ///< place of the last backslash in a string
+  std::size_t token_ = 0, end_ = 0;  ///< the string, word or number there
+};
 
 /// Builds the value in linear time. The library's own builder compares each new key with all
 /// earlier ones, and with a callback also visits all earlier elements of a list at each new one.
 class ValueBuilder : public nlohmann::json_sax<ordered_json> {
  public:
+  /// text: what is parsed, for errors. It must outlive this object.
+  explicit ValueBuilder(std::string_view text) : text_(text) {}
+
   ordered_json take() { return std::move(root_); }
 
   bool null() override { return add(nullptr); }
@@ -92,18 +181,19 @@ class ValueBuilder : public nlohmann::json_sax<ordered_json> {
   bool key(string_t& name) override {
     Open& object = open_.back();
     object.key = name;
+    after_name_ = true;
     if (!object.seen.insert(name).second) throw JsonError(place() + ": stands twice");
     return true;
   }
 
-  bool parse_error(std::size_t, const std::string&,
-                   const nlohmann::detail::exception& error) override {
-    // The message repeats the token, which may be a long string.
-    constexpr std::size_t kMostBytes = 300;
-    std::string what = error.what();  // "[json.exception...] parse error at line 3, column 5: ..."
-    const std::size_t begin = what.find("] ");
-    if (begin != std::string::npos) what.erase(0, begin + 2);
-    what = in_plain_words(what);
+  bool parse_error(std::size_t read, const std::string&,
+                   const nlohmann::detail::exception&) override {
+    const Within within = open_.empty()                     ? Within::kNothing
+                          : open_.back().value->is_object() ? Within::kObject
+                                                            : Within::kArray;
+    constexpr std::size_t kMostBytes = 300;  // the text may have a word of any length
+    std::string what =
+        SyntaxFault(text_, read).words(within, after_name_, open_.empty() && has_begun_);
     if (what.size() > kMostBytes) what = what.substr(0, kMostBytes) + " ...";
     throw JsonError("is no JSON: " + what);
   }
@@ -118,6 +208,8 @@ class ValueBuilder : public nlohmann::json_sax<ordered_json> {
   };
 
   ordered_json& append(ordered_json&& value) {
+    after_name_ = false;
+    has_begun_ = true;
     if (open_.empty()) return root_ = std::move(value);
     Open& within = open_.back();
     if (within.value->is_array()) {
@@ -153,15 +245,18 @@ class ValueBuilder : public nlohmann::json_sax<ordered_json> {
     return text;
   }
 
+  std::string_view text_;
   ordered_json root_;
   std::vector<Open> open_;
+  bool has_begun_ = false;
+  bool after_name_ = false;  ///< whether the last thing that was taken is a name in an object
 };
 
 }  // namespace
 
 ordered_json parse_json(std::string_view text) {
   check_nesting(text);
-  ValueBuilder builder;
+  ValueBuilder builder(text);
   ordered_json::sax_parse(text.begin(), text.end(), &builder);
   return builder.take();
 }

@@ -127,7 +127,7 @@ MappedFile::MappedFile(const std::filesystem::path& path) : file_(File::open_reg
   if (size == 0) return;
   void* address = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, file_.descriptor(), 0);
   if (address == MAP_FAILED) {
-    throw ResourceError(name() + ": cannot map: " + std::strerror(errno));
+    throw system_failure(name() + ": cannot map", errno);
   }
   bytes_ = {static_cast<const std::byte*>(address), size};
   record_ = remember(bytes_, name());

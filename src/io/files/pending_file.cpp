@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void fail_with_errno(const fs::path& path, const char* what) {
-  throw ResourceError(path.string() + ": cannot " + what + ": " + std::strerror(errno));
+  throw system_failure(path.string() + ": cannot " + what, errno);
 }
 
 void check_output_name(const fs::path& path, bool overwrite) {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/util/threads.hpp"
+
 namespace clearway {
 
 /// Provides the requested number of oneTBB threads during its lifetime, even more than the machine
@@ -29,5 +31,19 @@ class ThreadLimit {
   std::optional<tbb::global_control> raised_;
   int allowed_;
 };
+
+/// The number of threads, or of those that this arena of oneTBB may have where it is 0.
+inline int threads_or_all(int threads) {
+  return threads != 0 ? threads : tbb::this_task_arena::max_concurrency();
+}
+
+/// Calls body() with at most this many threads of oneTBB, or as many as threads_or_all(0) says for
+/// 0, and returns what it returns. Throws as check_threads() does.
+template <typename Body>
+auto in_threads(int threads, const Body& body) {
+  threads = threads_or_all(threads);
+  check_threads(threads);
+  return ThreadLimit(threads).run(body);
+}
 
 }  // namespace clearway

@@ -1,7 +1,5 @@
 #include "io/models/vehicle_file.hpp"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <list>
@@ -18,6 +16,8 @@
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
+#include "io/files/thread_limit.hpp"
+#include "io/models/model_input.hpp"
 #include "io/scans/length_unit.hpp"
 
 namespace clearway {
@@ -113,6 +113,13 @@ Towing towing_of(const std::vector<BodyEntry>& entries) {
 
 }  // namespace
 
+std::vector<std::filesystem::path> BodyEntry::files() const {
+  std::vector<std::filesystem::path> out;
+  if (!names_box(model)) out.push_back(model);
+  if (!trajectory.empty()) out.push_back(trajectory);
+  return out;
+}
+
 std::vector<BodyEntry> read_vehicle_file(const std::filesystem::path& path,
                                          double environment_unit) {
   const KeyReader file = KeyReader::parse(path, text_of_file(path));
@@ -123,9 +130,10 @@ std::vector<BodyEntry> read_vehicle_file(const std::filesystem::path& path,
   const std::filesystem::path folder = path.parent_path();
   for (const KeyReader& body : bodies) {
     body.allow({"name", "model", "model_unit", "at", "pivots", "towed", "trajectory"});
+    const std::string model = body.at("model").text();
     BodyEntry entry{.at = body,
                     .name = name_of(body.at("name"), names),
-                    .model = folder / body.at("model").text(),
+                    .model = names_box(model) ? std::filesystem::path(model) : folder / model,
                     .trajectory = {}};
     if (body.has("model_unit")) entry.model_unit = unit_of(body.at("model_unit"));
     set_motion(body, folder, environment_unit, entry);
@@ -164,9 +172,11 @@ class VehicleReader {
       : file_(file),
         path_(path),
         options_(options),
-        threads_(options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency()),
+        threads_(threads_or_all(options.threads)),
         warnings_(warnings),
-        last_(last) {}
+        last_(last) {
+    check_threads(threads_);
+  }
 
   Model read_model_of(const BodyEntry& entry) {
     ModelOptions how = options_.model;
@@ -237,6 +247,7 @@ class VehicleReader {
     const std::string name = file_.string() + ": " + entry.at.key() + " (" + entry.name + ")";
     if (warnings_ != nullptr) {
       for (Message& doubt : doubts_about(followed, path, entry.mount, name)) {
+        doubt.body = entry.name;
         warnings_->push_back(std::move(doubt));
       }
     }

@@ -18,10 +18,13 @@ namespace clearway {
 struct BodyEntry {
   KeyReader at;  ///< key of the body, for errors
   std::string name;
-  std::filesystem::path model;
-  FileUnit model_unit = {};  ///< unit of the model's file; where not known, that of the command
+  std::filesystem::path model;  ///< its file, or a box that is named by its size
+  FileUnit model_unit = {};     ///< unit of the model's file; where not known, that of the command
   BodyMount mount = BodyStation{0};
   std::filesystem::path trajectory;  ///< file of the poses of a body with BodyOwnPoses; else empty
+
+  /// The files that the body is read from: of its model, unless that is a box, and of its poses.
+  std::vector<std::filesystem::path> files() const;
 };
 
 /// Reads a vehicle's JSON file (docs/guide/vehicles.md). environment_unit: metres of the unit in

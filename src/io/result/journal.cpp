@@ -187,7 +187,7 @@ File open_to_append(const std::filesystem::path& path, int flags) {
     descriptor = ::open(path.c_str(), flags | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0666);
   } while (descriptor < 0 && errno == EINTR);
   if (descriptor < 0) {
-    throw ResourceError(path.string() + ": cannot open the journal: " + std::strerror(errno));
+    throw system_failure(path.string() + ": cannot open the journal", errno);
   }
   return File::adopt(descriptor, path.string());
 }
@@ -196,7 +196,7 @@ void sync_folder_of(const std::filesystem::path& path) {
   const std::filesystem::path folder = folder_of(path);
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) {
-    throw ResourceError(folder.string() + ": cannot open: " + std::strerror(errno));
+    throw system_failure(folder.string() + ": cannot open", errno);
   }
   File::adopt(descriptor, folder.string()).sync();
 }
@@ -259,7 +259,7 @@ JournalWriter JournalWriter::resume(const std::filesystem::path& path, const Jou
     failed = ::ftruncate(file.descriptor(), static_cast<off_t>(read.whole_bytes()));
   } while (failed != 0 && errno == EINTR);
   if (failed != 0) {
-    throw ResourceError(path.string() + ": cannot cut off what is torn: " + std::strerror(errno));
+    throw system_failure(path.string() + ": cannot cut off what is torn", errno);
   }
   return JournalWriter(
       std::make_unique<State>(std::move(file), read.whole_bytes(), interval_seconds));

@@ -22,6 +22,7 @@
 #include "core/util/tsan_annotations.hpp"
 #include "io/files/hdf5.hpp"
 #include "io/files/stored_chunk.hpp"
+#include "io/files/thread_limit.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/as_numbers.hpp"
@@ -92,8 +93,10 @@ template <typename Visit>
 void for_each_index(std::size_t count, Visit visit) {
   const ParallelScope scope;
   const auto piece = piece_of(scope, visit);
-  scope.begin();
-  tbb::parallel_for(std::size_t{0}, count, piece);
+  in_threads(0, [&] {
+    scope.begin();
+    tbb::parallel_for(std::size_t{0}, count, piece);
+  });
 }
 
 bool ParallelRead::run() const {

@@ -35,6 +35,7 @@ class Message:
     code: Final[str]
     text: Final[str]
     numbers: Final[dict[str, float]]
+    body: Final[str]
 class ProgressUpdate:
     stage: Final[str]
     done: Final[int]

@@ -22,7 +22,28 @@ function buildAnswer() {
   byId("loading").remove();
   byId("verdict-body").append(answerBanner(), facts.warnings.length > 0
       ? make("ul", { class: "warnings", "aria-label": "Warnings" },
-             facts.warnings.map((w) => make("li", {}, `${capital(w.message)}.`))) : "");
+             facts.warnings.map((w) => make("li", {}, `${capital(w.message)}.`))) : "", onSiteBox());
+}
+
+/** A table of names and values. */
+function factsTable(rows) {
+  return make("table", { class: "facts" }, make("tbody", {}, rows.map(([name, value]) =>
+      make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, value)))));
+}
+
+/** What no file can prove, for a person to compare with the load and the route. */
+function onSiteBox() {
+  const { rear, front, pivots, length, load_poses: poses } = section.facts;
+  const from = (x) => `${station(Math.abs(x))} ${x < 0 ? "behind" : "ahead of"}`;
+  return make("div", { class: "basis", id: "on-site" }, make("h3", {}, "Check these on site"),
+      make("p", { class: "note" }, "No file shows whether these are right. Compare them with the load and the place."),
+      factsTable([
+        ["Load", `${station(front - rear)} long, from ${from(rear)} to ${from(front)} ` +
+            (pivots ? "its origin" : "the path's pose")],
+        pivots && ["Pivots", `${station(Math.abs(pivots[0] - pivots[1]))} apart, ${from(pivots[0])} and ` +
+            `${from(pivots[1])} the path's pose`],
+        ["Path", `${station(length)} long, with ${plural(poses, "pose")} of the load; left is left when looking ` +
+            "from its beginning to its end"]].filter(Boolean)));
 }
 
 function buildQuestion() {
@@ -40,8 +61,7 @@ function buildQuestion() {
     ["Poses", `${count(f.load_poses)} of ${count(f.poses)} on ${station(f.length)} of path`],
     ["Environment", make("code", {}, f.environment_hash)], ["Path", make("code", {}, f.trajectory_hash)],
   ].filter(Boolean);
-  byId("question-body").append(make("table", { class: "facts" }, make("tbody", {}, rows.map(([name, value]) =>
-      make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, value))))));
+  byId("question-body").append(factsTable(rows));
   byId("footer").textContent = "All data of this page is in this one file. Lengths are in the unit of the scans " +
       `(${unitSymbol}). Chainage counts from the first pose along the path.`;
 }

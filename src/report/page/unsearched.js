@@ -84,7 +84,7 @@ function unsearchedLegend() {
   const swatch = (id) => make("svg", { width: 26, height: 14, class: "swatch", "aria-hidden": "true" },
       make("rect", { width: 26, height: 14, fill: `url(#${id})`, stroke: "#6b7280" }));
   const rows = partStretches().map(([which, stretches]) => make("li", {}, swatch("part-answer"),
-      ` A part only: without ${which}, which ${which.startsWith("body ") ? "has" : "have"} no pose at ` +
+      ` A part only: without ${which}, which ${stretches[0].bodies.length === 1 ? "has" : "have"} no pose at ` +
       `chainage ${stretchWords(stretches)}.`));
   const silent = silentStretches();
   if (silent.length > 0) {

@@ -459,6 +459,7 @@ function buildVerdict() {
                              warned.map((text) => make("li", {}, text))) : "",
     whatDecides(),
     basisOfVerdict(),
+    onSiteBox(),
     make("div", { class: "columns" }, facts.budget ? make("div", {}, questionTable(), budgetTable()) : questionTable(),
          make("div", {}, legend(),
               missing.length > 0 && make("div", { class: "missing" },

@@ -84,8 +84,9 @@ struct OfVehicle {
   bool is_better(const Message& other) const { return told_length(other) > told_length(*message); }
 };
 
-void tell(Message message, const std::string& who, MessageLog& log) {
+void tell(Message message, const std::string& who, const std::string& body, MessageLog& log) {
   message.text = who + ": " + message.text;
+  message.body = body;
   log.add(std::move(message));
 }
 
@@ -105,7 +106,8 @@ void tell_alike(const std::vector<BodyMessages>& bodies, std::size_t first, cons
     ++count;
   }
   const bool all = count == bodies.size() && count > 1;
-  tell(message, all ? "each body" : (count > 1 ? "bodies " : "body ") + names, log);
+  tell(message, all ? "each body" : (count > 1 ? "bodies " : "body ") + names,
+       count == 1 ? names : "", log);
 }
 
 }  // namespace
@@ -120,7 +122,7 @@ void tell_of_bodies(const std::vector<BodyMessages>& bodies, MessageLog& log) {
         told.push_back(message.code);
         const OfVehicle found(bodies, message.code);
         if (found.message == nullptr) continue;
-        tell(*found.message, "the vehicle, as its body " + found.body->name, log);
+        tell(*found.message, "the vehicle, as its body " + found.body->name, "", log);
       }
     }
   }
@@ -244,7 +246,7 @@ std::vector<std::uint64_t> missing_poses(const Body& body, std::size_t path_pose
 bool is_told(const Body& body, std::span<const Message> told) {
   return std::ranges::any_of(told, [&](const Message& message) {
     return (message.code == "body-off-path" || message.code == "body-undefined") &&
-           message.text.find("body " + body.name + ": ") != std::string::npos;
+           message.body == body.name;
   });
 }
 
@@ -253,10 +255,12 @@ void tell_missing_poses(const Query& query, std::span<const Message> told, Messa
   for (const Body& body : query.bodies) {
     const std::vector<std::uint64_t> missing = missing_poses(body, query.poses.size());
     if (missing.empty() || body.poses.empty() || is_told(body, told)) continue;
-    log.add(off_path_message("body " + body.name, missing, query.poses.size(),
-                             "so nothing is known of it there",
-                             "Give it those poses too, or look at the stretches that were not "
-                             "searched in the report"));
+    Message message = off_path_message("body " + body.name, missing, query.poses.size(),
+                                       "so nothing is known of it there",
+                                       "Give it those poses too, or look at the stretches that "
+                                       "were not searched in the report");
+    message.body = body.name;
+    log.add(std::move(message));
   }
 }
 

@@ -6,6 +6,7 @@ are made and not opened; the test says so. CLEARWAY_TEST_DATA adds the street.
 """
 
 import json
+import math
 import os
 import sys
 import tempfile
@@ -108,6 +109,43 @@ class ReportTest(PageChecks, unittest.TestCase):
         self.assertIn("middle of its points", page.run("byId('conflict-details').innerText"))
         self.assertNotIn("nearest point", page.run("byId('conflict-details').innerText"))
         self.check_quiet(page)
+
+    def test_what_to_check_on_site(self):
+        """A lorry that drives east, then a quarter of a circle of 12 m to the left; its front is behind."""
+        folder = self.hall.folder
+        for name, turn in (("ahead", 0), ("backwards", math.pi)):
+            with self.subTest(name), open(f"{folder}/bend.txt", "w") as file:
+                places = [(x / 4, 0, 0) for x in range(161)]
+                places += [(40 + 12 * math.sin(a), 12 - 12 * math.cos(a), a)
+                           for a in (math.pi / 2 * k / 80 for k in range(1, 81))]
+                places += [(52, 12 + y / 4, math.pi / 2) for y in range(1, 81)]
+                for x, y, heading in places:
+                    half = (heading + turn) / 2
+                    file.write(f"{1000 + x} {500 + y} 7 0 0 {math.sin(half):.12f} {math.cos(half):.12f}\n")
+                file.flush()
+                scene = Scene(folder)
+                scene.trajectory, scene.model = f"{folder}/bend.txt", "box:8,2.5,3.4"
+                result = scene.search("bend", "--radius", 0.1, "--first-pose")
+                path, facts = scene.report(result, "bend", "--chainage-start", 100)
+                site = facts["on_site"]
+                first, last = site["first"], site["last"]
+                self.assertEqual(site["bodies"][0]["hi"], [4, 1.25, 3.4])
+                self.assertEqual((first["position"], last["position"]), ([1000, 500, 7], [1052, 532, 7]))
+                self.assertAlmostEqual(first["bearing"], 90)
+                self.assertAlmostEqual(last["bearing"], 0)
+                self.assertAlmostEqual(first["front_bearing"], 270 if turn else 90)
+                self.assertAlmostEqual(last["chainage"], 100 + 60 + 6 * math.pi, delta=0.01)
+                self.assertAlmostEqual(site["bend"]["radius"], 12, delta=0.01)
+                self.assertTrue(140 < site["bend"]["chainage"] < 160)
+                page = self.open(path)
+                words = page.run("byId('on-site').innerText")
+                self.assertEqual("its front points the other way" in words, name == "backwards")
+                for part in ("8.00 × 2.50 × 3.40 m", "1000.00, 500.00, 7.00", "towards 90° at the beginning",
+                             "0° at the end", "left is towards 0°", "radius of about 12.00 m"):
+                    self.assertIn(part, words)
+                self.check_quiet(page)
+        straight = self.empty.report(self.empty.search("straight", "--radius", 0.1), "straight")[1]
+        self.assertIsNone(straight["on_site"]["bend"])
 
     def test_refuses_what_is_not_of_the_run(self):
         other = Scene(self.hall.folder)

@@ -54,6 +54,20 @@ class VehiclePageTest(PageChecks, unittest.TestCase):
         return clearway("report", cls.result, *(inputs or cls.inputs), "-o", page, "--force",
                         "--json", "--date", DATE, *options, code=code)
 
+    def test_what_to_check_on_site(self):
+        site = self.facts["on_site"]
+        middle, front, slow = site["bodies"]
+        self.assertEqual((middle["pivots"], front["at"]), ([1.02, -1.02], 2))
+        self.assertFalse({"at", "pivots", "hitch"} & slow.keys())
+        self.assertEqual((front["lo"], front["hi"]), ([0, -0.4, 0.2], [0.8, 0.4, 0.9]))
+        page = self.open(self.page)
+        words = page.run("byId('on-site').innerText")
+        for part in ("Check these on site", "Bodies", "front: 0.80 × 0.80 × 0.70 m", "from its origin 0.80 m ahead",
+                     "0.40 m left, 0.40 m right", "pivots 2.04 m apart, 1.02 m ahead of the path's pose and 1.02 m behind it",
+                     "its origin is 2.00 m ahead of the path's pose"):
+            self.assertIn(part, words)
+        self.check_quiet(page)
+
     def test_facts_name_the_bodies(self):
         bodies = self.facts["inputs"]["model"]["bodies"]
         self.assertEqual([body["name"] for body in bodies], BODIES)

@@ -14,10 +14,10 @@ bool is_finding(const ProgramRun& failed, Refusal expected) {
       return false;
     case Refusal::kMemory: {
       static const std::regex kTooLittle("--(device-)?memory( [0-9.]+ [KMGT]?i?B)? is too little");
-      return failed.exit_code == tool::kResource && std::regex_search(failed.log, kTooLittle);
+      return failed.exit_code == kResource && std::regex_search(failed.log, kTooLittle);
     }
     case Refusal::kNonRigidPoses:
-      return failed.exit_code == tool::kBadInput &&
+      return failed.exit_code == kBadInput &&
              failed.log.find("(--allow-non-rigid accepts") != std::string::npos;
   }
   return false;

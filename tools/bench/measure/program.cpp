@@ -52,7 +52,7 @@ std::string joined(const std::vector<std::string>& arguments) {
   if (::dup2(output, STDOUT_FILENO) >= 0 && ::dup2(log, STDERR_FILENO) >= 0) {
     ::execv(path, words);
   }
-  ::_exit(tool::kResource);
+  ::_exit(kResource);
 }
 
 /// Waits until the process of `handle` ends, and asks it to stop once it exceeds the limit or this
@@ -125,7 +125,7 @@ ProgramRun Program::run(std::vector<std::string> arguments, double limit_seconds
                  .peak_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024};
   if (tool::stop_requested()) throw Interrupted(line + ": interrupted");
   if (timed_out) return run;
-  if (run.exit_code == tool::kInterrupted) throw Interrupted(line + ": interrupted");
+  if (run.exit_code == kInterrupted) throw Interrupted(line + ": interrupted");
   if (run.exit_code < 0) {
     throw ResourceError(line + ": ended by signal " + std::to_string(WTERMSIG(status)));
   }

@@ -15,6 +15,7 @@
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
 #include "core/util/format.hpp"
+#include "io/files/file.hpp"
 #include "io/files/input_error.hpp"
 
 namespace clearway::tool {
@@ -58,7 +59,7 @@ campaign::SlurmJob slurm_job(const campaign::Campaign& asked, const fs::path& fo
 void make_folder(const fs::path& folder) {
   std::error_code failed;
   fs::create_directories(folder, failed);
-  if (failed) throw ResourceError(folder.string() + ": cannot create: " + failed.message());
+  if (failed) throw system_failure(folder.string() + ": cannot create", failed.value());
 }
 
 void write_script(const fs::path& path, const std::string& text) {

@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "campaign/plan.hpp"
@@ -29,29 +31,31 @@ using campaign::Argument;
 using campaign::Arguments;
 using campaign::PlannedRun;
 
-/// Throws InputError with `what`, the command line's error about an option, worded for the key of
-/// campaign.json that the option stands for.
-[[noreturn]] void refuse_argument(const std::filesystem::path& file, const Arguments& arguments,
-                                  const std::string& what) {
-  for (const auto& [key, option, text] : arguments) {
-    const std::size_t at = what.find(option);
-    const std::size_t end = at + option.size();
-    if (at == std::string::npos ||
-        (end < what.size() && (what[end] == '-' || isalpha(what[end])))) {
-      continue;
-    }
-    const std::string rest =
-        at == 0 && what.starts_with(option + ": ") ? what.substr(end + 2) : what;
-    throw InputError(file.string() + ": " + key + ": " + rest);
-  }
-  throw InputError(file.string() + ": " + what);
-}
-
 std::vector<std::string> reversed(const campaign::Command& command, const Arguments& arguments) {
   std::vector<std::string> words;
   for (const Argument& argument : arguments) words.insert(words.begin(), argument.text);
   words.insert(words.end(), command.rbegin(), command.rend());
   return words;
+}
+
+/// Parses a command line made of the first arguments, and returns why it is refused.
+using Parse = std::function<std::optional<std::string>(const Arguments&)>;
+
+/// Throws InputError with `what`, for which the command line with all of these arguments is
+/// refused. The key of campaign.json that it names is that of the first argument up to which the
+/// command line is refused for the same reason: a value that is wrong by itself, or the later one
+/// of two that exclude each other.
+[[noreturn]] void refuse_argument(const std::filesystem::path& file, const Arguments& arguments,
+                                  const std::string& what, const Parse& parse) {
+  Arguments first;
+  for (const Argument& argument : arguments) {
+    first.push_back(argument);
+    if (parse(first) != what) continue;
+    const std::string option = argument.option + ": ";  // which the key stands for
+    throw InputError(file.string() + ": " + argument.key + ": " +
+                     (what.starts_with(option) ? what.substr(option.size()) : what));
+  }
+  throw InputError(file.string() + ": " + what);
 }
 
 std::string text_of(const Arguments& arguments) {
@@ -162,13 +166,25 @@ std::uint32_t QuestionReader::add_bodies(const PlannedRun& run, const RunOptions
 }
 
 void QuestionReader::parse(const PlannedRun& run, RunOptions& options) const {
-  CLI::App command;
-  add_run_options(command, options);
+  const auto parse_into = [](RunOptions& into,
+                             const Arguments& arguments) -> std::optional<std::string> {
+    CLI::App command;
+    add_run_options(command, into);
+    try {
+      command.parse(reversed({"--output=" + std::string(campaign::kResultName)}, arguments));
+    } catch (const CLI::ParseError& error) {
+      return error.what();
+    }
+    return std::nullopt;
+  };
+  if (const auto what = parse_into(options, run.arguments)) {
+    refuse_argument(file_, run.arguments, *what, [&](const Arguments& arguments) {
+      RunOptions unused;
+      return parse_into(unused, arguments);
+    });
+  }
   try {
-    command.parse(reversed({"--output=" + std::string(campaign::kResultName)}, run.arguments));
     check_query(options.query, options.search);
-  } catch (const CLI::ParseError& error) {
-    refuse_argument(file_, run.arguments, error.what());
   } catch (const UsageError& error) {
     throw InputError(file_.string() + ": query: " + error.what(), error.remedy(), error.amount());
   }
@@ -177,18 +193,22 @@ void QuestionReader::parse(const PlannedRun& run, RunOptions& options) const {
 void QuestionReader::check_outputs(const PlannedRun& run) {
   for (const auto& [command, arguments] : run.outputs) {
     if (!checked_.insert(command[0] + text_of(arguments)).second) continue;
-    CLI::App program;
-    add_conflicts(program);
-    add_report(program);
-    for (CLI::App* one : program.get_subcommands({})) {
-      one->parse_complete_callback([] { throw CLI::Success(); });  // parsed only, not run
-    }
-    try {
-      program.parse(reversed(command, arguments));
-    } catch (const CLI::Success&) {
-    } catch (const CLI::ParseError& error) {
-      refuse_argument(file_, arguments, error.what());
-    }
+    const Parse parse = [&command = command](const Arguments& some) -> std::optional<std::string> {
+      CLI::App program;
+      add_conflicts(program);
+      add_report(program);
+      for (CLI::App* one : program.get_subcommands({})) {
+        one->parse_complete_callback([] { throw CLI::Success(); });  // parsed only, not run
+      }
+      try {
+        program.parse(reversed(command, some));
+      } catch (const CLI::Success&) {
+      } catch (const CLI::ParseError& error) {
+        return error.what();
+      }
+      return std::nullopt;
+    };
+    if (const auto what = parse(arguments)) refuse_argument(file_, arguments, *what, parse);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,17 +20,22 @@ namespace {
 
 struct CampaignRunOptions {
   std::filesystem::path folder;
-  std::string tasks;
+  std::optional<std::string> tasks;
   bool all = false, fail_on_collision = false;
   int jobs = 1;
 };
 
 campaign::Plan plan_to_run(const CampaignRunOptions& options) {
   if (options.all) return campaign::read_plan(options.folder);
-  if (options.tasks.empty()) throw UsageError("expected --task with numbers, or --all");
-  const auto tasks = campaign::parse_task_list(options.tasks);
+  if (!options.tasks) throw UsageError("expected --task with numbers, or --all");
+  if (options.tasks->empty()) {
+    // What `campaign status --missing` prints where nothing is missing.
+    spdlog::info("nothing to do, because the list of tasks is empty");
+    return campaign::read_plan(options.folder, {});
+  }
+  const auto tasks = campaign::parse_task_list(*options.tasks);
   if (!tasks) {
-    throw UsageError("--task: " + options.tasks + ": expected numbers from 0, such as 3,7-9");
+    throw UsageError("--task: " + *options.tasks + ": expected numbers from 0, such as 3,7-9");
   }
   return campaign::read_plan(options.folder, *tasks);
 }

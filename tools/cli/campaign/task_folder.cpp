@@ -29,11 +29,11 @@ constexpr std::uintmax_t kMostLogBytes = 1 << 20, kKeptLogBytes = 1 << 16;
 File locked_task(const campaign::Task& task, const fs::path& folder) {
   std::error_code failed;
   fs::create_directories(folder, failed);
-  if (failed) throw ResourceError(folder.string() + ": cannot create: " + failed.message());
+  if (failed) throw system_failure(folder.string() + ": cannot create", failed.value());
   const fs::path path = folder / campaign::kLockName;
   const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor < 0) {
-    throw ResourceError(path.string() + ": cannot create: " + std::strerror(errno));
+    throw system_failure(path.string() + ": cannot create", errno);
   }
   File lock = File::adopt(descriptor, path.string());
   if (!lock_whole(lock)) {

@@ -72,13 +72,11 @@ std::string advice_of_check(const Error& error) {
       return "; write it into a file first";
     case Remedy::kSampleMesh:
       return "; if it is the vehicle, --model takes it";
+    case Remedy::kFreeDisk:
+      return "; free some room, or give -o a folder on a disk with more";
     default:
-      break;
+      return "";
   }
-  const std::string what = error.what();
-  const bool full = what.find(" MiB free, expected about ") != std::string::npos ||
-                    what.find(std::strerror(ENOSPC)) != std::string::npos;
-  return full ? "; free some room, or give -o a folder on a disk with more" : "";
 }
 
 /// Calls a step. Errors whose advice is about options that check does not have get check's own.

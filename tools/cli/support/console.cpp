@@ -22,12 +22,13 @@
 
 #include "clearway/error.hpp"
 #include "cli/support/program.hpp"
+#include "io/files/file.hpp"
 
 namespace clearway::tool {
 
 void print(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-    throw ResourceError(std::string("standard output: cannot write: ") + std::strerror(errno));
+    throw system_failure("standard output: cannot write", errno);
   }
 }
 

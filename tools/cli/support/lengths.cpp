@@ -42,19 +42,22 @@ double metres_of_crs(const std::string& wkt) {
 
 }  // namespace
 
+std::string expected_length(LengthRange range) {
+  const char* limit = range == LengthRange::kAboveZero  ? " above 0"
+                      : range == LengthRange::kFromZero ? ", 0 or more"
+                                                        : "";
+  return std::string("expected a finite number of metres") + limit +
+         ", for example 0.1, or a number with a unit (mm, cm, m, km, in, ft, ift or us-ft), for "
+         "example 10cm";
+}
+
 ParsedLength parse_length(const std::string& option, const std::string& text, LengthRange range) {
   if (const auto length = length_of(text)) {
     const double value = length->value;
     if (range == LengthRange::kAny || value > 0) return *length;
     if (range == LengthRange::kFromZero && value == 0) return *length;
   }
-  const char* limit = range == LengthRange::kAboveZero  ? " above 0"
-                      : range == LengthRange::kFromZero ? ", 0 or more"
-                                                        : "";
-  throw CLI::ValidationError(option,
-                             text + ": expected a finite number of metres" + limit +
-                                 ", for example 0.1, or a number with a unit (mm, cm, m, km, "
-                                 "in, ft, ift or us-ft), for example 10cm");
+  throw CLI::ValidationError(option, text + ": " + expected_length(range));
 }
 
 std::string symbol_of_unit(const std::string& length_unit) {

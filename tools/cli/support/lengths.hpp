@@ -21,6 +21,9 @@ namespace clearway::tool {
 /// The lengths that an option accepts.
 enum class LengthRange { kAboveZero, kFromZero, kAny };
 
+/// What an option for a length expects, for errors: "expected a finite number of metres ...".
+std::string expected_length(LengthRange range = LengthRange::kAboveZero);
+
 /// Reads a length such as "0.1" or "10cm". A decimal becomes the nearest double, and "10cm" the
 /// same as "0.1". Throws CLI::ValidationError naming the option where the text is not a finite
 /// length of the range.

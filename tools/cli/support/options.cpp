@@ -111,12 +111,9 @@ void group_common_options(CLI::App& program) {
 
 CLI::Validator positive_length() {
   const auto read = [](std::string& text) -> std::string {
-    try {
-      text = format_number(parse_length("", text).value);
-    } catch (const CLI::ValidationError& error) {
-      // The text begins with the option's name, which is empty here, and a colon.
-      return std::string(error.what()).substr(std::string_view(": ").size());
-    }
+    const auto length = length_of(text);
+    if (!length || !(length->value > 0)) return text + ": " + expected_length();
+    text = format_number(length->value);
     return "";
   };
   return {read, "", ""};

@@ -11,7 +11,6 @@
 #include <iostream>
 #include <new>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "clearway/error.hpp"
@@ -153,6 +152,8 @@ std::string advice_on(const Error& error) {
              "may be from them";
     case Remedy::kMerge:
       return "; clearway merge makes the result of all parts";
+    case Remedy::kFreeDisk:
+      return "; free some room, or write to a disk with more";
     case Remedy::kOtherPart:
       return "; give the same --shard as its run, or another output. --force instead of --resume "
              "overwrites it";
@@ -202,15 +203,27 @@ std::string advice_on(const Message& message) {
 
 namespace {
 
+/// The first option for one value that the command line gives several times; nullptr without one.
+const CLI::Option* repeated_option(const CLI::App& app) {
+  for (const CLI::App* command : app.get_subcommands()) {
+    if (const CLI::Option* option = repeated_option(*command)) return option;
+  }
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_items_expected_max() == 1 && option->count() > 1) return option;
+  }
+  return nullptr;
+}
+
 /// CLI11's message on an error; the one on a repeated option is reworded, because it says too
 /// little.
 std::string failure_text(const CLI::App* program, const CLI::Error& error) {
-  constexpr std::string_view kOnce = ": At Most 1 required but received ";
-  std::string text = CLI::FailureMessage::simple(program, error);
-  const std::size_t at = text.find(kOnce);
-  if (at == std::string::npos) return text;
-  text.replace(at, kOnce.size(), ": given more than once; expected one, but there are ");
-  return text;
+  const bool mismatch = dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr;
+  const CLI::Option* option = mismatch ? repeated_option(*program) : nullptr;
+  if (option == nullptr) return CLI::FailureMessage::simple(program, error);
+  CLI::ArgumentMismatch reworded(option->get_name() +
+                                 ": given more than once; expected one, but there are " +
+                                 std::to_string(option->count()));
+  return CLI::FailureMessage::simple(program, reworded);
 }
 
 /// Prints help, version or the error. Help goes to standard output, where a full disk is an error.

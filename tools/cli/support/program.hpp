@@ -5,20 +5,9 @@
 #include "clearway/answer.hpp"
 #include "clearway/error.hpp"
 #include "clearway/progress.hpp"
+#include "core/util/exit_code.hpp"
 
 namespace clearway::tool {
-
-/// The exit codes of the program. `run`, `merge`, `compare`, `verify` and `campaign run` set
-/// kDiffers themselves; `run`, `merge`, `compare` and `campaign run` also set kUndecided.
-enum ExitCode {
-  kDone = 0,
-  kDiffers = 1,
-  kWrongUsage = 2,
-  kBadInput = 3,
-  kResource = 4,
-  kInterrupted = 5,
-  kUndecided = 6
-};
 
 /// The exit code of a verdict under --fail-on-collision. One part alone never says that nothing
 /// collides.

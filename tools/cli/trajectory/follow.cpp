@@ -24,9 +24,9 @@
 #include "core/util/format.hpp"
 #include "io/files/file.hpp"
 #include "io/files/pending_file.hpp"
+#include "io/files/thread_limit.hpp"
 #include "io/models/vehicle_file.hpp"
 #include "io/paths/trajectory_file.hpp"
-#include "search/threads.hpp"
 
 namespace clearway::tool {
 namespace {

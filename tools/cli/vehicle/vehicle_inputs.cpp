@@ -1,6 +1,7 @@
 #include "cli/vehicle/vehicle_inputs.hpp"
 
 #include <string>
+#include <utility>
 
 #include "clearway/error.hpp"
 #include "io/models/vehicle_file.hpp"
@@ -11,8 +12,7 @@ std::vector<std::filesystem::path> vehicle_inputs(const std::filesystem::path& f
                                                   std::vector<std::filesystem::path> others) {
   others.push_back(file);
   for (const BodyEntry& body : read_vehicle_file(file, 1)) {
-    others.push_back(body.model);
-    if (!body.trajectory.empty()) others.push_back(body.trajectory);
+    for (std::filesystem::path& one : body.files()) others.push_back(std::move(one));
   }
   return others;
 }

@@ -13,6 +13,7 @@
 #include "core/trajectory/follow/follow_path.hpp"
 #include "core/trajectory/follow/towed.hpp"
 #include "core/util/format.hpp"
+#include "core/util/threads.hpp"
 
 namespace clearway {
 namespace {
@@ -53,7 +54,7 @@ class Follower {
  public:
   Follower(const std::vector<Pose>& path, std::vector<Message>* warnings)
       : threads_(std::max(1, static_cast<int>(std::thread::hardware_concurrency()))),
-        path_(path, threads_),
+        path_(path, started(threads_)),
         warnings_(warnings) {}
 
   const PathStations& path() const { return path_; }
@@ -69,6 +70,7 @@ class Follower {
     }
     if (warnings_ != nullptr) {
       for (Message& doubt : doubts_about(followed, path_, mount, name)) {
+        doubt.body = body.name;
         warnings_->push_back(std::move(doubt));
       }
     }
@@ -77,6 +79,11 @@ class Follower {
   }
 
  private:
+  static int started(int threads) {
+    check_threads(threads);
+    return threads;
+  }
+
   int threads_;
   PathStations path_;
   std::vector<Message>* warnings_;

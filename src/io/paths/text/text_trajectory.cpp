@@ -14,6 +14,7 @@
 #include "core/util/tsan_annotations.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
+#include "io/files/thread_limit.hpp"
 #include "io/paths/text/pose_rows.hpp"
 #include "io/paths/unread_columns.hpp"
 #include "io/scans/text/point_blocks.hpp"
@@ -87,8 +88,10 @@ class TextTrajectory {
     };
     const ParallelScope scope;
     const auto piece = piece_of(scope, read_one);
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, parts.size(), piece);
+    in_threads(0, [&] {
+      scope.begin();
+      tbb::parallel_for(std::size_t{0}, parts.size(), piece);
+    });
     if (good) rows_->append(std::move(parts));
     return good;
   }

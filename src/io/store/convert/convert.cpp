@@ -1,7 +1,6 @@
 #include "io/store/convert/convert.hpp"
 
 #include <tbb/parallel_pipeline.h>
-#include <tbb/task_arena.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -164,8 +163,7 @@ void check_options(const ConversionOptions& options) {
 
 /// The number of threads that the memory allows, as each has a counting grid of its own.
 int affordable_threads(const ConversionOptions& options) {
-  const int wanted =
-      options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
+  const int wanted = threads_or_all(options.threads);
   const std::uint64_t affordable = (options.memory_bytes - kBaseBytes) / kThreadBytes;
   return static_cast<int>(std::min<std::uint64_t>(static_cast<std::uint64_t>(wanted), affordable));
 }
@@ -204,7 +202,7 @@ void check_disk(const std::filesystem::path& folder, const DiskNeed& need) {
                           " MiB for " + (need.spooled > 0 ? "the temporary files and " : "") +
                           "the store of " + std::to_string(need.points) + " points" +
                           (mostly_padding ? "; most of it pads cells that are not full" : ""),
-                      mostly_padding ? Remedy::kFewerCellPoints : Remedy::kNone);
+                      mostly_padding ? Remedy::kFewerCellPoints : Remedy::kFreeDisk);
 }
 
 /// The memory limit of the process's control group, such as a container's; the greatest number
@@ -485,7 +483,7 @@ std::vector<Message> kept_warnings(const std::vector<Message>& warnings) {
 ConversionReport convert_scans(const ConversionOptions& options, Progress& progress) {
   check_options(options);
   const int threads = affordable_threads(options);
-  return ThreadLimit(threads).run([&] { return Conversion(options, threads, progress).run(); });
+  return in_threads(threads, [&] { return Conversion(options, threads, progress).run(); });
 }
 
 namespace {

@@ -30,7 +30,9 @@ SourceDescription::SourceDescription(std::vector<std::filesystem::path> files,
                                      std::vector<bool> known, const Progress& progress)
     : files_(std::move(files)), progress_(progress) {
   known.resize(files_.size());
-  sources_ = std::async(std::launch::async, [this, known = std::move(known)] {
+  // Where no thread is available, get() does the work.
+  constexpr auto kBeside = std::launch::async | std::launch::deferred;
+  sources_ = std::async(kBeside, [this, known = std::move(known)] {
     std::vector<std::optional<SourceFile>> sources(files_.size());
     for (std::size_t i = 0; i < files_.size(); ++i) {
       if (!known[i]) sources[i] = describe(files_[i], stop_.get_token(), progress_);

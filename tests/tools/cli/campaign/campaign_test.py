@@ -90,6 +90,60 @@ def errors_name_the_key(test):
     test.refused("classes: 0.3: needs a clearance", classes=[0.1, 0.3], outputs={"report": True})
     test.refused("limits.threads: expected a whole number", limits={"threads": "two"})
     test.refused("limits.memory: much", limits={"memory": "much"})
+    for key, kinds in {
+            "name": "a text", "environments": "an object", "vehicles": "an object",
+            "routes": "an object", "radii": "a list", "query": "an object", "slurm": "a list",
+            "outputs": "an object", "limits": "an object",
+            "vehicles.truck": "an object", "vehicles.truck.model": "a text",
+            "vehicles.truck.unit": "a text", "vehicles.truck.spacing": "a length",
+            "vehicles.truck.vertices": "true or false", "vehicles.truck.above": "a length",
+            "vehicles.truck.as": "a text", "vehicles.truck.forward": "a text",
+            "vehicles.truck.turn": "true or false",
+            "routes.north.trajectory": "a text", "routes.north.format": "a text",
+            "routes.north.allow_non_rigid": "true or false", "routes.north.angles": "a list",
+            "routes.north.lever_arm": "a list", "routes.north.chainage_start": "a length",
+            "routes.north.crs": "a text", "routes.north.environment": "a text",
+            "query.first_pose": "true or false", "query.clearance": "a length",
+            "query.tolerance": "a length", "query.sigmas": "a number",
+            "query.precision": "a text", "query.strict": "true or false",
+            "query.ignore_classes": "a list", "query.ignore_boxes": "a list",
+            "query.error_scan": "a length",
+            "outputs.conflicts": "a list", "outputs.report": "true or false",
+            "outputs.gap": "a length", "outputs.min_points": "a whole number",
+            "outputs.split": "a length", "limits.memory": "bytes as a whole number, or a size",
+            "limits.threads": "a whole number", "limits.engine": "a text",
+            "limits.gpus": "a list", "limits.device_memory": "bytes as a whole number",
+            "limits.shard_seconds": "seconds", "limits.journal_interval": "a number"}.items():
+        for wrong in [[True], {"a": 1}, None] + ([1] if kinds == "true or false" else [True]):
+            if kinds == "an object" and isinstance(wrong, dict) or (
+                    kinds == "a list" and isinstance(wrong, list)):
+                continue
+            if key in ("vehicles.truck", "query.ignore_boxes") and wrong == [True]:
+                continue
+            first, *rest = key.split(".")
+            changes = {"vehicles": {"truck": {"model": model}},
+                       "routes": {"north": {"trajectory": "routes/r00.txt"}}}
+            at, name = changes, first
+            for name_below in rest:
+                at, name = at.setdefault(name, {}), name_below
+            at[name] = wrong
+            test.refused(f"{key}: expected {kinds}", **changes)
+    for key, entries in {"query.ignore_classes": "a whole number", "limits.gpus": "a whole number",
+                         "routes.north.angles": "a text", "routes.north.lever_arm": "a length",
+                         "classes": "a length", "query.ignore_boxes": "a list",
+                         "radii": "a length", "slurm": "a text",
+                         "outputs.conflicts": "a text"}.items():
+        first, *rest = key.split(".")
+        changes = {"vehicles": {"truck": {"model": model}},
+                   "routes": {"north": {"trajectory": "routes/r00.txt"}},
+                   "outputs": {"report": True}}
+        at, name = changes, first
+        for name_below in rest:
+            at, name = at.setdefault(name, {}), name_below
+        at[name] = [True]
+        test.refused(f"{key}[0]: expected {entries}", **changes)
+    test.refused("query.ignore_classes[1]: expected a whole number, 0 or more",
+                 query={"ignore_classes": [2, -7]})
     test.refused("slurm[0]: --array=1: the script sets it itself", slurm=["--array=1"])
     file = test.work / "campaign.json"
     for text, message in [('{"name": "a", "vehicles": {"b": "c", "b": "d"}}',
@@ -150,6 +204,35 @@ def tasks_are_idempotent(test):
     expect(outcome("campaign", "run", test.path, "--all").returncode == 0, "again")
     expect("is the finished result" in (test.path / "runs/v00/r00/0.1/log.txt").read_text(),
            "the result was searched again")
+
+
+def conflicts_are_those_of_a_single_run(test):
+    """With the shifts, for which a single command needs the model."""
+    folder = test.path / "runs/v00/r00/0.1"
+    program("conflicts", folder / "out.h5", "--model", test.work / "vehicles/v00.ply",
+            "--trajectory", test.work / "routes/r00.txt", "-o", test.work / "single.csv")
+    table = (folder / "conflicts.csv").read_bytes()
+    expect(table == (test.work / "single.csv").read_bytes(), "other conflicts")
+    head, first = [line.split(",") for line in table.decode().splitlines()[:2]]
+    expect(any(dict(zip(head, first))[name] for name in ("shift_left", "shift_right")), f"{first}")
+
+
+def boxes_need_no_file(test):
+    (test.work / "boxes.json").write_text(json.dumps(
+        {"bodies": [{"name": "a", "model": "box:0.4,0.3,0.3"}]}))
+    path = test.work / "boxes"
+    done = test.plan(path=path, vehicles={"box": "box:0.4,0.3,0.3", "bodies": "boxes.json",
+                                          "long": {"model": "box:0.4,0.3,0.3", "spacing": 0.05,
+                                                   "as": "points"}},
+                     outputs={"conflicts": ["csv"], "report": True}, routes={"a": "routes/r00.txt"})
+    expect(done.returncode == 0, done.stderr)
+    done = outcome("campaign", "run", path, "--all")
+    expect(done.returncode == 0, done.stderr)
+    for name in ("box", "bodies", "long"):
+        expect((path / f"runs/{name}/a/0.1/report.html").exists(), name)
+    test.refused("environments.hall: " + str(test.work / "box:1,1,1") + ": there is no such file",
+                 environments={"hall": "box:1,1,1"})
+    test.refused("vehicles.box: box:1,1: expected a box", vehicles={"box": "box:1,1"})
 
 
 def one_at_a_time(test):
@@ -313,7 +396,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         test = Test(pathlib.Path(folder))
         for check in [errors_name_the_key, files_that_a_pattern_misses_are_named, plans_are_stable, tasks_are_idempotent, by_hand,
-                      one_at_a_time, new_plans_keep_results, stores_are_opened_once, failures, signals, crashes, page, misuse]:
+                      conflicts_are_those_of_a_single_run, boxes_need_no_file, one_at_a_time, new_plans_keep_results, stores_are_opened_once, failures, signals, crashes, page, misuse]:
             begin = time.monotonic()
             check(test)
             print(f"{check.__name__}: {time.monotonic() - begin:.1f} s", flush=True)

@@ -154,23 +154,63 @@ def merges_need_no_gpu(test):
         expect(device in of_run[0], f"{task}")
 
 
-def merges_ask_slurm_for_no_gpu(test):
-    """With programs in the place of Slurm's that keep what they were given."""
-    campaign = write_campaign(test.work, limits=DIVIDED, slurm=["--gres=gpu:1", "--time=10"])
-    program("campaign", "plan", campaign, "-o", test.work / "slurm")
+def submit(test, *words, scontrol="MaxArraySize            = 1001"):
+    """Runs submit.sh with programs in the place of Slurm's. Returns how it ended, and what each
+    sbatch was given: its words, and then its standard input."""
     programs = test.work / "bin"
+    shutil.rmtree(programs, ignore_errors=True)
     programs.mkdir()
-    for name, text in [("scontrol", "echo 'MaxArraySize            = 1001'"),
+    for name, text in [("scontrol", f"echo '{scontrol}'"),
                        ("sbatch", f"number=$(ls {programs} | grep -c job)\n"
                                   f"{{ echo \"$@\"; cat; }} > {programs}/job$number < "
                                   "/dev/stdin\necho $number")]:
         (programs / name).write_text("#!/bin/sh\n" + text + "\n")
         (programs / name).chmod(0o755)
-    done = subprocess.run([test.work / "slurm/submit.sh"], stdin=subprocess.DEVNULL, text=True,
-                          stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    done = subprocess.run([test.work / "slurm/submit.sh", *words], stdin=subprocess.DEVNULL,
+                          text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60,
                           env={**os.environ, "PATH": f"{programs}:{os.environ['PATH']}"})
+    return done, [path.read_text() for path in sorted(programs.glob("job*"))]
+
+
+def submit_takes_lists(test):
+    """An empty list, such as that of what is missing where nothing is, submits nothing."""
+    program("campaign", "plan", write_campaign(test.work, limits=DIVIDED), "-o",
+            test.work / "slurm")
+    last = test.last
+    runs = [i for i in range(last + 1) if i not in (test.merge, last)]
+    merges = f"{test.merge},{last}"
+    for words, code, said, arrays in [
+            ([], 0, "tasks: job", [",".join(map(str, runs)), merges]),
+            ([""], 0, "nothing is submitted", []),
+            ([" \n"], 0, "nothing is submitted", []),
+            (["0"], 0, "tasks: job", ["0"]),
+            (["1,0,1"], 0, "tasks: job", ["0,1"]),
+            ([f"{last}"], 0, "tasks: job", [f"{last}"]),
+            ([f"{last + 1}"], 2, f"from 0 to {last}", []),
+            (["1-0"], 2, "that ascend", []),
+            (["all"], 2, "all: expected numbers", []),
+            (["0,"], 2, "0,: expected numbers", []),
+            (["0", "1"], 2, "one list of tasks", [])]:
+        done, jobs = submit(test, *words)
+        expect(done.returncode == code and said in done.stdout + done.stderr, f"{words}: {done}")
+        given = [job.splitlines()[0] for job in jobs]
+        expect([words for words in given if "--wrap" in words] == given[len(arrays):],
+               f"{words}: the report is the last job: {given}")
+        expect(len(given) == len(arrays) + (1 if arrays else 0), f"{words}: {given}")
+        expect(all(f"--array={array}" in one.split() for array, one in zip(arrays, given)),
+               f"{words}: {given}")
+    done, jobs = submit(test, "0", scontrol="")
+    expect(done.returncode == 4 and "MaxArraySize" in done.stderr and not jobs, f"{done}")
+    done = run(test, "--task", "")
+    expect(done.returncode == 0 and "nothing to do" in done.stderr, done.stderr)
+
+
+def merges_ask_slurm_for_no_gpu(test):
+    campaign = write_campaign(test.work, limits=DIVIDED, slurm=["--gres=gpu:1", "--time=10"])
+    program("campaign", "plan", campaign, "-o", test.work / "slurm", "--force")
+    done, jobs = submit(test)
     expect(done.returncode == 0, done.stderr)
-    shards, merges, _ = [(programs / f"job{i}").read_text() for i in range(3)]
+    shards, merges, _ = jobs
     expect("--dependency=afterany:0" in merges.splitlines()[0], merges)
     expect("#SBATCH --gres=gpu:1\n" in shards and "#SBATCH --gres" not in merges, merges)
     expect([line for line in shards.splitlines()[1:] if line != "#SBATCH --gres=gpu:1"]
@@ -201,7 +241,7 @@ def main():
         for check in [plan_has_shards_and_merges, merge_waits, results_are_those_of_whole_runs,
                       finished_ones_stay, finished_runs_need_no_shards,
                       new_store_has_shards_of_its_own, merges_need_no_gpu,
-                      merges_ask_slurm_for_no_gpu,
+                      submit_takes_lists, merges_ask_slurm_for_no_gpu,
                       failed_shard_fails_its_run]:
             begin = time.monotonic()
             check(test)

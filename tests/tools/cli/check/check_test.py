@@ -208,6 +208,77 @@ class Finding(Site):
                 made = bytes_of(self.folder / "other", FILES[1:])
                 self.paste(commands, self.folder)
                 self.assertEqual(bytes_of(self.folder / "other", FILES[1:]), made)
+    def test_every_kind_of_model(self):
+        """Meshes of all formats, points, boxes, outlines, and vehicles of them, in another folder."""
+        here = self.folder / "vehicles"
+        here.mkdir()
+        shutil.copy(self.folder / "model.ply", here / "points.ply")
+        clearway("model box 2,1,1 -o vehicles/mesh.off", self.folder)
+        corners, faces = [], []
+        for line in (here / "mesh.off").read_text().splitlines()[1:]:
+            values = line.split("#")[0].split()
+            if len(values) == 4 and values[0] == "3":
+                faces.append([int(v) for v in values[1:]])
+            elif len(values) == 3 and (corners or "." in line or not faces and values[1] != "12"):
+                corners.append(values)
+        (here / "mesh.obj").write_text(
+            "".join(f"v {' '.join(c)}\n" for c in corners) +
+            "".join(f"f {' '.join(str(i + 1) for i in f)}\n" for f in faces))
+        (here / "mesh.ply").write_text(
+            f"ply\nformat ascii 1.0\nelement vertex {len(corners)}\nproperty double x\n"
+            f"property double y\nproperty double z\nelement face {len(faces)}\n"
+            "property list uchar int vertex_indices\nend_header\n" +
+            "".join(f"{' '.join(c)}\n" for c in corners) +
+            "".join(f"3 {' '.join(map(str, f))}\n" for f in faces))
+        (here / "mesh.stl").write_text("solid a\n" + "".join(
+            "facet normal 0 0 0\nouter loop\n" +
+            "".join(f"vertex {' '.join(corners[i])}\n" for i in f) + "endloop\nendfacet\n"
+            for f in faces) + "endsolid a\n")
+        (here / "points.txt").write_text("".join(f"{' '.join(c)}\n" for c in corners))
+        (here / "gauge.csv").write_text("-1,0\n1,0\n1,2\n-1,2\n")
+        made = clearway("model outline vehicles/gauge.csv --x=-1,1 -o vehicles/outline.off",
+                        self.folder)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        models = ["mesh.off", "mesh.obj", "mesh.ply", "mesh.stl", "outline.off", "points.ply",
+                  "points.txt", "box:2,1,1"]
+        self.assertEqual((len(corners), len(faces)), (8, 12))
+        self.asked("")
+        site = "site/site.h5 --trajectory trajectory.txt --radius 0.1 --force -o"
+        sentences = {}
+        for model in models:
+            path = model if model.startswith("box:") else f"vehicles/{model}"
+            with self.subTest(model):
+                one = self.check(f"{site} one --model {path}")
+                sentences[model] = one.stdout.splitlines()[-1]
+                self.assertIn("nothing was to be done",
+                              self.check(f"{site} one --model {path}").stderr)
+                (here / "one.json").write_text(json.dumps(
+                    {"bodies": [{"name": "only", "model": model}]}))
+                vehicle = self.check(f"{site} vehicle --vehicle vehicles/one.json")
+                self.assertEqual(json.loads(clearway("info vehicle/result.h5 --json", self.folder)
+                                            .stdout)["colliding_points"],
+                                 json.loads(clearway("info one/result.h5 --json", self.folder)
+                                            .stdout)["colliding_points"])
+                self.assertIn("nothing was to be done",
+                              self.check(f"{site} vehicle --vehicle vehicles/one.json").stderr)
+                self.assertTrue(vehicle.stdout)
+        mesh = {sentences[name] for name in ("mesh.off", "mesh.obj", "mesh.ply", "mesh.stl",
+                                             "box:2,1,1")}
+        self.assertEqual(len(mesh), 1, sentences)
+        bodies = [{"name": f"body {i}", "model": model, "at": -2.0 * i}
+                  for i, model in enumerate(models)]
+        bodies[1] = {**bodies[1], "pivots": [1, -1]}
+        del bodies[1]["at"]
+        (here / "all.json").write_text(json.dumps({"bodies": bodies}))
+        for model_as in ("", " --model-as points --model-spacing 0.1"):
+            done = self.check(f"{site} all --vehicle vehicles/all.json{model_as}")
+            self.assertEqual(sum("the body has no pose there" in line
+                                 for line in done.stderr.splitlines()), len(models) - 1, done.stderr)
+        (here / "all.json").write_text(json.dumps({"bodies": [{"name": "a", "model": "box:2,1"}]}))
+        refused = self.check(f"{site} all --vehicle vehicles/all.json", 2)
+        self.assertIn("expected a box as box:LENGTH,WIDTH,HEIGHT", refused.stderr)
+
+    def test_seen_space(self):
         seen = self.check(f"scans {QUESTION} --origins origins.csv --seen -o seen")
         self.assertIn("--seen", printed_commands(seen.stdout)[1])
         self.assertIn("--origins origins.csv", printed_commands(seen.stdout)[0])

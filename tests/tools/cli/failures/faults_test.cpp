@@ -132,6 +132,49 @@ TEST_CASE("every call that fails in turn ends with exit code 4 and without an ou
   }
 }
 
+TEST_CASE("a command that gets no threads says so, or does without them") {
+  const Site site;
+  write_text(site);
+  std::string poses;
+  for (int i = 0; i < 40'000; ++i) poses += std::to_string(i * 0.01) + " 0 0 0 0 0 1\n";
+  put_bytes(site.file("long.txt"), poses);
+  put_bytes(site.file("vehicle.json"),
+            R"({"bodies": [{"name": "a", "model": "model.ply", "pivots": [0.1, -0.1]}]})");
+  const std::string question =
+      " --trajectory " + site.path("trajectory.txt") + " --model " + site.path("model.ply");
+  const std::string made = site.path("made.h5"), env = " --env " + site.path("site.h5");
+  const std::string to_csv = " --force -o " + site.path("out.csv");
+  std::vector<std::string> lines;
+  for (const Command& command : commands(site)) lines.push_back(command.arguments + " --force");
+  for (const std::string& line :
+       {"conflicts " + made + question + to_csv, "stations " + made + question + to_csv,
+        "shift " + made + env + question + " --lateral -0.1,0.1" + to_csv,
+        "report " + made + env + question + " --force -o " + site.path("out.html"),
+        "run" + env + " --trajectory " + site.path("trajectory.txt") + " --vehicle " +
+            site.path("vehicle.json") + " --radius 0.1 --force -o " + site.path("vehicle.h5"),
+        "section find" + env + " --trajectory " + site.path("trajectory.txt") +
+            " --load=-1,1 --window=-2,2,0,3 --force -o " + site.path("section.h5"),
+        "trajectory follow " + site.path("trajectory.txt") + " --pivots 0.1,-0.1 --force -o " +
+            site.path("out.txt"),
+        "trajectory info " + site.path("long.txt"), "verify " + made,
+        "compare " + made + " " + made, "info " + made, "verify " + site.path("site.h5")}) {
+    lines.push_back(line);
+  }
+  std::size_t refused = 0;
+  for (const std::string& line : lines) {
+    for (const int call : {0, 1, 2, 3}) {
+      bool went_wrong = false;
+      const Outcome outcome = site.run(line, "thread", call, went_wrong);
+      INFO(line << ", thread " << call << ": " << outcome.err);
+      REQUIRE((outcome.exit_code == 0 || outcome.exit_code == 4));
+      if (outcome.exit_code == 0) continue;
+      ++refused;
+      CHECK_THAT(outcome.err, Contains("threads cannot be started"));
+    }
+  }
+  CHECK(refused > lines.size() / 2);
+}
+
 TEST_CASE("short and interrupted calls change nothing") {
   const Site site;
   write_text(site);

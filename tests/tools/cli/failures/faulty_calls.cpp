@@ -3,6 +3,7 @@
 //   FAULT_KIND    fail: EIO for reading, ENOSPC for everything else
 //                 short: half of what was asked for
 //                 interrupt: EINTR, every other time
+//                 thread: no thread can be started
 //                 shrink: the file loses its second half before it is read
 //   FAULT_EXCEPT  a file in that folder whose calls go right, for shrink; also under a longer name
 //   FAULT_CALL    the number of the one call that goes wrong, counted from 1; 0: all of them
@@ -10,6 +11,7 @@
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdarg.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -154,6 +156,14 @@ int posix_fallocate64(int descriptor, off64_t at, off64_t size) {
 
 int posix_fallocate(int descriptor, off_t at, off_t size) {
   return posix_fallocate64(descriptor, at, size);
+}
+
+int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*),
+                   void* argument) {
+  static auto* const original =
+      next<int(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*)>("pthread_create");
+  if (!is_kind("thread") || !goes_wrong()) return original(thread, attributes, start, argument);
+  return EAGAIN;
 }
 
 int renameat2(int from_folder, const char* from, int to_folder, const char* to, unsigned flags) {

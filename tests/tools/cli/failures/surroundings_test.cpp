@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
+#include <string_view>
 
 #include "tools/cli/support/program.hpp"
 
@@ -49,9 +50,10 @@ TEST_CASE("closed standard descriptors do not become an output's") {
   const auto out = hall.folder / "out.h5";
   for (const char* closed : {"<&- 2>&-", "<&- >&- 2>&-", ">&- 2>&-", "2>&-"}) {
     CAPTURE(closed);
+    const bool prints = std::string_view(closed).find(">&- ") == std::string_view::npos;
     for (const char* engine : {"kdtree", "sweep"}) {
       CHECK(hall.shell("{} " + hall.query() + "--device cpu --force --engine " + engine + " -o " +
-                       quoted(out) + " " + closed) == 0);
+                       quoted(out) + " " + closed) == (prints ? 0 : 4));
       CHECK((bytes_of(out) == hall.expected));
       std::filesystem::remove(out);
     }
@@ -74,6 +76,44 @@ TEST_CASE("what cannot be printed is an error, and the output is whole") {
     CHECK(bytes_of(hall.folder / "code.txt") == "4\n");
     CHECK_THAT(hall.messages(), Contains("standard output: cannot write"));
     CHECK((bytes_of(out) == hall.expected));
+  }
+  put_bytes(hall.folder / "campaign.json",
+            R"({"name": "a", "environments": {"h": "site.h5"}, "vehicles": {"m": "model.ply"},)"
+            R"("routes": {"r": "trajectory.txt"}, "radii": [0.1]})");
+  REQUIRE(hall.run(hall.query() + "--first-pose -o " + hall.path("first.h5")).exit_code == 0);
+  const std::string made = hall.path("first.h5"), site = hall.path("site.h5");
+  const std::string path = hall.path("trajectory.txt"), model = hall.path("model.ply");
+  const std::string campaign = hall.path("campaign");
+  REQUIRE(hall.shell("{} campaign plan " + hall.path("campaign.json") + " -o " + campaign) == 0);
+  for (const std::string& line :
+       {std::string("--version"),
+        std::string("--help"),
+        std::string("run --help"),
+        std::string("campaign run --help"),
+        "info " + site,
+        "info --json " + site,
+        "info " + made,
+        "info " + path,
+        "info " + model,
+        "verify " + site,
+        "verify --json " + made,
+        "compare " + made + " " + made,
+        "compare --json " + made + " " + made,
+        "model info " + model,
+        "model info --json " + model,
+        "trajectory info " + path,
+        "trajectory info --json " + path,
+        "conflicts " + made + " --trajectory " + path,
+        "conflicts --json " + made + " --trajectory " + path,
+        "stations " + made + " --trajectory " + path,
+        hall.query() + "--force -o " + hall.path("out.h5"),
+        "campaign status " + campaign,
+        "campaign status --json " + campaign,
+        "campaign status --missing " + campaign,
+        "campaign plan " + hall.path("campaign.json") + " -o " + campaign}) {
+    CAPTURE(line);
+    CHECK(hall.shell("{} " + line + " >/dev/full") == 4);
+    CHECK_THAT(hall.messages(), Contains("standard output: cannot write"));
   }
   CHECK(hall.shell("{} scene hall --environment - --points 500 --model-points 20 --poses 5 -o " +
                    quoted(hall.folder / "piped") + " >&-") == 4);

@@ -1,4 +1,4 @@
-#include "search/threads.hpp"
+#include "core/util/threads.hpp"
 
 #include <latch>
 #include <string>
@@ -16,13 +16,16 @@ void check_threads(int threads) {
   try {
     for (int i = 1; i < threads; ++i) started.emplace_back([&] { all_started.wait(); });
   } catch (const std::system_error& error) {
-    const std::string reason = error.what();
     all_started.count_down();
-    throw ResourceError(std::to_string(threads) + " threads cannot be started (" + reason +
-                            "): the limit of processes or memory is reached",
-                        Remedy::kFewerThreads);
+    refuse_threads(threads, error.what());
   }
   all_started.count_down();
+}
+
+void refuse_threads(int threads, const char* reason) {
+  throw ResourceError(std::to_string(threads) + " threads cannot be started (" + reason +
+                          "): the limit of processes or memory is reached",
+                      Remedy::kFewerThreads);
 }
 
 }  // namespace clearway

@@ -1,0 +1,13 @@
+#pragma once
+
+namespace clearway {
+
+/// Starts so many threads for a moment, this one included. Throws ResourceError where the system
+/// does not give them. OpenMP would end the process instead, and oneTBB may do so.
+void check_threads(int threads);
+
+/// Throws the ResourceError of check_threads(). threads: how many were needed. reason: the
+/// system's words.
+[[noreturn]] void refuse_threads(int threads, const char* reason);
+
+}  // namespace clearway

@@ -1,0 +1,78 @@
+"""Names of the sources in documents: files, types, functions and constants in code spans exist, and
+a list of the names of an enumeration, for users of Python, has all of them."""
+
+import re
+
+from . import markdown
+
+ENDINGS = {".cpp", ".hpp", ".cu", ".cuh", ".py", ".pyi", ".js", ".css", ".html", ".sh", ".cmake",
+           ".in", ".txt"}
+FILE = re.compile(r"(?:[\w.-]+/)*[\w-]+\.(?:cpp|hpp|cuh?|pyi?|js|css|html|sh|cmake)")
+TYPE = re.compile(r"(?:\w+::)*(?:k?[A-Z][a-z0-9]+(?:[A-Z][a-z0-9]*)+|k[A-Z]\w+)(?:(?:::|\.)\w+)*")
+CALL = re.compile(r"((?:\w+(?:::|\.))*~?\w+)\((?:[^()]|\([^()]*\))*\)")
+WORD = re.compile(r"[A-Za-z_]\w*")
+PLACEHOLDER = re.compile(r"\bNAME(?=\b|_)|^DIR/")  # NAME_reader.hpp, DIR/index.html
+
+# Where a document tells where facts are from, it names files of other projects.
+FOREIGN = {"docs/design/laz.md": {"laszip.cpp", "lasreadpoint.cpp", "lasreaditemcompressed_v1.cpp",
+                                  "_v4.cpp"}}
+
+NAME_OF = re.compile(r"\bname_of\((\w+) \w+\) \{\n(.*?)\n\}", re.DOTALL)
+TEXT = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
+LITERAL = re.compile(r'"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*|R"\((.*?)\)"', re.DOTALL)
+QUOTED = re.compile(r"'([a-z0-9][a-z0-9-]*)'")
+LIST_FROM = 3  # so many names of an enumeration in one text are a list of them
+
+
+class Names:
+    """What the sources of a repository name. files: all of its files."""
+
+    def __init__(self, root, files):
+        self._root = root
+        self._sources = {path: path.read_text(encoding="utf-8", errors="replace")
+                         for path in sorted(files)
+                         if path.suffix in ENDINGS and path.relative_to(root).parts[0] != "docs"}
+        self._paths = ["/" + str(path.relative_to(root)) for path in files]
+        self._words = set()
+        for text in self._sources.values():
+            self._words.update(WORD.findall(text))
+
+    def unknown(self, name, blocks):
+        """The code spans of a document whose names no source has."""
+        for block in blocks:
+            for span in markdown.CODE_SPAN.finditer("" if block.kind == "code" else block.text):
+                if not self._is_known(span[2].strip()) and span[2] not in FOREIGN.get(name, ()):
+                    line = block.line + block.text.count("\n", 0, span.start())
+                    yield f"{name}:{line}: {span[2]}: no source has this name"
+
+    def _is_known(self, code):
+        if PLACEHOLDER.search(code):
+            return True
+        if FILE.fullmatch(code):
+            own = any(path.endswith("/" + code) for path in self._paths)
+            made = f'"{code.rpartition("/")[2]}"'  # a file that a program writes
+            return own or any(made in text for text in self._sources.values())
+        call = CALL.fullmatch(code)
+        if not call and not TYPE.fullmatch(code):
+            return True
+        return set(WORD.findall(call[1] if call else code)) <= self._words
+
+    def incomplete(self):
+        """The texts of the Python module that list names of an enumeration, but not all of them.
+        "auto" and "unknown" may be left out, because not every value of the type can be them."""
+        enumerations = {}
+        for path, text in self._sources.items():
+            if path.suffix in (".cpp", ".hpp"):
+                for of, body in NAME_OF.findall(text):
+                    enumerations[of] = set(TEXT.findall(body)) - {"", "auto", "unknown"}
+        for path, text in self._sources.items():
+            if "python" not in path.relative_to(self._root).parts or path.suffix != ".cpp":
+                continue
+            for literal in LITERAL.finditer(text):
+                listed = set(QUOTED.findall(literal[0]))
+                for of, names in enumerations.items():
+                    if LIST_FROM <= len(listed & names) < len(names):
+                        line = text.count("\n", 0, literal.start()) + 1
+                        missing = ", ".join(sorted(names - listed))
+                        yield (f"{path.relative_to(self._root)}:{line}: a list of {of} lacks "
+                               f"{missing}")
