@@ -56,14 +56,17 @@ void warn_of_single_precision(const Question& question, std::span<const Vec3> pl
                               const std::string& whose, const std::string& remedy,
                               MessageLog& log) {
   constexpr double kMatters = 0.05;  // share of the radius
-  const double radius = question.query.radius;
+  // A section has cells, which decide where it has no margin.
+  const double cell = question.is_load() ? question.section->cell : 0;
+  const double radius = std::max(question.query.radius, cell);
   const auto step = single_precision_step(places, kMatters * radius, question.metre);
   if (!step) return;
   log.warn("single-precision",
            whose + " are numbers of single precision, which are " +
                length_text(*step, question.unit) +
                " apart at these coordinates, so they can be wrong by " +
-               length_text(*step / 2, question.unit) + ", with a radius of " +
+               length_text(*step / 2, question.unit) +
+               (cell > 0 ? ", with a margin or cells of " : ", with a radius of ") +
                length_text(radius, question.unit) + ". " + remedy,
            {{"step", *step}, {"radius", radius}});
 }
