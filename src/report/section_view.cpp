@@ -7,6 +7,7 @@
 #include <span>
 
 #include "clearway/error.hpp"
+#include "core/query/ignored_points.hpp"
 #include "core/section/section_intrusions.hpp"
 #include "core/util/format.hpp"
 #include "io/files/xxh64.hpp"
