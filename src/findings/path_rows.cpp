@@ -9,6 +9,7 @@
 #include "clearway/stations.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/util/format.hpp"
+#include "io/files/input_error.hpp"
 
 namespace clearway {
 namespace {

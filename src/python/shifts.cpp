@@ -7,6 +7,7 @@
 
 #include "clearway/session.hpp"
 #include "clearway/shift.hpp"
+#include "clearway/trajectory.hpp"
 #include "python/arrays.hpp"
 #include "python/findings.hpp"
 #include "python/model.hpp"

@@ -21,6 +21,14 @@ py::dict numbers_of(const Message& message) {
   return numbers;
 }
 
+py::list stretches_of(const Message& message) {
+  py::list stretches;
+  for (const PoseRange& stretch : message.stretches) {
+    stretches.append(py::make_tuple(stretch.first, stretch.last));
+  }
+  return stretches;
+}
+
 const char* severity_of(const Message& message) {
   return message.severity == Severity::kWarning ? "warning" : "note";
 }
@@ -36,6 +44,10 @@ void add_messages(py::module_& module) {
           "What is told, in one or more sentences.")
       .def_property_readonly("numbers", numbers_of,
                              "The numbers that the text gives, for programs: a dict by name.")
+      .def_property_readonly("stretches", stretches_of,
+                             "The stretches of the path that the message is about: a list of pairs "
+                             "of the first and the last pose, ascending. Empty for a message about "
+                             "the whole question.")
       .def("__str__", [](const Message& m) { return text(m.text); })
       .def("__repr__", [](const Message& m) {
         return text(std::string("<") + severity_of(m) + (m.code.empty() ? "" : " ") + m.code +

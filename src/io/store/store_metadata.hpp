@@ -11,6 +11,7 @@
 #include "core/geometry/quantisation.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/scans/length_unit.hpp"
+#include "io/scans/scan_dates.hpp"
 
 namespace clearway {
 
@@ -95,6 +96,7 @@ struct StoreMetadata {
   std::vector<std::uint64_t> source_points = {};
   std::optional<StoreClasses> classes = {};  ///< only where some point has a class above 0
   std::optional<StoreOrigins> origins = {};  ///< only where some point has an origin
+  ScanDates dates = {};                      ///< days on which the sources were made
   std::vector<Message> warnings = {};        ///< warnings of the conversion, for users of the store
 
   /// Number of points of a source file, by its index in `sources`; nullopt where it is not known.

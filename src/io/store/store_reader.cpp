@@ -104,6 +104,7 @@ StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name, Colum
                      ", expected at least the points stored, " +
                      std::to_string(metadata.point_count));
   }
+  metadata.dates = read_scan_dates(file, name);
   if (H5Lexists(file.get(), "warnings", H5P_DEFAULT) > 0) {
     metadata.warnings = read_warnings(file, name);
   }

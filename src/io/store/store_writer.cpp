@@ -152,6 +152,7 @@ void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata, ColumnH
   hdf5::write_attribute(file, "length_unit", to_string(metadata.unit));
   hdf5::write_attribute(file, "crs_wkt", metadata.crs_wkt);
 
+  write_scan_dates(file, metadata.dates);
   if (!metadata.warnings.empty()) write_warnings(file, metadata.warnings);
 
   std::vector<std::uint8_t> names;

@@ -35,6 +35,7 @@ class Message:
     code: Final[str]
     text: Final[str]
     numbers: Final[dict[str, float]]
+    stretches: Final[list[tuple[int, int]]]
 class ProgressUpdate:
     stage: Final[str]
     done: Final[int]
@@ -246,6 +247,7 @@ class Answer:
     near_points: Final[int]
     certain_points: Final[int]
     seen: Final[SeenSummary | None]
+    warnings: Final[list[Message]]
     doubts: Final[list[str]]
     warned_of: Final[list[str]]
     parameters: Final[QueryParameters]
@@ -272,7 +274,6 @@ class SearchReport(Answer):
     was_finished: Final[bool]
     model_triangles: Final[int]
     ignored_looked_at: Final[int]
-    warnings: Final[list[Message]]
     engine: Final[str]
     device: Final[str]
     device_name: Final[str]
@@ -341,6 +342,7 @@ class Result:
     def ignored(self) -> IgnoredPointCounts: ...
     def poses(self) -> int: ...
     def answer(self) -> Answer: ...
+    def warnings(self) -> list[Message]: ...
     def collisions(self) -> Collisions: ...
     def source(self) -> _Sources: ...
     def xyz(self) -> _Doubles: ...
@@ -431,6 +433,7 @@ class StationRow:
     above: Final[FoundPlace | None]
     verdict: Final[str]
     reasons: Final[list[str]]
+    doubts: Final[list[str]]
     searched: Final[bool]
     overthrow: Final[list[Overthrow]]
 class StationTable:

@@ -11,6 +11,7 @@
 #include "core/geometry/point_box.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/trajectory/pose_ranges.hpp"
 #include "core/trajectory/trajectory_doubts.hpp"
 #include "core/trajectory/trajectory_summary.hpp"
 #include "core/util/format.hpp"
@@ -120,6 +121,8 @@ Steps check_straight_ways(const Question& question, const std::vector<Jump>& jum
       ": by up to " + length_text(worst.distance, question.unit) + " after pose " +
       std::to_string(number) + ", where the model goes on by " + length_text(moved, question.unit) +
       " and turns by " + figure(turned) + " degrees";
+  Steps starts;
+  for (const Deviation& d : found) starts.push_back(question.number_of(d.pose));
   const auto jump = std::ranges::find(jumps, std::size_t{number}, &Jump::pose);
   if (warns && jump != jumps.end()) {
     text += ". This step is " + figure(jump->length / jump->usual) +
@@ -133,12 +136,9 @@ Steps check_straight_ways(const Question& question, const std::vector<Jump>& jum
             {"largest", worst.distance},
             {"pose", static_cast<double>(number)},
             {"step", moved},
-            {"turn_degrees", turned}}});
-  Steps told;
-  for (const Deviation& d : found) {
-    if (warns) told.push_back(question.number_of(d.pose));
-  }
-  return told;
+            {"turn_degrees", turned}},
+           pose_ranges(starts, 1)});
+  return warns ? starts : Steps();
 }
 
 /// Warns where the model moves farther than the radius between two poses, of which only the poses
@@ -147,7 +147,7 @@ void check_poses_alone(const Question& question, const Steps& known, MessageLog&
   const Query& query = question.query;
   const Vec3 far = reach_of(question.model);
   const double reach = std::sqrt(squared_length(far.x, far.y, far.z));
-  std::uint64_t large = 0;
+  Steps large;
   double largest = 0;
   std::uint64_t steps = 0;
   std::uint32_t at = 0;
@@ -158,22 +158,23 @@ void check_poses_alone(const Question& question, const Steps& known, MessageLog&
     if (coarse_bound(a, b, reach) <= query.radius) continue;
     const double step = displacement_bound(question.model, a, b);
     if (!(step > query.radius) || has(known, question.number_of(i))) continue;
-    ++large;
+    large.push_back(question.number_of(i));
     if (step > largest) {
       largest = step;
       at = question.number_of(i);
     }
   }
-  if (large == 0) return;
+  if (large.empty()) return;
   log.warn("large-steps",
-           "at " + format_count(large) + " of " + format_count(steps) +
+           "at " + format_count(large.size()) + " of " + format_count(steps) +
                " steps the model moves farther than the radius of " +
                length_text(query.radius, question.unit) + ", at most " +
                length_text(largest, question.unit) + " after pose " + std::to_string(at) +
                ". What lies between two poses can be missed",
-           {{"share", static_cast<double>(large) / static_cast<double>(steps)},
+           {{"share", static_cast<double>(large.size()) / static_cast<double>(steps)},
             {"largest", largest},
-            {"pose", static_cast<double>(at)}});
+            {"pose", static_cast<double>(at)}},
+           pose_ranges(large, 1));
 }
 
 Steps starts_of(const std::vector<Jump>& jumps) {

@@ -95,6 +95,7 @@ struct LasPublicHeader {
   unsigned point_format;   ///< 0 to 10
   bool compressed;         ///< whether the file is LAZ
   std::uint16_t encoding;  ///< the bits of "global encoding"
+  std::string date;        ///< day on which the file was made, as in CloudInfo
   Quantisation quantisation;
   std::optional<Box> box;     ///< declared box of all points, where it holds finite numbers
   std::uint64_t tail_offset;  ///< byte of the first extended variable length record

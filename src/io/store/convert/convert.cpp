@@ -316,6 +316,7 @@ class Conversion {
       // Files of poses have 0 points.
       report_.metadata.source_points.resize(report_.metadata.sources.size());
     }
+    for (const CloudInfo& info : environment.infos()) report_.metadata.dates.add(info.date);
     report_.absent_points = environment.absent_points();
     report_.non_finite_points = environment.non_finite_points();
     const Quantisation& quanta = environment.quantisation();
