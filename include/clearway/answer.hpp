@@ -28,22 +28,32 @@ enum class Reason {
   /// Points are near, but the errors are so large that no surface could be a certain conflict
   kErrorsExceedMargin,
   kNotScanned,      ///< the model passes through places that no beam of the scanner reached
-  kQuestionInDoubt  ///< a warning says that the search could not find anything: see is_doubt()
+  kQuestionInDoubt  ///< a warning puts the question, or a stretch of its path, in doubt: see Doubt
 };
 
 const char* name_of(Verdict verdict);  ///< "clear", "conflict", "undecided" or "unknown"
 const char* name_of(Reason reason);    ///< "near", "few", "errors-exceed-margin" and so on
 
-/// Whether a warning with this code says that the search could not find anything, whatever stands
-/// in the way, so that an empty result is not an answer: "out-of-reach", "no-points", "no-poses"
-/// "all-ignored" and "nothing-swept".
+/// What a warning says about an answer that found nothing. A doubt means that the search could not
+/// find anything, whatever stands in the way.
+enum class Doubt {
+  kNone,     ///< the answer stands
+  kStretch,  ///< on the stretches of the path that the warning names nothing could be found
+  kQuestion  ///< nothing could be found at all, so that an empty result is not an answer
+};
+
+/// The doubt that a message raises. A note raises none, and neither does a warning about stretches
+/// that names none, because it is about the path as a whole.
+Doubt doubt_of(const Message& message);
+
+/// Whether doubt_of() is Doubt::kQuestion for a warning with this code, as for "out-of-reach",
+/// "no-points", "no-poses", "all-ignored" and "nothing-swept".
 bool is_doubt(std::string_view code);
 
-/// The codes of the warnings that are doubts by is_doubt(), each once, in alphabetical order.
-std::vector<std::string> doubts_among(const std::vector<Message>& warnings);
-
-/// The codes of the warnings that are no doubts by is_doubt(), each once, in alphabetical order.
-std::vector<std::string> codes_beside_doubts(const std::vector<Message>& warnings);
+/// Whether a warning with this code says that points are missing from the scan, so that what stood
+/// there in an earlier scan may stand there still. Some of these warnings are no doubts: a road
+/// that is open to one side is no reason to distrust a clear way.
+bool lacks_points(std::string_view code);
 
 /// What an error budget says of the colliding points.
 struct CertainPoints {
@@ -90,11 +100,9 @@ struct Answer : TableSummary {
   std::optional<Shard> shard;  ///< the shard that this answer is about; nullopt for a whole query
   /// True if single precision alone decided, so that the answer is not exact
   bool float_precision = false;
-  /// Codes of warnings that put the answer in doubt: see doubts_among()
-  std::vector<std::string> doubts;
-  /// Codes of what else was warned of before the search: see codes_beside_doubts(). A file keeps
-  /// them only where nothing collides, so that no all-clear stands without them.
-  std::vector<std::string> warned_of;
+  /// Warnings about the question and its inputs, in the order in which they were given. Results
+  /// keep them, and those of the machine that searched are not among them.
+  std::vector<Message> warnings;
   /// How much of the path the answer is about, because bodies on pivots have no pose at its ends.
   /// nullopt where it is not known: in files of one model, whose path was searched to its whole
   /// length, and in files of several bodies that an earlier release wrote.
@@ -110,10 +118,16 @@ struct Answer : TableSummary {
   /// the question is. With one, a group of points that are certainly too close is.
   Verdict verdict() const;
   std::vector<Reason> reasons() const;  ///< why the verdict is kUndecided; empty for other verdicts
+  /// The doubt that one of the warnings raises about this answer. Points that are missing from the
+  /// scan raise none where beams of the scanner passed through all that the model sweeps.
+  Doubt doubt_of(const Message& warning) const;
+  /// The codes of the warnings that raise a doubt about this answer, and those of the others, each
+  /// once and in alphabetical order.
+  std::vector<std::string> doubts() const;
+  std::vector<std::string> warned_of() const;
   /// Whether the model passes through places that no beam reached, in groups that are listed.
   bool is_not_scanned() const { return seen && seen->listed_groups > 0; }
-  /// Whether a warning puts the question in doubt. A path out of reach of every point does not,
-  /// where all that the model sweeps was seen to be free.
+  /// Whether a warning puts the question, or a stretch of its path, in doubt.
   bool is_in_doubt() const;
   /// Whether any point is closer than what a clear passage has to keep free.
   bool is_near() const { return colliding_points + near_points > 0; }

@@ -160,10 +160,12 @@ struct Conflicts {
 
 /// Groups the colliding points of a result into conflicts. poses: the poses of the search.
 /// conflict_of: where given, becomes the conflict's id for each row of the result, 0 for points of
-/// small groups. Throws InputError for poses or bodies of another search, UsageError for a result
-/// without first poses; Interrupted when asked to stop.
+/// small groups. conflict_of_near: where given, becomes the same for each row of Result::near().
+/// Throws InputError for poses or bodies of another search, UsageError for a result without first
+/// poses; Interrupted when asked to stop.
 Conflicts find_conflicts(const Result& result, const std::vector<Pose>& poses,
                          const ConflictOptions& options = {},
-                         std::vector<std::uint32_t>* conflict_of = nullptr);
+                         std::vector<std::uint32_t>* conflict_of = nullptr,
+                         std::vector<std::uint32_t>* conflict_of_near = nullptr);
 
 }  // namespace clearway

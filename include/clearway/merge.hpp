@@ -34,8 +34,9 @@ struct MergeReport : Answer {
   bool was_finished = false;  ///< true if the result existed already, so that nothing was merged
   std::string length_unit;    ///< unit of the environment, as in Store::length_unit()
   std::uint32_t parts = 0;
-  /// Warnings of all parts, each once, in the order of the parts
-  std::vector<PartWarning> warnings = {};
+  /// The warnings of the parts, each once and in the order of the parts, and then those that only
+  /// the merge can give. Where the parts count beams, Answer::warnings has their sums instead.
+  std::vector<PartWarning> part_warnings = {};
 };
 
 /// Merges all parts that searches with SearchOptions::shard wrote into one result. The parts may be

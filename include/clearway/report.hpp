@@ -47,8 +47,8 @@ struct ReportOptions {
   /// Length of a stretch of the table of stations, metres; 0: 5, or the next of 10, 20, 50, 100 and
   /// so on of which there are at most 200.
   double every = 0;
-  /// Warnings for the page to show, such as those of reading model and trajectory. Warnings of the
-  /// search need not be among them, because they are found again from store, model and poses.
+  /// Warnings for the page to show besides those that the result keeps, such as those of reading
+  /// model and trajectory.
   std::vector<Message> warnings = {};
   bool overwrite = false;
   /// Shifts that free the path and its conflicts, by find_shifts() for conflicts that were found

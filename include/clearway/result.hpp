@@ -99,6 +99,8 @@ class Result {
   std::uint64_t poses() const;
   /// The verdict and the places that matter most. Reads all tables of the file.
   Answer answer() const;
+  /// The warnings of the answer. Reads no table.
+  const std::vector<Message>& warnings() const;
 
   Collisions collisions() const;
   // Single columns of collisions(), for those who need no more.

@@ -40,8 +40,9 @@ struct SearchOptions {
   bool overwrite = false;  ///< replaces an existing result and the journal of an earlier run
   bool resume = false;     ///< continues from the journal of an earlier run
   bool strict = false;     ///< any warning ends with InputError, and nothing is searched
-  /// Warnings from reading model and trajectory, which the user has already seen. The report and a
-  /// part hold them too, and `strict` counts them. They must be given again to resume a search.
+  /// Warnings from reading model and trajectory, which the user has already seen. The report and
+  /// the result hold them too, and `strict` counts them. They must be given again to resume a
+  /// search.
   std::vector<Message> input_warnings = {};
   /// Whether the model lacks its lowest part, as with ModelOptions::above. Such a model does not
   /// stand on the ground, so a large number of ignored points that collide is then no reason for a
@@ -93,7 +94,8 @@ struct EngineEstimate {
 };
 
 /// The answer of a search, and how it was found. If the result existed already, its answer is read
-/// from its file.
+/// from its file. The warnings of a report may also concern the machine, such as a journal that
+/// could not be removed.
 struct SearchReport : Answer {
   bool was_finished = false;  ///< true if the result existed already, so that nothing was searched
   /// Triangles of a surface, whose corners are model_points; otherwise 0
@@ -101,7 +103,6 @@ struct SearchReport : Answer {
   /// Number of ignored points in the cells that this search looked at. Cells from a journal and
   /// cells that no pose comes near do not count.
   std::uint64_t ignored_looked_at = 0;
-  std::vector<Message> warnings;
 
   Engine engine = Engine::kAuto;                  ///< the engine that searched
   std::optional<EngineEstimate> engine_estimate;  ///< the estimate by which kAuto chose the engine

@@ -62,6 +62,9 @@ struct StationRow {
   Verdict verdict = Verdict::kClear;
   /// Why the verdict is kUndecided, except because the vehicle was not searched; see is_searched.
   std::vector<Reason> reasons = {};
+  /// Codes of the warnings for which kQuestionInDoubt is one of the reasons, in alphabetical order:
+  /// those that put the whole question in doubt, and those that name poses of this stretch.
+  std::vector<std::string> doubts = {};
   /// Whether the whole vehicle was searched on all of the stretch. If not, it is never kClear.
   bool is_searched = true;
   std::vector<Overthrow> overthrow = {};  ///< one for each of StationTable::bodies

@@ -174,12 +174,14 @@ class ConflictSearch {
         memory_(options.memory_bytes, reader_.collisions() + reader_.near(), poses.size()),
         chainage_(chainage_of(poses)) {}
 
-  Conflicts run(std::vector<std::uint32_t>* conflict_of) {
+  Conflicts run(std::vector<std::uint32_t>* conflict_of,
+                std::vector<std::uint32_t>* conflict_of_near) {
     out_.path_length = chainage_.empty() ? 0 : chainage_.back();
     out_.colliding_points = reader_.collisions();
     out_.near_points = reader_.near();
     out_.has_last_poses = reader_.header().last_pose;
     if (conflict_of != nullptr) conflict_of->clear();
+    if (conflict_of_near != nullptr) conflict_of_near->clear();
     if (out_.colliding_points + out_.near_points == 0) return std::move(out_);
     memory_.check_points();
     points_ = read_colliding_points(reader_, progress_);
@@ -187,7 +189,8 @@ class ConflictSearch {
     group();
     std::vector<std::uint32_t> part_of_row = list();
     classify(certain, part_of_row);
-    keep_colliding(part_of_row);
+    std::vector<std::uint32_t> of_near = take_near(part_of_row);
+    if (conflict_of_near != nullptr) *conflict_of_near = std::move(of_near);
     if (conflict_of != nullptr) *conflict_of = std::move(part_of_row);
     return std::move(out_);
   }
@@ -221,14 +224,20 @@ class ConflictSearch {
     }
   }
 
-  /// Removes the rows of near points, so that the rest are those of /collisions.
-  void keep_colliding(std::vector<std::uint32_t>& of_row) const {
-    if (points_.kind.empty()) return;
+  /// Removes the rows of near points, so that the rest are those of /collisions, and returns them.
+  std::vector<std::uint32_t> take_near(std::vector<std::uint32_t>& of_row) const {
+    std::vector<std::uint32_t> near;
+    if (points_.kind.empty()) return near;
     std::size_t kept = 0;
     for (std::size_t row = 0; row < of_row.size(); ++row) {
-      if (points_.kind[row] != CollidingPoints::kNear) of_row[kept++] = of_row[row];
+      if (points_.kind[row] == CollidingPoints::kNear) {
+        near.push_back(of_row[row]);
+      } else {
+        of_row[kept++] = of_row[row];
+      }
     }
     of_row.resize(kept);
+    return near;
   }
 
   void group() {
@@ -549,11 +558,12 @@ class ConflictSearch {
 }  // namespace
 
 Conflicts find_conflicts(const Result& result, const std::vector<Pose>& poses,
-                         const ConflictOptions& options, std::vector<std::uint32_t>* conflict_of) {
+                         const ConflictOptions& options, std::vector<std::uint32_t>* conflict_of,
+                         std::vector<std::uint32_t>* conflict_of_near) {
   check_conflicts(result.reader(), poses, options);
   CallbackProgress progress(options.progress, options.stop);
   return in_threads(options.threads, [&] {
-    return ConflictSearch(result, poses, options, progress).run(conflict_of);
+    return ConflictSearch(result, poses, options, progress).run(conflict_of, conflict_of_near);
   });
 }
 

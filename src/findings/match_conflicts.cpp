@@ -1,22 +1,18 @@
 #include "findings/match_conflicts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
+#include <limits>
+#include <map>
 #include <optional>
-#include <tuple>
+#include <set>
 #include <unordered_map>
-#include <utility>
 
 #include "io/result/result.hpp"
 
 namespace clearway {
 namespace {
-
-struct NumberedPoint {
-  Vec3 xyz;
-  std::uint32_t conflict;  ///< 0 for a point of a small group
-};
 
 /// A cube of a regular grid.
 struct GridCube {
@@ -35,61 +31,127 @@ struct GridCubeHash {
   }
 };
 
-/// Points in cubes at least as long as the gap, so that every point within the gap is in the same
-/// cube or in one beside it.
+/// A point of a result with its conflict; 0 for a point of no listed conflict.
+struct NumberedPoint {
+  Vec3 xyz;
+  std::uint32_t conflict;
+};
+
+/// Points in cubes. Two points in one cube are within the gap, but for roundings, and two points
+/// within the gap are at most two cubes apart on each axis. So most points find one near them in
+/// their own cube.
 class Places {
  public:
-  explicit Places(double gap) : gap_(gap), edge_(std::max(gap, kShortestEdge)) {}
+  explicit Places(double gap)
+      : limit_(gap + kRounding), edge_(std::max(kShareOfGap * gap, kShortestEdge)) {}
 
-  GridCube cube_of(const Vec3& p) const { return {along(p.x), along(p.y), along(p.z)}; }
+  void add(const NumberedPoint& point) { cubes_[cube_of(point.xyz)].push_back(point); }
 
-  /// Marks the cubes around a place of b, so that the points of a there are kept.
-  void want(const Vec3& p) {
-    each_beside(p, [&](const GridCube& cube) { points_.try_emplace(cube); });
-  }
-  void add(const NumberedPoint& point) {
-    const auto cube = points_.find(cube_of(point.xyz));
-    if (cube != points_.end()) cube->second.push_back(point);
-  }
-  /// The conflict of a point of a within the gap: 0 where only points of small groups are near, and
-  /// nothing where no point is.
-  std::optional<std::uint32_t> near(const Vec3& p) const {
-    std::optional<std::uint32_t> found;
-    each_beside(p, [&](const GridCube& cube) {
-      const auto there = points_.find(cube);
-      if (there == points_.end()) return;
-      for (const NumberedPoint& other : there->second) {
+  /// The conflict of a point within the gap: 0 where only points of no listed conflict are near,
+  /// and nothing where no point is. Not safe to call from several threads.
+  std::optional<std::uint32_t> near(const Vec3& p) {
+    bool any = false;
+    for (const Points* points : around(cube_of(p))) {
+      for (const NumberedPoint& other : *points) {
         const double x = p.x - other.xyz.x, y = p.y - other.xyz.y, z = p.z - other.xyz.z;
-        if (x * x + y * y + z * z > gap_ * gap_) continue;
-        found = std::max(found.value_or(0), other.conflict);
+        if (x * x + y * y + z * z > limit_ * limit_) continue;
+        if (other.conflict > 0) return other.conflict;
+        any = true;
       }
-    });
-    return found;
+    }
+    return any ? std::optional<std::uint32_t>(0) : std::nullopt;
   }
 
  private:
+  using Points = std::vector<NumberedPoint>;
+
   std::int64_t along(double at) const { return static_cast<std::int64_t>(std::floor(at / edge_)); }
-  template <typename Visit>
-  void each_beside(const Vec3& p, Visit visit) const {
-    const GridCube own = cube_of(p);
-    for (int i = 0; i < 27; ++i) {
-      visit(GridCube{own.x + i % 3 - 1, own.y + i / 3 % 3 - 1, own.z + i / 9 - 1});
+  GridCube cube_of(const Vec3& p) const { return {along(p.x), along(p.y), along(p.z)}; }
+
+  /// The points of the cube and of those at most two away, beginning with its own.
+  const std::vector<const Points*>& around(const GridCube& own) {
+    const auto [found, is_new] = around_.try_emplace(own);
+    std::vector<const Points*>& out = found->second;
+    if (!is_new) return out;
+    const auto take = [&](const GridCube& cube) {
+      const auto points = cubes_.find(cube);
+      if (points != cubes_.end()) out.push_back(&points->second);
+    };
+    take(own);
+    for (int i = 0; i < 125; ++i) {
+      const GridCube cube{own.x + i % 5 - 2, own.y + i / 5 % 5 - 2, own.z + i / 25 - 2};
+      if (!(cube == own)) take(cube);
     }
+    return out;
   }
 
-  static constexpr double kShortestEdge = 1e-3;  // so that the index of a cube fits its integers
-  double gap_, edge_;
-  std::unordered_map<GridCube, std::vector<NumberedPoint>, GridCubeHash> points_;
+  static constexpr double kShareOfGap = 0.577;  // below the root of 1/3
+  // So that the index of a cube fits its integers.
+  static constexpr double kShortestEdge = 1e-3;
+  // More than the roundings of coordinates, so that points a whole gap apart are near, and less
+  // than the steps of any scan.
+  static constexpr double kRounding = 1e-6;
+  double limit_, edge_;
+  std::unordered_map<GridCube, Points, GridCubeHash> cubes_;
+  std::unordered_map<GridCube, std::vector<const Points*>, GridCubeHash> around_;
 };
 
-/// Calls visit(point) for each row of a result.
+/// A row of the colliding or the near points of a result.
+struct PointRow : NumberedPoint {
+  std::uint64_t source;
+  std::uint32_t first_pose, last_pose;
+};
+
+template <typename Rows, typename Visit>
+void for_each_row(const GroupedResult& of, std::span<const std::uint32_t> conflict_of,
+                  Visit visit) {
+  RowStream<Rows> stream(of.result.reader());
+  std::size_t row = 0;
+  for (Rows rows; stream.read(rows);) {
+    for (std::size_t i = 0; i < rows.size(); ++i, ++row) {
+      std::uint32_t last = rows.first_pose[i];
+      if constexpr (requires { rows.last_pose; }) {
+        if (!rows.last_pose.empty()) last = rows.last_pose[i];
+      }
+      visit(PointRow{{rows.xyz[i], conflict_of[row]}, rows.source[i], rows.first_pose[i], last});
+    }
+  }
+}
+
+/// Calls visit(row) for each colliding point of a result, and for each near one.
 template <typename Visit>
 void for_each_point(const GroupedResult& of, Visit visit) {
-  RowStream<Collisions> stream(of.result.reader());
-  std::size_t row = 0;
-  for (Collisions rows; stream.read(rows);) {
-    for (const Vec3& p : rows.xyz) visit(NumberedPoint{p, of.conflict_of[row++]});
+  for_each_row<Collisions>(of, of.conflict_of, visit);
+  for_each_row<Nearby>(of, of.conflict_of_near, visit);
+}
+
+Places places_of(const GroupedResult& of, double gap) {
+  Places places(gap);
+  for_each_point(of, [&](const PointRow& row) { places.add(row); });
+  return places;
+}
+
+/// Adds points that do not collide, but have a clearance of at most `most`.
+void add_just_free(const GroupedResult& of, double most, Places& places) {
+  RowStream<Clearances> stream(of.result.reader());
+  const double radius = of.result.parameters().radius;
+  for (Clearances rows; stream.read(rows);) {
+    for (std::size_t i = 0; i < rows.xyz.size(); ++i) {
+      if (rows.distance[i] < radius || rows.distance[i] > most) continue;
+      places.add({rows.xyz[i], 0});
+    }
   }
+}
+
+void add_to(ConflictPart& part, const PointRow& row) {
+  if (part.points == 0) {
+    part = {row.conflict, 0, row.source, {row.xyz, row.xyz}, row.first_pose, row.last_pose};
+  }
+  ++part.points;
+  part.source = std::min(part.source, row.source);
+  part.box = part.box.united({row.xyz, row.xyz});
+  part.first_pose = std::min(part.first_pose, row.first_pose);
+  part.last_pose = std::max(part.last_pose, row.last_pose);
 }
 
 /// The small groups of a result, found by place.
@@ -119,150 +181,97 @@ class SmallPlaces {
   double longest_ = 0;
 };
 
-/// How the points of a conflict of b lie with respect to the conflicts of a.
+/// How the points of one conflict lie with respect to the other result.
 struct Neighbours {
-  bool all = true;                              ///< whether each point is near a conflict of a
-  std::map<std::uint32_t, std::uint64_t> near;  ///< number of points near each conflict of a
+  std::uint64_t points = 0;
+  std::map<std::uint32_t, std::uint64_t> near;  ///< number of points near each of its conflicts
+  ConflictPart alone;                           ///< the points that it has none near
+  std::set<std::string> reasons;                ///< why it has not searched them
+
+  /// The conflict that most points are near, the first one of several; 0 where none is.
+  std::uint32_t partner() const {
+    const auto most =
+        std::ranges::max_element(near, {}, [](const auto& one) { return one.second; });
+    return most == near.end() ? 0 : most->first;
+  }
 };
+
+/// The neighbours of each conflict of `of`, by its id. alone(row): called for each point of a
+/// listed conflict or of none that has no point of the places near.
+template <typename Alone>
+std::vector<Neighbours> neighbours_of(const GroupedResult& of, Places& places, Alone alone) {
+  std::vector<Neighbours> all(of.conflicts.listed.size() + 1);
+  for_each_point(of, [&](const PointRow& row) {
+    Neighbours& own = all[row.conflict];
+    ++own.points;
+    const std::optional<std::uint32_t> near = places.near(row.xyz);
+    if (near.value_or(0) > 0) ++own.near[*near];
+    if (near) return;
+    add_to(own.alone, row);
+    alone(row, own);
+  });
+  return all;
+}
+
+/// Sets what became of the conflicts of a.
+void judge_a(const std::vector<Neighbours>& of_a, ConflictMatch& out) {
+  for (std::uint32_t id = 1; id < of_a.size(); ++id) {
+    const Neighbours& own = of_a[id];
+    const std::uint32_t partner = own.partner();
+    if (partner > 0) out.same.emplace_back(id, partner);
+    if (!own.reasons.empty()) {
+      out.not_searched.push_back({own.alone, {own.reasons.begin(), own.reasons.end()}});
+    } else if (own.alone.points == own.points) {
+      out.gone.push_back(id);
+    } else if (partner == 0) {
+      out.shrunk.push_back(id);
+    }
+  }
+}
+
+/// Sets where the conflicts of b come from.
+void judge_b(const std::vector<Neighbours>& of_b, ConflictMatch& out) {
+  for (std::uint32_t id = 1; id < of_b.size(); ++id) {
+    const Neighbours& own = of_b[id];
+    const std::uint32_t partner = own.partner();
+    if (partner == 0) {
+      out.added.push_back(id);
+      continue;
+    }
+    out.same.emplace_back(partner, id);
+    if (own.alone.points > 0) out.grown.push_back(own.alone);
+  }
+}
 
 }  // namespace
 
-std::vector<std::size_t> match_points(const GroupedResult& a, const GroupedResult& b, double gap,
-                                      ConflictMatch& match) {
-  std::vector<NumberedPoint> open;
-  std::vector<bool> added(b.conflicts.listed.size() + 1);
-  for (const std::uint32_t id : match.added) added[id] = true;
-  added[0] = true;  // points of small groups count too
-  Places places(gap);
-  for_each_point(b, [&](const NumberedPoint& point) {
-    if (!added[point.conflict]) return;
-    open.push_back(point);
-    places.want(point.xyz);
-  });
-  if (open.empty()) return {};
-  for_each_point(a, [&](const NumberedPoint& point) { places.add(point); });
-  std::map<std::uint32_t, Neighbours> of_added;
+ConflictMatch match_conflicts(const GroupedResult& a, const GroupedResult& b, double gap,
+                              double tolerance) {
+  ConflictMatch out;
+  {
+    Places places = places_of(b, gap);
+    const SearchedPlaces searched(a.result, a.poses, b.result, b.poses);
+    judge_a(neighbours_of(a, places,
+                          [&](const PointRow& row, Neighbours& own) {
+                            searched.add_reasons(row.xyz, row.first_pose, row.last_pose,
+                                                 own.reasons);
+                          }),
+            out);
+  }
+  Places places = places_of(a, gap);
+  add_just_free(a, a.result.parameters().radius + tolerance, places);
   const SmallPlaces small(b.conflicts.small);
   std::vector<bool> is_new(b.conflicts.small.size());
-  for (const NumberedPoint& point : open) {
-    const std::optional<std::uint32_t> near = places.near(point.xyz);
-    if (point.conflict > 0) {
-      Neighbours& all = of_added[point.conflict];
-      all.all = all.all && near.value_or(0) > 0;
-      ++all.near[near.value_or(0)];
-    } else if (!near) {
-      small.mark(point.xyz, is_new);
-    }
-  }
-  for (const auto& [id, neighbours] : of_added) {
-    if (!neighbours.all) continue;
-    const auto most =
-        std::ranges::max_element(neighbours.near, {}, [](const auto& one) { return one.second; });
-    match.same.emplace_back(most->first, id);
-    std::erase(match.added, id);
-  }
-  std::ranges::sort(match.same);
-  std::vector<std::size_t> out;
-  for (std::size_t i = 0; i < is_new.size(); ++i) {
-    if (is_new[i]) out.push_back(i);
-  }
-  return out;
-}
-
-namespace {
-
-struct Candidate {
-  /// Volume that the grown boxes have in common.
-  double volume;
-  /// Where the volume is 0, the sum of the sides that the boxes themselves have in common.
-  double sides;
-  /// Ids of the two conflicts.
-  std::uint32_t a, b;
-
-  bool before(const Candidate& other) const {
-    return std::tuple(-volume, -sides, a, b) <
-           std::tuple(-other.volume, -other.sides, other.a, other.b);
-  }
-};
-
-double common_volume(const Box& a, const Box& b) {
-  double volume = 1;
-  for (int k = 0; k < 3; ++k) {
-    const double side = std::min(a.hi[k], b.hi[k]) - std::max(a.lo[k], b.lo[k]);
-    if (!(side > 0)) return 0;
-    volume *= side;
-  }
-  return volume;
-}
-
-/// The sum of the sides that two boxes share, 0 where they touch in a point; nothing where they do
-/// not touch. Beside large coordinates a small gap is rounded away, and flat boxes share no volume.
-std::optional<double> common_sides(const Box& a, const Box& b) {
-  double sum = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double side = std::min(a.hi[k], b.hi[k]) - std::max(a.lo[k], b.lo[k]);
-    if (!(side >= 0)) return std::nullopt;
-    sum += side;
-  }
-  return sum;
-}
-
-/// Indices of the conflicts in the order of their boxes along x.
-std::vector<std::uint32_t> along_x(const Conflicts& conflicts) {
-  std::vector<std::uint32_t> order(conflicts.listed.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, {},
-                           [&](std::uint32_t i) { return conflicts.listed[i].box.lo.x; });
-  return order;
-}
-
-/// All pairs that overlap, found by a sweep along x: for each conflict of a, those of b are looked
-/// at that begin before its box ends, and not farther before its box than the longest box of b
-/// reaches.
-std::vector<Candidate> candidates(const Conflicts& a, const Conflicts& b, double gap) {
-  const std::vector<std::uint32_t> order = along_x(b);
-  double longest = 0;
-  for (const Conflict& c : b.listed) longest = std::max(longest, c.box.hi.x - c.box.lo.x);
-  std::vector<Candidate> out;
-  for (const Conflict& in_a : a.listed) {
-    const Box box = in_a.box.grown(gap);
-    const double from = box.lo.x - longest - 2 * gap;
-    auto next = std::ranges::lower_bound(order, from, {},
-                                         [&](std::uint32_t i) { return b.listed[i].box.lo.x; });
-    for (; next != order.end(); ++next) {
-      const Conflict& in_b = b.listed[*next];
-      const Box other = in_b.box.grown(gap);
-      if (other.lo.x > box.hi.x) break;
-      const double volume = common_volume(box, other);
-      const std::optional<double> sides = volume > 0 ? 0 : common_sides(in_a.box, in_b.box);
-      if (sides) out.push_back({volume, *sides, in_a.id, in_b.id});
-    }
-  }
-  std::ranges::sort(out, [](const Candidate& x, const Candidate& y) { return x.before(y); });
-  return out;
-}
-
-std::vector<std::uint32_t> unmatched(const std::vector<bool>& matched) {
-  std::vector<std::uint32_t> ids;
-  for (std::uint32_t id = 1; id < matched.size(); ++id) {
-    if (!matched[id]) ids.push_back(id);
-  }
-  return ids;
-}
-
-}  // namespace
-
-ConflictMatch match_conflicts(const Conflicts& a, const Conflicts& b, double gap) {
-  std::vector<bool> in_a(a.listed.size() + 1), in_b(b.listed.size() + 1);
-  ConflictMatch out;
-  for (const Candidate& candidate : candidates(a, b, gap)) {
-    if (in_a[candidate.a] || in_b[candidate.b]) continue;
-    in_a[candidate.a] = in_b[candidate.b] = true;
-    out.same.emplace_back(candidate.a, candidate.b);
-  }
+  judge_b(neighbours_of(b, places,
+                        [&](const PointRow& row, Neighbours&) {
+                          if (row.conflict == 0) small.mark(row.xyz, is_new);
+                        }),
+          out);
   std::ranges::sort(out.same);
-  out.gone = unmatched(in_a);
-  out.added = unmatched(in_b);
+  out.same.erase(std::unique(out.same.begin(), out.same.end()), out.same.end());
+  for (std::size_t i = 0; i < is_new.size(); ++i) {
+    if (is_new[i]) out.small.push_back(i);
+  }
   return out;
 }
 

@@ -234,7 +234,7 @@ class TableMaker {
     find_near(near);
     find_unseen(unseen);
     find_unsearched();
-    const bool in_doubt = counted_answer(reader_).is_in_doubt();
+    const std::vector<RowDoubt> doubts = find_doubts();
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       StationRow& row = table_.rows[i];
       if (conflict.contains(i)) {
@@ -243,9 +243,42 @@ class TableMaker {
       }
       if (near.contains(i)) row.reasons.push_back(Reason::kNear);
       if (unseen.contains(i)) row.reasons.push_back(Reason::kNotScanned);
-      if (in_doubt) row.reasons.push_back(Reason::kQuestionInDoubt);
+      for (const RowDoubt& doubt : doubts) {
+        if (doubt.rows.contains(i)) row.doubts.push_back(doubt.code);
+      }
+      if (!row.doubts.empty()) row.reasons.push_back(Reason::kQuestionInDoubt);
       if (!row.reasons.empty() || !row.is_searched) row.verdict = Verdict::kUndecided;
     }
+  }
+
+  /// The rows that the warnings with one code put in doubt.
+  struct RowDoubt {
+    std::string code;
+    RowSet rows;
+  };
+
+  /// The doubts in alphabetical order of their codes.
+  std::vector<RowDoubt> find_doubts() const {
+    const Answer answer = counted_answer(reader_);
+    std::vector<RowDoubt> doubts;
+    for (const std::string& code : answer.doubts()) {
+      RowDoubt& doubt = doubts.emplace_back(RowDoubt{code, RowSet(rows_.size())});
+      for (const Message& warning : answer.warnings) {
+        if (warning.code != code) continue;
+        const Doubt about = answer.doubt_of(warning);
+        if (about == Doubt::kQuestion) add({0, rows_.size()}, doubt.rows);
+        if (about != Doubt::kStretch) continue;
+        for (const PoseRange& stretch : warning.stretches) add_stretch(stretch, doubt.rows);
+      }
+    }
+    return doubts;
+  }
+
+  /// Adds the rows from the first to the last pose of a stretch.
+  void add_stretch(const PoseRange& stretch, RowSet& set) const {
+    if (stretch.first >= poses_.size()) return;
+    const std::size_t last = std::min<std::size_t>(stretch.last, poses_.size() - 1);
+    add({rows_.of_pose(stretch.first), rows_.of_pose(last) + 1}, set);
   }
 
   void find_touched(RowSet& conflict, RowSet& near) {

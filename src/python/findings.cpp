@@ -266,6 +266,9 @@ void add_station_rows(py::module_& module) {
             return names;
           },
           "Why the verdict is undecided: a list such as ['near'].")
+      .def_readonly("doubts", &StationRow::doubts,
+                    "The codes of the warnings for which 'question-in-doubt' is among the reasons: "
+                    "a list such as ['leaves-scan'].")
       .def_readonly("searched", &StationRow::is_searched,
                     "Whether the whole vehicle was searched on all of the stretch.")
       .def_readonly("overthrow", &StationRow::overthrow,

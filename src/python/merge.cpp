@@ -32,13 +32,14 @@ void add_merge_report(py::module_& module) {
           "The unit of the environment: 'metre', 'foot', 'us-survey-foot', 'degree' or 'unknown'.")
       .def_readonly("parts", &Report::parts, "How many parts were merged.")
       .def_property_readonly(
-          "warnings", [](const Report& r) { return list_of(r.warnings); },
-          "What the searches of the parts warned of, each once: a list of PartWarning.")
+          "warnings", [](const Report& r) { return list_of(r.part_warnings); },
+          "The warnings of the parts, each once, and of the merge: a list of PartWarning. The "
+          "result keeps them too.")
       .def("__repr__", [](const Report& r) {
         return text("<" + std::to_string(r.colliding_points) + " of " +
                     std::to_string(r.environment_points) + " points collide, of " +
                     std::to_string(r.parts) + " parts" +
-                    warning_words({r.warnings.begin(), r.warnings.end()}) + ">");
+                    warning_words({r.part_warnings.begin(), r.part_warnings.end()}) + ">");
       });
 }
 

@@ -58,8 +58,8 @@ every: metres; the length of a stretch in the table of stations. 0: 5, or so lon
     at most 200.
 shifts: the ShiftTable of find_shifts() for conflicts that were found in the same way: the page
     tells what frees each of them.
-warnings: messages of reading the inputs, which the page shows. What the search warned of is found
-    again and shown in any case; it may be among them.
+warnings: messages of reading the inputs, which the page shows. What the search warned of is in the
+    result and shown in any case; it may be among them.
 bodies: the bodies of the search, where it was one of a vehicle; then model is () or None, and
     poses are those of the path.
 overwrite: replaces an existing page.

@@ -129,11 +129,15 @@ void add_answer(py::module_& module) {
       .def_property_readonly(
           "certain_points", [](const Answer& a) { return a.certain.points; },
           "How many points are certainly too close by the error budget; 0 without one.")
-      .def_readonly("doubts", &Answer::doubts,
-                    "The codes of the warnings that put the question in doubt: a list of str.")
-      .def_readonly("warned_of", &Answer::warned_of,
-                    "The codes of the other warnings before the search: a list of str. A result "
-                    "keeps them where nothing collides.")
+      .def_property_readonly(
+          "warnings", [](const Answer& a) { return to_list(a.warnings); },
+          "What may be wrong with the question and its inputs: a list of Message. Read it before "
+          "you trust an answer.")
+      .def_property_readonly("doubts", &Answer::doubts,
+                             "The codes of the warnings that put the question, or a stretch of its "
+                             "path, in doubt: a list of str.")
+      .def_property_readonly("warned_of", &Answer::warned_of,
+                             "The codes of the other warnings: a list of str.")
       .def_readonly("parameters", &Answer::parameters, "What was asked: QueryParameters.")
       .def_readonly("environment_points", &Answer::environment_points,
                     "How many points the environment has.")
@@ -205,11 +209,7 @@ void add_findings_of(py::class_<Report, Answer>& report) {
       .def_readonly("model_triangles", &Report::model_triangles,
                     "How many triangles the model has; 0 where it is points.")
       .def_readonly("ignored_looked_at", &Report::ignored_looked_at,
-                    "How many of the ignored points were in cells that this search looked at.")
-      .def_property_readonly(
-          "warnings", [](const Report& r) { return to_list(r.warnings); },
-          "What may be wrong with the question: a list of Message. Read it before you trust an "
-          "answer.");
+                    "How many of the ignored points were in cells that this search looked at.");
 }
 
 void add_work_of(py::class_<Report, Answer>& report) {

@@ -22,6 +22,14 @@ py::dict numbers_of(const Message& message) {
   return numbers;
 }
 
+py::list stretches_of(const Message& message) {
+  py::list stretches;
+  for (const PoseRange& stretch : message.stretches) {
+    stretches.append(py::make_tuple(stretch.first, stretch.last));
+  }
+  return stretches;
+}
+
 const char* severity_of(const Message& message) {
   return message.severity == Severity::kWarning ? "warning" : "note";
 }
@@ -40,6 +48,10 @@ void add_messages(py::module_& module) {
       .def_property_readonly(
           "body", [](const Message& m) { return text(m.body); },
           "The name of the one body that it is about; '' where it is about several or all.")
+      .def_property_readonly("stretches", stretches_of,
+                             "The stretches of the path that the message is about: a list of pairs "
+                             "of the first and the last pose, ascending. Empty for a message about "
+                             "the whole question.")
       .def("__str__", [](const Message& m) { return text(m.text); })
       .def("__repr__", [](const Message& m) {
         return text(std::string("<") + severity_of(m) + (m.code.empty() ? "" : " ") + m.code +

@@ -287,6 +287,8 @@ void write_station_row(JsonText& json, const StationRow& row) {
   write_place(json, "above", row.above);
   json.field("verdict", name_of(row.verdict)).key("reasons").begin('[');
   for (const Reason reason : row.reasons) json.value(name_of(reason));
+  json.end(']').key("doubts").begin('[');
+  for (const std::string& code : row.doubts) json.value(code);
   json.end(']').field("searched", row.is_searched).key("overthrow").begin('[');
   for (const Overthrow& body : row.overthrow) {
     json.begin('{').field("end", body.end).field("middle", body.middle).end('}');
@@ -457,8 +459,12 @@ void write_seen(JsonText& json, const ReportFacts& facts) {
 void write_warnings(JsonText& json, const std::vector<Message>& warnings) {
   json.key("warnings").begin('[');
   for (const Message& warning : warnings) {
-    if (warning.severity != Message::Severity::kWarning) continue;
-    json.begin('{').field("code", warning.code).field("message", warning.text).end('}');
+    json.begin('{').field("code", warning.code).field("message", warning.text);
+    json.key("stretches").begin('[');
+    for (const auto& [first, last] : warning.stretches) {
+      json.begin('[').value(first).value(last).end(']');
+    }
+    json.end(']').end('}');
   }
   json.end(']');
 }
@@ -490,7 +496,7 @@ std::string json_of(const ReportFacts& facts) {
   json.key("reasons").begin('[');
   for (const Reason reason : facts.answer.reasons()) json.value(name_of(reason));
   json.end(']').key("doubts").begin('[');
-  for (const std::string& code : facts.answer.doubts) json.value(code);
+  for (const std::string& code : facts.answer.doubts()) json.value(code);
   json.end(']');
   write_budget(json, facts.answer);
   write_seen(json, facts);
@@ -502,7 +508,7 @@ std::string json_of(const ReportFacts& facts) {
   write_inputs(json, facts);
   write_unsearched(json, facts);
   write_on_site(json, facts);
-  write_warnings(json, facts.options.warnings);
+  write_warnings(json, facts.answer.warnings);
   write_classes(json, facts);
   write_conflicts(json, facts);
   write_stations(json, facts);

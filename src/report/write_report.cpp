@@ -26,8 +26,6 @@
 #include "report/section_view.hpp"
 #include "report/shown_points.hpp"
 #include "report/shown_poses.hpp"
-#include "search/checks/query_warnings.hpp"
-#include "search/ignored.hpp"
 
 namespace clearway {
 namespace {
@@ -79,11 +77,10 @@ Box page_box(const PathPlaces& path) {
   return box;
 }
 
-/// The answer of the result, which is also doubtful where a warning that was given with it says so,
-/// because results of earlier releases do not keep doubts.
+/// The answer of the result, with its own warnings and those that were given with it.
 Answer judged(const Result& result, const std::vector<Message>& warnings) {
   Answer answer = counted_answer(result.reader());
-  add_doubts(warnings, answer);
+  add_warnings(warnings, answer.warnings);
   return answer;
 }
 
@@ -372,30 +369,6 @@ class Report {
 
 }  // namespace
 
-namespace {
-
-/// Adds the warnings of the search, which follow from the question alone, except those that were
-/// given already.
-void add_query_warnings(const Result& result, const Store& store, const Model& model,
-                        const std::vector<Pose>& poses, ReportOptions& options) {
-  Query query(model, poses, result.parameters());
-  query.bodies = options.bodies;
-  std::vector<Message> found;
-  const MessageCallback quiet;
-  MessageLog log(quiet, found);
-  warn_of_query(store.reader(), query, result.ignored(), options.warnings, log);
-  warn_of_colliding_ignored(counted_answer(result.reader()), options.model_above.has_value(),
-                            store.reader().metadata().unit, log);
-  for (Message& warning : found) {
-    const bool given = std::ranges::any_of(options.warnings, [&](const Message& other) {
-      return other.code == warning.code && other.text == warning.text;
-    });
-    if (!given) options.warnings.push_back(std::move(warning));
-  }
-}
-
-}  // namespace
-
 ReportSummary write_report(const Result& result, const Store& store, const Model& model,
                            const std::vector<Pose>& poses, const std::filesystem::path& output,
                            const ReportOptions& options) {
@@ -406,12 +379,8 @@ ReportSummary write_report(const Result& result, const Store& store, const Model
   }
   PendingFile file(output, options.overwrite);
   ReportSummary summary;
-  in_threads(options.conflicts.threads, [&] {
-    ReportOptions complete = options;
-    add_query_warnings(result, store, model, poses, complete);
-    Report report(result, store, model, poses, complete);
-    summary = report.write(file.partial());
-  });
+  in_threads(options.conflicts.threads,
+             [&] { summary = Report(result, store, model, poses, options).write(file.partial()); });
   file.publish();
   return summary;
 }

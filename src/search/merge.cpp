@@ -35,20 +35,39 @@ MergeReport report_of(const PartSet& set) {
   static_cast<Answer&>(report) = set.answer();
   report.length_unit = set.parts().front().header().part->length_unit;
   report.parts = static_cast<std::uint32_t>(set.parts().size());
-  report.warnings = set.warnings();
+  report.part_warnings = set.warnings();
   return report;
 }
 
-/// Warns where ignored points may have made the answer. This can be judged only for all parts
-/// together.
-void warn_of_ignored(const PartSet& set, const MergeOptions& options, MergeReport& report) {
+/// Adds to the warnings of the parts what can be judged only for all parts together: groups of
+/// unseen cubes that are too small to be listed, and ignored points that may have made the answer.
+void warn_of_all(const PartSet& set, const MergeOptions& options, MergeReport& report) {
   const ResultPart& part = *set.parts().front().header().part;
   std::vector<Message> warnings;
   MessageLog log(options.message, warnings);
+  if (report.seen) warn_of_small_groups(*report.seen, set.header(), log);
   warn_of_colliding_ignored(report, part.model_is_cut, length_unit_of(part.length_unit), log);
+  add_warnings(warnings, report.warnings);
   for (Message& warning : warnings) {
-    report.warnings.push_back({std::move(warning), report.parts});
+    report.part_warnings.push_back({std::move(warning), report.parts});
   }
+}
+
+/// Replaces the warnings of the parts about beams and swept cubes by those of all parts together,
+/// as one search of everything gives them.
+void join_warnings_of_beams(const PartSet& set, std::vector<Message>& warnings) {
+  BeamCounts left_out;
+  for (const ResultReader& part : set.parts()) {
+    for (const Message& warning : part.findings().warnings) {
+      takes_warning_of_beams(warning, left_out);
+    }
+  }
+  BeamCounts unused;
+  std::erase_if(warnings, [&](const Message& m) { return takes_warning_of_beams(m, unused); });
+  const MessageCallback silent;  // the warnings of the parts have been passed on
+  MessageLog log(silent, warnings);
+  warn_of_beams(left_out, log);
+  warn_of_nothing_swept(*set.parts().front().findings().seen, set.header().poses, log);
 }
 
 template <typename Rows>
@@ -90,17 +109,6 @@ MergedSpace space_of_all(const PartSet& set) {
   return out;
 }
 
-/// Warns of groups of unseen cubes that are too small to be listed, which only the merge knows.
-void warn_of_unseen(const PartSet& set, const MergeOptions& options, MergeReport& report) {
-  if (!report.seen) return;
-  std::vector<Message> warnings;
-  MessageLog log(options.message, warnings);
-  warn_of_small_groups(*report.seen, set.header(), log);
-  for (Message& warning : warnings) {
-    report.warnings.push_back({std::move(warning), report.parts});
-  }
-}
-
 /// Passes on the warnings of the parts, also where the result existed already. Throws where
 /// options.strict treats them as errors.
 void tell_warnings(const std::vector<PartWarning>& warnings, std::uint32_t parts,
@@ -125,12 +133,11 @@ MergeReport merge(const std::vector<std::filesystem::path>& parts,
   return in_threads(options.threads, [&] {
     const PartSet set(parts);
     MergeReport report = report_of(set);
-    tell_warnings(report.warnings, report.parts, options);
+    tell_warnings(report.part_warnings, report.parts, options);
     report.was_finished = options.resume && is_merged(set, output, progress);
     if (report.was_finished) {
       static_cast<Answer&>(report) = answer_of(ResultReader(output));
-      add_doubts({report.warnings.begin(), report.warnings.end()}, report);
-      warn_of_ignored(set, options, report);
+      warn_of_all(set, options, report);
       return report;
     }
     if (!options.overwrite) pending.refuse_existing();
@@ -146,11 +153,12 @@ MergeReport merge(const std::vector<std::filesystem::path>& parts,
       SeenSummary& seen = findings.seen.emplace(*set.parts().front().findings().seen);
       group_unseen(set.header(), space->unseen, seen);
       report.seen = seen;
+      join_warnings_of_beams(set, report.warnings);
     }
+    warn_of_all(set, options, report);
+    findings.warnings = report.warnings;
     merge_parts(set, space, pending.partial(), options.memory_bytes, findings, progress, report);
     pending.publish();
-    warn_of_ignored(set, options, report);
-    warn_of_unseen(set, options, report);
     return report;
   });
 }

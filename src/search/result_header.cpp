@@ -112,11 +112,12 @@ void report_finished(const ResultReader& result, SearchReport& report) {
   // These are missing in some result files.
   const double spacing = report.model_spacing;
   const std::optional<SearchedLength> searched = report.searched;
+  const std::vector<Message> warnings = std::move(report.warnings);
   static_cast<Answer&>(report) = answer_of(result);
   report.environment_points = environment_points;
   report.searched = searched;
   report.model_spacing = std::max(report.model_spacing, spacing);
-  add_doubts(report.warnings, report);
+  add_warnings(warnings, report.warnings);
 }
 
 }  // namespace clearway

@@ -31,7 +31,8 @@ namespace clearway {
 /// Fills in how much there is to search.
 void report_sizes(const StoreReader& store, const Query& query, SearchReport& report);
 
-/// Fills in the answer of a result that was complete already.
+/// Fills in the answer of a result that was complete already. Warnings of the report stay, behind
+/// those that the result keeps.
 void report_finished(const ResultReader& result, SearchReport& report);
 
 }  // namespace clearway

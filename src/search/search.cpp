@@ -107,7 +107,7 @@ class Search {
     begin();
     divide();
     if (file_->journal.already_done(store_, header_, progress_)) {
-      report_finished(ResultReader(file_->journal.output(), Parts::kAccepted), report_);
+      take_finished();
     } else {
       resolve_device();
       Found found = find_all();
@@ -117,7 +117,7 @@ class Search {
       found.engine_end.clear();
       report_.seconds.end_wait = ending.seconds();
     }
-    end();
+    report_.seconds.total = total_.seconds();
     return std::move(report_);
   }
 
@@ -136,18 +136,26 @@ class Search {
     report_.seconds.write = write.seconds();
     kept.findings = findings();
     kept.header = std::move(header_);
-    end();
+    report_.seconds.total = total_.seconds();
     return std::move(report_);
   }
 
  private:
   void begin() {
-    check();
     static_cast<Answer&>(report_) = answer_of(header_);
+    check();
     report_sizes(store_, query_, report_);
-    report_.doubts = doubts_among(report_.warnings);
-    report_.warned_of = codes_beside_doubts(report_.warnings);
     report_.seconds.check = total_.seconds();
+  }
+
+  /// Reports the answer of a result that was there already, and those of its warnings that have not
+  /// been passed on, because only its search could give them.
+  void take_finished() {
+    const std::vector<Message> told = report_.warnings;
+    report_finished(ResultReader(file_->journal.output(), Parts::kAccepted), report_);
+    for (const Message& warning : report_.warnings) {
+      if (options_.message && !has_warning(told, warning)) options_.message(warning);
+    }
   }
 
   Found find_all() {
@@ -155,12 +163,11 @@ class Search {
     if (query_.first_pose) find_last_poses(found);
     if (header_.budget) judge(found);
     if (query_.seen) find_unseen(found);
+    if (query_.ignores_points()) {
+      report_.colliding_points = found.result.hits.count();
+      warn_of_colliding_ignored(report_, options_.model_is_cut, store_.metadata().unit, log_);
+    }
     return found;
-  }
-
-  void end() {
-    warn_of_colliding_ignored(report_, options_.model_is_cut, store_.metadata().unit, log_);
-    report_.seconds.total = total_.seconds();
   }
 
   /// Checks the query and warns before anything is searched, also where the result exists already.
@@ -474,8 +481,7 @@ class Search {
     report_.seconds.beams = space.beam_seconds;
     report_.peak_device_bytes = std::max(report_.peak_device_bytes, space.taken.peak_device_bytes);
     warn_of_beams(space.left_out, log_);
-    warn_of_nothing_swept(space.summary, query_, log_);
-    report_.doubts = doubts_among(report_.warnings);
+    warn_of_nothing_swept(space.summary, query_.poses.size(), log_);
     if (!options_.shard) {
       group_unseen(query_, space.unseen, space.summary);
       warn_of_small_groups(space.summary, query_, log_);
@@ -655,7 +661,9 @@ class Search {
   }
 
   ResultFindings findings() const {
-    ResultFindings found{.doubts = report_.doubts, .warned_of = report_.warned_of};
+    ResultFindings found;
+    add_warnings(report_.warnings, found.warnings);
+    found.scanned = store_.metadata().dates;
     if (!query_.bodies.empty()) found.searched = report_.searched;
     if (query_.profile > 0) {
       found.without_bodies = poses_without_bodies(query_.poses.size(), query_.bodies);
@@ -668,11 +676,10 @@ class Search {
     return found;
   }
 
-  /// Describes what merging needs to know of a part: how an answer that is not exact was computed,
-  /// and which warnings were given.
+  /// Describes what merging needs to know of a part, such as how an answer that is not exact was
+  /// computed.
   void describe_part() {
     if (!header_.part) return;
-    header_.part->warnings = report_.warnings;
     header_.part->model_is_cut = options_.model_is_cut;
     if (header_.is_exact()) return;
     header_.part->device = name_of(report_.device);

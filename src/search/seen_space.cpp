@@ -453,28 +453,47 @@ void warn_of_large_cubes(const StoreReader& store, const QueryParameters& query,
            {{"cube", side}, {"distance", radius}});
 }
 
-void warn_of_nothing_swept(const SeenSummary& found, const Query& query, MessageLog& log) {
-  if (found.swept > 0 || query.poses.empty()) return;
+namespace {
+constexpr std::string_view kNothingSwept = "nothing-swept";
+constexpr std::string_view kWithoutOrigin = "beams-without-origin";
+constexpr std::string_view kLongBeams = "long-beams";
+}  // namespace
+
+void warn_of_nothing_swept(const SeenSummary& found, std::uint64_t poses, MessageLog& log) {
+  if (found.swept > 0 || poses == 0) return;
   log.warn(
-      "nothing-swept",
+      std::string(kNothingSwept),
       "the vehicle sweeps the middle of no cube, so that nothing is known of what was scanned. "
       "Smaller cubes tell more");
 }
 
 void warn_of_beams(const BeamCounts& left_out, MessageLog& log) {
   if (left_out.without_origin > 0) {
-    log.warn("beams-without-origin",
+    log.warn(std::string(kWithoutOrigin),
              format_count(left_out.without_origin) +
                  " points do not say where their scanner stood, so that their beams show nothing",
              {{"points", static_cast<double>(left_out.without_origin)}});
   }
   if (left_out.too_long > 0) {
-    log.warn("long-beams",
+    log.warn(std::string(kLongBeams),
              format_count(left_out.too_long) +
                  " beams are longer than 1 km, or than 2^30 steps of the stored coordinates, and "
                  "are left out. Are the origins those of these scans?",
              {{"beams", static_cast<double>(left_out.too_long)}});
   }
+}
+
+bool takes_warning_of_beams(const Message& warning, BeamCounts& left_out) {
+  const auto count = [&] {
+    return warning.numbers.empty() ? 0 : static_cast<std::uint64_t>(warning.numbers[0].second);
+  };
+  if (warning.code == kWithoutOrigin) {
+    left_out.without_origin += count();
+  } else if (warning.code == kLongBeams) {
+    left_out.too_long += count();
+  }
+  return warning.code == kWithoutOrigin || warning.code == kLongBeams ||
+         warning.code == kNothingSwept;
 }
 
 void warn_of_small_groups(const SeenSummary& found, const QueryParameters& query, MessageLog& log) {

@@ -86,11 +86,16 @@ void warn_of_large_cubes(const StoreReader& store, const QueryParameters& query,
                          MessageLog& log);
 
 /// Warns where no cube is swept, so that the search says nothing of what was scanned:
-/// "nothing-swept". query: has poses and a model.
-void warn_of_nothing_swept(const SeenSummary& found, const Query& query, MessageLog& log);
+/// "nothing-swept". poses: the number of poses of the query.
+void warn_of_nothing_swept(const SeenSummary& found, std::uint64_t poses, MessageLog& log);
 
 /// Warns of points whose beams were left out: "beams-without-origin", "long-beams".
 void warn_of_beams(const BeamCounts& left_out, MessageLog& log);
+
+/// Whether a warning was given by warn_of_beams() or warn_of_nothing_swept(). Where it counts
+/// beams, the count is added to `left_out`. Each part follows beams of its own, so a merge adds
+/// them up.
+bool takes_warning_of_beams(const Message& warning, BeamCounts& left_out);
 
 /// Warns of groups of unseen cubes that are too small to be listed: "small-unseen".
 void warn_of_small_groups(const SeenSummary& found, const QueryParameters& query, MessageLog& log);

@@ -595,11 +595,11 @@ TEST_CASE("a CSV and a JSON of the table have the fixed columns") {
   CHECK(bytes_of(scene.folder / "s.csv") ==
         "chainage_from,chainage_to,station_from,station_to,least,least_source,left,left_source,"
         "right,right_source,above,above_source,verdict,\"a,b_overthrow_end\","
-        "\"a,b_overthrow_middle\",\"'=1+1_overthrow_end\",\"'=1+1_overthrow_middle\"\n"
+        "\"a,b_overthrow_middle\",\"'=1+1_overthrow_end\",\"'=1+1_overthrow_middle\",doubts\n"
         "0,2.5,,," +
             least + ",0," + least +
-            ",0,,,,,clear,0,0,0,0\n"
-            "2.5,4,,,,,,,,,,,clear,0,0,0,0\n");
+            ",0,,,,,clear,0,0,0,0,\n"
+            "2.5,4,,,,,,,,,,,clear,0,0,0,0,\n");
   const auto parsed = nlohmann::json::parse(bytes_of(scene.folder / "s.json"));
   CHECK(parsed["kind"] == "stations");
   CHECK(parsed["stations"].size() == 2);

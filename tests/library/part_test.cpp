@@ -41,16 +41,19 @@ std::vector<std::filesystem::path> warned_parts(Shards& shards) {
   return parts;
 }
 
-/// Changes the header of a part without rows.
-void change(const std::filesystem::path& part, const std::function<void(ResultPart&)>& how) {
+/// Changes the header and the findings of a part without rows.
+void change(const std::filesystem::path& part,
+            const std::function<void(ResultPart&, ResultFindings&)>& how) {
   std::optional<ResultHeader> header;
+  ResultFindings findings;
   {
     const ResultReader reader(part, Parts::kAccepted);
     REQUIRE(reader.collisions() == 0);
     header = reader.header();
+    findings = reader.findings();
   }
-  how(*header->part);
-  ResultWriter(part, *header, 0).finish();
+  how(*header->part, findings);
+  ResultWriter(part, *header, 0).finish(findings);
 }
 
 /// Limits the number of files that the process may open, until the end of its scope.
@@ -74,14 +77,18 @@ class OpenFilesLimit {
 
 TEST_CASE("a merge repeats each warning of its parts once") {
   Shards shards;
-  const std::string whole = shards.whole();
   const auto parts = warned_parts(shards);
   std::vector<Message> told;
   const MergeOptions options{.overwrite = true,
                              .message = [&](const Message& one) { told.push_back(one); }};
-  CHECK(shards.merged(parts, options) == whole);
-  CHECK(told.size() == shards.report.warnings.size());
-  const auto warnings = of_inputs(shards.report.warnings);
+  const std::string merged = shards.merged(parts, options);
+  CHECK(told.size() == shards.report.part_warnings.size());
+  // The result keeps each once, whatever number of parts has it.
+  const std::vector<Message> kept = Result(shards.scene.folder / "merged.h5").warnings();
+  REQUIRE(of_inputs(kept).size() == 2);
+  CHECK(of_inputs(kept)[0].numbers == kOfAll.numbers);
+  CHECK(kept.size() == shards.report.warnings.size());
+  const auto warnings = of_inputs(shards.report.part_warnings);
   REQUIRE(warnings.size() == 2);
   CHECK(warnings[0].code == "dusty");
   CHECK(warnings[0].parts == 3);
@@ -95,9 +102,22 @@ TEST_CASE("a merge repeats each warning of its parts once") {
   CHECK(told[0].text == "the model is dusty (in all parts)");
   CHECK(told[1].text == "the path came late (in 1 of 3 parts)");
 
-  CHECK(shards.merged(parts, {.resume = true}) == whole);
+  CHECK(shards.merged(parts, {.resume = true}) == merged);
   CHECK(shards.report.was_finished);
-  CHECK(of_inputs(shards.report.warnings).size() == 2);
+  CHECK(shards.report.warnings.size() == kept.size());
+  CHECK(of_inputs(shards.report.part_warnings).size() == 2);
+}
+
+TEST_CASE("a merge keeps the warnings of one search of everything, with their stretches") {
+  Shards shards;
+  Message stretch = kOfAll;
+  stretch.stretches = {{0, 3}, {7, 9}};
+  shards.options.input_warnings = {stretch, kOfOne};
+  const std::string whole = shards.whole();
+  CHECK(shards.merged(shards.parts(3)) == whole);
+  const std::vector<Message> kept = Result(shards.scene.folder / "merged.h5").warnings();
+  REQUIRE(of_inputs(kept).size() == 2);
+  CHECK(of_inputs(kept)[0].stretches == stretch.stretches);
 }
 
 TEST_CASE("a strict merge refuses parts whose runs warned") {
@@ -105,7 +125,9 @@ TEST_CASE("a strict merge refuses parts whose runs warned") {
   shards.scene.query.radius = 1e-4;
   const auto parts = warned_parts(shards);
   const auto told = [&](const auto& warnings) {
-    for (const auto& part : parts) change(part, [&](ResultPart& p) { p.warnings = warnings; });
+    for (const auto& part : parts) {
+      change(part, [&](ResultPart&, ResultFindings& found) { found.warnings = warnings; });
+    }
     return shards.refusal(parts, {.strict = true});
   };
   CHECK_THAT(shards.refusal(parts, {.strict = true}),
@@ -114,7 +136,7 @@ TEST_CASE("a strict merge refuses parts whose runs warned") {
         "strict: 1 warning (late), expected none; no output was written");
   CHECK(told(std::vector<Message>{}).empty());
   shards.merged(parts);
-  CHECK(shards.report.warnings.empty());
+  CHECK(shards.report.part_warnings.empty());
 }
 
 TEST_CASE("the warnings of a question are those of the search of everything") {
@@ -125,12 +147,12 @@ TEST_CASE("the warnings of a question are those of the search of everything") {
                                     shards.scene.folder / "whole.h5", shards.options);
   REQUIRE(!whole.warnings.empty());
   shards.merged(shards.parts(2));
-  REQUIRE(shards.report.warnings.size() == whole.warnings.size());
+  REQUIRE(shards.report.part_warnings.size() == whole.warnings.size());
   for (std::size_t i = 0; i < whole.warnings.size(); ++i) {
-    CHECK(shards.report.warnings[i].code == whole.warnings[i].code);
-    CHECK(shards.report.warnings[i].text == whole.warnings[i].text);
-    CHECK(shards.report.warnings[i].numbers == whole.warnings[i].numbers);
-    CHECK(shards.report.warnings[i].parts == 2);
+    CHECK(shards.report.part_warnings[i].code == whole.warnings[i].code);
+    CHECK(shards.report.part_warnings[i].text == whole.warnings[i].text);
+    CHECK(shards.report.part_warnings[i].numbers == whole.warnings[i].numbers);
+    CHECK(shards.report.part_warnings[i].parts == 2);
   }
 }
 
@@ -155,7 +177,7 @@ TEST_CASE("a part that was interrupted and is resumed holds the warnings") {
   auto parts = shards.parts(2, "sound");
   parts[0] = output;
   shards.merged(parts);
-  const auto warnings = of_inputs(shards.report.warnings);
+  const auto warnings = of_inputs(shards.report.part_warnings);
   REQUIRE(warnings.size() == 1);
   CHECK(warnings[0].code == "dusty");
   CHECK(warnings[0].parts == 1);
@@ -179,7 +201,7 @@ TEST_CASE("parts with a tolerance of different fields or devices are refused") {
   shards.scene.query.tolerance = 1e-4;
   parts = shards.parts(2);
   CHECK_NOTHROW(shards.merged(parts));
-  change(parts[1], [](ResultPart& part) { part.device = "cuda"; });
+  change(parts[1], [](ResultPart& part, ResultFindings&) { part.device = "cuda"; });
   std::filesystem::remove(shards.scene.folder / "merged.h5");
   CHECK_THAT(shards.refusal(parts), Contains("with the device cuda, not cpu"));
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "io/files/hdf5.hpp"
+#include "io/files/kept_warnings.hpp"
 #include "io/files/xxh64.hpp"
 
 namespace clearway::test {
@@ -15,7 +16,8 @@ void add_column(const hdf5::Id& group, const char* name, ColumnHashes& hashes,
   hashes.add(values);
 }
 
-/// Writes the file that release 0.1.0 wrote for two colliding points and three clearances.
+/// Writes the file that release 0.1.0 wrote for two colliding points and three clearances, with the
+/// group of warnings that each result has.
 inline void write_version_2(const std::filesystem::path& path) {
   hdf5::Id file = hdf5::create_file(path);
   const hdf5::Id collisions = hdf5::create_group(file, "collisions");
@@ -44,6 +46,7 @@ inline void write_version_2(const std::filesystem::path& path) {
   add_column<std::uint32_t>(clearance, "pose", of_clearances, {3, 1, 0});
   hdf5::write_number(file, "collisions_hash", of_collisions.digest());
   hdf5::write_number(file, "clearance_hash", of_clearances.digest());
+  write_warnings(file, {});
   hdf5::write_number(file, "complete", std::uint8_t{1});
   file.close("close");
 }

@@ -204,9 +204,9 @@ void add_compare(CLI::App& program, int& exit_code) {
       "With --conflicts, exit code 1 says that B has new conflicts, worse ones, new groups that "
       "are\n"
       "too small to be listed, or answers another question. Conflicts are the same where their\n"
-      "boxes overlap, grown by the gap. Each is matched once, the largest overlaps first. What\n"
-      "is left is the same where each of its points is within the gap of points that A has.\n"
-      "Exit code 6, with --conflicts: B is undecided, as nothing could be found in it.\n"
+      "points are within the gap of each other; a part of B without such points of A is new.\n"
+      "Exit code 6, with --conflicts: B cannot show that nothing is worse. It is undecided, did\n"
+      "not search a place where A has a conflict, or is the same scan as A or an older one.\n"
       "Exit code 3: a file is not a result, or the results are about different environments.\n"
       "Example: clearway compare kdtree.h5 sweep.h5");
   command->callback([options, command, &exit_code] {

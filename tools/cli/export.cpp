@@ -123,8 +123,9 @@ void run_export(ExportOptions& options) {
   out["rows"] = exported.rows;
   const Answer answer = counted_answer(result);
   out["verdict"] = name_of(answer.verdict());
-  out["doubts"] = answer.doubts;
-  out["warned_of"] = answer.warned_of;
+  out["doubts"] = answer.doubts();
+  out["warned_of"] = answer.warned_of();
+  out["warnings"] = warnings_json(answer.warnings);
   out["ignored"] = ignored_json(answer);
   print(text_of_json(out));
 }

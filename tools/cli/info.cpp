@@ -82,6 +82,7 @@ ordered_json describe(const StoreReader& store) {
                                {"cubes", m.withheld->cubes.size()}};
   }
   if (m.origins) description["origins"] = origins_json(*m.origins);
+  if (m.dates.known()) description["dates"] = {m.dates.first, m.dates.last};
   return description;
 }
 
@@ -165,8 +166,9 @@ ordered_json describe(const ResultReader& result) {
     description["gap"] = h.gap;
   }
   if (answer.seen) description["seen"] = seen_json(answer);
-  if (!answer.doubts.empty()) description["doubts"] = answer.doubts;
-  if (!answer.warned_of.empty()) description["warned_of"] = answer.warned_of;
+  if (const auto doubts = answer.doubts(); !doubts.empty()) description["doubts"] = doubts;
+  if (const auto codes = answer.warned_of(); !codes.empty()) description["warned_of"] = codes;
+  description["warnings"] = warnings_json(answer.warnings);
   if (h.model_solids > 0) {
     const auto inside = answer.points_inside();
     const auto depth = answer.greatest_depth();
@@ -196,7 +198,9 @@ ordered_json describe(const ResultReader& result) {
       description["field_voxel"] = h.part->field_voxel;
       description["grid_cell"] = h.part->grid_cell;
     }
-    description["warnings"] = h.part->warnings.size();
+  }
+  if (const ScanDates& dates = result.findings().scanned; dates.known()) {
+    description["dates"] = {dates.first, dates.last};
   }
   if (h.last_pose) description["last_pose"] = true;
   if (h.float_precision) description["precision"] = "float";

@@ -32,8 +32,9 @@ struct MergeCommand {
 
 /// The warnings of the runs, each with the number of parts that have it.
 nlohmann::ordered_json warnings_of(const MergeReport& report) {
-  nlohmann::ordered_json out = warnings_json({report.warnings.begin(), report.warnings.end()});
-  for (std::size_t i = 0; i < out.size(); ++i) out[i]["parts"] = report.warnings[i].parts;
+  nlohmann::ordered_json out =
+      warnings_json({report.part_warnings.begin(), report.part_warnings.end()});
+  for (std::size_t i = 0; i < out.size(); ++i) out[i]["parts"] = report.part_warnings[i].parts;
   return out;
 }
 
@@ -62,7 +63,7 @@ Verdict run_merge(MergeCommand& options) {
   raise_open_files_limit(options.parts.size());
   const MergeReport report = merge(options.parts, options.output, options.merge);
   const std::string sentence = verdict_text(report, {}, symbol_of_unit(report.length_unit),
-                                            caveat_of(report.warnings.size()));
+                                            caveat_of(report.part_warnings.size()));
   spdlog::info("{}: {} {}; {}", options.output.string(),
                report.was_finished ? "is there already, of" : "merged",
                counted(report.parts, "part"),

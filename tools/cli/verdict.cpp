@@ -173,7 +173,7 @@ std::string finding_text(const Answer& answer, const PathWords& path, const std:
       if (!answer.is_in_doubt()) return "undecided (not-scanned)" + ignored + ": " + none;
       return std::string("undecided, because ") +
              (answer.is_not_scanned() ? "places were not scanned and " : "") +
-             "the question is in doubt (" + fmt::format("{}", fmt::join(answer.doubts, ", ")) +
+             "the question is in doubt (" + fmt::format("{}", fmt::join(answer.doubts(), ", ")) +
              ")" + ignored + ": " + none;
     case Verdict::kUnknown:
       return "no point of this part is closer than " + limit + " to the model on its way" + ignored;
@@ -209,6 +209,39 @@ ordered_json place_json(const Answer& answer, const std::optional<FoundPlace>& p
   if (!path.labels.name.empty()) out["name"] = path.labels.name[place->pose];
   if (!path.labels.station.empty()) out["station"] = path.labels.station[place->pose];
   return out;
+}
+
+/// The poses of all stretches on which the answer's warnings say that nothing could be found.
+std::vector<PoseRange> stretches_in_doubt(const Answer& answer) {
+  std::vector<PoseRange> all, out;
+  for (const Message& warning : answer.warnings) {
+    if (answer.doubt_of(warning) != Doubt::kStretch) continue;
+    all.insert(all.end(), warning.stretches.begin(), warning.stretches.end());
+  }
+  std::ranges::sort(all, {}, &PoseRange::first);
+  for (const PoseRange& stretch : all) {
+    if (out.empty() || stretch.first > out.back().last) {
+      out.push_back(stretch);
+    } else {
+      out.back().last = std::max(out.back().last, stretch.last);
+    }
+  }
+  return out;
+}
+
+/// A clause that says on how much of the path nothing could be found; empty where that is nowhere.
+std::string doubt_clause(const Answer& answer, const PathWords& path, const std::string& unit) {
+  const std::vector<PoseRange> stretches = stretches_in_doubt(answer);
+  if (stretches.empty()) return "";
+  std::string text = "; on " + counted(stretches.size(), "stretch", "stretches") + " of the path";
+  if (!path.chainage.empty()) {
+    double length = 0;
+    for (const auto& [first, last] : stretches) {
+      if (last < path.chainage.size()) length += path.chainage[last] - path.chainage[first];
+    }
+    text += fmt::format(", {:.2f} {} in all,", length, unit);
+  }
+  return text + fmt::format(" nothing could be found ({})", fmt::join(answer.doubts(), ", "));
 }
 
 /// A clause that says on how much of the path the vehicle was searched, since bodies on pivots have
@@ -277,7 +310,7 @@ std::string verdict_text(const Answer& answer, const PathWords& path, const std:
   }
   if (answer.shard) text += "; clearway merge gives the answer of all parts";
   if (answer.float_precision) text += "; not exact, as single precision alone decided";
-  text += searched_text(answer, unit);
+  text += searched_text(answer, unit) + doubt_clause(answer, path, unit);
   return text + caveat + ".";
 }
 
@@ -307,8 +340,8 @@ std::string unseen_text(const UnseenGroups& unseen, const Answer& answer, const 
 }
 
 std::string warned_text(const Answer& answer) {
-  if (answer.warned_of.empty()) return "";
-  return fmt::format(", but its run warned of {}", fmt::join(answer.warned_of, ", "));
+  const std::vector<std::string> codes = answer.warned_of();
+  return codes.empty() ? "" : fmt::format(", but its run warned of {}", fmt::join(codes, ", "));
 }
 
 std::string verdict_to_repeat(const ResultReader& result, const PathWords& path,
@@ -321,17 +354,25 @@ std::string verdict_to_repeat(const ResultReader& result, const PathWords& path,
 
 void warn_of_doubts(const ResultReader& result) {
   const Answer answer = counted_answer(result);
+  const std::vector<std::string> doubts = answer.doubts();
+  if (answer.verdict() == Verdict::kConflict && !doubts.empty()) {
+    spdlog::warn("{}: its run warned of {}, so more may collide than it found", result.name(),
+                 fmt::join(doubts, ", "));
+  }
   if (answer.verdict() != Verdict::kUndecided) return;
-  if (answer.doubts.empty()) {
+  if (doubts.empty()) {
     std::vector<std::string> reasons;
     for (const Reason reason : answer.reasons()) reasons.emplace_back(name_of(reason));
     spdlog::warn("{}: its verdict is undecided ({})", result.name(), fmt::join(reasons, ", "));
     return;
   }
+  const bool everywhere = std::ranges::any_of(answer.warnings, [&](const Message& warning) {
+    return answer.doubt_of(warning) == Doubt::kQuestion;
+  });
   spdlog::warn(
       "{}: its verdict is undecided, because the run warned of {}: nothing collides, but nothing "
-      "could be found either",
-      result.name(), fmt::join(answer.doubts, ", "));
+      "could be found either{}",
+      result.name(), fmt::join(doubts, ", "), everywhere ? "" : " on a part of the path");
 }
 
 void add_answer(const Answer& answer, const PathWords& path, ordered_json& out) {

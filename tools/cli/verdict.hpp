@@ -44,8 +44,9 @@ std::string warned_text(const Answer& answer);
 std::string verdict_to_repeat(const ResultReader& result, const PathWords& path,
                               const std::string& unit);
 
-/// Warns where the verdict of a result is undecided, so that nobody takes an empty list for an
-/// all-clear. For commands that do not word the verdict.
+/// Warns where the verdict of a result is undecided, or nothing could be found on a part of the
+/// path, so that nobody takes an empty list for an all-clear, or a short one for all that collides.
+/// For commands that do not word the verdict.
 void warn_of_doubts(const ResultReader& result);
 
 /// The two margins of an error budget, metres; null without a budget.

@@ -35,20 +35,41 @@ const char* name_of(Reason reason) {
   return "question-in-doubt";
 }
 
-bool is_doubt(std::string_view code) {
-  constexpr std::array<std::string_view, 5> kDoubts{"all-ignored", "no-points", "no-poses",
-                                                    "nothing-swept", "out-of-reach"};
-  return std::ranges::find(kDoubts, code) != kDoubts.end();
-}
-
 namespace {
 
-/// The codes of the warnings for which is_doubt() is as given, each once, in alphabetical order.
-std::vector<std::string> codes_among(const std::vector<Message>& warnings, bool doubts) {
+/// What warnings with a code say about an answer. Warnings with other codes raise no doubt and lack
+/// no points.
+struct CodeMeaning {
+  std::string_view code;
+  Doubt doubt;
+  bool lacks_points;
+};
+
+constexpr std::array<CodeMeaning, 12> kMeanings{{
+    {"all-ignored", Doubt::kQuestion, false},
+    {"no-points", Doubt::kQuestion, false},
+    {"no-poses", Doubt::kQuestion, false},
+    {"nothing-swept", Doubt::kQuestion, false},
+    {"out-of-reach", Doubt::kQuestion, true},
+    {"leaves-scan", Doubt::kStretch, true},
+    {"nothing-below", Doubt::kStretch, true},
+    {"floats", Doubt::kStretch, false},
+    {"body-off-path", Doubt::kStretch, false},
+    {"body-undefined", Doubt::kStretch, false},
+    {"nothing-beside", Doubt::kNone, true},
+    {"one-side", Doubt::kNone, true},
+}};
+
+CodeMeaning meaning_of(std::string_view code) {
+  const auto* const found = std::ranges::find(kMeanings, code, &CodeMeaning::code);
+  return found == kMeanings.end() ? CodeMeaning{code, Doubt::kNone, false} : *found;
+}
+
+/// The codes of the warnings for which doubt_of() is a doubt, or none, as given.
+std::vector<std::string> codes_of(const Answer& answer, bool doubts) {
   std::vector<std::string> codes;
-  for (const Message& warning : warnings) {
-    const bool is_warning = warning.severity == Message::Severity::kWarning;
-    if (is_warning && is_doubt(warning.code) == doubts) codes.push_back(warning.code);
+  for (const Message& warning : answer.warnings) {
+    if ((answer.doubt_of(warning) != Doubt::kNone) == doubts) codes.push_back(warning.code);
   }
   std::ranges::sort(codes);
   codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
@@ -57,18 +78,27 @@ std::vector<std::string> codes_among(const std::vector<Message>& warnings, bool 
 
 }  // namespace
 
-std::vector<std::string> doubts_among(const std::vector<Message>& warnings) {
-  return codes_among(warnings, true);
+Doubt doubt_of(const Message& message) {
+  if (message.severity != Message::Severity::kWarning) return Doubt::kNone;
+  const Doubt doubt = meaning_of(message.code).doubt;
+  return doubt == Doubt::kStretch && message.stretches.empty() ? Doubt::kNone : doubt;
 }
 
-std::vector<std::string> codes_beside_doubts(const std::vector<Message>& warnings) {
-  return codes_among(warnings, false);
+bool is_doubt(std::string_view code) { return meaning_of(code).doubt == Doubt::kQuestion; }
+
+bool lacks_points(std::string_view code) { return meaning_of(code).lacks_points; }
+
+Doubt Answer::doubt_of(const Message& warning) const {
+  const bool all_seen = seen && seen->swept > 0 && seen->unseen == 0;
+  return all_seen && lacks_points(warning.code) ? Doubt::kNone : clearway::doubt_of(warning);
 }
+
+std::vector<std::string> Answer::doubts() const { return codes_of(*this, true); }
+std::vector<std::string> Answer::warned_of() const { return codes_of(*this, false); }
 
 bool Answer::is_in_doubt() const {
-  const bool all_seen = seen && seen->swept > 0 && seen->unseen == 0;
   return std::ranges::any_of(
-      doubts, [&](const std::string& code) { return !(all_seen && code == "out-of-reach"); });
+      warnings, [this](const Message& warning) { return doubt_of(warning) != Doubt::kNone; });
 }
 
 Verdict Answer::verdict() const {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/geometry/angle.hpp"
+#include "core/trajectory/pose_ranges.hpp"
 #include "core/trajectory/trajectory_summary.hpp"
 #include "core/util/format.hpp"
 
@@ -113,7 +114,8 @@ Message jump_warning(std::span<const Jump> jumps, const std::string& prefix,
           {{"jumps", static_cast<double>(jumps.size())},
            {"pose", static_cast<double>(worst.pose)},
            {"step", worst.length},
-           {"median_step", worst.usual}}};
+           {"median_step", worst.usual}},
+          pose_ranges(jumps | std::views::transform(&Jump::pose), 1)};
 }
 
 double farthest_from_origin(std::span<const Vec3> points) {

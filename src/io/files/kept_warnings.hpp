@@ -8,7 +8,7 @@
 
 namespace clearway {
 
-/// Writes the warnings of the run of a part or of the conversion of a store into the group
+/// Writes the warnings of a search, a section or the conversion of a store into the group
 /// "warnings" of its file (docs/design/result-format.md).
 void write_warnings(const hdf5::Id& file, const std::vector<Message>& warnings);
 

@@ -192,11 +192,12 @@ void apply_lever_arm(const std::filesystem::path& path, const Vec3& lever,
 void remark_times(const std::filesystem::path& path, TrajectoryFile& found) {
   const auto late = std::is_sorted_until(found.times.begin(), found.times.end());
   if (late == found.times.end()) return;
-  const auto pose = late - found.times.begin();
+  const auto pose = static_cast<std::uint32_t>(late - found.times.begin());
   found.warn("time-order",
              path.string() + ": time goes back at pose " + std::to_string(pose) +
                  "; poses are taken in the order of the file",
              {{"pose", static_cast<double>(pose)}});
+  found.remarks.back().stretches = {{pose - 1, pose}};
 }
 
 }  // namespace

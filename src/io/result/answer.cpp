@@ -24,20 +24,6 @@ void summarise_table(const ResultReader& result, TableSummary& summary) {
   for (Rows rows; stream.read(rows);) summarise(rows, summary);
 }
 
-/// The doubts that follow from the header's counts, for files of earlier releases, which kept none.
-std::vector<Message> doubts_by_counts(const ResultHeader& header) {
-  std::vector<Message> doubts;
-  const auto add = [&](const char* code) {
-    doubts.push_back({Message::Severity::kWarning, code, ""});
-  };
-  if (header.environment_points == 0) add("no-points");
-  if (header.poses == 0) add("no-poses");
-  if (header.ignored.points > 0 && header.ignored.points == header.environment_points) {
-    add("all-ignored");
-  }
-  return doubts;
-}
-
 }  // namespace
 
 void summarise(const Collisions& rows, TableSummary& summary) {
@@ -110,17 +96,21 @@ Answer answer_of(const ResultHeader& header) {
   return answer;
 }
 
-void add_doubts(const std::vector<Message>& warnings, Answer& answer) {
-  std::vector<Message> all = warnings;
-  for (const std::string& code : answer.doubts) {
-    all.push_back({Message::Severity::kWarning, code, ""});
+bool has_warning(std::span<const Message> warnings, const Message& warning) {
+  return std::ranges::any_of(warnings, [&](const Message& other) {
+    return other.code == warning.code && other.text == warning.text;
+  });
+}
+
+void add_warnings(const std::vector<Message>& messages, std::vector<Message>& warnings) {
+  for (const Message& message : messages) {
+    const bool is_warning = message.severity == Message::Severity::kWarning;
+    if (is_warning && !has_warning(warnings, message)) warnings.push_back(message);
   }
-  answer.doubts = doubts_among(all);
 }
 
 void add_findings(const ResultFindings& findings, Answer& answer) {
-  answer.doubts = findings.doubts;
-  answer.warned_of = findings.warned_of;
+  answer.warnings = findings.warnings;
   answer.searched = findings.searched;
   answer.certain = findings.certain.value_or(CertainPoints{});
   answer.seen = findings.seen;
@@ -132,8 +122,6 @@ void add_findings(const ResultFindings& findings, Answer& answer) {
 Answer counted_answer(const ResultReader& result) {
   Answer answer = answer_of(result.header());
   add_findings(result.findings(), answer);
-  add_doubts(doubts_by_counts(result.header()), answer);
-  if (result.header().part) add_doubts(result.header().part->warnings, answer);
   answer.colliding_points = result.collisions();
   answer.near_points = result.near();
   answer.clearance_points = result.clearances();

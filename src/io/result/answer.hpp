@@ -1,16 +1,21 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "clearway/answer.hpp"
 #include "io/result/result.hpp"
 
 namespace clearway {
 
-/// The answer as far as a result's header gives it: without numbers of rows, places and doubts.
+/// The answer as far as a result's header gives it: without numbers of rows, places and warnings.
 Answer answer_of(const ResultHeader& header);
 
-/// Adds the codes of those of the warnings that are doubts to answer.doubts, which stays sorted and
-/// without duplicates.
-void add_doubts(const std::vector<Message>& warnings, Answer& answer);
+/// Whether one of the warnings has the code and the text of this one.
+bool has_warning(std::span<const Message> warnings, const Message& warning);
+
+/// Adds those of the messages that are warnings and are not among the warnings yet.
+void add_warnings(const std::vector<Message>& messages, std::vector<Message>& warnings);
 
 /// Sets in `answer` what a search found besides its tables.
 void add_findings(const ResultFindings& findings, Answer& answer);
@@ -29,9 +34,8 @@ void add_summary(const TableSummary& later, TableSummary& summary);
 /// show: places, points inside the model and poses of the profile. Reads no table.
 Answer counted_answer(const ResultReader& result);
 
-/// The answer that a result, or a part of one, holds. Reads all of its tables. The doubts are those
-/// that the file keeps, or for a file of an earlier release those that follow from its counts.
-/// Throws as ResultReader does.
+/// The answer that a result, or a part of one, holds. Reads all of its tables. Throws as
+/// ResultReader does.
 Answer answer_of(const ResultReader& result);
 
 }  // namespace clearway

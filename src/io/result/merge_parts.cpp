@@ -141,17 +141,14 @@ PartSet::PartSet(const std::vector<std::filesystem::path>& files) {
 }
 
 std::vector<PartWarning> PartSet::warnings() const {
-  const auto is_same = [](const Message& a, const Message& b) {
-    return a.code == b.code && a.text == b.text;
-  };
   std::vector<PartWarning> all;
   for (const ResultReader& part : parts_) {
-    std::vector<Message> told;  // warnings of this part, each once
-    for (const Message& warning : part.header().part->warnings) {
-      const auto same = [&](const Message& other) { return is_same(warning, other); };
-      if (std::ranges::any_of(told, same)) continue;
-      told.push_back(warning);
-      auto known = std::ranges::find_if(all, same);
+    std::vector<Message> of_part;  // each once
+    add_warnings(part.findings().warnings, of_part);
+    for (const Message& warning : of_part) {
+      auto known = std::ranges::find_if(all, [&](const PartWarning& other) {
+        return has_warning({&warning, 1}, other);
+      });
       if (known == all.end()) known = all.insert(all.end(), PartWarning{warning, 0});
       ++known->parts;
     }
@@ -178,13 +175,10 @@ std::uint64_t PartSet::clearances() const {
 }
 
 ResultFindings PartSet::findings() const {
-  std::vector<Message> warnings;
+  ResultFindings out;
   for (const ResultReader& part : parts_) {
-    const auto& told = part.header().part->warnings;
-    warnings.insert(warnings.end(), told.begin(), told.end());
-  }
-  ResultFindings out{.doubts = doubts_among(warnings), .warned_of = codes_beside_doubts(warnings)};
-  for (const ResultReader& part : parts_) {
+    add_warnings(part.findings().warnings, out.warnings);
+    if (!out.scanned.known()) out.scanned = part.findings().scanned;
     if (!out.searched) out.searched = part.findings().searched;
     if (out.without_bodies.empty()) out.without_bodies = part.findings().without_bodies;
   }

@@ -26,8 +26,8 @@ class PartSet {
   std::uint64_t collisions() const;
   std::uint64_t clearances() const;
   std::uint64_t near() const;
-  /// The findings of all parts together, except which points are certainly too close, which
-  /// certain_points_in() finds.
+  /// The findings of all parts together, with the warnings of each part, except which points are
+  /// certainly too close, which certain_points_in() finds.
   ResultFindings findings() const;
   /// The answer of all parts, without what only reading their rows shows: places, points inside the
   /// model and poses of the profile.

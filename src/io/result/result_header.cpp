@@ -295,7 +295,6 @@ ResultPart read_part(const hdf5::Id& file, const std::string& name, const Result
                      std::to_string(Shard::kMost));
   }
   read_means(file, name, header, part);
-  part.warnings = read_warnings(file, name);
   part.model_is_cut = hdf5::has_attribute(file, names::kModelIsCut, name);
   return part;
 }
@@ -350,7 +349,6 @@ void write_part(const hdf5::Id& file, const ResultHeader& header) {
     hdf5::write_number(file, names::kFieldVoxel, part.field_voxel);
     hdf5::write_number(file, names::kGridCell, part.grid_cell);
   }
-  write_warnings(file, part.warnings);
   if (part.model_is_cut) hdf5::write_number(file, names::kModelIsCut, std::uint8_t{1});
 }
 
@@ -543,12 +541,8 @@ SeenSummary read_seen(const hdf5::Id& file, const std::string& name) {
 }  // namespace
 
 void write_result_findings(const hdf5::Id& file, const ResultFindings& findings) {
-  if (!findings.doubts.empty()) {
-    hdf5::write_attribute(file, names::kDoubts, lines_of(findings.doubts));
-  }
-  if (!findings.warned_of.empty()) {
-    hdf5::write_attribute(file, names::kWarnedOf, lines_of(findings.warned_of));
-  }
+  write_warnings(file, findings.warnings);
+  write_scan_dates(file, findings.scanned);
   if (findings.ignored_colliding) {
     hdf5::write_number(file, names::kIgnoredColliding, *findings.ignored_colliding);
   }
@@ -577,14 +571,9 @@ void write_result_findings(const hdf5::Id& file, const ResultFindings& findings)
 
 ResultFindings read_result_findings(const hdf5::Id& file, const std::string& name,
                                     const ResultHeader& header) {
-  constexpr std::size_t kMostDoubts = 100;
   ResultFindings findings;
-  if (hdf5::has_attribute(file, names::kDoubts, name)) {
-    findings.doubts = read_lines(file, name, names::kDoubts, "codes of warnings", kMostDoubts);
-  }
-  if (hdf5::has_attribute(file, names::kWarnedOf, name)) {
-    findings.warned_of = read_lines(file, name, names::kWarnedOf, "codes of warnings", kMostDoubts);
-  }
+  findings.warnings = read_warnings(file, name);
+  findings.scanned = read_scan_dates(file, name);
   const auto read_count = [&](const char* attribute, std::uint64_t most) {
     std::optional<std::uint64_t> count;
     if (!hdf5::has_attribute(file, attribute, name)) return count;

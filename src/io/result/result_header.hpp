@@ -16,11 +16,11 @@
 #include "clearway/unsearched.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "io/files/hdf5.hpp"
+#include "io/scans/scan_dates.hpp"
 
 namespace clearway {
 
 /// Which part of a result a file is, and how that part was computed.
-// NOLINTNEXTLINE(bugprone-exception-escape): of messages that are moved
 struct ResultPart {
   Shard shard;
   std::uint64_t division = 0;  ///< hash of how the cells of the store are divided among the parts
@@ -30,11 +30,9 @@ struct ResultPart {
   /// depends where it is not exact; otherwise empty and 0.
   std::string device = {};
   double field_voxel = 0, grid_cell = 0;
-  std::vector<Message> warnings = {};  ///< warnings of the run that wrote the part
-  bool model_is_cut = false;           ///< see SearchOptions::model_is_cut
+  bool model_is_cut = false;  ///< see SearchOptions::model_is_cut
 
-  /// Whether two parts belong to the same work. How it was done and what was warned of are not
-  /// compared.
+  /// Whether two parts belong to the same work. How it was done is not compared.
   friend bool operator==(const ResultPart& a, const ResultPart& b) {
     return a.shard == b.shard && a.division == b.division && a.store == b.store &&
            a.length_unit == b.length_unit;
@@ -121,12 +119,10 @@ struct ResultHeader : QueryParameters {
 std::string environment_text(const ResultHeader& header);
 
 /// What a search found besides its tables. It does not take part in the comparison of questions.
+// NOLINTNEXTLINE(bugprone-exception-escape): of messages that are moved
 struct ResultFindings {
-  /// Codes of warnings that put the question in doubt, as doubts_among() returns them. A file keeps
-  /// them only where nothing collides, because only then do they change the verdict.
-  std::vector<std::string> doubts = {};
-  /// Codes of the other warnings, as codes_beside_doubts() returns them, kept likewise.
-  std::vector<std::string> warned_of = {};
+  std::vector<Message> warnings = {};  ///< see Answer::warnings
+  ScanDates scanned = {};              ///< days on which the scans of the environment were made
   /// See Answer. A file has both numbers where points are ignored, unless an earlier release wrote
   /// it.
   std::optional<std::uint64_t> ignored_colliding = {}, ignored_colliding_high = {};
@@ -149,11 +145,12 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header);
 /// where the file is not a complete result, or is damaged.
 ResultHeader read_result_header(const hdf5::Id& file, const std::string& name);
 
-/// Writes the findings as attributes; findings that are empty have none.
+/// Writes the warnings as a group, and the other findings as attributes; those that are empty have
+/// none.
 void write_result_findings(const hdf5::Id& file, const ResultFindings& findings);
 
 /// Reads the findings. header: the header of the same file. Throws InputError where an attribute is
-/// damaged.
+/// damaged, or the group of warnings is missing.
 ResultFindings read_result_findings(const hdf5::Id& file, const std::string& name,
                                     const ResultHeader& header);
 

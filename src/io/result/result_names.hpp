@@ -86,9 +86,6 @@ inline constexpr const char* kClassPoints = "class_points";
 inline constexpr const char* kBoxes = "boxes";  // one row per box: least x, y, z, greatest x, y, z
 inline constexpr const char* kBoxPoints = "box_points";
 
-// Codes, one per line; only where nothing collides.
-inline constexpr const char* kDoubts = "doubts";
-inline constexpr const char* kWarnedOf = "warned_of";
 // Only where points are ignored.
 inline constexpr const char* kIgnoredColliding = "ignored_colliding";
 // Only where points are ignored.

@@ -397,6 +397,7 @@ std::uint64_t Result::environment_points() const { return reader_->header().envi
 const IgnoredPointCounts& Result::ignored() const { return reader_->header().ignored; }
 std::uint64_t Result::poses() const { return reader_->header().poses; }
 Answer Result::answer() const { return answer_of(*reader_); }
+const std::vector<Message>& Result::warnings() const { return reader_->findings().warnings; }
 
 Collisions Result::collisions() const {
   Collisions out;

@@ -189,12 +189,6 @@ class TableWriter {
 
 namespace names = result_names;
 
-ResultFindings without_doubts(ResultFindings findings) {
-  findings.doubts.clear();
-  findings.warned_of.clear();
-  return findings;
-}
-
 }  // namespace
 
 struct ResultWriter::State {
@@ -202,7 +196,6 @@ struct ResultWriter::State {
         std::uint64_t clearances, std::uint64_t near, std::uint64_t unseen, std::uint64_t swept)
       : name(path.string()),
         header(result),
-        is_empty(collisions == 0),
         file(hdf5::create_file(path)),
         output(File::open_for_writing(path)) {
     begin<Collisions>(collisions);
@@ -267,7 +260,6 @@ struct ResultWriter::State {
 
   std::string name;
   ResultHeader header;
-  bool is_empty;  ///< whether nothing collides
   hdf5::Id file;
   File output;               ///< a second handle of the same file
   std::uint64_t synced = 0;  ///< bytes of the file that are on their way to the disk
@@ -319,8 +311,7 @@ void ResultWriter::finish(const ResultFindings& findings) {
   s.each([&](auto& table) { s.complete(table); });
   hdf5::naming(s.name, [&] {
     s.each([&](auto& table) { table.write_hashes(s.file); });
-    const bool may_doubt = findings.certain ? !findings.certain->has_group : s.is_empty;
-    write_result_findings(s.file, may_doubt ? findings : without_doubts(findings));
+    write_result_findings(s.file, findings);
     hdf5::write_number(s.file, "complete", std::uint8_t{1});
     s.each([](auto& table) { table.write_held(); });
     hdf5::check(H5Fflush(s.file.get(), H5F_SCOPE_LOCAL), "write the result");

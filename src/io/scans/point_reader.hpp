@@ -50,6 +50,8 @@ struct CloudInfo : StatedCrs {
   /// What `origins` rest on, such as "poses of E57".
   std::string origins_rest_on;
   GpsTimes gps_times = GpsTimes::kNone;
+  /// The day on which the file was made, such as "2024-05-31"; empty where it does not tell.
+  std::string date = {};
   /// Remarks on the whole file; complete once read() has returned false.
   std::vector<Message> remarks;
 

@@ -12,6 +12,7 @@
 #include "core/geometry/quantisation.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/scans/length_unit.hpp"
+#include "io/scans/scan_dates.hpp"
 
 namespace clearway {
 
@@ -122,6 +123,7 @@ struct StoreMetadata {
   std::optional<StoreOrigins> origins = {};  ///< only where some point has an origin
   /// Only where some point of the inputs has the flag `withheld`
   std::optional<StoreWithheld> withheld = {};
+  ScanDates dates = {};                ///< days on which the sources were made
   std::vector<Message> warnings = {};  ///< warnings of the conversion, for users of the store
 
   /// Points of the inputs that are not stored because they hold no finite place.

@@ -140,6 +140,7 @@ StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name, Colum
     refuse(name, "attribute 'withheld_points' is " + std::to_string(metadata.withheld->points) +
                      ", expected at most the points not stored, " + std::to_string(not_stored));
   }
+  metadata.dates = read_scan_dates(file, name);
   if (H5Lexists(file.get(), "warnings", H5P_DEFAULT) > 0) {
     metadata.warnings = read_warnings(file, name);
   }

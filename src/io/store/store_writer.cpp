@@ -164,6 +164,7 @@ void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata, ColumnH
   if (metadata.height_unit != 0) hdf5::write_number(file, kHeightUnit, metadata.height_unit);
 
   if (metadata.withheld) write_withheld(file, *metadata.withheld);
+  write_scan_dates(file, metadata.dates);
   if (!metadata.warnings.empty()) write_warnings(file, metadata.warnings);
 
   std::vector<std::uint8_t> names;

@@ -36,6 +36,7 @@ class Message:
     text: Final[str]
     numbers: Final[dict[str, float]]
     body: Final[str]
+    stretches: Final[list[tuple[int, int]]]
 class ProgressUpdate:
     stage: Final[str]
     done: Final[int]
@@ -249,6 +250,7 @@ class Answer:
     near_points: Final[int]
     certain_points: Final[int]
     seen: Final[SeenSummary | None]
+    warnings: Final[list[Message]]
     doubts: Final[list[str]]
     warned_of: Final[list[str]]
     parameters: Final[QueryParameters]
@@ -275,7 +277,6 @@ class SearchReport(Answer):
     was_finished: Final[bool]
     model_triangles: Final[int]
     ignored_looked_at: Final[int]
-    warnings: Final[list[Message]]
     engine: Final[str]
     device: Final[str]
     device_name: Final[str]
@@ -344,6 +345,7 @@ class Result:
     def ignored(self) -> IgnoredPointCounts: ...
     def poses(self) -> int: ...
     def answer(self) -> Answer: ...
+    def warnings(self) -> list[Message]: ...
     def collisions(self) -> Collisions: ...
     def source(self) -> _Sources: ...
     def xyz(self) -> _Doubles: ...
@@ -434,6 +436,7 @@ class StationRow:
     above: Final[FoundPlace | None]
     verdict: Final[str]
     reasons: Final[list[str]]
+    doubts: Final[list[str]]
     searched: Final[bool]
     overthrow: Final[list[Overthrow]]
 class StationTable:

@@ -13,7 +13,9 @@ const kRowReasons = { near: "possibly too close", few: "few points", "not-scanne
 
 function rowVerdict(row) {
   const why = row.verdict !== "undecided" ? []
-      : [...row.reasons.map((r) => kRowReasons[r] ?? r), ...(row.searched ? [] : ["not searched"])];
+      : [...row.reasons.map((r) => (kRowReasons[r] ?? r) +
+             (r === "question-in-doubt" ? ` (${row.doubts.join(", ")})` : "")),
+         ...(row.searched ? [] : ["not searched"])];
   return kRowVerdicts[row.verdict] + (why.length > 0 ? `: ${why.join(", ")}` : "");
 }
 

@@ -312,9 +312,6 @@ function cautions() {
   const { facts } = page;
   const out = facts.warnings.map((w) => w.message[0].toUpperCase() + w.message.slice(1) + ".");
   const { conflicts, inputs, query } = facts;
-  for (const code of facts.doubts.filter((d) => !facts.warnings.some((w) => w.code === d))) {
-    out.push(`The run that made this result warned of ${code}, which puts its question in doubt.`);
-  }
   if (!query.exact) {
     out.push("The result is not exact: it was made with a tolerance or in single precision.");
   }

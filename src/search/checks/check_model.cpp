@@ -4,6 +4,7 @@
 
 #include "clearway/error.hpp"
 #include "core/geometry/point_box.hpp"
+#include "core/trajectory/pose_ranges.hpp"
 #include "core/util/format.hpp"
 #include "search/checks/checks.hpp"
 #include "search/checks/facts/model_looks.hpp"
@@ -161,20 +162,23 @@ void warn_of_scale(const Question& question, MessageLog& log) {
 /// Warns where poses mirror the model. Such matrices are accepted only where poses need not be
 /// rigid.
 void warn_of_mirror(const Question& question, MessageLog& log) {
-  const auto mirrors = [](const Pose& pose) {
-    const auto& r = pose.rotation;
+  const auto mirrors = [&](std::uint32_t pose) {
+    const auto& r = question.query.poses[pose].rotation;
     return r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) +
                r[2] * (r[3] * r[7] - r[4] * r[6]) <
            0;
   };
-  const auto count = std::ranges::count_if(question.query.poses, mirrors);
-  if (count == 0) return;
+  std::vector<std::uint32_t> mirrored;
+  for (std::uint32_t i = 0; i < question.query.poses.size(); ++i) {
+    if (mirrors(i)) mirrored.push_back(question.number_of(i));
+  }
+  if (mirrored.empty()) return;
   log.warn("mirrored-poses",
-           counted(static_cast<std::uint64_t>(count), "pose mirrors", "poses mirror") + " the " +
+           counted(mirrored.size(), "pose mirrors", "poses mirror") + " the " +
                question.words().mover +
                ", so that its left side meets what is on the right: two axes are swapped, "
                "or one has the wrong sign",
-           {{"poses", static_cast<double>(count)}});
+           {{"poses", static_cast<double>(mirrored.size())}}, pose_ranges(mirrored));
 }
 
 /// Warns where the model's own points have lost digits, as those of a mesh far from its origin do
@@ -294,7 +298,8 @@ void check_inside(const Question& question, MessageLog& log) {
                " scanned points lie inside the model and do not touch it: only its surface is "
                "tested. Does it stand on an obstacle there? Let the path begin outside of it, "
                "search a closed mesh as a solid, or give a model that is filled with points",
-           {{"points", static_cast<double>(count)}});
+           {{"points", static_cast<double>(count)}},
+           {{question.number_of(0), question.number_of(0)}});
 }
 
 void check_open_model(const Question& question, MessageLog& log) {

@@ -12,6 +12,7 @@
 #include "core/geometry/predicate.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/section/section_poses.hpp"
+#include "core/trajectory/pose_ranges.hpp"
 #include "core/trajectory/trajectory_doubts.hpp"
 #include "core/trajectory/trajectory_summary.hpp"
 #include "core/util/format.hpp"
@@ -131,6 +132,8 @@ Steps check_straight_ways(const Question& question, const std::vector<Jump>& jum
                      std::to_string(number) + ", where the " + question.words().mover +
                      " goes on by " + length_text(moved, question.unit) + " and turns by " +
                      figure(turned) + " degrees";
+  Steps starts;
+  for (const Deviation& d : found) starts.push_back(question.number_of(d.pose));
   const auto jump = std::ranges::find(jumps, std::size_t{number}, &Jump::pose);
   if (warns && jump != jumps.end()) {
     text += ". This step is " + figure(jump->length / jump->usual) +
@@ -144,12 +147,9 @@ Steps check_straight_ways(const Question& question, const std::vector<Jump>& jum
             {"largest", worst.distance},
             {"pose", static_cast<double>(number)},
             {"step", moved},
-            {"turn_degrees", turned}}});
-  Steps told;
-  for (const Deviation& d : found) {
-    if (warns) told.push_back(question.number_of(d.pose));
-  }
-  return told;
+            {"turn_degrees", turned}},
+           pose_ranges(starts, 1)});
+  return warns ? starts : Steps();
 }
 
 /// Warns where the model moves farther than the radius between two poses, of which only the poses
@@ -158,7 +158,7 @@ void check_poses_alone(const Question& question, const Steps& known, MessageLog&
   const Query& query = question.query;
   const Vec3 far = reach_of(question.model);
   const double reach = std::sqrt(squared_length(far.x, far.y, far.z));
-  std::uint64_t large = 0;
+  Steps large;
   double largest = 0;
   std::uint64_t steps = 0;
   std::uint32_t at = 0;
@@ -169,22 +169,23 @@ void check_poses_alone(const Question& question, const Steps& known, MessageLog&
     if (coarse_bound(a, b, reach) <= query.radius) continue;
     const double step = displacement_bound(question.model, a, b);
     if (!(step > query.radius) || has(known, question.number_of(i))) continue;
-    ++large;
+    large.push_back(question.number_of(i));
     if (step > largest) {
       largest = step;
       at = question.number_of(i);
     }
   }
-  if (large == 0) return;
+  if (large.empty()) return;
   log.warn("large-steps",
-           "at " + format_count(large) + " of " + format_count(steps) +
+           "at " + format_count(large.size()) + " of " + format_count(steps) +
                " steps the model moves farther than the radius of " +
                length_text(query.radius, question.unit) + ", at most " +
                length_text(largest, question.unit) + " after pose " + std::to_string(at) +
                ". What lies between two poses can be missed",
-           {{"share", static_cast<double>(large) / static_cast<double>(steps)},
+           {{"share", static_cast<double>(large.size()) / static_cast<double>(steps)},
             {"largest", largest},
-            {"pose", static_cast<double>(at)}});
+            {"pose", static_cast<double>(at)}},
+           pose_ranges(large, 1));
 }
 
 /// A step of a load between whose ends it is not searched.
@@ -210,13 +211,8 @@ std::vector<LoadStep> steps_of_load(const Question& question, const Steps& known
 
 /// The steps as stretches of the path, each from the pose where steps begin to that where they end.
 std::vector<PoseRange> stretches_of(const Question& question, const std::vector<LoadStep>& steps) {
-  std::vector<PoseRange> stretches;
-  for (const LoadStep& step : steps) {
-    const std::uint32_t first = question.number_of(step.pose);
-    if (stretches.empty() || stretches.back().last < first) stretches.push_back({first, first});
-    stretches.back().last = first + 1;
-  }
-  return stretches;
+  const auto number = [&](const LoadStep& step) { return question.number_of(step.pose); };
+  return pose_ranges(steps | std::views::transform(number), 1);
 }
 
 void warn_of_gaps(const Question& question, std::vector<LoadStep> steps, double length,

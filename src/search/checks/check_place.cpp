@@ -287,6 +287,11 @@ void warn_leaves_scan(const Question& question, const PathCover& cover, const Bo
                      " of the " + length_text(cover.length(), question.unit) +
                      " of the path, between pose " + std::to_string(first) + " and pose " +
                      std::to_string(last) + ": there the result says nothing. ";
+  std::vector<PoseRange> stretches = cover.stretches_outside();
+  for (auto& [from, to] : stretches) {
+    from = question.number_of(from);
+    to = question.number_of(to);
+  }
   constexpr double kWrongFrame = 0.5;
   if (share >= kWrongFrame) {
     text += boxes_text(question, swept) + ". " + likely_remedy(question, cover);
@@ -301,7 +306,8 @@ void warn_leaves_scan(const Question& question, const PathCover& cover, const Bo
             {"first_pose", first},
             {"last_pose", last},
             {"chainage_from", question.chainage(cover.first_outside())},
-            {"chainage_to", question.chainage(cover.last_outside())}});
+            {"chainage_to", question.chainage(cover.last_outside())}},
+           stretches);
 }
 
 }  // namespace

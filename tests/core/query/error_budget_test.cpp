@@ -74,6 +74,31 @@ TEST_CASE("a gap in the poses of a body is no motion") {
   CHECK(error_budget_of(query, kSteps)->motion == Approx(0.2));
 }
 
+TEST_CASE("a warning about a stretch puts the verdict in doubt, and one about the whole path not") {
+  constexpr auto kWarning = Message::Severity::kWarning;
+  const Message whole{kWarning, "floats", ""};
+  const Message stretch{kWarning, "leaves-scan", "", {}, {{3, 5}}};
+  const Message side{kWarning, "one-side", "", {}, {{3, 5}}};
+  CHECK(doubt_of(whole) == Doubt::kNone);
+  CHECK(doubt_of(stretch) == Doubt::kStretch);
+  CHECK(doubt_of(side) == Doubt::kNone);
+  CHECK(doubt_of({Message::Severity::kNote, "leaves-scan", "", {}, {{3, 5}}}) == Doubt::kNone);
+  CHECK(doubt_of({kWarning, "no-points", ""}) == Doubt::kQuestion);
+  Answer answer;
+  answer.warnings = {whole, side};
+  CHECK(answer.verdict() == Verdict::kClear);
+  CHECK(answer.warned_of() == std::vector<std::string>{"floats", "one-side"});
+  answer.warnings.push_back(stretch);
+  CHECK(answer.verdict() == Verdict::kUndecided);
+  CHECK(answer.reasons() == std::vector{Reason::kQuestionInDoubt});
+  CHECK(answer.doubts() == std::vector<std::string>{"leaves-scan"});
+  // Beams that passed through all of it show that it is free.
+  answer.seen = SeenSummary{.swept = 9, .unseen = 0};
+  CHECK(answer.verdict() == Verdict::kClear);
+  answer.colliding_points = 1;
+  CHECK(answer.verdict() == Verdict::kConflict);
+}
+
 TEST_CASE("the verdict and its reasons with a budget") {
   Answer answer;
   answer.parameters.radius = 0.1;
@@ -84,7 +109,7 @@ TEST_CASE("the verdict and its reasons with a budget") {
   CHECK(answer.reasons() == std::vector{Reason::kNear});
   answer.colliding_points = 20;
   answer.certain.points = 9;
-  answer.doubts = {"out-of-reach"};
+  answer.warnings = {{Message::Severity::kWarning, "out-of-reach", ""}};
   CHECK(answer.reasons() == std::vector{Reason::kNear, Reason::kFew, Reason::kQuestionInDoubt});
   answer.budget->model = 0.1;
   answer.certain.points = 0;

@@ -143,6 +143,10 @@ TEST_CASE("datasets of another type or shape, or with impossible values, are ref
     REQUIRE(H5Ldelete(open_to_change(path).get(), "/collisions/first_pose", H5P_DEFAULT) >= 0);
     refused("collisions/first_pose");
   }
+  SECTION("no warnings") {
+    REQUIRE(H5Ldelete(open_to_change(path).get(), "/warnings", H5P_DEFAULT) >= 0);
+    refused("warnings");
+  }
   SECTION("sources not ascending") {
     replace_dataset<std::uint64_t>(path, "/collisions/source", {1, 3, 3}, 0);
     refused("row 2");

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,7 @@
 #include "cli/support/trajectory_options.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "cli/verdict.hpp"
+#include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "findings/conflict_rank.hpp"
 #include "findings/match_conflicts.hpp"
@@ -40,7 +42,7 @@ struct ComparedSide {
     check_kind_of_model(result, model, vehicle);
     check_axes(result, options);
     warn_of_doubts(result.reader());
-    const std::vector<Pose> poses = read_poses(trajectory, options.trajectory_options, result);
+    poses = read_poses(trajectory, options.trajectory_options, result);
     std::vector<Body> bodies;
     if (!vehicle.empty()) {
       std::vector<Message> told;
@@ -56,7 +58,9 @@ struct ComparedSide {
       shape = read_model_of(model, options.model_options, result);
       find.model = &shape;
     }
-    conflicts = find_conflicts(result, poses, find, &conflict_of);
+    conflicts = find_conflicts(result, poses, find, &conflict_of, &conflict_of_near);
+    chainage = chainage_of(poses);
+    for (double& metres : chainage) metres += find.chainage_start;
   }
 
   ComparedResult compared() {
@@ -68,26 +72,46 @@ struct ComparedSide {
     out.unit = symbol_of(unit_of_crs(header.crs_wkt));
     out.conflicts = std::move(conflicts);
     out.verdict = answer.verdict();
-    out.doubts = answer.doubts;
+    out.doubts = answer.doubts();
+    for (const Reason reason : answer.reasons()) out.reasons.emplace_back(name_of(reason));
+    out.chainage = chainage;
     out.has_distances = header.clearance > 0;
     out.has_surface = header.model_triangles > 0;
     out.has_solids = header.model_solids > 0;
     out.has_shifts = has_shifts;
     return out;
   }
-  GroupedResult grouped() const { return {result, conflicts, conflict_of}; }
+  GroupedResult grouped() const {
+    return {result, conflicts, conflict_of, conflict_of_near, poses};
+  }
 
   Result result;
+  std::vector<Pose> poses;
   Conflicts conflicts;
-  std::vector<std::uint32_t> conflict_of;
+  std::vector<std::uint32_t> conflict_of, conflict_of_near;
+  std::vector<double> chainage;  ///< of each pose, metres
   bool has_shifts = false;
 };
+
+/// Whether two results are about the same points.
+bool have_same_points(const Result& a, const Result& b) {
+  const ResultHeader &in_a = a.reader().header(), &in_b = b.reader().header();
+  return in_a.environment_points == in_b.environment_points &&
+         in_a.environment_hash == in_b.environment_hash;
+}
+
+/// Whether all scans of one result were made before those of another, as far as both tell.
+bool is_older(const Result& one, const Result& other) {
+  const ScanDates &first = one.reader().findings().scanned,
+                  &then = other.reader().findings().scanned;
+  return first.known() && then.known() && first.last < then.first;
+}
 
 /// Whether a conflict is worse in b than in a.
 enum class Worse { kNo, kYes, kUnknown };
 
 /// Whether two conflicts have the same points, as far as their numbers and places tell.
-bool have_same_points(const Conflict& a, const Conflict& b) {
+bool are_same(const Conflict& a, const Conflict& b) {
   return a.points == b.points && a.box.lo == b.box.lo && a.box.hi == b.box.hi &&
          a.centroid == b.centroid;
 }
@@ -105,7 +129,7 @@ Worse worse(const ComparedConflicts& found, const Conflict& a, const Conflict& b
     const bool shifts_known = found.a.has_shifts && found.b.has_shifts;
     if (!found.b.has_surface && !shifts_known) return Worse::kNo;
   }
-  if (found.questions.empty() && have_same_points(a, b)) return Worse::kNo;
+  if (found.questions.empty() && are_same(a, b)) return Worse::kNo;
   if (!found.a.has_shifts || !found.b.has_shifts) return Worse::kUnknown;
   const double before = ranked_shift(a, true), now = ranked_shift(b, true);
   if (std::isinf(before) && std::isinf(now)) return Worse::kUnknown;
@@ -146,6 +170,19 @@ std::string line_of(const Conflict& c) {
                      c.centroid.x, c.centroid.y, c.centroid.z);
 }
 
+/// The chainages of a part of a conflict of one side.
+std::array<double, 2> chainages_of(const ConflictPart& part, const ComparedResult& side) {
+  return {side.chainage[part.first_pose], side.chainage[part.last_pose]};
+}
+
+std::string part_line(const ConflictPart& part, const ComparedResult& side) {
+  const auto [from, to] = chainages_of(part, side);
+  const Vec3 middle = part.box.centre();
+  return fmt::format("  {:>5}  {:>19}  {:>11} {:<6}  {:.3f} {:.3f} {:.3f}\n", part.conflict,
+                     fmt::format("{:.2f} - {:.2f}", from, to), format_count(part.points),
+                     part.points == 1 ? "point" : "points", middle.x, middle.y, middle.z);
+}
+
 /// A title with a number, and the lines of at most `show` items.
 template <typename Items, typename Line>
 std::string list_text(const std::string& title, const Items& items, std::uint64_t show, Line line) {
@@ -180,9 +217,13 @@ std::string text_of(const ComparedConflicts& found, std::uint64_t show) {
   }
   const auto of_b = [&](std::uint32_t id) { return line_of(conflict_at(b, id)); };
   text += list_text("new, only in b", found.match.added, show, of_b);
-  if (!found.new_small.empty()) {
+  if (!found.match.grown.empty()) {
+    text += list_text("parts of other conflicts that are new", found.match.grown, show,
+                      [&](const ConflictPart& part) { return part_line(part, found.b); });
+  }
+  if (!found.match.small.empty()) {
     text += list_text(
-        "new groups that are too small to be listed", found.new_small, show, [&](std::size_t i) {
+        "new groups that are too small to be listed", found.match.small, show, [&](std::size_t i) {
           const SmallGroup& group = b.small[i];
           return fmt::format("  {:>5}  {:>19}  {:>11} {:<6}  {:.3f} {:.3f} {:.3f}\n", "",
                              fmt::format("{:.2f} - {:.2f}", group.chainage_from, group.chainage_to),
@@ -211,9 +252,20 @@ std::string text_of(const ComparedConflicts& found, std::uint64_t show) {
                       (shifts_known ? "" : " (--model or --vehicle finds it by shifts)"),
                   found.unknown_worse, show, [&](const auto& pair) { return of_b(pair.second); });
   }
-  text += list_text("gone, only in a", found.match.gone, show,
-                    [&](std::uint32_t id) { return line_of(conflict_at(a, id)); });
-  text += "the same in both: " + format_count(found.match.same.size()) + "\n";
+  const auto of_a = [&](std::uint32_t id) { return line_of(conflict_at(a, id)); };
+  if (!found.match.not_searched.empty()) {
+    text += list_text("not searched in b, so not known", found.match.not_searched, show,
+                      [&](const NotSearched& part) {
+                        std::string line = part_line(part, found.a);
+                        line.pop_back();
+                        return line + fmt::format("  {}\n", fmt::join(part.reasons, ", "));
+                      });
+  }
+  if (!found.match.shrunk.empty()) {
+    text += list_text("in b too small to be listed", found.match.shrunk, show, of_a);
+  }
+  text += list_text("gone, only in a", found.match.gone, show, of_a);
+  text += "the same in both: " + format_count(found.same_in_b()) + "\n";
   return text + sentence_of(found) + "\n";
 }
 
@@ -241,6 +293,7 @@ void add_conflict_comparison(CLI::App& command, ConflictComparison& options,
       ->type_name("FILE");
   command.add_option("--vehicle-b", options.vehicle_b, "The vehicle of B, where it is another")
       ->type_name("FILE");
+  add_model_options(command, options.model_options, options.lengths);
   add_conflict_options(command, options);
   add_axis_options(command, options);
   {
@@ -297,8 +350,9 @@ int compare_conflicts(ConflictComparison& options, const std::filesystem::path& 
       question_differences(in_a.result.reader().header(), in_b.result.reader().header());
   found.other_question_allowed = options.allow_other_question;
   found.worse_by = options.worse_by;
-  found.match = match_conflicts(in_a.conflicts, in_b.conflicts, options.find.gap);
-  found.new_small = match_points(in_a.grouped(), in_b.grouped(), options.find.gap, found.match);
+  found.match = match_conflicts(in_a.grouped(), in_b.grouped(), options.find.gap, options.worse_by);
+  found.is_same_scan = found.questions.empty() && have_same_points(in_a.result, in_b.result);
+  found.is_older = is_older(in_b.result, in_a.result);
   found.a = in_a.compared();
   found.b = in_b.compared();
   found.distances_known = found.a.has_distances && found.b.has_distances;
@@ -365,6 +419,17 @@ ordered_json json_of_small(const SmallGroup& group) {
           {"chainage_to", group.chainage_to}};
 }
 
+ordered_json json_of_part(const ConflictPart& part, const ComparedResult& side) {
+  const auto [from, to] = chainages_of(part, side);
+  return {{"id", part.conflict},
+          {"points", part.points},
+          {"source", part.source},
+          {"lo", {part.box.lo.x, part.box.lo.y, part.box.lo.z}},
+          {"hi", {part.box.hi.x, part.box.hi.y, part.box.hi.z}},
+          {"chainage_from", from},
+          {"chainage_to", to}};
+}
+
 /// A row of the table that is written as CSV or HTML.
 struct Row {
   std::string status;
@@ -372,6 +437,8 @@ struct Row {
   const Conflict* b = nullptr;
   const SmallGroup* small = nullptr;  ///< a group of b that is too small to be listed
   std::string note = {};
+  /// A part of the conflict of b, or without one of a
+  const ConflictPart* part = nullptr;
 };
 
 std::vector<Row> rows_of(const ComparedConflicts& found) {
@@ -384,12 +451,23 @@ std::vector<Row> rows_of(const ComparedConflicts& found) {
   for (const std::uint32_t id : found.match.added) {
     rows.push_back({"new", nullptr, &conflict_at(b, id)});
   }
-  for (const std::size_t i : found.new_small) {
+  for (const ConflictPart& part : found.match.grown) {
+    rows.push_back({"new part", nullptr, &conflict_at(b, part.conflict), nullptr, "", &part});
+  }
+  for (const std::size_t i : found.match.small) {
     rows.push_back({"new small group", nullptr, nullptr, &b.small[i]});
   }
   for (const auto& [in_a, in_b] : found.worse) {
     rows.push_back({"worse", &conflict_at(a, in_a), &conflict_at(b, in_b), nullptr,
                     worsening_text(found, conflict_at(a, in_a), conflict_at(b, in_b))});
+  }
+  for (const NotSearched& part : found.match.not_searched) {
+    rows.push_back({"not searched", &conflict_at(a, part.conflict), nullptr, nullptr,
+                    fmt::format("{}", fmt::join(part.reasons, ", ")), &part});
+  }
+  for (const std::uint32_t id : found.match.shrunk) {
+    rows.push_back({"too small", &conflict_at(a, id), nullptr, nullptr,
+                    "b has a group there that is too small to be listed"});
   }
   for (const std::uint32_t id : found.match.gone) rows.push_back({"gone", &conflict_at(a, id)});
   for (const auto& pair : found.match.same) {
@@ -408,7 +486,7 @@ constexpr const char* kColumns[] = {
 
 /// The cells of a row, one for each of kColumns. number: formats a coordinate or length.
 template <typename Number>
-std::vector<std::string> cells_of(const Row& row, Number number) {
+std::vector<std::string> cells_of(const ComparedConflicts& found, const Row& row, Number number) {
   const Conflict* const shown = row.b != nullptr ? row.b : row.a;
   const auto of = [](const Conflict* c, auto value) {
     return c != nullptr ? std::to_string(value(*c)) : std::string();
@@ -419,7 +497,15 @@ std::vector<std::string> cells_of(const Row& row, Number number) {
     return c != nullptr && c->least_distance ? number(*c->least_distance) : std::string();
   };
   std::vector<std::string> cells{row.status, of(row.a, id), of(row.b, id)};
-  if (shown != nullptr) {
+  if (row.part != nullptr) {
+    const ConflictPart& part = *row.part;
+    const auto [from, to] = chainages_of(part, row.b != nullptr ? found.b : found.a);
+    const Vec3 middle = part.box.centre();
+    const std::string size = std::to_string(part.points);
+    cells.insert(cells.end(), {number(from), number(to), "", name_of(shown->side),
+                               row.b == nullptr ? size : "", row.b != nullptr ? size : "", "", "",
+                               number(middle.x), number(middle.y), number(middle.z)});
+  } else if (shown != nullptr) {
     cells.insert(cells.end(),
                  {number(shown->chainage_from), number(shown->chainage_to),
                   shown->obstacle_chainage ? number(*shown->obstacle_chainage) : std::string(),
@@ -446,7 +532,8 @@ std::string csv_of(const ComparedConflicts& found) {
   out += "\n";
   for (const Row& row : rows_of(found)) {
     std::string line;
-    for (const std::string& cell : cells_of(row, [](double v) { return format_number(v); })) {
+    for (const std::string& cell :
+         cells_of(found, row, [](double v) { return format_number(v); })) {
       line += csv_cell(cell) + ",";
     }
     line.back() = '\n';
@@ -461,7 +548,8 @@ std::string html_of(const ComparedConflicts& found) {
       "<title>Conflicts compared</title>\n<style>\nbody { font: 15px/1.5 sans-serif; margin: 2em; "
       "}\ntable { border-collapse: collapse; }\nth, td { padding: 0.2em 0.7em; border-bottom: 1px "
       "solid #ccc; text-align: right; }\nth:first-child, td:first-child, td:last-child { "
-      "text-align: left; }\ntr.new, tr.worse, tr.question { font-weight: bold; }\n</style>\n"
+      "text-align: left; }\ntr.new, tr.worse, tr.question, tr.not { font-weight: bold; "
+      "}\n</style>\n"
       "</head>\n<body>\n<h1>Conflicts compared</h1>\n";
   out += "<p>a: " + markup_text(found.a.file) + "<br>b: " + markup_text(found.b.file) +
          "</p>\n<p><strong>" + markup_text(sentence_of(found)) +
@@ -475,7 +563,7 @@ std::string html_of(const ComparedConflicts& found) {
   const auto number = [](double v) { return fmt::format("{:.3f}", v); };
   for (const Row& row : rows_of(found)) {
     out += "<tr class=\"" + row.status.substr(0, row.status.find(' ')) + "\">";
-    for (const std::string& cell : cells_of(row, number))
+    for (const std::string& cell : cells_of(found, row, number))
       out += "<td>" + markup_text(cell) + "</td>";
     out += "</tr>\n";
   }
@@ -489,12 +577,36 @@ namespace {
 /// A clause for a result that could not find anything; empty for others.
 std::string undecided_text(const ComparedResult& side, const char* name) {
   if (!side.undecided()) return "";
+  if (side.verdict != Verdict::kUndecided) {
+    return fmt::format("; {} is not known as a whole, because its run warned of {}", name,
+                       fmt::join(side.doubts, ", "));
+  }
+  if (side.doubts.empty()) {
+    return fmt::format("; {} is undecided ({})", name, fmt::join(side.reasons, ", "));
+  }
   return fmt::format(
       "; {} is undecided, because its run warned of {}, so nothing could be found there", name,
       fmt::join(side.doubts, ", "));
 }
 
+/// Clauses about what makes b no later scan of the place than a; empty where it may be one.
+std::string order_text(const ComparedConflicts& found) {
+  std::string text;
+  if (found.is_same_scan) text += "; both results are about the same scan, so nothing is compared";
+  if (found.is_older) {
+    text += "; b was scanned before a, by the dates in the scans: are they the wrong way round?";
+  }
+  return text;
+}
+
 }  // namespace
+
+std::size_t ComparedConflicts::same_in_b() const {
+  std::vector<std::uint32_t> ids;
+  for (const auto& pair : match.same) ids.push_back(pair.second);
+  std::ranges::sort(ids);
+  return static_cast<std::size_t>(std::unique(ids.begin(), ids.end()) - ids.begin());
+}
 
 std::string sentence_of(const ComparedConflicts& found) {
   std::string out;
@@ -504,14 +616,19 @@ std::string sentence_of(const ComparedConflicts& found) {
   };
   add(found.match.added.size(), "new conflict", "new conflicts");
   add(found.worse.size(), "conflict is worse", "conflicts are worse");
-  add(found.new_small.size(), "new group is too small to be listed",
+  add(found.match.grown.size(), "part of another conflict is new",
+      "parts of other conflicts are new");
+  add(found.match.small.size(), "new group is too small to be listed",
       "new groups are too small to be listed");
   if (out.empty()) out = "no new conflicts";
   if (const std::size_t unknown = found.unknown_worse.size(); unknown > 0) {
     out += ", and " + counted(unknown, "conflict") + " of which it is not known whether " +
            (unknown == 1 ? "it is worse" : "they are worse");
   }
-  out += undecided_text(found.b, "b") + undecided_text(found.a, "a");
+  if (const std::size_t open = found.match.not_searched.size(); open > 0) {
+    out += "; b has not searched " + counted(open, "place", "places") + " where a has a conflict";
+  }
+  out += undecided_text(found.b, "b") + undecided_text(found.a, "a") + order_text(found);
   if (found.questions.empty()) return out;
   return out + (out.find(';') == std::string::npos ? ", but" : ";") +
          " b answers another question than a" +
@@ -536,19 +653,31 @@ std::string json_of(const ComparedConflicts& found) {
     questions.push_back({{"what", query.what}, {"a", query.a}, {"b", query.b}});
   }
   auto small = ordered_json::array();
-  for (const std::size_t i : found.new_small) {
+  for (const std::size_t i : found.match.small) {
     small.push_back(json_of_small(found.b.conflicts.small[i]));
+  }
+  auto grown = ordered_json::array();
+  for (const ConflictPart& part : found.match.grown) grown.push_back(json_of_part(part, found.b));
+  auto not_searched = ordered_json::array();
+  for (const NotSearched& part : found.match.not_searched) {
+    not_searched.push_back(json_of_part(part, found.a));
+    not_searched.back()["reasons"] = part.reasons;
   }
   const ordered_json out{{"a", side(found.a)},
                          {"b", side(found.b)},
                          {"holds", found.holds()},
+                         {"same_scan", found.is_same_scan},
+                         {"older", found.is_older},
                          {"questions", questions},
                          {"new", json_of_list(found.b.conflicts, found.match.added)},
+                         {"new_parts", grown},
                          {"new_small", small},
                          {"worse", json_of_pairs(found, found.worse)},
                          {"unknown_worse", json_of_pairs(found, found.unknown_worse)},
                          {"worse_by", found.worse_by},
                          {"distances_known", found.distances_known},
+                         {"not_searched", not_searched},
+                         {"too_small", json_of_list(found.a.conflicts, found.match.shrunk)},
                          {"gone", json_of_list(found.a.conflicts, found.match.gone)},
                          {"same", json_of_pairs(found, found.match.same)}};
   // File names need not be UTF-8.

@@ -46,13 +46,16 @@ struct ComparedResult {
   std::string unit;
   Conflicts conflicts;
   Verdict verdict = Verdict::kUnknown;
-  std::vector<std::string> doubts;  ///< why the verdict is undecided; see Answer
-  bool has_distances = false;       ///< whether the run had clearances
-  bool has_surface = false;         ///< whether the model has triangles
-  bool has_solids = false;          ///< whether the depth inside the model is known
-  bool has_shifts = false;          ///< whether the model was given, so that shifts are known
+  std::vector<std::string> doubts;   ///< see Answer
+  std::vector<std::string> reasons;  ///< names of the reasons of an undecided verdict
+  std::vector<double> chainage;      ///< of each pose, metres, from --chainage-start on
+  bool has_distances = false;        ///< whether the run had clearances
+  bool has_surface = false;          ///< whether the model has triangles
+  bool has_solids = false;           ///< whether the depth inside the model is known
+  bool has_shifts = false;           ///< whether the model was given, so that shifts are known
 
-  bool undecided() const { return verdict == Verdict::kUndecided; }
+  /// Whether something could not be found, whatever the verdict is about the rest.
+  bool undecided() const { return verdict == Verdict::kUndecided || !doubts.empty(); }
 };
 
 /// The outcome of a comparison of two results' conflicts.
@@ -63,24 +66,33 @@ struct ComparedConflicts {
   bool distances_known = false;  ///< whether both results have distances
   double worse_by = 0;
   ConflictMatch match;  ///< which conflicts are new, gone and the same, worse or not
+  /// Whether both results answer the same question about the same points, as where one scan was
+  /// given twice
+  bool is_same_scan = false;
+  bool is_older = false;  ///< whether b was scanned before a, by the dates in the scans
   /// Ids of the same conflict in a and b where b's is worse.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> worse;
   /// Ids of the same conflict in a and b of which it is unknown whether b's is worse, because the
   /// depth of a point behind a surface is not known, and no model was given to find shifts with.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> unknown_worse;
-  /// Indices into b.conflicts.small of the groups that a has nothing near.
-  std::vector<std::size_t> new_small;
 
+  /// Number of conflicts of b that are in match.same.
+  std::size_t same_in_b() const;
   bool same_question() const { return questions.empty() || other_question_allowed; }
   /// Whether b is seen to be worse than a, or answers another question that was not allowed.
   bool differs() const {
-    return !same_question() || !match.added.empty() || !worse.empty() || !new_small.empty();
+    return !same_question() || !match.added.empty() || !match.grown.empty() || !worse.empty() ||
+           !match.small.empty();
   }
-  /// Whether b is no worse than a, and answers the same question or an allowed one. A b that is
-  /// undecided shows nothing.
-  bool holds() const { return !differs() && !b.undecided(); }
-  /// 1 where they differ, 6 where b is undecided, and otherwise 0.
-  int exit_code() const { return differs() ? kDiffers : b.undecided() ? kUndecided : kDone; }
+  /// Whether b cannot show that nothing became worse: something could not be found in it, it has
+  /// not searched a place where a has a conflict, or it is no later scan than a.
+  bool shows_nothing() const {
+    return b.undecided() || !match.not_searched.empty() || is_same_scan || is_older;
+  }
+  /// Whether b is no worse than a, and answers the same question or an allowed one.
+  bool holds() const { return !differs() && !shows_nothing(); }
+  /// 1 where they differ, 6 where b shows nothing, and otherwise 0.
+  int exit_code() const { return differs() ? kDiffers : shows_nothing() ? kUndecided : kDone; }
 };
 
 /// What the comparison found, in one sentence: the last line of the text.

@@ -77,8 +77,10 @@ std::string why(const StationRow& row) {
   if (row.verdict != Verdict::kUndecided) return "";
   std::string out;
   for (const Reason reason : row.reasons) {
+    if (reason == Reason::kQuestionInDoubt) continue;  // the codes of the doubts say more
     out += (out.empty() ? " (" : ", ") + std::string(name_of(reason));
   }
+  for (const std::string& code : row.doubts) out += (out.empty() ? " (" : ", ") + code;
   if (!row.is_searched) out += (out.empty() ? " (" : ", ") + std::string("not searched");
   return out + ")";
 }

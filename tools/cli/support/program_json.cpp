@@ -54,6 +54,11 @@ nlohmann::ordered_json warnings_json(const std::vector<Message>& warnings) {
     auto numbers = nlohmann::ordered_json::object();
     for (const auto& [name, value] : warning.numbers) numbers[name] = value;
     out.push_back({{"code", warning.code}, {"message", warning.text}, {"numbers", numbers}});
+    if (warning.stretches.empty()) continue;
+    auto& stretches = out.back()["stretches"] = nlohmann::ordered_json::array();
+    for (const PoseRange& stretch : warning.stretches) {
+      stretches.push_back({stretch.first, stretch.last});
+    }
   }
   return out;
 }

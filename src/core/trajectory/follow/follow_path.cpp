@@ -7,6 +7,7 @@
 
 #include "clearway/error.hpp"
 #include "core/geometry/angle.hpp"
+#include "core/trajectory/pose_ranges.hpp"
 #include "core/util/format.hpp"
 
 namespace clearway {
@@ -163,7 +164,8 @@ Message message(Message::Severity severity, const std::string& code, const std::
           text,
           {{"poses", static_cast<double>(poses.size())},
            {"first", static_cast<double>(poses.front())},
-           {"last", static_cast<double>(poses.back())}}};
+           {"last", static_cast<double>(poses.back())}},
+          pose_ranges(poses)};
 }
 
 /// "body wagon: 6 of 21 poses of the path (poses 0-5, from 0): ".

@@ -145,8 +145,10 @@ std::string summary_json(const ConflictFile& file) {
     out.add_count("near_points", file.answer.near_points);
     out.add_count("certain_points", file.answer.certain.points);
   }
-  out.add("doubts", json_strings(file.answer.doubts));
-  if (!file.answer.warned_of.empty()) out.add("warned_of", json_strings(file.answer.warned_of));
+  out.add("doubts", json_strings(file.answer.doubts()));
+  if (const auto codes = file.answer.warned_of(); !codes.empty()) {
+    out.add("warned_of", json_strings(codes));
+  }
   if (header.ignores_points()) {
     out.add_count("ignored_points", header.ignored.points);
     const auto& colliding = file.answer.ignored_colliding;
@@ -174,7 +176,7 @@ std::string summary_json(const ConflictFile& file) {
   out.add("has_last_poses", conflicts.has_last_poses ? "true" : "false");
   out.add_length("longest_group", conflicts.longest_group);
   out.add_count("longest_group_points", conflicts.longest_group_points);
-  out.add("warnings", json_messages(file.warnings));
+  out.add("warnings", json_messages(file.all_warnings()));
   return std::move(out).text();
 }
 

@@ -24,6 +24,12 @@ struct ConflictFile {
   /// Date for formats that need one: an ISO 8601 time in UTC.
   std::string date = kNoDate;
 
+  /// The warnings of the search, and those about the conflicts.
+  std::vector<Message> all_warnings() const {
+    std::vector<Message> all = answer.warnings;
+    all.insert(all.end(), warnings.begin(), warnings.end());
+    return all;
+  }
   /// Unit of all lengths, which the scan's coordinate reference system names.
   LengthUnit unit() const { return unit_of_crs(header.crs_wkt); }
   /// Metres per unit of length; 1 where the unit is not known.

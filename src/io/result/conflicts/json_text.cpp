@@ -111,8 +111,14 @@ std::string message_json(const Message& message) {
   for (const auto& [name, value] : message.numbers) {
     numbers += (numbers.empty() ? "" : ", ") + json_string(name) + ": " + json_number(value);
   }
+  std::string stretches;
+  for (const PoseRange& stretch : message.stretches) {
+    stretches += (stretches.empty() ? "[" : ", [") + std::to_string(stretch.first) + ", " +
+                 std::to_string(stretch.last) + "]";
+  }
   return "{\"code\": " + json_string(message.code) + ", \"message\": " + json_string(message.text) +
-         ", \"numbers\": {" + numbers + "}}";
+         ", \"numbers\": {" + numbers + "}" +
+         (stretches.empty() ? "" : ", \"stretches\": [" + stretches + "]") + "}";
 }
 
 }  // namespace

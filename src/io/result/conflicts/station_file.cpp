@@ -56,19 +56,19 @@ std::vector<StationField> fields_of(const StationRow& row, const std::vector<std
 
 void write_csv(const StationFile& stations, const File& file) {
   TextWriter out(file);
-  const auto write = [&](const StationRow& row, auto text_of) {
-    const char* between = "";
+  const auto write = [&](const StationRow& row, const std::string& doubts, auto text_of) {
     for (const StationField& field : fields_of(row, stations.table.bodies)) {
-      out << between << text_of(field);
-      between = ",";
+      out << text_of(field) << ",";
     }
-    out << "\n";
+    out << doubts << "\n";
   };
   StationRow header;
   header.overthrow.resize(stations.table.bodies.size());
-  write(header, [](const StationField& field) { return csv_cell(field.first); });
+  write(header, "doubts", [](const StationField& field) { return csv_cell(field.first); });
   for (const StationRow& row : stations.table.rows) {
-    write(row, [](const StationField& field) { return csv_value(field.second); });
+    std::string doubts;  // codes have no blanks
+    for (const std::string& code : row.doubts) doubts += (doubts.empty() ? "" : " ") + code;
+    write(row, doubts, [](const StationField& field) { return csv_value(field.second); });
   }
   out.flush();
 }
@@ -81,6 +81,7 @@ std::string row_json(const StationRow& row, const std::vector<std::string>& bodi
   std::vector<std::string> reasons;
   for (const Reason reason : row.reasons) reasons.emplace_back(name_of(reason));
   return "{" + out + ", \"reasons\": " + json_strings(reasons) +
+         ", \"doubts\": " + json_strings(row.doubts) +
          ", \"searched\": " + (row.is_searched ? "true" : "false") + "}";
 }
 
@@ -114,7 +115,7 @@ std::string summary_json(const StationFile& file) {
   out.add_length("clearance", header.clearance);
   out.add("between_poses", header.between_poses ? "true" : "false");
   out.add("verdict", json_string(name_of(file.answer.verdict())));
-  out.add("doubts", json_strings(file.answer.doubts));
+  out.add("doubts", json_strings(file.answer.doubts()));
   out.add_length("every", file.options.every);
   out.add_length("chainage_start", file.options.chainage_start);
   out.add_count("station_count", file.table.rows.size());
@@ -123,7 +124,9 @@ std::string summary_json(const StationFile& file) {
   out.add_hash("environment_hash", header.environment_hash);
   out.add_hash("model_hash", header.model_hash);
   out.add_hash("trajectory_hash", header.trajectory_hash);
-  out.add("warnings", json_messages(file.table.warnings));
+  std::vector<Message> warnings = file.answer.warnings;
+  warnings.insert(warnings.end(), file.table.warnings.begin(), file.table.warnings.end());
+  out.add("warnings", json_messages(warnings));
   return std::move(out).text();
 }
 

@@ -1,8 +1,10 @@
 #include "io/scans/las/las_header.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <limits>
 #include <optional>
 #include <span>
@@ -79,6 +81,20 @@ Quantisation read_quantisation(const InputBuffer& input, const std::byte* header
   return result;
 }
 
+/// The day on which a file was made, from the number of the day in its year, from 1 on, and the
+/// year; empty where either cannot be one.
+std::string date_of(unsigned day, unsigned year) {
+  using namespace std::chrono;
+  constexpr unsigned kFirstYear = 1990, kLastYear = 2200;
+  if (day < 1 || day > 366 || year < kFirstYear || year > kLastYear) return "";
+  const sys_days first = std::chrono::year(static_cast<int>(year)) / January / 1;
+  const year_month_day date(first + days(day - 1));
+  char text[16];
+  std::snprintf(text, sizeof text, "%04d-%02u-%02u", static_cast<int>(date.year()),
+                static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()));
+  return text;
+}
+
 /// Reads the bounds, which are stored as the greatest and the least of x, of y and of z.
 std::optional<Box> read_box(const std::byte* bytes) {
   Box box;
@@ -150,6 +166,7 @@ LasPublicHeader read_las_header(InputBuffer& input) {
   const unsigned minor = load<std::uint8_t>(bytes + 25);
   header.encoding = load<std::uint16_t>(bytes + 6);
   const bool internal_waveforms = (header.encoding & kInternalWaveforms) != 0;
+  header.date = date_of(load<std::uint16_t>(bytes + 90), load<std::uint16_t>(bytes + 92));
   header.header_bytes = load<std::uint16_t>(bytes + 94);
   header.points_offset = load<std::uint32_t>(bytes + 96);
   header.vlr_count = load<std::uint32_t>(bytes + 100);

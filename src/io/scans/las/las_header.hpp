@@ -100,6 +100,7 @@ struct LasPublicHeader {
   bool compressed;         ///< whether the file is LAZ
   bool has_flags;          ///< whether points have flags; in LAS 1.0 their bits belong to the class
   std::uint16_t encoding;  ///< the bits of "global encoding"
+  std::string date;        ///< day on which the file was made, as in CloudInfo
   Quantisation quantisation;
   std::optional<Box> box;     ///< declared box of all points, where it holds finite numbers
   std::uint64_t tail_offset;  ///< byte of the first extended variable length record

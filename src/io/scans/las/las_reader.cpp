@@ -67,6 +67,7 @@ class LasReader final : public PointReader {
       : input_(std::move(input)), header_(header), crs_(std::move(crs)), points_(header.points) {
     if (with_times) time_byte_ = las_time_byte(header.point_format);
     info_.gps_times = gps_times_of(header);
+    info_.date = header.date;
     first_point_ = input_.mark();
     if (input_.can_seek()) {
       read_las_tail(input_, header_, crs_);
@@ -248,6 +249,7 @@ std::unique_ptr<PointReader> read_compressed(InputBuffer input, const LasPublicH
   info.declared_box = header.box;
   info.gps_times = scheme.has_times() ? gps_times_of(header) : GpsTimes::kNone;
   info.set(records.crs.stated());
+  info.date = header.date;
   const std::uint64_t end = header.tail_count > 0 ? header.tail_offset : *input.size();
   return read_laz_points(std::move(input), scheme, {header.points_offset, end, header.points},
                          std::move(info));

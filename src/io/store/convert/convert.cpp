@@ -337,6 +337,7 @@ class Conversion {
     if (withheld > 0) {
       report_.metadata.withheld = {.points = withheld, .kept = options_.keep_withheld};
     }
+    for (const CloudInfo& info : environment.infos()) report_.metadata.dates.add(info.date);
     report_.absent_points = environment.absent_points();
     report_.non_finite_points = environment.non_finite_points();
     const Quantisation& quanta = environment.quantisation();

@@ -174,6 +174,8 @@ constexpr std::size_t kMeasuredPoses = 64;
 constexpr double kFar = 10;
 constexpr double kNear = 3;
 constexpr double kLongestBlock = 5;
+/// Where a gap is known, it begins where the scan is farther away than this, metres.
+constexpr double kRim = 1;
 /// The scan has a gap where it is this many times farther away than is usual on the path.
 constexpr double kUnusual = 4;
 
@@ -206,6 +208,7 @@ PathCover::PathCover(const Question& question)
   measure(question);
   reach_ = std::max(std::clamp(kUnusual * usual_, kNear * question.metre, far_), coarse);
   look(question);
+  extend_stretches(question);
 }
 
 void PathCover::measure(const Question& question) {
@@ -229,6 +232,8 @@ void PathCover::look(const Question& question) {
     const double way = clearway::length(poses[i].position() - poses[before].position());
     length_ += way;
     length_outside_ += way * (int{was_outside} + int{is_outside}) / 2;
+    if (is_outside && !was_outside) stretches_outside_.push_back({i == 0 ? 0 : before + 1, i});
+    if (was_outside) stretches_outside_.back().last = is_outside ? i : i - 1;
     before = i;
     was_outside = is_outside;
     ++looked_at_;
@@ -237,6 +242,29 @@ void PathCover::look(const Question& question) {
     last_outside_ = i;
     ++outside_;
   }
+}
+
+/// Poses less than `reach()` beyond the end of the scan are no gap by themselves, but belong to the
+/// gap that follows.
+void PathCover::extend_stretches(const Question& question) {
+  const Box slice = body_slice(question.model);
+  const std::vector<Pose>& poses = question.query.poses;
+  const double rim = std::min(reach_, std::max(kUnusual * usual_, kRim * question.metre));
+  const auto is_beyond = [&](std::size_t i) { return !scan_.within(moved(slice, poses[i]), rim); };
+  std::vector<PoseRange> all;
+  for (PoseRange stretch : stretches_outside_) {
+    const std::uint32_t least = all.empty() ? 0 : all.back().last + 1;
+    while (stretch.first > least && is_beyond(stretch.first - 1)) --stretch.first;
+    while (stretch.last + std::size_t{1} < poses.size() && is_beyond(stretch.last + 1)) {
+      ++stretch.last;
+    }
+    if (!all.empty() && stretch.first <= all.back().last + 1) {
+      all.back().last = std::max(all.back().last, stretch.last);
+    } else {
+      all.push_back(stretch);
+    }
+  }
+  stretches_outside_ = std::move(all);
 }
 
 }  // namespace clearway

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "clearway/progress.hpp"
 #include "search/checks/facts/scan_facts.hpp"
 #include "search/checks/question.hpp"
 
@@ -81,6 +82,9 @@ class PathCover {
   std::uint64_t outside() const { return outside_; }
   std::uint32_t first_outside() const { return first_outside_; }
   std::uint32_t last_outside() const { return last_outside_; }
+  /// Stretches of the question's poses that are outside, with the poses before and after them up to
+  /// where the scan ends: those at which nothing is within four times the usual distance, or 1 m.
+  const std::vector<PoseRange>& stretches_outside() const { return stretches_outside_; }
   /// Length of the path, straight from each pose that was looked at to the next.
   double length() const { return length_; }
   double length_outside() const { return length_outside_; }
@@ -88,11 +92,13 @@ class PathCover {
  private:
   void measure(const Question& question);
   void look(const Question& question);
+  void extend_stretches(const Question& question);
 
   ScanProximity scan_;
   double far_ = 0, reach_ = 0, usual_ = 0, length_ = 0, length_outside_ = 0;
   std::uint64_t looked_at_ = 0, outside_ = 0;
   std::uint32_t first_outside_ = 0, last_outside_ = 0;
+  std::vector<PoseRange> stretches_outside_;
 };
 
 /// The slice of a model's box that PathCover moves along the path.

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <ranges>
+#include <vector>
+
+#include "clearway/progress.hpp"
+
+namespace clearway {
+
+/// The poses `i` to `i + beyond` of each index i, as stretches of the path that are ascending and
+/// apart from each other. indices: ascending. beyond: 0 for poses, 1 for the steps that start
+/// there.
+template <std::ranges::range Indices>
+std::vector<PoseRange> pose_ranges(const Indices& indices, std::uint32_t beyond = 0) {
+  std::vector<PoseRange> out;
+  for (const auto index : indices) {
+    const auto first = static_cast<std::uint32_t>(index);
+    if (out.empty() || first > out.back().last + 1) out.push_back({first, first});
+    out.back().last = std::max(out.back().last, first + beyond);
+  }
+  return out;
+}
+
+}  // namespace clearway

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <algorithm>
+#include <string>
+
+#include "io/files/hdf5.hpp"
+
+namespace clearway {
+
+/// The days on which scans were made, as far as their files tell, in the form "2024-05-31", whose
+/// order is that of the days. Both are empty where no file tells.
+struct ScanDates {
+  std::string first = {}, last = {};
+
+  bool known() const { return !first.empty(); }
+  /// Takes in the day of one more file; nothing where it is empty.
+  void add(const std::string& day) {
+    if (day.empty()) return;
+    first = known() ? std::min(first, day) : day;
+    last = std::max(last, day);
+  }
+  friend bool operator==(const ScanDates&, const ScanDates&) = default;
+};
+
+/// Writes the dates as attributes of a store or a result; none where no file tells.
+void write_scan_dates(const hdf5::Id& file, const ScanDates& dates);
+
+/// Reads the dates. name: the file's, for messages. Throws InputError where they are damaged.
+ScanDates read_scan_dates(const hdf5::Id& file, const std::string& name);
+
+}  // namespace clearway
