@@ -13,6 +13,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -76,17 +77,22 @@ std::uint64_t MemoryWatch::anonymous_bytes() const {
 
 MemoryWatch::MemoryWatch()
     : statm_(::open("/proc/self/statm", O_RDONLY | O_CLOEXEC)),
-      page_bytes_(static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE))),
-      thread_([this] {
-        while (!stopped_) {
-          look();
-          std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        }
-      }) {}
+      page_bytes_(static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE))) {
+  try {
+    thread_ = std::thread([this] {
+      while (!stopped_) {
+        look();
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      }
+    });
+  } catch (const std::system_error&) {
+    // No thread is available, so peak_bytes() alone looks at the memory.
+  }
+}
 
 MemoryWatch::~MemoryWatch() {
   stopped_ = true;
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
   if (statm_ >= 0) ::close(statm_);
 }
 

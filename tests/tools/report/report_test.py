@@ -125,8 +125,10 @@ class ReportTest(PageChecks, unittest.TestCase):
                 file.flush()
                 scene = Scene(folder)
                 scene.trajectory, scene.model = f"{folder}/bend.txt", "box:8,2.5,3.4"
-                result = scene.search("bend", "--radius", 0.1, "--first-pose")
-                path, facts = scene.report(result, "bend", "--chainage-start", 100)
+                result = scene.search("bend", "--radius", 0.1, "--first-pose",
+                                      "--trajectory-format", "pose-xyzw")
+                path, facts = scene.report(result, "bend", "--chainage-start", 100,
+                                           "--trajectory-format", "pose-xyzw")
                 site = facts["on_site"]
                 first, last = site["first"], site["last"]
                 self.assertEqual(site["bodies"][0]["hi"], [4, 1.25, 3.4])

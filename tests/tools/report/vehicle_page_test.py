@@ -60,7 +60,9 @@ class VehiclePageTest(PageChecks, unittest.TestCase):
         self.assertEqual((middle["pivots"], front["at"]), ([1.02, -1.02], 2))
         self.assertFalse({"at", "pivots", "hitch"} & slow.keys())
         self.assertEqual((front["lo"], front["hi"]), ([0, -0.4, 0.2], [0.8, 0.4, 0.9]))
-        page = self.open(self.page)
+        if self.browser is None:
+            self.skipTest("chromium is not installed: the page is made, but not looked at")
+        page = self.browser.page(self.page)
         words = page.run("byId('on-site').innerText")
         for part in ("Check these on site", "Bodies", "front: 0.80 × 0.80 × 0.70 m", "from its origin 0.80 m ahead",
                      "0.40 m left, 0.40 m right", "pivots 2.04 m apart, 1.02 m ahead of the path's pose and 1.02 m behind it",

@@ -154,7 +154,7 @@ def merges_need_no_gpu(test):
         expect(device in of_run[0], f"{task}")
 
 
-def submit(test, *words, scontrol="MaxArraySize            = 1001"):
+def submit(test, *words, folder="slurm", scontrol="MaxArraySize            = 1001"):
     """Runs submit.sh with programs in the place of Slurm's. Returns how it ended, and what each
     sbatch was given: its words, and then its standard input."""
     programs = test.work / "bin"
@@ -166,7 +166,7 @@ def submit(test, *words, scontrol="MaxArraySize            = 1001"):
                                   "/dev/stdin\necho $number")]:
         (programs / name).write_text("#!/bin/sh\n" + text + "\n")
         (programs / name).chmod(0o755)
-    done = subprocess.run([test.work / "slurm/submit.sh", *words], stdin=subprocess.DEVNULL,
+    done = subprocess.run([test.work / folder / "submit.sh", *words], stdin=subprocess.DEVNULL,
                           text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60,
                           env={**os.environ, "PATH": f"{programs}:{os.environ['PATH']}"})
     return done, [path.read_text() for path in sorted(programs.glob("job*"))]
@@ -175,7 +175,7 @@ def submit(test, *words, scontrol="MaxArraySize            = 1001"):
 def submit_takes_lists(test):
     """An empty list, such as that of what is missing where nothing is, submits nothing."""
     program("campaign", "plan", write_campaign(test.work, limits=DIVIDED), "-o",
-            test.work / "slurm")
+            test.work / "lists")
     last = test.last
     runs = [i for i in range(last + 1) if i not in (test.merge, last)]
     merges = f"{test.merge},{last}"
@@ -191,7 +191,7 @@ def submit_takes_lists(test):
             (["all"], 2, "all: expected numbers", []),
             (["0,"], 2, "0,: expected numbers", []),
             (["0", "1"], 2, "one list of tasks", [])]:
-        done, jobs = submit(test, *words)
+        done, jobs = submit(test, *words, folder="lists")
         expect(done.returncode == code and said in done.stdout + done.stderr, f"{words}: {done}")
         given = [job.splitlines()[0] for job in jobs]
         expect([words for words in given if "--wrap" in words] == given[len(arrays):],
@@ -199,7 +199,7 @@ def submit_takes_lists(test):
         expect(len(given) == len(arrays) + (1 if arrays else 0), f"{words}: {given}")
         expect(all(f"--array={array}" in one.split() for array, one in zip(arrays, given)),
                f"{words}: {given}")
-    done, jobs = submit(test, "0", scontrol="")
+    done, jobs = submit(test, "0", folder="lists", scontrol="")
     expect(done.returncode == 4 and "MaxArraySize" in done.stderr and not jobs, f"{done}")
     done = run(test, "--task", "")
     expect(done.returncode == 0 and "nothing to do" in done.stderr, done.stderr)
@@ -207,7 +207,7 @@ def submit_takes_lists(test):
 
 def merges_ask_slurm_for_no_gpu(test):
     campaign = write_campaign(test.work, limits=DIVIDED, slurm=["--gres=gpu:1", "--time=10"])
-    program("campaign", "plan", campaign, "-o", test.work / "slurm", "--force")
+    program("campaign", "plan", campaign, "-o", test.work / "slurm")
     done, jobs = submit(test)
     expect(done.returncode == 0, done.stderr)
     shards, merges, _ = jobs
