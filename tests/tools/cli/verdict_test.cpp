@@ -328,8 +328,10 @@ TEST_CASE("an all-clear that was warned of is never repeated without the warning
   CHECK_THAT(listed.out, Contains("is clear: ") && Contains(clause));
   CHECK_THAT(street.program("export out.h5 -o p.csv").err, Contains(clause));
   // A result that collides keeps them too.
-  REQUIRE(street.run("--radius 0.3 --force").exit_code == 0);
-  CHECK(json::parse(street.program("info --json out.h5").out)["warned_of"] == json(codes));
+  const json colliding = json::parse(street.run("--radius 0.3 --force --json").out);
+  REQUIRE(colliding["verdict"] == "conflict");
+  CHECK(!colliding["warnings"].empty());
+  CHECK(json::parse(street.program("info --json out.h5").out)["warnings"] == colliding["warnings"]);
 }
 
 TEST_CASE("a least distance is told without the rounding of its coordinates") {
