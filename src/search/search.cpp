@@ -151,10 +151,10 @@ class Search {
   /// Reports the answer of a result that was there already, and those of its warnings that have not
   /// been passed on, because only its search could give them.
   void take_finished() {
-    const std::vector<Message> told = report_.warnings;
+    const std::vector<Message> passed_on = report_.warnings;
     report_finished(ResultReader(file_->journal.output(), Parts::kAccepted), report_);
     for (const Message& warning : report_.warnings) {
-      if (options_.message && !has_warning(told, warning)) options_.message(warning);
+      if (options_.message && !has_warning(passed_on, warning)) options_.message(warning);
     }
   }
 
