@@ -13,6 +13,7 @@
 #include "core/util/messages.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/files/pending_file.hpp"
+#include "io/files/thread_limit.hpp"
 #include "io/paths/content_hash.hpp"
 #include "io/section/section_file.hpp"
 #include "io/store/store_reader.hpp"
@@ -24,7 +25,6 @@
 #include "search/section_ignored.hpp"
 #include "search/section_seen.hpp"
 #include "search/seen_space.hpp"
-#include "search/threads.hpp"
 
 namespace clearway {
 
