@@ -22,7 +22,7 @@ py::dict numbers_of(const Message& message) {
   return numbers;
 }
 
-py::list stretches_of(const Message& message) {
+py::list path_stretches_of(const Message& message) {
   py::list stretches;
   for (const PoseRange& stretch : message.stretches) {
     stretches.append(py::make_tuple(stretch.first, stretch.last));
@@ -48,7 +48,7 @@ void add_messages(py::module_& module) {
       .def_property_readonly(
           "body", [](const Message& m) { return text(m.body); },
           "The name of the one body that it is about; '' where it is about several or all.")
-      .def_property_readonly("stretches", stretches_of,
+      .def_property_readonly("stretches", path_stretches_of,
                              "The stretches of the path that the message is about: a list of pairs "
                              "of the first and the last pose, ascending. Empty for a message about "
                              "the whole question.")

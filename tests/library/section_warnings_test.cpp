@@ -49,7 +49,7 @@ void bend(RoadQuestion& question, double step) {
 }
 
 /// A question, and the codes of its warnings.
-struct Trial {
+struct AskedTrial {
   const char* name;
   std::function<void(RoadQuestion&)> change;
   std::string codes;
@@ -61,8 +61,8 @@ void stand_in_the_way(RoadQuestion& question) {
   }
 }
 
-const std::vector<Trial>& trials() {
-  static const std::vector<Trial> all{
+const std::vector<AskedTrial>& trials() {
+  static const std::vector<AskedTrial> all{
       {"a sound road", [](RoadQuestion&) {}, ""},
       {"an obstacle of an ignored class",
        [](RoadQuestion& q) {
@@ -187,7 +187,7 @@ bool names(const std::vector<Message>& warnings, const std::string& code, std::u
 
 TEST_CASE("a section warns where its path, its place or what it ignores may be wrong") {
   const ScratchFolder folder;
-  for (const Trial& trial : trials()) {
+  for (const AskedTrial& trial : trials()) {
     RoadQuestion question;
     trial.change(question);
     question.scan.convert_to(folder / "road.h5");
@@ -247,7 +247,7 @@ TEST_CASE("the place of a path causes the same warnings whoever asks") {
                                        "nothing-beside", "one-side",       "out-of-reach",
                                        "absent-class",   "trajectory-jump"};
   int same = 0;
-  for (const Trial& trial : trials()) {
+  for (const AskedTrial& trial : trials()) {
     RoadQuestion question;
     trial.change(question);
     const bool is_of_place = question.path.size() > 20 && !question.asked.window &&

@@ -29,7 +29,7 @@ const std::string kFeetHeights =
 
 /// A scan of three points, 10 by 10 by 20 units, by its middle, the text of its system and its
 /// GeoTIFF keys.
-struct Scan {
+struct MapScan {
   std::string text = {};
   std::vector<std::array<std::uint16_t, 2>> keys = {};
   double easting = 500'000, northing = 5'300'000;
@@ -63,9 +63,9 @@ struct Outcome {
   }
 };
 
-using Files = std::vector<std::pair<std::string, std::string>>;
+using NamedFiles = std::vector<std::pair<std::string, std::string>>;
 
-Outcome outcome_of_files(const Files& files, const ConvertOptions& how = {}) {
+Outcome outcome_of_files(const NamedFiles& files, const ConvertOptions& how = {}) {
   const ScratchFolder folder;
   ConversionOptions options{how, {}, folder / "a.h5"};
   for (const auto& [name, bytes] : files) {
@@ -84,7 +84,7 @@ Outcome outcome_of_files(const Files& files, const ConvertOptions& how = {}) {
   return out;
 }
 
-Outcome outcome_of(const Scan& scan, const ConvertOptions& how = {}) {
+Outcome outcome_of(const MapScan& scan, const ConvertOptions& how = {}) {
   return outcome_of_files({{"a.las", scan.bytes()}}, how);
 }
 
@@ -97,7 +97,7 @@ const Message& warning(const Outcome& outcome, const std::string& code) {
   return *found;
 }
 
-double number(const Message& message, const std::string& name) {
+double number_of(const Message& message, const std::string& name) {
   for (const auto& [key, value] : message.numbers) {
     if (key == name) return value;
   }
@@ -112,14 +112,14 @@ TEST_CASE("heights in another unit are refused, named, converted, or ignored wit
       R"(ENGCRS["a",EDATUM["x"],CS[Cartesian,3],AXIS["x",east,LENGTHUNIT["metre",1]],)"
       R"(AXIS["y",north,LENGTHUNIT["metre",1]],)"
       R"(AXIS["z",up,LENGTHUNIT["US survey foot",0.3048006096012192]]])";
-  const std::vector<Scan> scans{{kUtm32 + "," + kFeetHeights},
-                                {kUtm32 + "]," + kFeetHeights},
-                                {"COMPD_CS[\"c\"," + kUtm32 + "," + kFeetHeights + "]"},
-                                {third},
-                                {"", {{1024, 1}, {3072, 32632}, {4096, 6360}}},
-                                {"", {{1024, 1}, {3072, 32632}, {4099, 9003}}},
-                                {kUtm32, {{4099, 9003}}}};
-  for (const Scan& scan : scans) {
+  const std::vector<MapScan> scans{{kUtm32 + "," + kFeetHeights},
+                                   {kUtm32 + "]," + kFeetHeights},
+                                   {"COMPD_CS[\"c\"," + kUtm32 + "," + kFeetHeights + "]"},
+                                   {third},
+                                   {"", {{1024, 1}, {3072, 32632}, {4096, 6360}}},
+                                   {"", {{1024, 1}, {3072, 32632}, {4099, 9003}}},
+                                   {kUtm32, {{4099, 9003}}}};
+  for (const MapScan& scan : scans) {
     INFO(scan.text << " and " << scan.keys.size() << " keys");
     const Outcome refused = outcome_of(scan);
     CHECK_THAT(refused.refusal,
@@ -143,14 +143,14 @@ TEST_CASE("heights in another unit are refused, named, converted, or ignored wit
 }
 
 TEST_CASE("heights in the other of the two feet, or without a unit, go with the plane") {
-  for (const Scan& scan : std::vector<Scan>{{"", {{1024, 1}, {3076, 9002}, {4099, 9003}}},
-                                            {"", {{1024, 1}, {3076, 9003}, {4099, 9002}}},
-                                            {"", {{1024, 1}, {3076, 9003}}}}) {
+  for (const MapScan& scan : std::vector<MapScan>{{"", {{1024, 1}, {3076, 9002}, {4099, 9003}}},
+                                                  {"", {{1024, 1}, {3076, 9003}, {4099, 9002}}},
+                                                  {"", {{1024, 1}, {3076, 9003}}}}) {
     const Outcome outcome = outcome_of(scan);
     CHECK(outcome.refusal.empty());
     CHECK(outcome.messages == " feet ");
   }
-  CHECK(outcome_of(Scan{kUtm32}).messages == " ");
+  CHECK(outcome_of(MapScan{kUtm32}).messages == " ");
 }
 
 TEST_CASE("heights of floating-point numbers, several files and tables are converted") {
@@ -163,12 +163,13 @@ TEST_CASE("heights of floating-point numbers, several files and tables are conve
   CHECK(named.report.box->hi.x == 3);
   const Outcome unnamed = outcome_of_files({{"a.xyz", "1 2 0\n3 4 10\n"}}, feet);
   CHECK(unnamed.report.box->hi.z == Approx(3.048).margin(1e-6));
-  const Outcome both = outcome_of_files({{"a.las", Scan{}.bytes()}, {"b.las", Scan{}.bytes()}},
-                                        {.unit_z = FileUnit::named("mm")});
+  const Outcome both =
+      outcome_of_files({{"a.las", MapScan{}.bytes()}, {"b.las", MapScan{}.bytes()}},
+                       {.unit_z = FileUnit::named("mm")});
   CHECK(both.report.box->hi.z == Approx(0.02));
   CHECK(both.report.points == 6);
   // In a plane of US survey feet, "ft" is this foot.
-  const Scan survey{"", {{1024, 1}, {3076, 9003}}};
+  const MapScan survey{"", {{1024, 1}, {3076, 9003}}};
   CHECK(outcome_of(survey, feet).report.box->hi.z == 20);
   CHECK(outcome_of(survey, {.unit_z = FileUnit::named("m")}).report.box->hi.z ==
         Approx(20 / kMetresPerUsSurveyFoot));
@@ -177,7 +178,7 @@ TEST_CASE("heights of floating-point numbers, several files and tables are conve
 TEST_CASE("a store of converted heights is not that of other options") {
   const ScratchFolder folder;
   NoProgress progress;
-  put_bytes(folder / "a.las", Scan{}.bytes());
+  put_bytes(folder / "a.las", MapScan{}.bytes());
   ConversionOptions options = conversion_of({folder / "a.las"}, folder / "a.h5");
   options.unit_z = FileUnit::named("ft");
   convert_quietly(options);
@@ -195,15 +196,15 @@ TEST_CASE("a system that is not read is refused, and never counts as none") {
            "LOCAL_CS[\"a\",UNIT[\"metre\",1],AXIS[\"X\",EAST],AXIS[\"Y\",NORTH]"
            ",AXIS[\"Z\",UP]]"}) {
     INFO(text);
-    CHECK_THAT(outcome_of(Scan{text}).refusal, Contains("is not read"));
-    const Outcome ignored = outcome_of(Scan{text}, {.ignore_crs = true});
+    CHECK_THAT(outcome_of(MapScan{text}).refusal, Contains("is not read"));
+    const Outcome ignored = outcome_of(MapScan{text}, {.ignore_crs = true});
     CHECK_THAT(warning(ignored, "crs-ignored").text, Contains("is not read"));
   }
-  const Outcome keys = outcome_of(Scan{"", {{1024, 1}, {3076, 32632}}});
+  const Outcome keys = outcome_of(MapScan{"", {{1024, 1}, {3076, 32632}}});
   CHECK(keys.messages == " crs-not-read ");
   CHECK_THAT(warning(keys, "crs-not-read").text,
              Contains("key 3076 is 32632") && Contains("metres are assumed"));
-  const Outcome known = outcome_of(Scan{"PROJCS[\"a\"]", {{1024, 1}, {3072, 32632}}});
+  const Outcome known = outcome_of(MapScan{"PROJCS[\"a\"]", {{1024, 1}, {3072, 32632}}});
   CHECK(known.messages == " crs-not-read ");
 }
 
@@ -218,30 +219,31 @@ TEST_CASE("a map that does not keep lengths is warned of, and refused above 5 %"
                                            {"EPSG:3395", 1113194.9, 8362698.5, 1.9950},
                                            {kUtm32, 3'000'000, 5'300'000, 1.0774}}) {
     INFO(one.text);
-    const Scan scan{one.text, {}, one.easting, one.northing};
+    const MapScan scan{one.text, {}, one.easting, one.northing};
     const Outcome refused = outcome_of(scan);
     CHECK_THAT(refused.refusal, Contains(std::to_string(one.scale).substr(0, 4)) &&
                                     Contains("times those on the ground"));
     CHECK(refused.remedy == Remedy::kIgnoreCrs);
     const Outcome ignored = outcome_of(scan, {.ignore_crs = true});
-    CHECK(number(warning(ignored, "map-scale"), "scale") == Approx(one.scale).margin(1e-3));
+    CHECK(number_of(warning(ignored, "map-scale"), "scale") == Approx(one.scale).margin(1e-3));
     CHECK(ignored.report.metadata.warnings.size() == 1);
   }
-  const Outcome polar = outcome_of(Scan{"EPSG:3031", {}, 1419227.9, 819391.6});
-  CHECK(number(warning(polar, "map-scale"), "scale") == Approx(0.98963).margin(1e-4));
-  for (const Scan& scan : std::vector<Scan>{{kUtm32},
-                                            {kUtm32, {}, 166'000, 10'000},
-                                            {kUtm32, {}, 834'000, 10'000},
-                                            {"EPSG:2193", {}, 1'750'000, 5'426'000},
-                                            {"EPSG:4978", {}, 4'000'000, 600'000},
-                                            {"LOCAL_CS[\"a\",UNIT[\"metre\",1]]", {}, 0, 0}}) {
+  const Outcome polar = outcome_of(MapScan{"EPSG:3031", {}, 1419227.9, 819391.6});
+  CHECK(number_of(warning(polar, "map-scale"), "scale") == Approx(0.98963).margin(1e-4));
+  for (const MapScan& scan :
+       std::vector<MapScan>{{kUtm32},
+                            {kUtm32, {}, 166'000, 10'000},
+                            {kUtm32, {}, 834'000, 10'000},
+                            {"EPSG:2193", {}, 1'750'000, 5'426'000},
+                            {"EPSG:4978", {}, 4'000'000, 600'000},
+                            {"LOCAL_CS[\"a\",UNIT[\"metre\",1]]", {}, 0, 0}}) {
     INFO(scan.text);
     CHECK(outcome_of(scan).messages == " ");
   }
-  CHECK(outcome_of(Scan{"EPSG:5514", {}, 1e9, 1e9}).messages == " map-scale-unknown ");
+  CHECK(outcome_of(MapScan{"EPSG:5514", {}, 1e9, 1e9}).messages == " map-scale-unknown ");
   // Named in feet, coordinates on a map in metres lie where they do in metres.
   const double foot = kMetresPerUsSurveyFoot;
-  const Scan contradicting{
+  const MapScan contradicting{
       "", {{1024, 1}, {3072, 32632}, {3076, 9003}}, 500'000 / foot, 5'300'000 / foot};
   CHECK(outcome_of(contradicting).messages == " units-contradict feet ");
 }
@@ -249,7 +251,7 @@ TEST_CASE("a map that does not keep lengths is warned of, and refused above 5 %"
 TEST_CASE("with --resume a store of an ignored system is converted again") {
   const ScratchFolder folder;
   NoProgress progress;
-  put_bytes(folder / "a.las", Scan{"EPSG:3857", {}, 1224514.4, 6106854.8}.bytes());
+  put_bytes(folder / "a.las", MapScan{"EPSG:3857", {}, 1224514.4, 6106854.8}.bytes());
   ConversionOptions options = conversion_of({folder / "a.las"}, folder / "a.h5");
   options.ignore_crs = true;
   convert_quietly(options);
@@ -267,7 +269,7 @@ TEST_CASE("numbers that look like degrees are warned of where nothing names a un
               std::to_string(y + length * share * share) + " " + std::to_string(height * share) +
               "\n";
     }
-    return Files{{"a.xyz", text}};
+    return NamedFiles{{"a.xyz", text}};
   };
   CHECK(outcome_of_files(scan(11.5, 48.1, 0.02, 35)).has("degrees"));
   CHECK(outcome_of_files(scan(-94.66, 31.03, 0.0229, 39)).has("degrees"));

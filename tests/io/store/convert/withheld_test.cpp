@@ -16,12 +16,12 @@ using namespace clearway::test;
 namespace {
 
 /// A LAS file in which a third of the points is withheld, and some have other flags.
-struct Scan {
+struct FlaggedScan {
   LasBytes las;
   std::vector<std::uint64_t> kept;  ///< numbers of the points that are not withheld
   FlagCounts flags;
 
-  Scan(unsigned format, std::size_t count) {
+  FlaggedScan(unsigned format, std::size_t count) {
     las.minor = format == 0 ? 1 : 4;
     las.format = format;
     las.scale = {0.001, 0.001, 0.001};
@@ -82,7 +82,7 @@ TEST_CASE("withheld points of all formats are left out and counted, or kept") {
   const ScratchFolder folder;
   const unsigned format = GENERATE(range(0U, 11U));
   CAPTURE(format);
-  const Scan scan(format, 500);
+  const FlaggedScan scan(format, 500);
   put_bytes(folder / "a.las", scan.las.build());
   ConversionOptions options = conversion_of({folder / "a.las"}, folder / "a.h5", 100);
   if (format % 3 == 1) options.regular_size = 4;
@@ -127,7 +127,7 @@ TEST_CASE("withheld points of all formats are left out and counted, or kept") {
 
 TEST_CASE("the message on withheld points is a note up to one of a hundred, else a warning") {
   const ScratchFolder folder;
-  Scan scan(6, 300);
+  FlaggedScan scan(6, 300);
   const auto severity = [&](std::size_t withheld, bool keep) {
     std::fill(scan.las.bytes_of_flags.begin(), scan.las.bytes_of_flags.end(), 0);
     std::fill_n(scan.las.bytes_of_flags.begin(), withheld, 4);
@@ -152,7 +152,7 @@ TEST_CASE("the message on withheld points is a note up to one of a hundred, else
 
 TEST_CASE("LAS 1.0 has no flags, and other formats have none") {
   const ScratchFolder folder;
-  Scan scan(0, 100);
+  FlaggedScan scan(0, 100);
   scan.las.minor = 0;
   put_bytes(folder / "a.las", scan.las.build());
   put_bytes(folder / "b.xyz", "1 2 3\n");
@@ -164,7 +164,7 @@ TEST_CASE("LAS 1.0 has no flags, and other formats have none") {
 
 TEST_CASE("cubes of withheld points have edges of a metre in feet too") {
   const ScratchFolder folder;
-  Scan scan(6, 200);
+  FlaggedScan scan(6, 200);
   scan.las.global_encoding = 16;
   scan.las.vlrs = {
       {"LASF_Projection", 2112, "LOCAL_CS[\"a\",LOCAL_DATUM[\"b\",0],UNIT[\"foot\",0.3048]]"}};
@@ -177,7 +177,7 @@ TEST_CASE("cubes of withheld points have edges of a metre in feet too") {
 
 TEST_CASE("source numbers count withheld points: of several scans, and in a file of origins") {
   const ScratchFolder folder;
-  const Scan scan(7, 300);
+  const FlaggedScan scan(7, 300);
   put_bytes(folder / "a.las", scan.las.build());
   put_bytes(folder / "c.las", scan.las.build());
   write_ply(folder / "b.ply", std::vector<Vec3>{{101, -202, 3}, {NAN, 0, 0}, {104, -205, 2}});
@@ -207,7 +207,7 @@ TEST_CASE("source numbers count withheld points: of several scans, and in a file
 
 TEST_CASE("a stream that is read twice has its flags both times") {
   const ReaderScratch scratch;
-  const Scan scan(6, 300);
+  const FlaggedScan scan(6, 300);
   const auto path = scratch.write("a.las", scan.las.build());
   const auto stream =
       spool(open_las_stream(File::open_for_reading(path), scratch.folder()), scratch.folder());
@@ -219,7 +219,7 @@ TEST_CASE("a stream that is read twice has its flags both times") {
 
 TEST_CASE("a store with withheld points left out is not that with them kept") {
   const ScratchFolder folder;
-  put_bytes(folder / "a.las", Scan(6, 100).las.build());
+  put_bytes(folder / "a.las", FlaggedScan(6, 100).las.build());
   ConversionOptions options = conversion_of({folder / "a.las"}, folder / "a.h5");
   NoProgress progress;
   for (const bool kept : {false, true}) {
@@ -261,7 +261,7 @@ TEST_CASE("cubes are collected in bounded memory") {
 
 TEST_CASE("damaged cubes of withheld points are refused") {
   const ScratchFolder folder;
-  put_bytes(folder / "a.las", Scan(6, 60).las.build());
+  put_bytes(folder / "a.las", FlaggedScan(6, 60).las.build());
   convert_quietly(conversion_of({folder / "a.las"}, folder / "a.h5"));
   const std::string bytes = bytes_of(folder / "a.h5");
   const StoreWithheld sound = *StoreReader(folder / "a.h5").metadata().withheld;
