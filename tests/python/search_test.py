@@ -307,9 +307,9 @@ class FindsWhatBruteForceFinds(SceneTest):
 
     def test_shards(self):
         query = self.query(first_pose=True, clearance=0.5, profile=0.5)
-        self.search("whole.h5", query)
-        parts = [self.folder / f"part{i}.h5" for i in range(1, 4)]
         warned = self.search("far.h5", self.far_query()).warnings
+        self.search("whole.h5", query, input_warnings=warned)
+        parts = [self.folder / f"part{i}.h5" for i in range(1, 4)]
         for i, part in enumerate(parts, 1):
             one = self.search(part.name, query, shard=(i, 3), input_warnings=warned)
             self.assertEqual(one.shard, (i, 3))

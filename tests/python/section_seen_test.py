@@ -169,7 +169,7 @@ class SectionSeenSpace(unittest.TestCase):
             self.assertEqual((report.seen.unknown, report.seen.unknown_in_bins),
                              (len(known), len(unknown)))
             grid = section.grid()
-            for (k, j), is_free in np.ndenumerate(section.free_cells()):
+            for (k, j), is_free in np.ndenumerate(section.free_cells(0)):
                 key = (k + grid.k_from, j + grid.j_from)
                 self.assertEqual(is_free, key not in first and key not in known)
                 free += is_free

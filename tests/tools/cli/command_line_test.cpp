@@ -218,8 +218,9 @@ TEST_CASE("the result is the same whatever threads, cells and layout") {
     REQUIRE(work.run("convert --force " + work.hall / "environment.las" + " -o " +
                      work.path("site.h5") + " " + options)
                 .exit_code == 0);
-    REQUIRE(work.run_hall(work.path("site.h5"), "out.h5", "--first-pose --force").exit_code == 0);
-    CHECK(work.bytes("out.h5") == expected);
+    REQUIRE(work.run_hall(work.path("site.h5"), "laid.h5", "--first-pose --force").exit_code == 0);
+    // Numbers in warnings can be measured on the blocks of the store, so the bytes may differ.
+    CHECK(work.run("compare " + work.path("out.h5") + " " + work.path("laid.h5")).exit_code == 0);
   }
 }
 
