@@ -104,14 +104,14 @@ void add_trajectory_options(CLI::App& command, TrajectoryOptions& options, Lengt
     add_format(command, options);
     command.add_flag("--allow-non-rigid", options.allow_non_rigid,
                      "Accept matrices that scale or shear");
+    lengths.add(command, "--lever-arm", options.lever_arm,
+                "Where the point that the trajectory gives, such as an antenna, lies in the "
+                "model's frame, in metres");
   }
   const GroupScope group(command, OptionGroup::kUnits);
   add_angles(command, options);
   add_map(command, options);
   add_unit(command, options);
-  lengths.add(command, "--lever-arm", options.lever_arm,
-              "Where the point that the trajectory gives, such as an antenna, lies in the model's "
-              "frame, in metres");
 }
 
 void add_options_of_reading(CLI::App& command, TrajectoryOptions& options) {
