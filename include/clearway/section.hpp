@@ -75,8 +75,8 @@ struct SectionOptions {
 /// anywhere on it.
 struct SectionIgnoredCells {
   std::uint64_t blocked = 0;
-  /// Those of them that begin more than 0.5 m above z = 0, where the wheels stand, or above the
-  /// bottom of the window where that is lower
+  /// Those of them that begin more than 0.5 m above z = 0, where the wheels stand, however low the
+  /// window begins
   std::uint64_t high = 0;
 
   friend bool operator==(const SectionIgnoredCells&, const SectionIgnoredCells&) = default;

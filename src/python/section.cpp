@@ -103,8 +103,7 @@ void add_section_report(py::module_& module) {
                       "and that no other point blocks.")
       .def_readonly("blocked", &Ignored::blocked, "How many such cells there are.")
       .def_readonly("high", &Ignored::high,
-                    "How many of them begin more than 0.5 m above z = 0, where the wheels stand, "
-                    "or above the bottom of the window where that is lower.")
+                    "How many of them begin more than 0.5 m above z = 0, where the wheels stand.")
       .def("__repr__", [](const Ignored& i) {
         return py::str("<{} cells, {} of them high>").format(i.blocked, i.high);
       });

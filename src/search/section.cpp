@@ -274,8 +274,7 @@ class Finder {
     report_.context_wait_seconds += taken.context_wait_seconds;
     const LengthUnit unit = store_.metadata().unit;
     const CellsOfIgnored found =
-        cells_of_ignored(*maps_, maps, lattice_, bins, load_.path_pose,
-                         lowest_place(data_.parameters) + suspicious_height(unit));
+        cells_of_ignored(*maps_, maps, lattice_, bins, load_.path_pose, suspicious_height(unit));
     data_.ignored_cells = found;
     warn_of_cells_of_ignored(data_, found, report_.blocked, unit, log_);
     if (options_.strict) refuse_warnings(data_.warnings);

@@ -68,6 +68,20 @@ TEST_CASE("a vehicle's file gives the bodies that follow gives") {
   CHECK_THAT(told.front().text, Contains("v.json") && Contains("body"));
 }
 
+TEST_CASE("messages about a body's model name the body") {
+  const Files files;
+  std::vector<Message> told;
+  VehicleOptions options;
+  options.model.above = 0.5;
+  files.read(R"({"name": "a", "model": "line.xyz"}, {"name": "b", "model": "line.xyz", "at": 1})",
+             options, &told);
+  std::vector<std::string> cut;
+  for (const Message& message : told) {
+    if (message.code == "model-cut") cut.push_back(message.body);
+  }
+  CHECK(cut == std::vector<std::string>{"a", "b"});
+}
+
 TEST_CASE("options hold for all bodies, and threads change none") {
   const Files files;
   const std::string bodies = R"({"name": "a", "model": "line.xyz", "pivots": ["1m", -1]},

@@ -108,6 +108,31 @@ const std::vector<AskedTrial>& trials() {
          q.asked.window = SectionWindow{0.5, 3, 0, 4};
        },
        ""},
+      {"the ground is ignored, and a window that begins below it",
+       [](RoadQuestion& q) {
+         q.asked.ignore_classes = {kGroundClass};
+         q.asked.window = SectionWindow{-2, 2, -0.5, 3};
+         int n = 0;
+         for (Vec3& p : q.scan.points) p.z += p.z == 0 ? 0.07 * (n++ % 2) : 0;
+       },
+       "ignored-collide nothing-blocked"},
+      {"steps as long as the load, to the rounding of sums",
+       [](RoadQuestion& q) {
+         q.asked = load_of(-0.05, 0.05);
+         q.asked.window = SectionWindow{-2, 2, 0, 3};
+         q.path.clear();
+         double x = 15;
+         for (int i = 0; i < 700; ++i, x += 0.1)
+           q.path.push_back(rotation({0, 0, 1}, 0, {x, 0, 0}));
+       },
+       ""},
+      {"a path in the ground", [](RoadQuestion& q) { raise_path(q, -1); }, "below-ground"},
+      {"a path in the ground, and a hole of 15 m in it",
+       [](RoadQuestion& q) {
+         raise_path(q, -1);
+         q.scan.erase([](const Vec3& p) { return p.x > 35 && p.x < 50 && std::abs(p.y) < 3; });
+       },
+       "below-ground nothing-below"},
       {"a path below the ground", [](RoadQuestion& q) { raise_path(q, -3); }, "nothing-below"},
       {"a hole of 15 m in the ground",
        [](RoadQuestion& q) {
@@ -223,6 +248,11 @@ TEST_CASE("warnings of a section name the poses that they are about") {
         .warnings;
   };
   // Pose i stands at x = 15 + i / 2.
+  const auto mostly = warnings_of([](RoadQuestion& q) {
+    q.scan.erase([](const Vec3& p) { return p.x > 20 && p.x < 70 && std::abs(p.y) < 3; });
+  });
+  CHECK(names(mostly, "nothing-below", 55));
+  CHECK_FALSE(names(mostly, "nothing-below", 125));
   const auto hole = warnings_of([](RoadQuestion& q) {
     q.scan.erase([](const Vec3& p) { return p.x > 35 && p.x < 50 && std::abs(p.y) < 3; });
   });
@@ -238,6 +268,42 @@ TEST_CASE("warnings of a section name the poses that they are about") {
   const auto steps = warnings_of([](RoadQuestion& q) { bend(q, 4); });
   CHECK(names(steps, "large-steps", 0));
   CHECK(names(steps, "large-steps", 10));
+}
+
+TEST_CASE("no load passes where nothing could be found on a stretch of the path") {
+  const ScratchFolder folder;
+  const std::vector<OutlinePoint> load{{-1, 0.4}, {1, 0.4}, {1, 2}, {-1, 2}};
+  const auto is_in_hole = [](const Vec3& p) { return p.x > 35 && p.x < 50; };
+  struct Row {
+    const char* what;
+    std::function<void(RoadQuestion&)> change;
+    std::string reason;  ///< empty where the load passes
+  };
+  for (const Row& row :
+       {Row{"a sound road", [](RoadQuestion&) {}, ""},
+        Row{"a hole in the ground",
+            [&](RoadQuestion& q) {
+              q.scan.erase([&](const Vec3& p) { return is_in_hole(p) && std::abs(p.y) < 3; });
+            },
+            "on stretches of the path nothing could be found (nothing-below)"},
+        Row{"a hole in the scan", [&](RoadQuestion& q) { q.scan.erase(is_in_hole); },
+            "on stretches of the path nothing could be found (leaves-scan)"},
+        Row{"no wall on a stretch of the right",
+            [](RoadQuestion& q) {
+              q.scan.erase([](const Vec3& p) { return p.x > 35 && p.y < -3 && p.z > 0.2; });
+            },
+            ""}}) {
+    INFO(row.what);
+    RoadQuestion question;
+    question.asked.window = SectionWindow{-3, 3, 0.3, 4};
+    row.change(question);
+    question.scan.convert_to(folder / "road.h5");
+    find_section(Store(folder / "road.h5"), question.path, question.asked, folder / "section.h5",
+                 {.threads = 2, .overwrite = true});
+    const SectionCheck check = Section(folder / "section.h5").check(load);
+    CHECK(check.reason == row.reason);
+    CHECK((check.verdict == SectionVerdict::kPasses) == row.reason.empty());
+  }
 }
 
 TEST_CASE("the place of a path causes the same warnings whoever asks") {
@@ -299,7 +365,7 @@ TEST_CASE("cells that only ignored points block are those of all pairs") {
       found.insert({std::get<1>(cell), std::get<2>(cell)});
     }
     SectionIgnoredCells expected;
-    const double high_from = std::min(0.0, scene.asked.window->z_from) + 0.5;
+    constexpr double high_from = 0.5;
     for (const auto& [k, j] : found) {
       if (others.count({k, j}) > 0) continue;
       ++expected.blocked;

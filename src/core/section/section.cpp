@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
+#include <string_view>
 #include <utility>
 
 #include "clearway/answer.hpp"
@@ -287,6 +289,26 @@ std::string doubt_about(const SectionData& section) {
   return "";
 }
 
+namespace {
+
+/// Why nothing could be found on stretches of the path, as a clause; empty where something could be
+/// found everywhere. all_seen: whether beams crossed all that the load needs, so that no point is
+/// missing there.
+std::string doubt_about_stretches(const SectionData& section, bool all_seen) {
+  std::set<std::string_view> codes;
+  for (const Message& warning : section.warnings) {
+    if (doubt_of(warning) != Doubt::kStretch) continue;
+    if (!all_seen || !lacks_points(warning.code)) codes.insert(warning.code);
+  }
+  std::string listed;
+  for (const std::string_view code : codes) {
+    listed += (listed.empty() ? "" : ", ") + std::string(code);
+  }
+  return listed.empty() ? "" : "on stretches of the path nothing could be found (" + listed + ")";
+}
+
+}  // namespace
+
 double reach_of(const SectionFacts& section, double margin) {
   return (section.motion ? margin + (*section.motion)[1] / 2 : margin) + section.rounding;
 }
@@ -344,6 +366,9 @@ SectionCheck Section::check(std::span<const OutlinePoint> outline,
     check.reason = "no beam of the scanner crossed a place that the load needs, first at pose " +
                    std::to_string(check.unknowns.front().first_pose) + ", " +
                    format_brief(check.unknowns.front().chainage) + " along the path";
+  }
+  if (check.reason.empty()) {
+    check.reason = doubt_about_stretches(data_, data_.unknown.has_value());
   }
   check.verdict = check.reason.empty() ? SectionVerdict::kPasses : SectionVerdict::kUnknown;
   return check;

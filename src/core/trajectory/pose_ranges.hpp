@@ -23,4 +23,17 @@ std::vector<PoseRange> pose_ranges(const Indices& indices, std::uint32_t beyond 
   return out;
 }
 
+/// The stretches of the path that these stretches cover together, ascending and apart from each
+/// other. ranges: in any order; they may overlap.
+inline std::vector<PoseRange> united_ranges(std::vector<PoseRange> ranges) {
+  std::ranges::sort(ranges, {}, &PoseRange::first);
+  std::vector<PoseRange> out;
+  for (const PoseRange& range : ranges) {
+    const bool is_apart = out.empty() || range.first > out.back().last + std::uint64_t{1};
+    if (is_apart) out.push_back(range);
+    out.back().last = std::max(out.back().last, range.last);
+  }
+  return out;
+}
+
 }  // namespace clearway

@@ -181,7 +181,15 @@ class VehicleReader {
   Model read_model_of(const BodyEntry& entry) {
     ModelOptions how = options_.model;
     if (entry.model_unit.is_known()) how.unit = entry.model_unit;
-    return named(entry.at.at("model"), [&] { return read_model(entry.model, how, warnings_); });
+    std::vector<Message> messages;
+    Model model =
+        named(entry.at.at("model"), [&] { return read_model(entry.model, how, &messages); });
+    if (warnings_ == nullptr) return model;
+    for (Message& message : messages) {
+      message.body = entry.name;
+      warnings_->push_back(std::move(message));
+    }
+    return model;
   }
 
   /// Gives a body that is not towed its poses.

@@ -65,8 +65,8 @@ void warn_of_size(const Question& question, MessageLog& log) {
   const bool larger = model.longest > environment.longest;
   const bool huge = model.longest > kLargest * metre || model.shortest > kThickest * metre;
   const double way = path_length(question.query.poses);
-  const bool small = model.longest < kSmallest * metre ||
-                     (model.longest < kSmallVehicle * metre && way > kLongWay * metre);
+  const bool small = question.longest < kSmallest * metre ||
+                     (question.longest < kSmallVehicle * metre && way > kLongWay * metre);
   if (!larger && !huge && !small) return;
   if (question.is_load()) {
     log.warn("model-size",
@@ -200,7 +200,7 @@ void check_model(const Question& question, MessageLog& log) {
   if (!question.is_load()) warn_of_same(question, log);
   warn_of_scale(question, log);
   warn_of_mirror(question, log);
-  warn_of_digits(question, log);
+  if (!question.is_load()) warn_of_digits(question, log);
 }
 
 namespace {

@@ -48,6 +48,13 @@ double least_motion(const Question& question) {
   return question.is_load() ? std::max(asked, kLeastOfLoad * question.metre) : asked;
 }
 
+/// Whether a step is longer than `most` by more than the rounding of its poses: steps that were
+/// made as long as the radius are not warned of.
+bool exceeds(double step, double most) {
+  constexpr double kRounding = 1e-6;
+  return step > most * (1 + kRounding);
+}
+
 /// Poses from which steps start, as users count them, in ascending order.
 using Steps = std::vector<std::uint32_t>;
 
@@ -169,7 +176,7 @@ void check_poses_alone(const Question& question, const Steps& known, MessageLog&
     const Pose &a = query.poses[i], &b = query.poses[i + 1];
     if (coarse_bound(a, b, reach) <= query.radius) continue;
     const double step = displacement_bound(question.model, a, b);
-    if (!(step > query.radius) || has(known, question.number_of(i))) continue;
+    if (!exceeds(step, query.radius) || has(known, question.number_of(i))) continue;
     large.push_back(question.number_of(i));
     if (step > largest) {
       largest = step;
@@ -218,7 +225,7 @@ std::vector<PoseRange> stretches_of(const Question& question, const std::vector<
 
 void warn_of_gaps(const Question& question, std::vector<LoadStep> steps, double length,
                   MessageLog& log) {
-  std::erase_if(steps, [&](const LoadStep& step) { return !(step.length > length); });
+  std::erase_if(steps, [&](const LoadStep& step) { return !exceeds(step.length, length); });
   const LoadStep longest = *std::ranges::max_element(steps, {}, &LoadStep::length);
   const SectionParameters& asked = *question.section;
   log.warn("large-steps",
@@ -264,7 +271,8 @@ void check_load_at_poses(const Question& question, const Steps& known, MessageLo
   if (steps.empty()) return;
   const SectionParameters& asked = *question.section;
   const double length = asked.front - asked.rear + 2 * asked.margin;
-  if (std::ranges::any_of(steps, [&](const LoadStep& step) { return step.length > length; })) {
+  if (std::ranges::any_of(steps,
+                          [&](const LoadStep& step) { return exceeds(step.length, length); })) {
     warn_of_gaps(question, std::move(steps), length, log);
   } else {
     check_across(question, std::move(steps), log);
@@ -446,6 +454,8 @@ void warn_sideways(const Question& question, const Drive& drive, MessageLog& log
   }
   const bool across = longest != 2 && other > kLonger * side;
   if (axis != 2 && !across) return;
+  std::vector<std::pair<std::string, double>> numbers{{"share", shares[axis]}};
+  if (!question.is_load()) numbers.push_back({"model_longest", Sides(question.model).longest});
   log.warn("sideways",
            "the " + std::string(question.words().mover) + " moves along its " + "xyz"[axis] +
                " axis, but " +
@@ -454,7 +464,7 @@ void warn_sideways(const Question& question, const Drive& drive, MessageLog& log
                (axis == 2 ? ": z is expected to point up. " : ": it drives sideways. ") +
                (question.is_load() ? "Turn the rotations of the poses"
                                    : "Turn the model, or the rotations of the poses"),
-           {{"share", shares[axis]}});
+           std::move(numbers));
 }
 
 /// Notes that the model moves backwards. This is not a mistake where the vehicle reverses, or its

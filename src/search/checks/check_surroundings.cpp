@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <functional>
+#include <utility>
 
 #include "core/geometry/angle.hpp"
 #include "search/checks/checks.hpp"
@@ -28,6 +30,8 @@ constexpr double kLeastBelow = 3, kLeastBeside = 20;
 constexpr double kFloats = 0.5;
 
 bool has_below(const Look& look) { return look.below; }
+/// Whether there is ground below the model, or inside it where the path is too low.
+bool has_ground(const Look& look) { return look.below || look.depth; }
 bool has_left(const Look& look) { return look.left; }
 bool has_right(const Look& look) { return look.right; }
 bool has_either(const Look& look) { return look.left || look.right; }
@@ -38,7 +42,9 @@ std::string beside_text(const Question& question) {
          " and at its height";
 }
 
-void warn_nothing_below(const Question& question, const PathLooks& looks, MessageLog& log) {
+/// stretches: where nothing was scanned below, if there is ground on another part of the path.
+void warn_nothing_below(const Question& question, const PathLooks& looks,
+                        std::vector<PoseRange> stretches, MessageLog& log) {
   const double share = 1 - looks.share(has_below);
   log.warn("nothing-below",
            "on " + share_text(share) + " of the path nothing was scanned below the " +
@@ -46,7 +52,7 @@ void warn_nothing_below(const Question& question, const PathLooks& looks, Messag
                ". Does the path run below the "
                "ground, or is it in another place? Did the scanner leave out what was near it? If "
                "you removed the ground on purpose, this is all right",
-           {{"share", share}});
+           {{"share", share}}, std::move(stretches));
 }
 
 void warn_nothing_beside(const Question& question, const PathLooks& looks, MessageLog& log) {
@@ -79,8 +85,30 @@ class Stretches {
         looks_(looks),
         high_(looks.usual_height() + kFloats * question.metre) {}
 
+  /// Where nothing was scanned below the model, for a path of which most has no ground. Without
+  /// ground anywhere, it was probably removed on purpose.
+  std::vector<PoseRange> without_ground() const {
+    if (looks_.share(has_ground) < kNowhere) return {};
+    const auto runs = runs_of(kLeastBelow, std::not_fn(has_ground));
+    return runs.empty() ? std::vector<PoseRange>{}
+                        : ToldStretches(question_, looks_, runs).stretches;
+  }
+
+  /// For a model that is in the ground, which on a sound stretch is therefore inside it.
+  void check_holes(MessageLog& log) const {
+    const auto runs = runs_of(kLeastBelow, std::not_fn(has_ground));
+    if (runs.empty()) return;
+    const ToldStretches told(question_, looks_, runs);
+    log.warn("nothing-below",
+             told.where + " no ground was scanned below the " + question_.words().mover +
+                 " or inside it: the scan may have a hole there. Then what stands there is missing "
+                 "too" +
+                 told.others,
+             told.numbers, told.stretches);
+  }
+
   void check_below(MessageLog& log) const {
-    const auto runs = runs_of(kLeastBelow, [](const Look& look) { return !look.below; });
+    const auto runs = runs_of(kLeastBelow, std::not_fn(has_below));
     if (runs.empty()) return;
     const ToldStretches told(question_, looks_, runs);
     log.warn("nothing-below",
@@ -188,12 +216,17 @@ void tell_resolution(const Question& question, const PathLooks& looks, MessageLo
   const double resolved = 2 * looks.apart();
   if (!(resolved > std::max(kLeastBelow * question.metre, longest))) return;
   log.note("the scan below and beside the " + std::string(question.words().mover) +
-           " is looked at every " + length_text(looks.apart(), question.unit) +
+           " is checked every " + length_text(looks.apart(), question.unit) +
            " of the path: a stretch that is not scanned and shorter than " +
            length_text(resolved, question.unit) + " can stay without a warning");
 }
 
 }  // namespace
+
+void check_holes(const Question& question, const PathLooks& looks, MessageLog& log) {
+  if (2 * looks.covered() < looks.all().size()) return;
+  Stretches(question, looks).check_holes(log);
+}
 
 void check_surroundings(const Question& question, const PathLooks& looks, bool floats,
                         MessageLog& log) {
@@ -203,7 +236,7 @@ void check_surroundings(const Question& question, const PathLooks& looks, bool f
   const Stretches stretches(question, looks);
   tell_resolution(question, looks, log);
   if (looks.share(has_below) < kMissing) {
-    warn_nothing_below(question, looks, log);
+    warn_nothing_below(question, looks, stretches.without_ground(), log);
     return;
   }
   stretches.check_below(log);

@@ -25,6 +25,10 @@ bool check_depth(const Question& question, const PathLooks& looks, MessageLog& l
 /// Returns whether it warned of the whole path.
 bool check_height(const Question& question, const PathLooks& looks, MessageLog& log);
 
+/// Warns of stretches without ground below or inside a model that check_depth() warned of:
+/// "nothing-below".
+void check_holes(const Question& question, const PathLooks& looks, MessageLog& log);
+
 /// Warns where nothing was scanned below or beside the model, on the whole path or on stretches of
 /// it: "nothing-below", "nothing-beside", "one-side". floats: whether the model is known to be
 /// above the ground.

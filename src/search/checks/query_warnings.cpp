@@ -14,6 +14,7 @@
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
+#include "core/trajectory/pose_ranges.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/checks.hpp"
 #include "search/checks/question.hpp"
@@ -60,21 +61,25 @@ bool path_matters(const std::vector<BodyMessages>& bodies, const Message& messag
          (message.code != "nothing-beside" || !holds_for_vehicle(bodies, "floats"));
 }
 
-/// The warning that the vehicle gets for one code: the one about its whole path, or else the one
-/// about the longest stretch that a body names.
+/// The warning that the vehicle gets for one code: the one about the longest stretch that a body
+/// names, or else the one about its whole path.
 struct OfVehicle {
   const BodyMessages* body = nullptr;
   /// nullptr where the warning does not matter for the vehicle.
   const Message* message = nullptr;
+  std::vector<PoseRange> stretches;  ///< those that the bodies name together
 
   OfVehicle(const std::vector<BodyMessages>& bodies, std::string_view code) {
     for (const BodyMessages& candidate : bodies) {
       for (const Message& other : candidate.messages) {
-        if (other.code != code || (message != nullptr && !is_better(other))) continue;
+        if (other.code != code) continue;
+        stretches.insert(stretches.end(), other.stretches.begin(), other.stretches.end());
+        if (message != nullptr && !is_better(other)) continue;
         body = &candidate;
         message = &other;
       }
     }
+    stretches = united_ranges(std::move(stretches));
     const bool matters = is_of_stretch(*message) ? stretch_matters(bodies, *message)
                                                  : path_matters(bodies, *message);
     if (!matters) message = nullptr;
@@ -99,14 +104,19 @@ void tell_alike(const std::vector<BodyMessages>& bodies, std::size_t first, cons
   };
   std::string names;
   std::size_t count = 0;
+  Message of_all = message;
+  of_all.stretches.clear();
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (std::ranges::none_of(bodies[i].messages, is_same)) continue;
+    const auto same = std::ranges::find_if(bodies[i].messages, is_same);
+    if (same == bodies[i].messages.end()) continue;
     if (i < first) return;  // the earlier body's message named them all
     names += (count == 0 ? "" : ", ") + bodies[i].name;
     ++count;
+    of_all.stretches.insert(of_all.stretches.end(), same->stretches.begin(), same->stretches.end());
   }
+  of_all.stretches = united_ranges(std::move(of_all.stretches));
   const bool all = count == bodies.size() && count > 1;
-  tell(message, all ? "each body" : (count > 1 ? "bodies " : "body ") + names,
+  tell(std::move(of_all), all ? "each body" : (count > 1 ? "bodies " : "body ") + names,
        count == 1 ? names : "", log);
 }
 
@@ -122,7 +132,9 @@ void tell_of_bodies(const std::vector<BodyMessages>& bodies, MessageLog& log) {
         told.push_back(message.code);
         const OfVehicle found(bodies, message.code);
         if (found.message == nullptr) continue;
-        tell(*found.message, "the vehicle, as its body " + found.body->name, "", log);
+        Message of_vehicle = *found.message;
+        of_vehicle.stretches = found.stretches;
+        tell(std::move(of_vehicle), "the vehicle, as its body " + found.body->name, "", log);
       }
     }
   }
@@ -192,8 +204,9 @@ void check_what_is_around(const Question& question, const PathCover& cover, bool
   } catch (const InputError&) {
     return;  // a damaged cell is reported by the search, where it matters
   }
-  // What is missing below or beside a model that is in the ground needs no warning of its own.
-  if (check_depth(question, *looks, log)) return;
+  // What is missing beside a model that is in the ground needs no warning of its own, and below it
+  // holes alone do.
+  if (check_depth(question, *looks, log)) return check_holes(question, *looks, log);
   const bool floats = check_height(question, *looks, log);
   // For a body, what is beside it is checked in any case, because other bodies may stand on the
   // ground.
@@ -213,24 +226,75 @@ void check_question(const Question& question, bool of_body, std::span<const Mess
   check_heading(question, told, log);
 }
 
+/// The lowest height of the whole model where reading it left out its lowest part. body: the name
+/// of the body; empty for a single model.
+std::optional<double> bottom_before_cut(std::span<const Message> told, std::string_view body) {
+  const auto cut = std::ranges::find_if(told, [&](const Message& message) {
+    return message.code == "model-cut" && message.body == body;
+  });
+  return cut == told.end() ? std::nullopt : number_in(*cut, "bottom");
+}
+
+/// The longest side of a vehicle where it first has most of its bodies; 0 if none has a pose.
+double longest_side(std::span<const Body> bodies, const LooksOf& looks_of) {
+  std::uint32_t at = 0;
+  for (const Body& body : bodies) {
+    if (!body.path_pose.empty()) at = std::max(at, body.path_pose.front());
+  }
+  std::optional<Box> all;
+  for (const Body& body : bodies) {
+    const auto pose = std::ranges::lower_bound(body.path_pose, at);
+    if (pose == body.path_pose.end() || *pose != at) continue;
+    const Box box = moved(looks_of(body.model)->box(),
+                          body.poses[static_cast<std::size_t>(pose - body.path_pose.begin())]);
+    all = all ? all->united(box) : box;
+  }
+  return all ? Sides(*all).longest : 0;
+}
+
+/// Warns of bodies that have the same model and the same poses, as a copied entry of the vehicle's
+/// file has until its model or its place is changed.
+void check_same_bodies(std::span<const Body> bodies, MessageLog& log) {
+  std::vector<bool> named(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (named[i]) continue;
+    std::string names = bodies[i].name;
+    std::size_t count = 1;
+    for (std::size_t j = i + 1; j < bodies.size(); ++j) {
+      const bool is_same = bodies[i].path_pose == bodies[j].path_pose &&
+                           bodies[i].poses == bodies[j].poses && bodies[i].model == bodies[j].model;
+      if (!is_same) continue;
+      named[j] = true;
+      names += ", " + bodies[j].name;
+      ++count;
+    }
+    if (count == 1) continue;
+    log.warn("same-body",
+             "the bodies " + names +
+                 " have the same model at the same poses, so all but one of them add nothing. Was "
+                 "an entry of the vehicle copied, and its model or its place left as it was? Then "
+                 "a part of the vehicle is missing",
+             {{"bodies", static_cast<double>(count)}});
+  }
+}
+
 /// Checks one body by itself. Whether its warnings matter depends on the other bodies.
+/// vehicle_longest: the longest side of the vehicle.
 void warn_of_body(const StoreReader& store, const Body& body, const Query& query,
-                  const ModelLooks& looks, std::span<const double> chainage,
+                  const ModelLooks& looks, std::span<const double> chainage, double vehicle_longest,
                   std::span<const Message> told, StepChecks& steps, MessageLog& log) {
   if (body.poses.empty()) {
     log.warn("no-poses", "has no poses: it cannot collide");
     return;
   }
   const Query own(body.model, body.poses, query);
-  const Question question(store, store.metadata().unit, own, looks, body.path_pose, chainage);
+  Question question(store, store.metadata().unit, own, looks, body.path_pose, chainage);
+  question.longest = std::max(question.longest, vehicle_longest);
+  if (const auto bottom = bottom_before_cut(told, body.name)) {
+    question.bottom = std::min(question.bottom, *bottom);
+  }
   note_sizes(question, log);
   check_question(question, true, told, steps, log);
-}
-
-/// The lowest height of the whole model where reading it left out its lowest part.
-std::optional<double> bottom_before_cut(std::span<const Message> told) {
-  const auto cut = std::ranges::find(told, "model-cut", &Message::code);
-  return cut == told.end() ? std::nullopt : number_in(*cut, "bottom");
 }
 
 /// The indices of the path's poses at which a body has none, ascending.
@@ -268,9 +332,11 @@ void tell_missing_poses(const Query& query, std::span<const Message> told, Messa
 void warn_of_bodies(const StoreReader& store, const Question& path, const Query& query,
                     const LooksOf& looks_of, std::span<const Message> before, MessageLog& log) {
   tell_missing_poses(query, before, log);
+  check_same_bodies(query.bodies, log);
   std::vector<BodyMessages> told;
   StepChecks steps(path);
   const std::vector<double> chainage = chainage_of(query.poses);
+  const double longest = longest_side(query.bodies, looks_of);
   for (const Body& body : query.bodies) {
     told.push_back({body.name, {}});
     const MessageCallback keep = [&](const Message& message) {
@@ -278,7 +344,7 @@ void warn_of_bodies(const StoreReader& store, const Question& path, const Query&
     };
     std::vector<Message> unused;
     MessageLog own(keep, unused);
-    warn_of_body(store, body, query, *looks_of(body.model), chainage, before, steps, own);
+    warn_of_body(store, body, query, *looks_of(body.model), chainage, longest, before, steps, own);
   }
   tell_of_bodies(told, log);
   steps.check_path(path, log);
@@ -321,7 +387,7 @@ void check_motion(const StoreReader& store, const Query& query, const LooksOf& l
   }
   const std::shared_ptr<const ModelLooks> looks = looks_of(query.model);
   Question question(store, unit, query, *looks);
-  if (const auto bottom = bottom_before_cut(told)) {
+  if (const auto bottom = bottom_before_cut(told, "")) {
     question.bottom = std::min(question.bottom, *bottom);
   }
   note_sizes(question, log);

@@ -30,12 +30,6 @@ inline constexpr QuestionWords kWordsOfLoad{"load", "margin", "nothing blocks a 
 /// metre: the length of a metre. The defaults of `asked` are filled in.
 Box assumed_load(const SectionParameters& asked, double metre);
 
-/// The least z at which the load of a section may begin: 0, where its wheels stand, or below that
-/// where the window begins there. The defaults of `asked` are filled in.
-inline double lowest_place(const SectionParameters& asked) {
-  return std::min(0.0, asked.window->z_from);
-}
-
 /// The query, the environment and derived sizes that the checks of a query look at. Owns nothing.
 struct Question {
   /// The environment and the model have at least one point, and the trajectory at least one pose.
@@ -57,7 +51,7 @@ struct Question {
   const QuestionWords& words() const { return is_load() ? kWordsOfLoad : kWordsOfModel; }
   /// The least z, in its own frame, at which the load may begin: the window of a section may reach
   /// below the wheels, on which z is 0.
-  double lowest_of_load() const { return lowest_place(*section); }
+  double lowest_of_load() const { return std::min(0.0, section->window->z_from); }
 
   const PackedCloud& cloud;
   LengthUnit unit;
@@ -77,6 +71,8 @@ struct Question {
   /// The lowest height of the whole model in its own frame. It is below the box where the lowest
   /// part of the model was left out.
   double bottom;
+  /// The longest side of the model; for a body, that of the whole vehicle.
+  double longest;
   /// The length of a metre in the environment's unit.
   double metre;
 };

@@ -21,10 +21,15 @@ bool is_single(double coordinate, double step) {
   return std::abs(coordinate - static_cast<float>(coordinate)) <= kRounded * step;
 }
 
-bool is_whole_centimetres(double coordinate, double metre) {
-  constexpr double kPerMetre = 100, kRounding = 1e-6;
-  const double centimetres = coordinate / metre * kPerMetre;
-  return std::abs(centimetres - std::round(centimetres)) <= kRounding;
+bool is_whole_hundredths(double coordinate, double unit) {
+  constexpr double kPerUnit = 100, kRounding = 1e-6;
+  const double hundredths = coordinate / unit * kPerUnit;
+  return std::abs(hundredths - std::round(hundredths)) <= kRounding;
+}
+
+/// Whether a coordinate is that of a text with two decimals, in metres or in its own unit.
+bool is_of_rounded_text(double coordinate, double metre) {
+  return is_whole_hundredths(coordinate, metre) || is_whole_hundredths(coordinate, 1);
 }
 
 }  // namespace
@@ -44,7 +49,7 @@ std::optional<double> single_precision_step(std::span<const Vec3> places, double
       if (!is_single(place[axis], step)) continue;
       ++single;
       largest = std::max(largest, step);
-      if (!is_whole_centimetres(place[axis], metre)) ++telling;
+      if (!is_of_rounded_text(place[axis], metre)) ++telling;
     }
   }
   const bool all = static_cast<double>(single) >= kNearlyAll * static_cast<double>(judged);

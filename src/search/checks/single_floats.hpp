@@ -12,9 +12,9 @@ namespace clearway {
 
 /// The largest step between neighbouring numbers of single precision at the coordinates of these
 /// places, if the places went through single precision; nothing otherwise. Only coordinates at
-/// which that step is above `least` are judged. Coordinates that are all whole centimetres are
-/// those of rounded text, and not judged either. metre: the length of a metre in the unit of the
-/// places.
+/// which that step is above `least` are judged. Coordinates that are all whole centimetres, or
+/// whole hundredths of the places' own unit, are those of rounded text, and not judged either.
+/// metre: the length of a metre in the unit of the places.
 std::optional<double> single_precision_step(std::span<const Vec3> places, double least,
                                             double metre);
 

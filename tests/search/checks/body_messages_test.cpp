@@ -93,6 +93,25 @@ TEST_CASE("a stretch without ground below one body is told, once, as the body wi
   CHECK(found[0].text == "the vehicle, as its body bogie: from 10");
 }
 
+TEST_CASE("a warning of the vehicle has the stretches of all of its bodies") {
+  const auto on = [](Message message, std::vector<PoseRange> stretches) {
+    message.stretches = std::move(stretches);
+    return message;
+  };
+  using Stretches = std::vector<PoseRange>;
+  const auto below =
+      told({{"front", {on(of_stretch("nothing-below", 10, 16), {{100, 160}})}},
+            {"rear", {on(of_stretch("nothing-below", 3, 12), {{30, 120}, {300, 310}})}},
+            {"roof", {on(of_stretch("nothing-below", 50, 53), {{500, 530}})}}});
+  REQUIRE(below.size() == 1);
+  CHECK((below[0].stretches == Stretches{{30, 160}, {300, 310}, {500, 530}}));
+  const Message steps = warning("large-steps");
+  const auto alike = told(
+      {{"a", {on(steps, {{7, 8}})}}, {"b", {on(steps, {{3, 4}})}}, {"c", {on(steps, {{4, 5}})}}});
+  REQUIRE(alike.size() == 1);
+  CHECK((alike[0].stretches == Stretches{{3, 5}, {7, 8}}));
+}
+
 TEST_CASE("a stretch without walls is told where all bodies lack them") {
   const Message beside = of_stretch("nothing-beside", 10, 40);
   CHECK(told({{"roof", {beside}}, {"bogie", {}}}).empty());

@@ -36,6 +36,11 @@ TEST_CASE("numbers of single precision are told from others at coordinates of a 
     CHECK(single_precision_step(places, 0.005, 1).value_or(0) == row.expected);
     CHECK(!single_precision_step(places, 1, 1));
   }
+  // Text in feet with two decimals holds quarter feet, which single precision has, but no whole
+  // centimetres.
+  std::vector<Vec3> feet;
+  for (int i = 0; i < 300; ++i) feet.push_back({1'471'500 + 0.25 * i, 17'756'000 + 2.0 * i, 1});
+  CHECK(!single_precision_step(feet, 0.015, 1 / 0.3048));
   CHECK(!single_precision_step({}, 0.005, 1));
   // A single place may be such a number by chance.
   CHECK(!single_precision_step(std::vector<Vec3>{{448'123.03125, 5'412'345.5, 1}}, 0.005, 1));

@@ -311,6 +311,19 @@ TEST_CASE("poses that are missing on a straight path are warned of between poses
                  Contains("searched on the straight way there"));
 }
 
+TEST_CASE("steps that are as long as the radius, to the rounding of sums, are not warned of") {
+  Asked asked;
+  Pose pose = asked.poses[0];
+  asked.poses.clear();
+  for (int i = 0; i < 100; ++i) {
+    asked.poses.push_back(pose);
+    for (int k = 0; k < 3; ++k) pose.translation[k] += 0.1 * pose.rotation[3 * k];
+  }
+  CHECK_THAT(codes_of(asked.ask()), !Contains("large-steps"));
+  asked.radius = "0.0999";
+  CHECK_THAT(codes_of(asked.ask()), Contains("large-steps"));
+}
+
 TEST_CASE("a turn in one step is warned of, at poses and between them") {
   Asked asked;
   // The model stays in its place while its heading jumps.

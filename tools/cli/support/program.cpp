@@ -161,27 +161,32 @@ std::string advice_on(const Error& error) {
   return "";
 }
 
+namespace {
+
+bool has_number(const Message& message, std::string_view name) {
+  return std::ranges::any_of(message.numbers, [&](const auto& n) { return n.first == name; });
+}
+
+}  // namespace
+
 std::string advice_on(const Message& message) {
   if (message.code == "large-steps") {
-    const bool searched_between = std::ranges::any_of(
-        message.numbers, [](const auto& n) { return n.first == "turn_degrees"; });
-    if (searched_between) {
+    if (has_number(message, "turn_degrees")) {  // the ways between poses are searched
+
       return message.severity == Message::Severity::kNote
                  ? ""
                  : ". More poses of the recording help; where none are missing, clearway "
                    "trajectory "
                    "resample adds poses on a smooth curve";
     }
-    return ". --between-poses searches the way too; clearway trajectory resample adds poses";
+    return ". clearway trajectory resample adds poses; with a model of points, and for a section, "
+           "--between-poses searches the way too";
   }
   if (message.code == "line-curved") {
     return "; --corner-radius keeps legs straight and rounds their corners";
   }
   if (message.code == "half-outline") {
     return "; --mirror completes a half, as rows of height,half_width";
-  }
-  if (message.code == "below-ground") {
-    return ". clearway run --forward and --up turn the model when it is read";
   }
   if (message.code == "loose-vertices") {
     return ", or search all vertices, and nothing else of the file, with --model-vertices";
@@ -192,8 +197,10 @@ std::string advice_on(const Message& message) {
     });
     return kept ? "" : "; --keep-withheld keeps them";
   }
-  if (message.code == "sideways") {
-    return ". clearway run --forward and --up turn the model when it is read";
+  if (message.code == "below-ground" || message.code == "sideways") {
+    const bool of_model =
+        has_number(message, "model_height") || has_number(message, "model_longest");
+    return of_model ? ". clearway run --forward and --up turn the model when it is read" : "";
   }
   if (message.code == "one-long-conflict") {
     return ". clearway run --model-above leaves out the lowest part of the model";

@@ -220,18 +220,6 @@ const MountTexts& texts_of(const BodyMount& mount) {
   return std::holds_alternative<BodyPivots>(mount) ? kOnPivots : kAtStation;
 }
 
-/// The poses as stretches of consecutive ones. poses: ascending.
-std::vector<PoseRange> stretches_of(const std::vector<std::uint64_t>& poses) {
-  std::vector<PoseRange> stretches;
-  for (const std::uint64_t pose : poses) {
-    const auto number = static_cast<std::uint32_t>(pose);
-    const bool goes_on = !stretches.empty() && stretches.back().last + std::uint64_t{1} == pose;
-    if (!goes_on) stretches.push_back({number, number});
-    stretches.back().last = number;
-  }
-  return stretches;
-}
-
 /// What is said of the beginning of a towed body. A warning where its tower turns meanwhile,
 /// because then the body was hardly in line with it.
 Message transient_message(const FollowedPath& followed, const std::string& where) {
@@ -249,7 +237,6 @@ Message transient_message(const FollowedPath& followed, const std::string& where
           ". Begin the path earlier, where it is straight",
       followed.transient);
   out.numbers.push_back({"turn_degrees", followed.transient_turn / kDegree});
-  if (bends) out.stretches = stretches_of(followed.transient);
   return out;
 }
 
