@@ -256,7 +256,7 @@ TEST_CASE("the map of every input is judged, at the middle of its own files") {
     const Outcome refused = outcome_of_files(files);
     CHECK_THAT(refused.refusal, Contains("b.las: lengths on the map of WGS 84 / Pseudo-Mercator"));
     const Outcome ignored = outcome_of_files(files, {.ignore_crs = true});
-    CHECK(ignored.messages == " other-crs map-scale ");
+    CHECK(ignored.messages.find("map-scale") == ignored.messages.rfind("map-scale"));
     CHECK(number_of(warning(ignored, "map-scale"), "scale") == Approx(1.4962).margin(1e-3));
     CHECK_THAT(warning(ignored, "map-scale").text, Contains("b.las: lengths on the map"));
   }
