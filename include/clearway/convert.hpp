@@ -57,7 +57,7 @@ struct ConvertOptions {
   bool skip_unreadable = false;  ///< leaves out files that cannot be read, with a warning
   bool strict = false;           ///< refuses any warning: all are told, then no store is written
   bool overwrite = false;        ///< replaces an existing store
-  bool resume = false;           ///< leaves an existing store of the same inputs as it is
+  bool resume = false;  ///< leaves a store of the same inputs and options as it is, and no other
   ProgressCallback progress = nullptr;
   MessageCallback message = nullptr;  ///< receives notes, and the warnings that the report holds
   StopFlag stop = nullptr;

@@ -278,8 +278,17 @@ std::string ending_of(const fs::path& file) {
   return ending;
 }
 
-/// Notes which files a pattern leaves out: those in the folders of its matches that have an ending
-/// like theirs, and that nothing in the campaign names.
+/// What stands for the kind of a file that a campaign reads, by the ending of its name: files of
+/// one kind can take each other's place.
+std::string kind_of(const fs::path& file) {
+  static const std::set<std::string> kTables{".txt", ".csv", ".tum", ".pose", ".frames"};
+  static const std::set<std::string> kMeshes{".stl", ".obj", ".off", ".ply"};
+  const std::string ending = ending_of(file);
+  return kTables.contains(ending) ? "table" : kMeshes.contains(ending) ? "mesh" : ending;
+}
+
+/// Notes which files a pattern leaves out: those in the folders of its matches that are of their
+/// kind by their endings, and that nothing in the campaign names.
 class LeftOutFiles {
  public:
   /// campaign: the file itself, which is none of its inputs.
@@ -302,7 +311,7 @@ class LeftOutFiles {
                        "unmatched-files",
                        key + ": the pattern matches " + counted(matches.size(), "file") +
                            " and leaves out " + counted(names.size(), "file") +
-                           " beside them with the same ending: " + listed(names),
+                           " beside them of the same kind: " + listed(names),
                        {{"matched", static_cast<double>(matches.size())},
                         {"left_out", static_cast<double>(names.size())}}});
     }
@@ -316,15 +325,15 @@ class LeftOutFiles {
     std::set<std::pair<fs::path, std::string>> kinds;
     for (const fs::path& match : matches) {
       if (!fs::is_regular_file(match, unreadable)) continue;
-      kinds.insert({match.parent_path(), ending_of(match)});
+      kinds.insert({match.parent_path(), kind_of(match)});
     }
     std::set<fs::path> found;
-    for (const auto& [folder, ending] : kinds) {
+    for (const auto& [folder, kind] : kinds) {
       fs::directory_iterator at(folder, unreadable);
       for (; !unreadable && at != fs::directory_iterator(); at.increment(unreadable)) {
         const fs::path& file = at->path();
         const bool is_hidden = file.filename().string().starts_with('.');
-        if (is_hidden || ending_of(file) != ending || named_.contains(file)) continue;
+        if (is_hidden || kind_of(file) != kind || named_.contains(file)) continue;
         if (fs::is_regular_file(file, unreadable)) found.insert(file);
       }
     }

@@ -68,8 +68,10 @@ class Places {
   std::int64_t along(double at) const { return static_cast<std::int64_t>(std::floor(at / edge_)); }
   GridCube cube_of(const Vec3& p) const { return {along(p.x), along(p.y), along(p.z)}; }
 
-  /// The points of the cube and of those at most two away, beginning with its own.
+  /// The points of the cube and of those at most two away, beginning with its own. They are cached
+  /// because consecutive points of a result mostly lie in few cubes. Valid until the next call.
   const std::vector<const Points*>& around(const GridCube& own) {
+    if (around_.size() >= kMostCached) around_.clear();
     const auto [found, is_new] = around_.try_emplace(own);
     std::vector<const Points*>& out = found->second;
     if (!is_new) return out;
@@ -91,6 +93,8 @@ class Places {
   // More than the roundings of coordinates, so that points a whole gap apart are near, and less
   // than the steps of any scan.
   static constexpr double kRounding = 1e-6;
+  // Cubes whose neighbours are cached. Each takes at most about 1 KiB.
+  static constexpr std::size_t kMostCached = std::size_t{1} << 14;
   double limit_, edge_;
   std::unordered_map<GridCube, Points, GridCubeHash> cubes_;
   std::unordered_map<GridCube, std::vector<const Points*>, GridCubeHash> around_;

@@ -14,7 +14,7 @@
 
 namespace clearway {
 
-/// Tells which colliding points of a result, a, another one, b, would have found too if they were
+/// Says which colliding points of a result, a, another one, b, would have found too if they were
 /// still there. It goes by what the results say of their questions and by the warnings of b, and
 /// reads neither the environment nor the model. Where it is not certain that b would have found a
 /// point, b has not searched its place.

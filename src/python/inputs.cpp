@@ -417,7 +417,7 @@ keep_withheld: keeps points of LAS and LAZ with the flag withheld, which are lef
 skip_unreadable: leaves out files that cannot be read, with a warning.
 strict: raises InputError where anything is warned of.
 overwrite: replaces an existing store.
-resume: leaves a store of the same inputs as it is.
+resume: leaves a store of the same inputs and options as it is; any other file there is refused.
 progress: called with a ProgressUpdate, in this thread, up to 20 times a second.
 message: called with each note and warning, a Message, in this thread.
 stop: an object with is_set(), such as threading.Event. When it is set, Interrupted is raised.)");

@@ -10,6 +10,7 @@
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
 #include "io/scans/input_buffer.hpp"
+#include "io/scans/text/point_blocks.hpp"
 
 namespace clearway {
 namespace {
@@ -38,12 +39,13 @@ void check_names(const InputBuffer& input, std::string_view line, bool mirror) {
   if (names == "height,half_width")
     expected += "; one half of a symmetric outline is to be mirrored";
   if (names == "y,z") expected += "; a whole outline is not to be mirrored";
-  refuse_line(input.name(), input.line(), excerpt(line) + "; expected " + expected);
+  refuse_line(input.name(), input.line(),
+              excerpt(line) + decimal_commas_in(line) + "; expected " + expected);
 }
 
 std::vector<Row> rows_of(const std::filesystem::path& path, bool mirror) {
   InputBuffer input(File::open_regular(path), InputBuffer::Access::kSeek);
-  input.skip_byte_order_mark();
+  input.begin_text();
   std::vector<Row> rows;
   std::string_view line;
   bool first = true;
@@ -57,7 +59,8 @@ std::vector<Row> rows_of(const std::filesystem::path& path, bool mirror) {
     }
     first = false;
     if (count != std::size_t{2} || !std::isfinite(numbers[0]) || !std::isfinite(numbers[1])) {
-      refuse_line(input.name(), input.line(), excerpt(line) + "; expected two finite numbers");
+      refuse_line(input.name(), input.line(),
+                  excerpt(line) + decimal_commas_in(line) + "; expected two finite numbers");
     }
     if (mirror && numbers[1] < 0) {
       refuse_line(input.name(), input.line(),

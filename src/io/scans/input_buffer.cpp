@@ -2,12 +2,32 @@
 
 #include <algorithm>
 #include <cstring>
+#include <string_view>
 #include <utility>
 
 #include "clearway/error.hpp"
 #include "io/files/input_error.hpp"
 
 namespace clearway {
+namespace {
+
+/// Whether a text begins with the byte order mark of UTF-16, or with two characters that fill it
+/// with zeros. first: its first four bytes, or fewer.
+bool is_utf16(std::string_view first) {
+  if (first.starts_with("\xFF\xFE") || first.starts_with("\xFE\xFF")) return true;
+  const auto has_zeros = [&](std::size_t from) {
+    return first[from] == 0 && first[from + 2] == 0 && first[1 - from] != 0 && first[3 - from] != 0;
+  };
+  return first.size() == 4 && (has_zeros(0) || has_zeros(1));
+}
+
+/// Whether a line such as "sep=;" begins here. first: its first six bytes, or fewer.
+bool is_separator_line(std::string_view first) {
+  return first.size() == 6 && (first.starts_with("sep=") || first.starts_with("SEP=")) &&
+         (first[5] == '\n' || first[5] == '\r');
+}
+
+}  // namespace
 
 InputBuffer::InputBuffer(File file, Access access)
     : file_(std::move(file)), buffer_(std::make_unique<std::byte[]>(kCapacity)) {
@@ -99,11 +119,25 @@ bool InputBuffer::next_line(std::string_view& line) {
   return true;
 }
 
-void InputBuffer::skip_byte_order_mark() {
+void InputBuffer::begin_text() {
   constexpr std::string_view kMark = "\xEF\xBB\xBF";
-  const auto bytes = take(kMark.size());
-  if (!bytes.empty() && std::memcmp(bytes.data(), kMark.data(), kMark.size()) != 0) {
-    begin_ -= kMark.size();
+  const auto peek_text = [this](std::size_t count) {
+    const auto bytes = peek(count);
+    return std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  };
+  const std::string_view first = peek_text(4);
+  if (first == "PK\x03\x04") {
+    refuse(name(), "is a ZIP archive, as spreadsheets are; expected text. Export the table as CSV");
+  }
+  if (is_utf16(first)) {
+    refuse(name(),
+           "is text in UTF-16, which some programs call Unicode; expected UTF-8. Save it as UTF-8 "
+           "or as CSV");
+  }
+  if (first.starts_with(kMark)) take(kMark.size());
+  if (is_separator_line(peek_text(6))) {
+    std::string_view line;
+    next_line(line);
   }
 }
 

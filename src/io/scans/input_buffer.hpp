@@ -61,8 +61,10 @@ class InputBuffer {
   /// Consumes the next line, without its LF or CR LF; `line` stays valid until the next call.
   /// Returns false at the end. Throws InputError for a line longer than kLongestLine.
   bool next_line(std::string_view& line);
-  /// Consumes the byte order mark of UTF-8, which some editors put at the start of a file.
-  void skip_byte_order_mark();
+  /// Consumes what programs put before the first line of a text: the byte order mark of UTF-8, and
+  /// the line "sep=;" by which spreadsheets name the separator. Called at the start of the file.
+  /// Throws InputError for UTF-16 and for a ZIP archive, such as a spreadsheet.
+  void begin_text();
   /// Number of the last returned line, from 1.
   std::uint64_t line() const { return line_; }
   /// Whether a line break followed the last returned line (the last line of a file may lack it).

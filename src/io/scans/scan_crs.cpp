@@ -172,8 +172,8 @@ bool is_wkt(std::string_view text) {
 /// The systems in a well-known text, by its brackets outside of quoted names alone.
 struct WktSystems {
   /// The texts of the systems that stand one after another, and of those of heights within a system
-  /// that has no place for them, which PROJ leaves out.
-  std::vector<std::string> texts;
+  /// that has no place for them, which PROJ leaves out. They are parts of the text.
+  std::vector<std::string_view> texts;
   bool names_unit = false;  ///< whether some keyword is that of a unit
 };
 
@@ -196,12 +196,12 @@ WktSystems systems_of(std::string_view text) {
   };
   WktSystems out;
   std::vector<Open> open;
-  std::vector<std::string> within;  // systems of heights within the current system
-  std::size_t begin = kNone;        // where the current system begins
+  std::vector<std::string_view> within;  // systems of heights within the current system
+  std::size_t begin = kNone;             // where the current system begins
   std::size_t word = 0, word_end = 0;
   bool quoted = false;
   const auto end_system = [&](std::size_t end) {
-    out.texts.emplace_back(trimmed(text.substr(begin, end - begin)));
+    out.texts.push_back(trimmed(text.substr(begin, end - begin)));
     out.texts.insert(out.texts.end(), within.begin(), within.end());
     within.clear();
     begin = kNone;
@@ -218,6 +218,7 @@ WktSystems systems_of(std::string_view text) {
     } else if (c == '[' || c == '(') {
       open.push_back({word, upper(text.substr(word, word_end - word))});
       out.names_unit = out.names_unit || open.back().keyword.ends_with("UNIT");
+      word = word_end = at + 1;  // a bracket after this one has no keyword
     } else if (closes && open.empty()) {
       if (begin != kNone) end_system(at);
     } else if (closes) {
@@ -226,7 +227,7 @@ WktSystems systems_of(std::string_view text) {
       if (open.empty()) {
         end_system(at + 1);
       } else if (is_of_heights(closed.keyword) && !is_of_systems(open.back().keyword)) {
-        within.emplace_back(text.substr(closed.begin, at + 1 - closed.begin));
+        within.push_back(text.substr(closed.begin, at + 1 - closed.begin));
       }
     }
   }
@@ -260,8 +261,8 @@ bool is_code(std::string_view text) {
 
 /// The system of one text that PROJ reads as a whole.
 ProjObject create_one(PJ_CONTEXT* context, const std::string& text) {
-  if (text.empty() || text.size() > kLongestText || contains(text, std::string_view("\0", 1)) ||
-      depth_of(text) > kDeepest || has_file_parameter(squeezed(text))) {
+  if (text.empty() || contains(text, std::string_view("\0", 1)) ||
+      has_file_parameter(squeezed(text))) {
     return nullptr;
   }
   ProjObject found;
@@ -302,26 +303,30 @@ ReadSystems read_systems(PJ_CONTEXT* context, std::string_view text) {
   ReadSystems out;
   WktSystems systems;
   text = trimmed(text);
+  if (text.size() > kLongestText || depth_of(text) > kDeepest) {
+    out.unread = text;
+    return out;
+  }
   if (is_wkt(text)) {
     systems = systems_of(text);
     out.names_unit = systems.names_unit;
   } else if (!text.empty()) {
-    systems.texts.emplace_back(text);
+    systems.texts.push_back(text);
   }
   for (std::size_t i = 0; i < systems.texts.size() && out.unread.empty(); ++i) {
-    ProjObject one = i < kMostSystems ? create_one(context, systems.texts[i]) : nullptr;
+    const std::string one_text(systems.texts[i]);
+    ProjObject one = i < kMostSystems ? create_one(context, one_text) : nullptr;
     const bool of_heights = one && is_system_of_heights(context, one.get());
     ProjObject& place = of_heights ? out.heights : out.plane;
     // The same once more says nothing new.
-    const bool again =
-        one && place && systems.texts[i] == (of_heights ? out.heights_text : out.plane_text);
+    const bool again = one && place && one_text == (of_heights ? out.heights_text : out.plane_text);
     if (again) continue;
     if (!one || place) {
-      out.unread = systems.texts[i];
+      out.unread = one_text;
       continue;
     }
     place = std::move(one);
-    (of_heights ? out.heights_text : out.plane_text) = systems.texts[i];
+    (of_heights ? out.heights_text : out.plane_text) = one_text;
   }
   return out;
 }

@@ -97,7 +97,7 @@ NamedObstacle obstacle_of(const InputBuffer& input, std::string_view line, const
 
 std::vector<NamedObstacle> read_obstacles(const std::filesystem::path& path) {
   InputBuffer input(File::open_regular(path), InputBuffer::Access::kSeek);
-  input.skip_byte_order_mark();
+  input.begin_text();
   std::vector<NamedObstacle> out;
   std::string_view line;
   std::optional<Columns> columns;

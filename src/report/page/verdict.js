@@ -240,7 +240,8 @@ function whatDecides() {
         "conflict: make the errors smaller, or search a closed mesh with --model-as solid.",
     "not-scanned": () => `Places were not scanned: see ${groupName(unseenGroups()[0])}` +
         `${unseenGroups().length > 1 ? " and others" : ""} below, each with what to do about it.`,
-    "question-in-doubt": () => "The question is in doubt: mend what the warnings name, and run it again.",
+    "question-in-doubt": () => "The question is in doubt: correct what the warnings name and run it again, or have the " +
+        "stretches of the path that they name scanned or looked at.",
   };
   return make("div", { class: "basis", id: "decides" }, make("h3", {}, "What would decide it"),
               make("ul", {}, facts.reasons.map((reason) => make("li", {}, words[reason]()))));

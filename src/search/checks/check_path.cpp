@@ -20,6 +20,7 @@
 #include "search/checks/checks.hpp"
 #include "search/checks/facts/path_facts.hpp"
 #include "search/checks/question.hpp"
+#include "search/checks/rounded_path.hpp"
 #include "search/checks/single_floats.hpp"
 
 namespace clearway {
@@ -540,6 +541,7 @@ void check_path_digits(const Question& question, MessageLog& log) {
   for (const Pose& pose : question.query.poses) places.push_back(pose.position());
   warn_of_single_precision(question, places, "the positions of the path",
                            "Export the path in double precision", log);
+  warn_of_rounded_path(question, log);
 }
 
 void check_heading(const Question& question, std::span<const Message> told, MessageLog& log) {

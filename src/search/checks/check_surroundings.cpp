@@ -216,7 +216,7 @@ void tell_resolution(const Question& question, const PathLooks& looks, MessageLo
   const double resolved = 2 * looks.apart();
   if (!(resolved > std::max(kLeastBelow * question.metre, longest))) return;
   log.note("the scan below and beside the " + std::string(question.words().mover) +
-           " is checked every " + length_text(looks.apart(), question.unit) +
+           " is inspected every " + length_text(looks.apart(), question.unit) +
            " of the path: a stretch that is not scanned and shorter than " +
            length_text(resolved, question.unit) + " can stay without a warning");
 }

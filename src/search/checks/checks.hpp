@@ -75,7 +75,7 @@ class StepChecks {
 };
 
 /// Warns where the positions of the path have lost digits that matter beside the radius:
-/// "single-precision".
+/// "single-precision", "lost-digits".
 void check_path_digits(const Question& question, MessageLog& log);
 
 /// Compares the motion with the model's own axes: "tilted", "rotations", "leans", "sideways",

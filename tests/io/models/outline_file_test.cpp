@@ -57,6 +57,9 @@ TEST_CASE("an outline that is malformed is refused with its line") {
   refused("y,z\n0,1,2\n", false, "line 2: \"0,1,2\"; expected two finite numbers");
   refused("y,z\n0,1\nnan,2\n", false, "line 3: \"nan,2\"; expected two finite numbers");
   refused("0,1\ny,z\n", false, "line 2");
+  refused("y,z\n0,5;1,2\n", false, "line 2: \"0,5;1,2\" has decimal commas");
+  refused("0,5;1,2\n", false, "line 1: \"0,5;1,2\" has decimal commas");
+  refused("PK\x03\x04", false, "is a ZIP archive");
   refused("0,1\n1,-1\n", true, "expected half a width of 0 or more");
   std::string many;
   for (std::size_t i = 0; i <= kMostOutlinePoints; ++i) many += "1 2\n";

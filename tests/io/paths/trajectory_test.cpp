@@ -85,6 +85,7 @@ TEST_CASE("a CSV header names the columns, in any order") {
   check_turn(poses_of("r11,r12,r13,r21,r22,r23,r31,r32,r33,tx,ty,tz\n0,-1,0,1,0,0,0,0,1,7,8,9\n",
                       TrajectoryFormat::kCsv));
   check_turn(poses_of("# t x y z qw qx qy qz\n1 7 8 9 " + kHalf + " 0 0 " + kHalf + "\n"));
+  check_turn(poses_of("sep=;\nqw;qx;qy;qz;t;x;y;z\n" + kHalf + ";0;0;" + kHalf + ";1;7;8;9\n"));
   CHECK_THAT(refusal_of_text("x,y,z,qx,qy,qz\n1,2,3,0,0,0\n"),
              Contains("line 1") && Contains("qw"));
   CHECK_THAT(refusal_of_text("x,tx,y,z,qx,qy,qz,qw\n"), Contains("line 1"));
@@ -188,4 +189,6 @@ TEST_CASE("malformed trajectories are refused with their line") {
   CHECK_THAT(refusal_of_text("1403715524907143168,0,0,0,1,0,0,0\n"),
              Contains("the format can be tum"));
   CHECK_THAT(refusal_of_text(std::string(70'000, '1')), Contains("65536"));
+  CHECK_THAT(refusal_of_text("PK\x03\x04..."), Contains("ZIP archive") && Contains("as CSV"));
+  CHECK_THAT(refusal_of_text("\xFE\xFF" + std::string("\0001\0 ", 4)), Contains("UTF-16"));
 }

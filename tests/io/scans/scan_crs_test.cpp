@@ -138,6 +138,7 @@ TEST_CASE("what PROJ does not read of a system is known, and does no harm") {
                                 plane + "," + with_unit("UNIT[\"m\",1]"),
                                 "COMPD_CS[\"c\"," + heights("UNIT[\"m\",1]") + "," + plane + "]",
                                 deep,
+                                std::string(32'000, 'A') + std::string(33'000, '['),
                                 json}) {
     INFO(text.substr(0, 300));
     CHECK_FALSE(scan_crs_of(text).unread.empty());

@@ -101,6 +101,9 @@ TEST_CASE("a refused scan comes with the command that reads it") {
              Contains("expected points; --skip-unreadable"));
   CHECK_THAT(refusal("/dev/null"),
              Contains("is a pipe or device") && Contains("clearway convert - < FILE"));
+  std::filesystem::create_directory(files.folder / "tiles");
+  std::filesystem::create_symlink("nowhere.las", files.folder / "tiles/lost.las");
+  CHECK_THAT(refusal(files.path("tiles")), Contains("lost.las: is a link that leads to no file"));
 }
 
 TEST_CASE("info describes every input") {

@@ -277,7 +277,8 @@ TEST_CASE("a resumed conversion leaves the store of the same inputs alone, and n
   for (const char* other : {" --cell-points 128", " --layout regular:5", " --scale 0.5"}) {
     const Outcome refused = site.run(convert + other);
     CHECK(refused.exit_code == 2);
-    CHECK_THAT(refused.err, Contains("exists already"));
+    CHECK_THAT(refused.err, Contains("site.h5: holds other scans than these, or they were") &&
+                                Contains("--force instead of --resume overwrites it"));
   }
   put_bytes(site.folder / "scan.xyz", bytes_of(site.folder / "scan.xyz") + "0 0 0\n");
   CHECK(site.run(convert).exit_code == 2);

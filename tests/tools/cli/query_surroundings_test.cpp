@@ -288,11 +288,12 @@ TEST_CASE("a vehicle that stops for long is judged by its way") {
 TEST_CASE("where poses are far apart a note says what can stay unnoticed") {
   Asked asked;
   asked.options = "--between-poses";
-  CHECK_THAT(asked.ask().err, !Contains("is checked every"));
+  CHECK_THAT(asked.ask().err, !Contains("is inspected every"));
   std::vector<Pose> few;
   for (std::size_t i = 0; i < asked.poses.size(); i += 150) few.push_back(asked.poses[i]);
   asked.poses = few;
-  CHECK_THAT(asked.ask().err, Contains("is checked every 5.99 m") && Contains("shorter than 12 m"));
+  CHECK_THAT(asked.ask().err,
+             Contains("is inspected every 5.99 m") && Contains("shorter than 12 m"));
 }
 
 TEST_CASE("a scan that was thinned is warned of, also for a wide model") {

@@ -410,7 +410,7 @@ TEST_CASE("warnings are in the JSON, and the last line names them") {
   CHECK_THAT(last, Contains("but see the") && Contains("warnings above"));
 }
 
-TEST_CASE("a path in single precision at large coordinates is warned of") {
+TEST_CASE("a path in single precision or with too few digits at large coordinates is warned of") {
   // 150 km from the origin, where such numbers are 16 mm apart.
   const auto shifted = [](const Vec3& p) { return Vec3{p.x + 150'000, p.y + 160'000, p.z}; };
   const auto single = [](double v) { return static_cast<double>(static_cast<float>(v)); };
@@ -427,13 +427,23 @@ TEST_CASE("a path in single precision at large coordinates is warned of") {
                          Row{[&](const Vec3& p) {
                                return Vec3{whole(p.x, 0.01), whole(p.y, 0.01), p.z};
                              },
-                             "0.1", ""}}) {
+                             "0.1", ""},
+                         Row{[&](const Vec3& p) {
+                               return Vec3{whole(p.x, 1), whole(p.y, 1), p.z};
+                             },
+                             "0.1", "lost-digits"},
+                         Row{[&](const Vec3& p) {
+                               return Vec3{whole(p.x, 1), p.y, p.z};
+                             },
+                             "0.1", "lost-digits"}}) {
     CAPTURE(row.radius, row.code);
     Asked asked;
     asked.radius = row.radius;
     asked.move_path([&](const Vec3& p) { return row.change(shifted(p)); });
     const Outcome outcome = asked.ask(store);
-    CHECK(codes_of(outcome) == row.code);
+    const std::string codes = codes_of(outcome);
+    // A rounded path has other doubtful steps too.
+    CHECK((codes == row.code || (*row.code != 0 && Contains(row.code).match(codes))));
   }
 }
 

@@ -113,6 +113,8 @@ TEST_CASE("trajectory alignment refuses what it cannot use and leaves no output"
   refused("--step nan", 2, "--step");
   refused("--from nan", 2, "--from");
   refused("--from x", 2, "--from");
+  refused("--from 1+010", 2, "--from: 1+010: expected a number with a decimal point");
+  refused("--to 1010,5", 2, "--to: 1010,5: expected a number with a decimal point");
   refused("--from -5", 2, "--from -5 is off the alignment");
   refused("--from 1100 --to 1000", 2, "--from 1100 is after --to 1000");
   refused("--cant middle", 2, "--cant");

@@ -38,24 +38,36 @@ std::vector<std::string> reversed(const campaign::Command& command, const Argume
   return words;
 }
 
-/// Parses a command line made of the first arguments, and returns why it is refused.
-using Parse = std::function<std::optional<std::string>(const Arguments&)>;
+/// Why a command line is refused.
+struct Refusal {
+  int kind;  ///< a value of CLI::ExitCodes
+  std::string text;
 
-/// Throws InputError with `what`, for which the command line with all of these arguments is
-/// refused. The key of campaign.json that it names is that of the first argument up to which the
-/// command line is refused for the same reason: a value that is wrong by itself, or the later one
-/// of two that exclude each other.
+  explicit Refusal(const CLI::ParseError& error)
+      : kind(error.get_exit_code()), text(error.what()) {}
+};
+
+/// Parses a command line made of the first arguments, and returns why it is refused.
+using Parse = std::function<std::optional<Refusal>(const Arguments&)>;
+
+/// Throws InputError, where the command line with all of these arguments is refused as `whole`
+/// says. The key of campaign.json that it names is that of the first argument up to which the
+/// command line is refused for a reason of the same kind: a value that is wrong by itself, or the
+/// later one of two that exclude each other. No argument is the reason where one is missing.
 [[noreturn]] void refuse_argument(const std::filesystem::path& file, const Arguments& arguments,
-                                  const std::string& what, const Parse& parse) {
+                                  const Refusal& whole, const Parse& parse) {
   Arguments first;
   for (const Argument& argument : arguments) {
+    if (whole.kind == static_cast<int>(CLI::ExitCodes::RequiredError)) break;
     first.push_back(argument);
-    if (parse(first) != what) continue;
+    const std::optional<Refusal> refusal = parse(first);
+    if (!refusal || refusal->kind != whole.kind) continue;
     const std::string option = argument.option + ": ";  // which the key stands for
+    const std::string& text = refusal->text;
     throw InputError(file.string() + ": " + argument.key + ": " +
-                     (what.starts_with(option) ? what.substr(option.size()) : what));
+                     (text.starts_with(option) ? text.substr(option.size()) : text));
   }
-  throw InputError(file.string() + ": " + what);
+  throw InputError(file.string() + ": " + whole.text);
 }
 
 std::string text_of(const Arguments& arguments) {
@@ -167,18 +179,18 @@ std::uint32_t QuestionReader::add_bodies(const PlannedRun& run, const RunOptions
 
 void QuestionReader::parse(const PlannedRun& run, RunOptions& options) const {
   const auto parse_into = [](RunOptions& into,
-                             const Arguments& arguments) -> std::optional<std::string> {
+                             const Arguments& arguments) -> std::optional<Refusal> {
     CLI::App command;
     add_run_options(command, into);
     try {
       command.parse(reversed({"--output=" + std::string(campaign::kResultName)}, arguments));
     } catch (const CLI::ParseError& error) {
-      return error.what();
+      return Refusal(error);
     }
     return std::nullopt;
   };
-  if (const auto what = parse_into(options, run.arguments)) {
-    refuse_argument(file_, run.arguments, *what, [&](const Arguments& arguments) {
+  if (const auto refusal = parse_into(options, run.arguments)) {
+    refuse_argument(file_, run.arguments, *refusal, [&](const Arguments& arguments) {
       RunOptions unused;
       return parse_into(unused, arguments);
     });
@@ -193,7 +205,7 @@ void QuestionReader::parse(const PlannedRun& run, RunOptions& options) const {
 void QuestionReader::check_outputs(const PlannedRun& run) {
   for (const auto& [command, arguments] : run.outputs) {
     if (!checked_.insert(command[0] + text_of(arguments)).second) continue;
-    const Parse parse = [&command = command](const Arguments& some) -> std::optional<std::string> {
+    const Parse parse = [&command = command](const Arguments& some) -> std::optional<Refusal> {
       CLI::App program;
       add_conflicts(program);
       add_report(program);
@@ -204,11 +216,11 @@ void QuestionReader::check_outputs(const PlannedRun& run) {
         program.parse(reversed(command, some));
       } catch (const CLI::Success&) {
       } catch (const CLI::ParseError& error) {
-        return error.what();
+        return Refusal(error);
       }
       return std::nullopt;
     };
-    if (const auto what = parse(arguments)) refuse_argument(file_, arguments, *what, parse);
+    if (const auto refusal = parse(arguments)) refuse_argument(file_, arguments, *refusal, parse);
   }
 }
 

@@ -286,14 +286,7 @@ class Check {
         note_step(kStoreName, step.words(), report.was_finished);
         return;
       } catch (const UsageError& error) {
-        if (!is_about_other_question(error.remedy())) throw;
-        if (!options_.force && error.remedy() != Remedy::kOverwrite) throw;
-        if (!options_.force) {
-          throw UsageError(plan_.environment().string() +
-                               ": holds other scans than these, or they were converted with other "
-                               "options",
-                           Remedy::kOverwrite);
-        }
+        if (!is_about_other_question(error.remedy()) || !options_.force) throw;
       }
       Step<ConvertCommand> replacing(plan_.convert(true));
       perform(replacing.options());

@@ -21,6 +21,7 @@
 #include "cli/trajectory/description.hpp"
 #include "core/util/format.hpp"
 #include "io/files/pending_file.hpp"
+#include "io/files/text_number.hpp"
 #include "io/paths/alignment/alignment_file.hpp"
 #include "io/paths/trajectory_file.hpp"
 
@@ -88,6 +89,15 @@ void write_alignment(AlignmentCommand& options) {
   if (options.json) print_json(made);
 }
 
+/// The check of a station, which is a number and not as signs show it.
+CLI::Validator station() {
+  const auto check = [](const std::string& text) -> std::string {
+    if (parse_whole_number(text)) return "";
+    return text + ": expected a number with a decimal point, such as 1100.5 for 1+100.5";
+  };
+  return {check, ""};
+}
+
 /// Adds the options that say which stretch of which alignment is wanted.
 void add_way(CLI::App& command, AlignmentCommand& options) {
   const GroupScope group(command, OptionGroup::kPath);
@@ -102,11 +112,13 @@ void add_way(CLI::App& command, AlignmentCommand& options) {
   command
       .add_option("--from", what.station_from,
                   "Internal station of the first pose, in the unit of the file")
-      ->type_name("STATION");
+      ->type_name("STATION")
+      ->check(station());
   command
       .add_option("--to", what.station_to,
                   "Internal station of the last pose, in the unit of the file")
-      ->type_name("STATION");
+      ->type_name("STATION")
+      ->check(station());
   command.add_flag("--reverse", what.reverse, "Travel against the stations");
   options.lengths.add(command, "--height", what.height,
                       "Height of all poses, for an alignment without a profile", LengthRange::kAny);

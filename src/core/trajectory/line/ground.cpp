@@ -9,10 +9,8 @@
 namespace clearway {
 namespace {
 
-constexpr double kStripLength = 0.5, kStripWidth = 0.4;  ///< metres along and across the line
-constexpr double kReach = 1;                             ///< metres up and down
-constexpr double kWindow = 0.1;                          ///< metres of height
-constexpr std::size_t kFewestPoints = 12;
+constexpr double kReach = 1;     ///< metres up and down
+constexpr double kWindow = 0.1;  ///< metres of height
 constexpr double kShareOfFullest = 0.2;
 /// A rise between two grounds is believed up to kRise and this share of the way between them.
 constexpr double kRise = 0.1, kSlope = 0.15;
@@ -36,7 +34,7 @@ class Strips {
     const double base = about.value_or(0) * metre_;
     const Pose pose{{c, -s, 0, s, c, 0, 0, 0, 1},
                     {place.at.real() * metre_, place.at.imag() * metre_, base}};
-    const double along = kStripLength / 2 * metre_, across = kStripWidth / 2 * metre_;
+    const double along = kGroundStripLength / 2 * metre_, across = kGroundStripWidth / 2 * metre_;
     Box strip{{-along, left_ * metre_ - across, -kReach * metre_},
               {along, left_ * metre_ + across, kReach * metre_}};
     if (!about) {
@@ -68,8 +66,8 @@ std::optional<double> ground_among(std::vector<double>& heights) {
     counts[i] = end - i;
     fullest = std::max(fullest, counts[i]);
   }
-  const double enough =
-      std::max(static_cast<double>(kFewestPoints), kShareOfFullest * static_cast<double>(fullest));
+  const double enough = std::max(static_cast<double>(kFewestGroundPoints),
+                                 kShareOfFullest * static_cast<double>(fullest));
   const auto is_enough = [&](std::size_t count) { return static_cast<double>(count) >= enough; };
   const auto lowest =
       static_cast<std::size_t>(std::ranges::find_if(counts, is_enough) - counts.begin());
@@ -112,7 +110,10 @@ GroundSide find_ground(const PackedCloud& cloud, std::span<const GroundPlace> pl
     if (!about) about = known ? std::optional(side.heights.back()) : search.begin;
     strips.collect(place.plan, about, heights);
     const std::optional<double> ground = ground_among(heights);
-    if (!ground) continue;
+    if (!ground) {
+      if (!heights.empty()) ++side.sparse;
+      continue;
+    }
     if (known) {
       const double way = place.station - places[side.places.back()].station;
       if (*ground - side.heights.back() > kRise + kSlope * way) {

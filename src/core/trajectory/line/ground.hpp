@@ -15,6 +15,12 @@ inline constexpr double kGroundStep = 0.5;
 /// The longest gap between two places with ground that is bridged, in metres.
 inline constexpr double kLongestGroundGap = 5;
 
+/// Length along the line and width across it of the strip in which the ground is looked for at a
+/// place, in metres.
+inline constexpr double kGroundStripLength = 0.5, kGroundStripWidth = 0.4;
+/// Number of points of a strip that make ground at least.
+inline constexpr std::size_t kFewestGroundPoints = 12;
+
 /// The ground among the heights of points in a strip, in metres: the median of a window of 0.1 m
 /// height. The lowest window counts that has at least 12 points and a fifth of those of the fullest
 /// one; from it the fullest that starts at most 0.1 m higher is taken, the lower of two that are as
@@ -34,7 +40,8 @@ struct GroundPlace {
 struct GroundSide {
   std::vector<std::size_t> places;  ///< at which it was found, ascending
   std::vector<double> heights;      ///< of each of them, metres
-  std::size_t risen = 0;  ///< places where what was found had risen too much, so it was dropped
+  std::size_t risen = 0;   ///< places where what was found had risen too much, so it was dropped
+  std::size_t sparse = 0;  ///< places with points that are too few at one height to be ground
 
   /// The heights at the places `from` to `to`, which are not before the first and after the last
   /// one that was found; between two of them they change evenly.

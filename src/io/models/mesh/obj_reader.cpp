@@ -40,7 +40,7 @@ class ObjParser {
 
   MeshFile parse() {
     if (input_.size() == 0u) refuse(input_.name(), "is empty; expected vertices `v X Y Z`");
-    input_.skip_byte_order_mark();
+    input_.begin_text();
     while (next_statement()) {
       split_fields(statement_, ' ', words_);
       if (!words_.empty()) read_statement();

@@ -18,7 +18,7 @@ class OffParser {
   explicit OffParser(InputBuffer& input) : input_(input), mesh_(input.name()) {}
 
   MeshFile parse() {
-    input_.skip_byte_order_mark();
+    input_.begin_text();
     read_header();
     for (std::uint64_t i = 0; i < vertices_; ++i) read_vertex(i);
     for (std::uint64_t i = 0; i < faces_; ++i) read_face(i);

@@ -46,6 +46,14 @@ struct NamedSide {
           : ". On this side, " + counted(side.ground.risen, "place") +
                 (side.ground.risen == 1 ? " was" : " were") +
                 " dropped because what was found there rises too steeply to be ground";
+  const double spacing =
+      std::sqrt(kGroundStripLength * kGroundStripWidth / static_cast<double>(kFewestGroundPoints));
+  const std::string sparse = side.ground.sparse == 0
+                                 ? ""
+                                 : ". On this side, " + counted(side.ground.sparse, "place") +
+                                       (side.ground.sparse == 1 ? " has" : " have") +
+                                       " too few points: the ground takes points at most " +
+                                       format_brief(spacing) + " m apart";
   refuse(name, "no ground was found under the " + std::string(side.name) + " wheels for " +
                    format_brief(to.station - from.station) + " m, from " +
                    format_brief(from.station) + " m along the line (at " + place_text(from) +
@@ -53,7 +61,7 @@ struct NamedSide {
                    "); expected gaps of at most " + format_brief(kLongestGroundGap) +
                    " m. The scan may have a hole there, something may stand on the ground, or the "
                    "height of the line may be more than 1 m off" +
-                   risen);
+                   risen + sparse);
 }
 
 /// The longest gap between two places with ground, in metres. Refuses one that is too long to be

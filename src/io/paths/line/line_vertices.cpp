@@ -61,7 +61,7 @@ class LineTable {
       : input_(std::move(input)), name_(input_.name()), options_(options) {}
 
   LineVertices read(Remarks& remarks) {
-    input_.skip_byte_order_mark();
+    input_.begin_text();
     std::string_view line;
     bool cut = false;
     while (input_.next_line(line)) {
@@ -370,7 +370,7 @@ class GeoJsonLine {
 bool holds_json(InputBuffer& input) {
   if (!input.can_seek()) return false;
   const InputBuffer::Mark start = input.mark();
-  input.skip_byte_order_mark();
+  input.begin_text();
   constexpr std::size_t kEnough = 4096;
   const auto bytes = input.peek(kEnough);
   const auto first = std::ranges::find_if(bytes, [](std::byte byte) {

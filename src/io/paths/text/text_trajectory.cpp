@@ -35,7 +35,7 @@ class TextTrajectory {
       : input_(std::move(input)), options_(options), format_(options.format) {}
 
   void read(TrajectoryFile& out) {
-    input_.skip_byte_order_mark();
+    input_.begin_text();
     std::string_view line;
     while (input_.next_line(line)) {
       line = without_leading_blanks(line);

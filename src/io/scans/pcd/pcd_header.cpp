@@ -30,7 +30,7 @@ class HeaderParser {
   explicit HeaderParser(InputBuffer& input) : input_(input) {}
 
   PcdHeader parse() {
-    input_.skip_byte_order_mark();
+    input_.begin_text();
     do {
       next();
     } while (read_entry());

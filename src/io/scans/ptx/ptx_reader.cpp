@@ -217,7 +217,7 @@ class PtxReader final : public PointReader {
  public:
   PtxReader(InputBuffer input, std::vector<Message> remarks)
       : input_(std::move(input)), remarks_(std::move(remarks)) {
-    input_.skip_byte_order_mark();
+    input_.begin_text();
     start_ = input_.mark();
     if (!next_scan()) refuse(input_.name(), "holds no scan; expected PTX, columns and rows first");
   }

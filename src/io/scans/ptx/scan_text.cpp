@@ -11,7 +11,7 @@ namespace {
 /// the start.
 int count_lines(InputBuffer& input) {
   const InputBuffer::Mark start = input.mark();
-  input.skip_byte_order_mark();
+  input.begin_text();
   int found = 0;
   std::string_view line;
   while (found < 2 && next_data_line(input, line) && count_in(line)) ++found;

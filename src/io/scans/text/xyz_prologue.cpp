@@ -292,7 +292,7 @@ class PrologueReader {
 
   XyzPrologue read() {
     if (input_.size() == 0u) refuse(input_.name(), "is empty; expected points, one a line");
-    input_.skip_byte_order_mark();
+    input_.begin_text();
     std::string_view line;
     for (;;) {
       const InputBuffer::Mark start = input_.mark();

@@ -101,7 +101,7 @@ Pose read_threedtk_pose(InputBuffer& input) {
   std::array<double, 7> numbers{};
   std::size_t count = 0;
   std::string_view line;
-  input.skip_byte_order_mark();
+  input.begin_text();
   while (input.next_line(line)) {
     if (is_blank_line(line)) continue;
     const auto found = parse_number_line(line, std::span(numbers).subspan(count));
@@ -122,7 +122,7 @@ Pose read_threedtk_frames(InputBuffer& input) {
   std::array<double, kFrameNumbers> numbers{};
   std::optional<Pose> last;
   std::string_view line;
-  input.skip_byte_order_mark();
+  input.begin_text();
   while (input.next_line(line)) {
     if (is_blank_line(line)) continue;
     const auto found = parse_number_line(line, numbers);

@@ -132,7 +132,7 @@ class ThreedtkReader final : public PointReader {
   /// Skips lines before the first point that are no points, such as counts or what the scanner
   /// recorded.
   void skip_header() {
-    input_.skip_byte_order_mark();
+    input_.begin_text();
     InputBuffer::Mark start = input_.mark();
     std::string_view line;
     for (int lines = 0; next_data_line(input_, line); ++lines, start = input_.mark()) {

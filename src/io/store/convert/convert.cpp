@@ -262,7 +262,7 @@ class Conversion {
           "the inputs name no unit of length, so metres are assumed; --unit names another one");
     }
     report_.box = warn_of_inputs(environment, survey.boxes, report_.metadata, log_);
-    check_coordinates(environment);
+    check_coordinates(environment, survey.boxes);
     if (path) report_.origins_path = path->finish(environment, log_);
     path.reset();
     collect_origins(environment, counted.input_points, origins);
@@ -293,10 +293,10 @@ class Conversion {
 
  private:
   /// Judges the coordinates by the place where they lie, now that it is known.
-  void check_coordinates(const EnvironmentSource& environment) {
+  void check_coordinates(const EnvironmentSource& environment, const FileBoxes& boxes) {
     if (!report_.box) return;
-    check_map_scale(environment.crs(), *report_.box, environment.files()[0], options_.ignore_crs,
-                    log_);
+    check_map_scales(environment, boxes.boxes(environment.files().size()), options_.ignore_crs,
+                     log_);
     if (environment.unit() == LengthUnit::kUnknown) warn_of_degrees(*report_.box, log_);
   }
 
@@ -535,13 +535,29 @@ bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
          (options.ignore_crs || std::ranges::none_of(found.warnings, is_of_ignored_crs));
 }
 
+/// Whether a store tells whether these options made it. It does not record the columns with which
+/// it was made, and standard input can be read only once.
+bool tells_whether_made_by(const ConversionOptions& options) {
+  return options.inputs != std::vector<std::filesystem::path>{"-"} && options.columns.empty();
+}
+
+/// Throws UsageError where a file is at the place of the output of a conversion that is resumed,
+/// and is not its store.
+void refuse_other_output(const ConversionOptions& options) {
+  if (options.overwrite || !std::filesystem::is_regular_file(options.output)) return;
+  const char* reason = ": holds other scans than these, or they were converted with other options";
+  if (!store_at(options.output)) {
+    reason = ": exists already, and is no store";
+  } else if (!tells_whether_made_by(options)) {
+    reason = ": exists already, and does not tell whether it is the store of these scans";
+  }
+  throw UsageError(options.output.string() + reason, Remedy::kOverwriteNotResume);
+}
+
 }  // namespace
 
 bool is_converted(const ConversionOptions& options, Progress& progress) {
-  // A store does not record the columns with which it was made.
-  if (options.inputs == std::vector<std::filesystem::path>{"-"} || !options.columns.empty()) {
-    return false;
-  }
+  if (!tells_whether_made_by(options)) return false;
   const std::optional<StoreReader> store = store_at(options.output);
   if (!store || !would_make(options, store->metadata())) return false;
   std::vector<std::filesystem::path> files = list_point_files(options.inputs);
@@ -594,6 +610,7 @@ ConvertReport convert(const std::vector<std::filesystem::path>& inputs,
     if (options.strict) refuse_warnings(report.warnings);
     return report;
   }
+  if (options.resume) refuse_other_output(conversion);
   return convert_scans(conversion, progress);
 }
 

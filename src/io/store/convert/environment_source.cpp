@@ -49,6 +49,7 @@ EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& i
       inputs_(inputs, options.skip_unreadable, how_to_read_, progress) {
   open_inputs();
   find_crs();
+  withheld_edge_ = metre_cube_edge(crs_.unit);
   begin_converting_heights();
   if (auto kept = common_quanta(files(), infos_, options_.scale)) {
     quantisation_ = kept->quantisation;
@@ -160,6 +161,7 @@ void EnvironmentSource::rewind() {
   file_points_ = next_source_ = 0;
   input_points_ = non_finite_points_ = absent_points_ = withheld_points_ = 0;
   largest_change_ = 0;
+  withheld_edge_ = metre_cube_edge(crs_.unit);
   points_of_files_.clear();
   if (stream_) stream_->rewind();
   current_.reset();
@@ -310,12 +312,11 @@ void EnvironmentSource::note_withheld(const RecordBatch& records, QuantaBatch& o
   const PointBatch& batch = records.points;
   out.withheld_points = 0;
   out.withheld_cubes.clear();
-  const double edge = metre_cube_edge(crs_.unit);
   for (std::size_t i = 0; i < batch.flags.size(); ++i) {
     if (!batch.is_withheld(i)) continue;
     if (out.withheld_points++ == 0) out.first_withheld = records.first_source + i;
     if (options_.keep_withheld) continue;
-    const MetreCube cube = cube_of(point_of(batch, infos_[records.file], i), edge);
+    const MetreCube cube = cube_of(point_of(batch, infos_[records.file], i), withheld_edge_);
     // Neighbours in a file mostly share a cube.
     if (out.withheld_cubes.empty() || out.withheld_cubes.back() != cube) {
       out.withheld_cubes.push_back(cube);

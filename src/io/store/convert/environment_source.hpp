@@ -129,6 +129,9 @@ class EnvironmentSource {
   // Shifts of the files' integers in quanta; empty where all are rounded anew.
   std::vector<std::array<std::int64_t, 3>> shifts_;
   CommonCrs crs_;
+  // Edge of a cube of 1 m in the unit of the coordinates. It is that of the last rewind(), because
+  // next() may change crs_ while other threads are in convert().
+  double withheld_edge_ = 1;
   std::vector<Message> range_warnings_;  // warnings on the coordinates as read
   std::optional<std::uint64_t> declared_points_;
 

@@ -52,7 +52,11 @@ namespace {
 
 /// Throws for a pipe, which can be read only once.
 void refuse_pipe(const std::filesystem::path& file) {
-  if (std::filesystem::is_regular_file(file)) return;
+  std::error_code unknown;
+  if (std::filesystem::is_regular_file(file, unknown)) return;
+  if (!std::filesystem::exists(file, unknown)) {
+    throw InputError(file.string() + ": is a link that leads to no file; expected a file");
+  }
   throw InputError(file.string() +
                        ": is a pipe or device, expected a file; LAS and LAZ can be "
                        "standard input",

@@ -303,7 +303,7 @@ struct OriginRow {
 template <typename Use>
 void for_each_origin(const std::filesystem::path& path, Use use) {
   InputBuffer input(File::open_regular(path), InputBuffer::Access::kSeek);
-  input.skip_byte_order_mark();
+  input.begin_text();
   std::vector<std::string_view> fields;
   const auto fail = [&](const std::string& what) { refuse_line(input.name(), input.line(), what); };
   std::string_view line;

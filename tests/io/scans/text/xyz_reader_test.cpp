@@ -40,6 +40,8 @@ TEST_CASE("text in blanks, tabs, commas or semicolons, with anything behind it")
   CHECK(points_of("1 -2.5 3e2 0.5 255 anything\n4 5 6 # comment") == kTwo);
   CHECK(points_of("\xEF\xBB\xBF"
                   "1 -2.5 3e2\n4 5 6\n") == kTwo);
+  CHECK(points_of("sep=;\r\n1;-2.5;3e2\r\n4;5;6\r\n") == kTwo);
+  CHECK(points_of("\xEF\xBB\xBFsep=;\nx;y;z\n1;-2.5;3e2\n4;5;6\n") == kTwo);
   CHECK(points_of("# any\n\n// any\n1 -2.5 3e2\n  \n#\n4 5 6\n\n") == kTwo);
   CHECK(points_of("# only a comment").empty());
 }
@@ -89,6 +91,9 @@ TEST_CASE("malformed text is refused with its line") {
   CHECK_THAT(refusal_of_text(""), Contains("empty"));
   CHECK_THAT(refusal_of_text("hello\n"), Contains("line 1"));
   CHECK_THAT(refusal_of_text(std::string(100, '\0')), Contains("line 1"));
+  CHECK_THAT(refusal_of_text("\xFF\xFE" + std::string("1\0 \0", 4)), Contains("UTF-16"));
+  CHECK_THAT(refusal_of_text(std::string("\0001\0 \0002", 6)), Contains("UTF-16"));
+  CHECK_THAT(refusal_of_text("PK\x03\x04..."), Contains("ZIP archive"));
   CHECK_THAT(refusal_of_text("1 2 3\n1 2 3 " + std::string(70'000, 'x') + "\n"),
              Contains("line 2") && Contains("65536"));
 }

@@ -248,7 +248,23 @@ TEST_CASE("a map that does not keep lengths is warned of, and refused above 5 %"
   CHECK(outcome_of(contradicting).messages == " units-contradict feet ");
 }
 
-TEST_CASE("with --resume a store of an ignored system is converted again") {
+TEST_CASE("the map of every input is judged, at the middle of its own files") {
+  const std::string utm = MapScan{kUtm32}.bytes();
+  const std::string web = MapScan{"EPSG:3857", {}, 1'224'514, 6'106'854}.bytes();
+  for (const NamedFiles& files : std::vector<NamedFiles>{
+           {{"a.las", utm}, {"b.las", web}}, {{"a.las", utm}, {"b.las", web}, {"c.las", utm}}}) {
+    const Outcome refused = outcome_of_files(files);
+    CHECK_THAT(refused.refusal, Contains("b.las: lengths on the map of WGS 84 / Pseudo-Mercator"));
+    const Outcome ignored = outcome_of_files(files, {.ignore_crs = true});
+    CHECK(ignored.messages.find("map-scale") == ignored.messages.rfind("map-scale"));
+    CHECK(number_of(warning(ignored, "map-scale"), "scale") == Approx(1.4962).margin(1e-3));
+    CHECK_THAT(warning(ignored, "map-scale").text, Contains("b.las: lengths on the map"));
+  }
+  const std::string unnamed = MapScan{}.bytes();
+  CHECK(outcome_of_files({{"a.las", utm}, {"b.las", unnamed}}).messages == " no-crs ");
+}
+
+TEST_CASE("a store of an ignored system is not that of options which do not ignore it") {
   const ScratchFolder folder;
   NoProgress progress;
   put_bytes(folder / "a.las", MapScan{"EPSG:3857", {}, 1224514.4, 6106854.8}.bytes());

@@ -39,7 +39,7 @@ class Test:
 
 
 def files_that_a_pattern_misses_are_named(test):
-    """Only files with an ending like those that match, and that nothing else names."""
+    """Only files of the kind of those that match, and that nothing else names."""
     for routes, missed in (({"all": "routes/*.txt"}, ""),
                            ({"first": "routes/r00.t*"}, "1 file beside them"),
                            ({"first": "routes/r00.t*", "rest": "routes/r0[1-9].txt"}, ""),
@@ -52,6 +52,12 @@ def files_that_a_pattern_misses_are_named(test):
             expect("routes.first: the pattern matches 1 file" in done.stderr
                    and "r01.txt" in done.stderr, done.stderr)
         shutil.rmtree(test.work / "missed")
+    other = test.work / "routes/r09.csv"
+    shutil.copy(test.work / "routes/r00.txt", other)
+    done = test.plan(path=test.work / "missed", routes={"all": "routes/*.txt"})
+    expect("leaves out 1 file beside them of the same kind: r09.csv" in done.stderr, done.stderr)
+    other.unlink()
+    shutil.rmtree(test.work / "missed")
 
 
 def errors_name_the_key(test):
