@@ -23,4 +23,38 @@ std::vector<PoseRange> pose_ranges(const Indices& indices, std::uint32_t beyond 
   return out;
 }
 
+/// Stretches in any order as ascending ones that have no pose in common.
+inline std::vector<PoseRange> united(std::vector<PoseRange> ranges) {
+  std::ranges::sort(ranges, {}, &PoseRange::first);
+  std::vector<PoseRange> out;
+  for (const PoseRange& range : ranges) {
+    if (out.empty() || range.first > out.back().last) {
+      out.push_back(range);
+    } else {
+      out.back().last = std::max(out.back().last, range.last);
+    }
+  }
+  return out;
+}
+
+/// The poses of some stretches that are in none of the others.
+inline std::vector<PoseRange> without(const std::vector<PoseRange>& ranges,
+                                      const std::vector<PoseRange>& others) {
+  std::vector<PoseRange> out;
+  const std::vector<PoseRange> ascending = united(others);
+  for (PoseRange rest : ranges) {
+    bool any = true;
+    for (const PoseRange& other : ascending) {
+      if (other.last < rest.first) continue;
+      if (other.first > rest.last) break;
+      if (other.first > rest.first) out.push_back({rest.first, other.first - 1});
+      any = other.last < rest.last;
+      if (!any) break;
+      rest.first = other.last + 1;
+    }
+    if (any) out.push_back(rest);
+  }
+  return out;
+}
+
 }  // namespace clearway
