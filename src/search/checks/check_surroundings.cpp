@@ -29,6 +29,8 @@ constexpr double kFloats = 0.5;
 /// The number `side` of the warning "one-side", by the side on which nothing was scanned.
 constexpr double kLeftSide = 1, kRightSide = -1;
 
+const char* word_of_side(double number) { return number == kLeftSide ? "left" : "right"; }
+
 bool has_below(const Look& look) { return look.below; }
 bool has_left(const Look& look) { return look.left; }
 bool has_right(const Look& look) { return look.right; }
@@ -63,17 +65,14 @@ void warn_nothing_beside(const Question& question, const PathLooks& looks, Messa
 
 void warn_one_side(const Question& question, const PathLooks& looks, MessageLog& log) {
   const double left = looks.share(has_left), right = looks.share(has_right);
-  const bool is_left = left < right;
-  const std::string side = is_left ? "left" : "right";
+  const double number = left < right ? kLeftSide : kRightSide;
+  const std::string side = word_of_side(number);
   const double empty = 1 - std::min(left, right);
   log.warn("one-side",
            "on " + share_text(empty) + " of the path nothing was scanned on the " + side +
                " of the " + question.words().mover + ", " + beside_text(question) +
                ". On the other side there is something. Was the " + side + " side scanned?",
-           {{"share", empty},
-            {"left", left},
-            {"right", right},
-            {"side", is_left ? kLeftSide : kRightSide}});
+           {{"share", empty}, {"left", left}, {"right", right}, {"side", number}});
 }
 
 /// Looks for what a stretch of the path lacks and the rest has. What is missing below the model
@@ -120,15 +119,15 @@ class Stretches {
     all.insert(all.end(), right.begin(), right.end());
     std::ranges::sort(all, {}, &LookRun::first);
     if (all.empty() || !is_usual(has_both, all)) return;
-    if (!left.empty()) warn_one_side(left, "left", kLeftSide, log);
-    if (!right.empty()) warn_one_side(right, "right", kRightSide, log);
+    if (!left.empty()) warn_one_side(left, kLeftSide, log);
+    if (!right.empty()) warn_one_side(right, kRightSide, log);
   }
 
  private:
-  void warn_one_side(const std::vector<LookRun>& runs, const std::string& side, double number,
-                     MessageLog& log) const {
+  void warn_one_side(const std::vector<LookRun>& runs, double number, MessageLog& log) const {
     ToldStretches told(question_, looks_, runs);
     told.numbers.emplace_back("side", number);
+    const std::string side = word_of_side(number);
     log.warn("one-side",
              told.where + " nothing was scanned on the " + side + " of the " +
                  question_.words().mover + ", " + beside_text(question_) +
