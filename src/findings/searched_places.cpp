@@ -5,6 +5,8 @@
 #include <limits>
 #include <unordered_map>
 
+#include "core/query/warning_meaning.hpp"
+#include "core/trajectory/pose_ranges.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/result.hpp"
 
@@ -45,21 +47,6 @@ double reach_of(const ResultHeader& header) {
   return header.budget ? header.budget->near_radius(header.radius) : header.radius;
 }
 
-bool has_code(const Answer& answer, const std::string& code) {
-  return std::ranges::find(answer.warnings, code, &Message::code) != answer.warnings.end();
-}
-
-/// Whether the warnings of a result with this code name one of the poses.
-bool warns_at(const Answer& answer, const std::string& code, const PoseRange& poses) {
-  return std::ranges::any_of(answer.warnings, [&](const Message& warning) {
-    return warning.code == code &&
-           (warning.stretches.empty() ||
-            std::ranges::any_of(warning.stretches, [&](const PoseRange& stretch) {
-              return stretch.first <= poses.last && poses.first <= stretch.last;
-            }));
-  });
-}
-
 }  // namespace
 
 SearchedPlaces::SearchedPlaces(const Result& a, const std::vector<Pose>& poses_a, const Result& b,
@@ -69,7 +56,10 @@ SearchedPlaces::SearchedPlaces(const Result& a, const std::vector<Pose>& poses_a
       same_scan_(a_.environment_points == b_.environment_points &&
                  a_.environment_hash == b_.environment_hash) {
   compare_questions(poses_a, poses_b);
-  compare_ignored(b.reader().findings());
+  const ResultFindings &in_a = a.reader().findings(), &in_b = b.reader().findings();
+  compare_ignored(in_b);
+  const bool more_withheld = in_b.withheld_points > in_a.withheld_points;
+  if (!same_scan_ && more_withheld) everywhere_.insert("withheld");
   take_warnings(counted_answer(a.reader()), counted_answer(b.reader()));
 }
 
@@ -101,19 +91,43 @@ void SearchedPlaces::compare_ignored(const ResultFindings& findings) {
 void SearchedPlaces::take_warnings(const Answer& a, const Answer& b) {
   for (const Message& warning : b.warnings) {
     const Doubt doubt = b.doubt_of(warning);
-    if (doubt == Doubt::kQuestion) everywhere_.insert(warning.code);
-    const bool lacks = lacks_points(warning.code);
-    // What a lacked as a whole, such as anything on one side of the path, b need not have either.
-    if (lacks && warning.stretches.empty() && !has_code(a, warning.code)) {
+    if (doubt == Doubt::kQuestion) {
       everywhere_.insert(warning.code);
-    }
-    if (doubt == Doubt::kNone && !lacks) continue;
-    for (const PoseRange& stretch : warning.stretches) {
-      const bool in_both =
-          doubt == Doubt::kNone && pose_of_b_.empty() && warns_at(a, warning.code, stretch);
-      if (!in_both) stretches_.push_back({warning.code, stretch});
+    } else if (doubt == Doubt::kStretch) {
+      add_stretches(warning.code, warning.stretches);
+    } else if (may_miss(warning.code)) {
+      add_fault(a, warning);
     }
   }
+}
+
+void SearchedPlaces::add_fault(const Answer& a, const Message& warning) {
+  // What a missed too, such as anything on one side of the path, b need not have found either.
+  std::vector<PoseRange> in_a;
+  bool any = false, whole = false;
+  for (const Message& other : a.warnings) {
+    if (!have_same_fault(other, warning)) continue;
+    any = true;
+    whole |= other.stretches.empty();
+    in_a.insert(in_a.end(), other.stretches.begin(), other.stretches.end());
+  }
+  const bool same_path = pose_of_b_.empty();
+  if (warning.stretches.empty()) {
+    if (whole) return;
+    if (!any || !same_path || b_.poses == 0) {
+      everywhere_.insert(warning.code);
+      return;
+    }
+    const auto last = static_cast<std::uint32_t>(b_.poses - 1);
+    return add_stretches(warning.code, without({{0, last}}, in_a));
+  }
+  if (!same_path) return add_stretches(warning.code, warning.stretches);
+  if (!whole) add_stretches(warning.code, without(warning.stretches, in_a));
+}
+
+void SearchedPlaces::add_stretches(const std::string& code,
+                                   const std::vector<PoseRange>& stretches) {
+  for (const PoseRange& stretch : stretches) stretches_.push_back({code, stretch});
 }
 
 std::optional<std::uint32_t> SearchedPlaces::pose_of_b(std::uint32_t pose) const {

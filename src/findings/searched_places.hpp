@@ -26,7 +26,8 @@ class SearchedPlaces {
 
   /// Adds the reasons why b has not searched the place of a point of a, none where it has: "radius"
   /// where that of b is smaller, "model", "motion" or "path" where these are others than in a,
-  /// "ignored" where b left out points there, and the code of each warning of b that says so. If
+  /// "ignored" where b left out points there, "withheld" where the scans of b have more points that
+  /// were left out as deleted, and the code of each warning of b that says so. If
   /// both are about the same scan, the point is known to be there still, and another vehicle or
   /// path that does not touch it has freed it, so that these are no reasons. first, last: the first
   /// and the last pose at which the point collides in a.
@@ -42,6 +43,9 @@ class SearchedPlaces {
   void compare_questions(const std::vector<Pose>& poses_a, const std::vector<Pose>& poses_b);
   void compare_ignored(const ResultFindings& findings);  ///< of b
   void take_warnings(const Answer& a, const Answer& b);
+  /// Adds where b may have missed points, as one of its warnings says, and a has not.
+  void add_fault(const Answer& a, const Message& warning);
+  void add_stretches(const std::string& code, const std::vector<PoseRange>& stretches);
   std::optional<std::uint32_t> pose_of_b(std::uint32_t pose) const;
 
   const ResultHeader &a_, &b_;

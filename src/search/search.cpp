@@ -154,7 +154,9 @@ class Search {
     const std::vector<Message> passed_on = report_.warnings;
     report_finished(ResultReader(file_->journal.output(), Parts::kAccepted), report_);
     for (const Message& warning : report_.warnings) {
-      if (options_.message && !has_warning(passed_on, warning)) options_.message(warning);
+      const bool is_known = std::ranges::any_of(
+          passed_on, [&](const Message& other) { return say_the_same(other, warning); });
+      if (options_.message && !is_known) options_.message(warning);
     }
   }
 
@@ -664,6 +666,9 @@ class Search {
     ResultFindings found;
     add_warnings(report_.warnings, found.warnings);
     found.scanned = store_.metadata().dates;
+    if (const auto& withheld = store_.metadata().withheld) {
+      found.withheld_points = withheld->left_out();
+    }
     if (!query_.bodies.empty()) found.searched = report_.searched;
     if (query_.profile > 0) {
       found.without_bodies = poses_without_bodies(query_.poses.size(), query_.bodies);

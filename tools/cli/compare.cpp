@@ -167,8 +167,8 @@ int run_compare(CompareOptions& options) {
     return code;
   }
   const ResultReader a(options.a), b(options.b);
-  warn_of_doubts(a);
-  warn_of_doubts(b);
+  repeat_warnings(a, a.name() + ": ");
+  repeat_warnings(b, b.name() + ": ");
   const Comparison comparison = compare_results(a, b, options.show);
   print(options.json ? comparison_json(comparison, a.name(), b.name())
                      : comparison_text(comparison, a.name(), b.name()));

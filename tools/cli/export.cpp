@@ -111,7 +111,7 @@ void run_export(ExportOptions& options) {
   const ResultReader result(options.result);
   const Exported exported = export_table(result, options);
   spdlog::info("{}: {}", options.output.string(), counted(exported.rows, exported.row));
-  warn_of_doubts(result);
+  repeat_warnings(result);
   const std::string verdict =
       verdict_to_repeat(result, {}, symbol_of(unit_of_crs(result.header().crs_wkt)));
   if (!verdict.empty()) spdlog::info("the verdict of this result is {}", verdict);

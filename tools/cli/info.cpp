@@ -202,6 +202,9 @@ ordered_json describe(const ResultReader& result) {
   if (const ScanDates& dates = result.findings().scanned; dates.known()) {
     description["dates"] = {dates.first, dates.last};
   }
+  if (const std::uint64_t withheld = result.findings().withheld_points; withheld > 0) {
+    description["withheld_points"] = withheld;
+  }
   if (h.last_pose) description["last_pose"] = true;
   if (h.float_precision) description["precision"] = "float";
   if (h.has_poses_of_ways()) {

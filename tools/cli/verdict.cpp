@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/support/console.hpp"
 #include "cli/support/ignored_options.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/query/spacing_text.hpp"
+#include "core/trajectory/pose_ranges.hpp"
 #include "core/util/format.hpp"
 #include "io/result/answer.hpp"
 
@@ -213,20 +215,12 @@ ordered_json place_json(const Answer& answer, const std::optional<FoundPlace>& p
 
 /// The poses of all stretches on which the answer's warnings say that nothing could be found.
 std::vector<PoseRange> stretches_in_doubt(const Answer& answer) {
-  std::vector<PoseRange> all, out;
+  std::vector<PoseRange> all;
   for (const Message& warning : answer.warnings) {
     if (answer.doubt_of(warning) != Doubt::kStretch) continue;
     all.insert(all.end(), warning.stretches.begin(), warning.stretches.end());
   }
-  std::ranges::sort(all, {}, &PoseRange::first);
-  for (const PoseRange& stretch : all) {
-    if (out.empty() || stretch.first > out.back().last) {
-      out.push_back(stretch);
-    } else {
-      out.back().last = std::max(out.back().last, stretch.last);
-    }
-  }
-  return out;
+  return united(std::move(all));
 }
 
 /// A clause that says on how much of the path nothing could be found; empty where that is nowhere.
@@ -352,8 +346,12 @@ std::string verdict_to_repeat(const ResultReader& result, const PathWords& path,
   return verdict_text(answer, path, unit, warned_text(answer));
 }
 
-void warn_of_doubts(const ResultReader& result) {
+void repeat_warnings(const ResultReader& result, const std::string& prefix) {
   const Answer answer = counted_answer(result);
+  for (Message warning : answer.warnings) {
+    warning.text = prefix + warning.text;
+    log_message(warning);
+  }
   const std::vector<std::string> doubts = answer.doubts();
   if (answer.verdict() == Verdict::kConflict && !doubts.empty()) {
     spdlog::warn("{}: its run warned of {}, so more may collide than it found", result.name(),

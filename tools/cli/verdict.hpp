@@ -44,10 +44,11 @@ std::string warned_text(const Answer& answer);
 std::string verdict_to_repeat(const ResultReader& result, const PathWords& path,
                               const std::string& unit);
 
-/// Warns where the verdict of a result is undecided, or nothing could be found on a part of the
-/// path, so that nobody takes an empty list for an all-clear, or a short one for all that collides.
-/// For commands that do not word the verdict.
-void warn_of_doubts(const ResultReader& result);
+/// Repeats the warnings of the run of a result. Then warns where its verdict is undecided, or
+/// nothing could be found on a part of the path, so that nobody takes an empty list for an
+/// all-clear, or a short one for all that collides. For commands that do not word the verdict.
+/// prefix: text before each warning of the run, such as the name of the result.
+void repeat_warnings(const ResultReader& result, const std::string& prefix = {});
 
 /// The two margins of an error budget, metres; null without a budget.
 nlohmann::ordered_json margins_json(const Answer& answer);

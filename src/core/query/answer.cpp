@@ -37,15 +37,15 @@ const char* name_of(Reason reason) {
 
 namespace {
 
-/// What warnings with a code say about an answer. Warnings with other codes raise no doubt and lack
-/// no points.
+/// What warnings with a code say about an answer. A search with one of these warnings may have
+/// missed points; other warnings raise no doubt and lack no points.
 struct CodeMeaning {
   std::string_view code;
   Doubt doubt;
   bool lacks_points;
 };
 
-constexpr std::array<CodeMeaning, 12> kMeanings{{
+constexpr std::array<CodeMeaning, 14> kMeanings{{
     {"all-ignored", Doubt::kQuestion, false},
     {"no-points", Doubt::kQuestion, false},
     {"no-poses", Doubt::kQuestion, false},
@@ -58,10 +58,16 @@ constexpr std::array<CodeMeaning, 12> kMeanings{{
     {"body-undefined", Doubt::kStretch, false},
     {"nothing-beside", Doubt::kNone, true},
     {"one-side", Doubt::kNone, true},
+    {"coarse-scan", Doubt::kNone, true},
+    {"below-ground", Doubt::kNone, false},
 }};
 
+const CodeMeaning* find_meaning(std::string_view code) {
+  return std::ranges::find(kMeanings, code, &CodeMeaning::code);
+}
+
 CodeMeaning meaning_of(std::string_view code) {
-  const auto* const found = std::ranges::find(kMeanings, code, &CodeMeaning::code);
+  const CodeMeaning* const found = find_meaning(code);
   return found == kMeanings.end() ? CodeMeaning{code, Doubt::kNone, false} : *found;
 }
 
@@ -87,6 +93,17 @@ Doubt doubt_of(const Message& message) {
 bool is_doubt(std::string_view code) { return meaning_of(code).doubt == Doubt::kQuestion; }
 
 bool lacks_points(std::string_view code) { return meaning_of(code).lacks_points; }
+
+bool may_miss(std::string_view code) { return find_meaning(code) != kMeanings.end(); }
+
+bool have_same_fault(const Message& a, const Message& b) {
+  const auto side = [](const Message& message) {
+    const auto found = std::ranges::find(message.numbers, "side",
+                                         [](const auto& n) { return std::string_view(n.first); });
+    return found == message.numbers.end() ? 0 : found->second;
+  };
+  return a.code == b.code && side(a) == side(b);
+}
 
 Doubt Answer::doubt_of(const Message& warning) const {
   const bool all_seen = seen && seen->swept > 0 && seen->unseen == 0;

@@ -36,4 +36,24 @@ inline std::vector<PoseRange> united_ranges(std::vector<PoseRange> ranges) {
   return out;
 }
 
+/// The poses of some stretches that are in none of the others.
+inline std::vector<PoseRange> without(const std::vector<PoseRange>& ranges,
+                                      const std::vector<PoseRange>& others) {
+  std::vector<PoseRange> out;
+  const std::vector<PoseRange> ascending = united_ranges(others);
+  for (PoseRange rest : ranges) {
+    bool any = true;
+    for (const PoseRange& other : ascending) {
+      if (other.last < rest.first) continue;
+      if (other.first > rest.last) break;
+      if (other.first > rest.first) out.push_back({rest.first, other.first - 1});
+      any = other.last < rest.last;
+      if (!any) break;
+      rest.first = other.last + 1;
+    }
+    if (any) out.push_back(rest);
+  }
+  return out;
+}
+
 }  // namespace clearway

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "clearway/result.hpp"
+#include "core/trajectory/pose_ranges.hpp"
 #include "io/result/result.hpp"
 
 namespace clearway {
@@ -96,16 +98,27 @@ Answer answer_of(const ResultHeader& header) {
   return answer;
 }
 
-bool has_warning(std::span<const Message> warnings, const Message& warning) {
-  return std::ranges::any_of(warnings, [&](const Message& other) {
-    return other.code == warning.code && other.text == warning.text;
-  });
+bool say_the_same(const Message& a, const Message& b) {
+  return a.code == b.code && a.text == b.text && a.stretches.empty() == b.stretches.empty();
+}
+
+void unite_stretches(const Message& other, Message& message) {
+  if (other.stretches == message.stretches) return;
+  std::vector<PoseRange> all = message.stretches;
+  all.insert(all.end(), other.stretches.begin(), other.stretches.end());
+  message.stretches = united_ranges(std::move(all));
 }
 
 void add_warnings(const std::vector<Message>& messages, std::vector<Message>& warnings) {
   for (const Message& message : messages) {
-    const bool is_warning = message.severity == Message::Severity::kWarning;
-    if (is_warning && !has_warning(warnings, message)) warnings.push_back(message);
+    if (message.severity != Message::Severity::kWarning) continue;
+    const auto known = std::ranges::find_if(
+        warnings, [&](const Message& other) { return say_the_same(other, message); });
+    if (known == warnings.end()) {
+      warnings.push_back(message);
+    } else {
+      unite_stretches(message, *known);
+    }
   }
 }
 

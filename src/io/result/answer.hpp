@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "clearway/answer.hpp"
@@ -11,10 +10,15 @@ namespace clearway {
 /// The answer as far as a result's header gives it: without numbers of rows, places and warnings.
 Answer answer_of(const ResultHeader& header);
 
-/// Whether one of the warnings has the code and the text of this one.
-bool has_warning(std::span<const Message> warnings, const Message& warning);
+/// Whether two warnings say the same: by code and text, and by whether they are about stretches of
+/// the path. Which stretches these are may differ, as among the parts of a result.
+bool say_the_same(const Message& a, const Message& b);
 
-/// Adds those of the messages that are warnings and are not among the warnings yet.
+/// Adds the stretches of a warning that says the same, and which the message does not have.
+void unite_stretches(const Message& other, Message& message);
+
+/// Adds those of the messages that are warnings. One that says the same as another adds its
+/// stretches to that one.
 void add_warnings(const std::vector<Message>& messages, std::vector<Message>& warnings);
 
 /// Sets in `answer` what a search found besides its tables.

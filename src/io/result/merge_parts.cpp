@@ -146,10 +146,10 @@ std::vector<PartWarning> PartSet::warnings() const {
     std::vector<Message> of_part;  // each once
     add_warnings(part.findings().warnings, of_part);
     for (const Message& warning : of_part) {
-      auto known = std::ranges::find_if(all, [&](const PartWarning& other) {
-        return has_warning({&warning, 1}, other);
-      });
+      auto known = std::ranges::find_if(
+          all, [&](const PartWarning& other) { return say_the_same(warning, other); });
       if (known == all.end()) known = all.insert(all.end(), PartWarning{warning, 0});
+      unite_stretches(warning, *known);
       ++known->parts;
     }
   }
@@ -179,6 +179,7 @@ ResultFindings PartSet::findings() const {
   for (const ResultReader& part : parts_) {
     add_warnings(part.findings().warnings, out.warnings);
     if (!out.scanned.known()) out.scanned = part.findings().scanned;
+    out.withheld_points = part.findings().withheld_points;  // the same of each part
     if (!out.searched) out.searched = part.findings().searched;
     if (out.without_bodies.empty()) out.without_bodies = part.findings().without_bodies;
   }

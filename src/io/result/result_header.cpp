@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -543,6 +544,9 @@ SeenSummary read_seen(const hdf5::Id& file, const std::string& name) {
 void write_result_findings(const hdf5::Id& file, const ResultFindings& findings) {
   write_warnings(file, findings.warnings);
   write_scan_dates(file, findings.scanned);
+  if (findings.withheld_points > 0) {
+    hdf5::write_number(file, names::kWithheldPoints, findings.withheld_points);
+  }
   if (findings.ignored_colliding) {
     hdf5::write_number(file, names::kIgnoredColliding, *findings.ignored_colliding);
   }
@@ -584,6 +588,8 @@ ResultFindings read_result_findings(const hdf5::Id& file, const std::string& nam
     }
     return count;
   };
+  constexpr std::uint64_t kAny = std::numeric_limits<std::uint64_t>::max();
+  findings.withheld_points = read_count(names::kWithheldPoints, kAny).value_or(0);
   findings.ignored_colliding = read_count(names::kIgnoredColliding, header.ignored.points);
   findings.ignored_colliding_high =
       read_count(names::kIgnoredHigh, findings.ignored_colliding.value_or(0));

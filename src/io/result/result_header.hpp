@@ -123,6 +123,8 @@ std::string environment_text(const ResultHeader& header);
 struct ResultFindings {
   std::vector<Message> warnings = {};  ///< see Answer::warnings
   ScanDates scanned = {};              ///< days on which the scans of the environment were made
+  /// Number of points of the scans that the store left out because they have the flag `withheld`
+  std::uint64_t withheld_points = 0;
   /// See Answer. A file has both numbers where points are ignored, unless an earlier release wrote
   /// it.
   std::optional<std::uint64_t> ignored_colliding = {}, ignored_colliding_high = {};

@@ -89,6 +89,7 @@ inline constexpr const char* kBoxPoints = "box_points";
 // Only where points are ignored.
 inline constexpr const char* kIgnoredColliding = "ignored_colliding";
 // Only where points are ignored.
+inline constexpr const char* kWithheldPoints = "withheld_points";
 inline constexpr const char* kIgnoredHigh = "ignored_colliding_high";
 // With the next two, only where there are bodies.
 inline constexpr const char* kPathLength = "path_length";

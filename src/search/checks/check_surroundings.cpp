@@ -28,6 +28,10 @@ constexpr double kPartBeside = 0.05;
 constexpr double kLeastBelow = 3, kLeastBeside = 20;
 /// A look this many metres above the usual height or more counts for the warning "floats".
 constexpr double kFloats = 0.5;
+/// The number `side` of the warning "one-side", by the side on which nothing was scanned.
+constexpr double kLeftSide = 1, kRightSide = -1;
+
+const char* word_of_side(double number) { return number == kLeftSide ? "left" : "right"; }
 
 bool has_below(const Look& look) { return look.below; }
 /// Whether there is ground below the model, or inside it where the path is too low.
@@ -67,13 +71,14 @@ void warn_nothing_beside(const Question& question, const PathLooks& looks, Messa
 
 void warn_one_side(const Question& question, const PathLooks& looks, MessageLog& log) {
   const double left = looks.share(has_left), right = looks.share(has_right);
-  const std::string side = left < right ? "left" : "right";
+  const double number = left < right ? kLeftSide : kRightSide;
+  const std::string side = word_of_side(number);
   const double empty = 1 - std::min(left, right);
   log.warn("one-side",
            "on " + share_text(empty) + " of the path nothing was scanned on the " + side +
                " of the " + question.words().mover + ", " + beside_text(question) +
                ". On the other side there is something. Was the " + side + " side scanned?",
-           {{"share", empty}, {"left", left}, {"right", right}});
+           {{"share", empty}, {"left", left}, {"right", right}, {"side", number}});
 }
 
 /// Looks for what a stretch of the path lacks and the rest has. What is missing below the model
@@ -138,14 +143,19 @@ class Stretches {
   void check_sides(MessageLog& log) const {
     const std::vector<LookRun> left = empty_sides(has_left, has_right);
     const std::vector<LookRun> right = empty_sides(has_right, has_left);
-    const bool left_is_longer = length(left) >= length(right);
-    const std::vector<LookRun>& runs = left_is_longer ? left : right;
     std::vector<LookRun> all = left;
     all.insert(all.end(), right.begin(), right.end());
     std::ranges::sort(all, {}, &LookRun::first);
     if (all.empty() || !is_usual(has_both, all)) return;
-    const ToldStretches told(question_, looks_, runs);
-    const std::string side = left_is_longer ? "left" : "right";
+    if (!left.empty()) warn_one_side(left, kLeftSide, log);
+    if (!right.empty()) warn_one_side(right, kRightSide, log);
+  }
+
+ private:
+  void warn_one_side(const std::vector<LookRun>& runs, double number, MessageLog& log) const {
+    ToldStretches told(question_, looks_, runs);
+    told.numbers.emplace_back("side", number);
+    const std::string side = word_of_side(number);
     log.warn("one-side",
              told.where + " nothing was scanned on the " + side + " of the " +
                  question_.words().mover + ", " + beside_text(question_) +
@@ -153,10 +163,9 @@ class Stretches {
                  "sides. Was the " +
                  side + " side scanned there? If the site is open there, this is all right" +
                  told.others,
-             told.numbers, ToldStretches(question_, looks_, all).stretches);
+             told.numbers, told.stretches);
   }
 
- private:
   std::vector<LookRun> runs_of(double least, const std::function<bool(const Look&)>& holds) const {
     return looks_.runs(least * question_.metre, holds);
   }
@@ -187,12 +196,6 @@ class Stretches {
 
   bool is_on_ground(const Look& look) const {
     return look.below && !(look.height && *look.height >= high_);
-  }
-
-  double length(const std::vector<LookRun>& runs) const {
-    double sum = 0;
-    for (const LookRun& run : runs) sum += looks_.length(run);
-    return sum;
   }
 
   /// Whether `has` holds for most looks outside the runs, so that it is remarkable where a run

@@ -10,8 +10,8 @@
 #include "search/checks/question.hpp"
 
 /// Checks of a query. Each looks for one kind of misunderstanding and warns of it, at most once for
-/// each code. No check changes the answer. Thresholds and reasons: docs/design/inputs.md, "Checks
-/// of a query".
+/// each code, and of one side once for each side. No check changes the answer. Thresholds and
+/// reasons: docs/design/inputs.md, "Checks of a query".
 namespace clearway {
 
 /// Warns where the path passes where nothing was scanned: "out-of-reach", "leaves-scan".

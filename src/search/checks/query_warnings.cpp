@@ -12,6 +12,7 @@
 #include "clearway/error.hpp"
 #include "clearway/unsearched.hpp"
 #include "core/geometry/point_box.hpp"
+#include "core/query/warning_meaning.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
 #include "core/trajectory/pose_ranges.hpp"
@@ -61,7 +62,7 @@ bool path_matters(const std::vector<BodyMessages>& bodies, const Message& messag
          (message.code != "nothing-beside" || !holds_for_vehicle(bodies, "floats"));
 }
 
-/// The warning that the vehicle gets for one code: the one about the longest stretch that a body
+/// The warning that the vehicle gets for one fault: the one about the longest stretch that a body
 /// names, or else the one about its whole path.
 struct OfVehicle {
   const BodyMessages* body = nullptr;
@@ -69,10 +70,10 @@ struct OfVehicle {
   const Message* message = nullptr;
   std::vector<PoseRange> stretches;  ///< those that the bodies name together
 
-  OfVehicle(const std::vector<BodyMessages>& bodies, std::string_view code) {
+  OfVehicle(const std::vector<BodyMessages>& bodies, const Message& fault) {
     for (const BodyMessages& candidate : bodies) {
       for (const Message& other : candidate.messages) {
-        if (other.code != code) continue;
+        if (!have_same_fault(other, fault)) continue;
         stretches.insert(stretches.end(), other.stretches.begin(), other.stretches.end());
         if (message != nullptr && !is_better(other)) continue;
         body = &candidate;
@@ -123,14 +124,15 @@ void tell_alike(const std::vector<BodyMessages>& bodies, std::size_t first, cons
 }  // namespace
 
 void tell_of_bodies(const std::vector<BodyMessages>& bodies, MessageLog& log) {
-  std::vector<std::string_view> told;
+  std::vector<const Message*> told;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (const Message& message : bodies[i].messages) {
       if (!is_of_vehicle(message)) {
         tell_alike(bodies, i, message, log);
-      } else if (std::ranges::find(told, message.code) == told.end()) {
-        told.push_back(message.code);
-        const OfVehicle found(bodies, message.code);
+      } else if (std::ranges::none_of(
+                     told, [&](const Message* m) { return have_same_fault(*m, message); })) {
+        told.push_back(&message);
+        const OfVehicle found(bodies, message);
         if (found.message == nullptr) continue;
         Message of_vehicle = *found.message;
         of_vehicle.stretches = found.stretches;
@@ -350,10 +352,28 @@ void warn_of_bodies(const StoreReader& store, const Question& path, const Query&
   steps.check_path(path, log);
 }
 
+/// Notes that the scans hold points which the store left out as deleted. Where they are many, a
+/// warning of the store says so.
+void note_withheld(const StoreMetadata& store, MessageLog& log) {
+  const std::uint64_t points = store.withheld ? store.withheld->left_out() : 0;
+  constexpr const char* kCode = "withheld-points";
+  const bool is_warning =
+      std::ranges::find(store.warnings, kCode, &Message::code) != store.warnings.end();
+  if (points == 0 || is_warning) return;
+  log.add({Message::Severity::kNote,
+           kCode,
+           counted(points, "point") + " of the scans " + (points == 1 ? "is" : "are") +
+               " not searched, because " + (points == 1 ? "it has" : "they have") +
+               " the flag `withheld` and the conversion left " + (points == 1 ? "it" : "them") +
+               " out",
+           {{"points", static_cast<double>(points)}}});
+}
+
 /// Warns of scan and path as they are. Returns whether there is more to check.
 bool warn_of_inputs(const StoreReader& store, std::size_t poses, const QuestionWords& words,
                     std::span<const Message> told, MessageLog& log) {
   for (Message& warning : store_warnings(store.metadata())) log.add(std::move(warning));
+  note_withheld(store.metadata(), log);
   const LengthUnit unit = store.metadata().unit;
   if (poses == 0) {
     log.warn("no-poses", std::string("the trajectory has no poses: ") + words.nothing);

@@ -41,7 +41,7 @@ struct ComparedSide {
       : result(file), has_shifts(!model.empty() || !vehicle.empty()) {
     check_kind_of_model(result, model, vehicle);
     check_axes(result, options);
-    warn_of_doubts(result.reader());
+    repeat_warnings(result.reader(), result.reader().name() + ": ");
     poses = read_poses(trajectory, options.trajectory_options, result);
     std::vector<Body> bodies;
     if (!vehicle.empty()) {
@@ -100,11 +100,13 @@ bool have_same_points(const Result& a, const Result& b) {
          in_a.environment_hash == in_b.environment_hash;
 }
 
-/// Whether all scans of one result were made before those of another, as far as both tell.
-bool is_older(const Result& one, const Result& other) {
-  const ScanDates &first = one.reader().findings().scanned,
-                  &then = other.reader().findings().scanned;
-  return first.known() && then.known() && first.last < then.first;
+/// Whether all files of the scans of b are older than those of a; nothing where their dates show no
+/// order.
+std::optional<bool> is_older(const Result& b, const Result& a) {
+  const ScanDates &of_b = b.reader().findings().scanned, &of_a = a.reader().findings().scanned;
+  if (!of_b.known() || !of_a.known()) return std::nullopt;
+  if (of_b.last < of_a.first) return true;
+  return of_a.last < of_b.first ? std::optional(false) : std::nullopt;
 }
 
 /// Whether a conflict is worse in b than in a.
@@ -351,8 +353,8 @@ int compare_conflicts(ConflictComparison& options, const std::filesystem::path& 
   found.other_question_allowed = options.allow_other_question;
   found.worse_by = options.worse_by;
   found.match = match_conflicts(in_a.grouped(), in_b.grouped(), options.find.gap, options.worse_by);
-  found.is_same_scan = found.questions.empty() && have_same_points(in_a.result, in_b.result);
-  found.is_older = is_older(in_b.result, in_a.result);
+  found.same_points = have_same_points(in_a.result, in_b.result);
+  found.is_older = found.same_points ? false : is_older(in_b.result, in_a.result);
   found.a = in_a.compared();
   found.b = in_b.compared();
   found.distances_known = found.a.has_distances && found.b.has_distances;
@@ -589,14 +591,23 @@ std::string undecided_text(const ComparedResult& side, const char* name) {
       fmt::join(side.doubts, ", "));
 }
 
-/// Clauses about what makes b no later scan of the place than a; empty where it may be one.
+/// A clause about which scan is the later one; empty where the dates of the files say that it is b.
 std::string order_text(const ComparedConflicts& found) {
-  std::string text;
-  if (found.is_same_scan) text += "; both results are about the same scan, so nothing is compared";
-  if (found.is_older) {
-    text += "; b was scanned before a, by the dates in the scans: are they the wrong way round?";
+  if (found.is_same_scan()) return "; both results are about the same scan, so nothing is compared";
+  if (!found.is_older) {
+    return "; the dates of the files do not show that b is the later scan, so it is taken as given";
   }
-  return text;
+  if (!*found.is_older) return "";
+  return "; by the dates of the files b is older than a: are they the wrong way round?";
+}
+
+/// A clause about the conflicts that are gone; empty where none is, and where both scans are the
+/// same.
+std::string gone_text(const ComparedConflicts& found) {
+  const std::size_t gone = found.match.gone.size();
+  if (gone == 0 || found.same_points) return "";
+  return "; " + counted(gone, "conflict") + (gone == 1 ? " is" : " are") +
+         " gone if b was scanned there, where gaps are known only by its warnings";
 }
 
 }  // namespace
@@ -628,7 +639,8 @@ std::string sentence_of(const ComparedConflicts& found) {
   if (const std::size_t open = found.match.not_searched.size(); open > 0) {
     out += "; b has not searched " + counted(open, "place", "places") + " where a has a conflict";
   }
-  out += undecided_text(found.b, "b") + undecided_text(found.a, "a") + order_text(found);
+  out += gone_text(found) + undecided_text(found.b, "b") + undecided_text(found.a, "a") +
+         order_text(found);
   if (found.questions.empty()) return out;
   return out + (out.find(';') == std::string::npos ? ", but" : ";") +
          " b answers another question than a" +
@@ -663,11 +675,12 @@ std::string json_of(const ComparedConflicts& found) {
     not_searched.push_back(json_of_part(part, found.a));
     not_searched.back()["reasons"] = part.reasons;
   }
+  const ordered_json older = found.is_older ? ordered_json(*found.is_older) : ordered_json();
   const ordered_json out{{"a", side(found.a)},
                          {"b", side(found.b)},
                          {"holds", found.holds()},
-                         {"same_scan", found.is_same_scan},
-                         {"older", found.is_older},
+                         {"same_scan", found.is_same_scan()},
+                         {"older", older},
                          {"questions", questions},
                          {"new", json_of_list(found.b.conflicts, found.match.added)},
                          {"new_parts", grown},

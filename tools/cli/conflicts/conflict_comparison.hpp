@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -65,11 +66,11 @@ struct ComparedConflicts {
   bool other_question_allowed = false;
   bool distances_known = false;  ///< whether both results have distances
   double worse_by = 0;
-  ConflictMatch match;  ///< which conflicts are new, gone and the same, worse or not
-  /// Whether both results answer the same question about the same points, as where one scan was
-  /// given twice
-  bool is_same_scan = false;
-  bool is_older = false;  ///< whether b was scanned before a, by the dates in the scans
+  ConflictMatch match;       ///< which conflicts are new, gone and the same, worse or not
+  bool same_points = false;  ///< whether both results are about the same points
+  /// Whether b is older than a by the dates of the files, which may have been exported anew since
+  /// the scans; nothing where these show no order
+  std::optional<bool> is_older = {};
   /// Ids of the same conflict in a and b where b's is worse.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> worse;
   /// Ids of the same conflict in a and b of which it is unknown whether b's is worse, because the
@@ -78,6 +79,9 @@ struct ComparedConflicts {
 
   /// Number of conflicts of b that are in match.same.
   std::size_t same_in_b() const;
+  /// Whether both results answer the same question about the same points, as where one scan was
+  /// given twice.
+  bool is_same_scan() const { return questions.empty() && same_points; }
   bool same_question() const { return questions.empty() || other_question_allowed; }
   /// Whether b is seen to be worse than a, or answers another question that was not allowed.
   bool differs() const {
@@ -85,9 +89,9 @@ struct ComparedConflicts {
            !match.small.empty();
   }
   /// Whether b cannot show that nothing became worse: something could not be found in it, it has
-  /// not searched a place where a has a conflict, or it is no later scan than a.
+  /// not searched a place where a has a conflict, or it is the same scan as a.
   bool shows_nothing() const {
-    return b.undecided() || !match.not_searched.empty() || is_same_scan || is_older;
+    return b.undecided() || !match.not_searched.empty() || is_same_scan();
   }
   /// Whether b is no worse than a, and answers the same question or an allowed one.
   bool holds() const { return !differs() && !shows_nothing(); }

@@ -180,7 +180,7 @@ std::string perform(ShiftCommand& options) {
   const auto outputs = open_outputs(options);
   check_is_trajectory(options.trajectory);
   const Result result(options.result);
-  warn_of_doubts(result.reader());
+  repeat_warnings(result.reader());
   check_kind_of_model(result, options.model, options.vehicle);
   check_axes(result, options);
   check_is_store(options.environment);

@@ -179,7 +179,7 @@ StationsOutcome perform(StationsCommand& command) {
   const auto outputs = open_outputs(command);
   check_is_trajectory(command.trajectory);
   const Result result(command.result);
-  warn_of_doubts(result.reader());
+  repeat_warnings(result.reader());
   check_kind_of_model(result, command.model, command.vehicle);
   check_axes(result, command);
   const ResultHeader& header = result.reader().header();

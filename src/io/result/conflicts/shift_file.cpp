@@ -192,6 +192,7 @@ std::string json_of(const ShiftFile& file) {
     rows += (rows.empty() ? "\n    " : ",\n    ") + row_json(row);
   }
   out.add("conflicts", "[" + rows + (rows.empty() ? "]" : "\n  ]"));
+  out.add("warnings", json_messages(file.result.findings().warnings));
   return "{\n" + std::move(out).text() + "\n}\n";
 }
 

@@ -19,6 +19,7 @@ namespace {
 struct Kerb {
   double x_from, x_to, z_from, z_to;
   double y = 1.05;  ///< the car's side is at 1
+  bool withheld = false;
 };
 
 Kerb pole(double x) { return {x, x + 0.1, 0.4, 1.4}; }
@@ -28,9 +29,12 @@ struct Epoch {
   std::vector<Kerb> things;
   double scanned_to = 60;             ///< metres along x
   std::vector<double> hole = {0, 0};  ///< the ground is missing from here to there
-  int noise = 0;                      ///< another number gives other noise of up to 5 mm
-  unsigned year = 0;                  ///< year in the file's header; 0: none
-  std::string run = {};               ///< options of the search
+  /// From here to there nothing is scanned to the left, or to the right.
+  std::vector<double> no_left = {0, 0}, no_right = {0, 0};
+  double lower = 0;      ///< metres by which all is registered too low
+  int noise = 0;         ///< another number gives other noise of up to 5 mm
+  unsigned year = 0;     ///< year in the file's header; 0: none
+  std::string run = {};  ///< options of the search
   std::string path = "path.txt";
 };
 
@@ -47,6 +51,7 @@ struct Pair {
 };
 
 constexpr int kSurface = 2, kThing = 5;  // classes
+constexpr int kWithheld = 0x80;          // flag in the byte of the class, in format 1
 
 struct Road : Work {
   Road() {
@@ -87,24 +92,28 @@ struct Road : Work {
     };
     const auto add = [&](double x, double y, double z, int of_class) {
       if (x > epoch.scanned_to) return;
-      points.push_back({noisy(x), noisy(y), noisy(z)});
+      points.push_back({noisy(x), noisy(y), noisy(z - epoch.lower)});
       classes.push_back(static_cast<std::uint8_t>(of_class));
+    };
+    const auto is_lost = [](double x, const std::vector<double>& stretch) {
+      return x >= stretch[0] && x < stretch[1];
     };
     for (double x = 0; x <= 60; x += 0.4) {
       const bool missing = x > epoch.hole[0] && x < epoch.hole[1];
       for (double y = -3; y <= 3 && !missing; y += 0.4) add(x, y, 0, kSurface);
       for (const double y : {-3.0, 3.0}) {
+        if (is_lost(x, y > 0 ? epoch.no_left : epoch.no_right)) continue;
         for (double z = 0.2; z < 3; z += 0.4) add(x, y, z, 6);
       }
     }
     for (const Kerb& thing : epoch.things) {
       for (double x = thing.x_from; x <= thing.x_to + 1e-9; x += 0.05) {
         for (double z = thing.z_from; z <= thing.z_to + 1e-9; z += 0.05) {
-          add(x, thing.y, z, kThing);
+          add(x, thing.y, z, thing.withheld ? kThing | kWithheld : kThing);
         }
       }
     }
-    write_classed(folder / (name + ".las"), points, classes, 6, {0, 0, 0});
+    write_classed(folder / (name + ".las"), points, classes, 1, {0, 0, 0});
     if (epoch.year > 0) {
       std::string las = bytes(name + ".las");
       LasBytes::put(las, 90, std::uint16_t{100});
@@ -151,6 +160,7 @@ struct Road : Work {
 };
 
 const std::vector<Kerb> kPoles{pole(20), pole(45)};
+const Kerb kSmallPole{45, 45.05, 0.4, 1.0};
 const std::vector<Kerb> kBent{{20, 24, 0.35, 0.4}, {20, 20.05, 0.4, 1.4}};
 
 const std::vector<Pair>& pairs() {
@@ -166,7 +176,53 @@ const std::vector<Pair>& pairs() {
        {.things = {pole(20)}, .noise = 1},
        0,
        {{"gone", 1}, {"same", 1}},
+       "1 conflict is gone if b was scanned there"},
+      {"one side is missing in a, the other in b",
+       {.things = kPoles, .no_right = {0, 61}},
+       {.things = {pole(20)}, .no_left = {0, 61}, .noise = 1},
+       6,
+       {{"not_searched", 1}, {"same", 1}},
+       "b has not searched 1 place",
+       {"one-side"}},
+      {"one side is missing in both",
+       {.things = kPoles, .no_left = {0, 61}},
+       {.things = {pole(20)}, .no_left = {0, 61}, .noise = 1},
+       0,
+       {{"gone", 1}, {"same", 1}},
        "no new conflicts"},
+      {"a side is missing on stretches that overlap",
+       {.things = {pole(45)}, .no_left = {0, 28}},
+       {.things = {}, .no_left = {22, 61}, .noise = 1},
+       6,
+       {{"not_searched", 1}},
+       "b has not searched 1 place",
+       {"one-side"}},
+      {"a side is missing on one stretch",
+       {.things = {pole(45)}, .no_left = {0, 28}},
+       {.things = {}, .no_left = {0, 28}, .noise = 1},
+       0,
+       {{"gone", 1}},
+       "no new conflicts"},
+      {"lower scan",
+       {.things = kPoles},
+       {.things = kPoles, .lower = 3.5, .noise = 1},
+       6,
+       {{"not_searched", 2}},
+       "b has not searched 2 places",
+       {"floats"}},
+      {"withheld pole",
+       {.things = {kSmallPole}},
+       {.things = {{45, 45.05, 0.4, 1.0, 1.05, true}}, .noise = 1},
+       6,
+       {{"not_searched", 1}},
+       "b has not searched 1 place",
+       {"withheld"}},
+      {"pole that is gone between scans with withheld points",
+       {.things = {kSmallPole, {10, 10.05, 0.4, 1.0, 1.05, true}}},
+       {.things = {{10, 10.05, 0.4, 1.0, 1.05, true}}, .noise = 1},
+       0,
+       {{"gone", 1}},
+       "the dates of the files do not show that b is the later scan"},
       {"shorter scan",
        {.things = kPoles},
        {.things = kPoles, .scanned_to = 33, .noise = 1},
@@ -222,9 +278,9 @@ const std::vector<Pair>& pairs() {
       {"older scan",
        {.things = kPoles, .year = 2024},
        {.things = kPoles, .noise = 1, .year = 2022},
-       6,
+       0,
        {{"same", 2}},
-       "b was scanned before a"},
+       "by the dates of the files b is older than a"},
       {"newer scan",
        {.things = kPoles, .year = 2022},
        {.things = kPoles, .noise = 1, .year = 2024},
@@ -237,7 +293,7 @@ const std::vector<Pair>& pairs() {
        6,
        {{"not_searched", 2}},
        "b has not searched 2 places",
-       {"radius"}},
+       {"coarse-scan", "radius"}},
       {"ignored class",
        {.things = kPoles},
        {.things = kPoles, .noise = 1, .run = "--radius 0.1 --clearance 0.3 --ignore-class 5"},
@@ -341,6 +397,42 @@ TEST_CASE("what a search of a shorter scan warns of is in all that is made of it
   // Where nothing collides, the verdict of the whole is undecided too.
   road.search("b", {.things = {}, .scanned_to = 33});
   CHECK(json::parse(road.run("info --json " + result).out)["verdict"] == "undecided");
+}
+
+TEST_CASE("commands that read a result repeat what its run warned of") {
+  const Road road;
+  road.search("a", {.things = kPoles, .no_left = {0, 61}});
+  const std::string result = road.Work::path("a.h5");
+  const std::string path = result + " --trajectory " + road.Work::path("path.txt");
+  const std::string words = "nothing was scanned on the left of the model";
+  const std::string searched =
+      " --env " + road.Work::path("a_site.h5") + " --model " + road.Work::path("car.obj");
+  const std::string shift = "shift " + path + searched;
+  for (const std::string& command :
+       {"conflicts " + path, "stations " + path + " -o " + road.Work::path("s.csv"),
+        "export " + result + " -o " + road.Work::path("out.csv"), shift,
+        "compare " + result + " " + result}) {
+    CAPTURE(command);
+    CHECK_THAT(road.run(command).err, Contains(words));
+  }
+  const json table = json::parse(road.run(shift + " --json").out);
+  const json info = json::parse(road.run("info --json " + result).out);
+  CHECK(table["warnings"] == info["warnings"]);
+  REQUIRE(info["warnings"].size() > 0);
+  CHECK(info["warnings"][0]["code"] == "one-side");
+  CHECK(info["warnings"][0]["numbers"]["side"] == 1);
+}
+
+TEST_CASE("a run notes few points that the store left out as withheld") {
+  const Road road;
+  road.search("a", {.things = {kSmallPole, {10, 10.05, 0.4, 1.0, 1.05, true}}});
+  CHECK_THAT(road.run("run --env " + road.Work::path("a_site.h5") + " --model " +
+                      road.Work::path("car.obj") + " --trajectory " + road.Work::path("path.txt") +
+                      " --radius 0.1 -o " + road.Work::path("again.h5"))
+                 .err,
+             Contains("points of the scans are not searched, because they have the flag"));
+  const json info = json::parse(road.run("info --json " + road.Work::path("a.h5")).out);
+  CHECK(info["withheld_points"] > 20);
 }
 
 TEST_CASE("compare --conflicts reads a model as run did") {
