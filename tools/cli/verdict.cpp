@@ -220,7 +220,7 @@ std::vector<PoseRange> stretches_in_doubt(const Answer& answer) {
     if (answer.doubt_of(warning) != Doubt::kStretch) continue;
     all.insert(all.end(), warning.stretches.begin(), warning.stretches.end());
   }
-  return united(std::move(all));
+  return united_ranges(std::move(all));
 }
 
 /// A clause that says on how much of the path nothing could be found; empty where that is nowhere.

@@ -34,7 +34,7 @@ TEST_CASE("stretches of poses are united and taken away as sets of poses are") {
   bool united_well = true, taken_well = true;
   for (int trial = 0; trial < 2000; ++trial) {
     const std::vector<PoseRange> a = random_ranges(random), b = random_ranges(random);
-    const std::vector<PoseRange> one = united(a);
+    const std::vector<PoseRange> one = united_ranges(a);
     const bool apart = std::ranges::adjacent_find(one, [](const auto& x, const auto& y) {
                          return y.first <= x.last;
                        }) == one.end();
