@@ -110,8 +110,8 @@ TEST_CASE("run of a mesh is run of the points that model wrote") {
   }
   REQUIRE(meshes.run("car.ply", "points.h5", "").exit_code == 0);
   // The result of the mesh also has the warnings about the mesh.
-  CHECK(meshes.work.run("compare " + meshes.work.path("mesh.h5") + " " +
-                        meshes.work.path("points.h5"))
+  CHECK(meshes.work
+            .run("compare " + meshes.work.path("mesh.h5") + " " + meshes.work.path("points.h5"))
             .exit_code == 0);
 }
 
