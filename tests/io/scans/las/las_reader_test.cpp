@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "io/store/convert/spooled_reader.hpp"
 #include "io/scans/scan_crs.hpp"
+#include "io/store/convert/spooled_reader.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/reader_fixture.hpp"
 
