@@ -1,5 +1,7 @@
 #include "core/util/threads.hpp"
 
+#include <algorithm>
+#include <atomic>
 #include <latch>
 #include <string>
 #include <system_error>
@@ -11,6 +13,10 @@
 namespace clearway {
 
 void check_threads(int threads) {
+  // oneTBB and OpenMP keep the threads that they have started, so a number that was to be had once
+  // need not be tried again. Readers of files ask for it at each read.
+  static std::atomic<int> most_started{1};
+  if (threads <= most_started) return;
   std::latch all_started(1);
   std::vector<std::jthread> started;
   try {
@@ -20,6 +26,7 @@ void check_threads(int threads) {
     refuse_threads(threads, error.what());
   }
   all_started.count_down();
+  most_started = std::max(most_started.load(), threads);
 }
 
 void refuse_threads(int threads, const char* reason) {

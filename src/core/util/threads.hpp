@@ -3,7 +3,8 @@
 namespace clearway {
 
 /// Starts so many threads for a moment, this one included. Throws ResourceError where the system
-/// does not give them. OpenMP would end the process instead, and oneTBB may do so.
+/// does not give them; does nothing for a number that this process has started before. OpenMP would
+/// end the process instead, and oneTBB may do so.
 void check_threads(int threads);
 
 /// Throws the ResourceError of check_threads(). threads: how many were needed. reason: the

@@ -46,21 +46,4 @@ auto in_threads(int threads, const Body& body) {
   return ThreadLimit(threads).run(body);
 }
 
-/// Runs many short bodies with all threads that the arena of oneTBB may have. They are checked once
-/// and not for each body. For one thread.
-class AllThreads {
- public:
-  /// Calls body(). Throws as check_threads() does.
-  template <typename Body>
-  void run(const Body& body) {
-    const int threads = threads_or_all(0);
-    if (threads > checked_) check_threads(threads);
-    checked_ = std::max(checked_, threads);
-    ThreadLimit(threads).run(body);
-  }
-
- private:
-  int checked_ = 0;
-};
-
 }  // namespace clearway

@@ -68,7 +68,7 @@ class ParallelRead {
 
   /// Whether all rows are intact and pass their checks. If so, the rows and the hashes are
   /// complete.
-  bool run(AllThreads& threads) const;
+  bool run() const;
 
  private:
   using Chunks = std::vector<std::vector<std::byte>>;
@@ -90,22 +90,22 @@ class ParallelRead {
 };
 
 template <typename Visit>
-void for_each_index(std::size_t count, AllThreads& threads, Visit visit) {
+void for_each_index(std::size_t count, Visit visit) {
   const ParallelScope scope;
   const auto piece = piece_of(scope, visit);
-  threads.run([&] {
+  in_threads(0, [&] {
     scope.begin();
     tbb::parallel_for(std::size_t{0}, count, piece);
   });
 }
 
-bool ParallelRead::run(AllThreads& threads) const {
+bool ParallelRead::run() const {
   std::atomic<bool> well = true;
-  for_each_index(pieces_.size(), threads, [&](std::size_t i) {
+  for_each_index(pieces_.size(), [&](std::size_t i) {
     if (!pieces_[i]()) well = false;
   });
   if (!well) return false;
-  for_each_index(columns_.size(), threads, [&](std::size_t i) { columns_[i](); });
+  for_each_index(columns_.size(), [&](std::size_t i) { columns_[i](); });
   return true;
 }
 
@@ -135,11 +135,10 @@ using OptionalRead = std::optional<hdf5::Rows<typename StoredValue<Value>::Numbe
 template <typename Rows>
 class TableReader {
  public:
-  /// Opens the datasets that a result with this header has. name: that of the file. threads: those
-  /// that read(). All but `file` must outlive this object.
-  TableReader(const hdf5::Id& file, const std::string& name, const ResultHeader& header,
-              AllThreads& threads)
-      : name_(name), header_(header), threads_(threads) {
+  /// Opens the datasets that a result with this header has. name: that of the file. Both must
+  /// outlive this object.
+  TableReader(const hdf5::Id& file, const std::string& name, const ResultHeader& header)
+      : name_(name), header_(header) {
     if (!Table<Rows>::is_in(header)) return;
     hash_ = hdf5::read_number<std::uint64_t>(file, Table<Rows>::kHash, name);
     for_each_column<Rows>(datasets_, [&](const auto& column, auto& dataset) {
@@ -251,7 +250,7 @@ class TableReader {
                             });
       });
     });
-    return readable && read.run(threads_) && is_ordered(out);
+    return readable && read.run() && is_ordered(out);
   }
 
   /// Whether the rows are in order also from each chunk to the next, which no check of a chunk
@@ -266,7 +265,6 @@ class TableReader {
 
   const std::string& name_;
   const ResultHeader& header_;
-  AllThreads& threads_;
   PerColumn<Rows, OptionalRead> datasets_;
   std::optional<std::uint64_t> rows_;  ///< nullopt where the result does not have the table
   std::uint64_t hash_ = 0;
@@ -282,12 +280,12 @@ struct ResultReader::State {
         file(hdf5::open_file(path)),
         header(read_result_header(file, name)),
         findings(read_result_findings(file, name, header)),
-        tables(TableReader<Collisions>(file, name, header, threads),
-               TableReader<Clearances>(file, name, header, threads),
-               TableReader<ProfileRows>(file, name, header, threads),
-               TableReader<Nearby>(file, name, header, threads),
-               TableReader<UnseenCubes>(file, name, header, threads),
-               TableReader<SweptCells>(file, name, header, threads)) {
+        tables(TableReader<Collisions>(file, name, header),
+               TableReader<Clearances>(file, name, header),
+               TableReader<ProfileRows>(file, name, header),
+               TableReader<Nearby>(file, name, header),
+               TableReader<UnseenCubes>(file, name, header),
+               TableReader<SweptCells>(file, name, header)) {
     if (header.profile > 0 && table<ProfileRows>().rows() != header.poses) {
       throw InputError(name + ": /profile has " + std::to_string(table<ProfileRows>().rows()) +
                        " rows, expected one for each of " + std::to_string(header.poses) +
@@ -304,7 +302,6 @@ struct ResultReader::State {
   hdf5::Id file;
   ResultHeader header;
   ResultFindings findings;
-  AllThreads threads;
   std::tuple<TableReader<Collisions>, TableReader<Clearances>, TableReader<ProfileRows>,
              TableReader<Nearby>, TableReader<UnseenCubes>, TableReader<SweptCells>>
       tables;
