@@ -14,7 +14,7 @@ namespace {
 
 // The following numbers are shares of the looks.
 constexpr double kMissing = 0.5;
-constexpr double kNowhere = 0.1;
+constexpr double kNowhere = 0.2;
 constexpr double kOneSideOnly = 0.2, kOtherSide = 0.8;
 /// Least share of the looks outside the stretches.
 constexpr double kElsewhere = 0.8;

@@ -66,7 +66,7 @@ TEST_CASE("the verdict of a part is never clear") {
   INFO(all.err);
   CHECK(all.exit_code == 0);
   CHECK_THAT(all.out, Contains("clear: no environment point is closer than 0.1 m") &&
-                          Contains(", but see the 4 warnings above"));
+                          Contains(", but see the 3 warnings above"));
 }
 
 TEST_CASE("whether a point collides is asked of all parts") {
