@@ -14,7 +14,8 @@ namespace {
 
 // The following numbers are shares of the looks.
 constexpr double kMissing = 0.5;
-constexpr double kNowhere = 0.2;
+constexpr double kNowhere = 0.1;
+constexpr double kSomeGround = 0.2;
 constexpr double kOneSideOnly = 0.2, kOtherSide = 0.8;
 /// Least share of the looks outside the stretches.
 constexpr double kElsewhere = 0.8;
@@ -93,7 +94,7 @@ class Stretches {
   /// Where nothing was scanned below the model, for a path of which most has no ground. Without
   /// ground anywhere, it was probably removed on purpose.
   std::vector<PoseRange> without_ground() const {
-    if (looks_.share(has_ground) < kNowhere) return {};
+    if (looks_.share(has_ground) < kSomeGround) return {};
     const auto runs = runs_of(kLeastBelow, std::not_fn(has_ground));
     return runs.empty() ? std::vector<PoseRange>{}
                         : ToldStretches(question_, looks_, runs).stretches;
