@@ -50,7 +50,7 @@ struct ConflictMatch {
   std::vector<std::uint32_t> shrunk;
   std::vector<NotSearched> not_searched;  ///< by ascending id; part of one may be the same in b
   std::vector<std::uint32_t> added;       ///< ids of conflicts of b that a has no conflict near
-  /// Of other conflicts of b, the points that a has none near, by ascending id.
+  /// The points of b's other conflicts near which a has no point, by ascending id.
   std::vector<ConflictPart> grown;
   /// Small groups of b, as indices of Conflicts::small, that have a point without any of a near.
   std::vector<std::size_t> small;

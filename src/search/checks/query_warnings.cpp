@@ -186,7 +186,7 @@ void note_sizes(const Question& question, MessageLog& log) {
            length_text(question.query.radius, question.unit));
 }
 
-/// Of a load only the range is known, so nothing is looked for in its points.
+/// The load of a section is known by its range alone, so its points are not checked.
 void check_model_itself(const Question& question, MessageLog& log) {
   if (question.is_load()) return check_model(question, log);
   const ModelForm form = question.looks.form();
