@@ -318,7 +318,7 @@ ReadSystems read_systems(PJ_CONTEXT* context, std::string_view text) {
     ProjObject one = i < kMostSystems ? create_one(context, one_text) : nullptr;
     const bool of_heights = one && is_system_of_heights(context, one.get());
     ProjObject& place = of_heights ? out.heights : out.plane;
-    // A warning that is equal to an earlier one is kept once.
+    // A text may repeat a system, which is then read once.
     const bool again = one && place && one_text == (of_heights ? out.heights_text : out.plane_text);
     if (again) continue;
     if (!one || place) {
