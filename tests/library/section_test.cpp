@@ -274,7 +274,7 @@ TEST_CASE("a section has the same bytes on every device") {
                                  .threads = 2,
                                  .device_memory_bytes = 100000,
                                  .overwrite = true}),
-                      Contains("GPU"));
+                      Contains("device memory is too little"));
   } catch (const ResourceError& error) {
     CHECK_THAT(error.what(), Contains("device cuda"));
   }
