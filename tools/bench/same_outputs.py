@@ -3,7 +3,8 @@
 
 It prints a line for each output that differs, with the first difference, and a summary. An output
 is a file that a command wrote or changed, what it printed on standard output or on standard error,
-or its exit code. Exit code 1: an output differs, or a command did not end as the table expects.
+or its exit code; with --python also each name of the Python module with its kind, signature and
+docstring. Exit code 1: an output differs, or a command did not end as the table expects.
 
 The questions are in outputs/questions.py, the inputs that they need in outputs/inputs.py, and what
 may differ in outputs/difference.py. h5py and numpy (Debian: python3-h5py) say which dataset of a
@@ -12,6 +13,7 @@ Example: tools/bench/same_outputs.py before/clearway build/release/tools/clearwa
 """
 
 import argparse
+import json
 import os
 import re
 import shlex
@@ -239,6 +241,26 @@ def ask_interrupted(old, new, tally, pool, pattern):
                 tally.compare(f"interrupted: {title} ({way})", cut, expected.read_bytes(), found)
 
 
+# --- the names of the Python module --------------------------------------------------------------
+
+
+def python_names(folder):
+    """Each name of the module `clearway` in the folder, and what a user sees of it."""
+    script = Path(__file__).parent / "outputs/python_names.py"
+    done = subprocess.run([sys.executable, script], env={**os.environ, "PYTHONPATH": str(folder)},
+                          capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{folder}: the module cannot be loaded: {done.stderr.strip()[-300:]}")
+    return json.loads(done.stdout)
+
+
+def compare_python(folders, tally):
+    old, new = map(python_names, folders)
+    tally.questions += 1
+    for name in dict.fromkeys([*old, *new]):
+        tally.compare("Python", name, *(names[name].encode() if name in names else None for names in (old, new)))
+
+
 # --- the whole -----------------------------------------------------------------------------------
 
 
@@ -266,6 +288,8 @@ def parsed():
                         help="real files to ask about too: its folders formats, malformed, trajectories and street")
     parser.add_argument("--only", metavar="PATTERN",
                         help="regular expression: only the questions of which `GROUP: COMMAND` matches")
+    parser.add_argument("--python", type=Path, nargs=2, metavar=("OLD_FOLDER", "NEW_FOLDER"),
+                        help="folders that hold the Python modules of both builds, whose names are compared too")
     parser.add_argument("--keep", action="store_true", help="leave the files in the folder")
     options = parser.parse_args()
     options.data = options.data and options.data.resolve()
@@ -284,6 +308,8 @@ def main():
         if missing_tools():
             print(missing_tools())
         tally = Tally(Comparison(old.naming, new.naming))
+        if options.python:
+            compare_python(options.python, tally)
         ask_all(old, new, options, tally)
     finally:
         if options.keep:

@@ -16,11 +16,12 @@ def derive(folder):
     points = _las_points(folder / "hall/environment.las")
     poses = [[float(word) for word in line.split()]
              for line in (folder / "hall/trajectory.txt").read_text().splitlines()]
-    for name in ("scans", "halves", "mixed", "models", "paths"):
+    for name in ("scans", "halves", "mixed", "models", "paths", "lines"):
         (folder / name).mkdir()
     _scans(folder, points)
     _models(folder / "models")
     _paths(folder / "paths", poses)
+    _lines(folder, poses)
     _vehicles(folder)
     _campaigns(folder)
 
@@ -238,6 +239,38 @@ def _paths(paths, poses):
         for (p, _), pose in zip(seven, poses)))
     (paths / "map.csv").write_text("lat,lon,height,roll_deg,pitch_deg,heading_deg\n" + "".join(
         f"{51.45 + i * 1e-6:.8f},{9.0 + i * 1e-6:.8f},120,0,0,45\n" for i in range(30)))
+
+
+# --- alignments, lines and outlines --------------------------------------------------------------
+
+
+ALIGNMENT = """<?xml version="1.0" encoding="UTF-8"?>
+<LandXML xmlns="http://www.landxml.org/schema/LandXML-1.2" version="1.2" date="2026-01-01" time="00:00:00">
+<Units><Metric linearUnit="meter" areaUnit="squareMeter" volumeUnit="cubicMeter"
+ temperatureUnit="celsius" pressureUnit="milliBars"/></Units>
+<Alignments><Alignment name="track" length="200.0" staStart="0"><CoordGeom>
+<Line length="200"><Start>0 0</Start><End>0 200</End></Line></CoordGeom>
+<Profile name="rail"><ProfAlign name="rail"><PVI>0 10</PVI><PVI>200 10</PVI></ProfAlign></Profile>
+<Cant name="cant" gauge="1.435" rotationPoint="center">
+<CantStation station="0" appliedCant="0" curvature="cw"/>
+<CantStation station="100" appliedCant="150" curvature="cw"/>
+<CantStation station="200" appliedCant="150" curvature="cw"/></Cant>
+</Alignment></Alignments></LandXML>
+"""
+
+
+def _lines(folder, poses):
+    lines = folder / "lines"
+    vertices = [(pose[3], pose[7], pose[11]) for pose in poses[::10]]
+    (lines / "track.xml").write_text(ALIGNMENT)
+    (lines / "route.csv").write_text("x,y,z\n" + "".join(f"{x:.3f},{y:.3f},{z:.3f}\n" for x, y, z in vertices))
+    (lines / "stations.csv").write_text("station,x,y,z,cant\n" + "".join(
+        f"{100 + 10 * i},{20 * i},{i * i * 0.05:.3f},1,{0.01 * i:.3f}\n" for i in range(12)))
+    (lines / "route.geojson").write_text(json.dumps(
+        {"type": "LineString", "coordinates": [list(vertex) for vertex in vertices]}))
+    for name, height, width in (("load", 2.2, 0.9), ("slim", 0.6, 0.1)):
+        (folder / f"{name}.csv").write_text(f"{-width},0.3\n{width},0.3\n{width},{height}\n{-width},{height}\n")
+    (folder / "half.csv").write_text("0.3,0.9\n2.2,0.9\n")
 
 
 # --- vehicles and campaigns ----------------------------------------------------------------------

@@ -25,7 +25,9 @@ def groups(data):
         "engines": engines(), "models": models(), "paths": paths(), "ignored": IGNORED, "units": UNITS,
         "vehicles": VEHICLES, "options": OPTIONS, "run refuses": RUN_REFUSES, "shards": shards(),
         "export": EXPORT, "conflicts": conflicts(), "compare": COMPARE, "report": REPORT, "info": INFO,
-        "trajectory": trajectory(), "model": MODEL, "campaign": campaigns(), "help": help_pages(),
+        "trajectory": trajectory(), "lines": LINES, "model": MODEL, "certainty": CERTAINTY,
+        "section": section(), "findings": findings(), "check": CHECK, "campaign": campaigns(),
+        "info of all": info_of_all(), "help": help_pages(),
         **({"street": STREET} if data and (data / "street").is_dir() else {}),
     }
 
@@ -447,7 +449,151 @@ MODEL = [
     "model models/sphere.obj -o @.ply => 3",
     "model models/no_faces.obj",
     "model missing.obj => 4",
+    "model box 4,1.8,1.4 -o @.off",
+    "model box 4,1.8,1.4 -o @.ply",
+    "model box:4,1.8,1.4 --json",
+    "model outline load.csv --x=-2,2 -o @.off => any",
+    "model outline half.csv --mirror --x=-2,2 -o @.ply => any",
 ]
+
+
+LINES = [
+    *(f"trajectory alignment lines/track.xml {options} -o @.csv" for options in (
+        "", "--json", "--step 0.5 --from 20 --to 120 --json", "--reverse --cant none --json",
+        "--cant left-rail --rail-distance 1.6 --order en --json", "--env cells.h5 --json")),
+    "trajectory alignment lines/track.xml --alignment other -o @.csv => 3",
+    "trajectory alignment lines/track.xml --from 300 -o @.csv => any",
+    *(f"trajectory line lines/{name} --corner-radius 2 {options} -o @.csv"
+      for name in ("route.csv", "route.geojson", "stations.csv") for options in ("--step 0.5", "--json")),
+    "trajectory line lines/stations.csv --reverse --cant none --json -o @.csv",
+    "trajectory line lines/route.csv -o @.csv => 3",
+    "trajectory line lines/route.geojson -o @.csv => 3",
+    "trajectory line lines/stations.csv --height 2 -o @.csv => 2",
+    "trajectory line lines/stations.csv -o stations_path.csv --step 0.5 --json",
+    "trajectory info stations_path.csv --json",
+    "trajectory line lines/route.csv --on-ground cells.h5 --track 1.6 --json -o @.csv => any",
+    "trajectory follow stations_path.csv --pivots 3,-3 --json -o @.csv",
+    "trajectory resample hall/trajectory.txt --model hall/model.ply --max-motion 0.3 --json -o @.csv",
+]
+
+SURE = "--error-scan 5mm --error-registration 1cm --error-pose 2cm --error-angle 0.1deg --error-model 1cm"
+CERTAINTY = [
+    "convert hall/environment.las --origins hall/origins.csv --cell-points 500 --json -o seen.h5",
+    "convert scans/plain.xyz scans/placed.ptx --json -o @.h5",
+    f"run --env seen.h5 --model hall/model.ply --trajectory hall/trajectory.txt --radius 0.15 {ALL_TABLES} "
+    "--seen --json -o seen_out.h5",
+    "run --env seen.h5 --model hall/model.ply --trajectory hall/trajectory.txt --radius 0.15 --first-pose "
+    "--seen --seen-cube 0.1 --seen-min 2 -o @.h5",
+    f"run {CELLS} --radius 0.15 {ALL_TABLES} {SURE} --json -o sure.h5",
+    f"run {CELLS} --radius 0.05 --first-pose {SURE} --sigmas 2 --gap 0.5 -o @.h5",
+    f"run {TUNNEL} --vehicle wagon.json --radius 0.3 {ALL_TABLES} --error-scan 2cm --json -o wagon_sure.h5",
+    f"run --env seen.h5 --model box:4,1.8,1.4 --trajectory hall/trajectory.txt --radius 0.2 --model-as solid "
+    f"{ALL_TABLES} --seen {SURE} -o box_seen.h5",
+    "run --env cells.h5 --model hall/model.ply --trajectory stations_path.csv --radius 0.1 --first-pose --json "
+    "-o @.h5 => any",
+    f"run {CELLS} --radius 0.15 --seen -o @.h5 => 2",
+    f"run {CELLS} --radius 0.15 --sigmas 2 -o @.h5 => any",
+    *(f"run {CELLS} --radius 0.15 {ALL_TABLES} --fail-on-collision --strict {json} -o @.h5 => any"
+      for json in ("", "--json")),
+    *(f"report {result}.h5 --env {store}.h5 --model {model} --trajectory hall/trajectory.txt --date 2026-01-02 "
+      "--json -o @.html" for result, store, model in (
+          ("seen_out", "seen", "hall/model.ply"), ("sure", "cells", "hall/model.ply"),
+          ("box_seen", "seen", "box:4,1.8,1.4"))),
+    *(f"run {CELLS} --radius 0.15 {ALL_TABLES} {SURE} --shard {i}/2 --json -o sure_part_{i}.h5" for i in (1, 2)),
+    "merge sure_part_1.h5 sure_part_2.h5 --json -o sure_merged.h5",
+]
+
+
+def section():
+    """All commands of `clearway section`."""
+    find = "section find --trajectory hall/trajectory.txt --x-range=-2,2"
+    known = "--env cells.h5 --trajectory hall/trajectory.txt"
+    return [
+        f"{find} --env cells.h5 --json -o section.h5",
+        f"{find} --env cells.h5 --pivots 1,-1 --margin 0.2 --cell 0.05 --bin 2 --window=-2,2,0,3 -o section_margin.h5",
+        f"{find} --env seen.h5 --seen --cell 0.1 --json -o section_seen.h5",
+        f"{find} --env cells.h5 --between-poses --cell 0.1 --ignore-box 0,-5,0,10,5,3 --json -o section_ways.h5",
+        f"{find} --env classes.h5 --ignore-class 2 --cell 0.1 --json -o section_ignored.h5",
+        f"{find} --env elsewhere.h5 --cell 0.1 --json -o section_clear.h5",
+        f"{find} --env cells.h5 --strict -o @.h5 => any",
+        *(f"section check {name}.h5 --outline {outline} {json} => any" for json in ("", "--json")
+          for name in ("section", "section_margin", "section_seen", "section_ways", "section_clear")
+          for outline in ("load.csv", "slim.csv", "half.csv --mirror")),
+        f"section check section.h5 --outline load.csv {known} --json => any",
+        "section check section_margin.h5 --outline load.csv --margin 0.1 --json => any",
+        "section check section.h5 --outline missing.csv => 4",
+        *(f"section export {name}.h5 --table {table} -o @.csv" for name in ("section", "section_margin", "section_seen")
+          for table in ("bands", "stations", "boxes", "cells", "bin-cells")),
+        "section export section_margin.h5 --table bands --base 0.5 --band 0.25 -o @.csv",
+        "section export section_seen.h5 --table unknown-cells -o @.csv",
+        "section export section_margin.h5 --outline --base 0.5 -o @.dxf => any",
+        "section export section_clear.h5 --outline -o @.dxf => 2",
+        *(f"section report {name}.h5 {options} --date 2026-01-02 --json -o @.html -o @.svg => any"
+          for name, options in (("section", ""), ("section", "--outline load.csv"), ("section_clear", "--title T"),
+                                ("section", f"--outline load.csv {known}"), ("section_seen", "--outline slim.csv"),
+                                ("section_margin", "--outline load.csv --margin 0.1 --base 0.5 --band 0.25"))),
+    ]
+
+
+def findings():
+    """Stretches of the path, and shifts that free it."""
+    line = "--trajectory hall/trajectory.txt"
+    results = ("set", "tables", "smaller", "between", "solid", "ignored", "bodies_solid", "seen_out", "sure",
+               "elsewhere_out", "empty_out")
+    move = f"shift smaller.h5 --env cells.h5 --model hall/model.ply {line} --gap 0.8 --min-points 2"
+    return [
+        *(f"stations {result}.h5 {line} --json -o @.csv => any" for result in results),
+        f"stations tables.h5 {line} --every 2 --chainage-start 100 --show 3 -o @.csv",
+        "stations wagon.h5 --trajectory tunnel/trajectory.txt --every 10 --json -o @.csv",
+        f"{move} -o @.csv -o shifts.json",
+        f"{move} --lateral=-1,1 --step 0.1 --json -o @.csv => any",
+        f"shift sure.h5 --env cells.h5 --model hall/model.ply {line} --step 0.2 --json -o @.json => any",
+        "shift bodies_solid.h5 --env cells.h5 --vehicle solid.json --trajectory hall/trajectory.txt --step 0.2 "
+        "--json -o @.json => any",
+        f"report smaller.h5 --env cells.h5 --model hall/model.ply {line} --gap 0.8 --min-points 2 --date 2026-01-02 "
+        "--shifts shifts.json --json -o @.html => any",
+        *(f"conflicts {result}.h5 {line} --gap 0.8 --min-points 2 --json -o @.csv -o @.json => any"
+          for result in ("smaller", "seen_out", "sure", "box_seen")),
+        f"compare sure.h5 tables.h5 --conflicts {line} --allow-other-question --json -o @.json => any",
+    ]
+
+
+CHECK = [
+    "check hall/environment.las --model hall/model.ply --trajectory hall/trajectory.txt --radius 0.15 "
+    "--date 2026-01-02 --threads 1 --json -o checked",
+    "check hall/environment.las --model hall/model.ply --trajectory hall/trajectory.txt --radius 0.15 "
+    "--date 2026-01-02 --threads 1 --json -o checked",
+    "check cells.h5 --vehicle solid.json --trajectory hall/trajectory.txt --radius 0.1 --every 2 "
+    "--date 2026-01-02 --threads 1 --fail-on-collision -o @ => any",
+    "check elsewhere.h5 --model box:4,1.8,1.4 --trajectory hall/trajectory.txt --radius 0.1 --seen "
+    "--date 2026-01-02 --threads 1 --json -o @ => any",
+    "check hall/environment.las --trajectory hall/trajectory.txt --radius 0.15 -o @ => 2",
+    "check checked/site.h5 --model hall/model.ply --trajectory hall/trajectory.txt --radius 0.2 -o checked => any",
+]
+
+
+def info_of_all():
+    """What `info` and `verify` say of every kind of file."""
+    ours = ("seen.h5", "part_all_1.h5", "part_wagon_2.h5", "merged_all.h5", "seen_out.h5", "sure.h5", "box_seen.h5",
+            "sure_part_1.h5", "sure_merged.h5", "wagon_sure.h5", "bodies_solid.h5", "utm_out.h5", "mesh.h5",
+            "section.h5", "section_margin.h5", "section_seen.h5", "section_ways.h5", "section_ignored.h5",
+            "checked/site.h5", "checked/result.h5")
+    scans = ("plain.xyz", "count.pts", "points.txt", "named.csv", "text.ply", "binary.ply", "big_endian.ply",
+             "text.pcd", "binary.pcd", "placed.ptx", "scan000.3d", "classes.las", "utm.las", "not_finite.xyz",
+             "torn.ply", "empty.xyz", "decimal_commas.xyz")
+    models = ("box.obj", "box.stl", "box_binary.stl", "box.off", "box.ply", "open.obj", "mast.obj", "sphere.obj",
+              "few.xyz", "no_faces.obj")
+    paths = ("few_digits.txt", "fewest_digits.txt", "xyzw.txt", "quaternion.csv", "angles.csv", "map.csv", "empty.txt",
+             "utm.txt")
+    others = ("lines/track.xml", "lines/route.csv", "lines/stations.csv", "lines/route.geojson", "stations_path.csv",
+              "wagon.json", "campaign_plain.json", "load.csv", "shifts.json", "hall/origins.csv", "hall", "checked",
+              "checked/check.json", "checked/conflicts.csv", "checked/report.html")
+    files = (*ours, *(f"scans/{name}" for name in scans), *(f"models/{name}" for name in models),
+             *(f"paths/{name}" for name in paths), *others)
+    return [
+        *(f"info {file}{json} => any" for file in files for json in ("", " --json")),
+        *(f"verify {file}{json} => any" for file in ours for json in ("", " --json")),
+    ]
 
 
 def campaigns():
@@ -474,11 +620,13 @@ def campaigns():
 
 def help_pages():
     """What every command says of itself."""
-    commands = ["", "convert", "run", "merge", "export", "conflicts", "compare", "info", "verify", "model", "report",
-                "scene", "trajectory", "trajectory info", "trajectory resample", "trajectory thin",
-                "trajectory follow", "campaign", "campaign plan", "campaign run", "campaign status",
-                "campaign report"]
-    return [*(f"{command} --help".strip() for command in commands), "nonsense => 2", "run --nonsense => 2"]
+    commands = ["", "check", "convert", "run", "merge", "export", "conflicts", "stations", "shift", "compare", "info",
+                "verify", "model", "model box", "model outline", "report", "section", "section find", "section check",
+                "section export", "section report", "scene", "trajectory", "trajectory info", "trajectory resample",
+                "trajectory thin", "trajectory follow", "trajectory alignment", "trajectory line", "campaign",
+                "campaign plan", "campaign run", "campaign status", "campaign report"]
+    return [*(f"{command} --help".strip() for command in commands), "nonsense => 2", "run --nonsense => 2",
+            "section nonsense => 2", "run --radius 1 --radus 2 => 2"]
 
 
 STREET = [
