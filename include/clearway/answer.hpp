@@ -98,8 +98,6 @@ struct Answer : TableSummary {
   std::optional<std::uint64_t> ignored_colliding = 0, ignored_colliding_high = 0;
   std::vector<std::string> bodies;  ///< names of the bodies, if the query has several
   std::optional<Shard> shard;  ///< the shard that this answer is about; nullopt for a whole query
-  /// True if single precision alone decided, so that the answer is not exact
-  bool float_precision = false;
   /// Warnings about the question and its inputs, in the order in which they were given. Results
   /// keep them, and those of the machine that searched are not among them.
   std::vector<Message> warnings;

@@ -17,7 +17,6 @@ enum class Remedy {
   kLessMemory,        ///< a smaller memory budget, or the CPU
   kFewerThreads,
   kSweepEngine,  ///< use engine sweep, which can do what was asked; the engine chosen cannot
-  kGridEngine,
   kCudaDevice,
   kMoreCellPoints,
   kFewerCellPoints,

@@ -27,10 +27,6 @@ struct QueryParameters {
   /// Metres: asks for the least distance of every pose, and the point that has it, if the distance
   /// is below this; 0: no profile.
   double profile = 0;
-  /// Metres: a point whose distance differs from the radius by at most this may be answered
-  /// wrongly; 0: exact. Must be below the radius, and excludes first poses, clearances and motion
-  /// between poses.
-  double tolerance = 0;
   /// Classes whose points are left out of the search, as if the scans did not have them. Only for
   /// an environment that has classes.
   std::vector<std::uint8_t> ignore_classes = {};

@@ -22,8 +22,7 @@ const char* name_of(Engine engine);  ///< "auto", "sweep", "grid" or "kdtree"
 
 class DeviceStart;
 
-/// How a query is searched. Without a tolerance and with exact precision, the result's bytes depend
-/// on none of these options.
+/// How a query is searched. The result's bytes depend on none of these options.
 struct SearchOptions {
   Engine engine = Engine::kAuto;
   Device device = Device::kAuto;
@@ -31,9 +30,6 @@ struct SearchOptions {
   int threads = 0;             ///< 0: all cores
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
   std::uint64_t device_memory_bytes = 0;  ///< budget on each device; 0: 2 GiB, or what is free
-  double field_voxel = 0;        ///< step of the model field of engine sweep, metres; 0: chosen
-  double grid_cell = 0;          ///< side of the grid cells of engine grid, metres; 0: chosen
-  bool float_precision = false;  ///< whether engine grid decides in floats, for comparison
   /// The part of the environment to search; the output is then a part for merge(). The same store,
   /// query and count give the same parts, whatever the other options are.
   std::optional<Shard> shard = {};
@@ -59,13 +55,6 @@ struct SearchOptions {
   StopFlag stop = nullptr;
 };
 
-/// How much work a tolerance saved.
-struct ToleranceReport {
-  std::uint64_t model_points_kept = 0, poses_kept = 0;
-  /// Exact tests of a point at a single pose that were not needed
-  std::uint64_t resolved_by_bounds = 0;
-};
-
 /// Wall-clock seconds of a search. Those of `search` and its stages overlap: each is the time in
 /// which at least one worker of that stage was busy.
 struct SearchSeconds {
@@ -75,7 +64,6 @@ struct SearchSeconds {
   double context_wait = 0;  ///< seconds that the search waited for the GPUs to start
   double check = 0;         ///< seconds for looking at the question before it is searched
   double ignored = 0;       ///< seconds for counting the ignored points that would collide
-  double thin = 0;          ///< seconds for choosing what a tolerance keeps
   /// Seconds for making what the engine looks up: the model field, the grid's groups
   double field = 0;
   double plan = 0;
@@ -111,8 +99,6 @@ struct SearchReport : Answer {
   std::string device_name = "the CPU";     ///< name of the device for the user
   std::optional<double> shard_share;       ///< a shard's estimated work, relative to the mean
   std::uint64_t searches = 0;              ///< pairs of a pose and a model point or triangle
-  std::optional<ToleranceReport> tolerance;
-  double field_voxel = 0, grid_cell = 0;  ///< what the engine built, in metres; 0: it built none
   std::uint64_t cells_total = 0, cells_read = 0, bytes_read = 0;
   std::uint64_t resumed_cells = 0, resumed_poses = 0;  ///< known from a journal
   /// Pages that were run, and the largest size that one may have

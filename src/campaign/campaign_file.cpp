@@ -145,7 +145,6 @@ std::vector<OptionKey> query_keys() {
                                                               : ValueKind::kCounts});
   };
   for_each_value_field(add);
-  keys.push_back({"precision", "--precision", ValueKind::kText});
   for_each_list_field(add);
   keys.push_back({"strict", "--strict", ValueKind::kFlag});
   return keys;
@@ -159,8 +158,6 @@ const std::vector<OptionKey> kSearchKeys{
     {"device", "--device", ValueKind::kText},
     {"gpus", "--gpus", ValueKind::kCounts},
     {"device_memory", "--device-memory", ValueKind::kSize},
-    {"field_voxel", "--field-voxel", ValueKind::kLength},
-    {"grid_cell", "--grid-cell", ValueKind::kLength},
     {"journal_interval", "--journal-interval", ValueKind::kNumber}};
 const std::vector<OptionKey> kLimitKeys{{"memory", "--memory", ValueKind::kSize},
                                         {"threads", "--threads", ValueKind::kCount}};

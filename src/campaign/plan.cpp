@@ -57,8 +57,7 @@ nlohmann::ordered_json question_of(const ResultHeader& header) {
       question[field.name] = field.of(header);
     }
   });
-  question.update({{"single_precision", header.float_precision},
-                   {"environment_points", header.environment_points},
+  question.update({{"environment_points", header.environment_points},
                    {"environment_hash", hash_text(header.environment_hash)},
                    {"model_points", header.model_points},
                    {"model_hash", hash_text(header.model_hash)},

@@ -217,13 +217,10 @@ std::string open_words(const ordered_json& facts, const std::string& unit) {
   return text;
 }
 
-bool is_exact(const ordered_json& facts) { return facts.value("exact", true); }
-
 std::string caveats_of(const ordered_json& facts, const std::string& unit) {
   std::string text;
   for (const std::string& one :
-       {warning_words(facts), ignored_words(facts), std::string(is_exact(facts) ? "" : "not exact"),
-        open_words(facts, unit)}) {
+       {warning_words(facts), ignored_words(facts), open_words(facts, unit)}) {
     if (!one.empty()) text += (text.empty() ? "" : "; ") + one;
   }
   return text;
@@ -419,7 +416,7 @@ void write_state(const std::filesystem::path& folder, const TaskState& state) {
                json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
 }
 
-ordered_json task_facts(const std::filesystem::path& run_json, const ordered_json& question) {
+ordered_json task_facts(const std::filesystem::path& run_json) {
   try {
     const ordered_json run = parse_json(text_of_file(run_json));
     ordered_json warnings = ordered_json::array(), texts = ordered_json::array();
@@ -428,16 +425,14 @@ ordered_json task_facts(const std::filesystem::path& run_json, const ordered_jso
       texts.push_back(warning.at("message"));
     }
     const ordered_json& profile = run.at("least_profile");
-    ordered_json facts{
-        {"verdict", run.at("verdict")},
-        {"reasons", run.value("reasons", ordered_json::array())},
-        {"exact", question.at("tolerance") == 0 && question.at("single_precision") == false},
-        {"colliding_points", run.at("colliding_points")},
-        {"ignored", ignored_of(run.at("ignored"))},
-        {"least", place_of(profile.is_null() ? run.at("least_clearance") : profile)},
-        {"first", place_of(run.at("first_place"))},
-        {"warnings", std::move(warnings)},
-        {"warning_texts", std::move(texts)}};
+    ordered_json facts{{"verdict", run.at("verdict")},
+                       {"reasons", run.value("reasons", ordered_json::array())},
+                       {"colliding_points", run.at("colliding_points")},
+                       {"ignored", ignored_of(run.at("ignored"))},
+                       {"least", place_of(profile.is_null() ? run.at("least_clearance") : profile)},
+                       {"first", place_of(run.at("first_place"))},
+                       {"warnings", std::move(warnings)},
+                       {"warning_texts", std::move(texts)}};
     if (const ordered_json seen = run.value("seen", ordered_json()); !seen.is_null()) {
       facts["seen"] = seen;
     }

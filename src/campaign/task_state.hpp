@@ -67,10 +67,9 @@ void write_state(const std::filesystem::path& folder, const TaskState& state);
 
 /// The facts about a result, from what `clearway run --json` printed: verdict and its reasons,
 /// colliding_points, ignored points (null where the query ignores none), least distance and first
-/// place with pose and chainage, codes and texts of the warnings; and from the task's question,
-/// whether it asks for an exact answer. Throws ResourceError where the file is cut short.
-nlohmann::ordered_json task_facts(const std::filesystem::path& run_json,
-                                  const nlohmann::ordered_json& question);
+/// place with pose and chainage, codes and texts of the warnings. Throws ResourceError where the
+/// file is cut short.
+nlohmann::ordered_json task_facts(const std::filesystem::path& run_json);
 
 /// What can be said about a task. kBegun: another process works on it, or it was interrupted; the
 /// file system has no locks that tell which. kOutdated: it finished, but a file that it read has
@@ -176,10 +175,6 @@ bool is_in_doubt(const nlohmann::ordered_json& facts);
 /// Why a run is undecided, and on how much of the path nobody knows what is there: "points are
 /// near, not scanned on 3.2 m". Empty where nothing of this holds.
 std::string open_words(const nlohmann::ordered_json& facts, const std::string& unit);
-
-/// Whether the run was asked for an exact answer, that is, without a tolerance and in double
-/// precision.
-bool is_exact(const nlohmann::ordered_json& facts);
 
 /// For example "1,234 points ignored, of which 56 would collide"; empty where none is ignored.
 std::string ignored_words(const nlohmann::ordered_json& facts);

@@ -28,8 +28,6 @@ const char* name_of(Remedy remedy) {
       return "fewer_threads";
     case Remedy::kSweepEngine:
       return "sweep_engine";
-    case Remedy::kGridEngine:
-      return "grid_engine";
     case Remedy::kCudaDevice:
       return "cuda_device";
     case Remedy::kMoreCellPoints:

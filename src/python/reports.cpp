@@ -26,8 +26,6 @@ void add_seconds(py::module_& module) {
       .def_readonly(
           "ignored", &Seconds::ignored,
           "Seconds of searching the ignored points too, to tell how many of them would collide.")
-      .def_readonly("thin", &Seconds::thin,
-                    "Seconds of choosing which model points and poses a tolerance keeps.")
       .def_readonly(
           "field", &Seconds::field,
           "Seconds of making what the engine looks up, such as the field around the model.")
@@ -47,13 +45,6 @@ void add_seconds(py::module_& module) {
       .def_readonly(
           "end_wait", &Seconds::end_wait,
           "Seconds that the call waited, once the result was written, for the GPUs to end.");
-  py::class_<ToleranceReport>(module, "ToleranceReport",
-                              "How much work the tolerance of a query saved.")
-      .def_readonly("model_points_kept", &ToleranceReport::model_points_kept,
-                    "How many model points were searched.")
-      .def_readonly("poses_kept", &ToleranceReport::poses_kept, "How many poses were searched.")
-      .def_readonly("resolved_by_bounds", &ToleranceReport::resolved_by_bounds,
-                    "How many exact tests of a point at a pose were not needed.");
   py::class_<EngineEstimate>(
       module, "EngineEstimate",
       "How many seconds each engine would take on the CPU, as estimated before the search.")
@@ -233,13 +224,6 @@ void add_work_of(py::class_<Report, Answer>& report) {
                     "everything was searched.")
       .def_readonly("searches", &Report::searches,
                     "How many pairs of a pose and a model point or triangle were asked about.")
-      .def_readonly("tolerance", &Report::tolerance,
-                    "What the tolerance saved: a ToleranceReport. None without a tolerance.")
-      .def_readonly(
-          "field_voxel", &Report::field_voxel,
-          "The side of a voxel of the field around the model, in metres; 0: there was none.")
-      .def_readonly("grid_cell", &Report::grid_cell,
-                    "The side of a cell of engine grid, in metres; 0: there was none.")
       .def_readonly("cells_total", &Report::cells_total, "How many cells the store has.")
       .def_readonly("cells_read", &Report::cells_read,
                     "How many cells were read; the model comes near no other.")

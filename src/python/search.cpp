@@ -91,14 +91,14 @@ void add_parameter(py::class_<ArrayQuery>& query, const QueryField<Value>& field
 
 ArrayQuery make_query(const py::object& model, const py::object& poses,
                       std::optional<double> radius, bool first_pose, bool between_poses,
-                      double clearance, double profile, double tolerance,
-                      std::vector<std::uint8_t> ignore_classes, std::vector<Box> ignore_boxes,
-                      bool allow_non_rigid, std::vector<PlacedBody> bodies,
-                      std::optional<double> error_scan, std::optional<double> error_registration,
-                      std::optional<double> error_pose, std::optional<double> error_angle,
-                      std::optional<double> error_model, double sigmas, double gap, bool seen,
-                      double seen_cube, std::uint32_t seen_min) {
-  return {{radius.value_or(0), first_pose, between_poses, clearance, profile, tolerance,
+                      double clearance, double profile, std::vector<std::uint8_t> ignore_classes,
+                      std::vector<Box> ignore_boxes, bool allow_non_rigid,
+                      std::vector<PlacedBody> bodies, std::optional<double> error_scan,
+                      std::optional<double> error_registration, std::optional<double> error_pose,
+                      std::optional<double> error_angle, std::optional<double> error_model,
+                      double sigmas, double gap, bool seen, double seen_cube,
+                      std::uint32_t seen_min) {
+  return {{radius.value_or(0), first_pose, between_poses, clearance, profile,
            std::move(ignore_classes), std::move(ignore_boxes), seen, seen_cube, seen_min,
            error_scan, error_registration, error_pose, error_angle, error_model, sigmas, gap},
           model_object(model),
@@ -117,12 +117,12 @@ void add_query(py::module_& module) {
       .def(
           py::init(&make_query), "model"_a = nothing, "poses"_a = nothing, "radius"_a = py::none(),
           py::kw_only(), "first_pose"_a = false, "between_poses"_a = false, "clearance"_a = 0.0,
-          "profile"_a = 0.0, "tolerance"_a = 0.0, "ignore_classes"_a = nothing,
-          "ignore_boxes"_a = nothing, "allow_non_rigid"_a = false, "bodies"_a = nothing,
-          "error_scan"_a = py::none(), "error_registration"_a = py::none(),
-          "error_pose"_a = py::none(), "error_angle"_a = py::none(), "error_model"_a = py::none(),
-          "sigmas"_a = 3.0, "gap"_a = 0.0, "seen"_a = false, "seen_cube"_a = 0.0, "seen_min"_a = 8,
-          R"(__init__(self, model=(), poses=(), radius=None, *, first_pose=False, between_poses=False, clearance=0.0, profile=0.0, tolerance=0.0, ignore_classes=(), ignore_boxes=(), allow_non_rigid=False, bodies=(), error_scan=None, error_registration=None, error_pose=None, error_angle=None, error_model=None, sigmas=3.0, gap=0.0, seen=False, seen_cube=0.0, seen_min=8)
+          "profile"_a = 0.0, "ignore_classes"_a = nothing, "ignore_boxes"_a = nothing,
+          "allow_non_rigid"_a = false, "bodies"_a = nothing, "error_scan"_a = py::none(),
+          "error_registration"_a = py::none(), "error_pose"_a = py::none(),
+          "error_angle"_a = py::none(), "error_model"_a = py::none(), "sigmas"_a = 3.0,
+          "gap"_a = 0.0, "seen"_a = false, "seen_cube"_a = 0.0, "seen_min"_a = 8,
+          R"(__init__(self, model=(), poses=(), radius=None, *, first_pose=False, between_poses=False, clearance=0.0, profile=0.0, ignore_classes=(), ignore_boxes=(), allow_non_rigid=False, bodies=(), error_scan=None, error_registration=None, error_pose=None, error_angle=None, error_model=None, sigmas=3.0, gap=0.0, seen=False, seen_cube=0.0, seen_min=8)
 --
 
 Ask which points the model comes closer to than the radius, on its way along the poses.
@@ -161,8 +161,7 @@ void add_searches(py::module_& module) {
       "search",
       [](SharedStore& store, const ArrayQuery& query, const py::object& output,
          const std::string& engine, const std::string& device, std::vector<int> gpus, int threads,
-         std::uint64_t memory_bytes, std::uint64_t device_memory_bytes, double field_voxel,
-         double grid_cell, bool float_precision,
+         std::uint64_t memory_bytes, std::uint64_t device_memory_bytes,
          std::optional<std::pair<std::uint32_t, std::uint32_t>> shard, bool overwrite, bool resume,
          bool strict, const py::object& input_warnings, bool model_is_cut, bool end_gpus,
          double journal_interval_seconds, py::object progress, py::object message,
@@ -175,9 +174,6 @@ void add_searches(py::module_& module) {
         options.threads = threads;
         options.memory_bytes = memory_bytes;
         options.device_memory_bytes = device_memory_bytes;
-        options.field_voxel = field_voxel;
-        options.grid_cell = grid_cell;
-        options.float_precision = float_precision;
         if (shard) options.shard = Shard{shard->first, shard->second};
         options.overwrite = overwrite;
         options.resume = resume;
@@ -198,12 +194,11 @@ void add_searches(py::module_& module) {
       "store"_a, "query"_a, "output"_a, py::kw_only(), "engine"_a = "auto", "device"_a = "auto",
       "gpus"_a = std::vector<int>{}, "threads"_a = 0,
       "memory_bytes"_a = SearchOptions{}.memory_bytes, "device_memory_bytes"_a = 0,
-      "field_voxel"_a = 0.0, "grid_cell"_a = 0.0, "float_precision"_a = false,
       "shard"_a = py::none(), "overwrite"_a = false, "resume"_a = false, "strict"_a = false,
       "input_warnings"_a = py::tuple(), "model_is_cut"_a = false, "end_gpus"_a = false,
       "journal_interval_seconds"_a = SearchOptions{}.journal_interval_seconds,
       "progress"_a = py::none(), "message"_a = py::none(), "stop"_a = py::none(),
-      R"(search(store, query, output, *, engine='auto', device='auto', gpus=(), threads=0, memory_bytes=4294967296, device_memory_bytes=0, field_voxel=0.0, grid_cell=0.0, float_precision=False, shard=None, overwrite=False, resume=False, strict=False, input_warnings=(), model_is_cut=False, end_gpus=False, journal_interval_seconds=5.0, progress=None, message=None, stop=None)
+      R"(search(store, query, output, *, engine='auto', device='auto', gpus=(), threads=0, memory_bytes=4294967296, device_memory_bytes=0, shard=None, overwrite=False, resume=False, strict=False, input_warnings=(), model_is_cut=False, end_gpus=False, journal_interval_seconds=5.0, progress=None, message=None, stop=None)
 --
 
 Find every point of the store within the query's radius of the moving model.
@@ -220,9 +215,6 @@ gpus: the numbers that CUDA gives the GPUs to take; empty: the first one with ro
 threads: how many threads work; 0: as many as there are cores.
 memory_bytes: how many bytes of working memory may be taken.
 device_memory_bytes: how many bytes may be taken on each GPU; 0: 2 GiB, or what is free.
-field_voxel: the side of a voxel of engine sweep, metres; 0: it is chosen.
-grid_cell: the side of a cell of engine grid, metres; 0: it is chosen.
-float_precision: engine grid decides in single precision, for comparison.
 shard: (i, n) searches the i-th of n parts, from 1; the output is a part for merge().
 overwrite: replaces an existing result, and the journal of an earlier search.
 resume: goes on from the journal of an earlier search.

@@ -161,7 +161,7 @@ void write_query(JsonText& json, const ReportFacts& facts) {
       json.field(field.name, field.of(header));
     }
   });
-  json.field("exact", header.tolerance == 0 && !header.float_precision).end('}');
+  json.end('}');
   write_ignored_points(json, header, facts.answer);
 }
 

@@ -69,9 +69,6 @@ void check_bodies(const Query& query, const SearchOptions& options) {
                          " searches one model, and no vehicle of several bodies",
                      Remedy::kSweepEngine);
   }
-  if (query.tolerance > 0) {
-    throw UsageError("a tolerance and a vehicle of several bodies cannot be combined");
-  }
   if (!query.model.empty()) {
     throw InputError("a query has either a model or bodies");
   }
@@ -98,47 +95,19 @@ namespace {
   throw UsageError("engine " + engine + " " + why, Remedy::kSweepEngine);
 }
 
-/// Throws UsageError where a tolerance cannot be combined with the rest of the query: only engine
-/// sweep has one, and only for sets of colliding points.
-void check_tolerance(const QueryParameters& query, Engine engine) {
-  const char* other = query.first_pose      ? "first poses"
-                      : query.clearance > 0 ? "clearances"
-                      : query.profile > 0   ? "a profile"
-                      : query.between_poses ? "motion between poses"
-                                            : nullptr;
-  if (other != nullptr) {
-    throw UsageError(std::string("a tolerance and ") + other +
-                     " cannot be combined: without a tolerance, engine sweep answers them exactly");
-  }
-  if (engine != Engine::kSweep) {
-    refuse_engine(name_of(engine), "is always exact and has no tolerance");
-  }
-  if (!(query.tolerance < query.radius)) {
-    throw UsageError(
-        "the tolerance has to be below the radius: otherwise a result without any collision would "
-        "be right");
-  }
-}
-
 /// Throws UsageError where seen space is asked for in part, or cannot be known.
-void check_seen(const QueryParameters& query, const SearchOptions& options) {
+void check_seen(const QueryParameters& query) {
   const QueryParameters usual;
   if (!query.seen && (query.seen_cube != usual.seen_cube || query.seen_min != usual.seen_min)) {
     throw UsageError("a cube or a least group of seen space: expected seen space to be asked for",
                      Remedy::kNone);
   }
   if (!query.seen) return;
-  if (query.tolerance > 0) {
-    throw UsageError("a tolerance and seen space cannot be combined");
-  }
-  if (options.float_precision) {
-    throw UsageError("single precision and seen space cannot be combined");
-  }
   if (query.seen_min == 0) throw UsageError("the least group of unseen cubes has at least 1 cube");
 }
 
-/// Refuses errors that are no errors, and what an error budget cannot be combined with.
-void check_budget(const QueryParameters& query, const SearchOptions& options) {
+/// Refuses errors that are no errors.
+void check_budget(const QueryParameters& query) {
   for_each_value_field([&](const auto& field) {
     using Field = std::decay_t<decltype(field)>;
     if constexpr (std::is_same_v<Field, QueryField<std::optional<double>>>) {
@@ -160,16 +129,6 @@ void check_budget(const QueryParameters& query, const SearchOptions& options) {
   if (!(query.gap >= 0) || !std::isfinite(query.gap)) {
     throw UsageError("the gap has to be a finite number of metres above 0, or 0 for the usual one");
   }
-  if (query.tolerance > 0) {
-    throw UsageError(
-        "a tolerance and an error budget cannot be combined: a verdict that says how sure it is "
-        "needs exact sets");
-  }
-  if (options.float_precision) {
-    throw UsageError(
-        "float precision and an error budget cannot be combined: a verdict that says how sure it "
-        "is needs exact sets");
-  }
 }
 
 void check_numbers(const QueryParameters& query, const SearchOptions& options) {
@@ -183,9 +142,7 @@ void check_numbers(const QueryParameters& query, const SearchOptions& options) {
       if (!field.belongs_to_budget()) check(topic.c_str(), field.of(query), !field.is_required());
     }
   });
-  check_budget(query, options);
-  check("the field's voxel", options.field_voxel, true);
-  check("the grid cell", options.grid_cell, true);
+  check_budget(query);
   if (options.threads < 0) throw UsageError("the number of threads cannot be negative");
   if (!(options.journal_interval_seconds >= 0)) {
     throw UsageError("the journal's interval has to be 0 seconds or more");
@@ -264,8 +221,7 @@ void check_query(const QueryParameters& query, const SearchOptions& options) {
   check_numbers(query, options);
   check_ignored(query);
   const Engine engine = chosen_engine(options);
-  if (query.tolerance > 0) check_tolerance(query, engine);
-  check_seen(query, options);
+  check_seen(query);
   if (query.clearance > 0 && query.between_poses) {
     throw UsageError(
         "clearances and motion between poses cannot be combined: clearances are at poses");
@@ -282,12 +238,6 @@ void check_query(const QueryParameters& query, const SearchOptions& options) {
   }
   if (query.between_poses && engine == Engine::kGrid) {
     refuse_engine(name_of(engine), "searches at poses, not between them");
-  }
-  if (engine != Engine::kGrid && (options.grid_cell > 0 || options.float_precision)) {
-    throw UsageError("a grid cell and float precision are of engine grid", Remedy::kGridEngine);
-  }
-  if (engine != Engine::kSweep && options.field_voxel > 0) {
-    throw UsageError("a field voxel is of engine sweep", Remedy::kSweepEngine);
   }
   if (engine == Engine::kKdtree && options.device_memory_bytes > 0) {
     throw UsageError(
@@ -323,13 +273,6 @@ void check_surface(const QueryParameters& query, const SearchOptions& options) {
         "a mesh",
         Remedy::kModelPoints);
   }
-}
-
-void check_solid(const QueryParameters& query) {
-  if (!(query.tolerance > 0)) return;
-  throw UsageError(
-      "a tolerance and a model with solids cannot be combined: without a tolerance, "
-      "engine sweep answers it exactly");
 }
 
 void check_sizes(const Query& query) {

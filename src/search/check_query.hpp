@@ -27,9 +27,6 @@ void check_gpus(const SearchOptions& options);
 /// surface.
 void check_surface(const QueryParameters& query, const SearchOptions& options);
 
-/// Throws UsageError where these parameters rule out a model with solids, as a tolerance does.
-void check_solid(const QueryParameters& query);
-
 /// Throws InputError where a triangle names a corner that does not exist, where the numbers of
 /// solids do not match the triangles or the model is too large for solids, and where model or
 /// trajectory have more elements than a tree over them can have.

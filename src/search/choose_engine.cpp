@@ -179,9 +179,8 @@ namespace {
 /// Whether engine kdtree can answer the query within the memory, and its time is known well enough
 /// to be compared.
 bool may_be_kdtree(const StoreReader& store, const Query& query, const SearchOptions& options) {
-  const bool asks_for_sweep = query.clearance > 0 || query.profile > 0 || query.tolerance > 0 ||
-                              query.between_poses || query.model.is_surface() ||
-                              !query.bodies.empty() || options.field_voxel > 0;
+  const bool asks_for_sweep = query.clearance > 0 || query.profile > 0 || query.between_poses ||
+                              query.model.is_surface() || !query.bodies.empty();
   return !asks_for_sweep && kdtree_needed_bytes(store, query, options) <= options.memory_bytes;
 }
 
@@ -192,7 +191,7 @@ void choose_engine(const StoreReader& store, const Query& query, Engine earlier,
   if (options.engine != Engine::kAuto) return;
   options.engine = Engine::kSweep;
   if (on_gpu || earlier == Engine::kSweep) return;
-  if (earlier == Engine::kKdtree && options.field_voxel == 0) {
+  if (earlier == Engine::kKdtree) {
     options.engine = earlier;
     return;
   }

@@ -573,15 +573,6 @@ class ShiftSearch {
   std::vector<std::vector<Vec3>> of_pose_;  ///< some points that collide at each pose
 };
 
-/// Throws UsageError for a result whose answer other searches would not give again.
-void check_is_exact(const ResultReader& result) {
-  const ResultHeader& header = result.header();
-  if (header.is_exact()) return;
-  throw UsageError(result.name() + ": was searched " +
-                   (header.tolerance > 0 ? "with a tolerance" : "in single precision") +
-                   ", so that its points are not exact; shifts need a result that is");
-}
-
 void check_stretches(const ResultReader& result, std::span<const Conflict> conflicts) {
   for (const Conflict& conflict : conflicts) {
     if (conflict.first_pose <= conflict.last_pose && conflict.last_pose < result.header().poses) {
@@ -600,7 +591,6 @@ void check_stretches(const ResultReader& result, std::span<const Conflict> confl
 ShiftTable find_shifts(const Session& session, const Result& result, const Query& query,
                        std::span<const Conflict> conflicts, const ShiftOptions& options) {
   const ShiftCandidates candidates(options);
-  check_is_exact(result.reader());
   ConflictOptions seen;
   seen.forward = options.forward;
   seen.up = options.up;

@@ -221,7 +221,7 @@ class Heights {
 Query query_of_ignored(const Query& query) {
   Query out = query;
   out.first_pose = true;
-  out.clearance = out.profile = out.tolerance = 0;
+  out.clearance = out.profile = 0;
   return out;
 }
 

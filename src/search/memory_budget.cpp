@@ -52,22 +52,21 @@ std::uint64_t PageEngineKind::most_poses(const MotionTree& motion,
   return most;
 }
 
-PageBudget::PageBudget(const PackedCloud& cloud, const Query& asked, const Query& searched,
-                       std::uint64_t thinned_bytes, std::uint64_t memory_bytes,
+PageBudget::PageBudget(const PackedCloud& cloud, const Query& query, std::uint64_t memory_bytes,
                        PageEngineKind& kind, const ShardCells* only,
                        std::optional<std::uint64_t> write_bytes, IgnoredPoints::Search search)
     : cloud_(cloud),
-      asked_(asked),
+      query_(query),
       memory_bytes_(memory_bytes),
       kind_(kind),
       only_(only),
       least_write_bytes_(write_bytes),
-      ignored_(cloud, asked, search),
-      masked_(asked.ignores_points()),
-      trees_(kind.trees_of(kind.whose_trees(searched))),
-      building_bytes_(tree_building_bytes(asked)),
-      kept_bytes_(program_bytes(kind.needs().threads) + input_bytes(cloud, asked) + thinned_bytes +
-                  (write_bytes ? search_result_bytes(cloud, asked) : 0)) {}
+      ignored_(cloud, query, search),
+      masked_(query.ignores_points()),
+      trees_(kind.trees_of(kind.whose_trees(query))),
+      building_bytes_(tree_building_bytes(query)),
+      kept_bytes_(program_bytes(kind.needs().threads) + input_bytes(cloud, query) +
+                  (write_bytes ? search_result_bytes(cloud, query) : 0)) {}
 
 void PageBudget::find() {
   const std::vector<PageEngineKind::IndexSize> sizes = kind_.index_sizes();
@@ -86,7 +85,7 @@ std::uint64_t PageBudget::kept_bytes(const SlotLayout& layout) const {
   const std::uint64_t pages = std::uint64_t{kind_.needs().devices} * layout.slots;
   const auto threads = static_cast<std::uint64_t>(kind_.needs().threads);
   return kept_bytes_ +
-         SearchJournal::most_bytes(cloud_, asked_, static_cast<int>(std::min(pages, threads)));
+         SearchJournal::most_bytes(cloud_, query_, static_cast<int>(std::min(pages, threads)));
 }
 
 /// Bytes that the search starts with: trees, index and plan.

@@ -20,14 +20,11 @@ namespace clearway {
 /// down to one cell, before the index gets coarser.
 class PageBudget {
  public:
-  /// asked: the query as the caller put it. searched: what a tolerance leaves of it, in
-  /// thinned_bytes bytes. only: the cells to plan, null for all. write_bytes: the least memory with
-  /// which the answer is written; nullopt where the caller takes the answer page by page, so that
-  /// no answer, journal or result takes memory. search: which points are searched. All references
-  /// outlive it.
-  PageBudget(const PackedCloud& cloud, const Query& asked, const Query& searched,
-             std::uint64_t thinned_bytes, std::uint64_t memory_bytes, PageEngineKind& kind,
-             const ShardCells* only, std::optional<std::uint64_t> write_bytes,
+  /// only: the cells to plan, null for all. write_bytes: the least memory with which the answer is
+  /// written; nullopt where the caller takes the answer page by page, so that no answer, journal or
+  /// result takes memory. search: which points are searched. All references outlive it.
+  PageBudget(const PackedCloud& cloud, const Query& query, std::uint64_t memory_bytes,
+             PageEngineKind& kind, const ShardCells* only, std::optional<std::uint64_t> write_bytes,
              IgnoredPoints::Search search = IgnoredPoints::Search::kOthers);
 
   /// Throws ResourceError naming the smallest budget that works.
@@ -51,7 +48,7 @@ class PageBudget {
             std::uint64_t most_poses);
 
   const PackedCloud& cloud_;
-  const Query& asked_;
+  const Query& query_;
   const std::uint64_t memory_bytes_;
   PageEngineKind& kind_;
   const ShardCells* only_;
@@ -101,8 +98,7 @@ std::uint64_t search_result_bytes(const PackedCloud& cloud, const Query& query);
 /// error budget: the other hits, and a copy of the inputs; 0 where neither is asked for.
 std::uint64_t further_bytes(const PackedCloud& cloud, const Query& query);
 
-/// Bytes that are taken while the trees over model and poses are built. To choose what a tolerance
-/// keeps takes less.
+/// Bytes that are taken while the trees over model and poses are built.
 std::uint64_t tree_building_bytes(const Query& query);
 
 /// Throws ResourceError, naming what is needed, where that is more than `allowed`.

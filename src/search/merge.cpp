@@ -19,11 +19,9 @@
 namespace clearway {
 namespace {
 
-/// Whether the output exists and is intact. With a tolerance or in single precision always false,
-/// because the answer then does not follow from the question alone.
+/// Whether the output exists and is intact.
 bool is_merged(const PartSet& set, const std::filesystem::path& output, Progress& progress) {
   if (!std::filesystem::exists(output)) return false;
-  if (set.header().tolerance > 0 || set.header().float_precision) return false;
   if (!is_intact_result(output, set.header(), progress)) return false;
   const ResultReader result(output);
   return result.collisions() == set.collisions() && result.clearances() == set.clearances() &&

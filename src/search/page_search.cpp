@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "core/sweep/tolerance.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "cpu/kdtree_engine.hpp"
@@ -53,37 +52,13 @@ Found search_kdtree(const StoreReader& store, const Query& query, const ShardCel
 
 namespace {
 
-/// The query as it is searched, which with a tolerance has fewer model points and poses.
-class SearchedQuery {
- public:
-  SearchedQuery(const Query& asked, SearchReport& report, const MessageLog& log) : asked_(asked) {
-    if (!(asked.tolerance > 0)) return;
-    const Stopwatch clock;
-    thinned_.emplace(asked);
-    report.seconds.thin = clock.seconds();
-    const std::size_t points = get().model.vertices.size(), poses = get().poses.size();
-    report.tolerance = {.model_points_kept = points, .poses_kept = poses, .resolved_by_bounds = 0};
-    log.note("tolerance " + format_number(asked.tolerance) + " m: " + format_count(points) +
-             " of " + format_count(asked.model.vertices.size()) + " model points and " +
-             format_count(poses) + " of " + format_count(asked.poses.size()) +
-             " poses are searched");
-  }
-
-  const Query& get() const { return thinned_ ? thinned_->query() : asked_; }
-  std::uint64_t allocated_bytes() const { return thinned_ ? thinned_->allocated_bytes() : 0; }
-
- private:
-  const Query& asked_;
-  std::optional<ThinnedQuery> thinned_;
-};
-
 void report_plan(const PageBudget& budget, const PageEngineKind& kind, SearchReport& report,
                  const MessageLog& log) {
   report.seconds.plan = budget.plan_seconds();
   report.seconds.field = budget.index_seconds();
   report.needed_host_bytes = budget.needed_bytes();
   report.page_bytes = budget.layout().page_bytes;
-  kind.report_index(report, log);
+  kind.log_index(log);
 }
 
 void report_stages(const StageTimes& stages, SearchSeconds& seconds) {
@@ -125,10 +100,8 @@ Found ended(const StoreReader& store, const PageEngineKind& kind, PageEngines en
 Found search_pages(const StoreReader& store, const Query& query, std::uint64_t memory_bytes,
                    PageEngineKind& kind, const ShardCells* only, const SearchSteps& steps,
                    Progress& progress, SearchReport& report, const MessageLog& log) {
-  const SearchedQuery searched(query, report, log);
   throw_if_stopped(progress);
-  PageBudget budget(store, query, searched.get(), searched.allocated_bytes(), memory_bytes, kind,
-                    only, least_write_bytes(store));
+  PageBudget budget(store, query, memory_bytes, kind, only, least_write_bytes(store));
   budget.find();
   report_plan(budget, kind, report, log);
 
@@ -165,7 +138,7 @@ CollectedPages collect_pages(const PackedCloud& cloud, const Query& query,
                              std::uint64_t memory_bytes, PageEngineKind& kind,
                              const ShardCells* only, IgnoredPoints::Search search,
                              const char* stage, const CollectPage& collect, Progress& progress) {
-  PageBudget budget(cloud, query, query, 0, memory_bytes, kind, only, std::nullopt, search);
+  PageBudget budget(cloud, query, memory_bytes, kind, only, std::nullopt, search);
   budget.find();
   throw_if_stopped(progress);
   PageEngines engines = kind.make(budget.layout());

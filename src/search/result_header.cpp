@@ -54,8 +54,7 @@ void choose_gap(QueryParameters& query, double metre) {
 }
 
 ResultHeader result_header(
-    const StoreReader& store, const Query& query, const SearchOptions& options,
-    std::span<const std::uint64_t> model_hashes,
+    const StoreReader& store, const Query& query, std::span<const std::uint64_t> model_hashes,
     const std::function<IgnoredPointCounts(const QueryParameters& sorted)>& ignored_by) {
   const StoreMetadata& metadata = store.metadata();
   QueryParameters asked = query;
@@ -71,8 +70,6 @@ ResultHeader result_header(
       query.bodies.empty() ? model_hashes.front() : hash_of_bodies(query.bodies, model_hashes),
       query.poses.size(),
       hash_of_trajectory(query.poses),
-      query.tolerance > 0 ? name_of(chosen_engine(options)) : "",
-      options.float_precision,
       metadata.quantisation,
       metadata.crs_wkt,
       false,

@@ -19,8 +19,7 @@ void choose_gap(QueryParameters& query, double metre);
 /// asked with its lists sorted. model_hashes: hash_of_model() of the model, or of each body's. For
 /// a shard, the part is still missing.
 ResultHeader result_header(
-    const StoreReader& store, const Query& query, const SearchOptions& options,
-    std::span<const std::uint64_t> model_hashes,
+    const StoreReader& store, const Query& query, std::span<const std::uint64_t> model_hashes,
     const std::function<IgnoredPointCounts(const QueryParameters& sorted)>& ignored);
 
 }  // namespace clearway

@@ -52,8 +52,7 @@ std::string value_of(const JournalIdentity& identity, const std::string& name) {
 }
 
 JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header,
-                            const SearchOptions& options, const std::string& engine,
-                            const std::string& device, bool replaces) {
+                            const std::string& engine, const std::string& device, bool replaces) {
   JournalIdentity identity{{"environment", hash_text(store.fingerprint())},
                            {"model", hash_text(header.model_hash)},
                            {"trajectory", hash_text(header.trajectory_hash)},
@@ -61,7 +60,6 @@ JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header
                            {"first_pose", first_pose_text(header)},
                            {"clearance", format_number(header.clearance)},
                            {"between_poses", yes_or_no(header.between_poses)},
-                           {"tolerance", format_number(header.tolerance)},
                            {"engine", engine},
                            {"device", device},
                            {kReplaces, yes_or_no(replaces)}};
@@ -84,13 +82,6 @@ JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header
       identity.emplace_back(field.name, text_of(field.of(header)));
     }
   });
-  if (header.tolerance > 0) {  // the answer depends on the field in this case
-    identity.emplace_back("field_voxel", format_number(options.field_voxel));
-  }
-  if (options.float_precision) {  // the answer depends on the grid cells in this case
-    identity.emplace_back("precision", "float");
-    identity.emplace_back("grid_cell", format_number(options.grid_cell));
-  }
   return identity;
 }
 
@@ -202,12 +193,6 @@ void RunJournal::refuse_existing(const ResultHeader& header) const {
     throw UsageError(exists + "and answers another question than this run: " + differences,
                      overwrite);
   }
-  if (!header.is_exact()) {
-    throw UsageError(exists +
-                         "and answers the same question, but not exactly, so another search may "
-                         "find another answer",
-                     overwrite);
-  }
   if (options_.resume) throw UsageError(exists + "and is damaged", overwrite);
   throw UsageError(exists + "and answers the same question", Remedy::kReadOrOverwrite);
 }
@@ -231,9 +216,9 @@ void RunJournal::refuse_other_part(const ResultHeader& header) const {
 }
 
 bool RunJournal::is_of(const StoreReader& store, const ResultHeader& header) const {
-  if (!read_) return header.tolerance == 0 && !header.float_precision;
+  if (!read_) return true;
   const JournalIdentity& earlier = *read_->identity();
-  return difference(earlier, identity_of(store, header, options_, value_of(earlier, "engine"),
+  return difference(earlier, identity_of(store, header, value_of(earlier, "engine"),
                                          value_of(earlier, "device"), false))
       .empty();
 }
@@ -241,7 +226,7 @@ bool RunJournal::is_of(const StoreReader& store, const ResultHeader& header) con
 SearchJournal& RunJournal::open(const StoreReader& store, const Query& query,
                                 const ResultHeader& header, Engine engine, Device device) {
   const JournalIdentity identity =
-      identity_of(store, header, options_, name_of(engine), name_of(device), replaces_);
+      identity_of(store, header, name_of(engine), name_of(device), replaces_);
   if (read_) {
     const std::string differs = difference(*read_->identity(), identity);
     if (!differs.empty()) {

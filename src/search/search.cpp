@@ -88,9 +88,9 @@ class Search {
     for (const MovingBody& body : moving_bodies(query_)) {
       model_hashes_.push_back(hash_of_model(body.model));
     }
-    header_ = result_header(
-        store_, query_, options_, model_hashes_,
-        [&](const QueryParameters& sorted) { return session_.ignored(sorted, options_.threads); });
+    header_ = result_header(store_, query_, model_hashes_, [&](const QueryParameters& sorted) {
+      return session_.ignored(sorted, options_.threads);
+    });
     // The part that a shard is turns out later.
     if (file_ && !options.overwrite && !options.resume && !options.shard) {
       file_->journal.refuse_existing(header_);
@@ -185,7 +185,6 @@ class Search {
       };
       warn_of_query(store_, query_, header_.ignored, looks_of, options_.input_warnings, log_);
     });
-    if (options_.float_precision) warn_of_floats(store_, query_, log_);
     tell_of_large_errors();
     if (query_.seen) warn_of_large_cubes(store_, query_, swept_radius(), log_);
     if (options_.strict) refuse_warnings(report_.warnings);
@@ -297,7 +296,6 @@ class Search {
     const Query query = query_of_ignored(query_);
     SearchOptions options = options_;
     options.engine = Engine::kSweep;
-    options.float_precision = false;
     options.end_gpus = false;
     const auto count_on = [&](Device device) {
       return count_colliding_ignored(store_, query, options.memory_bytes,
@@ -410,7 +408,7 @@ class Search {
     Query query = query_;
     query.radius = radius;
     query.first_pose = first_pose;
-    query.clearance = query.profile = query.tolerance = 0;
+    query.clearance = query.profile = 0;
     query.error_scan = query.error_registration = query.error_pose = query.error_angle =
         query.error_model = std::nullopt;
     return query;
@@ -609,8 +607,7 @@ class Search {
       }
       return cpu_sweep_kind(cloud, query, options);
     }();
-    kind->keep_models_in(session_.models(),
-                         query.tolerance > 0 ? std::vector<std::uint64_t>() : model_hashes_);
+    kind->keep_models_in(session_.models(), model_hashes_);
     return kind;
   }
 
@@ -644,7 +641,7 @@ class Search {
 
   void publish(const Found& found) {
     const Stopwatch write;
-    describe_part();
+    if (header_.part) header_.part->model_is_cut = options_.model_is_cut;
     try {
       static_cast<TableSummary&>(report_) =
           write_result(store_, found.result, header_, file_->pending.partial(), found.write_bytes,
@@ -679,17 +676,6 @@ class Search {
     found.ignored_colliding = report_.ignored_colliding;
     found.ignored_colliding_high = report_.ignored_colliding_high;
     return found;
-  }
-
-  /// Describes what merging needs to know of a part, such as how an answer that is not exact was
-  /// computed.
-  void describe_part() {
-    if (!header_.part) return;
-    header_.part->model_is_cut = options_.model_is_cut;
-    if (header_.is_exact()) return;
-    header_.part->device = name_of(report_.device);
-    header_.part->field_voxel = report_.field_voxel;
-    header_.part->grid_cell = report_.grid_cell;
   }
 
   const Stopwatch total_;
@@ -749,7 +735,6 @@ void check_question(const Query& query, const SearchOptions& options) {
   check_query(query, options);
   check_bodies(query, options);
   if (query.model.is_surface()) check_surface(query, options);
-  if (query.model.is_solid()) check_solid(query);
 }
 
 }  // namespace

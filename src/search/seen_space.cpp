@@ -50,7 +50,7 @@ Query query_of_cubes(const Query& query, double radius) {
   out.radius = radius;
   out.first_pose = true;
   out.seen = false;
-  out.clearance = out.profile = out.tolerance = 0;
+  out.clearance = out.profile = 0;
   out.ignore_classes.clear();
   return out;
 }

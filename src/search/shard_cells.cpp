@@ -12,7 +12,6 @@
 
 #include "core/sweep/field/model_field.hpp"
 #include "core/sweep/sweep_filter.hpp"
-#include "core/sweep/tolerance.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "cpu/cell_search.hpp"
 #include "io/files/thread_limit.hpp"
@@ -40,7 +39,7 @@ template <typename Element>
 class WorkFilter {
  public:
   WorkFilter(const PackedCloud& cloud, const Query& query, const QueryTrees& trees, int threads)
-      : field_(trees.model->field<Element>(search_radius(query),
+      : field_(trees.model->field<Element>(query.radius,
                                            {.reach = std::max(query.clearance, query.profile),
                                             .most_bytes = kFieldBytes,
                                             .by_need = true},

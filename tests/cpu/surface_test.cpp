@@ -187,9 +187,7 @@ TEST_CASE("surfaces within a tolerance") {
   scene.points =
       quantise(places_beside(scene.random, scene.surface, scene.poses, scene.radius, 800),
                scene.quantisation);
-  Query query = scene.query();
-  query.tolerance = tolerance;
-  CHECK(check_tolerance(scene.points, scene.quantisation, query).colliding > 0);
+  CHECK(check_tolerance(scene.points, scene.quantisation, scene.query(), tolerance).colliding > 0);
 }
 
 namespace {

@@ -30,8 +30,8 @@ Quantisation quantisation_of(const std::vector<Vec3>& points) {
 ToleratedResults check(const std::vector<Vec3>& environment, const std::vector<Vec3>& model,
                        const std::vector<Pose>& poses, double radius, double tolerance) {
   const Quantisation quantisation = quantisation_of(environment);
-  Query query{model, poses, {.radius = radius, .tolerance = tolerance}};
-  return check_tolerance(quantise(environment, quantisation), quantisation, query);
+  const Query query{model, poses, {.radius = radius}};
+  return check_tolerance(quantise(environment, quantisation), quantisation, query, tolerance);
 }
 
 /// Places at about the radius from random model points at random poses, out to twice the tolerance
@@ -191,8 +191,7 @@ TEST_CASE("a tolerance to the last digits") {
         for (auto& along : q) along = static_cast<std::int32_t>(below(random, 65)) - 32;
         points.push_back(q);
       }
-      check_tolerance(points, quantisation,
-                      {model, poses, {.radius = radius, .tolerance = tolerance}});
+      check_tolerance(points, quantisation, {model, poses, {.radius = radius}}, tolerance);
     }
   }
 }

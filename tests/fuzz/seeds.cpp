@@ -331,7 +331,7 @@ void write_json_seeds(Seeds seeds) {
             R"("environment": "e", "angles": ["deg", "ned"], "lever_arm": [0, 1, 2],)"
             R"("chainage_start": 5}}, "radii": [0.1, "25cm"],)"
             R"("query": {"first_pose": true, "clearance": 0.3, "ignore_classes": [2, 7],)"
-            R"("ignore_boxes": [[0, 0, 0, 1, 1, 1]], "tolerance": 0.01, "precision": "float"},)"
+            R"("ignore_boxes": [[0, 0, 0, 1, 1, 1]]},)"
             R"("classes": [0.1, 0.3], "outputs": {"conflicts": ["csv", "bcf"], "report": true,)"
             R"("gap": 0.3, "min_points": 5}, "limits": {"memory": "1G", "threads": 2,)"
             R"("shard_seconds": 60, "gpus": [0]}, "slurm": ["--partition=long"]})");

@@ -28,9 +28,10 @@ SearchResult grid_on_cuda(const PackedCloud& cloud, const Query& query, int thre
   return {std::move(hits), ClearanceSet()};
 }
 
-SearchResult sweep_on_cuda(const PackedCloud& cloud, const Query& query, int threads) {
+SearchResult sweep_on_cuda(const PackedCloud& cloud, const Query& query, int threads,
+                           double tolerance) {
   return run_sweep(
-      cloud, query, threads,
+      cloud, query, threads, tolerance,
       []<typename Element>(const SweepFilterOf<Element>& filter, const PackedCloud& of,
                            const SlotLayout& layout) {
         const SweepRefOf<Element>& sweep = filter.ref();
@@ -44,7 +45,8 @@ SearchResult sweep_on_cuda(const PackedCloud& cloud, const Query& query, int thr
 
 /// Searches twice with the same cells kept on the device, where there is room for about a half of
 /// them, and returns the second answer.
-SearchResult sweep_with_kept_cells(const PackedCloud& cloud, const Query& query, int threads) {
+SearchResult sweep_with_kept_cells(const PackedCloud& cloud, const Query& query, int threads,
+                                   double tolerance) {
   std::uint64_t bytes = 0;
   for (std::uint32_t cell = 0; cell < cloud.cells().size(); ++cell) {
     bytes += ArrayRun::aligned(cloud.packed_bytes(cell) + kPagePadding);
@@ -52,7 +54,7 @@ SearchResult sweep_with_kept_cells(const PackedCloud& cloud, const Query& query,
   const auto kept = std::make_shared<KeptOnDevice>(0, cloud, bytes + (1 << 12));
   const auto search = [&] {
     return run_sweep(
-        cloud, query, threads,
+        cloud, query, threads, tolerance,
         [&kept]<typename Element>(const SweepFilterOf<Element>& filter, const PackedCloud& of,
                                   const SlotLayout& layout) {
           const auto field = std::make_shared<int>();
@@ -105,9 +107,11 @@ void section_on_cuda(const PackedCloud& cloud, const IgnoredPoints& ignored,
 
 int main(int count, char** arguments) {
   clearway::test_only(
-      {{"sweep on CUDA", clearway::sweep_on_cuda, true, true, true, true},
-       {"sweep on CUDA with kept cells", clearway::sweep_with_kept_cells, true, true, true, true},
-       {"grid on CUDA", clearway::grid_on_cuda, false, false, false, false}});
+      {{"sweep on CUDA", clearway::run_exactly<clearway::sweep_on_cuda>, true, true, true,
+        clearway::sweep_on_cuda},
+       {"sweep on CUDA with kept cells", clearway::run_exactly<clearway::sweep_with_kept_cells>,
+        true, true, true, clearway::sweep_with_kept_cells},
+       {"grid on CUDA", clearway::grid_on_cuda, false, false, false}});
   clearway::follow_pages_with(clearway::beams_on_cuda);
   clearway::block_pages_with(clearway::section_on_cuda);
   return run_catch(count, arguments, [] {

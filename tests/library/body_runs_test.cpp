@@ -67,8 +67,6 @@ TEST_CASE("bodies that contradict path or engine are refused by name") {
   };
   refused("searches one model", {.engine = Engine::kKdtree});
   refused("searches one model", {.engine = Engine::kGrid});
-  vehicle.query.tolerance = 0.01;
-  refused("tolerance");
   vehicle.query.model = {{0, 0, 0}};
   refused("either a model or bodies");
   vehicle.query.bodies[1].name = "front";

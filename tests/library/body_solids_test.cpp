@@ -140,7 +140,4 @@ TEST_CASE("solids that are not those of a body are refused by its name") {
   CHECK_THROWS_WITH(vehicle.run(), Contains("body rear has") && Contains("the solids of"));
   vehicle.query.bodies[2].model.solid_of.push_back(1000);
   CHECK_THROWS_WITH(vehicle.run(), Contains("body rear names solid 1000"));
-  vehicle.query.bodies[2].model.solid_of.back() = kNoSolid;
-  vehicle.query.tolerance = 0.01;
-  CHECK_THROWS_AS(vehicle.run(), UsageError);
 }

@@ -138,7 +138,6 @@ TEST_CASE("ignored points that would collide are counted as brute force counts t
   Cloud cloud(seed);
   SECTION("points") {}
   SECTION("points with distances") { cloud.query.clearance = cloud.query.profile = 0.2; }
-  SECTION("a tolerance, which the count does without") { cloud.query.tolerance = 0.02; }
   SECTION("points between poses") { cloud.query.between_poses = true; }
   SECTION("a surface") { become_surface(cloud, false); }
   SECTION("a solid") { become_surface(cloud, true); }
@@ -182,9 +181,6 @@ TEST_CASE("the count of ignored points that would collide depends on the questio
       cloud.check(cloud.run("out.h5", {.engine = engine, .threads = 1, .overwrite = true}),
                   expected);
     }
-    cloud.check(
-        cloud.run("out.h5", {.engine = Engine::kGrid, .float_precision = true, .overwrite = true}),
-        expected);
   }
   SECTION("not on whether the result was there already") {
     cloud.run("out.h5");

@@ -34,7 +34,6 @@ const std::vector<Mode>& modes() {
          query.first_pose = true;
          query.clearance = query.profile = 0.3;
        }},
-      {"tolerance", {Engine::kSweep}, [](Query& query) { query.tolerance = 0.02; }},
       {"nothing found", kAll, [](Query& query) { query.radius = 1e-4; }}};
   return kModes;
 }

@@ -1,5 +1,4 @@
-// What a part holds beside its rows: the warnings of its run, and how an answer that is not exact
-// was computed.
+// What a part holds beside its rows: the warnings of its run.
 #include <sys/resource.h>
 
 #include <atomic>
@@ -185,46 +184,6 @@ TEST_CASE("a part that was interrupted and is resumed holds the warnings") {
   // Other warnings about the same inputs do not make it another part.
   options.input_warnings = {kOfOne};
   CHECK(search(store, shards.scene.query, output, options).was_finished);
-}
-
-TEST_CASE("parts with a tolerance of different fields or devices are refused") {
-  Shards shards({.field_voxel = 0.05}), others({.field_voxel = 0.02});
-  shards.scene.query.tolerance = others.scene.query.tolerance = 0.02;
-  auto parts = shards.parts(2);
-  parts[1] = others.parts(2, "fine")[1];
-  CHECK_THAT(shards.refusal(parts),
-             Contains("fine2.h5: was computed in another way than") &&
-                 Contains("part1.h5: with a model field with a voxel of 0.02 m, not 0.05 m") &&
-                 Contains("With a tolerance the answer depends on it"));
-
-  shards.scene.query.radius = 1e-3;
-  shards.scene.query.tolerance = 1e-4;
-  parts = shards.parts(2);
-  CHECK_NOTHROW(shards.merged(parts));
-  change(parts[1], [](ResultPart& part, ResultFindings&) { part.device = "cuda"; });
-  std::filesystem::remove(shards.scene.folder / "merged.h5");
-  CHECK_THAT(shards.refusal(parts), Contains("with the device cuda, not cpu"));
-}
-
-TEST_CASE("parts in single precision of different grid cells are refused") {
-  const SearchOptions floats{.engine = Engine::kGrid, .float_precision = true};
-  Shards shards(floats), others(floats);
-  shards.options.grid_cell = 0.2;
-  others.options.grid_cell = 0.1;
-  auto parts = shards.parts(2);
-  CHECK_NOTHROW(shards.merged(parts));
-  parts[1] = others.parts(2, "fine")[1];
-  std::filesystem::remove(shards.scene.folder / "merged.h5");
-  CHECK_THAT(shards.refusal(parts), Contains("with a grid cell of 0.1 m, not 0.2 m") &&
-                                        Contains("In single precision the answer depends on it"));
-}
-
-TEST_CASE("exact parts of different fields make one result") {
-  Shards shards({.engine = Engine::kSweep, .field_voxel = 0.05});
-  Shards others({.engine = Engine::kSweep, .field_voxel = 0.02});
-  auto parts = shards.parts(2);
-  parts[1] = others.parts(2)[1];
-  CHECK(shards.merged(parts) == shards.whole());
 }
 
 TEST_CASE("more parts than files that may be open are refused before merging begins") {

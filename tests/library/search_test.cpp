@@ -223,8 +223,6 @@ TEST_CASE("check_search refuses what search refuses") {
           }));
   };
   check({.radius = 0}, {});
-  check({.radius = 0.1, .tolerance = 0.2}, {});
-  check({.radius = 0.1, .first_pose = true, .tolerance = 0.01}, {});
   check({.radius = 0.1, .between_poses = true, .clearance = 0.5}, {});
   check({.radius = 0.1, .clearance = 0.5}, {.engine = Engine::kKdtree});
   check({.radius = 0.1, .between_poses = true}, {.engine = Engine::kGrid});

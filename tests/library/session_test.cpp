@@ -97,7 +97,6 @@ struct SessionScene {
         check_query(asked.query, options);
         check_bodies(asked.query, options);
         if (asked.query.model.is_surface()) check_surface(asked.query, options);
-        if (asked.query.model.is_solid()) check_solid(asked.query);
         return asked;
       } catch (const UsageError&) {  // what it asks for cannot be combined
       }
@@ -126,9 +125,6 @@ struct SessionScene {
     const bool plain = !query.model.is_surface() && !query.between_poses && query.clearance == 0 &&
                        query.profile == 0 && !query.seen && !query.has_budget();
     if (plain && one_in(2)) asked.engine = one_in(2) ? Engine::kKdtree : Engine::kGrid;
-    if (plain && asked.engine == Engine::kAuto && !query.first_pose && one_in(4)) {
-      query.tolerance = query.radius / 8;
-    }
     return asked;
   }
 
@@ -243,9 +239,7 @@ TEST_CASE("a session on a GPU gives the bytes of the CPU") {
   }
   const SessionScene scene;
   std::vector<Asked> questions = random_questions(scene, 3, 211);
-  std::erase_if(questions, [](const Asked& asked) {
-    return asked.engine == Engine::kKdtree || asked.query.tolerance > 0;
-  });
+  std::erase_if(questions, [](const Asked& asked) { return asked.engine == Engine::kKdtree; });
   const auto expected = answers_of_runs(scene, questions);
   // With 64 MiB questions wait for each other, and with 24 MiB nothing can stay on the GPU.
   for (const std::uint64_t mebibytes : {0, 64, 24}) {

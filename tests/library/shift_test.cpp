@@ -469,19 +469,6 @@ TEST_CASE("what shifts cannot be found of is refused") {
              Contains("another environment"));
 }
 
-TEST_CASE("shifts of a result with a tolerance are refused") {
-  Query query(Model(random_points(*std::make_unique<Random>(1), {{-1, -0.5, 0}, {1, 0.5, 1}}, 50)),
-              straight(12), {.radius = 0.2});
-  const Scene scene(wall(2, 4, 0.4), query);
-  query.tolerance = 0.05;
-  search(Store(scene.folder / "scan.h5"), query, scene.folder / "near.h5",
-         {.device = Device::kCpu, .threads = 2});
-  const Session session(scene.folder / "scan.h5", {.device = Device::kCpu, .threads = 2});
-  CHECK_THAT(refusal<UsageError>(
-                 [&] { find_shifts(session, Result(scene.folder / "near.h5"), query, {}); }),
-             Contains("with a tolerance"));
-}
-
 TEST_CASE("a stop ends the search for shifts") {
   const Scene scene(wall(2, 4, 0.4), box_on(straight(12)));
   std::atomic<bool> stop = true;

@@ -101,9 +101,8 @@ class SameAsSearch(Sessions):
         place = answer.clearances.distance.argmin()
         self.assertEqual(answer.least.source, answer.clearances.source[place])
 
-    def test_between_poses_and_tolerance(self):
+    def test_between_poses(self):
         self.check(self.query(first_pose=True, between_poses=True))
-        self.check(self.query(tolerance=0.01))
 
     def test_a_surface_and_a_solid(self):
         square = clearway.Model([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], SQUARE)

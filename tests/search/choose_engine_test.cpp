@@ -67,9 +67,7 @@ TEST_CASE("auto leaves to the sweep what the k-d tree cannot do") {
   REQUIRE(asked.chosen() == Engine::kKdtree);
   SECTION("clearances") { asked.query.clearance = 0.2; }
   SECTION("a profile") { asked.query.profile = 1; }
-  SECTION("a tolerance") { asked.query.tolerance = 0.01; }
   SECTION("motion between poses") { asked.query.between_poses = true; }
-  SECTION("a field voxel") { asked.options.field_voxel = 0.1; }
   SECTION("little memory") { asked.options.memory_bytes = 1 << 20; }
   CHECK(asked.chosen() == Engine::kSweep);
   CHECK_FALSE(asked.report.engine_estimate);

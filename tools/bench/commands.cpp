@@ -9,6 +9,7 @@
 #include "bench/experiments/bench.hpp"
 #include "bench/measure/scoring.hpp"
 #include "bench/peers/compare_engines.hpp"
+#include "bench/stages/set_engines.hpp"
 #include "bench/stages/time_session.hpp"
 #include "bench/stages/time_stages.hpp"
 #include "clearway/error.hpp"
@@ -263,6 +264,55 @@ void add_session(CLI::App& program) {
   command->add_flag("--peer", options->peer, "Time nanoflann on some of the poses, too");
 #endif
   command->callback([options] { tool::print(time_session(*options).dump(2) + "\n"); });
+}
+
+void add_search(CLI::App& program) {
+  const auto options = std::make_shared<SetEngines>();
+  CLI::App* command = program.add_subcommand(
+      "search",
+      "Searches with engines that are set as no clearway run sets them, so that the result may not "
+      "be exact; writes it and prints JSON");
+  add_query(*command, options->environment, options->model, options->trajectory, true);
+  command->add_option("-o,--output", options->output, "The result, an HDF5 file")
+      ->type_name("FILE")
+      ->required();
+  add_radius_and_threads(*command, options->radius, options->search.threads);
+  const auto choose = [&](const char* name, auto& chosen, auto usual, auto other,
+                          const std::pair<const char*, const char*>& names, const char* help) {
+    chosen = usual;
+    command
+        ->add_option_function<std::string>(
+            name,
+            [&chosen, usual, other, names](const std::string& text) {
+              chosen = text == names.first ? usual : other;
+            },
+            help)
+        ->check(CLI::IsMember({names.first, names.second}))
+        ->default_str(names.first);
+  };
+  choose("--engine", options->search.engine, Engine::kSweep, Engine::kGrid, {"sweep", "grid"},
+         "The engine that searches");
+  choose("--device", options->search.device, Device::kCpu, Device::kCuda, {"cpu", "cuda"},
+         "Where it searches");
+  command->add_option("--gpus", options->search.gpus, "As of clearway run")->delimiter(',');
+  tool::add_size_option(*command, "--memory", options->search.memory_bytes, "As of clearway run");
+  tool::add_size_option(*command, "--device-memory", options->search.device_memory_bytes,
+                        "As of clearway run");
+  const auto length = [&](const std::string& name, double& metres, const char* help) {
+    command->add_option(name, metres, help)
+        ->type_name("METRES")
+        ->transform(tool::positive_length());
+  };
+  length(kToleranceOption, options->settings.tolerance,
+         "Engine sweep may decide wrongly for points within this of the radius");
+  length(kFieldVoxelOption, options->settings.field_voxel,
+         "Voxel of the sweep engine's model field (default: chosen)");
+  length(kGridCellOption, options->settings.grid.grid_cell,
+         "Grid cell of engine grid (default: chosen)");
+  choose(kPrecisionOption, options->settings.grid.precision, GridPrecision::kExact,
+         GridPrecision::kFloat, {"exact", "float"},
+         "float: engine grid decides in single precision alone");
+  command->callback([options] { tool::print(search_with_set_engines(*options).dump(2) + "\n"); });
 }
 
 #ifdef CLEARWAY_NANOFLANN

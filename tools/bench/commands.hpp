@@ -17,6 +17,9 @@ void add_stages(CLI::App& program);
 /// Adds the command that times the questions of a session.
 void add_session(CLI::App& program);
 
+/// Adds the command that searches with engines that are set as no `clearway run` sets them.
+void add_search(CLI::App& program);
+
 /// Adds the command that compares the kdtree engine with nanoflann, where the build found
 /// nanoflann.
 void add_peers(CLI::App& program);

@@ -37,7 +37,7 @@ questions=("$points --engine sweep" "$points --engine sweep --first-pose" "$poin
   "$points --engine sweep --clearance 0.3" "$points --engine sweep --clearance 0.3 --first-pose"
   "$points --engine sweep --between-poses --first-pose" "$points --engine sweep --profile 0.5"
   "$points --engine sweep --seen" "$points --engine sweep --between-poses --seen"
-  "$points --engine grid" "$points --engine grid --first-pose" "$points --engine grid --precision float")
+  "$points --engine grid" "$points --engine grid --first-pose")
 for model in "$surface" "$solid" "$vehicle"; do
   questions+=("$model --first-pose" "$model --clearance 0.3" "$model --profile 0.5" "$model --seen")
 done

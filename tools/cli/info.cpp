@@ -184,20 +184,11 @@ ordered_json describe(const ResultReader& result) {
     description["ignored"] = ignored_json(answer);
     if (!h.ignore_classes.empty()) description["classes_hash"] = hash_text(h.classes_hash);
   }
-  if (h.tolerance > 0) {
-    description["tolerance"] = h.tolerance;
-    description["engine"] = h.engine;
-  }
   if (h.part) {
     description["kind"] = "part of a result";
     description["shard"] = to_string(h.part->shard);
     description["division"] = hash_text(h.part->division);
     description["store"] = hash_text(h.part->store);
-    if (!h.is_exact()) {
-      description["device"] = h.part->device;
-      description["field_voxel"] = h.part->field_voxel;
-      description["grid_cell"] = h.part->grid_cell;
-    }
   }
   if (const ScanDates& dates = result.findings().scanned; dates.known()) {
     description["dates"] = {dates.first, dates.last};
@@ -206,7 +197,6 @@ ordered_json describe(const ResultReader& result) {
     description["withheld_points"] = withheld;
   }
   if (h.last_pose) description["last_pose"] = true;
-  if (h.float_precision) description["precision"] = "float";
   if (h.has_poses_of_ways()) {
     description["first_pose_of"] =
         h.ways_without_ends ? "way without its end (version 0.1.0)" : "closed way";

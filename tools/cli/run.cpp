@@ -143,37 +143,15 @@ struct ProgramReport {
 };
 
 nlohmann::ordered_json seconds_of(const SearchSeconds& search, const ProgramReport& program) {
-  return {{"total", program.total_seconds},
-          {"inputs", program.inputs_seconds},
-          {"context", search.context},
-          {"context_wait", search.context_wait},
-          {"ignored", search.ignored},
-          {"thin", search.thin},
-          {"plan", search.plan},
-          {"field", search.field},
-          {"engine", search.engine},
-          {"search", search.search},
-          {"read", search.read},
-          {"upload", search.upload},
-          {"compute", search.compute},
-          {"collect", search.collect},
-          {"swept", search.swept},
-          {"beams", search.beams},
-          {"write", search.write},
+  return {{"total", program.total_seconds}, {"inputs", program.inputs_seconds},
+          {"context", search.context},      {"context_wait", search.context_wait},
+          {"ignored", search.ignored},      {"plan", search.plan},
+          {"field", search.field},          {"engine", search.engine},
+          {"search", search.search},        {"read", search.read},
+          {"upload", search.upload},        {"compute", search.compute},
+          {"collect", search.collect},      {"swept", search.swept},
+          {"beams", search.beams},          {"write", search.write},
           {"end_wait", search.end_wait}};
-}
-
-/// The work that the tolerance saved; null for an exact result.
-nlohmann::ordered_json tolerance_of(const SearchReport& report, double metres) {
-  if (!report.tolerance) return nullptr;
-  const ToleranceReport& spared = *report.tolerance;
-  return {{"metres", metres},
-          {"model_points", report.model_points},
-          {"model_points_kept", spared.model_points_kept},
-          {"poses", report.poses},
-          {"poses_kept", spared.poses_kept},
-          {"searches_saved", report.searches - spared.model_points_kept * spared.poses_kept},
-          {"settled_by_bounds", spared.resolved_by_bounds}};
 }
 
 /// The estimated seconds of both engines where the search chose between them; otherwise null.
@@ -226,8 +204,6 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["device"] = known(searched, name_of(report.device));
   out["device_estimate"] = device_estimate_of(report);
   out["searches"] = known(searched, report.searches);
-  out["field_voxel"] = known(searched, report.field_voxel);
-  out["grid_cell"] = known(searched, report.grid_cell);
   out["cells_total"] = report.cells_total;
   out["cells_read"] = report.cells_read;
   out["bytes_read"] = report.bytes_read;
@@ -239,7 +215,6 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["needed_host_bytes"] = known(searched, report.needed_host_bytes);
   out["peak_host_bytes"] = program.peak_host_bytes + report.pinned_bytes;
   out["peak_device_bytes"] = report.peak_device_bytes;
-  out["tolerance"] = tolerance_of(report, options.query.tolerance);
   out["seconds"] = seconds_of(report.seconds, program);
   out["warnings"] = warnings_json(report.warnings);
   return out;
@@ -381,8 +356,8 @@ void add_run(CLI::App& program, int& exit_code) {
       "warning says that none could: nothing was scanned near the path, for example. With\n"
       "--fail-on-collision the exit code is 1 where a point collides, and 6 where it is "
       "undecided.\n"
-      "Engine, device, threads and memory do not change the result. With --tolerance the device\n"
-      "and --field-voxel do.\n"
+      "Clearway is exact, at its poses and on the straight ways between them: engine, device,\n"
+      "threads and memory do not change the result.\n"
       "Example: clearway run --env site.h5 --model car.ply --trajectory path.txt --radius 0.1 "
       "--first-pose -o out.h5");
   command->callback([options, &exit_code] {

@@ -176,7 +176,7 @@ void add_choice(CLI::App& command, const std::string& option, Value& chosen,
       ->default_str(name_of(chosen));
 }
 
-void add_engine(CLI::App& command, SearchOptions& options, LengthOptions& lengths) {
+void add_engine(CLI::App& command, SearchOptions& options) {
   const GroupScope group(command, OptionGroup::kSpeed);
   add_choice(
       command, "--engine", options.engine,
@@ -185,18 +185,6 @@ void add_engine(CLI::App& command, SearchOptions& options, LengthOptions& length
   add_device_options(command, options.device, options.gpus, options.device_memory_bytes);
   add_threads_option(command, options.threads);
   add_memory_option(command, options.memory_bytes);
-  lengths.add(command, "--field-voxel", options.field_voxel,
-              "Voxel of the sweep engine's model field in metres (default: chosen)");
-  lengths.add(command, "--grid-cell", options.grid_cell,
-              "Grid cell of engine grid in metres (default: chosen)");
-  command
-      .add_option_function<std::string>(
-          "--precision",
-          [&options](const std::string& name) { options.float_precision = name == "float"; },
-          "exact, or float for engine grid: single precision alone, for comparison (default: "
-          "exact)")
-      ->type_name("PRECISION")
-      ->check(CLI::IsMember({"exact", "float"}));
 }
 
 /// The shard that "2/7" names; for any other text a shard that is not valid.
@@ -233,7 +221,6 @@ void add_shard(CLI::App& command, SearchOptions& options) {
 ModelOptions model_options_of(const RunOptions& options) {
   ModelOptions how = options.model_options;
   check_model_options(how);
-  if (how.as == ModelAs::kSolid) check_solid(options.query);
   if (how.as == ModelAs::kSurface || how.as == ModelAs::kSolid) {
     check_surface(options.query, options.search);
   }
@@ -258,7 +245,7 @@ void add_device_options(CLI::App& command, Device& device, std::vector<int>& gpu
 void add_run_options(CLI::App& command, RunOptions& options) {
   add_inputs(command, options);
   add_query(command, options);
-  add_engine(command, options.search, options.lengths);
+  add_engine(command, options.search);
   add_shard(command, options.search);
   CLI::Option* force =
       command.add_flag("--force", options.search.overwrite,

@@ -298,12 +298,7 @@ std::string verdict_text(const Answer& answer, const PathWords& path, const std:
   if (answer.verdict() != Verdict::kConflict) {
     text += spacing_text(answer.model_spacing, answer.parameters.radius, unit);
   }
-  if (answer.parameters.tolerance > 0) {
-    text += fmt::format("; points within {} {} of that distance may be judged wrongly",
-                        answer.parameters.tolerance, unit);
-  }
   if (answer.shard) text += "; clearway merge gives the answer of all parts";
-  if (answer.float_precision) text += "; not exact, as single precision alone decided";
   text += searched_text(answer, unit) + doubt_clause(answer, path, unit);
   return text + caveat + ".";
 }

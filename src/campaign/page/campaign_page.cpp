@@ -351,7 +351,6 @@ class CampaignPage {
     if (const std::string open = open_words(facts, unit); !open.empty()) {
       text += (text.empty() ? "" : ", ") + open;
     }
-    if (!is_exact(facts)) text += (text.empty() ? "" : ", ") + std::string("not exact");
     return text.empty() ? "" : "<small>" + text + "</small>";
   }
 

@@ -62,7 +62,6 @@ struct QueryField {
   /// ones where they are not the default.
   bool is_told(const QueryParameters& query) const {
     if constexpr (std::is_same_v<Value, double>) {
-      if (member == &QueryParameters::tolerance) return true;
       // With a budget, the answer depends on these also where they are the default.
       if (belongs_to_budget()) return query.has_budget();
     }
@@ -102,12 +101,6 @@ void for_each_value_field(Visit visit) {
       "Whether model points move on straight segments from pose to pose, so that nothing between "
       "poses is missed.",
       2});
-  visit(QueryField<double>{
-      &Q::tolerance, "tolerance", "tolerance", "--tolerance",
-      "Faster: may decide wrongly for points within this distance of the radius, for example "
-      "0.001; engine sweep only",
-      "Points whose distance differs from the radius by no more than this may be answered wrongly, "
-      "which saves time; metres; 0: the answer is exact."});
   visit(QueryField<bool>{
       &Q::seen, "seen", "seen space", "--seen",
       "Also find which places that the model sweeps no beam of the scanner passed through; the "

@@ -13,7 +13,7 @@ namespace {
 
 /// How much a distance may grow by thinning, in metres: the tolerance less what the roundings of
 /// the predicate need. Below 0 if the tolerance is smaller than these.
-double thinning_budget(const Query& query, const Box& model) {
+double thinning_budget(const Query& query, double tolerance, const Box& model) {
   double errors = 16 * kUnitRoundoff * query.radius + 1e-150;
   // Twice the error of a triangle (docs/design/numerics.md, "Triangles").
   if (query.model.is_surface()) {
@@ -21,7 +21,7 @@ double thinning_budget(const Query& query, const Box& model) {
     for (const Pose& pose : query.poses) stretch = std::max(stretch, greatest_stretch_bound(pose));
     errors += kUnitRoundoff * (16 * query.radius + 322 * stretch * 2 * half_diagonal(model));
   }
-  return query.tolerance - errors;
+  return tolerance - errors;
 }
 
 /// Greatest distance between two model points that no pose moves farther apart than `most`,
@@ -157,10 +157,9 @@ std::vector<Value> parts_of(const std::vector<Value>& values,
 
 }  // namespace
 
-double search_radius(const Query& query) {
-  if (!(query.tolerance > 0)) return query.radius;
-  const double most = (query.radius + query.tolerance) * (1 - 8 * kUnitRoundoff);
-  return std::max(query.radius, most);
+double search_radius(double radius, double tolerance) {
+  if (!(tolerance > 0)) return radius;
+  return std::max(radius, (radius + tolerance) * (1 - 8 * kUnitRoundoff));
 }
 
 std::vector<std::uint32_t> kept_poses(std::span<const Pose> poses, const Box& model,
@@ -185,9 +184,9 @@ std::vector<std::uint32_t> kept_points(std::span<const Vec3> model, double cover
   return out;
 }
 
-ThinnedQuery::ThinnedQuery(const Query& query) : query_({}, {}, query) {
+ThinnedQuery::ThinnedQuery(const Query& query, double tolerance) : query_({}, {}, query) {
   const Box box = box_of(query.model.vertices);
-  const double half = thinning_budget(query, box) / 2;
+  const double half = thinning_budget(query, tolerance, box) / 2;
   query_.poses = parts_of(query.poses, kept_poses(query.poses, box, half));
   if (query.model.is_surface()) {  // a surface has few triangles, so all are kept
     query_.model.vertices = query.model.vertices;

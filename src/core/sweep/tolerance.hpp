@@ -8,14 +8,14 @@
 #include "clearway/query.hpp"
 #include "core/geometry/box.hpp"
 
-/// What a query with a tolerance t allows (docs/design/numerics.md, "Tolerance"): distances may
+/// What a search within a tolerance t may do (docs/design/numerics.md, "Tolerance"): distances may
 /// grow by t when model points and poses are left out, and whatever comes closer than about r + t
-/// may be taken.
+/// may be taken. Only experiments search within a tolerance; an answer of Clearway is exact.
 namespace clearway {
 
-/// The distance up to which a search looks, in metres: the radius, or with a tolerance the greatest
-/// distance at which a point may be taken.
-double search_radius(const Query& query);
+/// The distance up to which a search within a tolerance looks, in metres: the greatest one at which
+/// a point may be taken. Without a tolerance it is the radius.
+double search_radius(double radius, double tolerance);
 
 /// Indices of some of the poses, ascending: at each of the other poses no point of the box `model`
 /// is farther than `most_motion` from where it is at one of these, rounding included. Equal
@@ -28,22 +28,17 @@ std::vector<std::uint32_t> kept_poses(std::span<const Pose> poses, const Box& mo
 /// point while it runs.
 std::vector<std::uint32_t> kept_points(std::span<const Vec3> model, double cover);
 
-/// A query with only as much of model and trajectory as its tolerance needs: half of the tolerance
-/// is spent on each.
+/// A query with only as much of model and trajectory as a tolerance needs: half of the tolerance is
+/// spent on each.
 class ThinnedQuery {
  public:
-  /// query: has a tolerance and a model; its data is not needed afterwards.
-  explicit ThinnedQuery(const Query& query);
+  /// query: has a model; its data is not needed afterwards. tolerance: metres, above 0.
+  ThinnedQuery(const Query& query, double tolerance);
   ThinnedQuery(const ThinnedQuery&) = delete;
   ThinnedQuery& operator=(const ThinnedQuery&) = delete;
 
   /// The thinned query, valid while this object lives.
   const Query& query() const { return query_; }
-  std::uint64_t allocated_bytes() const {
-    return query_.poses.capacity() * sizeof(Pose) +
-           query_.model.vertices.capacity() * sizeof(Vec3) +
-           query_.model.triangles.capacity() * sizeof(query_.model.triangles[0]);
-  }
 
  private:
   Query query_;

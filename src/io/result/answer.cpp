@@ -94,7 +94,6 @@ Answer answer_of(const ResultHeader& header) {
   answer.budget = header.budget;
   answer.bodies = header.bodies;
   if (header.part) answer.shard = header.part->shard;
-  answer.float_precision = header.float_precision;
   return answer;
 }
 

@@ -94,10 +94,6 @@ std::string quantisation_text(const Quantisation& quantisation) {
 }
 
 std::string field_text(const QueryField<double>& field, const ResultHeader& header) {
-  if (field.member == &QueryParameters::tolerance) {
-    if (!(header.tolerance > 0)) return "none: exact";
-    return shown(header.tolerance) + " m, engine " + header.engine;
-  }
   if (field.unit == QueryField<double>::Unit::kNone) return shown(field.of(header));
   if (field.member == &QueryParameters::radius) return shown(header.radius) + " m";
   return field.of(header) > 0 ? shown(field.of(header)) + " m" : "not asked for";
@@ -186,8 +182,6 @@ void add_question(const ResultHeader& a, const ResultHeader& b, Differences& out
   for_each_value_field(
       [&](const auto& field) { out.add(field.topic, field_text(field, a), field_text(field, b)); });
   out.add("margins of the error budget", margins_text(a), margins_text(b));
-  out.add("precision", a.float_precision ? "float" : "exact",
-          b.float_precision ? "float" : "exact");
 }
 
 class Merge {

@@ -35,25 +35,6 @@ ResultReader open_part(const std::filesystem::path& file) {
   return part;
 }
 
-/// The difference in how two parts were computed where this may change the answer: with a
-/// tolerance, or in single precision alone.
-std::string difference_of_means(const ResultReader& part, const ResultReader& other) {
-  const ResultPart &a = *part.header().part, &b = *other.header().part;
-  const bool floats = part.header().float_precision;
-  std::string differs;
-  const auto compare = [&](const char* what, const std::string& in_a, const std::string& in_b) {
-    if (differs.empty() && in_a != in_b) differs = std::string(what) + in_a + ", not " + in_b;
-  };
-  compare("the device ", a.device, b.device);
-  compare("a model field with a voxel of ", shown(a.field_voxel) + " m",
-          shown(b.field_voxel) + " m");
-  compare("a grid cell of ", shown(a.grid_cell) + " m", shown(b.grid_cell) + " m");
-  if (differs.empty()) return "";
-  return "was computed in another way than " + other.name() + ": with " + differs + ". " +
-         (floats ? "In single precision" : "With a tolerance") +
-         " the answer depends on it; run all parts in the same way";
-}
-
 /// Why two files are not parts of one result; empty where they are.
 std::string difference_of(const ResultReader& part, const ResultReader& other) {
   const ResultHeader &a = part.header(), &b = other.header();
@@ -78,7 +59,7 @@ std::string difference_of(const ResultReader& part, const ResultReader& other) {
     return "divides the work otherwise than " + other.name() +
            ": the stores differ, or the versions of clearway; run the parts with the same";
   }
-  return a.is_exact() ? "" : difference_of_means(part, other);
+  return "";
 }
 
 /// Numbers in words: "2" or "2, 5-7", with "..." after many.

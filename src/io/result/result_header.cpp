@@ -151,12 +151,6 @@ void read_axes(const hdf5::Id& file, const std::string& attribute, const std::st
   for (int k = 0; k < 3; ++k) out[k] = values[k];
 }
 
-void check_tolerance(const ResultHeader& header, const std::string& name) {
-  if (header.tolerance > 0 && header.tolerance < header.radius) return;
-  throw InputError(name + ": attribute 'tolerance' is " + std::to_string(header.tolerance) +
-                   ", expected a length above 0 and below the radius");
-}
-
 void check_spacing(double spacing, const std::string& name) {
   if (spacing > 0 && std::isfinite(spacing)) return;
   throw InputError(name + ": attribute 'model_spacing' is " + std::to_string(spacing) +
@@ -275,17 +269,7 @@ std::vector<std::string> read_lines(const hdf5::Id& file, const std::string& nam
   return texts;
 }
 
-/// Reads how a part was computed that is not exact: the device and the steps of model field and
-/// grid.
-void read_means(const hdf5::Id& file, const std::string& name, const ResultHeader& header,
-                ResultPart& part) {
-  if (header.is_exact()) return;
-  part.device = hdf5::read_text_attribute(file, names::kDevice, name);
-  part.field_voxel = hdf5::read_number<double>(file, names::kFieldVoxel, name);
-  part.grid_cell = hdf5::read_number<double>(file, names::kGridCell, name);
-}
-
-ResultPart read_part(const hdf5::Id& file, const std::string& name, const ResultHeader& header) {
+ResultPart read_part(const hdf5::Id& file, const std::string& name) {
   const auto shard = hdf5::read_attribute<std::uint32_t>(file, names::kShard, 2, name);
   ResultPart part{{shard[0], shard[1]},
                   hdf5::read_number<std::uint64_t>(file, names::kDivision, name),
@@ -295,7 +279,6 @@ ResultPart read_part(const hdf5::Id& file, const std::string& name, const Result
     refuse(name, "attribute 'shard' is " + to_string(part.shard) + ", expected a part of at most " +
                      std::to_string(Shard::kMost));
   }
-  read_means(file, name, header, part);
   part.model_is_cut = hdf5::has_attribute(file, names::kModelIsCut, name);
   return part;
 }
@@ -345,11 +328,6 @@ void write_part(const hdf5::Id& file, const ResultHeader& header) {
   hdf5::write_number(file, names::kDivision, part.division);
   hdf5::write_number(file, names::kStore, part.store);
   hdf5::write_attribute(file, names::kLengthUnit, part.length_unit);
-  if (!header.is_exact()) {
-    hdf5::write_attribute(file, names::kDevice, part.device);
-    hdf5::write_number(file, names::kFieldVoxel, part.field_voxel);
-    hdf5::write_number(file, names::kGridCell, part.grid_cell);
-  }
   if (part.model_is_cut) hdf5::write_number(file, names::kModelIsCut, std::uint8_t{1});
 }
 
@@ -427,8 +405,6 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   for_each_value_field([&](const auto& field) {
     if (field.since == 0 && !field.is_default(header)) write_field(file, field, header);
   });
-  if (header.tolerance > 0) hdf5::write_attribute(file, names::kEngine, header.engine);
-  if (header.float_precision) hdf5::write_attribute(file, names::kPrecision, names::kFloat);
   if (header.has_poses_of_ways() && !header.ways_without_ends) {
     hdf5::write_attribute(file, names::kFirstPoseOf, names::kClosedWay);
   }
@@ -475,10 +451,6 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
   read_axes(file, "scale", name, header.quantisation.scale);
   read_axes(file, "offset", name, header.quantisation.offset);
   header.crs_wkt = hdf5::read_text_attribute(file, "crs_wkt", name);
-  if (hdf5::has_attribute(file, names::kTolerance, name)) {
-    header.engine = hdf5::read_text_attribute(file, names::kEngine, name);
-    check_tolerance(header, name);
-  }
   header.last_pose = header.first_pose && hdf5::has_attribute(file, names::kLastPoseHash, name);
   if (hdf5::has_attribute(file, names::kModelTriangles, name)) {
     header.model_triangles = hdf5::read_number<std::uint64_t>(file, names::kModelTriangles, name);
@@ -491,7 +463,6 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
     check_spacing(header.model_spacing.metres, name);
   }
   header.model_axes.axes = read_model_axes(file, name);
-  header.float_precision = has_value(file, names::kPrecision, names::kFloat, name);
   header.ways_without_ends =
       header.has_poses_of_ways() && !has_value(file, names::kFirstPoseOf, names::kClosedWay, name);
   if (header.version >= 3) {
@@ -502,7 +473,7 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
   read_more(file, name, header);
   if (is_part) {
     if (header.version < 3) refuse(name, "is a part of version 2, which has none");
-    header.part = read_part(file, name, header);
+    header.part = read_part(file, name);
   }
   return header;
 }

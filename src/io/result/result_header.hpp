@@ -26,11 +26,7 @@ struct ResultPart {
   std::uint64_t division = 0;  ///< hash of how the cells of the store are divided among the parts
   std::uint64_t store = 0;     ///< fingerprint of the store
   std::string length_unit;     ///< unit of the store, for the messages of merge()
-  /// Device and, in metres, the steps of the model field and of the grid, on which the answer
-  /// depends where it is not exact; otherwise empty and 0.
-  std::string device = {};
-  double field_voxel = 0, grid_cell = 0;
-  bool model_is_cut = false;  ///< see SearchOptions::model_is_cut
+  bool model_is_cut = false;   ///< see SearchOptions::model_is_cut
 
   /// Whether two parts belong to the same work. How it was done is not compared.
   friend bool operator==(const ResultPart& a, const ResultPart& b) {
@@ -57,8 +53,7 @@ struct KeptAxes {
 };
 
 /// The query that a result answers. It depends only on the source points, the model, the trajectory
-/// and the parameters, and on engine and precision where they affect the answer
-/// (docs/design/result-format.md), so that `cmp` compares runs.
+/// and the parameters (docs/design/result-format.md), so that `cmp` compares runs.
 struct ResultHeader : QueryParameters {
   std::uint64_t environment_points = 0;
   /// Hash of the source points, the same for every file format and layout.
@@ -67,8 +62,6 @@ struct ResultHeader : QueryParameters {
   std::uint64_t model_hash = 0;
   std::uint64_t poses = 0;
   std::uint64_t trajectory_hash = 0;
-  std::string engine;            ///< engine that searched; empty without a tolerance
-  bool float_precision = false;  ///< single precision alone decided, so the result is not exact
   Quantisation quantisation{};
   std::string crs_wkt;
   /// Between poses, the first poses are those of version 0.1.0, whose ways did not include their
@@ -107,9 +100,6 @@ struct ResultHeader : QueryParameters {
     if (budget || seen) return 5;
     return ignores_points() || !bodies.empty() ? 4 : 3;
   }
-  /// Whether the answer is exact. If a tolerance or single precision decided, it depends on how it
-  /// was computed.
-  bool is_exact() const { return tolerance == 0 && !float_precision; }
   bool has_model_box() const { return version >= 3; }
   bool has_clearance_xyz() const { return version >= 3; }
   friend bool operator==(const ResultHeader&, const ResultHeader&) = default;

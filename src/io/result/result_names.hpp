@@ -50,11 +50,6 @@ inline constexpr const char* kNotScanned = "not_scanned_length";
 
 inline constexpr const char* kProfile = "profile";
 inline constexpr const char* kModelBox = "model_box";
-// Written together with kEngine, only where there is a tolerance.
-inline constexpr const char* kTolerance = "tolerance";
-inline constexpr const char* kEngine = "engine";
-inline constexpr const char* kPrecision = "precision";  // written only where it is kFloat
-inline constexpr const char* kFloat = "float";
 inline constexpr const char* kFirstPoseOf = "first_pose_of";  // written only where it is kClosedWay
 inline constexpr const char* kClosedWay = "closed way";
 
@@ -70,10 +65,6 @@ inline constexpr const char* kShard = "shard";  // only in parts, together with 
 inline constexpr const char* kDivision = "division";
 inline constexpr const char* kStore = "store";
 inline constexpr const char* kLengthUnit = "length_unit";
-// Only in parts that are not exact, as are the next two.
-inline constexpr const char* kDevice = "device";
-inline constexpr const char* kFieldVoxel = "field_voxel";
-inline constexpr const char* kGridCell = "grid_cell";
 
 // Only in version 4, as are the attributes up to kBoxPoints.
 inline constexpr const char* kIgnoredPoints = "ignored_points";

@@ -74,7 +74,6 @@ from ._clearway import (
     StationTable,
     Store,
     StretchShift,
-    ToleranceReport,
     UnseenCubes,
     UnsearchedStretch,
     UsageError,

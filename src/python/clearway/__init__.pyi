@@ -151,7 +151,6 @@ class Query:
     between_poses: bool
     clearance: float
     profile: float
-    tolerance: float
     seen: bool
     seen_cube: float
     seen_min: int
@@ -169,7 +168,7 @@ class Query:
     def __init__(
         self, model: ArrayLike | Model = ..., poses: ArrayLike = ..., radius: float | None = None, *,
         first_pose: bool = False, between_poses: bool = False, clearance: float = 0.0,
-        profile: float = 0.0, tolerance: float = 0.0, ignore_classes: Sequence[int] = ...,
+        profile: float = 0.0, ignore_classes: Sequence[int] = ...,
         ignore_boxes: Sequence[Box] = ..., allow_non_rigid: bool = False,
         bodies: Sequence[Body] = ..., error_scan: float | None = None,
         error_registration: float | None = None, error_pose: float | None = None,
@@ -183,7 +182,6 @@ class QueryParameters:
     between_poses: Final[bool]
     clearance: Final[float]
     profile: Final[float]
-    tolerance: Final[float]
     seen: Final[bool]
     seen_cube: Final[float]
     seen_min: Final[int]
@@ -206,7 +204,6 @@ class SearchSeconds:
     context_wait: Final[float]
     check: Final[float]
     ignored: Final[float]
-    thin: Final[float]
     field: Final[float]
     plan: Final[float]
     engine: Final[float]
@@ -219,10 +216,6 @@ class SearchSeconds:
     beams: Final[float]
     write: Final[float]
     end_wait: Final[float]
-class ToleranceReport:
-    model_points_kept: Final[int]
-    poses_kept: Final[int]
-    resolved_by_bounds: Final[int]
 class EngineEstimate:
     sweep_seconds: Final[float]
     kdtree_seconds: Final[float]
@@ -284,9 +277,6 @@ class SearchReport(Answer):
     estimate: Final[DeviceEstimate | None]
     shard_share: Final[float | None]
     searches: Final[int]
-    tolerance: Final[ToleranceReport | None]
-    field_voxel: Final[float]
-    grid_cell: Final[float]
     cells_total: Final[int]
     cells_read: Final[int]
     bytes_read: Final[int]
@@ -651,8 +641,7 @@ def search(
     store: Store, query: Query, output: _AnyPath, *,
     engine: Literal["auto", "sweep", "grid", "kdtree"] = "auto",
     device: Literal["auto", "cpu", "cuda"] = "auto", gpus: Sequence[int] = (), threads: int = 0,
-    memory_bytes: int = 4294967296, device_memory_bytes: int = 0, field_voxel: float = 0.0,
-    grid_cell: float = 0.0, float_precision: bool = False, shard: tuple[int, int] | None = None,
+    memory_bytes: int = 4294967296, device_memory_bytes: int = 0, shard: tuple[int, int] | None = None,
     overwrite: bool = False, resume: bool = False, strict: bool = False, input_warnings: Iterable[Message] = (),
     model_is_cut: bool = False, end_gpus: bool = False, journal_interval_seconds: float = 5.0,
     progress: _Progress | None = None, message: _Tell | None = None, stop: _Stop | None = None,

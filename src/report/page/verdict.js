@@ -313,9 +313,6 @@ function cautions() {
   const { facts } = page;
   const out = facts.warnings.map((w) => w.message[0].toUpperCase() + w.message.slice(1) + ".");
   const { conflicts, inputs, query } = facts;
-  if (!query.exact) {
-    out.push("The result is not exact: it was made with a tolerance or in single precision.");
-  }
   if (facts.ignored !== null) {
     out.push(`The search ignored ${plural(facts.ignored.points, "point")} of the environment ` +
              `(${facts.ignored.what}). ${collidingIgnored(facts.ignored)}`);

@@ -461,24 +461,4 @@ void warn_of_section(const StoreReader& store, const SectionParameters& asked,
   warn_of_ignored(store, ignored_by(asked), ignored, log);
 }
 
-void warn_of_floats(const StoreReader& store, const Query& query, MessageLog& log) {
-  if (store.point_count() == 0) return;
-  const Box box = position_box(store.quantisation(), store.tree()[0].box);
-  float most = 0;
-  for (const double value : {box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z}) {
-    most = std::max(most, static_cast<float>(std::abs(value)));
-  }
-  const double step = std::nextafter(most, std::numeric_limits<float>::infinity()) - most;
-  constexpr double kFine = 0.1;  // steps of this share of the radius tell most points rightly
-  if (step <= kFine * query.radius) return;
-  const LengthUnit unit = store.metadata().unit;
-  log.warn("coarse-floats",
-           "numbers in single precision are " + length_text(step, unit) +
-               " apart at the coordinates of this environment, and the radius is " +
-               length_text(query.radius, unit) +
-               ", so single precision decides wrongly for many points and dismisses few of them "
-               "early, which can take very long. In double precision the answer is exact",
-           {{"step", step}});
-}
-
 }  // namespace clearway

@@ -50,8 +50,4 @@ void warn_of_section(const StoreReader& store, const SectionParameters& asked,
                      std::span<const double> chainage, std::span<const Message> told,
                      MessageLog& log);
 
-/// Warns where single precision alone decides and its numbers are too far apart at these
-/// coordinates to tell distances such as the radius: "coarse-floats".
-void warn_of_floats(const StoreReader& store, const Query& query, MessageLog& log);
-
 }  // namespace clearway

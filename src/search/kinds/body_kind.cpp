@@ -370,12 +370,8 @@ std::uint64_t BodyKind::device_bytes(const SlotLayout& layout) const {
   return bytes;
 }
 
-void BodyKind::report_index(SearchReport& report, const MessageLog& log) const {
-  for (const auto& kind : kinds_) {
-    SearchReport of_body;
-    kind->report_index(of_body, log);
-    report.field_voxel = std::max(report.field_voxel, of_body.field_voxel);
-  }
+void BodyKind::log_index(const MessageLog& log) const {
+  for (const auto& kind : kinds_) kind->log_index(log);
 }
 
 PageEngines BodyKind::make(const SlotLayout& layout) {

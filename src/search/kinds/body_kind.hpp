@@ -30,7 +30,7 @@ class BodyKind final : public PageEngineKind {
   std::uint64_t index_bytes() const override;
   std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const override;
   std::uint64_t device_bytes(const SlotLayout& layout) const override;
-  void report_index(SearchReport& report, const MessageLog& log) const override;
+  void log_index(const MessageLog& log) const override;
   PageEngines make(const SlotLayout& layout) override;
   void report_search(EngineList engines, SearchReport& report,
                      const MessageLog& log) const override;

@@ -123,8 +123,9 @@ template <typename Element>
 class CudaSweepKindOf final : public SweepKindOf<Element> {
  public:
   CudaSweepKindOf(const PackedCloud& cloud, const Query& query, const SearchOptions& options,
-                  OpenGpus open, KeptOnGpus* kept)
-      : SweepKindOf<Element>(needs_of(cloud, options, 1), cloud, query, options, kFieldFineness),
+                  OpenGpus open, KeptOnGpus* kept, const EngineSettings& settings)
+      : SweepKindOf<Element>(needs_of(cloud, options, 1), cloud, query, options, kFieldFineness,
+                             settings),
         gpus_(std::move(open), options.end_gpus),
         kept_(kept != nullptr && kept->are_of(cloud) ? kept : nullptr) {}
 
@@ -166,8 +167,8 @@ class CudaSweepKindOf final : public SweepKindOf<Element> {
   }
   void report_search(EngineList engines, SearchReport& report,
                      const MessageLog& log) const override {
-    this->report_statistics(report_of<CudaSweepEngineOf<Element>, SweepStatistics>(engines, report),
-                            report, log);
+    this->log_statistics(report_of<CudaSweepEngineOf<Element>, SweepStatistics>(engines, report),
+                         log);
   }
 
  private:
@@ -182,8 +183,8 @@ class CudaSweepKindOf final : public SweepKindOf<Element> {
 class CudaGridKind final : public GridKind {
  public:
   CudaGridKind(const PackedCloud& cloud, const Query& query, const SearchOptions& options,
-               OpenGpus open)
-      : GridKind(needs_of(cloud, options, kMostSlots), cloud, query, options),
+               OpenGpus open, const GridOptions& scene_options)
+      : GridKind(needs_of(cloud, options, kMostSlots), cloud, query, scene_options),
         gpus_(std::move(open), options.end_gpus) {}
 
   void resolve_devices() override { gpus_.resolve(needs_); }
@@ -202,7 +203,7 @@ class CudaGridKind final : public GridKind {
   EngineEnd end(PageEngines engines) const override { return gpus_.end(std::move(engines)); }
   void report_search(EngineList engines, SearchReport& report,
                      const MessageLog& log) const override {
-    report_statistics(report_of<CudaGridEngine, GridStatistics>(engines, report), log);
+    log_statistics(report_of<CudaGridEngine, GridStatistics>(engines, report), log);
   }
 
  private:
@@ -213,19 +214,20 @@ class CudaGridKind final : public GridKind {
 
 std::unique_ptr<PageEngineKind> cuda_kind(const PackedCloud& cloud, const Query& query,
                                           const SearchOptions& options, OpenGpus open,
-                                          KeptOnGpus* kept) {
+                                          KeptOnGpus* kept, const EngineSettings& settings) {
   if (chosen_engine(options) == Engine::kGrid) {
-    return std::make_unique<CudaGridKind>(cloud, query, options, std::move(open));
+    return std::make_unique<CudaGridKind>(cloud, query, options, std::move(open), settings.grid);
   }
   if (query.model.is_solid()) {
     return std::make_unique<CudaSweepKindOf<SolidTriangle>>(cloud, query, options, std::move(open),
-                                                            kept);
+                                                            kept, settings);
   }
   if (query.model.is_surface()) {
-    return std::make_unique<CudaSweepKindOf<Triangle>>(cloud, query, options, std::move(open),
-                                                       kept);
+    return std::make_unique<CudaSweepKindOf<Triangle>>(cloud, query, options, std::move(open), kept,
+                                                       settings);
   }
-  return std::make_unique<CudaSweepKindOf<Vec3>>(cloud, query, options, std::move(open), kept);
+  return std::make_unique<CudaSweepKindOf<Vec3>>(cloud, query, options, std::move(open), kept,
+                                                 settings);
 }
 
 namespace {

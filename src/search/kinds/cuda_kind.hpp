@@ -21,10 +21,12 @@ using OpenGpus = std::function<DeviceChoice()>;
 
 /// The CUDA form of the engine that options choose, with one engine on each of the GPUs that `open`
 /// gives once there is a plan. kept: what stays on the GPUs for questions to come; null where
-/// nothing does. Only in a build with CUDA. options.threads is not 0; all references outlive it.
+/// nothing does. settings: those of an experiment. Only in a build with CUDA. options.threads is
+/// not 0; all references outlive it.
 std::unique_ptr<PageEngineKind> cuda_kind(const PackedCloud& cloud, const Query& query,
                                           const SearchOptions& options, OpenGpus open,
-                                          KeptOnGpus* kept = nullptr);
+                                          KeptOnGpus* kept = nullptr,
+                                          const EngineSettings& settings = {});
 
 /// Follows the beams to the points of these cells on the GPUs that `open` gives, page by page, and
 /// clears the bits of the cubes in `map` that they see. memory_bytes: bytes that this may take on

@@ -12,23 +12,20 @@ namespace clearway {
 /// What the grid engine's kinds for CPU and GPU share: the scene, and how far the model reaches.
 class GridKind : public PageEngineKind {
  public:
-  /// options.threads is not 0. All references outlive it.
+  /// cloud and query outlive it.
   GridKind(PageEngineNeeds needs, const PackedCloud& cloud, const Query& query,
-           const SearchOptions& options)
+           const GridOptions& scene_options)
       : PageEngineKind(std::move(needs)),
         cloud_(cloud),
         query_(query),
-        scene_options_{options.grid_cell,
-                       options.float_precision ? GridPrecision::kFloat : GridPrecision::kExact} {}
+        scene_options_(scene_options) {}
 
   const PoseReach& build_index(const QueryTrees& trees, std::uint64_t most_bytes) override;
   std::uint64_t index_bytes() const override { return scene_->size_bytes(); }
-  void report_index(SearchReport& report, const MessageLog&) const override {
-    report.grid_cell = scene_->grid_cell();
-  }
+  double grid_cell() const { return scene_->grid_cell(); }  ///< once there is an index
 
  protected:
-  void report_statistics(const GridStatistics& statistics, const MessageLog& log) const;
+  void log_statistics(const GridStatistics& statistics, const MessageLog& log) const;
 
   const PackedCloud& cloud_;
   const Query& query_;
@@ -41,7 +38,9 @@ class GridKind : public PageEngineKind {
 
 class CpuGridKind final : public GridKind {
  public:
-  CpuGridKind(const PackedCloud& cloud, const Query& query, const SearchOptions& options);
+  /// options.threads is not 0.
+  CpuGridKind(const PackedCloud& cloud, const Query& query, const SearchOptions& options,
+              const GridOptions& scene_options = {});
 
   std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const override;
   PageEngines make(const SlotLayout& layout) override;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "clearway/search.hpp"
+#include "core/grid/grid_scene.hpp"
 #include "core/page/page_engine.hpp"
 #include "core/page/page_pool.hpp"
 #include "core/page/pose_reach.hpp"
@@ -28,6 +29,14 @@ using EngineEnd = std::vector<std::future<void>>;
 /// How many slots an engine on the CPU has besides those being searched, for pages that are read
 /// at the same time.
 inline constexpr std::uint32_t kSlotsAhead = 2;
+
+/// Settings of the engines that only experiments change. With a tolerance or in single precision an
+/// answer is not exact.
+struct EngineSettings {
+  double tolerance = 0;    ///< of engine sweep, metres: core/sweep/tolerance.hpp
+  double field_voxel = 0;  ///< step of the model field of engine sweep, metres; 0: chosen
+  GridOptions grid = {};
+};
 
 /// The resources that an engine that works on pages wants.
 struct PageEngineNeeds {
@@ -113,8 +122,8 @@ class PageEngineKind {
   virtual std::uint64_t own_device_bytes(const SlotLayout& layout) const {
     return device_bytes(layout);
   }
-  /// Describes the index in the log and in the report.
-  virtual void report_index(SearchReport& report, const MessageLog& log) const = 0;
+  /// Describes the index in the log, where it is one that people may want to know of.
+  virtual void log_index([[maybe_unused]] const MessageLog& log) const {}
   /// Makes an engine for each device, each with the layout's number of slots. The index outlives
   /// the engines' searches.
   virtual PageEngines make(const SlotLayout& layout) = 0;

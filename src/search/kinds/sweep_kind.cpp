@@ -33,7 +33,7 @@ constexpr double kLeastFineness = 0.25;
 template <typename Element>
 std::vector<PageEngineKind::IndexSize> SweepKindOf<Element>::index_sizes() const {
   constexpr std::uint64_t kMost = std::uint64_t{64} << 20, kLeast = std::uint64_t{1} << 20;
-  if (options_.field_voxel > 0 || query_.tolerance > 0) return {{kMost, 0}};
+  if (settings_.field_voxel > 0 || settings_.tolerance > 0) return {{kMost, 0}};
   return {size_of(64), size_of(16), size_of(4), {kLeast, 0}};
 }
 
@@ -44,16 +44,17 @@ const PoseReach& SweepKindOf<Element>::build_index(const QueryTrees& trees,
   filter_.reset();
   field_.reset();
   field_ = trees.model->field<Element>(
-      search_radius(query_),
-      ModelFieldOptions{.voxel = options_.field_voxel,
+      search_radius(query_.radius, settings_.tolerance),
+      ModelFieldOptions{.voxel = settings_.field_voxel,
                         .fineness = trees.of_session ? fineness_ : fineness_for_query(),
-                        .cheaply_finer = !(query_.tolerance > 0),
+                        .cheaply_finer = !(settings_.tolerance > 0),
                         .reach = std::max(query_.clearance, query_.profile),
                         .most_bytes = most_bytes,
                         .by_need = !this->needs().on_gpu},
       options_.threads);
   return filter_.emplace(query_, trees.motion, trees.of<Element>(), *field_, cloud_,
-                         QueryTrees::threads_for_poses(query_, options_.threads));
+                         QueryTrees::threads_for_poses(query_, options_.threads),
+                         settings_.tolerance);
 }
 
 /// The fineness of the field, which is coarser for few poses, because they need few exact tests. It
@@ -61,37 +62,36 @@ const PoseReach& SweepKindOf<Element>::build_index(const QueryTrees& trees,
 /// profile, which ask more of it.
 template <typename Element>
 double SweepKindOf<Element>::fineness_for_query() const {
-  if (query_.tolerance > 0 || query_.clearance > 0 || query_.profile > 0) return fineness_;
+  if (settings_.tolerance > 0 || query_.clearance > 0 || query_.profile > 0) return fineness_;
   const auto poses = static_cast<double>(query_.poses.size());
   return fineness_ * std::clamp(std::cbrt(poses / kPosesOfFullFineness), kLeastFineness, 1.0);
 }
 
 template <typename Element>
-void SweepKindOf<Element>::report_index(SearchReport& report, const MessageLog& log) const {
-  report.field_voxel = field_->voxel();
+void SweepKindOf<Element>::log_index(const MessageLog& log) const {
   log.note("model field: voxel " + format_brief(field_->voxel()) + " m, " +
            format_count(field_->bricks()) + " bricks, " + format_size(field_->allocated_bytes()));
 }
 
 template <typename Element>
-void SweepKindOf<Element>::report_statistics(const SweepStatistics& s, SearchReport& report,
-                                             const MessageLog& log) {
+void SweepKindOf<Element>::log_statistics(const SweepStatistics& s, const MessageLog& log) {
   log.note("tests: " + format_count(s.node_tests) + " of boxes, " + format_count(s.point_tests) +
            " of points (" + format_count(s.points_tested) + " points), " +
            format_count(s.exact_tests) + " exact");
-  if (report.tolerance) {
-    report.tolerance->resolved_by_bounds = s.resolved_tests;
+  if (s.resolved_tests > 0) {
     log.note("tolerance: " + format_count(s.resolved_tests) + " exact tests spared by bounds");
   }
 }
 
 template <typename Element>
 CpuSweepKindOf<Element>::CpuSweepKindOf(const PackedCloud& cloud, const Query& query,
-                                        const SearchOptions& options)
+                                        const SearchOptions& options,
+                                        const EngineSettings& settings)
     : SweepKindOf<Element>({.most_slots = static_cast<std::uint32_t>(options.threads) + kSlotsAhead,
                             .threads = options.threads},
                            cloud, query, options,
-                           query.profile > 0 && !kIsTriangle<Element> ? kProfileFineness : 1) {}
+                           query.profile > 0 && !kIsTriangle<Element> ? kProfileFineness : 1,
+                           settings) {}
 
 template <typename Element>
 std::uint64_t CpuSweepKindOf<Element>::host_bytes(const SlotLayout& layout,
@@ -112,10 +112,10 @@ PageEngines CpuSweepKindOf<Element>::make(const SlotLayout& layout) {
 }
 
 template <typename Element>
-void CpuSweepKindOf<Element>::report_search(EngineList engines, SearchReport& report,
+void CpuSweepKindOf<Element>::report_search(EngineList engines, SearchReport&,
                                             const MessageLog& log) const {
-  this->report_statistics(
-      dynamic_cast<const SweepEngineOf<Element>&>(*engines.front()).statistics(), report, log);
+  this->log_statistics(dynamic_cast<const SweepEngineOf<Element>&>(*engines.front()).statistics(),
+                       log);
 }
 
 template class SweepKindOf<Vec3>;
@@ -123,13 +123,15 @@ template class SweepKindOf<Triangle>;
 template class SweepKindOf<SolidTriangle>;
 
 std::unique_ptr<PageEngineKind> cpu_sweep_kind(const PackedCloud& cloud, const Query& query,
-                                               const SearchOptions& options) {
+                                               const SearchOptions& options,
+                                               const EngineSettings& settings) {
   if (query.model.is_solid()) {
-    return std::make_unique<CpuSweepKindOf<SolidTriangle>>(cloud, query, options);
+    return std::make_unique<CpuSweepKindOf<SolidTriangle>>(cloud, query, options, settings);
   }
-  if (query.model.is_surface())
-    return std::make_unique<CpuSweepKindOf<Triangle>>(cloud, query, options);
-  return std::make_unique<CpuSweepKindOf<Vec3>>(cloud, query, options);
+  if (query.model.is_surface()) {
+    return std::make_unique<CpuSweepKindOf<Triangle>>(cloud, query, options, settings);
+  }
+  return std::make_unique<CpuSweepKindOf<Vec3>>(cloud, query, options, settings);
 }
 
 template class CpuSweepKindOf<Vec3>;

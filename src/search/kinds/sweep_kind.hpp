@@ -17,22 +17,22 @@ class SweepKindOf : public PageEngineKind {
   /// options.threads is not 0. fineness: the field's (core/sweep/field/model_field.hpp). All
   /// references outlive it.
   SweepKindOf(PageEngineNeeds needs, const PackedCloud& cloud, const Query& query,
-              const SearchOptions& options, double fineness)
+              const SearchOptions& options, double fineness, const EngineSettings& settings)
       : PageEngineKind(std::move(needs)),
         cloud_(cloud),
         query_(query),
         options_(options),
-        fineness_(fineness) {}
+        fineness_(fineness),
+        settings_(settings) {}
 
   std::vector<IndexSize> index_sizes() const override;
   const PoseReach& build_index(const QueryTrees& trees, std::uint64_t most_bytes) override;
   std::uint64_t index_bytes() const override {
     return field_->allocated_bytes() + filter_->allocated_bytes();
   }
-  void report_index(SearchReport& report, const MessageLog& log) const override;
+  void log_index(const MessageLog& log) const override;
 
-  static void report_statistics(const SweepStatistics& statistics, SearchReport& report,
-                                const MessageLog& log);
+  static void log_statistics(const SweepStatistics& statistics, const MessageLog& log);
 
  protected:
   const PackedCloud& cloud_;
@@ -46,12 +46,14 @@ class SweepKindOf : public PageEngineKind {
   double fineness_for_query() const;
 
   double fineness_;
+  EngineSettings settings_;
 };
 
 template <typename Element>
 class CpuSweepKindOf : public SweepKindOf<Element> {
  public:
-  CpuSweepKindOf(const PackedCloud& cloud, const Query& query, const SearchOptions& options);
+  CpuSweepKindOf(const PackedCloud& cloud, const Query& query, const SearchOptions& options,
+                 const EngineSettings& settings);
 
   std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const override;
   PageEngines make(const SlotLayout& layout) override;
@@ -66,7 +68,8 @@ class CpuSweepKindOf : public SweepKindOf<Element> {
 };
 
 std::unique_ptr<PageEngineKind> cpu_sweep_kind(const PackedCloud& cloud, const Query& query,
-                                               const SearchOptions& options);
+                                               const SearchOptions& options,
+                                               const EngineSettings& settings = {});
 
 extern template class SweepKindOf<Vec3>;
 extern template class SweepKindOf<Triangle>;

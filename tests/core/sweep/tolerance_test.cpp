@@ -146,7 +146,7 @@ TEST_CASE("thinning makes distances no larger than the tolerance allows") {
       const Vec3 by{i * move * along.x, i * move * along.y, far + i * move * along.z};
       poses.push_back(stretched(translation(by), {stretch, stretch, stretch}));
     }
-    const ThinnedQuery thinned({model, poses, {.radius = 0.5, .tolerance = tolerance}});
+    const ThinnedQuery thinned({model, poses, {.radius = 0.5}}, tolerance);
     const Query& query = thinned.query();
     for (const double side : {-0.5, 0.5}) {
       const Vec3 e{side * along.x, side * along.y, far + side * along.z};
@@ -176,13 +176,11 @@ TEST_CASE("a thinned query spends at most its tolerance") {
       pose = stretched(pose, {3, 0.5, 1});
     }
     for (const double tolerance : {1e-12, 1e-3, 0.05, 0.4}) {
-      const Query asked{model, poses, {.radius = 0.5, .tolerance = tolerance}};
-      const ThinnedQuery thinned(asked);
+      const ThinnedQuery thinned({model, poses, {.radius = 0.5}}, tolerance);
       const Query& query = thinned.query();
       CHECK(query.radius == 0.5);
-      CHECK(query.tolerance == tolerance);
-      CHECK(search_radius(query) <= 0.5 + tolerance);
-      CHECK(search_radius(query) >= 0.5);
+      CHECK(search_radius(query.radius, tolerance) <= 0.5 + tolerance);
+      CHECK(search_radius(query.radius, tolerance) >= 0.5);
       // Every moved point has a kept one at a kept pose near it.
       for (int i = 0; i < 200; ++i) {
         const Vec3 at = transform(poses[below(random, 300)], model[below(random, 800)]);
@@ -208,7 +206,7 @@ TEST_CASE("model points nearer to each other than a moved one's rounding") {
   }
   const std::vector<Pose> poses{random_rotation(random, {5e6, -5e6, 5e6})};
   for (const double tolerance : {3e-10, 8e-10, 5e-8}) {
-    const ThinnedQuery thinned({model, poses, {.radius = 0.5, .tolerance = tolerance}});
+    const ThinnedQuery thinned({model, poses, {.radius = 0.5}}, tolerance);
     long double farthest = 0;
     for (const Vec3& m : model) {
       const Vec3 at = transform(poses[0], m);

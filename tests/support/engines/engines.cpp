@@ -20,8 +20,8 @@ SearchResult kdtree(const PackedCloud& cloud, const Query& query, int threads) {
   return {run_kdtree(cloud, query, {threads}, progress), ClearanceSet()};
 }
 
-SearchResult sweep(const PackedCloud& cloud, const Query& query, int threads) {
-  return run_sweep(cloud, query, threads,
+SearchResult sweep(const PackedCloud& cloud, const Query& query, int threads, double tolerance) {
+  return run_sweep(cloud, query, threads, tolerance,
                    []<typename Element>(const SweepFilterOf<Element>& filter, const PackedCloud& of,
                                         const SlotLayout& layout) {
                      const bool in_place = layout.cells % 2 == 0;
@@ -31,8 +31,9 @@ SearchResult sweep(const PackedCloud& cloud, const Query& query, int threads) {
 
 /// Runs the kernels' bodies of the CUDA sweep engine as loops, with lists of open work from ample
 /// to none.
-SearchResult sweep_as_on_cuda(const PackedCloud& cloud, const Query& query, int threads) {
-  return run_sweep(cloud, query, threads,
+SearchResult sweep_as_on_cuda(const PackedCloud& cloud, const Query& query, int threads,
+                              double tolerance) {
+  return run_sweep(cloud, query, threads, tolerance,
                    []<typename Element>(const SweepFilterOf<Element>& filter, const PackedCloud& of,
                                         const SlotLayout& layout) {
                      const std::uint32_t entries = layout.slots % 3 == 0   ? 0
@@ -47,10 +48,11 @@ SearchResult grid(const PackedCloud& cloud, const Query& query, int threads) {
   return {run_grid(cloud, query, {.threads = threads}), ClearanceSet()};
 }
 
-std::vector<Engine> under_test{{"kdtree", kdtree, true, false, false, false},
-                               {"sweep", sweep, true, true, true, true},
-                               {"sweep as on CUDA", sweep_as_on_cuda, true, true, true, true},
-                               {"grid", grid, false, false, false, false}};
+std::vector<Engine> under_test{
+    {"kdtree", kdtree, true, false, false},
+    {"sweep", run_exactly<sweep>, true, true, true, sweep},
+    {"sweep as on CUDA", run_exactly<sweep_as_on_cuda>, true, true, true, sweep_as_on_cuda},
+    {"grid", grid, false, false, false}};
 
 /// The number of threads of the next run: three for every fifth run, otherwise one, because in
 /// scenes this small threads mostly wait for each other. The runs of a scene are no multiple of

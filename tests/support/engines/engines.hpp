@@ -20,8 +20,10 @@ struct Engine {
   SearchResult (*run)(const PackedCloud& cloud, const Query& query, int threads);
   bool between_poses;  ///< whether it answers queries between poses
   bool clearances;     ///< whether it gives clearances and profiles
-  bool tolerance;      ///< whether it takes a tolerance
   bool surfaces;       ///< whether it searches models of triangles
+  /// Searches within a tolerance; null where an engine cannot
+  SearchResult (*run_within)(const PackedCloud& cloud, const Query& query, int threads,
+                             double tolerance) = nullptr;
 };
 
 std::span<const Engine> engines();
@@ -41,10 +43,16 @@ struct MakeSweep {
   Of<SolidTriangle> solids;
 };
 
+/// Runs an engine that can search within a tolerance without one.
+template <auto run_within>
+SearchResult run_exactly(const PackedCloud& cloud, const Query& query, int threads) {
+  return run_within(cloud, query, threads, 0);
+}
+
 /// Plans the query, and runs it in an engine whose numbers of slots and of cells a page follow from
 /// the cloud's size, so that all of them occur. whole_field: for an engine that cannot make parts
-/// of the field.
-SearchResult run_sweep(const PackedCloud& cloud, const Query& query, int threads,
+/// of the field. tolerance: metres; 0: the search is exact.
+SearchResult run_sweep(const PackedCloud& cloud, const Query& query, int threads, double tolerance,
                        const MakeSweep& make, bool whole_field = false);
 
 /// Makes engines() return these from now on.

@@ -26,9 +26,10 @@ std::vector<Element> elements_of(const Query& query) {
 template <typename Element>
 class PreparedModel {
  public:
-  PreparedModel(const Query& query, int threads, bool whole)
+  /// radius: the greatest distance at which a point may be taken.
+  PreparedModel(const Query& query, double radius, int threads, bool whole)
       : elements_(elements_of<Element>(query)),
-        radius_(search_radius(query)),
+        radius_(radius),
         reach_(reach_of(query)),
         threads_(threads),
         tree_(elements_),
@@ -43,8 +44,8 @@ class PreparedModel {
   PreparedModel(const PreparedModel&) = delete;
   PreparedModel& operator=(const PreparedModel&) = delete;
 
-  bool is_for(const Query& query, int threads, bool whole) const {
-    return whole_ == whole && radius_ == search_radius(query) && reach_ == reach_of(query) &&
+  bool is_for(const Query& query, double radius, int threads, bool whole) const {
+    return whole_ == whole && radius_ == radius && reach_ == reach_of(query) &&
            threads_ == threads && solid_of_ == query.model.solid_of &&
            std::ranges::equal(elements_, elements_of<Element>(query), same_bits);
   }
@@ -73,31 +74,33 @@ class PreparedModel {
 /// The prepared model of a query: that of one of the last four runs with another model where it is
 /// the same, otherwise a new one. Valid until the next call.
 template <typename Element>
-const PreparedModel<Element>& prepared_model(const Query& query, int threads, bool whole) {
+const PreparedModel<Element>& prepared_model(const Query& query, double radius, int threads,
+                                             bool whole) {
   static std::list<PreparedModel<Element>> last;
   for (const PreparedModel<Element>& model : last) {
-    if (model.is_for(query, threads, whole)) return model;
+    if (model.is_for(query, radius, threads, whole)) return model;
   }
   if (last.size() == 4) last.pop_back();
-  return last.emplace_front(query, threads, whole);
+  return last.emplace_front(query, radius, threads, whole);
 }
 
 template <typename Element>
 SearchResult run_sweep_of(const PackedCloud& cloud, const Query& asked, int threads,
-                          const MakeSweep::Of<Element>& make, bool whole_field) {
+                          double tolerance, const MakeSweep::Of<Element>& make, bool whole_field) {
   NoProgress progress;
   std::optional<ThinnedQuery> thinned;
-  if (asked.tolerance > 0) thinned.emplace(asked);
+  if (tolerance > 0) thinned.emplace(asked, tolerance);
   const Query& query = thinned ? thinned->query() : asked;
   if (query.model.empty()) {
     return {HitSet(cloud.entry_count(), query.first_pose), ClearanceSet(cloud.entry_count())};
   }
   using Stored = StoredElement<Element>;
-  const PreparedModel<Stored>& prepared = prepared_model<Stored>(query, threads, whole_field);
+  const PreparedModel<Stored>& prepared =
+      prepared_model<Stored>(query, search_radius(query.radius, tolerance), threads, whole_field);
   const ModelTreeOf<Stored>& model = prepared.tree();
   const ModelField& field = prepared.field();
   const MotionTree motion(query.poses, model.box(), query.between_poses);
-  const SweepFilterOf<Element> filter(query, motion, model, field, cloud);
+  const SweepFilterOf<Element> filter(query, motion, model, field, cloud, 1, tolerance);
   const std::vector<PlannedCell> cells = plan(cloud, filter);
   const bool masked = asked.ignores_points();
   const SlotLayout layout{.slots = 1 + static_cast<std::uint32_t>(cells.size() % 5),
@@ -112,14 +115,14 @@ SearchResult run_sweep_of(const PackedCloud& cloud, const Query& asked, int thre
 
 }  // namespace
 
-SearchResult run_sweep(const PackedCloud& cloud, const Query& query, int threads,
+SearchResult run_sweep(const PackedCloud& cloud, const Query& query, int threads, double tolerance,
                        const MakeSweep& make, bool whole_field) {
   if (query.model.is_solid()) {
-    return run_sweep_of<SolidTriangle>(cloud, query, threads, make.solids, whole_field);
+    return run_sweep_of<SolidTriangle>(cloud, query, threads, tolerance, make.solids, whole_field);
   }
   return query.model.is_surface()
-             ? run_sweep_of<Triangle>(cloud, query, threads, make.triangles, whole_field)
-             : run_sweep_of<Vec3>(cloud, query, threads, make.points, whole_field);
+             ? run_sweep_of<Triangle>(cloud, query, threads, tolerance, make.triangles, whole_field)
+             : run_sweep_of<Vec3>(cloud, query, threads, tolerance, make.points, whole_field);
 }
 
 }  // namespace clearway

@@ -37,7 +37,7 @@ double farthest_difference(const std::vector<bool>& answer, const std::vector<bo
 }  // namespace
 
 ToleratedResults check_tolerance(std::span<const Quantum> points, const Quantisation& quantisation,
-                                 const Query& query) {
+                                 const Query& query, double tolerance) {
   const std::vector<Clearance> least =
       brute_force_clearances(positions_of(points, quantisation), query);
   ToleratedResults out;
@@ -47,16 +47,17 @@ ToleratedResults check_tolerance(std::span<const Quantum> points, const Quantisa
     out.colliding += expected.back();
   }
   for (const Engine& engine : engines()) {
-    if (!engine.tolerance) continue;
+    if (engine.run_within == nullptr) continue;
     std::vector<bool> first;
     int threads = 1;
     for (const MemoryCloudOptions& packing :
          {MemoryCloudOptions{64, 0}, MemoryCloudOptions{1000, 0}, MemoryCloudOptions{128, 300}}) {
       const MemoryCloud cloud(points, quantisation, packing);
-      const std::vector<bool> answer = by_source(cloud, engine.run(cloud, query, threads++).hits);
+      const std::vector<bool> answer =
+          by_source(cloud, engine.run_within(cloud, query, threads++, tolerance).hits);
       const double farthest = farthest_difference(answer, expected, least, query.radius);
-      CAPTURE(engine.name, packing.cell_points, query.radius, query.tolerance);
-      CHECK(farthest <= query.tolerance);
+      CAPTURE(engine.name, packing.cell_points, query.radius, tolerance);
+      CHECK(farthest <= tolerance);
       if (first.empty()) first = answer;
       CHECK((answer == first));
     }

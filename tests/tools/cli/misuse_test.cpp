@@ -201,10 +201,8 @@ TEST_CASE("options that do not go together are refused before an input is looked
   const std::string run =
       "run --env none.h5 --model none.ply --trajectory none.txt --radius 0.1 -o " +
       site.path("r.h5") + " ";
-  for (const char* options :
-       {"--tolerance 0.01 --first-pose", "--clearance 1 --between-poses",
-        "--engine kdtree --clearance 1", "--engine kdtree --field-voxel 1",
-        "--engine kdtree --device-memory 1G", "--engine sweep --grid-cell 1"}) {
+  for (const char* options : {"--clearance 1 --between-poses", "--engine kdtree --clearance 1",
+                              "--engine kdtree --device-memory 1G"}) {
     INFO(options);
     CHECK(site.run(run + options).exit_code == 2);
   }
@@ -229,41 +227,6 @@ TEST_CASE("faces of a mesh are read for a model, not for an environment, which i
   const Outcome convert =
       site.run("convert " + site.path("mesh.ply") + " -o " + site.path("m2.h5"));
   CHECK_THAT(convert.err, Contains("its 1 faces are not read, its vertices are"));
-}
-
-TEST_CASE("the result of floats alone says so") {
-  const Site site;
-  REQUIRE(site.search("--radius 0.6 -o " + site.path("exact.h5")).exit_code == 0);
-  REQUIRE(site.search("--radius 0.6 --engine grid --device cpu --precision float -o " +
-                      site.path("float.h5"))
-              .exit_code == 0);
-  using nlohmann::json;
-  CHECK(json::parse(site.run("info --json " + site.path("float.h5")).out)["precision"] == "float");
-  CHECK_FALSE(
-      json::parse(site.run("info --json " + site.path("exact.h5")).out).contains("precision"));
-  const Outcome compared =
-      site.run("compare --json " + site.path("exact.h5") + " " + site.path("float.h5"));
-  CHECK(compared.exit_code == 0);
-  CHECK(json::parse(compared.out)["question_differences"][0]["what"] == "precision");
-}
-
-TEST_CASE("single precision that is coarser than the radius is warned of") {
-  const Site site;
-  const auto codes_of_search = [&](const char* far) {
-    const std::string x = far;
-    put_bytes(site.folder / "far.xyz", x + " 0 0\n" + x + " 1 0\n");
-    put_bytes(site.folder / "there.txt", "1 0 0 " + x + " 0 1 0 0 0 0 1 0\n");
-    REQUIRE(site.run("convert " + site.path("far.xyz") + " -o " + site.path("far.h5") + " --force")
-                .exit_code == 0);
-    const Outcome run = site.run(
-        "run --json --force --env " + site.path("far.h5") + " --model " + site.path("model.xyz") +
-        " --trajectory " + site.path("there.txt") +
-        " --radius 0.1 --engine grid --device cpu --precision float -o " + site.path("floats.h5"));
-    REQUIRE(run.exit_code == 0);
-    return nlohmann::json::parse(run.out)["warnings"].dump();
-  };
-  CHECK_THAT(codes_of_search("500"), !Contains("coarse-floats"));
-  CHECK_THAT(codes_of_search("500000"), Contains("coarse-floats"));  // steps of 0.031
 }
 
 TEST_CASE("a resumed conversion leaves the store of the same inputs alone, and no other") {

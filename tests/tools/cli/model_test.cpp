@@ -199,8 +199,6 @@ TEST_CASE("run of a solid finds what is inside") {
   CHECK(json::parse(merged.out)["points_inside"] == inside);
   CHECK(json::parse(merged.out)["greatest_depth"] == depth);
   CHECK(meshes.work.bytes("merged.h5") == meshes.work.bytes("solid.h5"));
-  check_refused(meshes.run("car.stl", "no.h5", "--model-as solid --model-unit mm --tolerance 0.01"),
-                2, "a tolerance and a model with solids cannot be combined");
   check_refused(meshes.run("car.stl", "no.h5", "--model-as solid --model-unit mm --model-above 0"),
                 2, "no longer solid");
 }
@@ -248,8 +246,6 @@ TEST_CASE("what has no surface is refused and points are named") {
   };
   refused("--engine kdtree", "engine kdtree searches models of points");
   refused("--engine grid --device cpu", "engine grid searches models of points");
-  refused("--engine grid --device cpu --precision float", "engine grid searches models of points");
-  refused("--engine grid --device cpu --grid-cell 1", "engine grid searches models of points");
   refused("--between-poses", "motion between poses is searched for models of points");
   for (const char* options : {"--model-spacing 0.1", "--model-vertices"}) {
     check_refused(meshes.run("car.stl", "no.h5",

@@ -271,29 +271,12 @@ TEST_CASE("queries that no engine or not this engine answers are wrong usage") {
   }
   check_refused(work.run_hall(site, "out.h5", "--profile 0.4 --between-poses"), 2,
                 "a profile and motion between poses cannot be combined");
-  check_refused(work.run_hall(site, "out.h5", "--profile 0.4 --tolerance 0.01"), 2,
-                "a tolerance and a profile cannot be combined");
   for (const char* value : {"0", "-1", "x", "nan", "inf"}) {
     CAPTURE(value);
     check_refused(work.run_hall(site, "out.h5", std::string("--clearance ") + value), 2,
                   "--clearance");
     check_refused(work.run_hall(site, "out.h5", std::string("--profile ") + value), 2, "--profile");
-    check_refused(work.run_hall(site, "out.h5", std::string("--field-voxel ") + value), 2,
-                  "--field-voxel");
   }
   CHECK_FALSE(std::filesystem::exists(work.folder / "out.h5"));
   CHECK_FALSE(std::filesystem::exists(work.folder / "out.h5.partial"));
-}
-
-TEST_CASE("the result is the same whatever the field's voxel") {
-  const Work work;
-  const std::string site = work.hall / "site.h5";
-  const std::string query = "--first-pose --clearance 0.4 --force --field-voxel ";
-  REQUIRE(work.run_hall(site, "out.h5", "--first-pose --clearance 0.4").exit_code == 0);
-  const std::string expected = work.bytes("out.h5");
-  for (const char* voxel : {"0.02", "0.07", "0.5", "30", "1e9"}) {
-    CAPTURE(voxel);
-    CHECK(work.run_hall(site, "out.h5", query + voxel).exit_code == 0);
-    CHECK((work.bytes("out.h5") == expected));
-  }
 }

@@ -55,7 +55,7 @@ TEST_CASE("the smallest memory that a refusal names works, and a byte less is re
   const SmallHall hall;
   for (const std::string options :
        {"", "--first-pose", "--clearance 0.3 --first-pose", "--between-poses", "--threads 9",
-        "--threads 1", "--field-voxel 0.05", "--engine kdtree --first-pose --threads 4"}) {
+        "--threads 1", "--engine kdtree --first-pose --threads 4"}) {
     CAPTURE(options);
     REQUIRE(hall.search(options, "expected.h5").exit_code == 0);
     const Outcome refused = hall.search(options + " --memory 1K");
@@ -118,8 +118,4 @@ TEST_CASE("options of devices and engines that do not fit are refused") {
   check_refused(hall.search("--device cpu --gpus 0"), 2, "--device cuda");
   check_refused(hall.search("--device cpu --device-memory 2G"), 2, "--device cuda");
   check_refused(hall.search("--engine kdtree --device cuda"), 2, "--engine sweep");
-  check_refused(hall.search("--precision double"), 2, "--precision");
-  check_refused(hall.search("--engine sweep --precision float"), 2, "--engine grid");
-  check_refused(hall.search("--engine sweep --grid-cell 0.2"), 2, "--engine grid");
-  check_refused(hall.search("--grid-cell 0"), 2, "--grid-cell");
 }

@@ -361,7 +361,6 @@ TEST_CASE("what makes no sense of seen space is refused by name") {
     CHECK(outcome.exit_code == 2);
     return outcome.err;
   };
-  CHECK_THAT(refusal("--seen --tolerance 0.01"), Contains("tolerance"));
   CHECK_THAT(refusal("--seen-cube 0.1"), Contains("seen space"));
   CHECK_THAT(refusal("--seen --seen-cube 0.003"), Contains("at least 0.004"));
   CHECK_THAT(refusal("--seen --seen-cube 1e7"), Contains("2^29"));

@@ -2,6 +2,7 @@
 // models and trajectories, coarser environments. The truth is the sweep's exact distances.
 #include "bench/experiments/bench.hpp"
 #include "bench/measure/scoring.hpp"
+#include "bench/stages/set_engines.hpp"
 #include "bench/variants/variants.hpp"
 
 namespace clearway::bench {
@@ -41,7 +42,7 @@ class Accuracy {
 
   void tolerances() {
     for (const char* tolerance : {"1e-6", "1e-5", "1e-4", "1e-3", "0.01", "0.05"}) {
-      measure("tolerance", fast_.with({"--tolerance", tolerance}), hall_, tolerance);
+      measure("tolerance", fast_.with({kToleranceOption, tolerance}), hall_, tolerance);
     }
   }
 

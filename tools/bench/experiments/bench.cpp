@@ -16,6 +16,7 @@
 #include "bench/commit.hpp"
 #include "bench/measure/page_cache.hpp"
 #include "bench/measure/program.hpp"
+#include "bench/stages/set_engines.hpp"
 #include "bench/variants/variants.hpp"
 #include "clearway/error.hpp"
 
@@ -148,6 +149,7 @@ EngineChoice EngineChoice::with(const std::vector<std::string>& more) const {
 Bench::Bench(const std::string& experiment, const BenchOptions& options)
     : options_(options),
       program_(options.program),
+      own_(std::filesystem::read_symlink("/proc/self/exe")),
       description_(description_of(options, program_)),
       work_(work_folder_at(options.work, description_)),
       cuda_(use_cuda(options.device)),
@@ -225,7 +227,8 @@ std::filesystem::path Bench::store(const std::string& name,
 
 void Bench::run(const SceneFiles& files, const std::filesystem::path& result,
                 const std::vector<std::string>& run_options) const {
-  program_.output_of(command(files, result, run_options));
+  const auto [program, arguments] = command(files, result, run_options);
+  program.output_of(arguments);
 }
 
 std::filesystem::path Bench::answer(const std::string& name, const SceneFiles& files,
@@ -276,7 +279,7 @@ EngineChoice Bench::engine(const std::string& name) const {
   const std::string device = name.ends_with("cuda") ? "cuda" : "cpu";
   std::vector<std::string> run_options{"--engine", engine, "--device", device};
   const bool exact = name.find("float") == std::string::npos;
-  if (!exact) run_options = joined(std::move(run_options), {"--precision", "float"});
+  if (!exact) run_options = joined(std::move(run_options), {kPrecisionOption, "float"});
   return {name, run_options, exact};
 }
 
@@ -294,10 +297,13 @@ std::vector<EngineChoice> Bench::exact_engines() const {
   return engines;
 }
 
-std::vector<std::string> Bench::command(const SceneFiles& files,
-                                        const std::filesystem::path& result,
-                                        const std::vector<std::string>& run_options) const {
-  std::vector<std::string> arguments{"run",
+Bench::Command Bench::command(const SceneFiles& files, const std::filesystem::path& result,
+                              const std::vector<std::string>& run_options) const {
+  const auto given = [&](const char* word) {
+    return std::find(run_options.begin(), run_options.end(), word) != run_options.end();
+  };
+  const bool sets_engine = std::ranges::any_of(kSettingOptions, given);
+  std::vector<std::string> arguments{sets_engine ? "search" : "run",
                                      "--env",
                                      files.store.string(),
                                      "--model",
@@ -305,12 +311,8 @@ std::vector<std::string> Bench::command(const SceneFiles& files,
                                      "--trajectory",
                                      files.trajectory.string(),
                                      "-o",
-                                     result.string(),
-                                     "--force",
-                                     "--json"};
-  const auto given = [&](const char* word) {
-    return std::find(run_options.begin(), run_options.end(), word) != run_options.end();
-  };
+                                     result.string()};
+  if (!sets_engine) arguments = joined(std::move(arguments), {"--force", "--json"});
   if (!given("--radius")) arguments = joined(std::move(arguments), {"--radius", kRadius});
   if (given("cuda") && !options_.gpus.empty()) {
     arguments = joined(std::move(arguments), {"--gpus", options_.gpus});
@@ -319,7 +321,7 @@ std::vector<std::string> Bench::command(const SceneFiles& files,
     arguments = joined(std::move(arguments), {"--device-memory", options_.device_memory});
   }
   if (!given("--memory")) arguments = joined(std::move(arguments), {"--memory", options_.memory});
-  return joined(std::move(arguments), run_options);
+  return {sets_engine ? own_ : program_, joined(std::move(arguments), run_options)};
 }
 
 Json Bench::measure(const std::string& key, Json parameters, const SceneFiles& files,
@@ -348,14 +350,13 @@ Json Bench::measure_section(const std::string& key, Json parameters, const Scene
                                      "--force",
                                      "--json"};
   return measure_program(key, std::move(parameters), files,
-                         joined(std::move(arguments), find_options), section, {}, {},
+                         {program_, joined(std::move(arguments), find_options)}, section, {}, {},
                          Refusal::kMemory);
 }
 
 Json Bench::measure_program(const std::string& key, Json parameters, const SceneFiles& files,
-                            const std::vector<std::string>& arguments,
-                            const std::filesystem::path& result, const Judge& judge,
-                            std::optional<int> repetitions, Refusal expected) {
+                            const Command& command, const std::filesystem::path& result,
+                            const Judge& judge, std::optional<int> repetitions, Refusal expected) {
   if (const Json* known = record_.find(key)) return *known;
   spdlog::info("{}", key);
   Json one{{"key", key}, {"parameters", std::move(parameters)}, {"runs", Json::array()}};
@@ -363,7 +364,7 @@ Json Bench::measure_program(const std::string& key, Json parameters, const Scene
   for (int i = 0; i < repetitions.value_or(options_.repetitions); ++i) {
     if (seconds > kEnoughSeconds) break;
     if (options_.cold) drop_from_page_cache(files.store);
-    const ProgramRun run = program_.run(arguments, options_.limit_seconds);
+    const ProgramRun run = command.program.run(command.arguments, options_.limit_seconds);
     if (run.exit_code != 0) {
       one["failed"] = finding(key, run, expected);
       return record_.add(std::move(one));

@@ -40,7 +40,8 @@ struct BenchOptions {
 /// "hard" or "equality", the small sizes of those experiments.
 scene::Sizes scene_size(const std::string& name, const std::string& size);
 
-/// An engine on a device, with options of `clearway run`.
+/// An engine on a device, with options of `clearway run` or, where one of these sets the engine as
+/// no run does, of `clearway-bench search`.
 struct EngineChoice {
   std::string name;  ///< the name in charts: "sweep cuda"
   std::vector<std::string> options;
@@ -111,9 +112,9 @@ class Bench {
   /// The recorded case with that key; nullptr where it has yet to be measured.
   const Json* find(const std::string& key) const { return record_.find(key); }
 
-  /// Measures a case, unless the file has it already: `run` on these files, `repetitions` times (as
-  /// in the options where it is not given), but not again after half a minute. Every report, with
-  /// wall clock and peak memory, goes to "runs". A run that exceeds the limit or ends with
+  /// Measures a case, unless the file has it already: a search of these files, `repetitions` times
+  /// (as in the options where it is not given), but not again after half a minute. Every report,
+  /// with wall clock and peak memory, goes to "runs". A run that exceeds the limit or ends with
   /// `expected` goes to "failed" instead, with a warning; one that fails otherwise throws
   /// ResourceError.
   Json measure(const std::string& key, Json parameters, const SceneFiles& files,
@@ -136,19 +137,24 @@ class Bench {
   void make_scene(const std::filesystem::path& folder, const std::string& name,
                   const scene::Sizes& size) const;
 
-  std::vector<std::string> command(const SceneFiles& files, const std::filesystem::path& result,
-                                   const std::vector<std::string>& run_options) const;
+  /// A program with its arguments.
+  struct Command {
+    const Program& program;
+    std::vector<std::string> arguments;
+  };
+  Command command(const SceneFiles& files, const std::filesystem::path& result,
+                  const std::vector<std::string>& run_options) const;
 
   Json measure_program(const std::string& key, Json parameters, const SceneFiles& files,
-                       const std::vector<std::string>& arguments,
-                       const std::filesystem::path& result, const Judge& judge,
-                       std::optional<int> repetitions, Refusal expected);
+                       const Command& command, const std::filesystem::path& result,
+                       const Judge& judge, std::optional<int> repetitions, Refusal expected);
 
   /// What is recorded of a failed run that is a finding; throws ResourceError where it is none.
   Json finding(const std::string& key, const ProgramRun& failed, Refusal expected) const;
 
   BenchOptions options_;
   Program program_;
+  Program own_;       ///< this program
   Json description_;  ///< the description of the measured program
   WorkFolder work_;
   bool cuda_;

@@ -1,5 +1,6 @@
 // Fig. 2: time of each step by grid resolution, in the adaptive layout and the paper's regular one.
 #include "bench/experiments/bench.hpp"
+#include "bench/stages/set_engines.hpp"
 
 namespace clearway::bench {
 namespace {
@@ -18,10 +19,10 @@ void bench_grid(Bench& bench) {
   const SceneFiles hall = bench.scene("hall");
   const EngineChoice engine = bench.engine_here("grid");
   bench.measure("grid cell/chosen", {{"vary", "grid cell"}, {"value", "chosen"}}, hall,
-                engine.options);
+                engine.with({kPrecisionOption, "exact"}).options);
   for (const char* size : kGridCells) {
     bench.measure(std::string("grid cell/") + size, {{"vary", "grid cell"}, {"value", size}}, hall,
-                  engine.with({"--grid-cell", size}).options);
+                  engine.with({kGridCellOption, size}).options);
   }
   const std::string name = "hall-" + bench.options().size;
   for (const char* points : kCellPoints) {

@@ -1,6 +1,7 @@
-// Cases that are hard for the sweep. The sweep and the k-d tree have to give the same bytes.
+// Cases that are hard for the sweep. The sweep and the k-d tree have to find the same points.
 #include "bench/experiments/bench.hpp"
 #include "bench/measure/scoring.hpp"
+#include "bench/stages/set_engines.hpp"
 #include "bench/variants/variants.hpp"
 
 namespace clearway::bench {
@@ -41,7 +42,7 @@ class Hard {
   void small_radii() {
     for (const std::string radius : {"0.001", "0.01"}) {
       compare("radius " + radius + ", voxel 0.05", hall_, {"--radius", radius},
-              {"--field-voxel", "0.05"});
+              {kFieldVoxelOption, "0.05"});
       compare("radius " + radius + ", voxel chosen", hall_, {"--radius", radius});
     }
   }
@@ -77,7 +78,7 @@ class Hard {
                                   [&](const std::filesystem::path& result) -> Json {
                                     const auto reference = bench_.work() / "reference.h5";
                                     bench_.run(files, reference, sweep.options);
-                                    return {{"equal", same_bytes(result, reference)}};
+                                    return compared(result, reference);
                                   }));
   }
 

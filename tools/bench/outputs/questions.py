@@ -118,10 +118,9 @@ def formats(data):
 
 MODES = {
     "sweep": ["", "--first-pose", "--clearance 0.4", "--profile 0.6", ALL_TABLES, "--between-poses",
-              "--between-poses --first-pose", "--tolerance 0.01"],
+              "--between-poses --first-pose"],
     "kdtree": ["", "--first-pose", "--between-poses", "--between-poses --first-pose"],
-    "grid": ["", "--first-pose", "--precision float", "--precision float --first-pose",
-             "--grid-cell 0.5"],
+    "grid": ["", "--first-pose"],
 }
 
 
@@ -156,7 +155,7 @@ def models():
     return [
         *(f"run {BOX}/{name} --radius 0.2 --first-pose -o @.h5" for name in surfaces),
         *(f"run {BOX}/sphere.obj --radius {radius} {mode} -o @.h5" for radius in ("0.01", "1.5")
-          for mode in ("", "--clearance 0.5", "--profile 0.5", ALL_TABLES, "--tolerance 0.005")),
+          for mode in ("", "--clearance 0.5", "--profile 0.5", ALL_TABLES)),
         *(f"run {BOX}/{name} --model-as solid --radius {radius} {ALL_TABLES} -o @.h5" for name in solids
           for radius in ("0.02", "0.4")),
         f"run {BOX}/sphere.obj --model-as solid --radius 0.2 {ALL_TABLES} -o solid.h5",
@@ -197,7 +196,6 @@ def paths():
         *(f"run --env utm.h5 --model hall/model.ply --trajectory paths/utm.txt --radius {radius} {mode} -o @.h5"
           for radius, mode in (("0.15", ALL_TABLES), ("0.15", "--engine kdtree --first-pose"),
                                ("0.15", "--engine grid --first-pose"), ("2", "--first-pose"),
-                               ("0.15", "--engine grid --precision float"),
                                ("0.15", "--between-poses --first-pose"))),
         "run --env utm.h5 --model models/sphere.obj --model-as solid --trajectory paths/utm.txt --radius 0.15 "
         f"{ALL_TABLES} -o utm_out.h5",
@@ -254,7 +252,7 @@ VEHICLES = [
 
 OPTIONS = [
     *(f"run {CELLS} --radius 0.15 {options} --json -o @.h5" for options in (
-        "--threads 1", "--threads 3 --memory 200M", "--field-voxel 0.2 --first-pose", "--engine sweep --device cpu")),
+        "--threads 1", "--threads 3 --memory 200M", "--first-pose", "--engine sweep --device cpu")),
     f"run {CELLS} --radius 0.15 --fail-on-collision -o @.h5 => 1",
     "run --env elsewhere.h5 --model hall/model.ply --trajectory hall/trajectory.txt --radius 0.1 "
     "--fail-on-collision -o @.h5 => 6",
@@ -269,7 +267,6 @@ RUN_REFUSES = [
     f"run {CELLS} --radius -1 -o @.h5 => 2",
     f"run {CELLS} --radius 0.2 --engine kdtree --clearance 0.5 -o @.h5 => 2",
     f"run {CELLS} --radius 0.2 --engine grid --between-poses -o @.h5 => 2",
-    f"run {CELLS} --radius 0.2 --tolerance 0.01 --first-pose -o @.h5 => 2",
     f"run {BOX}/box.obj --radius 0.2 --engine kdtree -o @.h5 => 2",
     f"run {BOX}/box.obj --radius 0.2 --between-poses -o @.h5 => 2",
     f"run {CELLS} --radius 0.2 --memory 1M -o @.h5 => 4",

@@ -118,7 +118,6 @@ campaign::RunFacts QuestionReader::facts_of(const PlannedRun& run) {
   options.trajectory_options.default_crs = store.header.crs_wkt;
   ResultHeader header = store.header;
   static_cast<QueryParameters&>(header) = options.query;
-  header.float_precision = options.search.float_precision;
   sort_ignored(header);
   choose_gap(header, metre_in_units_of(store.metres));
   if (!header.ignore_classes.empty() && header.classes_hash == 0) {

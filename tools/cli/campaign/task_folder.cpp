@@ -155,7 +155,7 @@ const campaign::TaskState& TaskFolder::end(int code) {
 /// because the inputs have changed since they were planned.
 void TaskFolder::judge_result() {
   if (campaign::answers(path_ / task_.result(), task_.question)) {
-    state_.facts = campaign::task_facts(run_output(), task_.question);
+    state_.facts = campaign::task_facts(run_output());
     return;
   }
   state_.ending = Ending::kFailed;

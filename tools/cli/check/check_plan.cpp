@@ -33,9 +33,8 @@ const StepOptions kConvertOptions{{"--output", "--force", "--resume", "--json", 
                                    {"--trajectory-datum", "--origins-datum"},
                                    {"--trajectory-unit", "--origins-unit"}}};
 // --gap is that of conflicts, and only a run with an error budget takes it.
-const StepOptions kRunOptions{{"--env", "--output", "--first-pose", "--tolerance", "--gap",
-                               "--shard", "--force", "--resume", "--fail-on-collision", "--json",
-                               "--help"}};
+const StepOptions kRunOptions{{"--env", "--output", "--first-pose", "--gap", "--shard", "--force",
+                               "--resume", "--fail-on-collision", "--json", "--help"}};
 // The run turns the model, and what reads its result knows that.
 const StepOptions kConflictsOptions{
     {"--output", "--forward", "--up", "--date", "--force", "--json", "--help"}};

@@ -73,8 +73,6 @@ std::string advice_on(const Error& error) {
       return "; give fewer --threads, or raise the limit";
     case Remedy::kSweepEngine:
       return "; take --engine sweep";
-    case Remedy::kGridEngine:
-      return "; take --engine grid";
     case Remedy::kCudaDevice:
       return "; take --device cuda";
     case Remedy::kMoreCellPoints:

@@ -36,31 +36,6 @@ void erase_row(Collisions& rows, std::ptrdiff_t at) {
 
 }  // namespace
 
-TEST_CASE("a tolerance and its engine are part of what was asked") {
-  Side exact = sample(10, false), near = exact;
-  near.header.tolerance = 0.01;
-  near.header.engine = "sweep";
-  CHECK(compare(near, near).queries.empty());
-  const Comparison comparison = compare(exact, near);
-  CHECK(comparison.equal());
-  REQUIRE(comparison.queries.size() == 1);
-  CHECK(comparison.queries[0].what == "tolerance");
-  CHECK(comparison.queries[0].a == "none: exact");
-  CHECK(comparison.queries[0].b == "0.01 m, engine sweep");
-  Side other = near;
-  other.header.engine = "another";
-  CHECK(compare(near, other).queries.size() == 1);
-}
-
-TEST_CASE("a tolerance that no run takes is refused") {
-  Side a = sample(10, false);
-  a.header.engine = "sweep";
-  for (const double tolerance : {a.header.radius, 1e300}) {
-    a.header.tolerance = tolerance;
-    CHECK_THROWS_WITH(compare(a, a), Contains("attribute 'tolerance'"));
-  }
-}
-
 TEST_CASE("a result equals itself") {
   const Side a = sample(GENERATE(0u, 1u, 70'000u), GENERATE(false, true));
   const Comparison comparison = compare(a, a);

@@ -239,7 +239,7 @@ def options_of_run(work):
             campaign_of(work, vehicles={"solid": model, "points": points},
                         routes={"middle": {"trajectory": "middle.txt", "chainage_start": 1000}},
                         outputs={"report": True, "conflicts": ["csv"]},
-                        limits={"engine": "sweep", "field_voxel": 0.05, "journal_interval": 2.5,
+                        limits={"engine": "sweep", "journal_interval": 2.5,
                                 "threads": 1}), "-o", path)
     done = outcome("campaign", "run", path, "--all")
     expect(done.returncode == 0, done.stderr)
@@ -248,22 +248,9 @@ def options_of_run(work):
     run = json.loads((path / "runs/points/middle/0.1/run.json").read_text())
     expect(run["model_as"] == "points", f"{run['model_as']}")
     plan = (path / "plan.json").read_text()
-    for option in ("--model-as=solid", "--field-voxel=0.05", "--journal-interval=2.5",
+    for option in ("--model-as=solid", "--journal-interval=2.5",
                    "--chainage-start=1000"):
         expect(option in plan, option)
-    program("campaign", "plan",
-            campaign_of(work, query={"tolerance": 0.001}, routes={"middle": "middle.txt"},
-                        vehicles={"slim": points}), "-o", work / "tolerant")
-    program("campaign", "plan",
-            campaign_of(work, query={"precision": "float"}, routes={"middle": "middle.txt"},
-                        vehicles={"slim": points},
-                        limits={"engine": "grid", "grid_cell": 0.2}), "-o", work / "floats")
-    for name in ("tolerant", "floats"):
-        done = outcome("campaign", "run", work / name, "--all")
-        expect(done.returncode == 0 and "; not exact" in done.stderr, done.stderr)
-        expect("not exact" in program("campaign", "status", work / name), "status: " + name)
-        program("campaign", "report", work / name)
-        expect("not exact</small>" in (work / name / "index.html").read_text(), "page: " + name)
     refused = outcome("campaign", "plan", campaign_of(work, vehicles={"slim": {
         "model": "slim.off", "as": "cloud"}}), "-o", work / "none")
     expect(refused.returncode == 3 and "vehicles.slim.as: " in refused.stderr, refused.stderr)

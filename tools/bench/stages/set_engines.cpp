@@ -1,0 +1,152 @@
+#include "bench/stages/set_engines.hpp"
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "clearway/error.hpp"
+#include "clearway/model.hpp"
+#include "clearway/trajectory.hpp"
+#include "core/sweep/tolerance.hpp"
+#include "core/util/stopwatch.hpp"
+#include "io/files/pending_file.hpp"
+#include "io/files/thread_limit.hpp"
+#include "io/paths/content_hash.hpp"
+#include "search/kinds/grid_kind.hpp"
+#include "search/kinds/sweep_kind.hpp"
+#include "search/page_search.hpp"
+#include "search/result_header.hpp"
+#include "stream/write_result.hpp"
+#ifdef CLEARWAY_CUDA
+#include "search/kinds/cuda_kind.hpp"
+#endif
+
+namespace clearway::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void check(const SetEngines& asked) {
+  const EngineSettings& settings = asked.settings;
+  const bool sweep = settings.tolerance > 0 || settings.field_voxel > 0;
+  const bool grid = settings.grid.grid_cell > 0 || settings.grid.precision == GridPrecision::kFloat;
+  if (sweep && asked.search.engine != Engine::kSweep) {
+    throw UsageError("a tolerance and a field voxel are of engine sweep");
+  }
+  if (grid && asked.search.engine != Engine::kGrid) {
+    throw UsageError("a grid cell and float precision are of engine grid");
+  }
+  if (settings.tolerance >= asked.radius) throw UsageError("expected a tolerance below the radius");
+}
+
+std::unique_ptr<PageEngineKind> kind_of(const StoreReader& store, const Query& query,
+                                        const SetEngines& asked, const SearchOptions& options,
+                                        [[maybe_unused]] const MessageLog& log) {
+#ifdef CLEARWAY_CUDA
+  if (options.device == Device::kCuda) {
+    const OpenGpus open = [&options, &log] {
+      options.started->wait();
+      return choose_device(options, log);
+    };
+    return cuda_kind(store, query, options, open, nullptr, asked.settings);
+  }
+#endif
+  if (options.engine == Engine::kGrid) {
+    return std::make_unique<CpuGridKind>(store, query, options, asked.settings.grid);
+  }
+  return cpu_sweep_kind(store, query, options, asked.settings);
+}
+
+Json seconds_of(const SearchSeconds& seconds, double thin, double inputs, double total) {
+  return {{"total", total},
+          {"inputs", inputs},
+          {"thin", thin},
+          {"plan", seconds.plan},
+          {"field", seconds.field},
+          {"engine", seconds.engine},
+          {"search", seconds.search},
+          {"read", seconds.read},
+          {"upload", seconds.upload},
+          {"compute", seconds.compute},
+          {"collect", seconds.collect},
+          {"write", seconds.write}};
+}
+
+/// What is left of a query within the tolerance; the query itself without one.
+class Thinned {
+ public:
+  Thinned(const Query& query, double tolerance) : query_(query) {
+    if (!(tolerance > 0)) return;
+    const Stopwatch clock;
+    thinned_.emplace(query, tolerance);
+    seconds_ = clock.seconds();
+  }
+
+  const Query& query() const { return thinned_ ? thinned_->query() : query_; }
+  double seconds() const { return seconds_; }
+
+ private:
+  const Query& query_;
+  std::optional<ThinnedQuery> thinned_;
+  double seconds_ = 0;
+};
+
+}  // namespace
+
+Json search_with_set_engines(const SetEngines& asked) {
+  check(asked);
+  const Stopwatch total;
+  const Store opened(asked.environment);
+  const StoreReader& store = opened.reader();
+  SearchOptions options = asked.search;
+  options.threads = threads_or_all(options.threads);
+  if (options.engine == Engine::kGrid) ::setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0);
+  options.started = start_devices(options, &opened);
+  PendingFile output(asked.output, true);
+  const Query query(read_model(asked.model, {.radius = asked.radius}),
+                    read_trajectory(asked.trajectory, {}), {.radius = asked.radius});
+  const double inputs = total.seconds();
+  const Thinned thinned(query, asked.settings.tolerance);
+
+  SearchReport report;
+  const MessageCallback silent;
+  const MessageLog log(silent, report.warnings);
+  NoProgress progress;
+  const auto kind = kind_of(store, thinned.query(), asked, options, log);
+  Found found = search_pages(store, thinned.query(), options.memory_bytes, *kind, nullptr, {},
+                             progress, report, log);
+  const std::uint64_t model_hash = hash_of_model(query.model);
+  const ResultHeader header =
+      result_header(store, query, std::span(&model_hash, 1),
+                    [](const QueryParameters&) { return IgnoredPointCounts{}; });
+  const Stopwatch writing;
+  const TableSummary written = write_result(store, found.result, header, output.partial(),
+                                            found.write_bytes, progress, {}, options.threads);
+  output.publish();
+  report.seconds.write = writing.seconds();
+  found.engine_end.clear();
+
+  Json out{{"radius", query.radius},
+           {"environment_points", store.point_count()},
+           {"model_points", query.model.vertices.size()},
+           {"model_points_searched", thinned.query().model.vertices.size()},
+           {"poses", query.poses.size()},
+           {"poses_searched", thinned.query().poses.size()},
+           {"colliding_points", written.colliding_points},
+           {"engine", name_of(options.engine)},
+           {"device", name_of(options.device)}};
+  if (const auto* grid = dynamic_cast<const GridKind*>(kind.get())) {
+    out["grid_cell"] = grid->grid_cell();
+  }
+  out.update({{"cells_total", store.cells().size()},
+              {"cells_read", store.touched().cells},
+              {"bytes_read", store.touched().bytes},
+              {"pages", report.pages},
+              {"slots", report.slots},
+              {"needed_host_bytes", report.needed_host_bytes},
+              {"peak_device_bytes", report.peak_device_bytes}});
+  out["seconds"] = seconds_of(report.seconds, thinned.seconds(), inputs, total.seconds());
+  return out;
+}
+
+}  // namespace clearway::bench
