@@ -1,6 +1,7 @@
 #include "core/sweep/sweep_filter.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -79,76 +80,136 @@ SweepFilterOf<Element>::SweepFilterOf(const Query& query, const MotionTree& moti
   for_plan_.field = field.ref_as_made();
 }
 
+/// Visits nodes, which are in the order of their poses, and in that order the halves that visits
+/// ask for. Returns true as soon as a visit ends the descent.
+template <typename Element>
+template <typename Visit>
+bool SweepFilterOf<Element>::descend_in_order(std::span<const std::uint32_t> nodes,
+                                              const Visit& visit) const {
+  for (const std::uint32_t node : nodes) {
+    const Step step = visit(node);
+    if (step == Step::kEnd) return true;
+    if (step == Step::kPast) continue;
+    if (descend_in_order(halves(node), visit)) return true;
+  }
+  return false;
+}
+
+/// Visits both halves of a node before the halves of either, then goes on with the nearer one.
+/// visit: also tells how near the model is. Returns true as soon as a visit ends the descent.
+template <typename Element>
+template <typename Visit>
+bool SweepFilterOf<Element>::descend_nearer_first(std::uint32_t node, const Visit& visit) const {
+  const std::array<std::uint32_t, 2> half = halves(node);
+  double squared[2];
+  bool open[2];
+  for (int i = 0; i < 2; ++i) {
+    const Step step = visit(half[i], squared[i]);
+    if (step == Step::kEnd) return true;
+    open[i] = step == Step::kHalves;
+  }
+  const int nearer = squared[1] < squared[0] ? 1 : 0;
+  return (open[nearer] && descend_nearer_first(half[nearer], visit)) ||
+         (open[1 - nearer] && descend_nearer_first(half[1 - nearer], visit));
+}
+
 template <typename Element>
 bool SweepFilterOf<Element>::narrow(const Box& box, std::span<const std::uint32_t> nodes,
                                     std::vector<std::uint32_t>& out,
                                     SweepStatistics& statistics) const {
-  return narrow(ref_, box, nodes, {0, ref_.accepts_boxes()}, out, statistics);
+  return narrow(ref_, box, nodes, 0, ref_.accepts_boxes(), out, statistics);
 }
 
 template <typename Element>
 void SweepFilterOf<Element>::narrow(const Box& box, std::span<const std::uint32_t> nodes,
                                     std::vector<std::uint32_t>& out) const {
   SweepStatistics not_counted;
-  narrow(for_plan_, box, nodes, {ref_.profile * kRoundedUp, false}, out, not_counted);
+  narrow(for_plan_, box, nodes, ref_.profile * kRoundedUp, false, out, not_counted);
 }
 
-/// Descends from `nodes` for a box. limits.distance: a distance within which every pose matters at
-/// least.
+/// least_distance: a distance within which every pose matters at least. accept: whether boxes may
+/// be accepted as a whole.
 template <typename Element>
 bool SweepFilterOf<Element>::narrow(const SweepRefOf<Element>& ref, const Box& box,
-                                    std::span<const std::uint32_t> nodes, Limits limits,
-                                    std::vector<std::uint32_t>& out, SweepStatistics& statistics) {
+                                    std::span<const std::uint32_t> nodes, double least_distance,
+                                    bool accept, std::vector<std::uint32_t>& out,
+                                    SweepStatistics& statistics) const {
   out.clear();
   const PointBox points(box);
-  limits.distance = std::max(
-      limits.distance,
+  const double distance = std::max(
+      least_distance,
       ref.clearance > 0 ? ref.clearance_limit(points.centre, points.rho, nodes.data(),
                                               static_cast<std::uint32_t>(nodes.size()), statistics)
                         : ref.radius);
-  return std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) {
-    return narrow_node(ref, points, limits, node, out, statistics);
+  return descend_in_order(nodes, [&](std::uint32_t node) {
+    ++statistics.node_tests;
+    switch (ref.classify_box(ref.motion.nodes[node], points, distance, accept)) {
+      case SweepBoxClass::kAccepted:
+        return Step::kEnd;
+      case SweepBoxClass::kSplit:
+        return Step::kHalves;
+      case SweepBoxClass::kKept:
+        out.push_back(node);
+        break;
+      case SweepBoxClass::kDismissed:
+        break;
+    }
+    return Step::kPast;
   });
 }
 
+/// A visit that ends at any pose of the node that touches e.
 template <typename Element>
-bool SweepFilterOf<Element>::narrow_node(const SweepRefOf<Element>& ref, const PointBox& points,
-                                         const Limits& limits, std::uint32_t index,
-                                         std::vector<std::uint32_t>& out,
-                                         SweepStatistics& statistics) {
-  ++statistics.node_tests;
-  const MotionNode& node = ref.motion.nodes[index];
-  switch (ref.classify_box(node, points, limits.distance, limits.accept)) {
-    case SweepBoxClass::kDismissed:
-      return false;
-    case SweepBoxClass::kAccepted:
-      return true;
-    case SweepBoxClass::kKept:
-      out.push_back(index);
-      return false;
-    case SweepBoxClass::kSplit:
-      break;
-  }
-  return narrow_node(ref, points, limits, index + 1, out, statistics) ||
-         narrow_node(ref, points, limits, node.later, out, statistics);
-}
-
-template <typename Element>
-Verdict SweepFilterOf<Element>::test(const Vec3& e, const MotionNode& node,
-                                     SweepStatistics& statistics, double& squared_lower) const {
+typename SweepFilterOf<Element>::Step SweepFilterOf<Element>::find_any_pose(
+    const Vec3& e, std::uint32_t index, SweepStatistics& statistics, double& squared_lower) const {
+  const MotionNode& node = motion_.nodes()[index];
   const Verdict verdict = ref_.look(e, node, statistics, squared_lower);
-  if (verdict != Verdict::kOpen || node.count > 1) return verdict;
+  if (verdict == Verdict::kDismissed) return Step::kPast;
+  if (verdict == Verdict::kHitAtMid) return Step::kEnd;
+  if (node.count > 1) return Step::kHalves;
   ++statistics.exact_tests;
-  return ref_.collides_at(e, node) ? Verdict::kHitAtMid : Verdict::kDismissed;
+  return ref_.collides_at(e, node) ? Step::kEnd : Step::kPast;
 }
 
-/// Tests the middle poses of all nodes first, those far apart first, because most points that
-/// collide do so at one of them; then searches the nodes that stayed open, in halves.
+/// A visit that lowers `best` to a pose of the node that touches e, if one is less.
+template <typename Element>
+typename SweepFilterOf<Element>::Step SweepFilterOf<Element>::find_first_pose(
+    const Vec3& e, std::uint32_t index, std::uint32_t& best, SweepStatistics& statistics) const {
+  const MotionNode& node = motion_.nodes()[index];
+  if (node.first >= best) return Step::kEnd;  // as are all nodes after it
+  const Verdict verdict = ref_.look(e, node, statistics);
+  if (verdict == Verdict::kDismissed) return Step::kPast;
+  if (verdict == Verdict::kHitAtMid) best = std::min(best, ref_.first_pose_of_hit(node.mid));
+  if (node.count > 1) return Step::kHalves;
+  if (verdict == Verdict::kOpen) {
+    ++statistics.exact_tests;
+    if (ref_.collides_at(e, node)) best = node.first;
+  }
+  return Step::kPast;
+}
+
+/// Replaces the step into the halves of a node that is a run by a search of the run, if that
+/// decides. any, end: as for HitRuns::search().
+template <typename Element>
+typename SweepFilterOf<Element>::Step SweepFilterOf<Element>::search_run(
+    Step step, const Vec3& e, std::uint32_t node, bool any, std::uint32_t& end,
+    SweepStatistics& statistics) const {
+  using Answer = typename HitRuns<Element>::Answer;
+  if (step != Step::kHalves || !runs_.is_run(node)) return step;
+  const Answer answer = runs_.search(e, node, any, end, statistics);
+  if (answer == Answer::kUnknown) return Step::kHalves;
+  return any && answer == Answer::kHit ? Step::kEnd : Step::kPast;
+}
+
+/// Visits all nodes first, those far apart first, because most points that collide do so at one of
+/// their middle poses; then descends into the nodes that stayed open.
 template <typename Element>
 bool SweepFilterOf<Element>::touches(const Vec3& e, std::span<const std::uint32_t> nodes,
                                      SweepStatistics& statistics) const {
   ++statistics.points_tested;
-  double squared_lower = 0;
+  const auto visit = [&](std::uint32_t node, double& squared_lower) {
+    return find_any_pose(e, node, statistics, squared_lower);
+  };
   while (!nodes.empty()) {
     const std::span part =
         nodes.first(std::min<std::size_t>(nodes.size(), BitReversalOrder::kMost));
@@ -156,36 +217,19 @@ bool SweepFilterOf<Element>::touches(const Vec3& e, std::span<const std::uint32_
     std::uint64_t open = 0;  // the nodes that stayed open, as bits
     bool hit = false;
     BitReversalOrder(static_cast<std::uint32_t>(part.size())).for_each([&](std::uint32_t i) {
-      const Verdict verdict = test(e, motion_.nodes()[part[i]], statistics, squared_lower);
-      hit = verdict == Verdict::kHitAtMid;
-      open |= std::uint64_t{verdict == Verdict::kOpen} << i;
+      double squared_lower;
+      const Step step = visit(part[i], squared_lower);
+      hit = step == Step::kEnd;
+      open |= std::uint64_t{step == Step::kHalves} << i;
       return !hit;
     });
     if (hit) return true;
     for (; open != 0; open &= open - 1) {
       const std::uint32_t node = part[static_cast<std::size_t>(std::countr_zero(open))];
-      if (touches_below(e, node, statistics)) return true;
+      if (descend_nearer_first(node, visit)) return true;
     }
   }
   return false;
-}
-
-/// Tests both halves of an open node, then goes into the nearer one first.
-template <typename Element>
-bool SweepFilterOf<Element>::touches_below(const Vec3& e, std::uint32_t index,
-                                           SweepStatistics& statistics) const {
-  const MotionNode* nodes = motion_.nodes().data();
-  std::uint32_t half[2] = {index + 1, nodes[index].later};
-  double squared[2];
-  bool open[2];
-  for (int i = 0; i < 2; ++i) {
-    const Verdict verdict = test(e, nodes[half[i]], statistics, squared[i]);
-    if (verdict == Verdict::kHitAtMid) return true;
-    open[i] = verdict == Verdict::kOpen;
-  }
-  const int nearer = squared[1] < squared[0] ? 1 : 0;
-  return (open[nearer] && touches_below(e, half[nearer], statistics)) ||
-         (open[1 - nearer] && touches_below(e, half[1 - nearer], statistics));
 }
 
 template <typename Element>
@@ -194,30 +238,9 @@ std::uint32_t SweepFilterOf<Element>::first_pose(const Vec3& e,
                                                  SweepStatistics& statistics) const {
   ++statistics.points_tested;
   std::uint32_t best = HitSet::kNever;
-  for (const std::uint32_t node : nodes) {
-    if (motion_.nodes()[node].first >= best) break;
-    first_pose_below(e, node, best, statistics);
-  }
+  descend_in_order(nodes,
+                   [&](std::uint32_t node) { return find_first_pose(e, node, best, statistics); });
   return best;
-}
-
-/// Lowers `best` to the least pose of the node whose way touches e, if that is less.
-template <typename Element>
-void SweepFilterOf<Element>::first_pose_below(const Vec3& e, std::uint32_t index,
-                                              std::uint32_t& best,
-                                              SweepStatistics& statistics) const {
-  const MotionNode& node = motion_.nodes()[index];
-  if (node.first >= best) return;
-  const Verdict verdict = ref_.look(e, node, statistics);
-  if (verdict == Verdict::kDismissed) return;
-  if (verdict == Verdict::kHitAtMid) best = std::min(best, ref_.first_pose_of_hit(node.mid));
-  if (node.count > 1) {
-    first_pose_below(e, index + 1, best, statistics);
-    first_pose_below(e, node.later, best, statistics);
-  } else if (verdict == Verdict::kOpen) {
-    ++statistics.exact_tests;
-    if (ref_.collides_at(e, node)) best = node.first;
-  }
 }
 
 template <typename Element>
@@ -234,40 +257,29 @@ bool SweepFilterOf<Element>::join_runs(const SweepStatistics& of_point,
 template <typename Element>
 bool SweepFilterOf<Element>::touches_runs(const Vec3& e, std::span<const std::uint32_t> nodes,
                                           SweepStatistics& statistics) const {
-  using Answer = typename HitRuns<Element>::Answer;
   ++statistics.points_tested;
-  for (const std::uint32_t index : nodes) {
-    const MotionNode& node = motion_.nodes()[index];
-    double squared_lower = 0;
-    const Verdict verdict = test(e, node, statistics, squared_lower);
-    if (verdict == Verdict::kHitAtMid) return true;
-    if (verdict == Verdict::kDismissed) continue;
+  const auto visit = [&](std::uint32_t node, double& squared_lower) {
+    return find_any_pose(e, node, statistics, squared_lower);
+  };
+  return std::ranges::any_of(nodes, [&](std::uint32_t node) {
+    double squared_lower;
     std::uint32_t end = HitSet::kNever;
-    const Answer answer =
-        runs_.is_run(index) ? runs_.search(e, index, true, end, statistics) : Answer::kUnknown;
-    if (answer == Answer::kHit) return true;
-    if (answer == Answer::kUnknown && touches_below(e, index, statistics)) return true;
-  }
-  return false;
+    const Step step = search_run(visit(node, squared_lower), e, node, true, end, statistics);
+    return step == Step::kEnd || (step == Step::kHalves && descend_nearer_first(node, visit));
+  });
 }
 
 template <typename Element>
 std::uint32_t SweepFilterOf<Element>::first_pose_of_runs(const Vec3& e,
                                                          std::span<const std::uint32_t> nodes,
                                                          SweepStatistics& statistics) const {
-  using Answer = typename HitRuns<Element>::Answer;
   ++statistics.points_tested;
   std::uint32_t best = HitSet::kNever;
-  for (const std::uint32_t index : nodes) {
-    const MotionNode& node = motion_.nodes()[index];
-    if (node.first >= best) break;
-    const Verdict verdict = ref_.look(e, node, statistics);
-    if (verdict == Verdict::kDismissed) continue;
-    if (verdict == Verdict::kHitAtMid) best = std::min(best, node.mid);
-    const Answer answer =
-        runs_.is_run(index) ? runs_.search(e, index, false, best, statistics) : Answer::kUnknown;
-    if (answer == Answer::kUnknown) first_pose_below(e, index, best, statistics);
-  }
+  const auto visit = [&](std::uint32_t node) { return find_first_pose(e, node, best, statistics); };
+  std::ranges::any_of(nodes, [&](std::uint32_t node) {
+    const Step step = search_run(visit(node), e, node, false, best, statistics);
+    return step == Step::kEnd || (step == Step::kHalves && descend_in_order(halves(node), visit));
+  });
   return best;
 }
 

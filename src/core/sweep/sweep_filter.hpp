@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -72,22 +73,30 @@ class SweepFilterOf final : public PoseReach {
                                    SweepStatistics& statistics) const;
 
  private:
-  struct Limits {
-    double distance;  ///< distance beyond which nothing matters
-    bool accept;      ///< whether boxes may be accepted as a whole
+  /// How a descent goes on after it has visited a node.
+  enum class Step {
+    kEnd,     ///< all is known
+    kPast,    ///< nothing more is to be found in the node
+    kHalves,  ///< the halves of the node have to be visited
   };
 
-  static bool narrow(const SweepRefOf<Element>& ref, const Box& box,
-                     std::span<const std::uint32_t> nodes, Limits limits,
-                     std::vector<std::uint32_t>& out, SweepStatistics& statistics);
-  static bool narrow_node(const SweepRefOf<Element>& ref, const PointBox& points,
-                          const Limits& limits, std::uint32_t node, std::vector<std::uint32_t>& out,
-                          SweepStatistics& statistics);
-  SweepVerdict test(const Vec3& e, const MotionNode& node, SweepStatistics& statistics,
-                    double& squared_lower) const;
-  bool touches_below(const Vec3& e, std::uint32_t node, SweepStatistics& statistics) const;
-  void first_pose_below(const Vec3& e, std::uint32_t node, std::uint32_t& best,
-                        SweepStatistics& statistics) const;
+  std::array<std::uint32_t, 2> halves(std::uint32_t node) const {
+    return {node + 1, motion_.nodes()[node].later};
+  }
+  template <typename Visit>
+  bool descend_in_order(std::span<const std::uint32_t> nodes, const Visit& visit) const;
+  template <typename Visit>
+  bool descend_nearer_first(std::uint32_t node, const Visit& visit) const;
+
+  bool narrow(const SweepRefOf<Element>& ref, const Box& box, std::span<const std::uint32_t> nodes,
+              double least_distance, bool accept, std::vector<std::uint32_t>& out,
+              SweepStatistics& statistics) const;
+  Step find_any_pose(const Vec3& e, std::uint32_t node, SweepStatistics& statistics,
+                     double& squared_lower) const;
+  Step find_first_pose(const Vec3& e, std::uint32_t node, std::uint32_t& best,
+                       SweepStatistics& statistics) const;
+  Step search_run(Step step, const Vec3& e, std::uint32_t node, bool any, std::uint32_t& end,
+                  SweepStatistics& statistics) const;
 
   const Query& query_;
   const MotionTree& motion_;
