@@ -94,51 +94,37 @@ class Stretches {
   /// Where nothing was scanned below the model, for a path of which most has no ground. Without
   /// ground anywhere, it was probably removed on purpose.
   std::vector<PoseRange> without_ground() const {
-    if (looks_.share(has_ground) < kSomeGround) return {};
-    const auto runs = runs_of(kLeastBelow, std::not_fn(has_ground));
-    return runs.empty() ? std::vector<PoseRange>{}
-                        : ToldStretches(question_, looks_, runs).stretches;
+    const auto runs = runs_without(has_ground);
+    if (runs.empty() || looks_.share(has_ground) < kSomeGround) return {};
+    return ToldStretches(question_, looks_, runs).stretches;
   }
 
   /// For a model that is in the ground, which on a sound stretch is therefore inside it.
   void check_holes(MessageLog& log) const {
-    const auto runs = runs_of(kLeastBelow, std::not_fn(has_ground));
-    if (runs.empty()) return;
-    const ToldStretches told(question_, looks_, runs);
-    log.warn("nothing-below",
-             told.where + " no ground was scanned below the " + question_.words().mover +
-                 " or inside it: the scan may have a hole there. Then what stands there is missing "
-                 "too" +
-                 told.others,
-             told.numbers, told.stretches);
+    warn("nothing-below", runs_without(has_ground),
+         " no ground was scanned below the " + mover() +
+             " or inside it: the scan may have a hole there. Then what stands there is missing too",
+         log);
   }
 
   void check_below(MessageLog& log) const {
-    const auto runs = runs_of(kLeastBelow, std::not_fn(has_below));
-    if (runs.empty()) return;
-    const ToldStretches told(question_, looks_, runs);
-    log.warn("nothing-below",
-             told.where + " nothing was scanned below the " + question_.words().mover +
-                 ", though there is ground below it on the "
-                 "rest of the path: the scan may have a hole there, or a part of it may be "
-                 "registered at another height. Then what stands there is missing too. If you "
-                 "removed the ground on purpose, this is all right" +
-                 told.others,
-             told.numbers, told.stretches);
+    warn("nothing-below", runs_without(has_below),
+         " nothing was scanned below the " + mover() +
+             ", though there is ground below it on the rest of the path: the scan may have a hole "
+             "there, or a part of it may be registered at another height. Then what stands there "
+             "is missing too. If you removed the ground on purpose, this is all right",
+         log);
   }
 
   void check_beside(MessageLog& log) const {
     const auto runs =
         unusual_runs([&](const Look& look) { return is_on_ground(look) && !has_either(look); });
-    if (runs.empty() || !is_usual(has_either, runs)) return;
-    const ToldStretches told(question_, looks_, runs);
-    log.warn("nothing-beside",
-             told.where + " nothing was scanned beside the " + question_.words().mover + ", " +
-                 beside_text(question_) +
-                 ", though there is something on the rest of the path. Was only the ground "
-                 "scanned there? If the site is open there, this is all right" +
-                 told.others,
-             told.numbers, told.stretches);
+    if (!is_usual(has_either, runs)) return;
+    warn("nothing-beside", runs,
+         " nothing was scanned beside the " + mover() + ", " + beside_text(question_) +
+             ", though there is something on the rest of the path. Was only the ground scanned "
+             "there? If the site is open there, this is all right",
+         log);
   }
 
   void check_sides(MessageLog& log) const {
@@ -147,28 +133,39 @@ class Stretches {
     std::vector<LookRun> all = left;
     all.insert(all.end(), right.begin(), right.end());
     std::ranges::sort(all, {}, &LookRun::first);
-    if (all.empty() || !is_usual(has_both, all)) return;
-    if (!left.empty()) warn_one_side(left, kLeftSide, log);
-    if (!right.empty()) warn_one_side(right, kRightSide, log);
+    if (!is_usual(has_both, all)) return;
+    warn_one_side(left, kLeftSide, log);
+    warn_one_side(right, kRightSide, log);
   }
 
  private:
-  void warn_one_side(const std::vector<LookRun>& runs, double number, MessageLog& log) const {
+  std::string mover() const { return question_.words().mover; }
+
+  /// Warns of runs, unless there are none. text: follows the words that say where they are.
+  /// numbers: of the warning, besides those of the runs.
+  void warn(const char* code, const std::vector<LookRun>& runs, const std::string& text,
+            MessageLog& log,
+            const std::vector<std::pair<std::string, double>>& numbers = {}) const {
+    if (runs.empty()) return;
     ToldStretches told(question_, looks_, runs);
-    told.numbers.emplace_back("side", number);
-    const std::string side = word_of_side(number);
-    log.warn("one-side",
-             told.where + " nothing was scanned on the " + side + " of the " +
-                 question_.words().mover + ", " + beside_text(question_) +
-                 ". On the other side there is something, and on the rest of the path on both "
-                 "sides. Was the " +
-                 side + " side scanned there? If the site is open there, this is all right" +
-                 told.others,
-             told.numbers, told.stretches);
+    told.numbers.insert(told.numbers.end(), numbers.begin(), numbers.end());
+    log.warn(code, told.where + text + told.others, told.numbers, told.stretches);
   }
 
-  std::vector<LookRun> runs_of(double least, const std::function<bool(const Look&)>& holds) const {
-    return looks_.runs(least * question_.metre, holds);
+  void warn_one_side(const std::vector<LookRun>& runs, double number, MessageLog& log) const {
+    const std::string side = word_of_side(number);
+    warn("one-side", runs,
+         " nothing was scanned on the " + side + " of the " + mover() + ", " +
+             beside_text(question_) +
+             ". On the other side there is something, and on the rest of the path on both sides. "
+             "Was the " +
+             side + " side scanned there? If the site is open there, this is all right",
+         log, {{"side", number}});
+  }
+
+  /// Runs of looks for which `has` is false, of a length that matters below the model.
+  std::vector<LookRun> runs_without(bool (*has)(const Look&)) const {
+    return looks_.runs(kLeastBelow * question_.metre, std::not_fn(has));
   }
 
   /// Runs that are unusually long for this path. Beside the path there are gaps, such as side
