@@ -53,6 +53,9 @@ class CudaEvent {
   /// Records the event: enqueued on `stream`, not synchronised.
   void record(cudaStream_t stream) const { check_cuda(cudaEventRecord(event_, stream)); }
 
+  /// Lets what is enqueued on `stream` from now on begin only after the recorded event.
+  void before(cudaStream_t stream) const { check_cuda(cudaStreamWaitEvent(stream, event_)); }
+
   /// Waits until the event has happened. Throws the error of the work before it.
   void synchronise() const { check_cuda(cudaEventSynchronize(event_)); }
 

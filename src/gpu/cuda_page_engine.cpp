@@ -35,10 +35,17 @@ struct CudaPageEngine::Slot {
         work(upload + size.upload()),
         on(memory.streams[slot]) {}
 
+  /// A place of the page on the device as the host sees it; null for one that is elsewhere.
+  const std::byte* on_host(std::uintptr_t place) const {
+    const std::uint64_t at = place - reinterpret_cast<std::uintptr_t>(upload);
+    return at < shape.bytes() ? host_upload + at : nullptr;
+  }
+
   std::byte *host_result, *host_upload;
   std::byte *result, *upload, *work;
   CudaSlotStream& on;
   PageShape shape;
+  const Slot* first = nullptr;  ///< that of another engine, whose page has the coordinates
   std::vector<ResidentCells::Place> cells;  ///< that the page uses or brings
 };
 
@@ -123,23 +130,44 @@ void CudaPageEngine::release_cells(Slot& slot, bool are_filled) {
   slot.cells.clear();
 }
 
-/// The page in a slot as the host sees it, where the cells that are kept on the device are taken
-/// from the cloud.
+/// The page in a slot as the host sees it, where cells that another engine's page brought are found
+/// in that page, and those that are kept on the device are taken from the cloud.
 PageRef CudaPageEngine::page_on_host(const Slot& slot) const {
   const std::span cells(reinterpret_cast<PageCell*>(slot.host_upload), slot.shape.cells);
+  const auto begin = reinterpret_cast<std::uintptr_t>(slot.host_upload);
   for (PageCell& cell : cells) {
     if (cell.chunks[0].payload < slot.shape.bytes()) continue;
-    std::ranges::copy(payload_at(cloud_->in_place(cell.cell).value(), slot.host_upload),
-                      cell.chunks);
+    const auto place = [&](const PageChunk& chunk) {
+      return reinterpret_cast<std::uintptr_t>(slot.upload) + chunk.payload;
+    };
+    if (slot.first != nullptr && slot.first->on_host(place(cell.chunks[0])) != nullptr) {
+      for (PageChunk& chunk : cell.chunks) {
+        chunk.payload = reinterpret_cast<std::uintptr_t>(slot.first->on_host(place(chunk))) - begin;
+      }
+    } else {
+      std::ranges::copy(payload_at(cloud_->in_place(cell.cell).value(), slot.host_upload),
+                        cell.chunks);
+    }
   }
   return {slot.host_upload, slot.shape};
 }
 
 void CudaPageEngine::start(std::uint32_t index, const PageShape& shape) {
+  start(slots_[index], shape, nullptr);
+}
+
+void CudaPageEngine::start_beside(PageEngine& first, std::uint32_t index, const PageShape& shape) {
+  Slot& slot = slots_[index];
+  const Slot& other = dynamic_cast<const CudaPageEngine&>(first).slots_[index];
+  move_payloads(slot.host_upload, shape.cells, slot.upload, other.upload);
+  start(slot, shape, &other);
+}
+
+void CudaPageEngine::start(Slot& slot, const PageShape& shape, const Slot* first) {
   assert(shape.bytes() <= search_->slot_size().page);
   search_->use_device();
-  Slot& slot = slots_[index];
   slot.shape = shape;
+  slot.first = first;
   std::byte* page = slot.host_upload;
   const CudaPagePlan plan = search_->plan({page, shape}, page + shape.bytes());
   try {
@@ -156,6 +184,7 @@ void CudaPageEngine::enqueue(Slot& slot, const CudaPagePlan& plan) const {
   const ResultRun result(slot.shape, search_->parts());
   assert(slot.shape.bytes() + plan.bytes <= search_->slot_size().upload());
   assert(result.run.bytes() <= search_->slot_size().found());
+  if (slot.first != nullptr) slot.first->on.uploaded.before(stream);
   slot.on.begun.record(stream);
   check_cuda(cudaMemcpyAsync(slot.upload, slot.host_upload, slot.shape.bytes() + plan.bytes,
                              cudaMemcpyHostToDevice, stream));

@@ -26,6 +26,7 @@ class CudaPageEngine : public PageEngine {
   std::span<std::byte> page(std::uint32_t slot) final;
   std::optional<CellPayload> kept(std::uint32_t slot, std::uint32_t cell) final;
   void start(std::uint32_t slot, const PageShape& shape) final;
+  void start_beside(PageEngine& first, std::uint32_t slot, const PageShape& shape) final;
   void wait(std::uint32_t slot) final;
   PageResult finish(std::uint32_t slot) final;
 
@@ -49,6 +50,7 @@ class CudaPageEngine : public PageEngine {
   struct Slot;
 
   void make_slots(std::uint32_t slots);
+  void start(Slot& slot, const PageShape& shape, const Slot* first);
   void enqueue(Slot& slot, const CudaPagePlan& plan) const;
   void keep_cells(Slot& slot) const;
   void release_cells(Slot& slot, bool are_filled);

@@ -152,6 +152,17 @@ inline CellPayload payload_at(const std::array<PackedChunk<std::int32_t>, 3>& pa
   return at;
 }
 
+/// Makes the cells of a page find their coordinates from another address than before. page: on the
+/// host. now, before: the new and the old address, on the host or on a device.
+inline void move_payloads(std::byte* page, std::uint32_t cells, const std::byte* now,
+                          const std::byte* before) {
+  const std::uint64_t farther =
+      reinterpret_cast<std::uintptr_t>(before) - reinterpret_cast<std::uintptr_t>(now);
+  for (std::uint32_t i = 0; i < cells; ++i) {
+    for (PageChunk& chunk : reinterpret_cast<PageCell*>(page)[i].chunks) chunk.payload += farther;
+  }
+}
+
 /// A chunk of a page on the host, for decoding many values at once. count: the cloud's cell_points.
 inline PackedChunk<std::int32_t> packed_chunk(const PageRef& page, const PageChunk& chunk,
                                               std::uint32_t count) {

@@ -74,6 +74,15 @@ class PageEngine {
   /// the call. If this throws, nothing of the slot is in flight.
   virtual void start(std::uint32_t slot, const PageShape& shape) = 0;
 
+  /// Starts as start() does, with the coordinates where `first` has them: an engine on the same
+  /// device, which has been started with the page of the same cells in its slot of this number, and
+  /// not again before this search is finished. The page in the slot is a copy of that page up to
+  /// the payloads, and may have other nodes. shape: without payloads.
+  virtual void start_beside(PageEngine& first, std::uint32_t slot, const PageShape& shape) {
+    move_payloads(page(slot).data(), shape.cells, page(slot).data(), first.page(slot).data());
+    start(slot, shape);
+  }
+
   /// Waits, if a GPU searches, until finish() has nothing to wait for. Throws the search's error.
   virtual void wait(std::uint32_t /*slot*/) {}
 

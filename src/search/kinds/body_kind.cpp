@@ -56,8 +56,6 @@ class BodyEngine final : public PageEngine {
                                     const SlotLayout& layout, std::uint64_t most_poses);
 
  private:
-  static void find_kept(std::span<std::byte> page, const PageShape& shape, PageEngine& engine,
-                        std::uint32_t slot);
   void keep_nodes(std::span<std::byte> page, const PageShape& shape, std::size_t body) const;
   void make_room(std::uint32_t slot, std::span<const PageResult> found);
   void merge(std::uint32_t slot, std::size_t body, const PageResult& found);
@@ -92,27 +90,29 @@ BodyEngine::BodyEngine(const PackedCloud& cloud, const Query& query,
       cells_(layout.slots),
       facts_(layout.slots) {}
 
-/// The caller has filled the first body's page. The other bodies get copies of it before its nodes
-/// are reduced to the first body's own.
+/// The caller has filled the first body's page. The other bodies get copies of it without the
+/// coordinates, which they find where the first body has them, so that a GPU gets them once.
 void BodyEngine::start(std::uint32_t slot, const PageShape& shape) {
   cells_[slot] = shape.cells;
-  const std::span<const std::byte> filled = page(slot).first(shape.bytes());
-  std::size_t body = bodies_.size();
+  PageEngine& first = *bodies_.front().engine;
+  const std::span<std::byte> filled = first.page(slot).first(shape.payload_at());
+  for (std::size_t body = bodies_.size(); body-- > 0;) {
+    const std::span<std::byte> own = bodies_[body].engine->page(slot);
+    if (body > 0) std::ranges::copy(filled, own.begin());
+    keep_nodes(own, shape, body);
+  }
+  PageShape without_payloads = shape;
+  without_payloads.payload_bytes = 0;
+  std::size_t started = 0;
   try {
-    while (body-- > 0) {
-      PageEngine& engine = *bodies_[body].engine;
-      const std::span<std::byte> own = engine.page(slot);
-      if (body > 0) {
-        std::ranges::copy(filled, own.begin());
-        find_kept(own, shape, engine, slot);
-      }
-      keep_nodes(own, shape, body);
-      engine.start(slot, shape);
+    first.start(slot, shape);
+    while (++started < bodies_.size()) {
+      bodies_[started].engine->start_beside(first, slot, without_payloads);
     }
   } catch (...) {
-    while (++body < bodies_.size()) {
+    while (started-- > 0) {
       try {
-        bodies_[body].engine->finish(slot);
+        bodies_[started].engine->finish(slot);
       } catch (...) {  // only the first failure is thrown
       }
     }
@@ -120,23 +120,14 @@ void BodyEngine::start(std::uint32_t slot, const PageShape& shape) {
   }
 }
 
-/// Where the first body's engine finds a cell that the engines of all bodies find.
+/// Where the first body's engine finds a cell that the engines of all bodies find, each of which
+/// then holds it until its own search is finished.
 std::optional<CellPayload> BodyEngine::kept(std::uint32_t slot, std::uint32_t cell) {
   std::optional<CellPayload> first = bodies_.front().engine->kept(slot, cell);
   for (std::size_t body = 1; body < bodies_.size() && first; ++body) {
     if (!bodies_[body].engine->kept(slot, cell)) first.reset();
   }
   return first;
-}
-
-/// Corrects, in a copy of the first body's page, where the cells are that are kept outside of it.
-void BodyEngine::find_kept(std::span<std::byte> page, const PageShape& shape, PageEngine& engine,
-                           std::uint32_t slot) {
-  for (PageCell& cell : std::span(reinterpret_cast<PageCell*>(page.data()), shape.cells)) {
-    if (cell.chunks[0].payload < shape.bytes()) continue;
-    // The engine has found the cell already, and it stays there until the page is finished.
-    std::ranges::copy(engine.kept(slot, cell.cell).value(), cell.chunks);
-  }
 }
 
 /// Reduces the nodes of every cell of a page to those of one body, renumbered from 0. A cell's
