@@ -6,13 +6,21 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
-set(CMAKE_CXX_FLAGS_RELEASE "-O3")  # assertions stay on
+# clearway_default_flags(TYPE FLAGS): the flags of a build type, where whoever configures the build
+# has left CMake's own.
+macro(clearway_default_flags type flags)
+  string(STRIP "${CMAKE_CXX_FLAGS_${type}_INIT}" cmakes_own)
+  if("${CMAKE_CXX_FLAGS_${type}}" STREQUAL "${cmakes_own}")
+    set(CMAKE_CXX_FLAGS_${type} "${flags}")
+  endif()
+endmacro()
+clearway_default_flags(RELEASE "-O3")  # assertions stay on
 # For the sanitizers and the fuzzers. gcc takes twice as long with -O2 -g; clang's -g1 leaves out the
 # namespaces that tests/tsan.supp goes by.
 if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
-  set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g")
+  clearway_default_flags(RELWITHDEBINFO "-O1 -g")
 else()
-  set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1")
+  clearway_default_flags(RELWITHDEBINFO "-O1 -g1")
 endif()
 
 # The predicate's rounding is part of the result: no translation unit may fuse it.

@@ -54,16 +54,12 @@ std::string deflated_base64(std::string_view bytes);
 void append_columns(const std::string& name, const std::vector<PagePoint>& points,
                     std::vector<PageColumn>& columns);
 
-}  // namespace clearway
-
 /// The files of src/report/page, which the build puts into the program.
-namespace clearway::page_parts {
+namespace page_parts {
 
 extern const std::string_view kHtml, kStyle, kScript, kSectionHtml, kSectionScript;
 
-}  // namespace clearway::page_parts
-
-namespace clearway {
+}  // namespace page_parts
 
 /// What a page is about, which decides on its parts.
 enum class PageKind { kReport, kSection };

@@ -7,6 +7,7 @@
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
+#include "core/util/threads.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/check_query.hpp"
@@ -159,7 +160,7 @@ DeviceStart::DeviceStart(const SearchOptions& options, CudaKernels kernels) {
     return clock.seconds();
   };
   const std::vector<int> gpus = options.gpus.empty() ? std::vector{0} : options.gpus;
-  for (const int gpu : gpus) starts_.push_back(std::async(start, gpu).share());
+  for (const int gpu : gpus) starts_.push_back(std::async(kBeside, start, gpu).share());
 }
 
 #else

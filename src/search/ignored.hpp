@@ -27,11 +27,8 @@ IgnoredPointCounts count_ignored(const StoreReader& store, const QueryParameters
 void warn_of_ignored(const StoreReader& store, const QueryParameters& query,
                      const IgnoredPointCounts& counts, MessageLog& log);
 
-}  // namespace clearway
-
-/// Counts how many of the points that a query ignores would collide, by a second search of these
-/// points alone.
-namespace clearway {
+// How many of the points that a query ignores would collide: found by a second search, of these
+// points alone.
 
 /// Counts of ignored points that would collide, and the memory in bytes that counting them took.
 struct CollidingIgnored {

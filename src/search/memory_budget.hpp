@@ -67,10 +67,7 @@ class PageBudget {
   std::uint64_t smallest_device_bytes_ = std::numeric_limits<std::uint64_t>::max();
 };
 
-}  // namespace clearway
-
-/// How many pages of which size an engine may hold at a time.
-namespace clearway {
+// How many pages of which size an engine may hold at a time.
 
 /// The layouts that an engine may have, from the best to the least.
 std::vector<SlotLayout> layouts(const PageEngineNeeds& needs, std::uint64_t least_page_bytes);
@@ -79,10 +76,7 @@ std::vector<SlotLayout> layouts(const PageEngineNeeds& needs, std::uint64_t leas
 SlotLayout needed_layout(const PackedCloud& cloud, std::span<const PlannedCell> cells, bool masked,
                          std::uint32_t devices, const SlotLayout& layout);
 
-}  // namespace clearway
-
-/// The bytes that a run takes of the memory budget, besides the mapped store.
-namespace clearway {
+// The bytes that a run takes of the memory budget, besides the mapped store.
 
 /// Bytes of the program itself: its libraries' data, stacks of threads, buffers of files.
 std::uint64_t program_bytes(int threads);

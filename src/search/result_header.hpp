@@ -22,11 +22,6 @@ ResultHeader result_header(
     const StoreReader& store, const Query& query, std::span<const std::uint64_t> model_hashes,
     const std::function<IgnoredPointCounts(const QueryParameters& sorted)>& ignored);
 
-}  // namespace clearway
-
-/// Fills in what the report of a search counts.
-namespace clearway {
-
 /// Fills in how much there is to search.
 void report_sizes(const StoreReader& store, const Query& query, SearchReport& report);
 

@@ -346,7 +346,7 @@ std::string text_of(const ordered_json& description) {
         text += fmt::format("{:<{}}  {}: {}\n", "flag", width, flag,
                             counted(points.get<std::uint64_t>(), "point"));
       }
-    } else if (key == "warnings" && value.is_array()) {
+    } else if (key == "warnings") {
       for (const auto& one : value) {
         text += fmt::format("{:<{}}  {}: {}\n", "warning", width, one["code"].get<std::string>(),
                             one["message"].get<std::string>());

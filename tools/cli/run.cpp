@@ -1,4 +1,3 @@
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <stdlib.h>
@@ -38,6 +37,7 @@
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
+#include "io/files/file.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/thread_limit.hpp"
 
@@ -60,7 +60,7 @@ class MemoryWatch {
   std::uint64_t anonymous_bytes() const;
   void look();
 
-  int statm_;
+  std::optional<File> statm_;  ///< none where the system does not have it
   std::uint64_t page_bytes_;
   std::atomic<std::uint64_t> peak_{0};
   std::atomic<bool> stopped_{false};
@@ -69,31 +69,31 @@ class MemoryWatch {
 
 std::uint64_t MemoryWatch::anonymous_bytes() const {
   char text[128] = {};
-  if (::pread(statm_, text, sizeof text - 1, 0) <= 0) return 0;
+  if (!statm_ || ::pread(statm_->descriptor(), text, sizeof text - 1, 0) <= 0) return 0;
   unsigned long long total = 0, resident = 0, shared = 0;
   if (std::sscanf(text, "%llu %llu %llu", &total, &resident, &shared) != 3) return 0;
   return resident < shared ? 0 : (resident - shared) * page_bytes_;
 }
 
-MemoryWatch::MemoryWatch()
-    : statm_(::open("/proc/self/statm", O_RDONLY | O_CLOEXEC)),
-      page_bytes_(static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE))) {
+MemoryWatch::MemoryWatch() : page_bytes_(static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE))) {
   try {
+    statm_ = File::open_for_reading("/proc/self/statm");
     thread_ = std::thread([this] {
       while (!stopped_) {
         look();
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
       }
     });
+  } catch (const Error&) {
+    // The system does not tell, so peak_bytes() is 0.
   } catch (const std::system_error&) {
-    // No thread is available, so peak_bytes() alone looks at the memory.
+    // No thread is available, so only peak_bytes() reads the memory.
   }
 }
 
 MemoryWatch::~MemoryWatch() {
   stopped_ = true;
   if (thread_.joinable()) thread_.join();
-  if (statm_ >= 0) ::close(statm_);
 }
 
 std::uint64_t MemoryWatch::peak_bytes() {

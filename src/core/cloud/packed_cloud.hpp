@@ -56,13 +56,10 @@ struct TreeNode {
 /// no cells. Throws InputError if `top` is not a tree over exactly these cells.
 std::vector<TreeNode> build_cell_tree(std::span<const TopNode> top, std::span<const Cell> cells);
 
-}  // namespace clearway
-
-/// The bytes of one chunk of a store's point datasets, as HDF5's scale-offset filter writes them
-/// for integers with an undefined fill value (docs/design/store-format.md, "Packed chunks"): a
-/// 21-byte header (minbits, 8, minimum, zeros), then value - minimum in `minbits` bits each, most
-/// significant bit first. Value: std::int32_t, std::uint32_t, std::uint64_t or std::uint8_t.
-namespace clearway {
+// The bytes of one chunk of a store's point datasets, as HDF5's scale-offset filter writes them
+// for integers with an undefined fill value (docs/design/store-format.md, "Packed chunks"): a
+// 21-byte header (minbits, 8, minimum, zeros), then value - minimum in `minbits` bits each, most
+// significant bit first. Value: std::int32_t, std::uint32_t, std::uint64_t or std::uint8_t.
 
 inline constexpr std::size_t kPackedHeaderBytes = 21;
 

@@ -1,6 +1,12 @@
 #pragma once
 
+#include <future>
+
 namespace clearway {
+
+/// How std::async() begins work beside the calling thread: on a thread of its own, or, where the
+/// system gives none, in the thread that waits for it.
+inline constexpr std::launch kBeside = std::launch::async | std::launch::deferred;
 
 /// Starts so many threads for a moment, this one included. Throws ResourceError where the system
 /// does not give them; does nothing for a number that this process has started before. OpenMP would

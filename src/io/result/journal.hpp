@@ -137,10 +137,7 @@ class JournalWriter {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace clearway
-
-/// Format that the journal's writer and reader share (docs/design/journal.md).
-namespace clearway {
+// Format that the journal's writer and reader share (docs/design/journal.md).
 
 inline constexpr char kJournalMagic[8] = {'C', 'L', 'W', 'Y', 'J', 'R', 'N', 'L'};
 inline constexpr std::uint64_t kJournalHeadBytes = 16;  // magic, version, 4 zero bytes

@@ -148,10 +148,7 @@ inline std::vector<Message> store_warnings(const StoreMetadata& metadata) {
   return warnings;
 }
 
-}  // namespace clearway
-
-/// Names and tables that the store's writer and reader share (docs/design/store-format.md).
-namespace clearway {
+// Names and tables that the store's writer and reader share (docs/design/store-format.md).
 
 inline const std::string kStoreFormat = "clearway store";
 inline constexpr std::uint32_t kMostCellPoints = 1U << 20;

@@ -86,10 +86,7 @@ struct Sides {
 /// The factor by which a pose stretches lengths, on average over the axes; 1 for a rigid one.
 double scale_of(const Pose& pose);
 
-}  // namespace clearway
-
 // How the warnings write lengths and boxes.
-namespace clearway {
 
 /// A number as the warnings show it, with at least three digits, and none after the decimal point
 /// for 1000 and above: "0.0045", "12.3", "4516203".

@@ -5,6 +5,7 @@
 #include <future>
 
 #include "core/util/stopwatch.hpp"
+#include "core/util/threads.hpp"
 #include "cpu/sweep_engine.hpp"
 #include "gpu/beam_engine.hpp"
 #include "gpu/devices.hpp"
@@ -75,9 +76,7 @@ class Gpus {
   template <typename Make>
   PageEngines engines(Make make) const {
     std::vector<std::future<std::unique_ptr<PageEngine>>> making;
-    // A single engine needs no thread. Where no thread can be started, std::async works without
-    // one.
-    constexpr auto kBeside = std::launch::async | std::launch::deferred;
+    // A single engine needs no thread.
     const auto how = indices_.size() > 1 ? kBeside : std::launch::deferred;
     for (const int gpu : indices_) making.push_back(std::async(how, make, gpu));
     PageEngines engines;
@@ -90,11 +89,11 @@ class Gpus {
   EngineEnd end(PageEngines engines) const {
     EngineEnd ending;
     for (std::size_t i = 0; i < engines.size(); ++i) {
-      ending.push_back(std::async(
-          [engine = std::move(engines[i]), gpu = indices_[i], all = end_contexts_]() mutable {
-            engine.reset();
-            if (all) end_cuda_device(gpu);
-          }));
+      ending.push_back(std::async(kBeside, [engine = std::move(engines[i]), gpu = indices_[i],
+                                            all = end_contexts_]() mutable {
+        engine.reset();
+        if (all) end_cuda_device(gpu);
+      }));
     }
     return ending;
   }

@@ -7,7 +7,9 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+class Validator;
+}  // namespace CLI
 
 namespace clearway::tool {
 
@@ -53,16 +55,6 @@ void show_groups_in_order(CLI::App& program);
 /// every command whose help is long enough to need groups. To be called after all commands are
 /// added.
 void group_common_options(CLI::App& program);
-
-}  // namespace clearway::tool
-
-namespace CLI {
-class App;
-class Option;
-class Validator;
-}  // namespace CLI
-
-namespace clearway::tool {
 
 class LengthOptions;
 

@@ -7,6 +7,10 @@
 #include "clearway/progress.hpp"
 #include "core/util/exit_code.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace clearway::tool {
 
 /// The exit code of a verdict under --fail-on-collision. One part alone never says that nothing
@@ -38,14 +42,6 @@ std::string advice_on(const Error& error);
 /// Advice on a note or a warning, as a sentence to append: ". --between-poses ...". Empty where the
 /// message says all.
 std::string advice_on(const Message& message);
-
-}  // namespace clearway::tool
-
-namespace CLI {
-class App;
-}
-
-namespace clearway::tool {
 
 struct ProgramText {
   const char* name;

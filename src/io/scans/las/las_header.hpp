@@ -54,11 +54,8 @@ constexpr std::optional<std::size_t> las_time_byte(unsigned point_format) {
   return 20;
 }
 
-}  // namespace clearway
-
-/// Extra bytes of LAS records: values that every record has after those of its point format.
-/// Source: LAS 1.4 R15 (ASPRS), "Extra Bytes VLR".
-namespace clearway {
+// Extra bytes of LAS records: values that every record has after those of its point format.
+// Source: LAS 1.4 R15 (ASPRS), "Extra Bytes VLR".
 
 /// Type codes of the specification.
 enum class LasExtraType : std::uint8_t { kUndocumented = 0, kUint32 = 5, kDouble = 10 };

@@ -21,6 +21,7 @@
 #include "core/util/messages.hpp"
 #include "core/util/progress.hpp"
 #include "core/util/stopwatch.hpp"
+#include "core/util/threads.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "io/files/file.hpp"
 #include "io/files/pending_file.hpp"
@@ -425,7 +426,7 @@ class Conversion {
       const auto running = clocks_.measure(Stage::kWrite);
       writer.finish(top);
     }
-    auto synced = std::async(std::launch::async | std::launch::deferred, [this] {
+    auto synced = std::async(kBeside, [this] {
       const auto running = clocks_.measure(Stage::kSync);
       output_.sync();
     });

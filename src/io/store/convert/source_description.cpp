@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "core/util/threads.hpp"
 #include "io/files/file.hpp"
 #include "io/files/xxh64.hpp"
 
@@ -30,8 +31,6 @@ SourceDescription::SourceDescription(std::vector<std::filesystem::path> files,
                                      std::vector<bool> known, const Progress& progress)
     : files_(std::move(files)), progress_(progress) {
   known.resize(files_.size());
-  // Where no thread is available, get() does the work.
-  constexpr auto kBeside = std::launch::async | std::launch::deferred;
   sources_ = std::async(kBeside, [this, known = std::move(known)] {
     std::vector<std::optional<SourceFile>> sources(files_.size());
     for (std::size_t i = 0; i < files_.size(); ++i) {
