@@ -76,11 +76,6 @@ struct SearchSeconds {
   double end_wait = 0;
 };
 
-/// Estimated seconds of the whole command on the CPU with each engine.
-struct EngineEstimate {
-  double sweep_seconds = 0, kdtree_seconds = 0;
-};
-
 /// The answer of a search, and how it was found. If the result existed already, its answer is read
 /// from its file. The warnings of a report may also concern the machine, such as a journal that
 /// could not be removed.
@@ -92,8 +87,7 @@ struct SearchReport : Answer {
   /// cells that no pose comes near do not count.
   std::uint64_t ignored_looked_at = 0;
 
-  Engine engine = Engine::kAuto;                  ///< the engine that searched
-  std::optional<EngineEstimate> engine_estimate;  ///< the estimate by which kAuto chose the engine
+  Engine engine = Engine::kAuto;  ///< the engine that searched
   Device device = Device::kCpu;
   std::optional<DeviceEstimate> estimate;  ///< the estimate by which kAuto chose the device
   std::string device_name = "the CPU";     ///< name of the device for the user

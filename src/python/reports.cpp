@@ -45,13 +45,6 @@ void add_seconds(py::module_& module) {
       .def_readonly(
           "end_wait", &Seconds::end_wait,
           "Seconds that the call waited, once the result was written, for the GPUs to end.");
-  py::class_<EngineEstimate>(
-      module, "EngineEstimate",
-      "How many seconds each engine would take on the CPU, as estimated before the search.")
-      .def_readonly("sweep_seconds", &EngineEstimate::sweep_seconds,
-                    "Estimated seconds of engine 'sweep'.")
-      .def_readonly("kdtree_seconds", &EngineEstimate::kdtree_seconds,
-                    "Estimated seconds of engine 'kdtree'.");
   py::class_<DeviceEstimate>(
       module, "DeviceEstimate",
       "How many seconds the search would take on each device, as estimated before it.")
@@ -214,9 +207,6 @@ void add_work_of(py::class_<Report, Answer>& report) {
       .def_property_readonly(
           "device_name", [](const Report& r) { return text(r.device_name); },
           "The name of the device for people, such as that of the GPU.")
-      .def_readonly(
-          "engine_estimate", &Report::engine_estimate,
-          "The EngineEstimate by which engine 'auto' chose. None where an engine was asked for.")
       .def_readonly("estimate", &Report::estimate,
                     "The DeviceEstimate by which device 'auto' chose. None where it had no choice.")
       .def_readonly("shard_share", &Report::shard_share,

@@ -6,7 +6,6 @@
 
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/chainage.hpp"
-#include "core/util/format.hpp"
 #include "search/page_search.hpp"
 
 namespace clearway {
@@ -82,14 +81,14 @@ Workload workload_of(const PackedCloud& cloud, const QueryParameters& query, con
   Workload work;
   work.model_points = static_cast<double>(model_points);
   work.poses = static_cast<double>(poses.size());
-  work.radius = std::max({query.radius, query.clearance, query.profile});
+  const double radius = std::max({query.radius, query.clearance, query.profile});
   if (query.seen) work.beams = static_cast<double>(cloud.point_count());
   if (model_points == 0 || poses.empty()) return work;
-  double length = 2 * work.radius;
+  double length = 2 * radius;
   for (int k = 0; k < 3; ++k) {
-    length = std::max(length, model.hi[k] - model.lo[k] + 2 * work.radius);
+    length = std::max(length, model.hi[k] - model.lo[k] + 2 * radius);
   }
-  const Box reach = model.grown(work.radius);
+  const Box reach = model.grown(radius);
   const std::size_t samples = std::min(kSampledPoses, poses.size());
   double near_points = 0;  // at one pose, on average
   for (std::size_t i = 0; i < samples; ++i) {
@@ -104,32 +103,16 @@ Workload workload_of(const PackedCloud& cloud, const QueryParameters& query, con
 
 namespace {
 
-// Measured by `clearway-bench choice`; docs/design/choice.md has the data and the fits.
-
+/// Seconds of the whole command on the CPU with engine sweep, a least-squares fit
+/// (docs/design/pipeline.md, "Start and end of a GPU").
 double sweep_seconds(const Workload& work, int threads) {
+  if (work.model_points == 0 || work.poses == 0) return 0;
   const double alone = 0.064 + 7.02e-7 * work.model_points + 3.0e-6 * work.poses;
   const double search = 1.80e-5 * std::pow(work.reached_points, 0.3) *
                         std::pow(std::log(work.poses + 2), 3.91) *
                         std::pow(work.model_points, -0.135) * std::pow(work.poses, 0.0525);
   return alone + search / threads;
 }
-
-/// Time of kdtree divided by that of sweep. This ratio follows from few quantities, while the two
-/// times follow from many that they have in common.
-double kdtree_ratio(const Workload& work) {
-  const double poses = std::log(work.poses), radius = std::log(work.radius);
-  return std::exp(-0.0158 + 0.0109 * poses * poses + 0.2487 * radius + 0.0441 * radius * radius);
-}
-
-}  // namespace
-
-EngineEstimate estimate_on_cpu(const Workload& work, int threads) {
-  if (work.model_points == 0 || work.poses == 0) return {};
-  const double sweep = sweep_seconds(work, threads);
-  return {sweep, sweep * kdtree_ratio(work)};
-}
-
-namespace {
 
 // Measured as docs/design/pipeline.md says ("Start and end of a GPU").
 
@@ -152,15 +135,10 @@ constexpr double kSectionPairsPerCore = 25e6, kSectionPairsPerGpu = 1.5e9;
 }  // namespace
 
 DeviceEstimate estimate_devices(std::span<const Workload> work, const QueryParameters& query,
-                                Engine engine, int threads, bool started) {
+                                int threads, bool started) {
   const bool distances = query.clearance > 0 || query.profile > 0;
-  const bool may_be_kdtree = engine == Engine::kAuto && !distances && work.size() == 1;
   double set = 0;
-  for (const Workload& one : work) {
-    const EngineEstimate on_cpu = estimate_on_cpu(one, threads);
-    set += may_be_kdtree ? std::min(on_cpu.sweep_seconds, on_cpu.kdtree_seconds)
-                         : on_cpu.sweep_seconds;
-  }
+  for (const Workload& one : work) set += sweep_seconds(one, threads);
   const double beams = work.empty() ? 0 : work.front().beams / (kBeamsPerCore * threads);
   const double cpu = (distances ? kDistances : 1) * set + beams;
   return {cpu, (started ? kSlots : kStart) + cpu * threads / kCores};
@@ -176,32 +154,28 @@ std::uint64_t surely_many_points(int threads) {
 
 namespace {
 
-/// Whether engine kdtree can answer the query within the memory, and its time is known well enough
-/// to be compared.
-bool may_be_kdtree(const StoreReader& store, const Query& query, const SearchOptions& options) {
+/// Where kdtree is faster than sweep, or nearly as fast (docs/design/choice.md).
+constexpr std::size_t kMostPosesOfKdtree = 200;
+constexpr double kLargestRadiusOfKdtree = 0.3;  ///< metres
+
+/// Whether engine kdtree can answer the query, within the memory, and soon enough.
+bool suits_kdtree(const StoreReader& store, const Query& query, const SearchOptions& options) {
+  const bool is_small =
+      query.poses.size() <= kMostPosesOfKdtree && query.radius <= kLargestRadiusOfKdtree;
   const bool asks_for_sweep = query.clearance > 0 || query.profile > 0 || query.between_poses ||
                               query.model.is_surface() || !query.bodies.empty();
-  return !asks_for_sweep && kdtree_needed_bytes(store, query, options) <= options.memory_bytes;
+  return is_small && !asks_for_sweep &&
+         kdtree_needed_bytes(store, query, options) <= options.memory_bytes;
 }
 
 }  // namespace
 
-void choose_engine(const StoreReader& store, const Query& query, Engine earlier, bool on_gpu,
-                   SearchOptions& options, SearchReport& report, const MessageLog& log) {
-  if (options.engine != Engine::kAuto) return;
-  options.engine = Engine::kSweep;
-  if (on_gpu || earlier == Engine::kSweep) return;
-  if (earlier == Engine::kKdtree) {
-    options.engine = earlier;
-    return;
-  }
-  if (!may_be_kdtree(store, query, options)) return;
-  const EngineEstimate estimate = estimate_on_cpu(workload_of(store, query), options.threads);
-  if (estimate.kdtree_seconds < estimate.sweep_seconds) options.engine = Engine::kKdtree;
-  report.engine_estimate = estimate;
-  log.note("engine " + std::string(name_of(options.engine)) +
-           " is taken: by estimate sweep needs " + format_brief(estimate.sweep_seconds) +
-           " s and kdtree " + format_brief(estimate.kdtree_seconds) + " s");
+Engine choose_engine(const StoreReader& store, const Query& query, Engine earlier, bool on_gpu,
+                     const SearchOptions& options) {
+  if (options.engine != Engine::kAuto) return options.engine;
+  if (on_gpu) return Engine::kSweep;
+  if (earlier == Engine::kSweep || earlier == Engine::kKdtree) return earlier;
+  return suits_kdtree(store, query, options) ? Engine::kKdtree : Engine::kSweep;
 }
 
 }  // namespace clearway

@@ -8,7 +8,6 @@
 #include "clearway/query.hpp"
 #include "clearway/search.hpp"
 #include "core/cloud/packed_cloud.hpp"
-#include "core/util/messages.hpp"
 #include "io/store/store_reader.hpp"
 
 namespace clearway {
@@ -29,9 +28,6 @@ struct Workload {
   /// A triangle counts as kPointsOfTriangle.
   double model_points = 0;
   double poses = 0;
-  /// The largest distance that is searched, in metres: the radius, or that of clearances or
-  /// profile.
-  double radius = 0;
   /// Environment points in the model's box, widened by the radius, at all poses together.
   double reached_points = 0;
   double beams = 0;  ///< beams that are followed for seen space; the same for each body
@@ -46,19 +42,13 @@ std::vector<Workload> workloads_of(const PackedCloud& cloud, const Query& query)
 Workload workload_of(const PackedCloud& cloud, const QueryParameters& query, const Box& model,
                      std::uint64_t model_points, std::span<const Pose> poses);
 
-/// Estimates the wall clock of the whole command on the CPU with each engine, in seconds, including
-/// the time to read model and poses and to write a small result. Used for choosing, never for
-/// answers. docs/design/choice.md says how good the estimate is, and how its constants were
-/// measured. threads: at least 1.
-EngineEstimate estimate_on_cpu(const Workload& work, int threads);
-
 /// Estimates the wall clock of answering a query on the CPU with this many threads, and on a GPU
-/// including its start and end. work: one for the model, or one for each body. engine: the one that
-/// searches on the CPU, which is not the grid; kAuto for the faster one where there is one model.
-/// started: whether the GPU was started before. Used for choosing only. docs/design/pipeline.md
-/// says how its constants are measured.
+/// including its start and end, with engine sweep and the time to read model and poses and to write
+/// a small result. work: one for the model, or one for each body. threads: at least 1. started:
+/// whether the GPU was started before. Used for choosing, never for answers.
+/// docs/design/pipeline.md says how its constants are measured.
 DeviceEstimate estimate_devices(std::span<const Workload> work, const QueryParameters& query,
-                                Engine engine, int threads, bool started = false);
+                                int threads, bool started = false);
 
 /// Estimates the wall clock of a search for a section as estimate_devices() does. pairs: of a point
 /// and a bin that its cell may block.
@@ -68,12 +58,11 @@ DeviceEstimate estimate_section(double pairs, int threads);
 /// With fewer points the CPU answers most queries before a GPU has started.
 std::uint64_t surely_many_points(int threads);
 
-/// Where options.engine is kAuto, sets it to the engine that will be faster by estimate, of those
-/// that can answer the query within the memory. on_gpu: the search is on GPUs, which takes the
-/// sweep. earlier: the engine of the run that is resumed, which continues with it; kAuto for none.
-/// Where the estimates decided, the report gets them and the log the reason. options.threads is not
-/// 0.
-void choose_engine(const StoreReader& store, const Query& query, Engine earlier, bool on_gpu,
-                   SearchOptions& options, SearchReport& report, const MessageLog& log);
+/// The engine of the options or, where they leave it open, kdtree for few poses and a small radius,
+/// if it can answer the query within the memory, and otherwise sweep (docs/design/choice.md).
+/// on_gpu: the search is on GPUs, which takes the sweep. earlier: the engine of the run that is
+/// resumed, which continues with it; kAuto for none.
+Engine choose_engine(const StoreReader& store, const Query& query, Engine earlier, bool on_gpu,
+                     const SearchOptions& options);
 
 }  // namespace clearway

@@ -248,8 +248,8 @@ class Search {
     if (gpu && !options_.started) options_.started = session_.start_surely(options_);
     // What the sweep looks up of a model stays for the next question of a session.
     if (session_.is_session() && options_.engine == Engine::kAuto) options_.engine = Engine::kSweep;
-    choose_engine(store_, query_, file_ ? file_->journal.earlier_engine() : Engine::kAuto, gpu,
-                  options_, report_, log_);
+    options_.engine = choose_engine(
+        store_, query_, file_ ? file_->journal.earlier_engine() : Engine::kAuto, gpu, options_);
     // A question with further searches has all the memory, because these need some of their own.
     if (query_.ignores_points() || query_.has_budget() || query_.seen) take_memory(~0ULL);
     report_.engine = options_.engine;
@@ -318,8 +318,8 @@ class Search {
     const bool other = options_.engine == Engine::kGrid || options_.engine == Engine::kKdtree;
     if (!fallback_allowed(options_) || other) return true;
     if (session_.is_session() && query_.poses.size() < kPosesForGpu) return false;
-    report_.estimate = estimate_devices(workloads_of(store_, query_), query_, options_.engine,
-                                        options_.threads, session_.has_gpus());
+    report_.estimate = estimate_devices(workloads_of(store_, query_), query_, options_.threads,
+                                        session_.has_gpus());
     const auto [cpu, cuda] = *report_.estimate;
     if (cpu > cuda) return true;
     log_.note("the CPU is taken: by estimate it needs " + format_brief(cpu) +

@@ -7,7 +7,6 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
@@ -27,12 +26,7 @@ class Asked {
   }
 
   Engine chosen(Engine earlier = Engine::kAuto, bool on_gpu = false) {
-    SearchOptions resolved = options;
-    report = {};
-    const MessageCallback keep = [this](const Message& message) { note = message.text; };
-    const MessageLog log(keep, report.warnings);
-    choose_engine(*store, query, earlier, on_gpu, resolved, report, log);
-    return resolved.engine;
+    return choose_engine(*store, query, earlier, on_gpu, options);
   }
 
  private:
@@ -42,24 +36,18 @@ class Asked {
   std::optional<StoreReader> store;
   Query query{{{0, 0, 0}, {0.1, 0.1, 0.1}}, {}, {.radius = 0.1}};
   SearchOptions options;
-  SearchReport report;
-  std::string note;
 };
 
 }  // namespace
 
-TEST_CASE("auto takes the engine of the smaller estimate and says both") {
-  for (const int poses : {3, 20'000}) {
-    Asked asked(poses);
-    const Engine engine = asked.chosen();
-    const EngineEstimate estimate = estimate_on_cpu(workload_of(*asked.store, asked.query), 2);
-    REQUIRE(asked.report.engine_estimate);
-    CHECK(asked.report.engine_estimate->sweep_seconds == estimate.sweep_seconds);
-    CHECK(asked.report.engine_estimate->kdtree_seconds == estimate.kdtree_seconds);
-    CHECK((engine == Engine::kKdtree) == (estimate.kdtree_seconds < estimate.sweep_seconds));
-    CHECK((engine == Engine::kKdtree) == (poses == 3));
-    CHECK_THAT(asked.note, Contains(name_of(engine)));
-  }
+TEST_CASE("auto takes kdtree for few poses and a small radius") {
+  CHECK(Asked(200).chosen() == Engine::kKdtree);
+  CHECK(Asked(201).chosen() == Engine::kSweep);
+  Asked asked(3);
+  asked.query.radius = 0.3;
+  CHECK(asked.chosen() == Engine::kKdtree);
+  asked.query.radius = 0.31;
+  CHECK(asked.chosen() == Engine::kSweep);
 }
 
 TEST_CASE("auto leaves to the sweep what the k-d tree cannot do") {
@@ -70,7 +58,6 @@ TEST_CASE("auto leaves to the sweep what the k-d tree cannot do") {
   SECTION("motion between poses") { asked.query.between_poses = true; }
   SECTION("little memory") { asked.options.memory_bytes = 1 << 20; }
   CHECK(asked.chosen() == Engine::kSweep);
-  CHECK_FALSE(asked.report.engine_estimate);
 }
 
 TEST_CASE("auto goes on with the engine of the run that is resumed") {
@@ -79,7 +66,6 @@ TEST_CASE("auto goes on with the engine of the run that is resumed") {
   CHECK(asked.chosen(Engine::kKdtree) == Engine::kKdtree);
   asked.options.memory_bytes = 1 << 20;  // too little, which is reported without another engine
   CHECK(asked.chosen(Engine::kKdtree) == Engine::kKdtree);
-  CHECK_FALSE(asked.report.engine_estimate);
   asked.options.engine = Engine::kGrid;
   CHECK(asked.chosen() == Engine::kGrid);
 }

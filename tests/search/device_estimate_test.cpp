@@ -13,12 +13,11 @@ Workload work_of(double reached_points) {
   work.reached_points = reached_points;
   work.model_points = 50'000;
   work.poses = 10'000;
-  work.radius = 0.1;
   return work;
 }
 
 bool pays(const Workload& work, const QueryParameters& query, int threads) {
-  const DeviceEstimate estimate = estimate_devices({&work, 1}, query, Engine::kSweep, threads);
+  const DeviceEstimate estimate = estimate_devices({&work, 1}, query, threads);
   return estimate.cuda < estimate.cpu;
 }
 
@@ -44,8 +43,8 @@ TEST_CASE("a GPU pays earlier with fewer threads and with clearances") {
 TEST_CASE("bodies take as long as one after the other, and the GPU starts once") {
   const std::vector<Workload> bodies(3, work_of(1e7));
   const QueryParameters query{.radius = 0.1, .clearance = 0.5};
-  const DeviceEstimate one = estimate_devices({bodies.data(), 1}, query, Engine::kSweep, 4);
-  const DeviceEstimate all = estimate_devices(bodies, query, Engine::kAuto, 4);
+  const DeviceEstimate one = estimate_devices({bodies.data(), 1}, query, 4);
+  const DeviceEstimate all = estimate_devices(bodies, query, 4);
   CHECK(all.cpu == Approx(3 * one.cpu));
   CHECK(all.cuda > one.cuda);
   CHECK(all.cuda < 3 * one.cuda);
@@ -57,8 +56,8 @@ TEST_CASE("a GPU pays for few points with many beams, which are followed once fo
   CHECK_FALSE(pays(bodies[0], query, 16));
   for (Workload& work : bodies) work.beams = 1e9;
   CHECK(pays(bodies[0], query, 16));
-  const double one = estimate_devices({bodies.data(), 1}, query, Engine::kSweep, 16).cpu;
-  CHECK(estimate_devices(bodies, query, Engine::kSweep, 16).cpu < 1.1 * one);
+  const double one = estimate_devices({bodies.data(), 1}, query, 16).cpu;
+  CHECK(estimate_devices(bodies, query, 16).cpu < 1.1 * one);
 }
 
 TEST_CASE("more threads need more points before a GPU is started ahead") {

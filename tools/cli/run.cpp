@@ -154,13 +154,6 @@ nlohmann::ordered_json seconds_of(const SearchSeconds& search, const ProgramRepo
           {"end_wait", search.end_wait}};
 }
 
-/// The estimated seconds of both engines where the search chose between them; otherwise null.
-nlohmann::ordered_json estimate_of(const SearchReport& report) {
-  if (!report.engine_estimate) return nullptr;
-  return {{"sweep_seconds", report.engine_estimate->sweep_seconds},
-          {"kdtree_seconds", report.engine_estimate->kdtree_seconds}};
-}
-
 /// The value if it is known of this run; otherwise null.
 template <typename Value>
 nlohmann::ordered_json known(bool is_known, const Value& value) {
@@ -200,7 +193,6 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["shard_share"] = nullptr;
   if (report.shard_share) out["shard_share"] = *report.shard_share;
   out["engine"] = known(searched, name_of(report.engine));
-  out["engine_estimate"] = estimate_of(report);
   out["device"] = known(searched, name_of(report.device));
   out["device_estimate"] = device_estimate_of(report);
   out["searches"] = known(searched, report.searches);

@@ -31,7 +31,6 @@ from ._clearway import (
     Conflicts,
     ConvertReport,
     DeviceEstimate,
-    EngineEstimate,
     Error,
     FoundPlace,
     IgnoredPointCounts,

@@ -216,9 +216,6 @@ class SearchSeconds:
     beams: Final[float]
     write: Final[float]
     end_wait: Final[float]
-class EngineEstimate:
-    sweep_seconds: Final[float]
-    kdtree_seconds: Final[float]
 class DeviceEstimate:
     cpu: Final[float]
     cuda: Final[float]
@@ -273,7 +270,6 @@ class SearchReport(Answer):
     engine: Final[str]
     device: Final[str]
     device_name: Final[str]
-    engine_estimate: Final[EngineEstimate | None]
     estimate: Final[DeviceEstimate | None]
     shard_share: Final[float | None]
     searches: Final[int]

@@ -1,4 +1,4 @@
-// Whether `--engine auto` takes the faster engine, and how good its estimates are.
+// Whether `--engine auto` takes the faster engine.
 #include <algorithm>
 #include <cstdio>
 
@@ -95,7 +95,6 @@ class Choice {
               {"kdtree_seconds", least(kdtree, "wall_seconds")},
               {"sweep_cpu_seconds", least(sweep, "cpu_seconds")},
               {"kdtree_cpu_seconds", least(kdtree, "cpu_seconds")},
-              {"estimate", report["engine_estimate"]},
               {"choice", report["engine"]},
               {"ratio", wall},
               {"cpu_ratio", cpu}};

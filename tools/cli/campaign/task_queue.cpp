@@ -37,8 +37,7 @@ std::uint32_t RunEstimate::shards(const RunOptions& run,
   for (const auto& [box, points, poses] : models) {
     work.push_back(workload_of(store_->reader(), run.query, box, points, poses));
   }
-  const DeviceEstimate seconds =
-      estimate_devices(work, run.query, run.search.engine, std::max(run.search.threads, 1));
+  const DeviceEstimate seconds = estimate_devices(work, run.query, std::max(run.search.threads, 1));
   const double needed = run.search.device == Device::kCuda ? seconds.cuda : seconds.cpu;
   return static_cast<std::uint32_t>(
       std::clamp(std::ceil(needed / shard_seconds_), 1.0, double{Shard::kMost}));
