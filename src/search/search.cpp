@@ -1,6 +1,10 @@
 #include "clearway/search.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <bit>
 #include <memory>
 #include <optional>
 
@@ -22,13 +26,10 @@
 #include "search/choose_engine.hpp"
 #include "search/devices.hpp"
 #include "search/ignored.hpp"
-#include "search/kinds/body_kind.hpp"
-#include "search/kinds/cuda_kind.hpp"
-#include "search/kinds/grid_kind.hpp"
-#include "search/kinds/sweep_kind.hpp"
 #include "search/page_search.hpp"
 #include "search/result_header.hpp"
 #include "search/run_journal.hpp"
+#include "search/search_engines.hpp"
 #include "search/seen_space.hpp"
 #include "search/session_state.hpp"
 #include "search/shard_cells.hpp"
@@ -37,13 +38,6 @@
 
 namespace clearway {
 namespace {
-
-/// The least number of poses for which a session of its own accord asks a GPU, because the CPU has
-/// answered for fewer poses before a GPU has started.
-constexpr std::size_t kPosesForGpu = 256;
-
-/// Thrown when no GPU is available; the user has already been told why.
-struct NoGpu {};
 
 /// Passes on the progress of a search within a search under a name of its own.
 class StageOf final : public Progress {
@@ -83,7 +77,7 @@ class Search {
         progress_(options_.progress, options_.stop),
         log_(options_.message, report_.warnings),
         memory_(session.memory()),
-        device_memory_(session.device_memory()) {
+        engines_(session, query, model_hashes_, options_, report_, log_) {
     if (output) file_.emplace(*output, options_, log_);
     for (const MovingBody& body : moving_bodies(query_)) {
       model_hashes_.push_back(hash_of_model(body.model));
@@ -96,9 +90,6 @@ class Search {
       file_->journal.refuse_existing(header_);
       file_->pending.refuse_existing();
     }
-    end_gpus_ = options_.end_gpus;
-    // The GPUs are needed for further searches.
-    if (query_.first_pose || query_.has_budget() || query_.seen) options_.end_gpus = false;
     options_.started = session_.start(options_);
   }
 
@@ -160,11 +151,37 @@ class Search {
     }
   }
 
+  /// What is searched after the colliding points: reads the hits, and adds a part to what was
+  /// found.
+  using Pass = void (Search::*)(Found& found);
+
+  /// The further passes that the query asks for, in their order.
+  std::vector<Pass> further_passes() const {
+    std::vector<Pass> passes;
+    if (query_.first_pose) passes.push_back(&Search::find_last_poses);
+    if (header_.budget) passes.push_back(&Search::find_certain);
+    if (header_.budget) passes.push_back(&Search::find_near);
+    if (query_.seen) passes.push_back(&Search::find_unseen);
+    return passes;
+  }
+
+  /// Searches all that the query asks for. Only the last pass ends the GPUs.
   Found find_all() {
-    Found found = find();
-    if (query_.first_pose) find_last_poses(found);
-    if (header_.budget) judge(found);
-    if (query_.seen) find_unseen(found);
+    const std::vector<Pass> passes = further_passes();
+    const bool end_gpus = std::exchange(options_.end_gpus, false);
+    choose_device_and_engine();
+    // A question with further searches has all the memory, because these need some of their own.
+    if (query_.ignores_points() || query_.has_budget() || query_.seen) take_memory(~0ULL);
+    const CollidingIgnored ignored = count_ignored_that_collide();
+    options_.end_gpus = end_gpus && passes.empty();
+    Found found = find_hits();
+    report_.needed_host_bytes = std::max(report_.needed_host_bytes, ignored.needed_host_bytes);
+    report_.peak_device_bytes = std::max(report_.peak_device_bytes, ignored.peak_device_bytes);
+    for (const Pass& pass : passes) {
+      found.engine_end.clear();
+      options_.end_gpus = end_gpus && &pass == &passes.back();
+      (this->*pass)(found);
+    }
     if (query_.ignores_points()) {
       report_.colliding_points = found.result.hits.count();
       warn_of_colliding_ignored(report_, options_.model_is_cut, store_.metadata().unit, log_);
@@ -242,21 +259,20 @@ class Search {
     throw_if_stopped(progress_);
   }
 
-  Found find() {
+  void choose_device_and_engine() {
     options_.threads = threads_or_all(options_.threads);
-    const bool gpu = gpu_pays() && may_take_gpus(options_);
-    if (gpu && !options_.started) options_.started = session_.start_surely(options_);
+    const Device device = engines_.choose_device();
     // What the sweep looks up of a model stays for the next question of a session.
     if (session_.is_session() && options_.engine == Engine::kAuto) options_.engine = Engine::kSweep;
-    options_.engine = choose_engine(
-        store_, query_, file_ ? file_->journal.earlier_engine() : Engine::kAuto, gpu, options_);
-    // A question with further searches has all the memory, because these need some of their own.
-    if (query_.ignores_points() || query_.has_budget() || query_.seen) take_memory(~0ULL);
+    const Engine earlier = file_ ? file_->journal.earlier_engine() : Engine::kAuto;
+    options_.engine = choose_engine(store_, query_, earlier, device == Device::kCuda, options_);
     report_.engine = options_.engine;
-    count_ignored_that_collide(gpu && options_.engine != Engine::kKdtree);
-    Found found = options_.engine == Engine::kKdtree ? find_by_kdtree() : find_on_pages(gpu);
-    report_.needed_host_bytes = std::max(report_.needed_host_bytes, ignored_.needed_host_bytes);
-    report_.peak_device_bytes = std::max(report_.peak_device_bytes, ignored_.peak_device_bytes);
+    report_.device = options_.engine == Engine::kKdtree ? Device::kCpu : device;
+  }
+
+  /// The first pass: finds the colliding points, with what is asked about each of them.
+  Found find_hits() {
+    Found found = options_.engine == Engine::kKdtree ? find_by_kdtree() : find_on_pages();
     if (file_) {
       report_.resumed_cells = file_->journal.earlier().cells;
       report_.resumed_poses = file_->journal.earlier().poses;
@@ -271,77 +287,38 @@ class Search {
 
   void take_memory(std::uint64_t bytes) { memory_.take(bytes, progress_); }
 
-  /// Does nothing on the CPU.
-  void take_device_memory(std::uint64_t bytes) {
-    if (!session_.is_session() || !gpus_ || !gpus_->is_cuda()) return;
-    const std::uint64_t left = session_.kept_on_gpus().left_of(gpus_->memory_bytes);
-    session_.device_memory().set_bytes(left);
-    device_memory_.take(bytes, progress_);
-  }
-
-  /// A second search, of the ignored points alone. It comes first because it leaves nothing in
-  /// memory. The journal does not keep it, so a run that is resumed repeats it.
-  void count_ignored_that_collide(bool gpu) {
-    if (!query_.ignores_points()) return;
+  /// Searches the ignored points alone. This comes before the first pass because it leaves nothing
+  /// in memory. The journal does not keep it, so a run that is resumed repeats it. The numbers do
+  /// not depend on the device.
+  CollidingIgnored count_ignored_that_collide() {
+    CollidingIgnored ignored;
+    if (!query_.ignores_points()) return ignored;
     const Stopwatch clock;
-    if (report_.ignored.points > 0) ignored_ = colliding_ignored(gpu);
-    report_.ignored_colliding = ignored_.points;
-    report_.ignored_colliding_high = ignored_.high;
+    if (report_.ignored.points > 0) {
+      const Query query = query_of_ignored(query_);
+      SearchOptions options = options_;
+      options.engine = Engine::kSweep;
+      ignored = engines_.on(report_.device, [&](Device device) {
+        return count_colliding_ignored(store_, query, options.memory_bytes,
+                                       *engines_.kind(device, store_, query, options), only(),
+                                       progress_);
+      });
+    }
+    report_.ignored_colliding = ignored.points;
+    report_.ignored_colliding_high = ignored.high;
     report_.seconds.ignored = clock.seconds();
+    return ignored;
   }
 
-  /// Searches the ignored points. Their numbers do not depend on the device, so the CPU counts them
-  /// where a GPU that the user did not ask for cannot.
-  CollidingIgnored colliding_ignored(bool gpu) {
-    const Query query = query_of_ignored(query_);
-    SearchOptions options = options_;
-    options.engine = Engine::kSweep;
-    options.end_gpus = false;
-    const auto count_on = [&](Device device) {
-      return count_colliding_ignored(store_, query, options.memory_bytes,
-                                     *kind_on(device, query, options), only(), progress_);
-    };
-    if (!gpu) return count_on(Device::kCpu);
-    try {
-      return count_on(Device::kCuda);
-    } catch (const NoGpu&) {
-    } catch (const ResourceError&) {
-      if (!fallback_allowed(options_)) throw;
-    }
-    return count_on(Device::kCpu);
-  }
-
-  /// Whether a GPU pays, by estimate. Always true where the user asked for a device, or for engine
-  /// grid or kdtree.
-  bool gpu_pays() {
-#ifdef CLEARWAY_CUDA
-    const bool other = options_.engine == Engine::kGrid || options_.engine == Engine::kKdtree;
-    if (!fallback_allowed(options_) || other) return true;
-    if (session_.is_session() && query_.poses.size() < kPosesForGpu) return false;
-    report_.estimate = estimate_devices(workloads_of(store_, query_), query_, options_.threads,
-                                        session_.has_gpus());
-    const auto [cpu, cuda] = *report_.estimate;
-    if (cpu > cuda) return true;
-    log_.note("the CPU is taken: by estimate it needs " + format_brief(cpu) +
-              " s, a GPU with its start " + format_brief(cuda) + " s");
-    return false;
-#else
-    return true;  // a device that is asked for but missing is refused later
-#endif
-  }
-
-  /// Searches page by page. A GPU that the user did not ask for gives way to the CPU where it is
-  /// too small or fails before the journal is open.
-  Found find_on_pages(bool gpu) {
-    if (!gpu) return find_on(Device::kCpu);
-    try {
-      return find_on(Device::kCuda);
-    } catch (const NoGpu&) {
-    } catch (const ResourceError& error) {
-      if (open_ != nullptr || !fallback_allowed(options_)) throw;
-      log_.note(std::string("the CPU is taken: ") + error.what());
-    }
-    return find_on(Device::kCpu);
+  /// Searches page by page. A GPU that the user did not ask for is given up for the CPU only before
+  /// the journal is open.
+  Found find_on_pages() {
+    return engines_.on(
+        report_.device, [&](Device device) { return find_on(device); },
+        [&](const ResourceError& error) {
+          if (open_ != nullptr) throw;
+          log_.note(std::string("the CPU is taken: ") + error.what());
+        });
   }
 
   Found find_on(Device device) {
@@ -349,12 +326,12 @@ class Search {
     report_.device_name = DeviceChoice().name;
     // A journal that does not match is refused before anything is planned.
     if (device == Device::kCpu || !fallback_allowed(options_)) open_journal();
-    const std::unique_ptr<PageEngineKind> kind = kind_on(device, query_, options_);
+    const std::unique_ptr<PageEngineKind> kind = engines_.kind(device, store_, query_, options_);
     return search_pages(store_, query_, options_.memory_bytes, *kind, only(),
                         {.planned =
                              [this](std::uint64_t host, std::uint64_t on_device) {
                                take_memory(host);
-                               take_device_memory(on_device);
+                               engines_.take_device_memory(on_device, progress_);
                              },
                          .open_journal = [this] { return open_journal(); }},
                         progress_, report_, log_);
@@ -372,8 +349,6 @@ class Search {
 
   /// Searches the cells that have colliding points once more, with the poses in reverse order.
   void find_last_poses(Found& found) {
-    found.engine_end.clear();
-    options_.end_gpus = end_gpus_ && !header_.budget && !query_.seen;
     if (query_.poses.size() == 1) {  // the last pose is the first one
       found.result.last_poses.emplace(query_, HitSet(store_.entry_count(), true));
       return;
@@ -382,25 +357,6 @@ class Search {
     if (cells.empty()) return;
     Found other = search_further(found, backwards(query_), &cells, "last poses");
     found.result.last_poses.emplace(query_, std::move(other.result.hits));
-  }
-
-  /// Finds out what the error budget says: which further points are near, which colliding points
-  /// are certainly too close, and whether enough of these hang together.
-  void judge(Found& found) {
-    const ErrorBudget& budget = *header_.budget;
-    find_certain(found, budget.certain_radius(query_.radius));
-    find_near(found, budget.near_radius(query_.radius));
-    ThreadLimit(options_.threads).run([&] {
-      const HitSet& certain = *found.result.certain;
-      CertainGroup group(store_.quantisation(), header_.gap, progress_);
-      for (const std::uint32_t cell : cells_of(store_, certain).cells) {
-        const auto q = store_.coordinates(cell);
-        for_each_entry(store_, certain, cell, [&](std::uint64_t, std::uint32_t i) {
-          group.add({q[0][i], q[1][i], q[2][i]});
-        });
-      }
-      report_.certain = group.found();
-    });
   }
 
   /// The query without what a further search for points alone does not need.
@@ -414,34 +370,47 @@ class Search {
     return query;
   }
 
-  /// Finds the points that do not collide but are closer than `radius`.
-  void find_near(Found& found, double radius) {
-    const HitSet& hits = found.result.hits;
-    options_.end_gpus = end_gpus_ && !query_.seen;
-    if (!(radius > query_.radius)) {
-      found.result.near.emplace(store_.entry_count(), query_.first_pose);
-      return;
-    }
-    Found other =
-        search_further(found, plain_query(radius, query_.first_pose), only(), "near points");
-    HitSet& near = found.result.near.emplace(std::move(other.result.hits));
-    for (std::uint64_t word = 0; word < store_.entry_count() / 64; ++word) {
-      if (const std::uint64_t both = near.word(word) & hits.word(word)) near.forget(word, both);
-    }
+  /// Calls work(word) for the number of each 64 entries, in parallel.
+  template <typename Work>
+  void for_each_word_of_entries(const Work& work) const {
+    const std::uint64_t words = store_.entry_count() / 64;
+    ThreadLimit(options_.threads).run([&] {
+      tbb::parallel_for(tbb::blocked_range<std::uint64_t>(0, words, 1024), [&](const auto& range) {
+        for (std::uint64_t word = range.begin(); word != range.end(); ++word) work(word);
+      });
+    });
   }
 
-  /// Finds the colliding points that are closer than `radius`, which is at most that of the query.
-  /// Below 0 these are the points that are deeper than -radius inside a solid, and for a model
-  /// without solids there is none.
-  void find_certain(Found& found, double radius) {
-    const HitSet& hits = found.result.hits;
-    HitSet& certain = found.result.certain.emplace(store_.entry_count(), false);
-    const ShardCells cells = cells_with(hits, found.result);
-    if (cells.empty()) return;
-    if (!(radius < query_.radius)) {
-      for (std::uint64_t word = 0; word < store_.entry_count() / 64; ++word) {
-        if (const std::uint64_t bits = hits.word(word)) certain.mark_word(word, bits);
+  /// Finds the colliding points that by the error budget are certainly too close, and whether
+  /// enough of these hang together.
+  void find_certain(Found& found) {
+    found.result.certain = certain_points(found);
+    ThreadLimit(options_.threads).run([&] {
+      const HitSet& certain = *found.result.certain;
+      CertainGroup group(store_.quantisation(), header_.gap, progress_);
+      for (const std::uint32_t cell : cells_of(store_, certain).cells) {
+        const auto q = store_.coordinates(cell);
+        for_each_entry(store_, certain, cell, [&](std::uint64_t, std::uint32_t i) {
+          group.add({q[0][i], q[1][i], q[2][i]});
+        });
       }
+      report_.certain = group.found();
+    });
+  }
+
+  /// The colliding points that are closer than the certain radius, which is at most that of the
+  /// query. Below 0 these are the points that are deeper than it inside a solid, and for a model
+  /// without solids there is none.
+  HitSet certain_points(Found& found) {
+    const double radius = header_.budget->certain_radius(query_.radius);
+    const HitSet& hits = found.result.hits;
+    HitSet certain(store_.entry_count(), false);
+    const ShardCells cells = cells_with(hits, found.result);
+    if (cells.empty()) return certain;
+    if (!(radius < query_.radius)) {
+      for_each_word_of_entries([&](std::uint64_t word) {
+        if (const std::uint64_t bits = hits.word(word)) certain.mark_word(word, bits);
+      });
     } else if (radius > 0) {
       Found other = search_further(found, plain_query(radius, false), &cells, "certain points");
       certain = std::move(other.result.hits);
@@ -450,33 +419,41 @@ class Search {
       signed_query.clearance = query_.radius;
       const Found other = search_further(found, std::move(signed_query), &cells, "certain points");
       const double deeper = -(radius * radius);
-      for (std::uint64_t entry = 0; entry < store_.entry_count(); ++entry) {
-        if (hits.contains(entry) && other.result.clearances.at(entry).squared < deeper) {
-          certain.mark(entry);
+      for_each_word_of_entries([&](std::uint64_t word) {
+        for (std::uint64_t bits = hits.word(word); bits != 0; bits &= bits - 1) {
+          const std::uint64_t entry = 64 * word + static_cast<unsigned>(std::countr_zero(bits));
+          if (other.result.clearances.at(entry).squared < deeper) certain.mark(entry);
         }
-      }
+      });
     }
+    return certain;
+  }
+
+  /// Finds the points that do not collide but may be too close by the error budget.
+  void find_near(Found& found) {
+    const double radius = header_.budget->near_radius(query_.radius);
+    const HitSet& hits = found.result.hits;
+    if (!(radius > query_.radius)) {
+      found.result.near.emplace(store_.entry_count(), query_.first_pose);
+      return;
+    }
+    Found other =
+        search_further(found, plain_query(radius, query_.first_pose), only(), "near points");
+    HitSet& near = found.result.near.emplace(std::move(other.result.hits));
+    for_each_word_of_entries([&](std::uint64_t word) {
+      if (const std::uint64_t both = near.word(word) & hits.word(word)) near.forget(word, both);
+    });
   }
 
   /// Finds out which places that the model sweeps no beam of the scanner passed through. A shard
   /// follows the beams of its own cells; the groups of what none of them saw are made by the merge.
   void find_unseen(Found& found) {
-    found.engine_end.clear();
     touched_ = store_.touched();
-    further_options_ = options_;
-    further_options_.engine = Engine::kSweep;
-    further_options_.end_gpus = false;
-    SeenSpace space = [&] {
-      if (report_.device == Device::kCuda && report_.engine != Engine::kKdtree) {
-        try {
-          return seen_space_on(Device::kCuda, found.write_bytes);
-        } catch (const NoGpu&) {
-        } catch (const ResourceError&) {
-          if (!fallback_allowed(options_)) throw;
-        }
-      }
-      return seen_space_on(Device::kCpu, found.write_bytes);
-    }();
+    further_.options = options_;
+    further_.options.engine = Engine::kSweep;
+    further_.options.end_gpus = false;  // following the beams does
+    SeenSpace space = engines_.on(
+        report_.device, [&](Device device) { return seen_space_on(device, found.write_bytes); });
     report_.seconds.swept = space.sweep_seconds;
     report_.seconds.beams = space.beam_seconds;
     report_.peak_device_bytes = std::max(report_.peak_device_bytes, space.taken.peak_device_bytes);
@@ -502,16 +479,15 @@ class Search {
                    .only = only(),
                    .kind =
                        [&](const PackedCloud& cloud, const Query& query) {
-                         return kind_for(device, cloud, query, further_options_);
+                         return engines_.kind(device, cloud, query, further_.options);
                        },
                    .follow_on_gpus = {}};
-#ifdef CLEARWAY_CUDA
     if (device == Device::kCuda) {
       how.follow_on_gpus = [&](const Beams& beams, std::span<const PlannedCell> cells,
-                               std::uint64_t bytes,
-                               BrickMap& map) { return follow_on_gpus(beams, cells, bytes, map); };
+                               std::uint64_t bytes, BrickMap& map) {
+        return engines_.follow_beams(cells, beams, map, bytes, progress_);
+      };
     }
-#endif
     try {
       return find_seen_space(store_, query_, how, progress_);
     } catch (const ResourceError& error) {
@@ -526,50 +502,28 @@ class Search {
     }
   }
 
-#ifdef CLEARWAY_CUDA
-  std::optional<BeamCounts> follow_on_gpus(const Beams& beams, std::span<const PlannedCell> cells,
-                                           std::uint64_t memory_bytes, BrickMap& map) {
-    SearchOptions options = further_options_;
-    options.end_gpus = end_gpus_;
-    try {
-      return follow_beams_on_gpus(
-          store_, cells, beams, map, memory_bytes, options, [this] { return open_gpus(); },
-          progress_, report_);
-    } catch (const ResourceError&) {
-      if (!fallback_allowed(options_)) throw;
-      return std::nullopt;
-    }
-  }
-#endif
-
   /// Searches all cells, or those of `cells`, for another query after the first search, as stage
   /// `name`. No journal keeps this search, so a run that is resumed begins it again. Leaves in
   /// `found` the end of the engines and the memory that is left to write with.
   Found search_further(Found& found, Query query, const ShardCells* cells, const char* name) {
-    found.engine_end.clear();
-    further_ = std::move(query);
-    further_options_ = options_;
+    further_.query = std::move(query);
+    further_.options = options_;
     // What the first search took is enough, except for rounding in the plan.
-    further_options_.memory_bytes += options_.memory_bytes / 16;
+    further_.options.memory_bytes += options_.memory_bytes / 16;
     SearchReport report;
     const MessageCallback silent;
     const MessageLog log(silent, report.warnings);
     StageOf progress(progress_, name);
-    const auto search_on = [&](Device device) {
-      return search_pages(store_, further_, further_options_.memory_bytes,
-                          *kind_on(device, further_, further_options_), cells, {}, progress, report,
-                          log);
-    };
     Found other = [&] {
+      const auto& [asked, options] = further_;
       if (report_.engine == Engine::kKdtree) {
-        return search_kdtree(store_, further_, cells, further_options_, nullptr, progress, report);
+        return search_kdtree(store_, asked, cells, options, nullptr, progress, report);
       }
-      try {
-        return search_on(report_.device);
-      } catch (const ResourceError&) {
-        if (report_.device != Device::kCuda || !fallback_allowed(options_)) throw;
-      }
-      return search_on(Device::kCpu);
+      return engines_.on(report_.device, [&](Device device) {
+        return search_pages(store_, asked, options.memory_bytes,
+                            *engines_.kind(device, store_, asked, options), cells, {}, progress,
+                            report, log);
+      });
     }();
     found.engine_end = std::move(other.engine_end);
     found.write_bytes = std::min(found.write_bytes, other.write_bytes);
@@ -583,48 +537,6 @@ class Search {
                              &SearchSeconds::compute, &SearchSeconds::collect}) {
       seconds.*stage += more.*stage;
     }
-  }
-
-  /// Makes the engine kind for a device. cloud, query and options outlive the kind.
-  std::unique_ptr<PageEngineKind> kind_on(Device device, const Query& query,
-                                          const SearchOptions& options) {
-    return kind_for(device, store_, query, options);
-  }
-  std::unique_ptr<PageEngineKind> kind_for([[maybe_unused]] Device device, const PackedCloud& cloud,
-                                           const Query& query, const SearchOptions& options) {
-    std::unique_ptr<PageEngineKind> kind = [&]() -> std::unique_ptr<PageEngineKind> {
-#ifdef CLEARWAY_CUDA
-      if (device == Device::kCuda) {
-        const OpenGpus open = [this] { return open_gpus(); };
-        KeptOnGpus* const kept = session_.is_session() ? &session_.kept_on_gpus() : nullptr;
-        if (!query.bodies.empty()) return cuda_body_kind(cloud, query, options, open, kept);
-        return cuda_kind(cloud, query, options, open, kept);
-      }
-#endif
-      if (!query.bodies.empty()) return cpu_body_kind(cloud, query, options);
-      if (options.engine == Engine::kGrid) {
-        return std::make_unique<CpuGridKind>(cloud, query, options);
-      }
-      return cpu_sweep_kind(cloud, query, options);
-    }();
-    kind->keep_models_in(session_.models(), model_hashes_);
-    return kind;
-  }
-
-  /// The GPUs, opened when the search first needs them; their start was begun earlier, in the
-  /// background. Throws NoGpu where none can be used.
-  DeviceChoice open_gpus() {
-    if (gpus_) return usable(*gpus_);
-    double& waited = report_.seconds.context_wait;
-    gpus_ = session_.gpus(options_, log_, waited);
-    report_.seconds.context = waited > 0 ? std::max(options_.started->seconds(), waited) : 0;
-    return usable(*gpus_);
-  }
-
-  DeviceChoice usable(const DeviceChoice& choice) {
-    if (!choice.is_cuda()) throw NoGpu();
-    report_.device_name = choice.name;
-    return choice;
   }
 
   /// The journal of the output file; null for an answer in memory.
@@ -686,23 +598,28 @@ class Search {
   SearchReport report_;
   CallbackProgress progress_;
   MessageLog log_;
-  SharedMemory::Share memory_, device_memory_;
+  SharedMemory::Share memory_;
   std::optional<OutputFile> file_;
   /// hash_of_model() of the model, or of the model of each body.
   std::vector<std::uint64_t> model_hashes_;
   ResultHeader header_;
+  SearchEngines engines_;
   std::optional<ShardCells> shard_;
-  CollidingIgnored ignored_;
   /// What the searches for points have read, set before beams are followed.
   std::optional<StoreReader::Touched> touched_;
-  std::optional<DeviceChoice> gpus_;  ///< set once they are open
-  /// The query of a further search; it and its options outlive the engines.
-  Query further_;
-  SearchOptions further_options_;
-  /// Whether the caller asked to end the GPUs.
-  bool end_gpus_ = false;
+  /// The query and the options of a further pass, which outlive its engines.
+  struct Further {
+    Query query;
+    SearchOptions options;
+  } further_;
   SearchJournal* open_ = nullptr;
 };
+
+void check_question(const Query& query, const SearchOptions& options) {
+  check_query(query, options);
+  check_bodies(query, options);
+  if (query.model.is_surface()) check_surface(query, options);
+}
 
 /// Whether a file is a result or a part of one.
 bool is_result(const std::filesystem::path& file) {
@@ -728,16 +645,6 @@ void check_search(const QueryParameters& query, const std::filesystem::path& out
   // Whether an existing result answers this query is known only once the inputs are read.
   if (!options.overwrite && !options.resume && !is_result(output)) pending.refuse_existing();
 }
-
-namespace {
-
-void check_question(const Query& query, const SearchOptions& options) {
-  check_query(query, options);
-  check_bodies(query, options);
-  if (query.model.is_surface()) check_surface(query, options);
-}
-
-}  // namespace
 
 SearchReport search(const Store& store, const Query& query, const std::filesystem::path& output,
                     const SearchOptions& options) {
