@@ -325,6 +325,73 @@ void check_seen_space(const StoreReader& store, const QueryParameters& query) {
   cube_lattice(store, query.seen_cube);
 }
 
+namespace {
+
+/// The swept cubes as a map, in which following the beams clears those that were seen.
+struct SweptMap {
+  BrickMap cubes;
+  std::vector<std::uint32_t> cell_of_brick;  ///< of the cloud
+
+  std::uint64_t count() const {
+    std::uint64_t count = 0;
+    for (const std::uint64_t word : cubes.words()) {
+      count += static_cast<std::uint64_t>(std::popcount(word));
+    }
+    return count;
+  }
+};
+
+SweptMap map_of(const BrickCloud& cloud, const SweptCubes& swept, const CubeLattice& lattice) {
+  std::vector<Brick> bricks;
+  std::vector<std::uint32_t> cell_of_brick;
+  std::vector<std::uint64_t> words;
+  for (std::uint32_t cell = 0; cell < swept.bricks.size(); ++cell) {
+    const SweptBrick& brick = swept.bricks[cell];
+    if (brick.count() == 0) continue;
+    bricks.push_back(cloud.bricks()[cell]);
+    cell_of_brick.push_back(cell);
+    words.insert(words.end(), brick.words.begin(), brick.words.end());
+  }
+  return {BrickMap(lattice, std::move(bricks), std::move(words)), std::move(cell_of_brick)};
+}
+
+/// The cubes that are left in the map, in their order.
+std::vector<Unseen> unseen_of(const SweptMap& map, const SweptCubes& swept, std::uint64_t count) {
+  std::vector<Unseen> unseen;
+  unseen.reserve(count);
+  for (std::uint32_t b = 0; b < map.cubes.bricks().size(); ++b) {
+    const SweptBrick& brick = swept.bricks[map.cell_of_brick[b]];
+    std::size_t next = 0;
+    for (std::uint32_t word = 0; word < kBrickWords; ++word) {
+      for (std::uint64_t open = brick.words[word]; open != 0; open &= open - 1, ++next) {
+        const auto bit = static_cast<std::uint32_t>(std::countr_zero(open));
+        if ((map.cubes.words(b)[word] >> bit & 1) == 0) continue;
+        unseen.push_back({map.cubes.bricks()[b].cube(64 * word + bit), brick.first_poses[next]});
+      }
+    }
+  }
+  std::sort(unseen.begin(), unseen.end(),
+            [](const Unseen& a, const Unseen& b) { return a.cube < b.cube; });
+  return unseen;
+}
+
+/// The rows of the result, still without groups.
+UnseenCubes rows_of(const std::vector<Unseen>& unseen, std::span<const Pose> poses) {
+  const std::vector<double> chainage = chainage_of(poses);
+  UnseenCubes rows;
+  for (const Unseen& one : unseen) {
+    rows.cube.push_back({one.cube.i[0], one.cube.i[1], one.cube.i[2]});
+    rows.first_pose.push_back(one.first_pose);
+    const std::size_t next = std::size_t{one.first_pose} + 1;
+    rows.chainage.push_back(chainage[one.first_pose]);
+    rows.step.push_back(next < chainage.size() ? chainage[next] - chainage[next - 1] : 0);
+  }
+  rows.group.resize(unseen.size());
+  return rows;
+}
+
+}  // namespace
+
 SeenSpace find_seen_space(const StoreReader& store, const Query& query, const SeenSearch& how,
                           Progress& progress) {
   check_seen_space(store, query);
@@ -345,56 +412,21 @@ SeenSpace find_seen_space(const StoreReader& store, const Query& query, const Se
                                   query, how.threads, progress);
   space.sweep_seconds = clock.seconds();
 
-  std::vector<Brick> bricks;
-  std::vector<std::uint32_t> cell_of_brick;
-  std::vector<std::uint64_t> words;
-  for (std::uint32_t cell = 0; cell < swept.bricks.size(); ++cell) {
-    const SweptBrick& brick = swept.bricks[cell];
-    if (brick.count() == 0) continue;
-    bricks.push_back(cloud.bricks()[cell]);
-    cell_of_brick.push_back(cell);
-    words.insert(words.end(), brick.words.begin(), brick.words.end());
-  }
+  SweptMap map = map_of(cloud, swept, lattice);
   std::uint64_t bytes = cloud.allocated_bytes() + swept.bytes() +
-                        space.swept.size() * kSweptRowBytes + BrickMap::bytes_for(bricks.size());
+                        space.swept.size() * kSweptRowBytes +
+                        BrickMap::bytes_for(map.cell_of_brick.size());
   if (bytes > how.memory_bytes) refuse_more(bytes, how.memory_bytes);
-  BrickMap map(lattice, std::move(bricks), std::move(words));
   const Stopwatch following;
-  space.left_out = follow_beams(store, how, how.memory_bytes - bytes, map, progress);
+  space.left_out = follow_beams(store, how, how.memory_bytes - bytes, map.cubes, progress);
   space.beam_seconds = following.seconds();
 
-  std::uint64_t count = 0;
-  for (const std::uint64_t word : map.words()) {
-    count += static_cast<std::uint64_t>(std::popcount(word));
-  }
-  bytes += count * (sizeof(Unseen) + kUnseenRowBytes);
+  const std::uint64_t unseen = map.count();
+  bytes += unseen * (sizeof(Unseen) + kUnseenRowBytes);
   if (bytes > how.memory_bytes) refuse_more(bytes, how.memory_bytes);
-  std::vector<Unseen> unseen;
-  unseen.reserve(count);
-  for (std::uint32_t b = 0; b < map.bricks().size(); ++b) {
-    const SweptBrick& brick = swept.bricks[cell_of_brick[b]];
-    std::size_t next = 0;
-    for (std::uint32_t word = 0; word < kBrickWords; ++word) {
-      for (std::uint64_t open = brick.words[word]; open != 0; open &= open - 1, ++next) {
-        const auto bit = static_cast<std::uint32_t>(std::countr_zero(open));
-        if ((map.words(b)[word] >> bit & 1) == 0) continue;
-        unseen.push_back({map.bricks()[b].cube(64 * word + bit), brick.first_poses[next]});
-      }
-    }
-  }
-  const std::vector<double> chainage = chainage_of(query.poses);
-  std::sort(unseen.begin(), unseen.end(),
-            [](const Unseen& a, const Unseen& b) { return a.cube < b.cube; });
-  for (const Unseen& one : unseen) {
-    space.unseen.cube.push_back({one.cube.i[0], one.cube.i[1], one.cube.i[2]});
-    space.unseen.first_pose.push_back(one.first_pose);
-    const std::size_t next = std::size_t{one.first_pose} + 1;
-    space.unseen.chainage.push_back(chainage[one.first_pose]);
-    space.unseen.step.push_back(next < chainage.size() ? chainage[next] - chainage[next - 1] : 0);
-  }
-  space.unseen.group.resize(unseen.size());
-  space.summary.unseen = unseen.size();
-  space.summary.seen = space.summary.swept - unseen.size();
+  space.unseen = rows_of(unseen_of(map, swept, unseen), query.poses);
+  space.summary.unseen = unseen;
+  space.summary.seen = space.summary.swept - unseen;
   return space;
 }
 
