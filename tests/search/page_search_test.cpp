@@ -53,7 +53,7 @@ class Line {
       query.poses.push_back({{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.1 * i, 0, 0}});
     }
     options.threads = 2;
-    kind.emplace(*store, query, options);
+    kind.emplace(*store, query, options, EngineSettings{});
   }
 
   /// Runs the search and returns the number of hits.
