@@ -6,9 +6,12 @@
 #include <array>
 #include <map>
 #include <set>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 
-#include "core/query/query_fields.hpp"
+#include "core/describe/query.hpp"
+#include "core/describe/search.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/models/model_input.hpp"
@@ -120,47 +123,65 @@ const std::vector<OptionKey> kTrajectoryKeys{
     {"lever_arm", "--lever-arm", ValueKind::kLengths}};
 const std::vector<OptionKey> kChainageKeys{
     {"chainage_start", "--chainage-start", ValueKind::kLength}};
-template <typename Value>
-constexpr bool is_length =
-    std::is_same_v<Value, double> || std::is_same_v<Value, std::optional<double>>;
-
-/// Whether the value is a number that is no length, such as a number of standard deviations.
-template <typename Value>
-bool is_number(const QueryField<Value>& field) {
-  return is_length<Value> && field.unit == QueryField<Value>::Unit::kNone;
+/// The kind of value that campaign.json has for a field.
+template <typename Struct, typename Value>
+ValueKind kind_of(const Field<Struct, Value>& field) {
+  if constexpr (std::is_same_v<Value, bool>) {
+    return ValueKind::kFlag;
+  } else if constexpr (std::is_same_v<Value, double> ||
+                       std::is_same_v<Value, std::optional<double>>) {
+    const bool is_length = field.unit == FieldUnit::kMetres || field.unit == FieldUnit::kRadians;
+    return is_length ? ValueKind::kLength : ValueKind::kNumber;
+  } else if constexpr (std::is_same_v<Value, std::vector<Box>>) {
+    return ValueKind::kBoxes;
+  } else if constexpr (std::is_integral_v<Value>) {
+    return field.unit == FieldUnit::kBytes ? ValueKind::kSize : ValueKind::kCount;
+  } else if constexpr (std::is_enum_v<Value>) {
+    return ValueKind::kText;
+  } else {
+    return ValueKind::kCounts;
+  }
 }
 
-/// All parameters of a query except the radius, which may differ from run to run.
+/// Adds the keys of the fields that campaign.json has.
+template <typename... Fields>
+void add_keys(std::vector<OptionKey>& keys, const std::tuple<Fields...>& fields) {
+  for_each_field(fields, [&keys](const auto& field) {
+    if (field.is_in_campaigns) {
+      keys.push_back({field.name_in_campaigns(), field.option, kind_of(field)});
+    }
+  });
+}
+
 std::vector<OptionKey> query_keys() {
   std::vector<OptionKey> keys;
-  const auto add = [&keys](const auto& field) {
-    using Value = std::remove_cvref_t<decltype(field.of({}))>;
-    if (field.is_required()) return;
-    keys.push_back({field.name, field.option,
-                    std::is_same_v<Value, bool>               ? ValueKind::kFlag
-                    : is_number(field)                        ? ValueKind::kNumber
-                    : is_length<Value>                        ? ValueKind::kLength
-                    : std::is_same_v<Value, std::uint32_t>    ? ValueKind::kCount
-                    : std::is_same_v<Value, std::vector<Box>> ? ValueKind::kBoxes
-                                                              : ValueKind::kCounts});
-  };
-  for_each_value_field(add);
-  for_each_list_field(add);
-  keys.push_back({"strict", "--strict", ValueKind::kFlag});
+  add_keys(keys, kQueryValues);
+  add_keys(keys, kIgnoredFields<QueryParameters>);
+  add_keys(keys, std::tuple{kStrict<SearchOptions>});
   return keys;
 }
+
+/// What only a search may take of the machine.
+std::vector<OptionKey> search_keys() {
+  std::vector<OptionKey> keys;
+  add_keys(keys, std::tuple{kEngine<SearchOptions>});
+  add_keys(keys, kDeviceFields<SearchOptions>);
+  add_keys(keys, kFileFields);
+  return keys;
+}
+
+std::vector<OptionKey> limit_keys() {
+  std::vector<OptionKey> keys;
+  add_keys(keys, std::tuple{kMemory<SearchOptions>, kThreads<SearchOptions>});
+  return keys;
+}
+
 const std::vector<OptionKey> kQueryKeys = query_keys();
 const std::vector<OptionKey> kConflictKeys{{"gap", "--gap", ValueKind::kLength},
                                            {"min_points", "--min-points", ValueKind::kCount},
                                            {"split", "--split", ValueKind::kLength}};
-const std::vector<OptionKey> kSearchKeys{
-    {"engine", "--engine", ValueKind::kText},
-    {"device", "--device", ValueKind::kText},
-    {"gpus", "--gpus", ValueKind::kCounts},
-    {"device_memory", "--device-memory", ValueKind::kSize},
-    {"journal_interval", "--journal-interval", ValueKind::kNumber}};
-const std::vector<OptionKey> kLimitKeys{{"memory", "--memory", ValueKind::kSize},
-                                        {"threads", "--threads", ValueKind::kCount}};
+const std::vector<OptionKey> kSearchKeys = search_keys();
+const std::vector<OptionKey> kLimitKeys = limit_keys();
 
 /// Refuses a name that cannot become a folder and a heading of the page.
 void check_name(const KeyReader& at, const std::string& name) {

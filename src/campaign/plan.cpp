@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "clearway/error.hpp"
-#include "core/query/query_fields.hpp"
+#include "core/describe/query.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/json.hpp"
@@ -49,12 +49,12 @@ void ask_for_part(const Shard& shard, const std::string& store, nlohmann::ordere
 
 nlohmann::ordered_json question_of(const ResultHeader& header) {
   nlohmann::ordered_json question;
-  for_each_value_field([&](const auto& field) {
-    if (!field.is_told(header)) return;
+  for_each_field(kQueryValues, [&](const auto& field) {
+    if (!is_listed(field, header)) return;
     if constexpr (std::is_same_v<std::decay_t<decltype(field.of(header))>, std::optional<double>>) {
-      question[field.name] = *field.of(header);
+      question[field.key] = *field.of(header);
     } else {
-      question[field.name] = field.of(header);
+      question[field.key] = field.of(header);
     }
   });
   question.update({{"environment_points", header.environment_points},

@@ -19,30 +19,31 @@ namespace {
 
 using namespace py::literals;
 
-constexpr Named<TrajectoryFormat> kFormats[] = {{"auto", TrajectoryFormat::kAuto},
-                                                {"matrix", TrajectoryFormat::kMatrix},
-                                                {"tum", TrajectoryFormat::kTum},
-                                                {"euroc", TrajectoryFormat::kEuroc},
-                                                {"csv", TrajectoryFormat::kCsv},
-                                                {"pose-xyzw", TrajectoryFormat::kPoseXyzw},
-                                                {"pose-wxyz", TrajectoryFormat::kPoseWxyz},
-                                                {"sbet", TrajectoryFormat::kSbet},
-                                                {"3dtk-pose", TrajectoryFormat::kThreedtkPose},
-                                                {"3dtk-frames", TrajectoryFormat::kThreedtkFrames}};
-constexpr Named<AngleUnit> kAngleUnits[] = {
+constexpr Choice<TrajectoryFormat> kFormats[] = {
+    {"auto", TrajectoryFormat::kAuto},
+    {"matrix", TrajectoryFormat::kMatrix},
+    {"tum", TrajectoryFormat::kTum},
+    {"euroc", TrajectoryFormat::kEuroc},
+    {"csv", TrajectoryFormat::kCsv},
+    {"pose-xyzw", TrajectoryFormat::kPoseXyzw},
+    {"pose-wxyz", TrajectoryFormat::kPoseWxyz},
+    {"sbet", TrajectoryFormat::kSbet},
+    {"3dtk-pose", TrajectoryFormat::kThreedtkPose},
+    {"3dtk-frames", TrajectoryFormat::kThreedtkFrames}};
+constexpr Choice<AngleUnit> kAngleUnits[] = {
     {"declared", AngleUnit::kDeclared}, {"deg", AngleUnit::kDegrees}, {"rad", AngleUnit::kRadians}};
-constexpr Named<AngleFrame> kAngleFrames[] = {
+constexpr Choice<AngleFrame> kAngleFrames[] = {
     {"declared", AngleFrame::kDeclared}, {"ned", AngleFrame::kNed}, {"enu", AngleFrame::kEnu}};
 
-constexpr Named<CantLine> kCants[] = {{"file", CantLine::kFile},
-                                      {"none", CantLine::kNone},
-                                      {"center", CantLine::kCenter},
-                                      {"inside-rail", CantLine::kInsideRail},
-                                      {"outside-rail", CantLine::kOutsideRail},
-                                      {"left-rail", CantLine::kLeftRail},
-                                      {"right-rail", CantLine::kRightRail}};
-constexpr Named<AxisOrder> kOrders[] = {{"ne", AxisOrder::kNorthingEasting},
-                                        {"en", AxisOrder::kEastingNorthing}};
+constexpr Choice<CantLine> kCants[] = {{"file", CantLine::kFile},
+                                       {"none", CantLine::kNone},
+                                       {"center", CantLine::kCenter},
+                                       {"inside-rail", CantLine::kInsideRail},
+                                       {"outside-rail", CantLine::kOutsideRail},
+                                       {"left-rail", CantLine::kLeftRail},
+                                       {"right-rail", CantLine::kRightRail}};
+constexpr Choice<AxisOrder> kOrders[] = {{"ne", AxisOrder::kNorthingEasting},
+                                         {"en", AxisOrder::kEastingNorthing}};
 
 void add_labels(py::module_& module) {
   py::class_<PoseLabels>(module, "PoseLabels",

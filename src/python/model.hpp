@@ -11,12 +11,12 @@
 /// Models of queries and reports: an array of points, or a Model.
 namespace clearway::python {
 
-inline constexpr Named<ModelAs> kModelAs[] = {{"auto", ModelAs::kAuto},
-                                              {"points", ModelAs::kPoints},
-                                              {"surface", ModelAs::kSurface},
-                                              {"solid", ModelAs::kSolid}};
+inline constexpr Choice<ModelAs> kModelAs[] = {{"auto", ModelAs::kAuto},
+                                               {"points", ModelAs::kPoints},
+                                               {"surface", ModelAs::kSurface},
+                                               {"solid", ModelAs::kSolid}};
 
-inline constexpr Named<Axis> kAxes[] = {
+inline constexpr Choice<Axis> kAxes[] = {
     {"+x", Axis::kPlusX}, {"x", Axis::kPlusX}, {"-x", Axis::kMinusX},
     {"+y", Axis::kPlusY}, {"y", Axis::kPlusY}, {"-y", Axis::kMinusY},
     {"+z", Axis::kPlusZ}, {"z", Axis::kPlusZ}, {"-z", Axis::kMinusZ}};

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "clearway/error.hpp"
+#include "core/describe/field.hpp"
 
 /// What the parts of the Python module have in common. They add no logic to the library: they
 /// convert between Python's values and the library's, and let other Python threads run while the
@@ -51,16 +52,10 @@ auto without_gil(Call call) {
   return std::move(*result);
 }
 
-/// A value of an enumeration, with the name that Python has for it.
-template <typename Value>
-struct Named {
-  const char* name;
-  Value value;
-};
-
-/// The value with a name. Throws UsageError where the table does not contain the name.
-template <typename Value, std::size_t Size>
-Value value_of(const char* what, const Named<Value> (&table)[Size], const std::string& name) {
+/// The value with a name in a table of choices. Throws UsageError where the table does not contain
+/// the name.
+template <typename Table>
+auto value_of(const char* what, const Table& table, const std::string& name) {
   std::string known;
   for (const auto& [other, value] : table) {
     if (name == other) return value;
@@ -69,8 +64,8 @@ Value value_of(const char* what, const Named<Value> (&table)[Size], const std::s
   throw UsageError(std::string(what) + " '" + name + "': expected one of " + known);
 }
 
-template <typename Value, std::size_t Size>
-const char* name_in(const Named<Value> (&table)[Size], Value value) {
+template <typename Table, typename Value>
+const char* name_in(const Table& table, Value value) {
   for (const auto& [name, other] : table) {
     if (other == value) return name;
   }

@@ -4,9 +4,10 @@
 #include <string>
 
 #include "clearway/result.hpp"
-#include "core/query/query_fields.hpp"
+#include "core/describe/query.hpp"
 #include "python/arrays.hpp"
 #include "python/columns.hpp"
+#include "python/fields.hpp"
 #include "python/model.hpp"
 
 namespace clearway::python {
@@ -143,8 +144,7 @@ void add_parameters(py::module_& module) {
   py::class_<QueryParameters> parameters(
       module, "QueryParameters",
       "The parameters of a query: all of it but the model and the poses.");
-  for_each_field(
-      [&](const auto& field) { parameters.def_readonly(field.name, field.member, field.doc); });
+  add_read_only(parameters, kQueryFields);
 }
 
 }  // namespace

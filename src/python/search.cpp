@@ -8,8 +8,10 @@
 #include <utility>
 
 #include "clearway/error.hpp"
-#include "core/query/query_fields.hpp"
+#include "core/describe/query.hpp"
+#include "core/describe/search.hpp"
 #include "python/arrays.hpp"
+#include "python/fields.hpp"
 #include "python/model.hpp"
 #include "python/store.hpp"
 #include "python/values.hpp"
@@ -79,32 +81,15 @@ void add_store(py::module_& module) {
 
 namespace {
 
-template <typename Value>
-void add_parameter(py::class_<ArrayQuery>& query, const QueryField<Value>& field) {
-  query.def_property(
-      field.name, [member = field.member](const ArrayQuery& q) { return q.parameters.*member; },
-      [member = field.member](ArrayQuery& q, Value value) {
-        q.parameters.*member = std::move(value);
-      },
-      field.doc);
-}
-
+/// radius: none where the query has none yet. given: the other parameters.
 ArrayQuery make_query(const py::object& model, const py::object& poses,
-                      std::optional<double> radius, bool first_pose, bool between_poses,
-                      double clearance, double profile, std::vector<std::uint8_t> ignore_classes,
-                      std::vector<Box> ignore_boxes, bool allow_non_rigid,
-                      std::vector<PlacedBody> bodies, std::optional<double> error_scan,
-                      std::optional<double> error_registration, std::optional<double> error_pose,
-                      std::optional<double> error_angle, std::optional<double> error_model,
-                      double sigmas, double gap, bool seen, double seen_cube,
-                      std::uint32_t seen_min) {
-  return {{radius.value_or(0), first_pose, between_poses, clearance, profile,
-           std::move(ignore_classes), std::move(ignore_boxes), seen, seen_cube, seen_min,
-           error_scan, error_registration, error_pose, error_angle, error_model, sigmas, gap},
-          model_object(model),
-          poses_array(poses, "poses"),
-          allow_non_rigid,
-          std::move(bodies)};
+                      std::optional<double> radius, bool allow_non_rigid,
+                      std::vector<PlacedBody> bodies, const py::kwargs& given) {
+  ArrayQuery query{
+      {}, model_object(model), poses_array(poses, "poses"), allow_non_rigid, std::move(bodies)};
+  set_fields(kQueryFields, given, query.parameters);
+  query.parameters.radius = radius.value_or(0);
+  return query;
 }
 
 void add_query(py::module_& module) {
@@ -116,13 +101,9 @@ void add_query(py::module_& module) {
   query
       .def(
           py::init(&make_query), "model"_a = nothing, "poses"_a = nothing, "radius"_a = py::none(),
-          py::kw_only(), "first_pose"_a = false, "between_poses"_a = false, "clearance"_a = 0.0,
-          "profile"_a = 0.0, "ignore_classes"_a = nothing, "ignore_boxes"_a = nothing,
-          "allow_non_rigid"_a = false, "bodies"_a = nothing, "error_scan"_a = py::none(),
-          "error_registration"_a = py::none(), "error_pose"_a = py::none(),
-          "error_angle"_a = py::none(), "error_model"_a = py::none(), "sigmas"_a = 3.0,
-          "gap"_a = 0.0, "seen"_a = false, "seen_cube"_a = 0.0, "seen_min"_a = 8,
-          R"(__init__(self, model=(), poses=(), radius=None, *, first_pose=False, between_poses=False, clearance=0.0, profile=0.0, ignore_classes=(), ignore_boxes=(), allow_non_rigid=False, bodies=(), error_scan=None, error_registration=None, error_pose=None, error_angle=None, error_model=None, sigmas=3.0, gap=0.0, seen=False, seen_cube=0.0, seen_min=8)
+          py::kw_only(), "allow_non_rigid"_a = false, "bodies"_a = nothing,
+          ("__init__(self, model=(), poses=(), radius=None, *, allow_non_rigid=False, bodies=(), " +
+           signature_of(kQueryFields) + R"DOC()
 --
 
 Ask which points the model comes closer to than the radius, on its way along the poses.
@@ -130,7 +111,8 @@ Ask which points the model comes closer to than the radius, on its way along the
 model: in its own frame: points, n x 3, metres; or a Model.
 poses: n x 4 x 4 or n x 3 x 4; the translation, in metres, is the last column.
 radius: metres, above 0; a search needs one. A point strictly closer to the model collides.
-The other arguments are the properties of the same names.)")
+The other arguments are the properties of the same names.)DOC")
+              .c_str())
       .def_property(
           "model", [](const ArrayQuery& q) { return q.model; },
           [](ArrayQuery& q, const py::object& value) { q.model = model_object(value); },
@@ -153,35 +135,29 @@ The other arguments are the properties of the same names.)")
         return py::str("<Query: {}, {} poses, {}>")
             .format(model_words(q.model), q.poses.shape(0), radius);
       });
-  for_each_field([&](const auto& field) { add_parameter(query, field); });
+  for_each_field(kQueryFields, [&query](const auto& field) {
+    query.def_property(
+        field.key, [member = field.member](const ArrayQuery& q) { return q.parameters.*member; },
+        [field](ArrayQuery& q, const py::object& value) {
+          field.of(q.parameters) = value_from_python(field, value);
+        },
+        field.doc);
+  });
+  add_checks(module, kQueryFields);
 }
 
 void add_searches(py::module_& module) {
   module.def(
       "search",
       [](SharedStore& store, const ArrayQuery& query, const py::object& output,
-         const std::string& engine, const std::string& device, std::vector<int> gpus, int threads,
-         std::uint64_t memory_bytes, std::uint64_t device_memory_bytes,
-         std::optional<std::pair<std::uint32_t, std::uint32_t>> shard, bool overwrite, bool resume,
-         bool strict, const py::object& input_warnings, bool model_is_cut, bool end_gpus,
-         double journal_interval_seconds, py::object progress, py::object message,
-         py::object stop) {
+         std::optional<std::pair<std::uint32_t, std::uint32_t>> shard,
+         const py::object& input_warnings, py::object progress, py::object message, py::object stop,
+         const py::kwargs& given) {
         require_radius(query);
         SearchOptions options;
-        options.engine = value_of("engine", kEngines, engine);
-        options.device = value_of("device", kDevices, device);
-        options.gpus = std::move(gpus);
-        options.threads = threads;
-        options.memory_bytes = memory_bytes;
-        options.device_memory_bytes = device_memory_bytes;
+        set_fields(kSearchFields, given, options);
         if (shard) options.shard = Shard{shard->first, shard->second};
-        options.overwrite = overwrite;
-        options.resume = resume;
-        options.strict = strict;
-        options.model_is_cut = model_is_cut;
         options.input_warnings = messages_of(input_warnings);
-        options.end_gpus = end_gpus;
-        options.journal_interval_seconds = journal_interval_seconds;
         Watch watch(std::move(progress), std::move(message), std::move(stop));
         watch.attach(options);
         return watch.run(
@@ -191,14 +167,11 @@ void add_searches(py::module_& module) {
                              [&](const Store& own) { return search(own, asked, to, options); });
             });
       },
-      "store"_a, "query"_a, "output"_a, py::kw_only(), "engine"_a = "auto", "device"_a = "auto",
-      "gpus"_a = std::vector<int>{}, "threads"_a = 0,
-      "memory_bytes"_a = SearchOptions{}.memory_bytes, "device_memory_bytes"_a = 0,
-      "shard"_a = py::none(), "overwrite"_a = false, "resume"_a = false, "strict"_a = false,
-      "input_warnings"_a = py::tuple(), "model_is_cut"_a = false, "end_gpus"_a = false,
-      "journal_interval_seconds"_a = SearchOptions{}.journal_interval_seconds,
-      "progress"_a = py::none(), "message"_a = py::none(), "stop"_a = py::none(),
-      R"(search(store, query, output, *, engine='auto', device='auto', gpus=(), threads=0, memory_bytes=4294967296, device_memory_bytes=0, shard=None, overwrite=False, resume=False, strict=False, input_warnings=(), model_is_cut=False, end_gpus=False, journal_interval_seconds=5.0, progress=None, message=None, stop=None)
+      "store"_a, "query"_a, "output"_a, py::kw_only(), "shard"_a = py::none(),
+      "input_warnings"_a = py::tuple(), "progress"_a = py::none(), "message"_a = py::none(),
+      "stop"_a = py::none(),
+      ("search(store, query, output, *, " + signature_of(kSearchFields) +
+       R"DOC(, shard=None, input_warnings=(), progress=None, message=None, stop=None)
 --
 
 Find every point of the store within the query's radius of the moving model.
@@ -209,26 +182,15 @@ Ctrl-C stops the search and raises KeyboardInterrupt. The same call with resume=
 store: the Store to search.
 query: the Query to answer.
 output: the file of the result to write.
-engine: 'auto', 'sweep', 'grid' or 'kdtree'; 'auto' takes the one that is estimated faster.
-device: 'auto', 'cpu' or 'cuda'; 'auto' takes a GPU where that is estimated faster.
-gpus: the numbers that CUDA gives the GPUs to take; empty: the first one with room.
-threads: how many threads work; 0: as many as there are cores.
-memory_bytes: how many bytes of working memory may be taken.
-device_memory_bytes: how many bytes may be taken on each GPU; 0: 2 GiB, or what is free.
-shard: (i, n) searches the i-th of n parts, from 1; the output is a part for merge().
-overwrite: replaces an existing result, and the journal of an earlier search.
-resume: goes on from the journal of an earlier search.
-strict: raises InputError where anything is warned of, and searches nothing.
+)DOC" + lines_of(kSearchFields) +
+       R"DOC(shard: (i, n) searches the i-th of n parts, from 1; the output is a part for merge().
 input_warnings: messages of read_model() and read_trajectory(), which the report then holds too,
     and which strict counts.
-model_is_cut: says that the model lacks its lowest part, as with above= of read_model(), so that it
-    does not stand on the ground: ignored points that collide are not warned of for their number
-    alone.
-end_gpus: says that nothing else in this process uses CUDA, so that it ends with the search.
-journal_interval_seconds: how often what was found is made safe on the disk, seconds.
 progress: called with a ProgressUpdate, in this thread, up to 20 times a second.
 message: called with each note and warning, a Message, in this thread.
-stop: an object with is_set(), such as threading.Event. When it is set, Interrupted is raised.)");
+stop: an object with is_set(), such as threading.Event. When it is set, Interrupted is raised.)DOC")
+          .c_str());
+  add_checks(module, kSearchFields);
 }
 
 }  // namespace

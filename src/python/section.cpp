@@ -9,8 +9,10 @@
 #include <utility>
 
 #include "clearway/outline.hpp"
+#include "core/describe/section.hpp"
 #include "core/section/section_tables.hpp"
 #include "python/arrays.hpp"
+#include "python/fields.hpp"
 #include "python/store.hpp"
 #include "python/values.hpp"
 #include "python/watch.hpp"
@@ -20,7 +22,7 @@ namespace {
 
 using namespace py::literals;
 
-constexpr Named<SectionTable> kSectionTables[] = {
+constexpr Choice<SectionTable> kSectionTables[] = {
     {"bands", SectionTable::kBands},
     {"stations", SectionTable::kStations},
     {"boxes", SectionTable::kBoxes},
@@ -48,10 +50,11 @@ py::object or_none(const std::optional<Value>& value) {
 
 void add_section_parameters(py::module_& module) {
   using Asked = SectionParameters;
-  py::class_<Asked>(module, "SectionParameters",
-                    "What was asked of find_section(), with the defaults filled in. Lengths are in "
-                    "metres, or in the unit of the scans where that is another one.")
-      .def_readonly("rear", &Asked::rear, "Where the load begins along x in its own frame.")
+  py::class_<Asked> parameters(
+      module, "SectionParameters",
+      "What was asked of find_section(), with the defaults filled in. Lengths are in metres, or in "
+      "the unit of the scans where that is another one.");
+  parameters.def_readonly("rear", &Asked::rear, "Where the load begins along x in its own frame.")
       .def_readonly("front", &Asked::front, "Where the load ends along x in its own frame.")
       .def_property_readonly(
           "window",
@@ -60,11 +63,6 @@ void add_section_parameters(py::module_& module) {
             return py::make_tuple(w.y_from, w.y_to, w.z_from, w.z_to);
           },
           "The part of the cross-section that was looked at: y from and to, z from and to.")
-      .def_readonly("cell", &Asked::cell, "The side of a cell.")
-      .def_readonly("bin", &Asked::bin, "The length of the stretches that are told apart.")
-      .def_readonly("margin", &Asked::margin, "The greatest margin that check() may be asked for.")
-      .def_readonly("between_poses", &Asked::between_poses,
-                    "Whether the way from each pose to the next counts, too.")
       .def_property_readonly(
           "pivots",
           [](const Asked& asked) -> py::object {
@@ -74,18 +72,11 @@ void add_section_parameters(py::module_& module) {
           "The two places of the load that lie on the path, front and rear; None where the load "
           "has "
           "the poses of the path.")
-      .def_readonly("ignore_classes", &Asked::ignore_classes,
-                    "The classes whose points were left out: a list of int.")
-      .def_readonly("ignore_boxes", &Asked::ignore_boxes,
-                    "The boxes whose points were left out: a list of Box.")
-      .def_readonly("seen", &Asked::seen,
-                    "Whether cells that no beam of the scanner crossed are told apart.")
-      .def_readonly("seen_cube", &Asked::seen_cube,
-                    "The side of the cubes of space in which beams were followed; 0 without seen.")
       .def("__repr__", [](const Asked& asked) {
         return py::str("<SectionParameters: x from {} to {}, cells of {}, bins of {}, margin {}>")
             .format(asked.rear, asked.front, asked.cell, asked.bin, asked.margin);
       });
+  add_read_only(parameters, kSectionFields);
 }
 
 void add_section_report(py::module_& module) {
@@ -452,43 +443,23 @@ band: a SectionBand of this section.)")
       });
 }
 
-SectionParameters section_parameters(double rear, double front,
-                                     const std::optional<std::array<double, 4>>& window,
-                                     double cell, double bin, double margin, bool between_poses,
-                                     const std::optional<std::array<double, 2>>& pivots) {
-  SectionParameters asked{.rear = rear, .front = front};
-  if (window) asked.window = SectionWindow{(*window)[0], (*window)[1], (*window)[2], (*window)[3]};
-  asked.cell = cell;
-  asked.bin = bin;
-  asked.margin = margin;
-  asked.between_poses = between_poses;
-  if (pivots) asked.pivots = BodyPivots{(*pivots)[0], (*pivots)[1]};
-  return asked;
-}
-
 void add_find_section(py::module_& module) {
   module.def(
       "find_section",
       [](SharedStore& store, const py::object& poses, const py::object& output, double rear,
-         double front, std::optional<std::array<double, 4>> window, double cell, double bin,
-         double margin, bool between_poses, std::optional<std::array<double, 2>> pivots,
-         std::vector<std::uint8_t> ignore_classes, std::vector<Box> ignore_boxes, bool seen,
-         double seen_cube, const std::string& device, std::vector<int> gpus, int threads,
-         std::uint64_t memory_bytes, std::uint64_t device_memory_bytes, bool overwrite, bool strict,
-         const py::object& input_warnings, py::object progress, py::object message,
-         py::object stop) {
-        SectionParameters asked =
-            section_parameters(rear, front, window, cell, bin, margin, between_poses, pivots);
-        asked.ignore_classes = std::move(ignore_classes);
-        asked.ignore_boxes = std::move(ignore_boxes);
-        asked.seen = seen;
-        asked.seen_cube = seen_cube;
+         double front, std::optional<std::array<double, 4>> window,
+         std::optional<std::array<double, 2>> pivots, bool overwrite, bool strict,
+         const py::object& input_warnings, py::object progress, py::object message, py::object stop,
+         const py::kwargs& given) {
+        SectionParameters asked{.rear = rear, .front = front};
+        set_fields(kSectionFields, given, asked);
+        if (window) {
+          const auto& [y_from, y_to, z_from, z_to] = *window;
+          asked.window = SectionWindow{y_from, y_to, z_from, z_to};
+        }
+        if (pivots) asked.pivots = BodyPivots{(*pivots)[0], (*pivots)[1]};
         SectionOptions options;
-        options.device = value_of("device", kDevices, device);
-        options.gpus = std::move(gpus);
-        options.threads = threads;
-        options.memory_bytes = memory_bytes;
-        options.device_memory_bytes = device_memory_bytes;
+        set_fields(kMachineFields<SectionOptions>, given, options);
         options.overwrite = overwrite;
         options.strict = strict;
         options.input_warnings = messages_of(input_warnings);
@@ -502,14 +473,12 @@ void add_find_section(py::module_& module) {
         });
       },
       "store"_a, "poses"_a, "output"_a, "rear"_a, "front"_a, py::kw_only(), "window"_a = py::none(),
-      "cell"_a = 0.0, "bin"_a = 0.0, "margin"_a = 0.0, "between_poses"_a = false,
-      "pivots"_a = py::none(), "ignore_classes"_a = py::tuple(), "ignore_boxes"_a = py::tuple(),
-      "seen"_a = false, "seen_cube"_a = 0.0, "device"_a = "auto", "gpus"_a = std::vector<int>{},
-      "threads"_a = 0, "memory_bytes"_a = SectionOptions{}.memory_bytes,
-      "device_memory_bytes"_a = 0, "overwrite"_a = false, "strict"_a = false,
+      "pivots"_a = py::none(), "overwrite"_a = false, "strict"_a = false,
       "input_warnings"_a = py::tuple(), "progress"_a = py::none(), "message"_a = py::none(),
       "stop"_a = py::none(),
-      R"(find_section(store, poses, output, rear, front, *, window=None, cell=0.0, bin=0.0, margin=0.0, between_poses=False, pivots=None, ignore_classes=(), ignore_boxes=(), seen=False, seen_cube=0.0, device='auto', gpus=(), threads=0, memory_bytes=4294967296, device_memory_bytes=0, overwrite=False, strict=False, input_warnings=(), progress=None, message=None, stop=None)
+      ("find_section(store, poses, output, rear, front, *, window=None, pivots=None, " +
+       signature_of(kSectionFields) + ", " + signature_of(kMachineFields<SectionOptions>) +
+       R"DOC(, overwrite=False, strict=False, input_warnings=(), progress=None, message=None, stop=None)
 --
 
 Find which cells of the cross-section are blocked for a load of a given length along a path.
@@ -523,23 +492,15 @@ poses: the poses of the path, n x 4 x 4 or n x 3 x 4.
 output: the file of the section to write.
 rear, front: where the load begins and ends along x in its own frame.
 window: the part of the cross-section: y from and to, z from and to; None: -4, 4, 0, 6 m.
-cell: side of a cell; 0: 0.02 m.
-bin: length of the stretches of the path that are told apart; 0: 5 m.
-margin: the greatest margin that Section.check() may be asked for, and its default.
-between_poses: counts the way from each pose to the next, too, because the load grows by its motion.
 pivots: (front, rear), two places of the load that lie on the path; None: the load has its poses.
-ignore_classes, ignore_boxes: points to leave out, as Query takes them.
-seen: tells cells that no beam of the scanner crossed from free ones; needs a store with origins.
-seen_cube: side of the cubes of space in which beams are followed; 0: 0.2 m.
-device: 'auto', 'cpu' or 'cuda'; 'auto' takes a GPU where that is estimated faster.
-gpus: the numbers that CUDA gives the GPUs to take; empty: the first one with room.
-threads: how many threads work; 0: as many as there are cores.
-memory_bytes: how many bytes of working memory may be taken.
-device_memory_bytes: how many bytes may be taken on each GPU; 0: 2 GiB, or what is free.
-overwrite: replaces an existing section.
+)DOC" + lines_of(kSectionFields) +
+       lines_of(kMachineFields<SectionOptions>) +
+       R"DOC(overwrite: replaces an existing section.
 strict: raises InputError where anything is warned of, and writes nothing.
 input_warnings: messages of read_trajectory(), which the section keeps, and which strict counts.
-progress, message, stop: as search() takes them.)");
+progress, message, stop: as search() takes them.)DOC")
+          .c_str());
+  add_checks(module, kSectionFields);
 }
 
 void add_section_exports(py::module_& module) {

@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "clearway/error.hpp"
+#include "core/describe/session.hpp"
 #include "python/arrays.hpp"
 #include "python/columns.hpp"
+#include "python/fields.hpp"
 #include "python/model.hpp"
 #include "python/store.hpp"
 #include "python/values.hpp"
@@ -189,16 +191,14 @@ path: the file of the result to write.
 overwrite: replaces an existing file.)");
 }
 
-SessionAnswer answer_of(SharedSession& shared, const ArrayQuery& query, const std::string& engine,
-                        bool strict, const py::object& input_warnings, bool model_is_cut,
-                        py::object progress, py::object message, py::object stop) {
+SessionAnswer answer_of(SharedSession& shared, const ArrayQuery& query,
+                        const py::object& input_warnings, py::object progress, py::object message,
+                        py::object stop, const py::kwargs& given) {
   const std::shared_ptr<const Session> session = shared.opened();
   require_radius(query);
   QuestionOptions options;
-  options.engine = value_of("engine", kEngines, engine);
-  options.strict = strict;
+  set_fields(kQuestionFields, given, options);
   options.input_warnings = messages_of(input_warnings);
-  options.model_is_cut = model_is_cut;
   const KeptQueries::Loan asked(shared.queries, query);
   Watch watch(std::move(progress), std::move(message), std::move(stop));
   watch.attach(options);
@@ -211,10 +211,10 @@ SessionAnswer answer_of(SharedSession& shared, const ArrayQuery& query, const st
 void add_session_members(py::class_<SharedSession>& sessions) {
   sessions
       .def(
-          "search", &answer_of, "query"_a, py::kw_only(), "engine"_a = "auto", "strict"_a = false,
-          "input_warnings"_a = py::tuple(), "model_is_cut"_a = false, "progress"_a = py::none(),
-          "message"_a = py::none(), "stop"_a = py::none(),
-          R"(search(self, query, *, engine='auto', strict=False, input_warnings=(), model_is_cut=False, progress=None, message=None, stop=None)
+          "search", &answer_of, "query"_a, py::kw_only(), "input_warnings"_a = py::tuple(),
+          "progress"_a = py::none(), "message"_a = py::none(), "stop"_a = py::none(),
+          ("search(self, query, *, " + signature_of(kQuestionFields) +
+           R"DOC(, input_warnings=(), progress=None, message=None, stop=None)
 --
 
 Find every point of the store within the query's radius of the moving model, in memory.
@@ -225,13 +225,12 @@ Give the model as a Model where you ask often: an array is copied and checked fo
 The other arguments are those of search().
 
 query: the Query to answer.
-engine: 'auto', 'sweep', 'grid' or 'kdtree'; 'auto' takes the one that is estimated faster.
-strict: raises InputError where anything is warned of, and searches nothing.
-input_warnings: messages of read_model() and read_trajectory(), which the answer then holds too.
-model_is_cut: says that the model lacks its lowest part, as with above= of read_model().
+)DOC" + lines_of(kQuestionFields) +
+           R"DOC(input_warnings: messages of read_model() and read_trajectory(), which the answer then holds too.
 progress: called with a ProgressUpdate, in this thread, up to 20 times a second.
 message: called with each note and warning, a Message, in this thread.
-stop: an object with is_set(), such as threading.Event. When it is set, Interrupted is raised.)")
+stop: an object with is_set(), such as threading.Event. When it is set, Interrupted is raised.)DOC")
+              .c_str())
       .def_property_readonly(
           "store",
           [](const SharedSession& shared) {
@@ -286,32 +285,24 @@ void add_session(py::module_& module) {
       "A store that stays open for many questions, with the GPUs that were started and with what "
       "was built for the models that were asked about, so that a question of one pose takes "
       "milliseconds.\n\nSeveral threads may ask at once, and share the memory of the session.");
-  session.def(
-      py::init([](const py::object& path, const std::string& device, int threads,
-                  std::uint64_t memory_bytes, std::uint64_t device_memory_bytes,
-                  std::vector<int> gpus) {
-        const SessionOptions options{.device = value_of("device", kDevices, device),
-                                     .gpus = std::move(gpus),
-                                     .threads = threads,
-                                     .memory_bytes = memory_bytes,
-                                     .device_memory_bytes = device_memory_bytes};
-        return without_gil(
-            [&, file = path_of(path)] { return std::make_unique<SharedSession>(file, options); });
-      }),
-      "path"_a, "device"_a = "auto", "threads"_a = 0,
-      "memory_bytes"_a = SessionOptions{}.memory_bytes, "device_memory_bytes"_a = 0,
-      "gpus"_a = std::vector<int>{},
-      R"(__init__(self, path, device='auto', threads=0, memory_bytes=4294967296, device_memory_bytes=0, gpus=())
+  session.def(py::init([](const py::object& path, const py::kwargs& given) {
+                SessionOptions options;
+                set_fields(kMachineFields<SessionOptions>, given, options);
+                return without_gil([&, file = path_of(path)] {
+                  return std::make_unique<SharedSession>(file, options);
+                });
+              }),
+              "path"_a,
+              ("__init__(self, path, *, " + signature_of(kMachineFields<SessionOptions>) + R"DOC()
 --
 
 Open a store for questions. Use it in a with block, which closes it at its end.
 
+All questions together share the machine.
+
 path: the file that convert() made.
-device: 'auto', 'cpu' or 'cuda'; 'auto' takes a GPU where that is estimated faster.
-threads: how many threads work at a question; 0: as many as there are cores.
-memory_bytes: how many bytes of working memory all questions together may take.
-device_memory_bytes: how many bytes may be taken on each GPU; 0: 2 GiB, or what is free.
-gpus: the numbers that CUDA gives the GPUs to take; empty: the first one with room.)");
+)DOC" + lines_of(kMachineFields<SessionOptions>))
+                  .c_str());
   add_session_members(session);
 }
 

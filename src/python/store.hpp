@@ -19,13 +19,6 @@
 
 namespace clearway::python {
 
-inline constexpr Named<Engine> kEngines[] = {{"auto", Engine::kAuto},
-                                             {"sweep", Engine::kSweep},
-                                             {"grid", Engine::kGrid},
-                                             {"kdtree", Engine::kKdtree}};
-inline constexpr Named<Device> kDevices[] = {
-    {"auto", Device::kAuto}, {"cpu", Device::kCpu}, {"cuda", Device::kCuda}};
-
 /// A store that several Python threads share. Calls on it take turns, because a store remembers
 /// which of its cells it has checked.
 struct SharedStore {

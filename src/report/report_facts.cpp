@@ -14,7 +14,7 @@
 
 #include "clearway/vec3.hpp"
 #include "core/query/ignored_points.hpp"
-#include "core/query/query_fields.hpp"
+#include "core/describe/query.hpp"
 #include "core/util/format.hpp"
 #include "findings/conflict_rank.hpp"
 #include "io/files/xxh64.hpp"
@@ -150,15 +150,15 @@ void write_ignored_points(JsonText& json, const ResultHeader& header, const Answ
 void write_query(JsonText& json, const ReportFacts& facts) {
   const ResultHeader& header = facts.result.reader().header();
   json.key("query").begin('{');
-  for_each_value_field([&](const auto& field) {
+  for_each_field(kQueryValues, [&](const auto& field) {
     using Value = std::decay_t<decltype(field.of(header))>;
-    if (!field.is_told(header)) return;
+    if (!is_listed(field, header)) return;
     if constexpr (std::is_same_v<Value, std::optional<double>>) {
-      json.field(field.name, *field.of(header));
+      json.field(field.key, *field.of(header));
     } else if constexpr (std::is_same_v<Value, std::uint32_t>) {
-      json.field(field.name, std::uint64_t{field.of(header)});
+      json.field(field.key, std::uint64_t{field.of(header)});
     } else {
-      json.field(field.name, field.of(header));
+      json.field(field.key, field.of(header));
     }
   });
   json.end('}');

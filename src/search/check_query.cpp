@@ -8,10 +8,10 @@
 #include <type_traits>
 
 #include "clearway/error.hpp"
+#include "core/describe/query.hpp"
 #include "core/geometry/inside.hpp"
 #include "core/query/body_numbers.hpp"
 #include "core/query/ignored_points.hpp"
-#include "core/query/query_fields.hpp"
 #include "core/query/search_result.hpp"
 #include "io/scans/length_unit.hpp"
 #include "io/store/store_reader.hpp"
@@ -108,15 +108,15 @@ void check_seen(const QueryParameters& query) {
 
 /// Refuses errors that are no errors.
 void check_budget(const QueryParameters& query) {
-  for_each_value_field([&](const auto& field) {
-    using Field = std::decay_t<decltype(field)>;
-    if constexpr (std::is_same_v<Field, QueryField<std::optional<double>>>) {
+  for_each_field(kQueryValues, [&](const auto& field) {
+    using Value = typename std::decay_t<decltype(field)>::Value;
+    if constexpr (std::is_same_v<Value, std::optional<double>>) {
       const std::optional<double>& error = field.of(query);
       if (!error || (std::isfinite(*error) && *error >= 0)) return;
       throw UsageError(std::string("the ") + field.topic + " is " + std::to_string(*error) +
                        ", expected a finite number, 0 or above");
-    } else if constexpr (std::is_same_v<Field, QueryField<double>>) {
-      if (!field.belongs_to_budget() || query.has_budget() || field.is_default(query)) return;
+    } else if constexpr (std::is_same_v<Value, double>) {
+      if (!field.is_of_budget || query.has_budget() || field.is_default(query)) return;
       throw UsageError(std::string("the ") + field.topic +
                        " is of an error budget, and no error is given: expected an error of the "
                        "scan, the registration, the poses, the angles or the model");
@@ -136,10 +136,10 @@ void check_numbers(const QueryParameters& query, const SearchOptions& options) {
     if (std::isfinite(value) && (value > 0 || (may_be_zero && value == 0))) return;
     throw UsageError(std::string(name) + " has to be a finite number of metres above 0");
   };
-  for_each_value_field([&](const auto& field) {
-    if constexpr (std::is_same_v<decltype(field), const QueryField<double>&>) {
+  for_each_field(kQueryValues, [&](const auto& field) {
+    if constexpr (std::is_same_v<typename std::decay_t<decltype(field)>::Value, double>) {
       const std::string topic = std::string("the ") + field.topic;
-      if (!field.belongs_to_budget()) check(topic.c_str(), field.of(query), !field.is_required());
+      if (!field.is_of_budget) check(topic.c_str(), field.of(query), !field.is_required);
     }
   });
   check_budget(query);

@@ -5,7 +5,7 @@
 
 #include "clearway/error.hpp"
 #include "core/query/ignored_points.hpp"
-#include "core/query/query_fields.hpp"
+#include "core/describe/query.hpp"
 #include "core/util/format.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/check_results.hpp"
@@ -75,11 +75,11 @@ JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header
     identity.emplace_back("model_as", header.model_solids > 0 ? "solid" : "surface");
   }
   // Later parameters are named only where they are asked for, so that earlier journals stay valid.
-  for_each_value_field([&](const auto& field) {
+  for_each_field(kQueryValues, [&](const auto& field) {
     const bool known =
-        std::ranges::any_of(identity, [&](const auto& named) { return named.first == field.name; });
+        std::ranges::any_of(identity, [&](const auto& named) { return named.first == field.key; });
     if (!known && !field.is_default(header)) {
-      identity.emplace_back(field.name, text_of(field.of(header)));
+      identity.emplace_back(field.key, text_of(field.of(header)));
     }
   });
   return identity;

@@ -261,7 +261,7 @@ void add_model(CLI::App& program) {
                  "Take the vertices of a mesh alone, not its surface")
       ->excludes(spacing);
   options->lengths.add(*command, "--above,--model-above", options->how.above,
-                       "Leave out the points whose z is below this", LengthRange::kAny);
+                       "Leave out the points whose z is below this", FieldRange::kAny);
   add_turn_options(*command, options->how.forward, options->how.up);
   command->add_flag("--force", options->force, "Overwrite an existing output");
   command->add_flag("--json", options->json, "Print one JSON object");

@@ -32,10 +32,6 @@ struct RunOptions {
 /// each other.
 ModelOptions model_options_of(const RunOptions& options);
 
-/// Adds --device, --gpus and --device-memory.
-void add_device_options(CLI::App& command, Device& device, std::vector<int>& gpus,
-                        std::uint64_t& device_memory_bytes);
-
 /// Adds the options of `clearway run`. `options` outlive the command.
 void add_run_options(CLI::App& command, RunOptions& options);
 

@@ -19,12 +19,13 @@
 #include "cli/run_options.hpp"
 #include "cli/section_inputs.hpp"
 #include "cli/support/console.hpp"
-#include "cli/support/ignored_options.hpp"
+#include "cli/support/field_options.hpp"
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/program.hpp"
 #include "cli/support/program_json.hpp"
 #include "cli/support/trajectory_options.hpp"
+#include "core/describe/section.hpp"
 #include "core/util/format.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/thread_limit.hpp"
@@ -168,54 +169,7 @@ void add_question(CLI::App& command, FindCommand& options) {
            "The part of the cross-section: y to the left from and to, z up from and to (default: "
            "-4,4,0,6 m)")
       ->type_name("Y0,Y1,Z0,Z1");
-  options.lengths.add(command, "--cell", options.asked.cell, "Side of a cell (default: 0.02 m)");
-  options.lengths.add(command, "--bin", options.asked.bin,
-                      "Length of the stretches of the path that are told apart (default: 5 m)");
-  options.lengths.add(command, "--margin", options.asked.margin,
-                      "The greatest margin that clearway section check may ask for, and the one "
-                      "that it asks for by default (default: 0)",
-                      LengthRange::kFromZero);
-  command.add_flag(
-      "--seen", options.asked.seen,
-      "Tell cells that no beam of the scanner crossed from free ones; the store has to "
-      "know where its scanner stood");
-  options.lengths.add(
-      command, "--seen-cube", options.asked.seen_cube,
-      "With --seen: side of the cubes of space in which beams are followed (default: "
-      "0.2 m)");
-  command.add_flag("--between-poses", options.asked.between_poses,
-                   "Count the way from each pose to the next, too: the load grows by its motion");
-}
-
-void add_ignored(CLI::App& command, FindCommand& options) {
-  const GroupScope group(command, OptionGroup::kIgnored);
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--ignore-class",
-          [&options](const std::vector<std::string>& lists) {
-            options.asked.ignore_classes = parse_classes(lists);
-          },
-          "Leave out the points of these classes, for example 2,7 or 3-5")
-      ->allow_extra_args(false)
-      ->type_name("N,...");
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--ignore-box",
-          [&options](const std::vector<std::string>& texts) {
-            for (const std::string& text : texts) {
-              options.asked.ignore_boxes.push_back(parse_box(text));
-            }
-          },
-          "Leave out the points in this box of the environment: least x, y and z, then greatest")
-      ->allow_extra_args(false)
-      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
-}
-
-void add_speed(CLI::App& command, SectionOptions& options) {
-  const GroupScope group(command, OptionGroup::kSpeed);
-  add_device_options(command, options.device, options.gpus, options.device_memory_bytes);
-  add_threads_option(command, options.threads);
-  add_memory_option(command, options.memory_bytes);
+  add_fields(command, kSectionFields, options.asked, options.lengths);
 }
 
 void add_find(CLI::App& section) {
@@ -232,9 +186,8 @@ void add_find(CLI::App& section) {
       ->type_name("FILE")
       ->required();
   add_question(*command, *options);
-  add_ignored(*command, *options);
   add_trajectory_options(*command, options->trajectory_options, options->lengths);
-  add_speed(*command, options->search);
+  add_fields(*command, kMachineFields<SectionOptions>, options->search, options->lengths);
   command->add_flag("--force", options->search.overwrite, "Overwrite an existing section");
   command->add_flag("--strict", options->search.strict,
                     "Treat warnings as errors: no section is written (exit code 3)");
@@ -420,7 +373,7 @@ void add_export_of_section(CLI::App& section) {
       ->excludes(table);
   options->lengths.add(*command, "--band", options->heights.band,
                        "Height of a band (default: 0.1 m)");
-  options->lengths.add(*command, "--base", options->heights.base, kBaseHelp, LengthRange::kAny);
+  options->lengths.add(*command, "--base", options->heights.base, kBaseHelp, FieldRange::kAny);
   command->add_flag("--force", options->force, "Overwrite an existing output");
   command->footer(
       "Widths end at the border of the nearest blocked cell, so a load has to be narrower.\n"

@@ -34,7 +34,7 @@ CLI::Option* add_load_options(CLI::App& command, LoadInput& load, LengthOptions&
           ->type_name("FILE");
   lengths.add(command, "--margin", load.margin,
               "Distance to keep on all sides; at most that of the section, which is the default",
-              LengthRange::kFromZero);
+              FieldRange::kFromZero);
   command.add_flag("--mirror", load.how.mirror,
                    "The file has height,half_width of the one half of a symmetric outline");
   add_model_unit(command, "--unit", load.how.unit);
@@ -201,7 +201,7 @@ void add_section_report(CLI::App& section) {
     options->lengths.add(*command, "--band", options->page.heights.band,
                          "Height of a band of the map of widths (default: 0.1 m)");
     options->lengths.add(*command, "--base", options->page.heights.base, kBaseHelp,
-                         LengthRange::kAny);
+                         FieldRange::kAny);
   }
   add_site_options(*command, options->site, options->lengths);
   command

@@ -6,6 +6,7 @@ from pathlib import Path
 
 OPTION = re.compile(r"(?<![\w-])--[a-z][\w-]*")
 TITLE = re.compile(r"^([A-Z][a-z][\w ]*):$")
+TEXT_COLUMN = 30  # where the help texts of options begin
 NOT_OPTIONS = {"Positionals", "Subcommands"}  # sections; every other one is a group of options
 
 
@@ -51,6 +52,8 @@ class Program:
                 entries[-1][2] = f"{entries[-1][2]} {line.strip()}".strip()
             elif section and line.startswith("  "):
                 names, _, text = line.strip().partition("  ")
+                if not text and len(line) > TEXT_COLUMN and not following.startswith(" " * 6):
+                    names, text = line[:TEXT_COLUMN].strip(), line[TEXT_COLUMN:]
                 entries.append([section, names, text.strip()])
             else:
                 section = section if not line else ""

@@ -4,8 +4,8 @@
 
 #include "clearway/error.hpp"
 #include "clearway/result.hpp"
+#include "core/describe/query.hpp"
 #include "core/query/ignored_points.hpp"
-#include "core/query/query_fields.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/xxh64.hpp"
@@ -93,29 +93,24 @@ std::string quantisation_text(const Quantisation& quantisation) {
   return text;
 }
 
-std::string field_text(const QueryField<double>& field, const ResultHeader& header) {
-  if (field.unit == QueryField<double>::Unit::kNone) return shown(field.of(header));
-  if (field.member == &QueryParameters::radius) return shown(header.radius) + " m";
-  return field.of(header) > 0 ? shown(field.of(header)) + " m" : "not asked for";
+const char* symbol_of(FieldUnit unit) {
+  return unit == FieldUnit::kNone ? "" : unit == FieldUnit::kRadians ? " rad" : " m";
 }
 
-std::string field_text(const QueryField<std::optional<double>>& field, const ResultHeader& header) {
-  const bool radians = field.unit == QueryField<std::optional<double>>::Unit::kRadians;
-  const std::optional<double>& value = field.of(header);
-  return value ? shown(*value) + (radians ? " rad" : " m") : "not given";
-}
-
-std::string field_text(const QueryField<bool>& field, const ResultHeader& header) {
-  if (field.member == &QueryParameters::between_poses) {
-    return header.between_poses ? "between poses" : "at poses only";
+/// What the question says of a field, in words.
+template <typename Value>
+std::string field_text(const Field<QueryParameters, Value>& field, const ResultHeader& header) {
+  const Value& value = field.of(header);
+  if constexpr (std::is_same_v<Value, bool>) {
+    return value ? field.yes : field.no;
+  } else if constexpr (std::is_same_v<Value, std::uint32_t>) {
+    return std::to_string(value);
+  } else if constexpr (std::is_same_v<Value, double>) {
+    const bool is_set = value > 0 || field.unit == FieldUnit::kNone || field.is_required;
+    return is_set ? shown(value) + symbol_of(field.unit) : field.no;
+  } else {
+    return value ? shown(*value) + symbol_of(field.unit) : field.no;
   }
-  if (!field.of(header)) return "not asked for";
-  const bool old = field.member == &QueryParameters::first_pose && header.ways_without_ends;
-  return old ? "asked for, as version 0.1.0 defined them" : "asked for";
-}
-
-std::string field_text(const QueryField<std::uint32_t>& field, const ResultHeader& header) {
-  return std::to_string(field.of(header));
 }
 
 std::string bodies_text(const ResultHeader& header) {
@@ -179,8 +174,9 @@ void add_question(const ResultHeader& a, const ResultHeader& b, Differences& out
   out.add("bodies", bodies_text(a), bodies_text(b));
   out.add("trajectory", content_text(a.poses, "poses", a.trajectory_hash),
           content_text(b.poses, "poses", b.trajectory_hash));
-  for_each_value_field(
-      [&](const auto& field) { out.add(field.topic, field_text(field, a), field_text(field, b)); });
+  for_each_field(kQueryValues, [&](const auto& field) {
+    out.add(field.topic, field_text(field, a), field_text(field, b));
+  });
   out.add("margins of the error budget", margins_text(a), margins_text(b));
 }
 

@@ -4,14 +4,15 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "clearway/body.hpp"
 #include "clearway/error.hpp"
+#include "core/describe/query.hpp"
 #include "core/geometry/axes.hpp"
 #include "core/query/error_budget.hpp"
 #include "core/query/ignored_points.hpp"
-#include "core/query/query_fields.hpp"
 #include "io/files/hdf5.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/kept_warnings.hpp"
@@ -205,44 +206,29 @@ void check_profile(const ResultHeader& header, const std::string& name) {
          "attribute 'profile' is " + shown(header.profile) + ", expected a length, or 0 for none");
 }
 
-void write_field(const hdf5::Id& file, const QueryField<double>& field,
+/// Writes a parameter as a number; one that need not be given has to be there.
+template <typename Value>
+void write_field(const hdf5::Id& file, const Field<QueryParameters, Value>& field,
                  const QueryParameters& query) {
-  hdf5::write_number(file, field.name, field.of(query));
+  if constexpr (std::is_same_v<Value, bool>) {
+    hdf5::write_number(file, field.key, static_cast<std::uint8_t>(field.of(query)));
+  } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
+    hdf5::write_number(file, field.key, *field.of(query));
+  } else {
+    hdf5::write_number(file, field.key, field.of(query));
+  }
 }
 
-void write_field(const hdf5::Id& file, const QueryField<bool>& field,
-                 const QueryParameters& query) {
-  hdf5::write_number(file, field.name, static_cast<std::uint8_t>(field.of(query)));
-}
-
-void write_field(const hdf5::Id& file, const QueryField<std::uint32_t>& field,
-                 const QueryParameters& query) {
-  hdf5::write_number(file, field.name, field.of(query));
-}
-
-void read_field(const hdf5::Id& file, const QueryField<std::uint32_t>& field,
+template <typename Value>
+void read_field(const hdf5::Id& file, const Field<QueryParameters, Value>& field,
                 const std::string& name, QueryParameters& query) {
-  query.*field.member = hdf5::read_number<std::uint32_t>(file, field.name, name);
-}
-
-void write_field(const hdf5::Id& file, const QueryField<std::optional<double>>& field,
-                 const QueryParameters& query) {
-  hdf5::write_number(file, field.name, *field.of(query));
-}
-
-void read_field(const hdf5::Id& file, const QueryField<double>& field, const std::string& name,
-                QueryParameters& query) {
-  query.*field.member = hdf5::read_number<double>(file, field.name, name);
-}
-
-void read_field(const hdf5::Id& file, const QueryField<bool>& field, const std::string& name,
-                QueryParameters& query) {
-  query.*field.member = hdf5::read_number<std::uint8_t>(file, field.name, name) != 0;
-}
-
-void read_field(const hdf5::Id& file, const QueryField<std::optional<double>>& field,
-                const std::string& name, QueryParameters& query) {
-  query.*field.member = hdf5::read_number<double>(file, field.name, name);
+  if constexpr (std::is_same_v<Value, bool>) {
+    field.of(query) = hdf5::read_number<std::uint8_t>(file, field.key, name) != 0;
+  } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
+    field.of(query) = hdf5::read_number<double>(file, field.key, name);
+  } else {
+    field.of(query) = hdf5::read_number<Value>(file, field.key, name);
+  }
 }
 
 std::string lines_of(const std::vector<std::string>& texts) {
@@ -395,15 +381,15 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   hdf5::write_number(file, "model_hash", header.model_hash);
   hdf5::write_number(file, "poses", header.poses);
   hdf5::write_number(file, "trajectory_hash", header.trajectory_hash);
-  for_each_value_field([&](const auto& field) {
-    if (field.since > 0) write_field(file, field, header);
+  for_each_field(kQueryValues, [&](const auto& field) {
+    if (field.is_always_listed) write_field(file, field, header);
   });
   hdf5::write_attribute(file, names::kModelBox, as_numbers(std::span(model_box)), 3);
   hdf5::write_attribute(file, "scale", std::span<const double>(header.quantisation.scale));
   hdf5::write_attribute(file, "offset", std::span<const double>(header.quantisation.offset));
   hdf5::write_attribute(file, "crs_wkt", header.crs_wkt);
-  for_each_value_field([&](const auto& field) {
-    if (field.since == 0 && !field.is_default(header)) write_field(file, field, header);
+  for_each_field(kQueryValues, [&](const auto& field) {
+    if (!field.is_always_listed && !field.is_default(header)) write_field(file, field, header);
   });
   if (header.has_poses_of_ways() && !header.ways_without_ends) {
     hdf5::write_attribute(file, names::kFirstPoseOf, names::kClosedWay);
@@ -442,9 +428,9 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
   header.model_hash = hdf5::read_number<std::uint64_t>(file, "model_hash", name);
   header.poses = hdf5::read_number<std::uint64_t>(file, "poses", name);
   header.trajectory_hash = hdf5::read_number<std::uint64_t>(file, "trajectory_hash", name);
-  for_each_value_field([&](const auto& field) {
-    const bool always = field.since > 0 && header.version >= field.since;
-    if (always || (field.since == 0 && hdf5::has_attribute(file, field.name, name))) {
+  for_each_field(kQueryValues, [&](const auto& field) {
+    const bool always = field.is_always_listed && header.version > 2;
+    if (always || hdf5::has_attribute(file, field.key, name)) {
       read_field(file, field, name, header);
     }
   });

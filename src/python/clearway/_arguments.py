@@ -19,6 +19,14 @@ from . import _clearway
 from ._clearway import UsageError
 
 
+def _of_type(annotation):
+    """Gives a check the type that the stub has for its arguments."""
+    def name_type(check):
+        check.annotation = annotation
+        return check
+    return name_type
+
+
 def _found(value):
     return "found " + reprlib.repr(value)
 
@@ -32,6 +40,7 @@ def _number(name, value):
         raise TypeError(f"{name}: expected a number, {_found(value)}") from None
 
 
+@_of_type("float")
 def _finite(name, value):
     number = _number(name, value)
     if not math.isfinite(number):
@@ -39,6 +48,7 @@ def _finite(name, value):
     return number
 
 
+@_of_type("float")
 def _at_least_0(name, value):
     number = _finite(name, value)
     if number < 0:
@@ -46,6 +56,7 @@ def _at_least_0(name, value):
     return number
 
 
+@_of_type("float")
 def _above_0(name, value):
     number = _finite(name, value)
     if not number > 0:
@@ -55,11 +66,13 @@ def _above_0(name, value):
 
 def _or_name(check):
     """A number of metres, or the name of a unit, which the compiled part knows."""
-    return lambda name, value: value if isinstance(value, str) else check(name, value)
+    return _of_type("float | str")(
+        lambda name, value: value if isinstance(value, str) else check(name, value))
 
 
 def _or_none(check):
-    return lambda name, value: None if value is None else check(name, value)
+    return _of_type(f"{check.annotation} | None")(
+        lambda name, value: None if value is None else check(name, value))
 
 
 def _whole(most, least=0):
@@ -74,21 +87,24 @@ def _whole(most, least=0):
         if not least <= number <= most:
             raise UsageError(f"{name}: expected {least} to {most}, {_found(value)}")
         return number
-    return check
+    return _of_type("int")(check)
 
 
+@_of_type("bool")
 def _flag(name, value):
     if isinstance(value, (str, bytes)) or value not in (False, True):
         raise TypeError(f"{name}: expected True or False, {_found(value)}")
     return bool(value)
 
 
+@_of_type("str")
 def _text(name, value):
     if not isinstance(value, str):
         raise TypeError(f"{name}: expected a text, {_found(value)}")
     return value
 
 
+@_of_type("_AnyPath")
 def _path(name, value):
     try:
         os.fspath(value)
@@ -98,6 +114,7 @@ def _path(name, value):
     return value
 
 
+@_of_type("_AnyPath | Iterable[_AnyPath]")
 def _paths(name, value):
     if isinstance(value, (str, bytes, os.PathLike)):
         return value
@@ -109,7 +126,7 @@ def _kind(kind):
         if not isinstance(value, kind):
             raise TypeError(f"{name}: expected a clearway.{kind.__name__}, {_found(value)}")
         return value
-    return check
+    return _of_type(kind.__name__)(check)
 
 
 def _each(check):
@@ -122,7 +139,7 @@ def _each(check):
         except TypeError:
             raise TypeError(f"{name}: expected a list, {_found(value)}") from None
         return [check(f"{name}[{i}]", element) for i, element in enumerate(elements)]
-    return check_all
+    return _of_type(f"Sequence[{check.annotation}]")(check_all)
 
 
 def _tuple_of(count, check, words):
@@ -131,9 +148,10 @@ def _tuple_of(count, check, words):
         if len(elements) != count:
             raise UsageError(f"{name}: expected {words}, {_found(value)}")
         return tuple(elements)
-    return check_all
+    return _of_type(f"tuple[{', '.join([check.annotation] * count)}]")(check_all)
 
 
+@_of_type("Callable")
 def _callable(name, value):
     if not callable(value):
         raise TypeError(f"{name}: expected a function, {_found(value)}")
@@ -148,58 +166,83 @@ def _having(method):
     return check
 
 
+@_of_type("ArrayLike")
 def _anything(_name, value):
     """Arrays, which the compiled part converts and refuses by name."""
     return value
 
 
-_threads = _whole(2**31 - 1)
-_bytes = _whole(2**64 - 1)
+def _one_of(*names):
+    """A text, of which the compiled part knows the choices."""
+    return _of_type(f"Literal{list(names)}")(lambda name, value: _text(name, value))
+
+
+def _described(kind, *limits):
+    """The check of an argument that the compiled part describes, from the list of its fields."""
+    if kind == "flag":
+        return _flag
+    if kind == "choice":
+        return _one_of(*limits[0])
+    if kind == "number":
+        return {"any": _finite, "from 0": _at_least_0, "above 0": _above_0}[limits[0]]
+    if kind == "optional":
+        return _or_none(_described("number", *limits))
+    if kind == "whole":
+        return _whole(limits[0])
+    if kind == "boxes":
+        return _each(_kind(_clearway.Box))
+    return _each(_described(*limits[0]))
+
+
 _messages = _each(_kind(_clearway.Message))
+_axis = _of_type("_Axis")(lambda name, value: _text(name, value))
+_model = _of_type("ArrayLike | Model")(lambda _name, value: value)
 
 _CHECKS = {
-    **dict.fromkeys(("radius", "scale", "regular_size", "step", "rail_distance", "length",
-                     "width", "corner_radius", "track"), _above_0),
+    **{name: _described(*check) for name, check in _clearway._checks.items()},
+    **dict.fromkeys(("scale", "regular_size", "step", "rail_distance", "length", "width",
+                     "corner_radius", "track"), _above_0),
     **dict.fromkeys(("unit", "unit_z", "metres_per_unit"), _or_name(_at_least_0)),
     "environment_unit": _or_name(_above_0),
-    **dict.fromkeys(("clearance", "profile", "spacing", "gap", "max_gap", "split", "journal_interval_seconds", "sigmas", "seen_cube", "every",
-                     "cell", "bin", "margin", "band"),
-                    _at_least_0),
-    **dict.fromkeys(("error_scan", "error_registration", "error_pose", "error_angle",
-                     "error_model"), _or_none(_at_least_0)),
+    **dict.fromkeys(("spacing", "max_gap", "split", "every", "band"), _at_least_0),
     **dict.fromkeys(("above", "at", "chainage_start", "model_above", "station_from",
                      "station_to", "height", "rear", "front", "base"), _finite),
-    **dict.fromkeys(("threads",), _threads),
-    **dict.fromkeys(("memory_bytes", "device_memory_bytes", "max_points", "min_points",
-                     "model_left_out"), _bytes),
-    **dict.fromkeys(("first_pose", "between_poses", "allow_non_rigid", "vertices_only",
-                     "ignore_crs", "keep_withheld", "skip_unreadable", "strict", "overwrite", "resume",
-                     "end_gpus", "model_is_cut", "seen", "reverse", "mirror"),
-                    _flag),
-    **dict.fromkeys(("name", "model_as", "format", "angle_unit", "angle_frame", "crs",
-                     "default_crs", "datum", "engine", "device", "forward", "up", "title",
-                     "project", "client", "author", "date", "result_name", "environment_name",
-                     "model_name", "trajectory_name", "alignment", "cant", "order",
-                     "environment_crs", "table"), _text),
+    **dict.fromkeys(("max_points", "min_points", "model_left_out"), _whole(2**64 - 1)),
+    **dict.fromkeys(("allow_non_rigid", "vertices_only", "ignore_crs", "keep_withheld",
+                     "skip_unreadable", "reverse", "mirror"), _flag),
+    "model_as": _one_of("auto", "points", "surface", "solid"),
+    "angle_unit": _one_of("declared", "deg", "rad"),
+    "angle_frame": _one_of("declared", "ned", "enu"),
+    "cant": _one_of("file", "none", "center", "inside-rail", "outside-rail", "left-rail",
+                    "right-rail"),
+    "order": _one_of("ne", "en"),
+    "table": _one_of("bands", "stations", "boxes", "cells", "bin-cells", "unknown-cells",
+                     "unknown-bin-cells"),
+    **dict.fromkeys(("forward", "up"), _axis),
+    **dict.fromkeys(("name", "format", "crs", "default_crs", "datum", "title", "project", "client",
+                     "author", "date", "result_name", "environment_name", "model_name",
+                     "trajectory_name", "alignment", "environment_crs"), _text),
     **dict.fromkeys(("path", "file", "output", "origins", "origins_path"), _path),
     **dict.fromkeys(("inputs", "parts"), _paths),
-    **dict.fromkeys(("model", "poses", "points", "triangles", "path_pose", "lo", "hi",
-                     "outline", "towed_by"), _anything),
-    **dict.fromkeys(("progress", "message"), _callable),
-    **dict.fromkeys(("warnings", "input_warnings"), _messages),
-    "stop": _having("is_set"),
-    "messages": _having("append"),
-    **dict.fromkeys(("cell_points", "seen_min"), _whole(2**32 - 1)),
+    **dict.fromkeys(("poses", "points", "vertices", "triangles", "path_pose", "lo", "hi",
+                     "outline"), _anything),
+    "model": _model,
+    "towed_by": _of_type('Body | Literal["path"]')(lambda _name, value: value),
+    "progress": _of_type("_Progress")(lambda name, value: _callable(name, value)),
+    "message": _of_type("_Tell")(lambda name, value: _callable(name, value)),
+    **dict.fromkeys(("warnings", "input_warnings"), _of_type("Iterable[Message]")(_messages)),
+    "stop": _of_type("_Stop")(_having("is_set")),
+    "messages": _of_type("list[Message]")(_having("append")),
+    "cell_points": _whole(2**32 - 1),
     "columns": _each(_text),
     "classes": _each(_finite),
-    "gpus": _each(_whole(2**31 - 1)),
     "shard": _tuple_of(2, _whole(2**32 - 1), "a pair (i, n)"),
     "window": _tuple_of(4, _finite, "four numbers, y from and to, and z from and to"),
     "pivots": _tuple_of(2, _finite, "two numbers, the front pivot and the rear one"),
-    "lateral": _tuple_of(2, _finite, "two numbers of metres, the shift farthest to the right and to the left"),
-    "lever_arm": _tuple_of(3, _finite, "three numbers x, y and z"),
-    "ignore_classes": _each(_whole(255)),
-    "ignore_boxes": _each(_kind(_clearway.Box)),
+    "lateral": _of_type("Sequence[float]")(_tuple_of(
+        2, _finite, "two numbers of metres, the shift farthest to the right and to the left")),
+    "lever_arm": _of_type("Sequence[float]")(
+        _tuple_of(3, _finite, "three numbers x, y and z")),
     "bodies": _each(_kind(_clearway.Body)),
     "model_box": _kind(_clearway.Box),
     "labels": _kind(_clearway.PoseLabels),

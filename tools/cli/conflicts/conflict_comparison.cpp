@@ -304,7 +304,7 @@ void add_conflict_comparison(CLI::App& command, ConflictComparison& options,
         command, "--worse-by", options.worse_by,
         "A conflict is worse where it comes nearer, or reaches deeper, by more than "
         "this (default: 0.02)",
-        LengthRange::kFromZero);
+        FieldRange::kFromZero);
     command.add_flag("--allow-other-question", options.allow_other_question,
                      "Compare results of different questions; they differ otherwise (exit code 1)");
   }

@@ -25,7 +25,7 @@ void add_conflict_options(CLI::App& command, ConflictCommand& options) {
   options.lengths.add(command, "--split", options.find.split,
                       "Cut groups that are longer than this along the path at multiples of it; 0: "
                       "never (default: 25)",
-                      LengthRange::kFromZero);
+                      FieldRange::kFromZero);
   add_chainage_option(command, options.lengths, options.find.chainage_start);
   {
     const GroupScope speed(command, OptionGroup::kSpeed);

@@ -22,10 +22,12 @@
 #include "cli/run_again.hpp"
 #include "cli/run_options.hpp"
 #include "cli/support/console.hpp"
+#include "cli/support/field_options.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "cli/verdict.hpp"
+#include "core/describe/machine.hpp"
 #include "core/util/format.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/result/conflicts/shift_file.hpp"
@@ -238,11 +240,7 @@ void add_options(CLI::App& command, ShiftCommand& options) {
   add_model_options(command, options.model_options, options.lengths);
   add_conflict_options(command, options);
   add_axis_options(command, options);
-  {
-    const GroupScope group(command, OptionGroup::kSpeed);
-    add_device_options(command, options.machine.device, options.machine.gpus,
-                       options.machine.device_memory_bytes);
-  }
+  add_fields(command, kDeviceFields<SessionOptions>, options.machine, options.lengths);
   add_count_option(command, "--show", options.show, 0, 1'000'000'000,
                    "Print a table of so many conflicts");
   command.add_flag("--force", options.force, "Overwrite existing outputs");

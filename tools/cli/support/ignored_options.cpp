@@ -26,16 +26,15 @@ std::vector<std::string> words_of(const std::vector<std::string>& lists) {
   return words;
 }
 
-}  // namespace
-
-std::vector<std::uint8_t> parse_classes(const std::vector<std::string>& lists) {
+std::vector<std::uint8_t> parse_classes(const std::string& option,
+                                        const std::vector<std::string>& lists) {
   std::set<std::uint8_t> classes;
   for (const std::string& word : words_of(lists)) {
     const std::size_t dash = std::min(word.find('-'), word.size());
     const auto first = parse_class(word.substr(0, dash));
     const auto last = dash < word.size() ? parse_class(word.substr(dash + 1)) : first;
     if (!first || !last || *last < *first) {
-      throw CLI::ValidationError("--ignore-class",
+      throw CLI::ValidationError(option,
                                  "'" + word + "': expected numbers of classes from 0 to " +
                                      std::to_string(kGreatestClass) +
                                      ", for example 2,7 or 3-5; clearway info lists those of a "
@@ -46,9 +45,9 @@ std::vector<std::uint8_t> parse_classes(const std::vector<std::string>& lists) {
   return {classes.begin(), classes.end()};
 }
 
-Box parse_box(const std::string& text) {
-  const auto refuse = [&text](const std::string& why) {
-    throw CLI::ValidationError("--ignore-box", text + ": " + why);
+Box parse_box(const std::string& option, const std::string& text) {
+  const auto refuse = [&](const std::string& why) {
+    throw CLI::ValidationError(option, text + ": " + why);
   };
   std::vector<double> numbers;
   for (const std::string& field : CLI::detail::split(text, ',')) {
@@ -66,6 +65,34 @@ Box parse_box(const std::string& text) {
     }
   }
   return box;
+}
+
+}  // namespace
+
+CLI::Option* add_class_option(CLI::App& command, const std::string& name,
+                              std::vector<std::uint8_t>& classes, const std::string& help) {
+  return command
+      .add_option_function<std::vector<std::string>>(
+          name,
+          [&classes, name](const std::vector<std::string>& lists) {
+            classes = parse_classes(name, lists);
+          },
+          help)
+      ->allow_extra_args(false)
+      ->type_name("N,...");
+}
+
+CLI::Option* add_box_option(CLI::App& command, const std::string& name, std::vector<Box>& boxes,
+                            const std::string& help) {
+  return command
+      .add_option_function<std::vector<std::string>>(
+          name,
+          [&boxes, name](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) boxes.push_back(parse_box(name, text));
+          },
+          help)
+      ->allow_extra_args(false)
+      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
 }
 
 nlohmann::ordered_json ignored_json(const Answer& answer) {

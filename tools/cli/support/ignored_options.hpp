@@ -8,13 +8,22 @@
 #include "clearway/answer.hpp"
 #include "clearway/box.hpp"
 
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
 namespace clearway::tool {
 
-/// The classes of lists such as "2,7" and "3-5", ascending, each once. Throws CLI::ValidationError.
-std::vector<std::uint8_t> parse_classes(const std::vector<std::string>& lists);
+/// Adds an option for lists of classes such as "2,7" and "3-5", which become ascending, each class
+/// once. `classes` outlive the command.
+CLI::Option* add_class_option(CLI::App& command, const std::string& name,
+                              std::vector<std::uint8_t>& classes, const std::string& help);
 
-/// The box of "x0,y0,z0,x1,y1,z1". Throws CLI::ValidationError.
-Box parse_box(const std::string& text);
+/// Adds an option for a box "x0,y0,z0,x1,y1,z1", which may be given several times. `boxes` outlive
+/// the command.
+CLI::Option* add_box_option(CLI::App& command, const std::string& name, std::vector<Box>& boxes,
+                            const std::string& help);
 
 /// The ignored points of an answer, with the keys points, colliding (null where it is not known),
 /// classes and boxes.

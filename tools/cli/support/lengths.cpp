@@ -42,20 +42,20 @@ double metres_of_crs(const std::string& wkt) {
 
 }  // namespace
 
-std::string expected_length(LengthRange range) {
-  const char* limit = range == LengthRange::kAboveZero  ? " above 0"
-                      : range == LengthRange::kFromZero ? ", 0 or more"
-                                                        : "";
+std::string expected_length(FieldRange range) {
+  const char* limit = range == FieldRange::kAboveZero  ? " above 0"
+                      : range == FieldRange::kFromZero ? ", 0 or more"
+                                                       : "";
   return std::string("expected a finite number of metres") + limit +
          ", for example 0.1, or a number with a unit (mm, cm, m, km, in, ft, ift or us-ft), for "
          "example 10cm";
 }
 
-ParsedLength parse_length(const std::string& option, const std::string& text, LengthRange range) {
+ParsedLength parse_length(const std::string& option, const std::string& text, FieldRange range) {
   if (const auto length = length_of(text)) {
     const double value = length->value;
-    if (range == LengthRange::kAny || value > 0) return *length;
-    if (range == LengthRange::kFromZero && value == 0) return *length;
+    if (range == FieldRange::kAny || value > 0) return *length;
+    if (range == FieldRange::kFromZero && value == 0) return *length;
   }
   throw CLI::ValidationError(option, text + ": " + expected_length(range));
 }
@@ -75,7 +75,7 @@ CLI::Option* add_unit_option(CLI::App& command, const std::string& names, FileUn
 }
 
 CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name, double& length,
-                                const std::string& description, LengthRange range) {
+                                const std::string& description, FieldRange range) {
   return command
       .add_option_function<std::string>(
           name,
@@ -88,7 +88,7 @@ CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name, doub
 
 CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name,
                                 std::optional<double>& length, const std::string& description,
-                                LengthRange range) {
+                                FieldRange range) {
   return command
       .add_option_function<std::string>(
           name,
@@ -208,7 +208,7 @@ std::optional<Message> note_on_feet(const Store& store) {
 void add_chainage_option(CLI::App& command, LengthOptions& lengths, double& start) {
   lengths
       .add(command, "--chainage-start", start, "Chainage of the first pose (default: 0)",
-           LengthRange::kAny)
+           FieldRange::kAny)
       ->group(title_of(OptionGroup::kConflicts));
 }
 

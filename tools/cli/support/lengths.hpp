@@ -9,6 +9,7 @@
 
 #include "clearway/store.hpp"
 #include "clearway/vec3.hpp"
+#include "core/describe/field.hpp"
 #include "io/files/text_number.hpp"
 
 namespace CLI {
@@ -18,17 +19,14 @@ class Option;
 
 namespace clearway::tool {
 
-/// The lengths that an option accepts.
-enum class LengthRange { kAboveZero, kFromZero, kAny };
-
 /// What an option for a length expects, for errors: "expected a finite number of metres ...".
-std::string expected_length(LengthRange range = LengthRange::kAboveZero);
+std::string expected_length(FieldRange range = FieldRange::kAboveZero);
 
 /// Reads a length such as "0.1" or "10cm". A decimal becomes the nearest double, and "10cm" the
 /// same as "0.1". Throws CLI::ValidationError naming the option where the text is not a finite
 /// length of the range.
 ParsedLength parse_length(const std::string& option, const std::string& text,
-                          LengthRange range = LengthRange::kAboveZero);
+                          FieldRange range = FieldRange::kAboveZero);
 
 /// The symbol that follows a length in the unit of a store's coordinates, given the unit's name.
 /// Degrees count as metres here; other code warns of them.
@@ -54,11 +52,11 @@ class LengthOptions {
  public:
   /// Adds an option that takes a length. This object and `length` outlive the command.
   CLI::Option* add(CLI::App& command, const std::string& name, double& length,
-                   const std::string& description, LengthRange range = LengthRange::kAboveZero);
+                   const std::string& description, FieldRange range = FieldRange::kAboveZero);
   /// Adds an option for a length that need not be given. This object and `length` outlive the
   /// command.
   CLI::Option* add(CLI::App& command, const std::string& name, std::optional<double>& length,
-                   const std::string& description, LengthRange range);
+                   const std::string& description, FieldRange range);
 
   /// Adds an option for three lengths X,Y,Z, which may be 0 or negative. This object and `lengths`
   /// outlive the command.

@@ -9,11 +9,14 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "cli/support/lengths.hpp"
+#include "core/describe/search.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/util/format.hpp"
 #include "io/files/text_number.hpp"
 
@@ -160,13 +163,44 @@ std::uint64_t parse_size(const std::string& option, const std::string& text) {
   return static_cast<std::uint64_t>(bytes);
 }
 
-void add_size_option(CLI::App& command, const std::string& name, std::uint64_t& bytes,
-                     const std::string& description) {
-  command
+CLI::Option* add_size_option(CLI::App& command, const std::string& name, std::uint64_t& bytes,
+                             const std::string& description) {
+  return command
       .add_option_function<std::string>(
           name, [&bytes, name](const std::string& text) { bytes = parse_size(name, text); },
           description)
       ->type_name("SIZE");
+}
+
+namespace {
+
+/// Reads an angle such as "0.002", in radians, or "0.1deg". Throws CLI::ValidationError naming the
+/// option.
+double parse_angle(const std::string& option, const std::string& text) {
+  const bool degrees = text.ends_with("deg");
+  const std::string number = degrees ? text.substr(0, text.size() - 3) : text;
+  const char* at = number.data();
+  const char* const end = at + number.size();
+  double value = 0;
+  if (!number.empty() && parse_number(at, end, value) && at == end && std::isfinite(value) &&
+      value >= 0) {
+    return degrees ? value * kDegree : value;
+  }
+  throw CLI::ValidationError(
+      option, text +
+                  ": expected an angle in radians, 0 or more, for example 0.002, or in degrees, "
+                  "for example 0.1deg");
+}
+
+}  // namespace
+
+CLI::Option* add_angle_option(CLI::App& command, const std::string& name,
+                              std::optional<double>& angle, const std::string& description) {
+  return command
+      .add_option_function<std::string>(
+          name, [&angle, name](const std::string& text) { angle = parse_angle(name, text); },
+          description)
+      ->type_name("ANGLE");
 }
 
 void add_count_option(CLI::App& command, const std::string& name, std::uint64_t& count,
@@ -189,15 +223,15 @@ void add_count_option(CLI::App& command, const std::string& name, std::uint64_t&
 }
 
 void add_memory_option(CLI::App& command, std::uint64_t& bytes) {
-  add_size_option(
-      command, "--memory", bytes,
-      "Bound of the working memory, for example 512M or 4G (default: " + format_size(bytes) + ")");
+  add_size_option(command, kMemory<SearchOptions>.option, bytes,
+                  kMemory<SearchOptions>.help_with_default());
 }
 
 void add_threads_option(CLI::App& command, int& threads) {
-  command.add_option("--threads", threads, "Threads (default: all cores)")
+  const auto& field = kThreads<SearchOptions>;
+  command.add_option(field.option, threads, field.help_with_default())
       ->type_name("N")
-      ->check(CLI::Range(1, 1024));
+      ->check(CLI::Range(static_cast<int>(field.least), static_cast<int>(field.most)));
 }
 
 void add_model_unit(CLI::App& command, const std::string& names, FileUnit& unit) {
@@ -244,7 +278,7 @@ void add_model_options(CLI::App& command, ModelOptions& options, LengthOptions& 
       ->excludes(spacing);
   lengths.add(command, "--model-above", options.above,
               "Leave out the model's points whose z is below this, such as wheels on the ground",
-              LengthRange::kAny);
+              FieldRange::kAny);
 }
 
 }  // namespace clearway::tool

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "clearway/model.hpp"
+#include "core/describe/field.hpp"
 
 namespace CLI {
 class App;
@@ -12,23 +14,6 @@ class Validator;
 }  // namespace CLI
 
 namespace clearway::tool {
-
-/// The groups of options in a help text, in the order in which it shows them.
-enum class OptionGroup {
-  kInputs,
-  kAsked,
-  kCertainty,
-  kIgnored,
-  kStore,
-  kModel,
-  kPath,
-  kUnits,
-  kConflicts,
-  kPage,
-  kSpeed,
-  kFiles,
-  kOutput
-};
 
 /// The heading of a group, for example "The model". For CLI::Option::group.
 const char* title_of(OptionGroup group);
@@ -65,8 +50,12 @@ CLI::Validator positive_length();
 CLI::Validator seconds_up_to(double most);
 
 /// Adds an option that takes a size in bytes; "512M" and "4G" are multiples of powers of 1024.
-void add_size_option(CLI::App& command, const std::string& name, std::uint64_t& bytes,
-                     const std::string& description);
+CLI::Option* add_size_option(CLI::App& command, const std::string& name, std::uint64_t& bytes,
+                             const std::string& description);
+
+/// Adds an option for an angle such as "0.002", in radians, or "0.1deg".
+CLI::Option* add_angle_option(CLI::App& command, const std::string& name,
+                              std::optional<double>& angle, const std::string& description);
 
 /// Adds an option that takes a whole number from `least` to `most`.
 void add_count_option(CLI::App& command, const std::string& name, std::uint64_t& count,

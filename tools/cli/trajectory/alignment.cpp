@@ -121,7 +121,7 @@ void add_way(CLI::App& command, AlignmentCommand& options) {
       ->check(station());
   command.add_flag("--reverse", what.reverse, "Travel against the stations");
   options.lengths.add(command, "--height", what.height,
-                      "Height of all poses, for an alignment without a profile", LengthRange::kAny);
+                      "Height of all poses, for an alignment without a profile", FieldRange::kAny);
 }
 
 void add_order(CLI::App& command, AlignmentOptions& options) {
@@ -146,11 +146,11 @@ void add_track(CLI::App& command, AlignmentCommand& options) {
                   "says)");
   options.lengths.add(command, "--rail-distance", what.rail_distance,
                       "Between the middles of the rails (default: 1.5 for a gauge of 1.435 or 1.5)",
-                      LengthRange::kAboveZero);
+                      FieldRange::kAboveZero);
   add_order(command, what);
   options.lengths.add(command, "--max-gap", what.max_gap,
                       "The most that an element may miss the next, or its own end (default: 0.001)",
-                      LengthRange::kFromZero);
+                      FieldRange::kFromZero);
 }
 
 }  // namespace

@@ -259,7 +259,7 @@ void add_trajectory_follow(CLI::App& trajectory) {
       ->needs(vehicle);
   CLI::Option* at = options->lengths.add(
       *command, "--at", options->at,
-      "The body has the path's pose so many metres ahead; negative: behind", LengthRange::kAny);
+      "The body has the path's pose so many metres ahead; negative: behind", FieldRange::kAny);
   options->lengths
       .add(*command, "--pivots", options->pivots,
            "Two places of the body lie on the path, so many metres ahead or behind; "

@@ -97,11 +97,11 @@ void add_way(CLI::App& command, LineCommand& options) {
   options.lengths.add(command, "--corner-radius", what.corner_radius,
                       "Put arcs of this radius at the vertices, between straight legs (default: a "
                       "smooth curve through the vertices, which may turn by 15 degrees at most)",
-                      LengthRange::kAboveZero);
+                      FieldRange::kAboveZero);
   options.lengths.add(command, "--height", what.height,
                       "Height of all poses, for a line without heights; on the ground: about where "
                       "it begins",
-                      LengthRange::kAny);
+                      FieldRange::kAny);
 }
 
 /// Adds the options that put the path on the ground of a scan.
@@ -115,7 +115,7 @@ void add_ground(CLI::App& command, LineCommand& options) {
           ->type_name("FILE");
   CLI::Option* track = options.lengths.add(command, "--track", options.line.track,
                                            "Between the middles of the left and the right wheels",
-                                           LengthRange::kAboveZero);
+                                           FieldRange::kAboveZero);
   ground->needs(track);
   track->needs(ground);
 }
@@ -136,7 +136,7 @@ void add_reading(CLI::App& command, LineCommand& options) {
   options.lengths.add(
       command, "--rail-distance", what.rail_distance,
       "Between the middles of the rails, over which cant is measured (default: 1.5)",
-      LengthRange::kAboveZero);
+      FieldRange::kAboveZero);
 }
 
 }  // namespace

@@ -259,8 +259,9 @@ def options_of_run(work):
     own = {"--help", "--env", "--model", "--vehicle", "--trajectory", "--radius", "--output",
            "--shard", "--force", "--resume", "--json", "--fail-on-collision"}
     passed = set()
-    for source in ("campaign/campaign_file.cpp", "core/query/query_fields.hpp"):
-        text = (pathlib.Path(__file__).parents[4] / "src" / source).read_text()
+    source = pathlib.Path(__file__).parents[4] / "src"
+    for described in (source / "campaign/campaign_file.cpp", *source.glob("core/describe/*.hpp")):
+        text = described.read_text()
         passed |= set(re.findall(r'"(--[\w-]+)"', text))
     expect(known - own <= passed, f"options of run unknown to a campaign: {known - own - passed}")
 

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <string>
+#include <tuple>
+#include <type_traits>
+
+/// What a field of a public struct is, for everything that shows, reads or keeps it: results, JSON,
+/// campaigns, the command line and its guide, and Python. docs/design/describe.md shows the flow.
+namespace clearway {
+
+/// The groups of options in a help text, in the order in which it shows them.
+enum class OptionGroup {
+  kInputs,
+  kAsked,
+  kCertainty,
+  kIgnored,
+  kStore,
+  kModel,
+  kPath,
+  kUnits,
+  kConflicts,
+  kPage,
+  kSpeed,
+  kFiles,
+  kOutput
+};
+
+/// What a number of a field counts.
+enum class FieldUnit { kMetres, kRadians, kSeconds, kBytes, kNone };
+
+/// The finite numbers that a field accepts.
+enum class FieldRange { kAny, kFromZero, kAboveZero };
+
+/// A member of a public struct, with all names and texts of it. Its default is that of the struct.
+/// A property that a consumer needs stands here as data, and is never guessed from the type, the
+/// name or the member.
+template <typename Struct, typename Type>
+struct Field {
+  using Owner = Struct;
+  using Value = Type;
+
+  Type Struct::*member;
+  const char* key;  ///< name in results, JSON and Python, and in campaigns unless below
+  const char* campaign_key = "";            ///< name in campaigns, if it is another one
+  const char* topic = "";                   ///< name in messages, as in "the radius"
+  const char* option = "";                  ///< option of the command line; empty: it has none
+  OptionGroup group = OptionGroup::kAsked;  ///< where the help shows the option
+  const char* help = "";                    ///< help text of the option, without its default
+  const char* usual = "";  ///< what the help gives as the default; empty: it says nothing of it
+  const char* doc = "";    ///< documentation in Python
+  const char* yes = "asked for";     ///< a flag that is set, where questions are compared
+  const char* no = "not asked for";  ///< a flag or length that is not set, where they are compared
+  FieldUnit unit = FieldUnit::kMetres;        ///< what a number counts
+  FieldRange range = FieldRange::kAboveZero;  ///< the numbers that the option accepts
+  double least = 0, most = 0;  ///< the range of a whole number or of seconds; 0, 0: any
+  bool is_required = false;    ///< whether every question has to give it
+  bool is_of_budget = false;   ///< whether only a query with an error budget may change the default
+  bool is_always_listed = false;  ///< whether lists of a question name it also where not set
+  bool is_in_results = true;      ///< whether results and reports keep it
+  /// Whether it comes from campaign.json, and not from the campaign itself.
+  bool is_in_campaigns = true;
+
+  const Type& of(const Struct& owner) const { return owner.*member; }
+  Type& of(Struct& owner) const { return owner.*member; }
+  bool is_default(const Struct& owner) const { return of(owner) == of(Struct{}); }
+  const char* name_in_campaigns() const { return *campaign_key == '\0' ? key : campaign_key; }
+  std::string help_with_default() const {
+    return *usual == '\0' ? help : std::string(help) + " (default: " + usual + ")";
+  }
+};
+
+/// Calls visit(field) for each field of a list, in its order.
+template <typename... Fields, typename Visit>
+void for_each_field(const std::tuple<Fields...>& fields, const Visit& visit) {
+  std::apply([&](const auto&... field) { (visit(field), ...); }, fields);
+}
+
+/// A value of an enumeration and its name for users.
+template <typename Enum>
+struct Choice {
+  const char* name;
+  Enum value;
+};
+
+/// The values of an enumeration that users may choose, specialised beside the list of its fields.
+template <typename Enum>
+inline constexpr int kChoices = 0;
+
+}  // namespace clearway

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+#include <tuple>
+
+#include "clearway/search.hpp"
+#include "core/describe/machine.hpp"
+
+namespace clearway {
+
+template <>
+inline constexpr std::array kChoices<Engine>{
+    Choice<Engine>{"auto", Engine::kAuto}, Choice<Engine>{"sweep", Engine::kSweep},
+    Choice<Engine>{"grid", Engine::kGrid}, Choice<Engine>{"kdtree", Engine::kKdtree}};
+
+template <typename Options>
+inline constexpr Field kEngine{
+    .member = &Options::engine,
+    .key = "engine",
+    .option = "--engine",
+    .group = OptionGroup::kSpeed,
+    .help =
+        "sweep, grid or kdtree; auto takes sweep or kdtree, whichever will be faster by estimate",
+    .doc = "'auto', 'sweep', 'grid' or 'kdtree'; 'auto' takes the one that is estimated faster."};
+
+template <typename Options>
+inline constexpr Field kModelIsCut{
+    .member = &Options::model_is_cut,
+    .key = "model_is_cut",
+    .doc =
+        "Says that the model lacks its lowest part, as with above= of read_model(), so that it\n"
+        "    does not stand on the ground: ignored points that collide are not warned of for "
+        "their number\n    alone."};
+
+/// How a query is searched, and where.
+inline constexpr std::tuple kEngineFields =
+    std::tuple_cat(std::tuple{kEngine<SearchOptions>}, kMachineFields<SearchOptions>);
+
+/// What a search does about its files. Not in campaigns, which decide about files themselves.
+inline constexpr std::tuple kFileFields{
+    Field{.member = &SearchOptions::overwrite,
+          .key = "overwrite",
+          .option = "--force",
+          .group = OptionGroup::kFiles,
+          .help = "Overwrite an existing result; remove the journal of an earlier run",
+          .doc = "Replaces an existing result, and the journal of an earlier search.",
+          .is_in_campaigns = false},
+    Field{.member = &SearchOptions::resume,
+          .key = "resume",
+          .option = "--resume",
+          .group = OptionGroup::kFiles,
+          .help = "Go on with a run of the same query that was interrupted or killed",
+          .doc = "Goes on from the journal of an earlier search.",
+          .is_in_campaigns = false},
+    Field{.member = &SearchOptions::journal_interval_seconds,
+          .key = "journal_interval_seconds",
+          .campaign_key = "journal_interval",
+          .option = "--journal-interval",
+          .group = OptionGroup::kFiles,
+          .help = "Seconds between two syncs of the journal to the disk; a system crash can cost "
+                  "that much work",
+          .doc = "How often what was found is made safe on the disk, seconds.",
+          .unit = FieldUnit::kSeconds,
+          .least = 0,
+          .most = 3600}};
+
+template <typename Options>
+inline constexpr Field kStrict{
+    .member = &Options::strict,
+    .key = "strict",
+    .option = "--strict",
+    .group = OptionGroup::kOutput,
+    .help = "Treat warnings as errors: nothing is searched (exit code 3)",
+    .doc = "Raises InputError where anything is warned of, and searches nothing."};
+
+/// What only programs say, which have read the inputs themselves.
+inline constexpr std::tuple kCallerFields{
+    kModelIsCut<SearchOptions>,
+    Field{
+        .member = &SearchOptions::end_gpus,
+        .key = "end_gpus",
+        .doc =
+            "Says that nothing else in this process uses CUDA, so that it ends with the search."}};
+
+/// All that the command line and Python may choose about a search.
+inline constexpr std::tuple kSearchFields =
+    std::tuple_cat(kEngineFields, kFileFields, std::tuple{kStrict<SearchOptions>}, kCallerFields);
+
+}  // namespace clearway

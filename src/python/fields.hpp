@@ -1,0 +1,127 @@
+#pragma once
+
+#include <pybind11/stl.h>
+
+#include <cctype>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+#include "clearway/box.hpp"
+#include "core/describe/field.hpp"
+#include "python/python.hpp"
+
+/// Properties and keyword arguments of Python from described fields. A call takes those arguments
+/// as
+/// **kwargs; its docstring begins with the signature that Python users see and that _arguments.py
+/// checks, so that only names of the signature arrive here.
+namespace clearway::python {
+
+/// A value as Python has it: the name of a choice, otherwise what pybind11 makes of it.
+template <typename Value>
+py::object value_to_python(const Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    return py::str(name_in(kChoices<Value>, value));
+  } else {
+    return py::cast(value);
+  }
+}
+
+/// The value of an argument. Throws UsageError for a name that is no choice.
+template <typename Struct, typename Value>
+Value value_from_python(const Field<Struct, Value>& field, const py::handle& given) {
+  if constexpr (std::is_enum_v<Value>) {
+    return value_of(field.key, kChoices<Value>, given.cast<std::string>());
+  } else {
+    return given.cast<Value>();
+  }
+}
+
+/// Sets the members that are among the arguments.
+template <typename... Fields, typename Owner>
+void set_fields(const std::tuple<Fields...>& fields, const py::kwargs& given, Owner& owner) {
+  for_each_field(fields, [&](const auto& field) {
+    if (given.contains(field.key)) field.of(owner) = value_from_python(field, given[field.key]);
+  });
+}
+
+/// The arguments with their defaults, for a signature: "engine='auto', threads=0". Required ones
+/// are left out, because a call names them itself.
+template <typename... Fields>
+std::string signature_of(const std::tuple<Fields...>& fields) {
+  std::string text;
+  for_each_field(fields, [&text](const auto& field) {
+    using Owner = typename std::decay_t<decltype(field)>::Owner;
+    if (field.is_required) return;
+    py::object usual = value_to_python(field.of(Owner{}));
+    if (py::isinstance<py::list>(usual)) usual = py::tuple(usual);
+    text += (text.empty() ? "" : ", ") + std::string(field.key) + "=" +
+            py::repr(usual).template cast<std::string>();
+  });
+  return text;
+}
+
+/// A line for each argument, for a docstring: "threads: how many threads work; ...".
+template <typename... Fields>
+std::string lines_of(const std::tuple<Fields...>& fields) {
+  std::string text;
+  for_each_field(fields, [&text](const auto& field) {
+    if (field.is_required) return;
+    std::string doc = field.doc;
+    doc[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(doc[0])));
+    text += std::string(field.key) + ": " + doc + "\n";
+  });
+  return text;
+}
+
+/// What _arguments.py checks of a value: the kind of value, and what limits it.
+template <typename Value>
+py::tuple check_of_value(FieldRange range, bool is_required) {
+  if constexpr (std::is_same_v<Value, bool>) {
+    return py::make_tuple("flag");
+  } else if constexpr (std::is_enum_v<Value>) {
+    py::list names;
+    for (const auto& [name, value] : kChoices<Value>) names.append(name);
+    return py::make_tuple("choice", names);
+  } else if constexpr (std::is_same_v<Value, double>) {
+    // Zero is the default of lengths that need not be given, so it may be given too.
+    const char* limit = range == FieldRange::kAny ? "any" : is_required ? "above 0" : "from 0";
+    return py::make_tuple("number", limit);
+  } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
+    return py::make_tuple("optional", range == FieldRange::kAny ? "any" : "from 0");
+  } else if constexpr (std::is_integral_v<Value>) {
+    return py::make_tuple("whole", std::numeric_limits<Value>::max());
+  } else if constexpr (std::is_same_v<Value, std::vector<Box>>) {
+    return py::make_tuple("boxes");
+  } else {
+    return py::make_tuple("list", check_of_value<typename Value::value_type>(range, false));
+  }
+}
+
+/// Tells _arguments.py how the arguments of these names are checked.
+template <typename... Fields>
+void add_checks(py::module_& module, const std::tuple<Fields...>& fields) {
+  if (!py::hasattr(module, "_checks")) module.attr("_checks") = py::dict();
+  py::dict checks = module.attr("_checks");
+  for_each_field(fields, [&checks](const auto& field) {
+    using Value = typename std::decay_t<decltype(field)>::Value;
+    checks[field.key] = check_of_value<Value>(field.range, field.is_required);
+  });
+}
+
+/// Adds a read-only property for each field.
+template <typename Class, typename... Fields>
+void add_read_only(Class& owner, const std::tuple<Fields...>& fields) {
+  using Owner = typename Class::type;
+  for_each_field(fields, [&owner](const auto& field) {
+    owner.def_property_readonly(
+        field.key, [member = field.member](const Owner& value) { return value.*member; },
+        field.doc);
+  });
+}
+
+}  // namespace clearway::python

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+#include "clearway/box.hpp"
+#include "cli/support/ignored_options.hpp"
+#include "cli/support/lengths.hpp"
+#include "cli/support/options.hpp"
+#include "core/describe/field.hpp"
+
+/// Options of a command line from described fields. All that is given outlives the command.
+namespace clearway::tool {
+
+/// Adds an option that takes the name of one of the choices.
+template <typename Value>
+CLI::Option* add_choice(CLI::App& command, const std::string& name, Value& chosen,
+                        const std::string& help) {
+  std::vector<std::string> names;
+  std::string usual;
+  for (const auto& [known, value] : kChoices<Value>) {
+    names.emplace_back(known);
+    if (value == chosen) usual = known;
+  }
+  return command
+      .add_option_function<std::string>(
+          name,
+          [&chosen](const std::string& given) {
+            for (const auto& [known, value] : kChoices<Value>) {
+              if (given == known) chosen = value;
+            }
+          },
+          help)
+      ->check(CLI::IsMember(names))
+      ->default_str(usual);
+}
+
+/// Adds the option of a field, in its group. lengths: where lengths with units are noted.
+template <typename Struct, typename Value, typename Owner>
+CLI::Option* add_field(CLI::App& command, const Field<Struct, Value>& field, Owner& owner,
+                       LengthOptions& lengths) {
+  const GroupScope group(command, field.group);
+  const std::string name = field.option, help = field.help_with_default();
+  Value& value = field.of(owner);
+  if constexpr (std::is_same_v<Value, bool>) {
+    return command.add_flag(name, value, help);
+  } else if constexpr (std::is_enum_v<Value>) {
+    return add_choice(command, name, value, help);
+  } else if constexpr (std::is_same_v<Value, std::vector<std::uint8_t>>) {
+    return add_class_option(command, name, value, help);
+  } else if constexpr (std::is_same_v<Value, std::vector<Box>>) {
+    return add_box_option(command, name, value, help);
+  } else if constexpr (std::is_same_v<Value, std::vector<int>>) {
+    return command.add_option(name, value, help)
+        ->delimiter(',')
+        ->type_name("N,...")
+        ->check(CLI::Range(static_cast<int>(field.least), static_cast<int>(field.most)));
+  } else if constexpr (std::is_integral_v<Value>) {
+    if constexpr (std::is_same_v<Value, std::uint64_t>) {
+      if (field.unit == FieldUnit::kBytes) return add_size_option(command, name, value, help);
+    }
+    return command.add_option(name, value, help)
+        ->type_name("N")
+        ->check(CLI::Range(static_cast<Value>(field.least), static_cast<Value>(field.most)));
+  } else if (field.unit == FieldUnit::kMetres) {
+    return lengths.add(command, name, value, help, field.range);
+  } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
+    return add_angle_option(command, name, value, help);
+  } else if (field.unit == FieldUnit::kSeconds) {
+    return command.add_option(name, value, help)
+        ->type_name("SECONDS")
+        ->check(seconds_up_to(field.most))
+        ->capture_default_str();
+  } else {
+    return command.add_option(name, value, help)->type_name("NUMBER");
+  }
+}
+
+/// Adds the options of all fields that have one and are not required.
+template <typename... Fields, typename Owner>
+void add_fields(CLI::App& command, const std::tuple<Fields...>& fields, Owner& owner,
+                LengthOptions& lengths) {
+  for_each_field(fields, [&](const auto& field) {
+    if (*field.option != '\0' && !field.is_required) add_field(command, field, owner, lengths);
+  });
+}
+
+/// Adds the required options, which a help text shows among the inputs.
+template <typename... Fields, typename Owner>
+void add_required_fields(CLI::App& command, const std::tuple<Fields...>& fields, Owner& owner,
+                         LengthOptions& lengths) {
+  for_each_field(fields, [&](const auto& field) {
+    if (field.is_required) add_field(command, field, owner, lengths)->required();
+  });
+}
+
+}  // namespace clearway::tool
