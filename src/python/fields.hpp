@@ -11,8 +11,12 @@
 #include <type_traits>
 #include <vector>
 
+#include "clearway/answer.hpp"
 #include "clearway/box.hpp"
+#include "clearway/vec3.hpp"
 #include "core/describe/field.hpp"
+#include "core/describe/finding.hpp"
+#include "python/arrays.hpp"
 #include "python/python.hpp"
 
 /// Properties and keyword arguments of Python from described fields. A call takes those arguments
@@ -110,6 +114,41 @@ void add_checks(py::module_& module, const std::tuple<Fields...>& fields) {
   for_each_field(fields, [&checks](const auto& field) {
     using Value = typename std::decay_t<decltype(field)>::Value;
     checks[field.key] = check_of_value<Value>(field.range, field.is_required);
+  });
+}
+
+/// Adds a read-only property for each column of a table of findings: enumerations by their names,
+/// vectors as arrays.
+template <typename Row, typename... Columns>
+void add_properties(py::class_<Row>& rows, const std::tuple<Columns...>& columns) {
+  for_each_field(columns, [&rows](const auto& column) {
+    using Value = typename std::decay_t<decltype(column)>::Value;
+    const auto member = column.member;
+    if constexpr (std::is_same_v<Value, Vec3>) {
+      rows.def_property_readonly(
+          column.key, [member](const Row& row) { return to_array(row.*member); }, column.doc);
+    } else if constexpr (std::is_same_v<Value, std::optional<Vec3>>) {
+      rows.def_property_readonly(
+          column.key,
+          [member](const Row& row) {
+            return row.*member ? py::object(to_array(*(row.*member))) : py::none();
+          },
+          column.doc);
+    } else if constexpr (std::is_same_v<Value, std::vector<Reason>>) {
+      rows.def_property_readonly(
+          column.key,
+          [member](const Row& row) {
+            std::vector<std::string> names;
+            for (const Reason reason : row.*member) names.emplace_back(name_of(reason));
+            return names;
+          },
+          column.doc);
+    } else if constexpr (std::is_enum_v<Value>) {
+      rows.def_property_readonly(
+          column.key, [member](const Row& row) { return name_of(row.*member); }, column.doc);
+    } else {
+      rows.def_readonly(column.key, member, column.doc);
+    }
   });
 }
 

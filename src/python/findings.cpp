@@ -9,7 +9,10 @@
 #include "clearway/conflicts.hpp"
 #include "clearway/stations.hpp"
 #include "clearway/trajectory.hpp"
+#include "core/describe/conflict.hpp"
+#include "core/describe/stations.hpp"
 #include "python/arrays.hpp"
+#include "python/fields.hpp"
 #include "python/model.hpp"
 #include "python/store.hpp"
 #include "python/values.hpp"
@@ -30,112 +33,17 @@ std::vector<double> stations_of(const PoseLabels* labels) {
   return labels == nullptr ? std::vector<double>() : labels->station;
 }
 
-py::object place(const std::optional<Vec3>& point) {
-  return point ? py::object(to_array(*point)) : py::none();
-}
-
 void add_conflict(py::module_& module) {
-  py::class_<Conflict>(
+  py::class_<Conflict> conflict(
       module, "Conflict",
-      "A place where the vehicle does not fit: colliding points that hang together.")
-      .def_readonly("id", &Conflict::id,
-                    "The number of the conflict, from 1, in the order of the path.")
-      .def_readonly("points", &Conflict::points, "How many colliding points the conflict has.")
-      .def_readonly("source", &Conflict::source,
-                    "The smallest source index of the conflict's points.")
-      .def_readonly("box", &Conflict::box, "The box around the conflict's points, in metres.")
-      .def_property_readonly(
-          "centroid", [](const Conflict& c) { return to_array(c.centroid); },
-          "The mean of the conflict's points: 3 float64, metres.")
-      .def_readonly(
-          "body", &Conflict::body,
-          "The body of the vehicle that comes closest, or without clearances touches first, as an "
-          "index of Result.bodies(). None where there is one model.")
-      .def_readonly("first_pose", &Conflict::first_pose,
-                    "The least index of a pose that touches one of its points.")
-      .def_readonly("last_pose", &Conflict::last_pose,
-                    "The greatest index of a pose that touches one of its points; between poses, "
-                    "the start of the last way that does. See Conflicts.has_last_poses.")
-      .def_readonly(
-          "certain", &Conflict::certain,
-          "Whether the conflict is certain by the error budget, because ten or more of its points "
-          "hang together and are certainly too close; False where it is possible, None without a "
-          "budget.")
-      .def_readonly(
-          "obstacle_chainage", &Conflict::obstacle_chainage,
-          "Station of the obstacle itself: the chainage of the pose that it is seen from, "
-          "plus how far ahead of it the nearest point lies, metres, or None.")
-      .def_readonly("shift_left", &Conflict::shift_left,
-                    "How far the vehicle has to be shifted to the left so that the conflict's own "
-                    "points are free, metres. None: 2 m are too little, or no model was given.")
-      .def_readonly("shift_right", &Conflict::shift_right,
-                    "How far the vehicle has to be shifted to the right so that the "
-                    "conflict's own points are free, metres, or None as for shift_left.")
-      .def_readonly("chainage_from", &Conflict::chainage_from, "Metres along the path.")
-      .def_readonly("chainage_to", &Conflict::chainage_to, "Metres along the path.")
-      .def_readonly("station_from", &Conflict::station_from,
-                    "Station along the alignment of the pose of chainage_from, metres; None unless "
-                    "the labels have stations.")
-      .def_readonly("station_to", &Conflict::station_to,
-                    "Station along the alignment of the pose of chainage_to, metres, or None.")
-      .def_readonly("least_distance", &Conflict::least_distance,
-                    "The least distance between the conflict and the model, metres. None where the "
-                    "result has no clearances.")
-      .def_readonly(
-          "nearest_pose", &Conflict::nearest_pose,
-          "The pose at which the conflict has its least distance, or None without clearances.")
-      .def_readonly(
-          "nearest_source", &Conflict::nearest_source,
-          "The source index of the point with the least distance, or None without clearances.")
-      .def_readonly("encroachment", &Conflict::encroachment,
-                    "By how much the conflict is closer than allowed: radius - least_distance, "
-                    "metres, or None without clearances.")
-      .def_readonly(
-          "depth", &Conflict::depth,
-          "How deep the conflict's deepest point is inside the model, metres; 0 where none is. "
-          "None where the model has no solids, or the result no clearances.")
-      .def_readonly("points_inside", &Conflict::points_inside,
-                    "How many of the conflict's points are inside the model at any pose, or None "
-                    "as for depth.")
-      .def_property_readonly(
-          "nearest_point", [](const Conflict& c) { return place(c.nearest_point); },
-          "The point with the least distance: 3 float64, metres, or None without clearances.")
-      .def_property_readonly(
-          "side", [](const Conflict& c) { return name_of(c.side); },
-          "On which side of the model the conflict is: 'left', 'right', 'above', 'below', "
-          "'front', "
-          "'behind' or 'unknown'.")
-      .def_readonly("lateral", &Conflict::lateral,
-                    "How far the conflict is to the left of the model's pose, or of its body's "
-                    "with bodies=; metres, negative to the right, or None.")
-      .def_readonly("height", &Conflict::height,
-                    "How far the conflict is above the model's pose, or of its body's with "
-                    "bodies=; metres, or None.")
-      .def_readonly("group", &Conflict::group,
-                    "The smallest source index of the group that the conflict was cut from; "
-                    "conflicts of one group have the same.")
-      .def("__repr__", [](const Conflict& c) {
-        return py::str("<Conflict {}: {} points, {:.3f} to {:.3f} m, {}>")
-            .format(c.id, c.points, c.chainage_from, c.chainage_to, name_of(c.side));
-      });
-}
-
-void add_small_group(py::module_& module) {
-  py::class_<SmallGroup>(module, "SmallGroup", "A group of too few points to be listed.")
-      .def_readonly("points", &SmallGroup::points, "How many colliding points the group has.")
-      .def_readonly("source", &SmallGroup::source,
-                    "The smallest source index of the group's points.")
-      .def_readonly("box", &SmallGroup::box, "The box around the group's points, metres.")
-      .def_readonly("first_pose", &SmallGroup::first_pose,
-                    "The least index of a pose that touches one of its points.")
-      .def_readonly("last_pose", &SmallGroup::last_pose,
-                    "The greatest index of a pose that touches one of its points.")
-      .def_readonly("chainage_from", &SmallGroup::chainage_from, "Metres along the path.")
-      .def_readonly("chainage_to", &SmallGroup::chainage_to, "Metres along the path.")
-      .def_readonly("station_from", &SmallGroup::station_from,
-                    "Station of the pose of chainage_from, metres, or None.")
-      .def_readonly("station_to", &SmallGroup::station_to,
-                    "Station of the pose of chainage_to, metres, or None.");
+      "A place where the vehicle does not fit: colliding points that hang together.");
+  add_properties(conflict, kConflictColumns);
+  conflict.def("__repr__", [](const Conflict& c) {
+    return py::str("<Conflict {}: {} points, {:.3f} to {:.3f} m, {}>")
+        .format(c.id, c.points, c.chainage_from, c.chainage_to, name_of(c.side));
+  });
+  py::class_<SmallGroup> group(module, "SmallGroup", "A group of too few points to be listed.");
+  add_properties(group, kSmallGroupColumns);
 }
 
 void add_conflicts(py::module_& module) {
@@ -238,45 +146,12 @@ void add_station_rows(py::module_& module) {
                     "The greatest overthrow of the body's two ends, outwards: metres, or None.")
       .def_readonly("middle", &Overthrow::middle,
                     "The greatest overthrow of the body's middle, inwards: metres, or None.");
-  py::class_<StationRow>(module, "StationRow", "A stretch of the path.")
-      .def_readonly("chainage_from", &StationRow::chainage_from, "Metres along the path.")
-      .def_readonly("chainage_to", &StationRow::chainage_to, "Metres along the path.")
-      .def_readonly("station_from", &StationRow::station_from,
-                    "Station along the alignment at chainage_from, metres; None unless the labels "
-                    "have stations.")
-      .def_readonly("station_to", &StationRow::station_to,
-                    "Station along the alignment at chainage_to, metres, or None.")
-      .def_readonly("least", &StationRow::least,
-                    "The point that is nearest of all whose nearest pose is on the stretch: a "
-                    "FoundPlace, or None.")
-      .def_readonly("left", &StationRow::left,
-                    "The nearest of those to the left of their body's box, or None.")
-      .def_readonly("right", &StationRow::right,
-                    "The nearest of those to the right of their body's box, or None.")
-      .def_readonly("above", &StationRow::above,
-                    "The nearest of those above their body's box, or None.")
-      .def_property_readonly(
-          "verdict", [](const StationRow& row) { return name_of(row.verdict); },
-          "'clear', 'conflict' or 'undecided'.")
-      .def_property_readonly(
-          "reasons",
-          [](const StationRow& row) {
-            std::vector<std::string> names;
-            for (const Reason reason : row.reasons) names.emplace_back(name_of(reason));
-            return names;
-          },
-          "Why the verdict is undecided: a list such as ['near'].")
-      .def_readonly("doubts", &StationRow::doubts,
-                    "The codes of the warnings for which 'question-in-doubt' is among the reasons: "
-                    "a list such as ['leaves-scan'].")
-      .def_readonly("searched", &StationRow::is_searched,
-                    "Whether the whole vehicle was searched on all of the stretch.")
-      .def_readonly("overthrow", &StationRow::overthrow,
-                    "A list of Overthrow, one for each body of StationTable.bodies.")
-      .def("__repr__", [](const StationRow& row) {
-        return py::str("<StationRow {:.2f} to {:.2f} m: {}>")
-            .format(row.chainage_from, row.chainage_to, name_of(row.verdict));
-      });
+  py::class_<StationRow> row(module, "StationRow", "A stretch of the path.");
+  add_properties(row, kStationColumns);
+  row.def("__repr__", [](const StationRow& stretch) {
+    return py::str("<StationRow {:.2f} to {:.2f} m: {}>")
+        .format(stretch.chainage_from, stretch.chainage_to, name_of(stretch.verdict));
+  });
 }
 
 void add_station_table(py::module_& module) {
@@ -357,7 +232,6 @@ py::object to_python(Conflicts conflicts) {
 
 void add_findings(py::module_& module) {
   add_conflict(module);
-  add_small_group(module);
   add_conflicts(module);
   add_find_conflicts(module);
   add_station_table(module);

@@ -8,7 +8,9 @@
 #include "clearway/session.hpp"
 #include "clearway/shift.hpp"
 #include "clearway/trajectory.hpp"
+#include "core/describe/shift.hpp"
 #include "python/arrays.hpp"
+#include "python/fields.hpp"
 #include "python/findings.hpp"
 #include "python/model.hpp"
 #include "python/store.hpp"
@@ -28,32 +30,10 @@ std::string words_of(const StretchShift& row) {
 }
 
 void add_tables(py::module_& module) {
-  py::class_<StretchShift>(module, "StretchShift",
-                           "The least shift that frees a stretch of the path.")
-      .def_readonly("conflict", &StretchShift::conflict,
-                    "The id of the conflict whose stretch it is; 0 for the whole path.")
-      .def_readonly("first_pose", &StretchShift::first_pose, "The first pose of the stretch.")
-      .def_readonly("last_pose", &StretchShift::last_pose,
-                    "The last pose of the stretch; between poses, the way to the next one belongs "
-                    "to the stretch too.")
-      .def_readonly("chainage_from", &StretchShift::chainage_from, "Metres along the path.")
-      .def_readonly("chainage_to", &StretchShift::chainage_to, "Metres along the path.")
-      .def_readonly("station_from", &StretchShift::station_from,
-                    "Station along the alignment of the pose of chainage_from, metres; None unless "
-                    "the labels have stations.")
-      .def_readonly("station_to", &StretchShift::station_to,
-                    "Station along the alignment of the pose of chainage_to, metres, or None.")
-      .def_readonly("shift", &StretchShift::shift,
-                    "The shift with the least length that frees the stretch, metres, above 0 to "
-                    "the left. None where no shift that was tried does.")
-      .def_readonly("least_distance", &StretchShift::least_distance,
-                    "The least distance on the shifted stretch, metres. None where nothing is "
-                    "within the clearance that the result was asked for, or without a shift.")
-      .def_readonly("searches", &StretchShift::searches, "How many searches it took.")
-      .def_readonly("warned_of", &StretchShift::warned_of,
-                    "The codes of the warnings that a run along the shifted stretch causes and one "
-                    "along the stretch as it is does not, such as 'leaves-scan': a list of str.")
-      .def("__repr__", [](const StretchShift& row) { return text("<" + words_of(row) + ">"); });
+  py::class_<StretchShift> stretch(module, "StretchShift",
+                                   "The least shift that frees a stretch of the path.");
+  add_properties(stretch, kShiftColumns);
+  stretch.def("__repr__", [](const StretchShift& row) { return text("<" + words_of(row) + ">"); });
   py::class_<ShiftTable>(module, "ShiftTable", "The shifts of a path and of its conflicts.")
       .def_readonly("path", &ShiftTable::path, "The StretchShift of the whole path.")
       .def_readonly("conflicts", &ShiftTable::conflicts,

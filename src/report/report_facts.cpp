@@ -13,8 +13,9 @@
 #include <vector>
 
 #include "clearway/vec3.hpp"
-#include "core/query/ignored_points.hpp"
+#include "core/describe/conflict.hpp"
 #include "core/describe/query.hpp"
+#include "core/query/ignored_points.hpp"
 #include "core/util/format.hpp"
 #include "findings/conflict_rank.hpp"
 #include "io/files/xxh64.hpp"
@@ -175,26 +176,29 @@ void write_classes(JsonText& json, const ReportFacts& facts) {
   json.end(']').field("points_without_place", facts.points.without_place);
 }
 
+/// Writes the value of a column, if the row has one or the column is never left out.
+template <typename Column, typename Row>
+void write_finding(JsonText& json, const Column& column, const Row& row) {
+  const auto& value = column.of(row);
+  using Value = typename Column::Value;
+  if constexpr (std::is_same_v<Value, Box>) {
+    json.field("lo", value.lo).field("hi", value.hi);
+  } else if constexpr (std::is_enum_v<Value>) {
+    json.field(column.key, name_of(value));
+  } else if constexpr (requires { value.has_value(); }) {
+    if (value || !column.is_left_out) json.field(column.key, value);
+  } else {
+    json.field(column.key, value);
+  }
+}
+
 /// Writes a conflict. rank: 1 for the worst of all.
 void write_conflict(JsonText& json, const Conflict& conflict, std::size_t rank,
                     const ReportFacts& facts) {
-  json.begin('{').field("id", std::uint64_t{conflict.id}).field("points", conflict.points);
-  json.field("rank", std::uint64_t{rank});
-  json.field("source", conflict.source).field("group", conflict.group);
-  json.field("lo", conflict.box.lo).field("hi", conflict.box.hi);
-  json.field("centroid", conflict.centroid);
-  json.field("first_pose", std::uint64_t{conflict.first_pose});
-  json.field("last_pose", std::uint64_t{conflict.last_pose});
-  json.field("chainage_from", conflict.chainage_from).field("chainage_to", conflict.chainage_to);
-  if (conflict.station_from) json.field("station_from", conflict.station_from);
-  if (conflict.station_to) json.field("station_to", conflict.station_to);
-  json.field("obstacle_chainage", conflict.obstacle_chainage);
-  json.field("shift_left", conflict.shift_left).field("shift_right", conflict.shift_right);
-  json.field("least_distance", conflict.least_distance)
-      .field("nearest_pose", conflict.nearest_pose);
-  json.field("nearest_source", conflict.nearest_source)
-      .field("encroachment", conflict.encroachment);
-  json.field("depth", conflict.depth).field("points_inside", conflict.points_inside);
+  json.begin('{').field("rank", std::uint64_t{rank});
+  for_each_field(kConflictColumns, [&](const auto& column) {
+    if (column.is_in_files) write_finding(json, column, conflict);
+  });
   if (conflict.certain) json.field("class", *conflict.certain ? "certain" : "possible");
   const auto place = conflict.nearest_source ? facts.points.places.find(*conflict.nearest_source)
                                              : facts.points.places.end();
@@ -204,9 +208,8 @@ void write_conflict(JsonText& json, const Conflict& conflict, std::size_t rank,
   } else {
     json.value(place->second);
   }
-  json.field("side", name_of(conflict.side)).field("lateral", conflict.lateral);
   write_body(json, facts, conflict.body);
-  json.field("height", conflict.height).end('}');
+  json.end('}');
 }
 
 /// Writes the first group along the path that is too small for the list; null where there is none.

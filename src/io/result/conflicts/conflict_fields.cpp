@@ -6,53 +6,14 @@
 #include <string_view>
 #include <utility>
 
+#include "core/describe/conflict.hpp"
 #include "core/query/ignored_points.hpp"
 #include "io/result/conflicts/json_text.hpp"
 
 namespace clearway {
-namespace {
-
-/// The number of fields before those of stations, which stand behind chainage_to.
-constexpr std::ptrdiff_t kAfterChainage = 16;
-
-}  // namespace
-
 std::vector<ConflictField> fields_of(const Conflict& c, const ResultHeader& header) {
-  std::vector<ConflictField> fields{{"id", std::uint64_t{c.id}},
-                                    {"points", c.points},
-                                    {"source", c.source},
-                                    {"lo_x", c.box.lo.x},
-                                    {"lo_y", c.box.lo.y},
-                                    {"lo_z", c.box.lo.z},
-                                    {"hi_x", c.box.hi.x},
-                                    {"hi_y", c.box.hi.y},
-                                    {"hi_z", c.box.hi.z},
-                                    {"centroid_x", c.centroid.x},
-                                    {"centroid_y", c.centroid.y},
-                                    {"centroid_z", c.centroid.z},
-                                    {"first_pose", std::uint64_t{c.first_pose}},
-                                    {"last_pose", std::uint64_t{c.last_pose}},
-                                    {"chainage_from", c.chainage_from},
-                                    {"chainage_to", c.chainage_to},
-                                    {"least_distance", value_of<double>(c.least_distance)},
-                                    {"nearest_pose", value_of<std::uint64_t>(c.nearest_pose)},
-                                    {"nearest_source", value_of<std::uint64_t>(c.nearest_source)},
-                                    {"encroachment", value_of<double>(c.encroachment)},
-                                    {"side", std::string_view(name_of(c.side))},
-                                    {"lateral", value_of<double>(c.lateral)},
-                                    {"height", value_of<double>(c.height)},
-                                    {"group", c.group},
-                                    {"depth", value_of<double>(c.depth)},
-                                    {"points_inside", value_of<std::uint64_t>(c.points_inside)},
-                                    {"obstacle_chainage", value_of<double>(c.obstacle_chainage)},
-                                    {"shift_left", value_of<double>(c.shift_left)},
-                                    {"shift_right", value_of<double>(c.shift_right)}};
-  if (c.station_from) {
-    const std::initializer_list<ConflictField> stations{
-        {"station_from", value_of<double>(c.station_from)},
-        {"station_to", value_of<double>(c.station_to)}};
-    fields.insert(fields.begin() + kAfterChainage, stations);
-  }
+  std::vector<ConflictField> fields;
+  add_fields(fields, kConflictColumns, c);
   if (header.budget) {
     const bool certain = c.certain.value_or(false);
     fields.push_back({"class", std::string_view(certain ? "certain" : "possible")});
@@ -103,23 +64,12 @@ namespace {
 /// Most small groups that a file lists, the first ones along the path; nobody reads millions.
 constexpr std::size_t kMostSmallGroups = 1000;
 
-std::string stations_json(const SmallGroup& group) {
-  if (!group.station_from || !group.station_to) return "";
-  return ", \"station_from\": " + json_number(*group.station_from) +
-         ", \"station_to\": " + json_number(*group.station_to);
-}
-
 std::string small_json(const std::vector<SmallGroup>& groups) {
   std::string out;
   for (std::size_t i = 0; i < std::min(groups.size(), kMostSmallGroups); ++i) {
-    const SmallGroup& group = groups[i];
-    out += (i == 0 ? "" : ", ") + ("{\"points\": " + std::to_string(group.points)) +
-           ", \"source\": " + std::to_string(group.source) +
-           ", \"lo\": " + json_vector(group.box.lo) + ", \"hi\": " + json_vector(group.box.hi) +
-           ", \"first_pose\": " + std::to_string(group.first_pose) +
-           ", \"last_pose\": " + std::to_string(group.last_pose) +
-           ", \"chainage_from\": " + json_number(group.chainage_from) +
-           ", \"chainage_to\": " + json_number(group.chainage_to) + stations_json(group) + "}";
+    std::vector<ConflictField> fields;
+    add_fields(fields, kSmallGroupColumns, groups[i]);
+    out += (i == 0 ? "" : ", ") + json_object(fields);
   }
   return "[" + out + "]";
 }

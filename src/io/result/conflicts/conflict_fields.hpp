@@ -4,10 +4,13 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
 #include "clearway/conflicts.hpp"
+#include "core/describe/finding.hpp"
 #include "io/result/conflicts/conflict_file.hpp"
 #include "io/result/result.hpp"
 
@@ -22,11 +25,51 @@ FieldValue value_of(const std::optional<Number>& number) {
   return number ? FieldValue(static_cast<Value>(*number)) : FieldValue();
 }
 
-/// A column of a conflict in files without nesting.
+/// A value of a row in files without nesting, with the name of its column.
 struct ConflictField {
-  std::string_view name;
+  std::string name;
   FieldValue value;
+  bool is_real = false;  ///< whether the values of the column are numbers other than counts
 };
+
+/// Adds the fields of a row, by the list of its columns. A box has the corners lo and hi, a vector
+/// three coordinates, and a place its distance and its source.
+template <typename... Columns, typename Row>
+void add_fields(std::vector<ConflictField>& fields, const std::tuple<Columns...>& columns,
+                const Row& row) {
+  const auto add_vector = [&fields](const std::string& name, const Vec3& v) {
+    fields.push_back({name + "_x", v.x, true});
+    fields.push_back({name + "_y", v.y, true});
+    fields.push_back({name + "_z", v.z, true});
+  };
+  for_each_field(columns, [&](const auto& column) {
+    if (!column.is_in_files) return;
+    const std::string key = column.key;
+    const auto& value = column.of(row);
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, Box>) {
+      add_vector("lo", value.lo);
+      add_vector("hi", value.hi);
+    } else if constexpr (std::is_same_v<Value, Vec3>) {
+      add_vector(key, value);
+    } else if constexpr (std::is_same_v<Value, std::optional<FoundPlace>>) {
+      fields.push_back({key, value ? FieldValue(value->distance) : FieldValue(), true});
+      fields.push_back({key + "_source", value ? FieldValue(value->source) : FieldValue()});
+    } else if constexpr (std::is_enum_v<Value>) {
+      fields.push_back({key, std::string_view(name_of(value))});
+    } else if constexpr (std::is_same_v<Value, double>) {
+      fields.push_back({key, value, true});
+    } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
+      if (value || !column.is_left_out) fields.push_back({key, value_of(value), true});
+    } else if constexpr (std::is_unsigned_v<Value>) {
+      fields.push_back({key, std::uint64_t{value}});
+    } else if constexpr (requires { std::uint64_t{*value}; }) {
+      if (value || !column.is_left_out) {
+        fields.push_back({key, value_of<std::uint64_t>(value)});
+      }
+    }
+  });
+}
 
 /// The fields of a conflict, with the same names in the same order for every conflict of a result.
 /// The arguments must outlive the fields. body and body_name exist only where the result has

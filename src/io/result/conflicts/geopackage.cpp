@@ -89,13 +89,9 @@ std::vector<Layer> layers_of(const ConflictFile& file, const std::vector<Conflic
   return layers;
 }
 
-const char* sql_type(const FieldValue& value, std::string_view name) {
-  if (std::holds_alternative<std::string_view>(value)) return "TEXT";
-  if (std::holds_alternative<double>(value)) return "DOUBLE";
-  const bool a_length = name == "least_distance" || name == "encroachment" || name == "lateral" ||
-                        name == "height" || name == "depth" || name == "obstacle_chainage" ||
-                        name == "shift_left" || name == "shift_right";
-  return a_length ? "DOUBLE" : "INTEGER";
+const char* sql_type(const ConflictField& field) {
+  if (std::holds_alternative<std::string_view>(field.value)) return "TEXT";
+  return field.is_real ? "DOUBLE" : "INTEGER";
 }
 
 void add_system(sqlite::Database& database, std::int32_t id, const std::string& name,
@@ -147,7 +143,7 @@ void add_layer(sqlite::Database& database, const Layer& layer, const ConflictFil
   std::string columns, places = "?, ?";
   for (const ConflictField& field : sample_fields(file)) {
     if (field.name == "id") continue;
-    columns += ", \"" + std::string(field.name) + "\" " + sql_type(field.value, field.name);
+    columns += ", \"" + field.name + "\" " + sql_type(field);
     places += ", ?";
   }
   const std::string table = layer.table;

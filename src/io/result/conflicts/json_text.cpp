@@ -98,6 +98,21 @@ std::string json_vector(const Vec3& v) {
   return "[" + json_number(v.x) + ", " + json_number(v.y) + ", " + json_number(v.z) + "]";
 }
 
+std::string json_object(const std::vector<ConflictField>& fields) {
+  std::string out;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    std::string name = fields[i].name, value = json_value(fields[i].value);
+    if (name.ends_with("_x")) {
+      name.resize(name.size() - 2);
+      value = "[" + value + ", " + json_value(fields[i + 1].value) + ", " +
+              json_value(fields[i + 2].value) + "]";
+      i += 2;
+    }
+    out += (out.empty() ? "" : ", ") + json_string(name) + ": " + value;
+  }
+  return "{" + out + "}";
+}
+
 std::string json_strings(const std::vector<std::string>& texts) {
   std::string out;
   for (const std::string& text : texts) out += (out.empty() ? "" : ", ") + json_string(text);

@@ -30,6 +30,9 @@ std::string csv_value(const FieldValue& value);
 /// A vector as JSON: [x, y, z].
 std::string json_vector(const Vec3& v);
 
+/// Fields as a JSON object. The three fields of a vector's coordinates become one, an array.
+std::string json_object(const std::vector<ConflictField>& fields);
+
 /// Texts as a JSON array of strings.
 std::string json_strings(const std::vector<std::string>& texts);
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "clearway/error.hpp"
+#include "core/describe/shift.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/util/format.hpp"
 #include "io/files/file.hpp"
@@ -25,19 +26,14 @@ namespace {
 
 constexpr const char* kWarnedOf = "warned_of";
 
+/// The fields of a row, in which the side stands behind the shift.
 std::vector<ConflictField> fields_of(const StretchShift& row) {
+  std::vector<ConflictField> fields;
+  add_fields(fields, kShiftColumns, row);
   const char* side = side_of(row);
-  return {{"conflict", std::uint64_t{row.conflict}},
-          {"chainage_from", row.chainage_from},
-          {"chainage_to", row.chainage_to},
-          {"station_from", value_of(row.station_from)},
-          {"station_to", value_of(row.station_to)},
-          {"first_pose", std::uint64_t{row.first_pose}},
-          {"last_pose", std::uint64_t{row.last_pose}},
-          {"shift", value_of(row.shift)},
-          {"side", *side != 0 ? FieldValue(std::string_view(side)) : FieldValue()},
-          {"least_distance", value_of(row.least_distance)},
-          {"searches", row.searches}};
+  const auto behind = std::ranges::find(fields, "least_distance", &ConflictField::name);
+  fields.insert(behind, {"side", *side != 0 ? FieldValue(std::string_view(side)) : FieldValue()});
+  return fields;
 }
 
 void write_csv(const ShiftTable& table, const File& file) {
@@ -62,11 +58,9 @@ void write_csv(const ShiftTable& table, const File& file) {
 }
 
 std::string row_json(const StretchShift& row) {
-  std::string out;
-  for (const ConflictField& field : fields_of(row)) {
-    out += (out.empty() ? "" : ", ") + json_string(field.name) + ": " + json_value(field.value);
-  }
-  return "{" + out + ", " + json_string(kWarnedOf) + ": " + json_strings(row.warned_of) + "}";
+  std::string out = json_object(fields_of(row));
+  out.pop_back();
+  return out + ", " + json_string(kWarnedOf) + ": " + json_strings(row.warned_of) + "}";
 }
 
 /// A hash of everything that the shifts of a result depend on, besides their own options: what was
@@ -113,18 +107,10 @@ class ShiftReader {
   static constexpr std::uint64_t kMostSearches = std::uint64_t{1} << 53;
 
   StretchShift row(const KeyReader& of) const {
-    constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
     StretchShift out;
-    out.conflict = static_cast<std::uint32_t>(count(of.at("conflict"), kMost));
-    out.first_pose = static_cast<std::uint32_t>(count(of.at("first_pose"), kMost));
-    out.last_pose = static_cast<std::uint32_t>(count(of.at("last_pose"), kMost));
-    out.chainage_from = *number(of.at("chainage_from"));
-    out.chainage_to = *number(of.at("chainage_to"));
-    out.station_from = number_or_none(of.at("station_from"));
-    out.station_to = number_or_none(of.at("station_to"));
-    out.shift = number_or_none(of.at("shift"));
-    out.least_distance = number_or_none(of.at("least_distance"));
-    out.searches = count(of.at("searches"), kMostSearches);
+    for_each_field(kShiftColumns, [&](const auto& column) {
+      if (column.is_in_files) read(of.at(column.key), column.of(out));
+    });
     const KeyReader codes = of.at(kWarnedOf);
     if (!codes.value().is_array()) codes.refuse("expected a list, in brackets");
     if (codes.value().empty()) return out;
@@ -132,9 +118,15 @@ class ShiftReader {
     return out;
   }
 
-  static std::optional<double> number_or_none(const KeyReader& of) {
-    return of.value().is_null() ? std::nullopt : number(of);
+  static void read(const KeyReader& of, double& value) { value = *number(of); }
+  static void read(const KeyReader& of, std::optional<double>& value) {
+    if (!of.value().is_null()) value = number(of);
   }
+  static void read(const KeyReader& of, std::uint64_t& value) { value = count(of, kMostSearches); }
+  static void read(const KeyReader& of, std::uint32_t& value) {
+    value = static_cast<std::uint32_t>(count(of, std::numeric_limits<std::uint32_t>::max()));
+  }
+  static void read(const KeyReader&, std::vector<std::string>&) {}  // in files behind the columns
   static std::optional<double> number(const KeyReader& of) {
     if (!of.value().is_number()) of.refuse("expected a number");
     return of.value().get<double>();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "clearway/error.hpp"
+#include "core/describe/stations.hpp"
 #include "io/files/file.hpp"
 #include "io/files/text_writer.hpp"
 #include "io/result/conflicts/conflict_fields.hpp"
@@ -16,9 +17,6 @@
 namespace clearway {
 namespace {
 
-/// A column of a row, whose name may hold that of a body.
-using StationField = std::pair<std::string, FieldValue>;
-
 /// An overthrow to a tenth of a micrometre, which is finer than any path is known. Without this,
 /// roundings would show where it is 0.
 FieldValue overthrow_value(const std::optional<double>& metres) {
@@ -27,29 +25,16 @@ FieldValue overthrow_value(const std::optional<double>& metres) {
   return std::round(*metres * kDigits) / kDigits + 0.0;  // the sum makes 0 of -0
 }
 
-void add_place(const char* name, const std::optional<FoundPlace>& place,
-               std::vector<StationField>& fields) {
-  fields.emplace_back(name, place ? FieldValue(place->distance) : FieldValue());
-  fields.emplace_back(std::string(name) + "_source",
-                      place ? FieldValue(place->source) : FieldValue());
-}
-
 /// The fields of a row, with the same names in the same order for every row of a table.
-std::vector<StationField> fields_of(const StationRow& row, const std::vector<std::string>& bodies) {
-  std::vector<StationField> fields{{"chainage_from", row.chainage_from},
-                                   {"chainage_to", row.chainage_to},
-                                   {"station_from", value_of(row.station_from)},
-                                   {"station_to", value_of(row.station_to)}};
-  add_place("least", row.least, fields);
-  add_place("left", row.left, fields);
-  add_place("right", row.right, fields);
-  add_place("above", row.above, fields);
-  fields.emplace_back("verdict", std::string_view(name_of(row.verdict)));
+std::vector<ConflictField> fields_of(const StationRow& row,
+                                     const std::vector<std::string>& bodies) {
+  std::vector<ConflictField> fields;
+  add_fields(fields, kStationColumns, row);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const std::string prefix = bodies[b].empty() ? "" : bodies[b] + "_";
     const Overthrow& overthrow = row.overthrow.at(b);
-    fields.emplace_back(prefix + "overthrow_end", overthrow_value(overthrow.end));
-    fields.emplace_back(prefix + "overthrow_middle", overthrow_value(overthrow.middle));
+    fields.push_back({prefix + "overthrow_end", overthrow_value(overthrow.end), true});
+    fields.push_back({prefix + "overthrow_middle", overthrow_value(overthrow.middle), true});
   }
   return fields;
 }
@@ -57,30 +42,28 @@ std::vector<StationField> fields_of(const StationRow& row, const std::vector<std
 void write_csv(const StationFile& stations, const File& file) {
   TextWriter out(file);
   const auto write = [&](const StationRow& row, const std::string& doubts, auto text_of) {
-    for (const StationField& field : fields_of(row, stations.table.bodies)) {
+    for (const ConflictField& field : fields_of(row, stations.table.bodies)) {
       out << text_of(field) << ",";
     }
     out << doubts << "\n";
   };
   StationRow header;
   header.overthrow.resize(stations.table.bodies.size());
-  write(header, "doubts", [](const StationField& field) { return csv_cell(field.first); });
+  write(header, "doubts", [](const ConflictField& field) { return csv_cell(field.name); });
   for (const StationRow& row : stations.table.rows) {
     std::string doubts;  // codes have no blanks
     for (const std::string& code : row.doubts) doubts += (doubts.empty() ? "" : " ") + code;
-    write(row, doubts, [](const StationField& field) { return csv_value(field.second); });
+    write(row, doubts, [](const ConflictField& field) { return csv_value(field.value); });
   }
   out.flush();
 }
 
 std::string row_json(const StationRow& row, const std::vector<std::string>& bodies) {
-  std::string out;
-  for (const StationField& field : fields_of(row, bodies)) {
-    out += (out.empty() ? "" : ", ") + json_string(field.first) + ": " + json_value(field.second);
-  }
+  std::string out = json_object(fields_of(row, bodies));
+  out.pop_back();
   std::vector<std::string> reasons;
   for (const Reason reason : row.reasons) reasons.emplace_back(name_of(reason));
-  return "{" + out + ", \"reasons\": " + json_strings(reasons) +
+  return out + ", \"reasons\": " + json_strings(reasons) +
          ", \"doubts\": " + json_strings(row.doubts) +
          ", \"searched\": " + (row.is_searched ? "true" : "false") + "}";
 }

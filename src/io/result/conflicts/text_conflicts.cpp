@@ -26,35 +26,12 @@ void write_csv(const ConflictFile& conflicts, const File& file) {
   out.flush();
 }
 
-namespace {
-
-/// A conflict as a JSON object. Corners and centroid are arrays, which replace the fields of their
-/// three coordinates.
-std::string conflict_json(const Conflict& conflict, const ResultHeader& header) {
-  std::string out;
-  for (const ConflictField& field : fields_of(conflict, header)) {
-    if (field.name.ends_with("_y") || field.name.ends_with("_z")) continue;
-    std::string_view name = field.name;
-    std::string value = json_value(field.value);
-    if (name.ends_with("_x")) {
-      name.remove_suffix(2);
-      value = json_vector(name == "lo"   ? conflict.box.lo
-                          : name == "hi" ? conflict.box.hi
-                                         : conflict.centroid);
-    }
-    out += (out.empty() ? "" : ", ") + json_string(name) + ": " + value;
-  }
-  return "{" + out + "}";
-}
-
-}  // namespace
-
 void write_json(const ConflictFile& conflicts, const File& file) {
   TextWriter out(file);
   out << "{\n" << summary_json(conflicts) << ",\n  \"conflicts\": [";
   const char* between = "\n    ";
   for (const Conflict& conflict : conflicts.conflicts.listed) {
-    out << between << conflict_json(conflict, conflicts.header);
+    out << between << json_object(fields_of(conflict, conflicts.header));
     between = ",\n    ";
   }
   out << (conflicts.conflicts.listed.empty() ? "]\n}\n" : "\n  ]\n}\n");

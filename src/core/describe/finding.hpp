@@ -1,0 +1,25 @@
+#pragma once
+
+#include "core/describe/field.hpp"
+
+namespace clearway {
+
+/// A column of a table of findings, such as that of conflicts: a member of its rows, with its names
+/// and texts for the files, the pages and Python. for_each_field() visits the columns of a list.
+template <typename Row, typename Type>
+struct FindingColumn {
+  using Value = Type;
+
+  Type Row::*member;
+  const char* key;          ///< name in files, on pages and in Python
+  const char* doc;          ///< documentation in Python
+  bool is_in_files = true;  ///< whether CSV, JSON, GeoJSON, GeoPackage and pages have it
+  /// Whether these leave it out where a row has no value, instead of saying that it has
+  /// none. Then either all rows of a table have a value or none has.
+  bool is_left_out = false;
+
+  const Type& of(const Row& row) const { return row.*member; }
+  Type& of(Row& row) const { return row.*member; }
+};
+
+}  // namespace clearway
