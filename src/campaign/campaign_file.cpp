@@ -10,8 +10,10 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/describe/model.hpp"
 #include "core/describe/query.hpp"
 #include "core/describe/search.hpp"
+#include "core/describe/trajectory.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/models/model_input.hpp"
@@ -104,25 +106,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<OptionKey> kModelKeys{{"unit", "--model-unit", ValueKind::kText},
-                                        {"spacing", "--model-spacing", ValueKind::kLength},
-                                        {"vertices", "--model-vertices", ValueKind::kFlag},
-                                        {"above", "--model-above", ValueKind::kLength}};
-/// Options that only the search takes, because conflicts and reports know the kind of model from
-/// the result.
-const std::vector<OptionKey> kModelKindKeys{{"as", "--model-as", ValueKind::kText}};
-const std::vector<OptionKey> kAxisKeys{{"forward", "--forward", ValueKind::kText},
-                                       {"up", "--up", ValueKind::kText}};
-const std::vector<OptionKey> kTrajectoryKeys{
-    {"format", "--trajectory-format", ValueKind::kText},
-    {"allow_non_rigid", "--allow-non-rigid", ValueKind::kFlag},
-    {"angles", "--angles", ValueKind::kTexts},
-    {"crs", "--trajectory-crs", ValueKind::kText},
-    {"datum", "--trajectory-datum", ValueKind::kText},
-    {"unit", "--trajectory-unit", ValueKind::kText},
-    {"lever_arm", "--lever-arm", ValueKind::kLengths}};
 const std::vector<OptionKey> kChainageKeys{
     {"chainage_start", "--chainage-start", ValueKind::kLength}};
+
 /// The kind of value that campaign.json has for a field.
 template <typename Struct, typename Value>
 ValueKind kind_of(const Field<Struct, Value>& field) {
@@ -136,7 +122,10 @@ ValueKind kind_of(const Field<Struct, Value>& field) {
     return ValueKind::kBoxes;
   } else if constexpr (std::is_integral_v<Value>) {
     return field.unit == FieldUnit::kBytes ? ValueKind::kSize : ValueKind::kCount;
-  } else if constexpr (std::is_enum_v<Value>) {
+  } else if constexpr (std::is_same_v<Value, Vec3>) {
+    return ValueKind::kLengths;
+  } else if constexpr (std::is_enum_v<Value> || std::is_same_v<Value, std::string> ||
+                       std::is_same_v<Value, FileUnit>) {
     return ValueKind::kText;
   } else {
     return ValueKind::kCounts;
@@ -147,41 +136,42 @@ ValueKind kind_of(const Field<Struct, Value>& field) {
 template <typename... Fields>
 void add_keys(std::vector<OptionKey>& keys, const std::tuple<Fields...>& fields) {
   for_each_field(fields, [&keys](const auto& field) {
-    if (field.is_in_campaigns) {
+    if (field.is_in_campaigns && *field.option != '\0') {
       keys.push_back({field.name_in_campaigns(), field.option, kind_of(field)});
     }
   });
 }
 
-std::vector<OptionKey> query_keys() {
+template <typename... Fields>
+std::vector<OptionKey> keys_of(const std::tuple<Fields...>& fields) {
   std::vector<OptionKey> keys;
-  add_keys(keys, kQueryValues);
-  add_keys(keys, kIgnoredFields<QueryParameters>);
-  add_keys(keys, std::tuple{kStrict<SearchOptions>});
+  add_keys(keys, fields);
   return keys;
 }
 
-/// What only a search may take of the machine.
-std::vector<OptionKey> search_keys() {
-  std::vector<OptionKey> keys;
-  add_keys(keys, std::tuple{kEngine<SearchOptions>});
-  add_keys(keys, kDeviceFields<SearchOptions>);
-  add_keys(keys, kFileFields);
+std::vector<OptionKey> trajectory_keys() {
+  std::vector<OptionKey> keys = keys_of(std::tuple_cat(kFormatOfTrajectory, kRigidityOfTrajectory));
+  keys.push_back({"angles", "--angles", ValueKind::kTexts});
+  add_keys(keys, std::tuple_cat(kNumbersOfTrajectory, kPlaceOfTrajectory));
   return keys;
 }
 
-std::vector<OptionKey> limit_keys() {
-  std::vector<OptionKey> keys;
-  add_keys(keys, std::tuple{kMemory<SearchOptions>, kThreads<SearchOptions>});
-  return keys;
-}
-
-const std::vector<OptionKey> kQueryKeys = query_keys();
+const std::vector<OptionKey> kModelKeys = keys_of(kShapeOfModel);
+/// Options that only the search takes, because conflicts and reports know the kind of model from
+/// the result.
+const std::vector<OptionKey> kModelKindKeys = keys_of(kKindOfModel);
+const std::vector<OptionKey> kAxisKeys = keys_of(kTurnOfModel);
+const std::vector<OptionKey> kTrajectoryKeys = trajectory_keys();
+const std::vector<OptionKey> kQueryKeys =
+    keys_of(std::tuple_cat(kQueryFields, std::tuple{kStrict<SearchOptions>}));
 const std::vector<OptionKey> kConflictKeys{{"gap", "--gap", ValueKind::kLength},
                                            {"min_points", "--min-points", ValueKind::kCount},
                                            {"split", "--split", ValueKind::kLength}};
-const std::vector<OptionKey> kSearchKeys = search_keys();
-const std::vector<OptionKey> kLimitKeys = limit_keys();
+/// What only a search may take of the machine, and what all commands may.
+const std::vector<OptionKey> kSearchKeys = keys_of(
+    std::tuple_cat(std::tuple{kEngine<SearchOptions>}, kDeviceFields<SearchOptions>, kFileFields));
+const std::vector<OptionKey> kLimitKeys =
+    keys_of(std::tuple{kMemory<SearchOptions>, kThreads<SearchOptions>});
 
 /// Refuses a name that cannot become a folder and a heading of the page.
 void check_name(const KeyReader& at, const std::string& name) {

@@ -11,8 +11,11 @@
 #include "clearway/follow.hpp"
 #include "clearway/unsearched.hpp"
 #include "clearway/vehicle.hpp"
+#include "core/describe/model.hpp"
+#include "core/describe/trajectory.hpp"
 #include "core/util/format.hpp"
 #include "python/arrays.hpp"
+#include "python/fields.hpp"
 #include "python/inputs.hpp"
 #include "python/model.hpp"
 #include "python/store.hpp"
@@ -184,8 +187,33 @@ towed_by: the Body that tows this one like a trailer, placed on the same path, o
 messages: a list to which warnings are appended, as of poses where the body is off the path.)");
 }
 
-constexpr const char* kReadVehicle =
-    R"(read_vehicle(file, poses, model_as='auto', *, spacing=0.0, unit=0.0, environment_unit=None, vertices_only=False, above=None, forward='+x', up='+z', format='auto', allow_non_rigid=False, angle_unit='declared', angle_frame='declared', crs='', default_crs='', datum='', metres_per_unit=0.0, lever_arm=(0.0, 0.0, 0.0), messages=None)
+void add_read_vehicle(py::module_& module) {
+  module.def(
+      "read_vehicle",
+      [](const py::object& file, const py::object& poses, const std::string& model_as,
+         const EnvironmentUnitArgument& environment_unit, const py::object& messages,
+         const py::kwargs& given) {
+        VehicleOptions options;
+        options.model = model_options(value_of("model_as", kChoices<ModelAs>, model_as), given,
+                                      environment_unit);
+        options.trajectory = trajectory_options(given, environment_unit);
+        const FileUnit& unit = options.model.unit;
+        const auto path = std::make_shared<const std::vector<Pose>>(
+            poses_of(poses_array(poses, "poses"), "poses"));
+        std::vector<Body> read = read_noting(messages, [&, from = path_of(file)](auto* noted) {
+          std::vector<Body> bodies = read_vehicle(from, *path, options, noted);
+          check_unit_is_given(from, environment_unit,
+                              unit.is_known() ? unit : options.trajectory.metres_per_unit, *noted);
+          return bodies;
+        });
+        std::vector<PlacedBody> placed;
+        for (Body& body : read) placed.push_back({std::move(body), path});
+        return placed;
+      },
+      "file"_a, "poses"_a, "model_as"_a = "auto", py::kw_only(), "environment_unit"_a = py::none(),
+      "messages"_a = py::none(),
+      ("read_vehicle(file, poses, model_as='auto', *, " + signature_of(kModelFields) + ", " +
+       signature_of(kTrajectoryFields) + R"DOC(, environment_unit=None, messages=None)
 --
 
 Read the JSON file of a vehicle of several bodies, and the files that it names.
@@ -194,52 +222,14 @@ Returns a list of Body, in the file's order, for Query(poses=poses, bodies=...).
 
 file: the same as for clearway run --vehicle.
 poses: the path that the vehicle follows, n x 4 x 4: that of the query.
-model_as: 'auto': meshes as their triangles are, and other models as points.
-    'surface': triangles; each body has to be a mesh.
-    'points': the surface of a mesh is sampled, which needs a spacing.
-    'solid': triangles, and what closed parts enclose; each body has to be a mesh.
-spacing, vertices_only, above, forward, up: of all models, as read_model() takes them.
+)DOC" + lines_of(kKindOfModel) +
+       R"DOC(spacing, vertices_only, above, forward, up: of all models, as read_model() takes them.
 unit: of models without a model_unit, as read_model() takes it.
 environment_unit: into which lengths with a unit are converted, as read_model() takes it.
 format, allow_non_rigid, angle_unit, angle_frame, crs, default_crs, datum, metres_per_unit,
     lever_arm: for trajectories that bodies have of their own, as read_trajectory() takes them.
-messages: a list to which notes and warnings are appended.)";
-
-void add_read_vehicle(py::module_& module) {
-  module.def(
-      "read_vehicle",
-      [](const py::object& file, const py::object& poses, const std::string& model_as,
-         double spacing, const UnitArgument& unit, const EnvironmentUnitArgument& environment_unit,
-         bool vertices_only, std::optional<double> above, const std::string& forward,
-         const std::string& up, const std::string& format, bool allow_non_rigid,
-         const std::string& angle_unit, const std::string& angle_frame, const std::string& crs,
-         const std::string& default_crs, const std::string& datum,
-         const UnitArgument& metres_per_unit, const std::array<double, 3>& lever_arm,
-         const py::object& messages) {
-        VehicleOptions options;
-        options.model = model_options(value_of("model_as", kModelAs, model_as), spacing, unit,
-                                      environment_unit, vertices_only, above, forward, up);
-        options.trajectory =
-            trajectory_options(format, allow_non_rigid, angle_unit, angle_frame, crs, default_crs,
-                               datum, metres_per_unit, environment_unit, lever_arm);
-        const auto path = std::make_shared<const std::vector<Pose>>(
-            poses_of(poses_array(poses, "poses"), "poses"));
-        std::vector<Body> read = read_noting(messages, [&, from = path_of(file)](auto* noted) {
-          std::vector<Body> bodies = read_vehicle(from, *path, options, noted);
-          check_unit_is_given(from, environment_unit,
-                              file_unit(unit).is_known() ? unit : metres_per_unit, *noted);
-          return bodies;
-        });
-        std::vector<PlacedBody> placed;
-        for (Body& body : read) placed.push_back({std::move(body), path});
-        return placed;
-      },
-      "file"_a, "poses"_a, "model_as"_a = "auto", py::kw_only(), "spacing"_a = 0.0, "unit"_a = 0.0,
-      "environment_unit"_a = py::none(), "vertices_only"_a = false, "above"_a = py::none(),
-      "forward"_a = "+x", "up"_a = "+z", "format"_a = "auto", "allow_non_rigid"_a = false,
-      "angle_unit"_a = "declared", "angle_frame"_a = "declared", "crs"_a = "", "default_crs"_a = "",
-      "datum"_a = "", "metres_per_unit"_a = 0.0, "lever_arm"_a = std::array<double, 3>{0, 0, 0},
-      "messages"_a = py::none(), kReadVehicle);
+messages: a list to which notes and warnings are appended.)DOC")
+          .c_str());
 }
 
 void add_unsearched(py::module_& module) {

@@ -2,8 +2,10 @@
 
 #include <pybind11/stl.h>
 
+#include <array>
 #include <cctype>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
@@ -13,11 +15,13 @@
 
 #include "clearway/answer.hpp"
 #include "clearway/box.hpp"
+#include "clearway/file_unit.hpp"
 #include "clearway/vec3.hpp"
 #include "core/describe/field.hpp"
 #include "core/describe/finding.hpp"
 #include "python/arrays.hpp"
 #include "python/python.hpp"
+#include "python/values.hpp"
 
 /// Properties and keyword arguments of Python from described fields. A call takes those arguments
 /// as
@@ -30,6 +34,12 @@ template <typename Value>
 py::object value_to_python(const Value& value) {
   if constexpr (std::is_enum_v<Value>) {
     return py::str(name_in(kChoices<Value>, value));
+  } else if constexpr (std::is_same_v<Value, FileUnit>) {
+    return py::float_(value.metres());
+  } else if constexpr (std::is_same_v<Value, Vec3>) {
+    return py::make_tuple(value.x, value.y, value.z);
+  } else if constexpr (std::is_same_v<Value, std::filesystem::path>) {
+    return value.empty() ? py::none() : to_python(value);
   } else {
     return py::cast(value);
   }
@@ -40,6 +50,13 @@ template <typename Struct, typename Value>
 Value value_from_python(const Field<Struct, Value>& field, const py::handle& given) {
   if constexpr (std::is_enum_v<Value>) {
     return value_of(field.key, kChoices<Value>, given.cast<std::string>());
+  } else if constexpr (std::is_same_v<Value, FileUnit>) {
+    return file_unit(given.cast<UnitArgument>());
+  } else if constexpr (std::is_same_v<Value, Vec3>) {
+    const auto [x, y, z] = given.cast<std::array<double, 3>>();
+    return {x, y, z};
+  } else if constexpr (std::is_same_v<Value, std::filesystem::path>) {
+    return given.is_none() ? std::filesystem::path() : path_of(given);
   } else {
     return given.cast<Value>();
   }
@@ -91,12 +108,22 @@ py::tuple check_of_value(FieldRange range, bool is_required) {
     py::list names;
     for (const auto& [name, value] : kChoices<Value>) names.append(name);
     return py::make_tuple("choice", names);
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    return py::make_tuple("text");
+  } else if constexpr (std::is_same_v<Value, FileUnit>) {
+    return py::make_tuple("unit");
+  } else if constexpr (std::is_same_v<Value, Vec3>) {
+    return py::make_tuple("vector");
+  } else if constexpr (std::is_same_v<Value, std::filesystem::path>) {
+    return py::make_tuple("path");
   } else if constexpr (std::is_same_v<Value, double>) {
     // Zero is the default of lengths that need not be given, so it may be given too.
     const char* limit = range == FieldRange::kAny ? "any" : is_required ? "above 0" : "from 0";
     return py::make_tuple("number", limit);
   } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
-    return py::make_tuple("optional", range == FieldRange::kAny ? "any" : "from 0");
+    return py::make_tuple("optional", range == FieldRange::kAny         ? "any"
+                                      : range == FieldRange::kAboveZero ? "above 0"
+                                                                        : "from 0");
   } else if constexpr (std::is_integral_v<Value>) {
     return py::make_tuple("whole", std::numeric_limits<Value>::max());
   } else if constexpr (std::is_same_v<Value, std::vector<Box>>) {

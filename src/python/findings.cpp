@@ -175,8 +175,8 @@ void add_station_table(py::module_& module) {
         StationOptions options;
         options.every = every;
         options.chainage_start = chainage_start;
-        options.forward = value_of("forward", kAxes, forward);
-        options.up = value_of("up", kAxes, up);
+        options.forward = value_of("forward", kChoices<Axis>, forward);
+        options.up = value_of("up", kChoices<Axis>, up);
         options.model_box = model_box;
         options.threads = threads;
         const std::vector<Pose> path = poses_of(poses_array(poses, "poses"), "poses");
@@ -218,8 +218,8 @@ ConflictOptions conflict_options(double gap, std::uint64_t min_points, double sp
   options.min_points = min_points;
   options.split = split;
   options.chainage_start = chainage_start;
-  options.forward = value_of("forward", kAxes, forward);
-  options.up = value_of("up", kAxes, up);
+  options.forward = value_of("forward", kChoices<Axis>, forward);
+  options.up = value_of("up", kChoices<Axis>, up);
   options.model_box = model_box;
   options.memory_bytes = memory_bytes;
   options.threads = threads;

@@ -9,7 +9,10 @@
 #include "clearway/alignment.hpp"
 #include "clearway/convert.hpp"
 #include "clearway/line.hpp"
+#include "core/describe/convert.hpp"
+#include "core/describe/trajectory.hpp"
 #include "python/arrays.hpp"
+#include "python/fields.hpp"
 #include "python/store.hpp"
 #include "python/values.hpp"
 #include "python/watch.hpp"
@@ -18,22 +21,6 @@ namespace clearway::python {
 namespace {
 
 using namespace py::literals;
-
-constexpr Choice<TrajectoryFormat> kFormats[] = {
-    {"auto", TrajectoryFormat::kAuto},
-    {"matrix", TrajectoryFormat::kMatrix},
-    {"tum", TrajectoryFormat::kTum},
-    {"euroc", TrajectoryFormat::kEuroc},
-    {"csv", TrajectoryFormat::kCsv},
-    {"pose-xyzw", TrajectoryFormat::kPoseXyzw},
-    {"pose-wxyz", TrajectoryFormat::kPoseWxyz},
-    {"sbet", TrajectoryFormat::kSbet},
-    {"3dtk-pose", TrajectoryFormat::kThreedtkPose},
-    {"3dtk-frames", TrajectoryFormat::kThreedtkFrames}};
-constexpr Choice<AngleUnit> kAngleUnits[] = {
-    {"declared", AngleUnit::kDeclared}, {"deg", AngleUnit::kDegrees}, {"rad", AngleUnit::kRadians}};
-constexpr Choice<AngleFrame> kAngleFrames[] = {
-    {"declared", AngleFrame::kDeclared}, {"ned", AngleFrame::kNed}, {"enu", AngleFrame::kEnu}};
 
 constexpr Choice<CantLine> kCants[] = {{"file", CantLine::kFile},
                                        {"none", CantLine::kNone},
@@ -70,29 +57,22 @@ void add_labels(py::module_& module) {
 void add_read_trajectory(py::module_& module) {
   module.def(
       "read_trajectory",
-      [](const py::object& path, const std::string& format, bool allow_non_rigid,
-         const std::string& angle_unit, const std::string& angle_frame, const std::string& crs,
-         const std::string& default_crs, const std::string& datum,
-         const UnitArgument& metres_per_unit, const EnvironmentUnitArgument& environment_unit,
-         const std::array<double, 3>& lever_arm, const py::object& messages, PoseLabels* labels) {
-        const TrajectoryOptions options =
-            trajectory_options(format, allow_non_rigid, angle_unit, angle_frame, crs, default_crs,
-                               datum, metres_per_unit, environment_unit, lever_arm);
+      [](const py::object& path, const EnvironmentUnitArgument& environment_unit,
+         const py::object& messages, PoseLabels* labels, const py::kwargs& given) {
+        const TrajectoryOptions options = trajectory_options(given, environment_unit);
         PoseLabels found;
         const auto poses = read_noting(messages, [&, file = path_of(path)](auto* noted) {
           auto read = read_trajectory(file, options, noted, &found);
-          check_unit_is_given(file, environment_unit, metres_per_unit, *noted);
+          check_unit_is_given(file, environment_unit, options.metres_per_unit, *noted);
           return read;
         });
         if (labels != nullptr) *labels = std::move(found);
         return to_array(poses);
       },
-      "path"_a, py::kw_only(), "format"_a = "auto", "allow_non_rigid"_a = false,
-      "angle_unit"_a = "declared", "angle_frame"_a = "declared", "crs"_a = "", "default_crs"_a = "",
-      "datum"_a = "", "metres_per_unit"_a = 0.0, "environment_unit"_a = py::none(),
-      "lever_arm"_a = std::array<double, 3>{0, 0, 0}, "messages"_a = py::none(),
+      "path"_a, py::kw_only(), "environment_unit"_a = py::none(), "messages"_a = py::none(),
       "labels"_a = py::none(),
-      R"(read_trajectory(path, *, format='auto', allow_non_rigid=False, angle_unit='declared', angle_frame='declared', crs='', default_crs='', datum='', metres_per_unit=0.0, environment_unit=None, lever_arm=(0.0, 0.0, 0.0), messages=None, labels=None)
+      ("read_trajectory(path, *, " + signature_of(kTrajectoryFields) +
+       R"DOC(, environment_unit=None, messages=None, labels=None)
 --
 
 Read the poses of a trajectory. Returns an array of n x 4 x 4 float64.
@@ -102,24 +82,14 @@ the model is at pose[:3, :3] @ m + pose[:3, 3].
 
 path: the file.
 
-format: 'auto', 'matrix', 'tum', 'euroc', 'csv', 'pose-xyzw', 'pose-wxyz', 'sbet', '3dtk-pose'
-    or '3dtk-frames'.
-allow_non_rigid: also takes matrices that scale or shear.
-angle_unit: the unit of angles: 'deg', 'rad', or 'declared', which is what the file says.
-angle_frame: how angles count: 'ned' (clockwise from north), 'enu' (counter-clockwise from
-    east), or 'declared', which is what the file says.
-crs: the projected coordinate system to turn latitudes and longitudes into, such as 'EPSG:25832'.
-default_crs: the coordinate system to take where crs is empty, for example store.crs_wkt().
-datum: the geographic coordinate system of latitudes and longitudes; empty: WGS 84.
-metres_per_unit: the unit of positions: metres, or a name: 'mm', 'cm', 'm', 'in', 'ft' (the
-    environment's foot, also METRES_PER_FOOT), 'ift' (the international foot) or 'us-ft' (the US
-    survey foot); 0: metres, unless the file names a unit.
-environment_unit: the environment's unit, into which a known unit is converted:
+)DOC" + lines_of(kTrajectoryFields) +
+       R"DOC(environment_unit: the environment's unit, into which a known unit is converted:
     store.metres_per_unit(), store.length_unit(), or a name. None: the metre; a file that names
     another unit is refused then.
-lever_arm: where the positions of the file lie in the model's frame: x, y and z, metres.
 messages: a list to which notes and warnings are appended.
-labels: a PoseLabels, which gets the times, names and stations that the file has.)");
+labels: a PoseLabels, which gets the times, names and stations that the file has.)DOC")
+          .c_str());
+  add_checks(module, kTrajectoryFields);
 }
 
 void add_read_alignment(py::module_& module) {
@@ -342,109 +312,46 @@ void add_convert_report(py::module_& module) {
 void add_convert(py::module_& module) {
   module.def(
       "convert",
-      [](const py::object& inputs, const py::object& output, std::optional<double> scale,
-         std::uint32_t cell_points, std::optional<double> regular_size, std::uint64_t memory_bytes,
-         int threads, const UnitArgument& unit, const UnitArgument& unit_z, bool ignore_crs,
-         std::vector<std::string> columns, const py::object& origins,
-         const py::object& origins_path, const std::array<double, 3>& lever_arm,
-         const std::string& format, const std::string& angle_unit, const std::string& angle_frame,
-         const std::string& crs, const std::string& datum, const UnitArgument& metres_per_unit,
-         bool keep_withheld, bool skip_unreadable, bool strict, bool overwrite, bool resume,
-         py::object progress, py::object message, py::object stop) {
-        ConvertOptions options{
-            .scale = scale,
-            .cell_points = cell_points,
-            .regular_size = regular_size,
-            .memory_bytes = memory_bytes,
-            .threads = threads,
-            .unit = file_unit(unit),
-            .unit_z = file_unit(unit_z),
-            .ignore_crs = ignore_crs,
-            .columns = std::move(columns),
-            .origins = origins.is_none() ? std::filesystem::path() : path_of(origins),
-            .origins_path =
-                origins_path.is_none() ? std::filesystem::path() : path_of(origins_path),
-            .origins_path_options = trajectory_options(format, false, angle_unit, angle_frame, crs,
-                                                       "", datum, metres_per_unit, 1.0, {0, 0, 0}),
-            .lever_arm = {lever_arm[0], lever_arm[1], lever_arm[2]},
-            .keep_withheld = keep_withheld,
-            .skip_unreadable = skip_unreadable,
-            .strict = strict,
-            .overwrite = overwrite,
-            .resume = resume};
+      [](const py::object& inputs, const py::object& output, py::object progress,
+         py::object message, py::object stop, const py::kwargs& given) {
+        ConvertOptions options;
+        set_fields(kConvertFields, given, options);
+        set_fields(kReadingFields, given, options.origins_path_options);
         Watch watch(std::move(progress), std::move(message), std::move(stop));
         watch.attach(options);
         return watch.run([&, from = paths_of(inputs), to = path_of(output)] {
           return convert(from, to, options);
         });
       },
-      "inputs"_a, "output"_a, py::kw_only(), "scale"_a = py::none(),
-      "cell_points"_a = ConvertOptions{}.cell_points, "regular_size"_a = py::none(),
-      "memory_bytes"_a = ConvertOptions{}.memory_bytes, "threads"_a = 0, "unit"_a = 0.0,
-      "unit_z"_a = 0.0, "ignore_crs"_a = false, "columns"_a = std::vector<std::string>{},
-      "origins"_a = py::none(), "origins_path"_a = py::none(),
-      "lever_arm"_a = std::array<double, 3>{0, 0, 0}, "format"_a = "auto",
-      "angle_unit"_a = "declared", "angle_frame"_a = "declared", "crs"_a = "", "datum"_a = "",
-      "metres_per_unit"_a = 0.0, "keep_withheld"_a = false, "skip_unreadable"_a = false,
-      "strict"_a = false, "overwrite"_a = false, "resume"_a = false, "progress"_a = py::none(),
-      "message"_a = py::none(), "stop"_a = py::none(),
-      R"(convert(inputs, output, *, scale=None, cell_points=65536, regular_size=None, memory_bytes=4294967296, threads=0, unit=0.0, unit_z=0.0, ignore_crs=False, columns=(), origins=None, origins_path=None, lever_arm=(0.0, 0.0, 0.0), format='auto', angle_unit='declared', angle_frame='declared', crs='', datum='', metres_per_unit=0.0, keep_withheld=False, skip_unreadable=False, strict=False, overwrite=False, resume=False, progress=None, message=None, stop=None)
+      "inputs"_a, "output"_a, py::kw_only(), "progress"_a = py::none(), "message"_a = py::none(),
+      "stop"_a = py::none(),
+      ("convert(inputs, output, *, " + signature_of(kConvertFields) + ", " +
+       signature_of(kReadingFields) + R"DOC(, progress=None, message=None, stop=None)
 --
 
 Turn scans into a store, the one file that searches read. Returns a ConvertReport.
 
 inputs: a path, or several: files or folders of LAS, LAZ, E57, PLY, PCD, PTX, PTS, 3DTK or text.
 output: the file of the store to write.
-scale: the step of the stored coordinates, metres; None: that of the input, or what fits.
-cell_points: how many points a cell has at the most, from 64 to 1048576.
-regular_size: metres; cells are cubes of it. None: cells of about the same number of points.
-memory_bytes: how many bytes of working memory may be taken.
-threads: how many threads work; 0: as many as there are cores.
-unit: the unit of the coordinates where the inputs name none: 'm', 'ft', 'ift', 'us-ft', or metres;
-    0: not known, and taken for metres.
-unit_z: the unit of the heights of all inputs, which are then converted to the unit of the other
-    coordinates: a name such as 'us-ft', or metres; 0: heights are in the unit of the others.
-ignore_crs: takes coordinates as they are: in degrees, in different units, in a system that is not
-    read, or on a map that does not keep lengths.
-columns: which columns of texts are x, y and z: numbers from 1, or names of the header.
-origins: a CSV file with the header first,x,y,z: from source index first on, the scanner stood at
-    x, y, z. None: the places are those that the inputs tell.
-origins_path: the path of a moving scanner, a trajectory with times: each point of LAS and LAZ was
-    seen from where the scanner is at the point's GPS time. It excludes origins.
-lever_arm: where the scanner is in the frame of the poses of origins_path: x, y and z, metres.
-format, angle_unit, angle_frame, crs, datum, metres_per_unit: how origins_path is read, as
+)DOC" + lines_of(kConvertFields) +
+       R"DOC(format, angle_unit, angle_frame, crs, datum, metres_per_unit: how origins_path is read, as
     read_trajectory() takes them.
-keep_withheld: keeps points of LAS and LAZ with the flag withheld, which are left out otherwise.
-skip_unreadable: leaves out files that cannot be read, with a warning.
-strict: raises InputError where anything is warned of.
-overwrite: replaces an existing store.
-resume: leaves a store of the same inputs and options as it is; any other file there is refused.
 progress: called with a ProgressUpdate, in this thread, up to 20 times a second.
 message: called with each note and warning, a Message, in this thread.
-stop: an object with is_set(), such as threading.Event. When it is set, Interrupted is raised.)");
+stop: an object with is_set(), such as threading.Event. When it is set, Interrupted is raised.)DOC")
+          .c_str());
+  add_checks(module, kConvertFields);
 }
 
 }  // namespace
 
-TrajectoryOptions trajectory_options(const std::string& format, bool allow_non_rigid,
-                                     const std::string& angle_unit, const std::string& angle_frame,
-                                     const std::string& crs, const std::string& default_crs,
-                                     const std::string& datum, const UnitArgument& metres_per_unit,
-                                     const EnvironmentUnitArgument& environment_unit,
-                                     const std::array<double, 3>& lever_arm) {
+TrajectoryOptions trajectory_options(const py::kwargs& given,
+                                     const EnvironmentUnitArgument& environment_unit) {
   TrajectoryOptions options;
-  options.format = value_of("format", kFormats, format);
-  options.allow_non_rigid = allow_non_rigid;
-  options.angle_unit = value_of("angle_unit", kAngleUnits, angle_unit);
-  options.angle_frame = value_of("angle_frame", kAngleFrames, angle_frame);
-  options.crs = crs;
-  options.default_crs = default_crs;
-  options.datum = datum;
-  options.metres_per_unit = file_unit(metres_per_unit);
+  set_fields(kTrajectoryFields, given, options);
   const EnvironmentUnit environment = environment_unit_of(environment_unit);
   options.environment_unit = environment.metres;
   options.environment_unit_is_assumed = environment.is_assumed;
-  options.lever_arm = {lever_arm[0], lever_arm[1], lever_arm[2]};
   return options;
 }
 

@@ -140,6 +140,8 @@ TYPES = {
     "unknown_bin_cells()": "SectionCells | None",
     "free_cells()": "_Flags",
     "ReportSummary.conflicts": "Conflicts",
+    "(forward)": "_Axis",
+    "(up)": "_Axis",
     "outline_model(outline)": "_Doubles | Sequence[Sequence[float]]",
     "Session.__enter__": "def __enter__(self) -> Self: ...",
     "Session.__exit__": "def __exit__(self, *raised: object) -> None: ...",

@@ -113,22 +113,18 @@ spacing: where the vertices are samples of a mesh, how far its surface may be fr
 void add_read_model_points(py::module_& module) {
   module.def(
       "read_model_points",
-      [](const py::object& path, double spacing, const UnitArgument& unit,
-         const EnvironmentUnitArgument& environment_unit, bool vertices_only,
-         std::optional<double> above, const std::string& forward, const std::string& up,
-         const py::object& messages) {
-        const ModelOptions options = model_options(
-            ModelAs::kPoints, spacing, unit, environment_unit, vertices_only, above, forward, up);
+      [](const py::object& path, const EnvironmentUnitArgument& environment_unit,
+         const py::object& messages, const py::kwargs& given) {
+        const ModelOptions options = model_options(ModelAs::kPoints, given, environment_unit);
         return to_array(read_noting(messages, [&, file = path_of(path)](auto* noted) {
           auto read = read_model_points(file, options, noted);
-          check_unit_is_given(file, environment_unit, unit, *noted);
+          check_unit_is_given(file, environment_unit, options.unit, *noted);
           return read;
         }));
       },
-      "path"_a, py::kw_only(), "spacing"_a = 0.0, "unit"_a = 0.0, "environment_unit"_a = py::none(),
-      "vertices_only"_a = false, "above"_a = py::none(), "forward"_a = "+x", "up"_a = "+z",
-      "messages"_a = py::none(),
-      R"(read_model_points(path, *, spacing=0.0, unit=0.0, environment_unit=None, vertices_only=False, above=None, forward='+x', up='+z', messages=None)
+      "path"_a, py::kw_only(), "environment_unit"_a = py::none(), "messages"_a = py::none(),
+      ("read_model_points(path, *, " + signature_of(kModelFields) +
+       R"DOC(, environment_unit=None, messages=None)
 --
 
 Read a model: points of a scan's format, or a mesh (STL, OBJ, PLY with faces, OFF).
@@ -137,54 +133,43 @@ The surface of a mesh is sampled to points. Returns n x 3 float64, metres, in th
 read_model() also keeps how far the surface may be from the points, so that answers say it.
 
 path: the file.
-spacing: how closely a mesh is sampled, metres: no place of its surface is farther from a point.
-    A mesh needs a spacing.
-unit: the unit of the file: metres, or a name: 'mm', 'cm', 'm', 'in', 'ft' (the environment's foot,
-    also METRES_PER_FOOT), 'ift' (the international foot) or 'us-ft' (the US survey foot);
-    0: as the file says, or else that of the environment.
-environment_unit: the environment's unit, into which a known unit is converted:
+)DOC" + lines_of(kModelFields) +
+       R"DOC(environment_unit: the environment's unit, into which a known unit is converted:
     store.metres_per_unit(), store.length_unit(), or a name. None: the metre; a file that names
     another unit is refused then.
-vertices_only: takes the vertices of a mesh alone, and not its surface.
-above: leaves out points whose z is below it, metres; for example wheels on the ground.
-forward, up: the axes of the file that point ahead and up, such as '+y' or '-z'. The model is turned
-    so that x points ahead, y to the left and z up.
-messages: a list to which notes and warnings are appended.)");
+messages: a list to which notes and warnings are appended.)DOC")
+          .c_str());
+  add_checks(module, kModelFields);
+  add_checks(module, kKindOfModel);
 }
 
 void add_read_model(py::module_& module) {
   module.def(
       "read_model",
-      [](const py::object& path, const std::string& model_as, double spacing,
-         const UnitArgument& unit, const EnvironmentUnitArgument& environment_unit,
-         bool vertices_only, std::optional<double> above, const std::string& forward,
-         const std::string& up, const py::object& messages) {
-        const ModelOptions options =
-            model_options(value_of("model_as", kModelAs, model_as), spacing, unit, environment_unit,
-                          vertices_only, above, forward, up);
+      [](const py::object& path, const std::string& model_as,
+         const EnvironmentUnitArgument& environment_unit, const py::object& messages,
+         const py::kwargs& given) {
+        const ModelOptions options = model_options(
+            value_of("model_as", kChoices<ModelAs>, model_as), given, environment_unit);
         return read_noting(messages, [&, file = path_of(path)](auto* noted) {
           Model read = read_model(file, options, noted);
-          check_unit_is_given(file, environment_unit, unit, *noted);
+          check_unit_is_given(file, environment_unit, options.unit, *noted);
           return read;
         });
       },
-      "path"_a, "model_as"_a = "auto", py::kw_only(), "spacing"_a = 0.0, "unit"_a = 0.0,
-      "environment_unit"_a = py::none(), "vertices_only"_a = false, "above"_a = py::none(),
-      "forward"_a = "+x", "up"_a = "+z", "messages"_a = py::none(),
-      R"(read_model(path, model_as='auto', *, spacing=0.0, unit=0.0, environment_unit=None, vertices_only=False, above=None, forward='+x', up='+z', messages=None)
+      "path"_a, "model_as"_a = "auto", py::kw_only(), "environment_unit"_a = py::none(),
+      "messages"_a = py::none(),
+      ("read_model(path, model_as='auto', *, " + signature_of(kModelFields) +
+       R"DOC(, environment_unit=None, messages=None)
 --
 
 Read a model, to be searched as it is. Returns a Model.
 
 path: the file.
-model_as: 'auto': a mesh as its surface, any other file as its points; with spacing or
-    vertices_only a mesh as points.
-    'surface': the triangles of the mesh; a file without any is refused.
-    'solid': the same, and what its closed parts enclose; a mesh without any is refused.
-    'points': samples of the surface of a mesh, or the points of the file.
-spacing, vertices_only: for points, as read_model_points() takes them.
-above: cuts the triangles at this height, and leaves out what is below it; metres; not for 'solid'.
-unit, environment_unit, forward, up, messages: as read_model_points() takes them.)");
+)DOC" + lines_of(kKindOfModel) +
+       lines_of(kModelFields) +
+       R"DOC(environment_unit, messages: as read_model_points() takes them.)DOC")
+          .c_str());
 }
 
 }  // namespace
@@ -218,20 +203,15 @@ Model model_of(const py::object& object) {
   return model;
 }
 
-ModelOptions model_options(ModelAs as, double spacing, const UnitArgument& unit,
-                           const EnvironmentUnitArgument& environment_unit, bool vertices_only,
-                           std::optional<double> above, const std::string& forward,
-                           const std::string& up) {
+ModelOptions model_options(ModelAs as, const py::kwargs& given,
+                           const EnvironmentUnitArgument& environment_unit) {
+  ModelOptions options;
+  set_fields(kModelFields, given, options);
   const EnvironmentUnit environment = environment_unit_of(environment_unit);
-  return {.as = as,
-          .spacing = spacing,
-          .unit = file_unit(unit),
-          .environment_unit = environment.metres,
-          .forward = value_of("forward", kAxes, forward),
-          .up = value_of("up", kAxes, up),
-          .vertices_only = vertices_only,
-          .above = above,
-          .environment_unit_is_assumed = environment.is_assumed};
+  options.as = as;
+  options.environment_unit = environment.metres;
+  options.environment_unit_is_assumed = environment.is_assumed;
+  return options;
 }
 
 std::string model_words(const py::object& object) {

@@ -4,22 +4,13 @@
 #include <string>
 
 #include "clearway/model.hpp"
+#include "core/describe/model.hpp"
 #include "python/arrays.hpp"
 #include "python/python.hpp"
 #include "python/values.hpp"
 
 /// Models of queries and reports: an array of points, or a Model.
 namespace clearway::python {
-
-inline constexpr Choice<ModelAs> kModelAs[] = {{"auto", ModelAs::kAuto},
-                                               {"points", ModelAs::kPoints},
-                                               {"surface", ModelAs::kSurface},
-                                               {"solid", ModelAs::kSolid}};
-
-inline constexpr Choice<Axis> kAxes[] = {
-    {"+x", Axis::kPlusX}, {"x", Axis::kPlusX}, {"-x", Axis::kMinusX},
-    {"+y", Axis::kPlusY}, {"y", Axis::kPlusY}, {"-y", Axis::kMinusY},
-    {"+z", Axis::kPlusZ}, {"z", Axis::kPlusZ}, {"-z", Axis::kMinusZ}};
 
 /// The names of two axes, ahead and up, as Python shows them: ("+y", "+z").
 py::tuple to_tuple(const ModelAxes& axes);
@@ -31,12 +22,10 @@ py::object model_object(const py::handle& object);
 /// are not finite.
 Model model_of(const py::object& object);
 
-/// The options for the values that Python has for them. Throws UsageError for an unknown unit
+/// The options for the arguments that are described fields. Throws UsageError for an unknown unit
 /// and for unknown axes.
-ModelOptions model_options(ModelAs as, double spacing, const UnitArgument& unit,
-                           const EnvironmentUnitArgument& environment_unit, bool vertices_only,
-                           std::optional<double> above, const std::string& forward,
-                           const std::string& up);
+ModelOptions model_options(ModelAs as, const py::kwargs& given,
+                           const EnvironmentUnitArgument& environment_unit);
 
 /// The size of a model in words, such as "12 model points" or "12 model triangles".
 std::string model_words(const py::object& object);

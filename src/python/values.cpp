@@ -160,8 +160,8 @@ EnvironmentUnit environment_unit_of(const EnvironmentUnitArgument& unit) {
 }
 
 void check_unit_is_given(const std::filesystem::path& file,
-                         const EnvironmentUnitArgument& environment_unit,
-                         const UnitArgument& of_file, std::vector<Message>& noted) {
+                         const EnvironmentUnitArgument& environment_unit, const FileUnit& of_file,
+                         std::vector<Message>& noted) {
   if (environment_unit) return;
   const auto is_assumed = [](const Message& message) { return message.code == "unit-assumed"; };
   const auto found = std::ranges::find_if(noted, is_assumed);
@@ -172,7 +172,7 @@ void check_unit_is_given(const std::filesystem::path& file,
                                ? "another unit than the metre"
                                : "units of " + format_number(metres->second) + " m";
   std::erase_if(noted, is_assumed);
-  if (file_unit(of_file).is_known()) return;
+  if (of_file.is_known()) return;
   throw UsageError(file.string() + ": has lengths in " + unit +
                    ", and nothing says into which unit to convert them. Give "
                    "environment_unit=store.metres_per_unit(), or environment_unit=1.0 for a store "

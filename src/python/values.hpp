@@ -58,8 +58,8 @@ EnvironmentUnit environment_unit_of(const EnvironmentUnitArgument& unit);
 /// the argument that names the unit of the file, which overrides the file's own. noted: the
 /// messages of reading it, from which those about the assumed unit are taken.
 void check_unit_is_given(const std::filesystem::path& file,
-                         const EnvironmentUnitArgument& environment_unit,
-                         const UnitArgument& of_file, std::vector<Message>& noted);
+                         const EnvironmentUnitArgument& environment_unit, const FileUnit& of_file,
+                         std::vector<Message>& noted);
 
 /// The warnings in words, for example "; 2 warnings: no-poses, steps"; empty where there are none.
 std::string warning_words(const std::vector<Message>& warnings);

@@ -11,10 +11,12 @@
 #include "cli/commands.hpp"
 #include "cli/steps.hpp"
 #include "cli/support/console.hpp"
+#include "cli/support/field_options.hpp"
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/program_json.hpp"
 #include "cli/support/trajectory_options.hpp"
+#include "core/describe/convert.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
@@ -147,8 +149,7 @@ void log_report(const ConvertCommand& options, const ConvertReport& report) {
 ConvertReport perform(ConvertCommand& options) {
   ConvertOptions& conversion = options.conversion;
   conversion.regular_size = regular_size_of(options.layout);
-  if (options.scale != 0) conversion.scale = options.scale;
-  options.lengths.convert(1);  // a lever arm is in metres, whatever the unit of the environment
+  options.lengths.convert(1);  // in metres, whatever the unit of the environment
   ConsoleProgress progress;
   watch_call(conversion, progress);
   ConvertReport report = convert(options.inputs, options.output, conversion);
@@ -167,81 +168,14 @@ void add_options(CLI::App& command, ConvertCommand& options) {
   command.add_option("-o,--output", options.output, "The store, an HDF5 file")
       ->type_name("FILE")
       ->required();
-  command
-      .add_option("--scale", options.scale,
-                  "Step of the stored integers in metres (default: that of the input, else the "
-                  "finest power of ten from 1e-6 to 1e-3 that fits)")
-      ->group(title_of(OptionGroup::kStore))
-      ->type_name("METRES")
-      ->transform(positive_length());
-  command.add_option("--cell-points", conversion.cell_points, "Points per cell, 64 to 1048576")
-      ->group(title_of(OptionGroup::kStore))
-      ->type_name("N")
-      ->capture_default_str();
+  add_fields(command, kConvertFields, conversion, options.lengths);
   command
       .add_option("--layout", options.layout,
                   "adaptive, or regular:SIZE for cubes of that size, for example regular:50cm")
       ->group(title_of(OptionGroup::kStore))
       ->capture_default_str();
-  add_memory_option(command, conversion.memory_bytes);
-  add_threads_option(command, conversion.threads);
-  add_unit_option(command, "--unit", conversion.unit,
-                  "Unit of the coordinates where the inputs name none: m, ft, ift or us-ft "
-                  "(default: not known, and taken for metres)")
-      ->group(title_of(OptionGroup::kUnits));
-  add_unit_option(command, "--unit-z", conversion.unit_z,
-                  "Unit of the heights where it differs from that of the other coordinates, to "
-                  "which they are then converted: mm, cm, m, in, ft, ift or us-ft")
-      ->group(title_of(OptionGroup::kUnits));
-  command
-      .add_flag("--ignore-crs", conversion.ignore_crs,
-                "Take coordinates as they are: in degrees or different units, in a system that is "
-                "not read, or on a map that does not keep lengths")
-      ->group(title_of(OptionGroup::kUnits));
-  command
-      .add_option("--columns", conversion.columns,
-                  "Columns of x, y and z in texts: numbers from 1, or names of the header")
-      ->group(title_of(OptionGroup::kInputs))
-      ->type_name("X,Y,Z")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command
-      .add_option("--origins", conversion.origins,
-                  "Where the scanners stood: CSV with the header first,x,y,z, from source index "
-                  "`first` on (default: what the scans say)")
-      ->group(title_of(OptionGroup::kInputs))
-      ->type_name("FILE");
-  command
-      .add_option("--origins-path", conversion.origins_path,
-                  "The path of a moving scanner, a trajectory with times: each point of LAS or LAZ "
-                  "was seen from where it is at the point's GPS time")
-      ->group(title_of(OptionGroup::kPath))
-      ->type_name("FILE");
-  {
-    const GroupScope group(command, OptionGroup::kPath);
-    options.lengths.add(command, "--lever-arm", conversion.lever_arm,
-                        "Where the scanner is in the frame of the poses of --origins-path, in "
-                        "metres (default: 0,0,0)");
-  }
-  add_options_of_reading(command, conversion.origins_path_options);
-  command
-      .add_flag("--keep-withheld", conversion.keep_withheld,
-                "Keep points of LAS and LAZ with the flag withheld, which are left out otherwise")
-      ->group(title_of(OptionGroup::kInputs));
-  command
-      .add_flag("--skip-unreadable", conversion.skip_unreadable,
-                "Leave out files that cannot be read, and list them; reads all once more")
-      ->group(title_of(OptionGroup::kInputs));
-  command.add_flag(
-      "--strict", conversion.strict,
-      "Treat warnings as errors: all are shown, and no store is written (exit code 3)");
-  CLI::Option* force =
-      command.add_flag("--force", conversion.overwrite, "Overwrite an existing store");
-  command
-      .add_flag(
-          "--resume", conversion.resume,
-          "Leave a finished store of these inputs as it is; an interrupted conversion starts again")
-      ->excludes(force);
+  add_options_of_reading(command, conversion.origins_path_options, options.lengths);
+  command.get_option("--resume")->excludes("--force");
   command.add_flag("--json", options.json, "Print one JSON object about the conversion");
 }
 

@@ -10,6 +10,7 @@
 #include "cli/support/field_options.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
+#include "core/describe/model.hpp"
 #include "core/describe/query.hpp"
 #include "core/describe/search.hpp"
 #include "io/files/text_number.hpp"
@@ -43,21 +44,7 @@ void add_inputs(CLI::App& command, RunOptions& options) {
   command.add_option("-o,--output", options.output, "The result, an HDF5 file")
       ->type_name("FILE")
       ->required();
-  command
-      .add_option_function<std::string>(
-          "--model-as",
-          [&options](const std::string& name) {
-            options.model_options.as = name == "solid"     ? ModelAs::kSolid
-                                       : name == "surface" ? ModelAs::kSurface
-                                       : name == "points"  ? ModelAs::kPoints
-                                                           : ModelAs::kAuto;
-          },
-          "surface: search the triangles of a mesh as they are. solid: and what its closed parts "
-          "enclose. points: search points on its surface; the answer says how far they are apart. "
-          "auto: surface for a mesh, points for other files (default)")
-      ->group(title_of(OptionGroup::kModel))
-      ->type_name("KIND")
-      ->check(CLI::IsMember({"auto", "surface", "solid", "points"}));
+  add_fields(command, kKindOfModel, options.model_options, options.lengths);
   add_model_options(command, options.model_options, options.lengths);
   add_turn_options(command, options.model_options.forward, options.model_options.up);
   add_trajectory_options(command, options.trajectory_options, options.lengths);

@@ -30,7 +30,6 @@ struct ConvertCommand {
   ConvertOptions conversion;
   LengthOptions lengths;
   std::string layout = "adaptive";
-  double scale = 0;
   bool json = false;
 };
 

@@ -45,7 +45,8 @@ struct Field {
   const char* topic = "";                   ///< name in messages, as in "the radius"
   const char* option = "";                  ///< option of the command line; empty: it has none
   OptionGroup group = OptionGroup::kAsked;  ///< where the help shows the option
-  const char* help = "";                    ///< help text of the option, without its default
+  const char* value_name = "";  ///< the help's name for its value, if the type does not say it
+  const char* help = "";        ///< help text of the option, without its default
   const char* usual = "";  ///< what the help gives as the default; empty: it says nothing of it
   const char* doc = "";    ///< documentation in Python
   const char* yes = "asked for";     ///< a flag that is set, where questions are compared

@@ -189,40 +189,41 @@ def _described(kind, *limits):
         return _or_none(_described("number", *limits))
     if kind == "whole":
         return _whole(limits[0])
+    if kind == "text":
+        return _text
+    if kind == "path":
+        return _path
+    if kind == "unit":
+        return _or_name(_at_least_0)
+    if kind == "vector":
+        return _of_type("Sequence[float]")(_tuple_of(3, _finite, "three numbers x, y and z"))
     if kind == "boxes":
         return _each(_kind(_clearway.Box))
     return _each(_described(*limits[0]))
 
 
 _messages = _each(_kind(_clearway.Message))
-_axis = _of_type("_Axis")(lambda name, value: _text(name, value))
 _model = _of_type("ArrayLike | Model")(lambda _name, value: value)
 
 _CHECKS = {
     **{name: _described(*check) for name, check in _clearway._checks.items()},
-    **dict.fromkeys(("scale", "regular_size", "step", "rail_distance", "length", "width",
-                     "corner_radius", "track"), _above_0),
-    **dict.fromkeys(("unit", "unit_z", "metres_per_unit"), _or_name(_at_least_0)),
+    **dict.fromkeys(("step", "rail_distance", "length", "width", "corner_radius", "track"),
+                    _above_0),
     "environment_unit": _or_name(_above_0),
-    **dict.fromkeys(("spacing", "max_gap", "split", "every", "band"), _at_least_0),
-    **dict.fromkeys(("above", "at", "chainage_start", "model_above", "station_from",
+    **dict.fromkeys(("max_gap", "split", "every", "band"), _at_least_0),
+    **dict.fromkeys(("at", "chainage_start", "model_above", "station_from",
                      "station_to", "height", "rear", "front", "base"), _finite),
     **dict.fromkeys(("max_points", "min_points", "model_left_out"), _whole(2**64 - 1)),
-    **dict.fromkeys(("allow_non_rigid", "vertices_only", "ignore_crs", "keep_withheld",
-                     "skip_unreadable", "reverse", "mirror"), _flag),
-    "model_as": _one_of("auto", "points", "surface", "solid"),
-    "angle_unit": _one_of("declared", "deg", "rad"),
-    "angle_frame": _one_of("declared", "ned", "enu"),
+    **dict.fromkeys(("reverse", "mirror"), _flag),
     "cant": _one_of("file", "none", "center", "inside-rail", "outside-rail", "left-rail",
                     "right-rail"),
     "order": _one_of("ne", "en"),
     "table": _one_of("bands", "stations", "boxes", "cells", "bin-cells", "unknown-cells",
                      "unknown-bin-cells"),
-    **dict.fromkeys(("forward", "up"), _axis),
-    **dict.fromkeys(("name", "format", "crs", "default_crs", "datum", "title", "project", "client",
-                     "author", "date", "result_name", "environment_name", "model_name",
-                     "trajectory_name", "alignment", "environment_crs"), _text),
-    **dict.fromkeys(("path", "file", "output", "origins", "origins_path"), _path),
+    **dict.fromkeys(("name", "title", "project", "client", "author", "date", "result_name",
+                     "environment_name", "model_name", "trajectory_name", "alignment",
+                     "environment_crs"), _text),
+    **dict.fromkeys(("path", "file", "output"), _path),
     **dict.fromkeys(("inputs", "parts"), _paths),
     **dict.fromkeys(("poses", "points", "vertices", "triangles", "path_pose", "lo", "hi",
                      "outline"), _anything),
@@ -233,16 +234,12 @@ _CHECKS = {
     **dict.fromkeys(("warnings", "input_warnings"), _of_type("Iterable[Message]")(_messages)),
     "stop": _of_type("_Stop")(_having("is_set")),
     "messages": _of_type("list[Message]")(_having("append")),
-    "cell_points": _whole(2**32 - 1),
-    "columns": _each(_text),
     "classes": _each(_finite),
     "shard": _tuple_of(2, _whole(2**32 - 1), "a pair (i, n)"),
     "window": _tuple_of(4, _finite, "four numbers, y from and to, and z from and to"),
     "pivots": _tuple_of(2, _finite, "two numbers, the front pivot and the rear one"),
     "lateral": _of_type("Sequence[float]")(_tuple_of(
         2, _finite, "two numbers of metres, the shift farthest to the right and to the left")),
-    "lever_arm": _of_type("Sequence[float]")(
-        _tuple_of(3, _finite, "three numbers x, y and z")),
     "bodies": _each(_kind(_clearway.Body)),
     "model_box": _kind(_clearway.Box),
     "labels": _kind(_clearway.PoseLabels),

@@ -2,13 +2,17 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <tuple>
 #include <type_traits>
 #include <vector>
 
+#include "clearway/axis.hpp"
 #include "clearway/box.hpp"
+#include "clearway/file_unit.hpp"
+#include "clearway/vec3.hpp"
 #include "cli/support/ignored_options.hpp"
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
@@ -17,27 +21,28 @@
 /// Options of a command line from described fields. All that is given outlives the command.
 namespace clearway::tool {
 
-/// Adds an option that takes the name of one of the choices.
+/// Adds an option that takes the name of one of the choices. value_name: the help's name for it;
+/// empty: the help shows the default instead.
 template <typename Value>
 CLI::Option* add_choice(CLI::App& command, const std::string& name, Value& chosen,
-                        const std::string& help) {
+                        const char* value_name, const std::string& help) {
   std::vector<std::string> names;
   std::string usual;
   for (const auto& [known, value] : kChoices<Value>) {
     names.emplace_back(known);
     if (value == chosen) usual = known;
   }
-  return command
-      .add_option_function<std::string>(
-          name,
-          [&chosen](const std::string& given) {
-            for (const auto& [known, value] : kChoices<Value>) {
-              if (given == known) chosen = value;
-            }
-          },
-          help)
-      ->check(CLI::IsMember(names))
-      ->default_str(usual);
+  CLI::Option* option = command
+                            .add_option_function<std::string>(
+                                name,
+                                [&chosen](const std::string& given) {
+                                  for (const auto& [known, value] : kChoices<Value>) {
+                                    if (given == known) chosen = value;
+                                  }
+                                },
+                                help)
+                            ->check(CLI::IsMember(names));
+  return *value_name == '\0' ? option->default_str(usual) : option->type_name(value_name);
 }
 
 /// Adds the option of a field, in its group. lengths: where lengths with units are noted.
@@ -49,8 +54,23 @@ CLI::Option* add_field(CLI::App& command, const Field<Struct, Value>& field, Own
   Value& value = field.of(owner);
   if constexpr (std::is_same_v<Value, bool>) {
     return command.add_flag(name, value, help);
+  } else if constexpr (std::is_same_v<Value, Axis>) {
+    return add_axis_option(command, name, value, help);
   } else if constexpr (std::is_enum_v<Value>) {
-    return add_choice(command, name, value, help);
+    return add_choice(command, name, value, field.value_name, help);
+  } else if constexpr (std::is_same_v<Value, FileUnit>) {
+    return add_unit_option(command, name, value, help);
+  } else if constexpr (std::is_same_v<Value, Vec3>) {
+    return lengths.add(command, name, value, help);
+  } else if constexpr (std::is_same_v<Value, std::filesystem::path>) {
+    return command.add_option(name, value, help)->type_name("FILE");
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    return command.add_option(name, value, help)->type_name(field.value_name);
+  } else if constexpr (std::is_same_v<Value, std::vector<std::string>>) {
+    return command.add_option(name, value, help)
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->type_name(field.value_name);
   } else if constexpr (std::is_same_v<Value, std::vector<std::uint8_t>>) {
     return add_class_option(command, name, value, help);
   } else if constexpr (std::is_same_v<Value, std::vector<Box>>) {
@@ -64,9 +84,11 @@ CLI::Option* add_field(CLI::App& command, const Field<Struct, Value>& field, Own
     if constexpr (std::is_same_v<Value, std::uint64_t>) {
       if (field.unit == FieldUnit::kBytes) return add_size_option(command, name, value, help);
     }
-    return command.add_option(name, value, help)
-        ->type_name("N")
-        ->check(CLI::Range(static_cast<Value>(field.least), static_cast<Value>(field.most)));
+    CLI::Option* option = command.add_option(name, value, help)->type_name("N");
+    if (*field.usual == '\0') option->capture_default_str();
+    if (field.most == 0) return option;
+    return option->check(
+        CLI::Range(static_cast<Value>(field.least), static_cast<Value>(field.most)));
   } else if (field.unit == FieldUnit::kMetres) {
     return lengths.add(command, name, value, help, field.range);
   } else if constexpr (std::is_same_v<Value, std::optional<double>>) {

@@ -11,10 +11,13 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "cli/support/field_options.hpp"
 #include "cli/support/lengths.hpp"
+#include "core/describe/model.hpp"
 #include "core/describe/search.hpp"
 #include "core/geometry/angle.hpp"
 #include "core/util/format.hpp"
@@ -235,9 +238,7 @@ void add_threads_option(CLI::App& command, int& threads) {
 }
 
 void add_model_unit(CLI::App& command, const std::string& names, FileUnit& unit) {
-  add_unit_option(command, names, unit,
-                  "Unit of the model's file; ft is the environment's foot, ift the international "
-                  "and us-ft the US survey foot (default: that of the environment)")
+  add_unit_option(command, names, unit, std::get<0>(kShapeOfModel).help_with_default())
       ->group(title_of(OptionGroup::kUnits));
 }
 
@@ -257,28 +258,14 @@ CLI::Option* add_axis_option(CLI::App& command, const std::string& name, Axis& a
 
 void add_turn_options(CLI::App& command, Axis& forward, Axis& up) {
   const GroupScope group(command, OptionGroup::kUnits);
-  add_axis_option(command, "--forward", forward,
-                  "Axis of the model's file that points ahead, for example +y; the model is turned "
-                  "so that it becomes x (default: +x)");
-  add_axis_option(command, "--up", up,
-                  "Axis of the model's file that points up, for example +y; the model is turned so "
-                  "that it becomes z (default: +z)");
+  const auto& [ahead, upward] = kTurnOfModel;
+  add_axis_option(command, ahead.option, forward, ahead.help_with_default());
+  add_axis_option(command, upward.option, up, upward.help_with_default());
 }
 
 void add_model_options(CLI::App& command, ModelOptions& options, LengthOptions& lengths) {
-  const GroupScope group(command, OptionGroup::kModel);
-  CLI::Option* spacing =
-      lengths.add(command, "--model-spacing", options.spacing,
-                  "Search points of a mesh, and no place of its surface is farther than this from "
-                  "one (default: a quarter of the radius)");
-  add_model_unit(command, "--model-unit", options.unit);
-  command
-      .add_flag("--model-vertices", options.vertices_only,
-                "Take the vertices of a mesh alone as the model, not its surface")
-      ->excludes(spacing);
-  lengths.add(command, "--model-above", options.above,
-              "Leave out the model's points whose z is below this, such as wheels on the ground",
-              FieldRange::kAny);
+  add_fields(command, kShapeOfModel, options, lengths);
+  command.get_option("--model-vertices")->excludes("--model-spacing");
 }
 
 }  // namespace clearway::tool

@@ -1,40 +1,18 @@
 #include "cli/support/trajectory_options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "cli/support/field_options.hpp"
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
-#include "io/paths/trajectory_file.hpp"
+#include "core/describe/trajectory.hpp"
 #include "io/scans/text/table_header.hpp"
 
 namespace clearway::tool {
 namespace {
-
-void add_format(CLI::App& command, TrajectoryOptions& options) {
-  static constexpr std::array kFormats{
-      TrajectoryFormat::kAuto,          TrajectoryFormat::kMatrix, TrajectoryFormat::kTum,
-      TrajectoryFormat::kEuroc,         TrajectoryFormat::kCsv,    TrajectoryFormat::kPoseXyzw,
-      TrajectoryFormat::kPoseWxyz,      TrajectoryFormat::kSbet,   TrajectoryFormat::kThreedtkPose,
-      TrajectoryFormat::kThreedtkFrames};
-  std::vector<std::string> names;
-  names.reserve(kFormats.size());
-  for (const TrajectoryFormat format : kFormats) names.emplace_back(name_of(format));
-  command
-      .add_option_function<std::string>(
-          "--trajectory-format",
-          [&format = options.format](const std::string& name) {
-            format = *std::ranges::find_if(
-                kFormats, [&name](TrajectoryFormat known) { return name == name_of(known); });
-          },
-          "Format of the trajectory where a guess could go wrong (default: auto)")
-      ->type_name("FORMAT")
-      ->check(CLI::IsMember(names));
-}
 
 std::vector<std::string> parts_of(const std::string& text) {
   std::vector<std::string_view> fields;
@@ -68,6 +46,7 @@ void set_angles(TrajectoryOptions& options, const std::string& text) {
 }
 
 void add_angles(CLI::App& command, TrajectoryOptions& options) {
+  const GroupScope group(command, OptionGroup::kUnits);
   command
       .add_option_function<std::string>(
           "--angles", [&options](const std::string& text) { set_angles(options, text); },
@@ -76,53 +55,16 @@ void add_angles(CLI::App& command, TrajectoryOptions& options) {
       ->type_name("NAME,...");
 }
 
-void add_map(CLI::App& command, TrajectoryOptions& options) {
-  command
-      .add_option("--trajectory-crs", options.crs,
-                  "Projected CRS to turn latitudes and longitudes into, for example EPSG:25832 "
-                  "(default: that of the environment, where the command has one)")
-      ->type_name("CRS");
-  command
-      .add_option("--trajectory-datum", options.datum,
-                  "Geographic CRS of latitudes and longitudes, for example EPSG:4937 (default: "
-                  "WGS 84)")
-      ->type_name("CRS");
-}
-
-void add_unit(CLI::App& command, TrajectoryOptions& options) {
-  add_unit_option(command, "--trajectory-unit", options.metres_per_unit,
-                  "Unit of the positions; ft is the environment's foot, ift the international and "
-                  "us-ft the US survey foot (default: what a header says, otherwise that of the "
-                  "environment)");
-}
-
 }  // namespace
 
 void add_trajectory_options(CLI::App& command, TrajectoryOptions& options, LengthOptions& lengths) {
-  {
-    const GroupScope group(command, OptionGroup::kPath);
-    add_format(command, options);
-    command.add_flag("--allow-non-rigid", options.allow_non_rigid,
-                     "Accept matrices that scale or shear");
-    lengths.add(command, "--lever-arm", options.lever_arm,
-                "Where the point that the trajectory gives, such as an antenna, lies in the "
-                "model's frame, in metres");
-  }
-  const GroupScope group(command, OptionGroup::kUnits);
   add_angles(command, options);
-  add_map(command, options);
-  add_unit(command, options);
+  add_fields(command, kTrajectoryFields, options, lengths);
 }
 
-void add_options_of_reading(CLI::App& command, TrajectoryOptions& options) {
-  {
-    const GroupScope group(command, OptionGroup::kPath);
-    add_format(command, options);
-  }
-  const GroupScope group(command, OptionGroup::kUnits);
+void add_options_of_reading(CLI::App& command, TrajectoryOptions& options, LengthOptions& lengths) {
   add_angles(command, options);
-  add_map(command, options);
-  add_unit(command, options);
+  add_fields(command, kReadingFields, options, lengths);
 }
 
 }  // namespace clearway::tool

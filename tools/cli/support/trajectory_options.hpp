@@ -19,6 +19,6 @@ void add_trajectory_options(CLI::App& command, TrajectoryOptions& options, Lengt
 
 /// Adds those of these options that say how a trajectory is read, for a command whose trajectory is
 /// not that of the model.
-void add_options_of_reading(CLI::App& command, TrajectoryOptions& options);
+void add_options_of_reading(CLI::App& command, TrajectoryOptions& options, LengthOptions& lengths);
 
 }  // namespace clearway::tool
