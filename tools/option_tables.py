@@ -29,18 +29,19 @@ def row(name, text):
     if not re.match(r"[A-Z]{2}", meaning):
         meaning = meaning[:1].lower() + meaning[1:]
     choices = re.search(r":\{([^}]*)\}", rest)
-    if choices and any(choice not in meaning for choice in choices[1].split(",")):
-        meaning += ": " + ", ".join(f"`{choice}`" for choice in choices[1].split(","))
+    if choices:
+        names = choices[1].split(",")
+        named = [name for name in names if re.search(rf"(?<![\w-]){re.escape(name)}(?![\w-])", meaning)]
+        if len(named) < min(4, len(names)):
+            meaning += ": " + ", ".join(f"`{name}`" for name in names)
     if limits := re.search(r" in \[(\S+) - (\S+)\]", rest):
         meaning += (f"; {limits[1]} to {limits[2]}" if int(limits[2]) < 1_000_000 else
                     f"; at least {limits[1]}")
-    if rest.endswith(" ...") and "several times" not in meaning:
-        meaning += "; may be given several times"
     meaning = re.sub(r"(?<![\w`-])(--[a-z][\w-]*)", r"`\1`", meaning).replace("|", r"\|")
-    names = ", ".join(f"`{flag}`" for flag in flags.split(","))
-    if value:
-        names = f"{names[:-1]} {value[0]}`"
-    return f"| {names} | {default} | {meaning} |\n"
+    names = [f"`{flag}`" for flag in flags.split(",")]
+    if value and flags.startswith("-"):
+        names[-1] = f"{names[-1][:-1]} {value[0]}`"
+    return f"| {', '.join(names)} | {default} | {meaning} |\n"
 
 
 def tables(program, page):

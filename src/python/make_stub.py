@@ -140,6 +140,8 @@ TYPES = {
     "unknown_bin_cells()": "SectionCells | None",
     "free_cells()": "_Flags",
     "ReportSummary.conflicts": "Conflicts",
+    "read_line(cant)": ('Literal["none", "center", "inside-rail", "outside-rail", "left-rail", '
+                        '"right-rail"]'),
     "(forward)": "_Axis",
     "(up)": "_Axis",
     "outline_model(outline)": "_Doubles | Sequence[Sequence[float]]",
@@ -194,7 +196,8 @@ def function(name, call, made, returned):
     if len(line) <= 100:
         return line
     # Commas inside of brackets stay on their lines.
-    filled = textwrap.fill(", ".join(part.replace(" ", "\0") for part in parts), 94)
+    filled = textwrap.fill(", ".join(part.replace(" ", "\0") for part in parts), 94,
+                           break_on_hyphens=False, break_long_words=False)
     return f"def {name}(\n{textwrap.indent(filled, '    ')},\n) -> {returned}: ...".replace("\0", " ")
 
 

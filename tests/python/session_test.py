@@ -282,7 +282,7 @@ class Lifetime(Sessions):
         with self.assertRaises(clearway.InputError):
             clearway.Session(self.folder / "scan.xyz")
         with self.assertRaisesRegex(clearway.UsageError, "^device 'tpu'"):
-            clearway.Session(self.folder / "site.h5", "tpu")
+            clearway.Session(self.folder / "site.h5", device="tpu")
         with self.assertRaisesRegex(clearway.UsageError, "^threads: expected 0"):
             clearway.Session(self.folder / "site.h5", threads=-1)
         with self.assertRaisesRegex(TypeError, "did you mean 'memory_bytes'"):
