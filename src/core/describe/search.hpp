@@ -20,8 +20,11 @@ inline constexpr Field kEngine{
     .option = "--engine",
     .group = OptionGroup::kSpeed,
     .help =
-        "sweep, grid or kdtree; auto takes sweep or kdtree, whichever will be faster by estimate",
-    .doc = "'auto', 'sweep', 'grid' or 'kdtree'; 'auto' takes the one that is estimated faster."};
+        "sweep, grid or kdtree; auto takes kdtree for few poses and a small radius, otherwise "
+        "sweep",
+    .doc =
+        "'auto', 'sweep', 'grid' or 'kdtree'; 'auto' takes 'kdtree' for few\n"
+        "    poses and a small radius, otherwise 'sweep'."};
 
 template <typename Options>
 inline constexpr Field kModelIsCut{
