@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "clearway/error.hpp"
-#include "core/query/ignored_points.hpp"
 #include "core/describe/query.hpp"
+#include "core/query/ignored_points.hpp"
 #include "core/util/format.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/check_results.hpp"
