@@ -10,8 +10,8 @@ It fails, with file and line, on
 - a file, type, function or constant in a code span that no source has,
 - a command of a program that docs/guide/command-line.md does not have in its first table,
 - a text of the Python module that lists names of an enumeration, but not all of them,
-- a code of a warning or note that the sources have and docs/guide/warnings.md does not list, or
-  the other way round,
+- a code of the table of messages that no source gives, and a message that does not get its code
+  from that table,
 - a term that docs/design/glossary.md defines twice, and a word that its section "Words that are
   not used" replaces, where README.md, docs/guide or a help text has it.
 

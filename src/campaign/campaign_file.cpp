@@ -14,6 +14,7 @@
 #include "core/describe/query.hpp"
 #include "core/describe/search.hpp"
 #include "core/describe/trajectory.hpp"
+#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/models/model_input.hpp"
@@ -315,13 +316,12 @@ class LeftOutFiles {
     for (const auto& [key, matches] : matches_) {
       const std::vector<std::string> names = beside(matches);
       if (names.empty()) continue;
-      notes.push_back({Message::Severity::kNote,
-                       "unmatched-files",
-                       key + ": the pattern matches " + counted(matches.size(), "file") +
-                           " and leaves out " + counted(names.size(), "file") +
-                           " beside them of the same kind: " + listed(names),
-                       {{"matched", static_cast<double>(matches.size())},
-                        {"left_out", static_cast<double>(names.size())}}});
+      notes.push_back(note("unmatched-files",
+                           key + ": the pattern matches " + counted(matches.size(), "file") +
+                               " and leaves out " + counted(names.size(), "file") +
+                               " beside them of the same kind: " + listed(names),
+                           {{"matched", static_cast<double>(matches.size())},
+                            {"left_out", static_cast<double>(names.size())}}));
     }
     return notes;
   }

@@ -5,7 +5,7 @@
 #include <limits>
 #include <unordered_map>
 
-#include "core/query/warning_meaning.hpp"
+#include "core/messages/messages.hpp"
 #include "core/trajectory/pose_ranges.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/result.hpp"

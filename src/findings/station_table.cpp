@@ -8,6 +8,7 @@
 #include "clearway/stations.hpp"
 #include "clearway/unsearched.hpp"
 #include "core/geometry/point_box.hpp"
+#include "core/messages/messages.hpp"
 #include "core/query/body_numbers.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/trajectory/follow/path_stations.hpp"
@@ -27,10 +28,6 @@
 
 namespace clearway {
 namespace {
-
-Message warning(const char* code, std::string text) {
-  return {Message::Severity::kWarning, code, std::move(text)};
-}
 
 /// One call of station_table(), step by step.
 class TableMaker {

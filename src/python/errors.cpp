@@ -1,106 +1,12 @@
 #include <exception>
+#include <string>
+#include <string_view>
 
+#include "core/messages/remedies.hpp"
 #include "python/python.hpp"
 
 namespace clearway::python {
 namespace {
-
-/// The name that Python has as Error.remedy; nullptr where nothing helps.
-const char* name_of(Remedy remedy) {
-  switch (remedy) {
-    case Remedy::kNone:
-      return nullptr;
-    case Remedy::kMoreMemory:
-      return "more_memory";
-    case Remedy::kMoreDeviceMemory:
-      return "more_device_memory";
-    case Remedy::kOtherGpu:
-      return "other_gpu";
-    case Remedy::kCpuDevice:
-      return "cpu_device";
-    case Remedy::kNewProcess:
-      return "new_process";
-    case Remedy::kLessDeviceMemory:
-      return "less_device_memory";
-    case Remedy::kLessMemory:
-      return "less_memory";
-    case Remedy::kFewerThreads:
-      return "fewer_threads";
-    case Remedy::kSweepEngine:
-      return "sweep_engine";
-    case Remedy::kCudaDevice:
-      return "cuda_device";
-    case Remedy::kMoreCellPoints:
-      return "more_cell_points";
-    case Remedy::kFewerCellPoints:
-      return "fewer_cell_points";
-    case Remedy::kScale:
-      return "scale";
-    case Remedy::kOneScale:
-      return "one_scale";
-    case Remedy::kAcceptScale:
-      return "accept_scale";
-    case Remedy::kColumns:
-      return "columns";
-    case Remedy::kStandardInput:
-      return "standard_input";
-    case Remedy::kSampleMesh:
-      return "sample_mesh";
-    case Remedy::kSkipUnreadable:
-      return "skip_unreadable";
-    case Remedy::kIgnoreCrs:
-      return "ignore_crs";
-    case Remedy::kOverwrite:
-      return "overwrite";
-    case Remedy::kReadOrOverwrite:
-      return "read_or_overwrite";
-    case Remedy::kResumeOrOverwrite:
-      return "resume_or_overwrite";
-    case Remedy::kOverwriteNotResume:
-      return "overwrite_not_resume";
-    case Remedy::kRestoreOptions:
-      return "restore_options";
-    case Remedy::kNameFormat:
-      return "name_format";
-    case Remedy::kNameCrs:
-      return "name_crs";
-    case Remedy::kDeclareAngles:
-      return "declare_angles";
-    case Remedy::kDeclareLength:
-      return "declare_length";
-    case Remedy::kAllowNonRigid:
-      return "allow_non_rigid";
-    case Remedy::kGiveHeight:
-      return "give_height";
-    case Remedy::kRoundCorners:
-      return "round_corners";
-    case Remedy::kAskForClearance:
-      return "ask_for_clearance";
-    case Remedy::kAskForFirstPose:
-      return "ask_for_first_pose";
-    case Remedy::kSameTrajectory:
-      return "same_trajectory";
-    case Remedy::kSameModel:
-      return "same_model";
-    case Remedy::kSameEnvironment:
-      return "same_environment";
-    case Remedy::kAskForProfile:
-      return "ask_for_profile";
-    case Remedy::kModelSpacing:
-      return "model_spacing";
-    case Remedy::kModelPoints:
-      return "model_points";
-    case Remedy::kMerge:
-      return "merge";
-    case Remedy::kFreeDisk:
-      return "free_disk";
-    case Remedy::kOtherPart:
-      return "other_part";
-    case Remedy::kResume:
-      return "resume";
-  }
-  return nullptr;
-}
 
 /// The exception classes, which live as long as the process.
 struct Classes {
@@ -118,7 +24,8 @@ PyObject* add_class(py::module_& module, const char* name, const char* doc, py::
 
 void raise(PyObject* type, const Error& error) {
   const py::object raised = py::handle(type)(text(error.what()));
-  if (const char* remedy = name_of(error.remedy())) raised.attr("remedy") = remedy;
+  const std::string_view remedy = kind_of(error.remedy()).name;
+  if (!remedy.empty()) raised.attr("remedy") = text(remedy);
   raised.attr("amount") = error.amount();
   PyErr_SetObject(type, raised.ptr());
 }

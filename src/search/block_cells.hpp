@@ -7,10 +7,10 @@
 
 #include "clearway/section.hpp"
 #include "core/cloud/packed_cloud.hpp"
+#include "core/messages/messages.hpp"
 #include "core/page/page_engine.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/section/section_ref.hpp"
-#include "core/util/messages.hpp"
 #include "core/util/progress.hpp"
 #include "search/devices.hpp"
 #include "search/kinds/page_engine_kind.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "clearway/search.hpp"
-#include "core/util/messages.hpp"
+#include "core/messages/messages.hpp"
 #include "gpu/devices.hpp"
 
 namespace clearway {

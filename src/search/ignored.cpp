@@ -12,6 +12,7 @@
 #include "clearway/error.hpp"
 #include "core/cloud/packed_cloud.hpp"
 #include "core/geometry/inside.hpp"
+#include "core/messages/messages.hpp"
 #include "core/query/body_numbers.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/query/search_result.hpp"
@@ -251,7 +252,7 @@ void warn_of_colliding_ignored(const Answer& answer, bool model_is_cut, LengthUn
   if (!answer.ignored_colliding || answer.shard) return;
   const std::uint64_t colliding = *answer.ignored_colliding;
   const std::uint64_t high = answer.ignored_colliding_high.value_or(0);
-  const auto warn = [&](const char* code, std::string text, double points) {
+  const auto warn = [&](WarningCode code, std::string text, double points) {
     log.warn(code, std::move(text), {{"colliding", points}});
   };
   const std::string of_ignored = " of the " + ignored_text(answer.parameters, answer.ignored);

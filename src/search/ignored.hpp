@@ -6,7 +6,7 @@
 #include "clearway/answer.hpp"
 #include "clearway/ignored.hpp"
 #include "clearway/query.hpp"
-#include "core/util/messages.hpp"
+#include "core/messages/messages.hpp"
 #include "core/util/progress.hpp"
 #include "io/scans/length_unit.hpp"
 #include "io/store/store_reader.hpp"

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
-#include "core/util/messages.hpp"
 #include "core/util/progress.hpp"
 #include "findings/certain_points.hpp"
 #include "io/files/pending_file.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "clearway/search.hpp"
-#include "core/util/messages.hpp"
+#include "core/messages/messages.hpp"
 #include "core/util/progress.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/result/journal.hpp"

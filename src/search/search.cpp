@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "clearway/error.hpp"
+#include "core/messages/messages.hpp"
 #include "core/query/search_result.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
@@ -226,14 +227,14 @@ class Search {
     const double errors = header_.budget->conflict();
     if (query_.radius > errors) return;
     const LengthUnit unit = store_.metadata().unit;
-    log_.add({Message::Severity::kNote,
-              "errors-exceed-margin",
-              "the errors of " + length_text(errors, unit) + " are not below the margin of " +
-                  length_text(query_.radius, unit) +
-                  ", so that no point outside the vehicle is certainly too close: nothing can be a "
-                  "conflict. Search a closed mesh as a solid, because points deep inside it are "
-                  "certain; a mesh that is not closed has to be resampled for that",
-              {{"errors", errors}, {"margin", query_.radius}}});
+    log_.add(
+        note("errors-exceed-margin",
+             "the errors of " + length_text(errors, unit) + " are not below the margin of " +
+                 length_text(query_.radius, unit) +
+                 ", so that no point outside the vehicle is certainly too close: nothing can be a "
+                 "conflict. Search a closed mesh as a solid, because points deep inside it are "
+                 "certain; a mesh that is not closed has to be resampled for that",
+             {{"errors", errors}, {"margin", query_.radius}}));
   }
 
   /// Finds out which cells a shard has.

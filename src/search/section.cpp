@@ -8,9 +8,9 @@
 
 #include "clearway/error.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/messages/messages.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
-#include "core/util/messages.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/thread_limit.hpp"

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "clearway/section.hpp"
+#include "core/messages/messages.hpp"
 #include "core/section/section_map.hpp"
 #include "core/section/section_poses.hpp"
-#include "core/util/messages.hpp"
 #include "io/scans/length_unit.hpp"
 
 namespace clearway {

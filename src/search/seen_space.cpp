@@ -17,6 +17,7 @@
 
 #include "clearway/error.hpp"
 #include "core/geometry/inside.hpp"
+#include "core/messages/messages.hpp"
 #include "core/query/body_numbers.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/seen/brick_cloud.hpp"
@@ -486,28 +487,28 @@ void warn_of_large_cubes(const StoreReader& store, const QueryParameters& query,
 }
 
 namespace {
-constexpr std::string_view kNothingSwept = "nothing-swept";
-constexpr std::string_view kWithoutOrigin = "beams-without-origin";
-constexpr std::string_view kLongBeams = "long-beams";
+constexpr WarningCode kNothingSwept = "nothing-swept";
+constexpr WarningCode kWithoutOrigin = "beams-without-origin";
+constexpr WarningCode kLongBeams = "long-beams";
 }  // namespace
 
 void warn_of_nothing_swept(const SeenSummary& found, std::uint64_t poses, MessageLog& log) {
   if (found.swept > 0 || poses == 0) return;
   log.warn(
-      std::string(kNothingSwept),
+      kNothingSwept,
       "the vehicle sweeps the middle of no cube, so that nothing is known of what was scanned. "
       "Smaller cubes tell more");
 }
 
 void warn_of_beams(const BeamCounts& left_out, MessageLog& log) {
   if (left_out.without_origin > 0) {
-    log.warn(std::string(kWithoutOrigin),
+    log.warn(kWithoutOrigin,
              format_count(left_out.without_origin) +
                  " points do not say where their scanner stood, so that their beams show nothing",
              {{"points", static_cast<double>(left_out.without_origin)}});
   }
   if (left_out.too_long > 0) {
-    log.warn(std::string(kLongBeams),
+    log.warn(kLongBeams,
              format_count(left_out.too_long) +
                  " beams are longer than 1 km, or than 2^30 steps of the stored coordinates, and "
                  "are left out. Are the origins those of these scans?",

@@ -8,12 +8,12 @@
 
 #include "clearway/query.hpp"
 #include "clearway/seen.hpp"
+#include "core/messages/messages.hpp"
 #include "core/query/search_result.hpp"
 #include "core/seen/beams.hpp"
 #include "core/seen/brick_map.hpp"
 #include "core/seen/cross_sections.hpp"
 #include "core/seen/cubes.hpp"
-#include "core/util/messages.hpp"
 #include "core/util/progress.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/kinds/page_engine_kind.hpp"

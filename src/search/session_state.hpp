@@ -10,7 +10,7 @@
 #include "clearway/query.hpp"
 #include "clearway/search.hpp"
 #include "clearway/store.hpp"
-#include "core/util/messages.hpp"
+#include "core/messages/messages.hpp"
 #include "core/util/progress.hpp"
 #include "search/checks/facts/model_looks.hpp"
 #include "search/devices.hpp"

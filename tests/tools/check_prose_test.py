@@ -237,14 +237,15 @@ class CheckProse(unittest.TestCase):
         self.write("README.md", "`--radius`\n")
         self.assert_fault("docs/guide: --radius of toy run: not described anywhere")
 
-    def test_codes_of_warnings_are_listed(self):
-        self.write("src/a.cpp", 'log.warn(\n  "feet", x);  // "not-this"\nreturn {kNote, "no-crs"};\n')
-        self.write("docs/guide/warnings.md", "| code |\n|---|\n| `feet`, `no-crs` | both |\n")
+    def test_codes_of_warnings_come_from_the_table(self):
+        self.write("src/core/messages/message_table.hpp", '{"feet", kWarning, kScans, "In feet."},\n')
+        self.write("src/a.cpp", 'log.warn(\n  "feet", x);  // "gone"\n')
         self.assert_clean()
-        self.write("docs/guide/warnings.md", "| code |\n|---|\n| `no-crs` | one |\n")
-        self.assert_fault("src/a.cpp:2: the code feet is not listed")
-        self.write("docs/guide/warnings.md", "| `feet`, `no-crs` | both |\n| `gone` | none |\n")
-        self.assert_fault("docs/guide/warnings.md: gone: no such code")
+        self.write("src/b.cpp", 'return {Message::Severity::kNote, "feet"};\n')
+        self.assert_fault("src/b.cpp:1: a message that is made by hand")
+        self.write("src/b.cpp", "")
+        self.write("src/core/messages/message_table.hpp", '{"feet", kWarning, kScans},\n{"gone", kNote, kScans},\n')
+        self.assert_fault("src/core/messages/message_table.hpp: gone: no source gives")
 
 
 if __name__ == "__main__":

@@ -1,47 +1,34 @@
-"""The codes of warnings and notes: in the sources, and in the guide's list of them."""
+"""The codes of warnings and notes: those of the table are used, and messages get their code from it.
+
+That the table has every code is checked by the compiler (core/messages/message_table.hpp), and that
+the guide agrees with the table by the test of its tables.
+"""
 
 import re
 
-LIST = "docs/guide/warnings.md"
+TABLE = "src/core/messages/message_table.hpp"
 SOURCES = ("src", "tools/cli")
 ENDINGS = (".cpp", ".hpp", ".cu", ".cuh")
 
-# Literals of this form that are no codes: names of formats, units, clocks, encodings, rails and programs, and the
-# reasons of a verdict, which docs/guide/results.md explains.
-OTHERS = {
-    "bin-cells", "inside-rail", "left-rail", "not-known", "not-scanned", "outside-rail", "question-in-doubt", "right-rail",
-    "unknown-bin-cells", "unknown-cells",
-    "ft-us", "int-ft", "international-feet", "international-foot", "intl-ft", "pose-wxyz",
-    "pose-xyzw", "unix-none", "us-ft", "us-survey-feet", "us-survey-foot", "utf-8", "week-seconds", "xdg-open",
-}
-KEBAB = re.compile(r'"([a-z]+[0-9]*(?:-[a-z0-9]+)+)"')
-GIVEN = re.compile(r'\b(?:warn|warning|note)\w*\(\s*(?:\w+,\s*)?"([a-z0-9-]+)"')
-LISTED = re.compile(r"^\| ((?:`[a-z0-9-]+`(?:, )?)+) \|", re.MULTILINE)
-
-
-def in_sources(root, files):
-    """Each code, and a place where it stands."""
-    found = {}
-    folders = tuple(str(root / folder) + "/" for folder in SOURCES)
-    for path in sorted(files):
-        if path.suffix not in ENDINGS or not str(path).startswith(folders):
-            continue
-        text = re.sub(r"//.*", "", path.read_text(encoding="utf-8"))
-        for match in [*KEBAB.finditer(text), *GIVEN.finditer(text)]:
-            line = text.count("\n", 0, match.start(1)) + 1
-            found.setdefault(match[1], f"{path.relative_to(root)}:{line}")
-    return {code: place for code, place in found.items() if code not in OTHERS}
-
-
-def in_guide(root):
-    path = root / LIST
-    text = path.read_text(encoding="utf-8") if path.exists() else ""
-    return {code for row in LISTED.findall(text) for code in re.findall(r"`([a-z0-9-]+)`", row)}
+ROW = re.compile(r'\{"([a-z0-9-]+)",\s*k(?:Note|Warning|Either)')
+LITERAL = re.compile(r'"([a-z0-9-]+)"')
+BY_HAND = re.compile(r'Severity::k(?:Note|Warning),\s*"')
 
 
 def problems(root, files):
-    given, listed = in_sources(root, files), in_guide(root)
-    for code in sorted(given.keys() - listed):
-        yield f"{given[code]}: the code {code} is not listed in {LIST}"
-    for code in sorted(listed - given.keys()):
-        yield f"{LIST}: {code}: no such code in the sources"
+    table = root / TABLE
+    if not table.exists():
+        return
+    used = set()
+    for path in sorted(files):
+        name = str(path.relative_to(root))
+        if path.suffix not in ENDINGS or path == table or not name.startswith(tuple(f"{f}/" for f in SOURCES)):
+            continue
+        text = re.sub(r"//.*", "", path.read_text(encoding="utf-8"))
+        used.update(LITERAL.findall(text))
+        for match in BY_HAND.finditer(text):
+            line = text.count("\n", 0, match.start()) + 1
+            yield f"{name}:{line}: a message that is made by hand; use note() or warning() of core/messages"
+    for code in ROW.findall(table.read_text(encoding="utf-8")):
+        if code not in used:
+            yield f"{TABLE}: {code}: no source gives a message with this code"

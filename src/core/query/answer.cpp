@@ -1,7 +1,8 @@
 #include "clearway/answer.hpp"
 
 #include <algorithm>
-#include <array>
+
+#include "core/messages/message_table.hpp"
 
 namespace clearway {
 
@@ -37,38 +38,9 @@ const char* name_of(Reason reason) {
 
 namespace {
 
-/// What warnings with a code say about an answer. A search with one of these warnings may have
-/// missed points; other warnings raise no doubt and lack no points.
-struct CodeMeaning {
-  std::string_view code;
-  Doubt doubt;
-  bool lacks_points;
-};
-
-constexpr std::array<CodeMeaning, 14> kMeanings{{
-    {"all-ignored", Doubt::kQuestion, false},
-    {"no-points", Doubt::kQuestion, false},
-    {"no-poses", Doubt::kQuestion, false},
-    {"nothing-swept", Doubt::kQuestion, false},
-    {"out-of-reach", Doubt::kQuestion, true},
-    {"leaves-scan", Doubt::kStretch, true},
-    {"nothing-below", Doubt::kStretch, true},
-    {"floats", Doubt::kStretch, false},
-    {"body-off-path", Doubt::kStretch, false},
-    {"body-undefined", Doubt::kStretch, false},
-    {"nothing-beside", Doubt::kNone, true},
-    {"one-side", Doubt::kNone, true},
-    {"coarse-scan", Doubt::kNone, true},
-    {"below-ground", Doubt::kNone, false},
-}};
-
-const CodeMeaning* find_meaning(std::string_view code) {
-  return std::ranges::find(kMeanings, code, &CodeMeaning::code);
-}
-
-CodeMeaning meaning_of(std::string_view code) {
-  const CodeMeaning* const found = find_meaning(code);
-  return found == kMeanings.end() ? CodeMeaning{code, Doubt::kNone, false} : *found;
+MessageEffect effect_of(std::string_view code) {
+  const MessageKind* const kind = find_message_kind(code);
+  return kind == nullptr ? MessageEffect() : kind->effect;
 }
 
 /// The codes of the warnings for which doubt_of() is a doubt, or none, as given.
@@ -86,24 +58,13 @@ std::vector<std::string> codes_of(const Answer& answer, bool doubts) {
 
 Doubt doubt_of(const Message& message) {
   if (message.severity != Message::Severity::kWarning) return Doubt::kNone;
-  const Doubt doubt = meaning_of(message.code).doubt;
+  const Doubt doubt = effect_of(message.code).doubt;
   return doubt == Doubt::kStretch && message.stretches.empty() ? Doubt::kNone : doubt;
 }
 
-bool is_doubt(std::string_view code) { return meaning_of(code).doubt == Doubt::kQuestion; }
+bool is_doubt(std::string_view code) { return effect_of(code).doubt == Doubt::kQuestion; }
 
-bool lacks_points(std::string_view code) { return meaning_of(code).lacks_points; }
-
-bool may_miss(std::string_view code) { return find_meaning(code) != kMeanings.end(); }
-
-bool have_same_fault(const Message& a, const Message& b) {
-  const auto side = [](const Message& message) {
-    const auto found = std::ranges::find(message.numbers, "side",
-                                         [](const auto& n) { return std::string_view(n.first); });
-    return found == message.numbers.end() ? 0 : found->second;
-  };
-  return a.code == b.code && side(a) == side(b);
-}
+bool lacks_points(std::string_view code) { return effect_of(code).missing == Missing::kScan; }
 
 Doubt Answer::doubt_of(const Message& warning) const {
   const bool all_seen = seen && seen->swept > 0 && seen->unseen == 0;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/geometry/angle.hpp"
+#include "core/messages/messages.hpp"
 #include "core/trajectory/pose_ranges.hpp"
 #include "core/trajectory/trajectory_summary.hpp"
 #include "core/util/format.hpp"
@@ -106,16 +107,16 @@ Message jump_warning(std::span<const Jump> jumps, const std::string& prefix,
                                 ? "They come after every " + format_count(row) +
                                       " poses and are equally long, as between the rows of a grid"
                                 : "Poses may be missing there, or one of them may be wrong";
-  return {row > 0 ? Message::Severity::kNote : Message::Severity::kWarning,
-          "trajectory-jump",
-          prefix + begin + format_brief(worst.length) + " " + unit + " long, " +
-              format_brief(worst.length / worst.usual) + " times the median of the steps around " +
-              "it, which is " + format_brief(worst.usual) + " " + unit + ". " + cause + consequence,
-          {{"jumps", static_cast<double>(jumps.size())},
-           {"pose", static_cast<double>(worst.pose)},
-           {"step", worst.length},
-           {"median_step", worst.usual}},
-          pose_ranges(jumps | std::views::transform(&Jump::pose), 1)};
+  return warning_or_note(row == 0, "trajectory-jump",
+                         prefix + begin + format_brief(worst.length) + " " + unit + " long, " +
+                             format_brief(worst.length / worst.usual) +
+                             " times the median of the steps around " + "it, which is " +
+                             format_brief(worst.usual) + " " + unit + ". " + cause + consequence,
+                         {{"jumps", static_cast<double>(jumps.size())},
+                          {"pose", static_cast<double>(worst.pose)},
+                          {"step", worst.length},
+                          {"median_step", worst.usual}},
+                         pose_ranges(jumps | std::views::transform(&Jump::pose), 1));
 }
 
 double farthest_from_origin(std::span<const Vec3> points) {
@@ -156,11 +157,6 @@ std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", value);
   return text;
-}
-
-Message warning(const char* code, std::string text,
-                std::vector<std::pair<std::string, double>> numbers) {
-  return {Message::Severity::kWarning, code, std::move(text), std::move(numbers)};
 }
 
 /// Largest angle by which the path turns, in radians: that between its first long chord and any

@@ -12,6 +12,7 @@
 #include "clearway/model.hpp"
 #include "clearway/outline.hpp"
 #include "core/geometry/axes.hpp"
+#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
@@ -30,10 +31,13 @@ constexpr std::string_view kBoxPrefix = "box:";
 constexpr double kBendToTell = 0.1;  // share of the spacing above which a bend is reported
 
 void tell(std::vector<Message>& messages, const ModelInput& input, const std::string& text,
-          std::vector<std::pair<std::string, double>> numbers = {}, std::string code = {}) {
-  const auto severity = code.empty() ? Message::Severity::kNote : Message::Severity::kWarning;
-  messages.push_back(
-      {severity, std::move(code), input.path.string() + ": " + text, std::move(numbers)});
+          MessageNumbers numbers = {}) {
+  messages.push_back(plain_note(input.path.string() + ": " + text, std::move(numbers)));
+}
+
+void warn(std::vector<Message>& messages, const ModelInput& input, WarningCode code,
+          const std::string& text, MessageNumbers numbers) {
+  messages.push_back(warning(code, input.path.string() + ": " + text, std::move(numbers)));
 }
 
 /// Appends the points of a batch, without those that are withheld. first: number of the batch's
@@ -72,10 +76,10 @@ void read_points(ModelInput& input) {
   }
   input.messages = reader->info().remarks;
   if (withheld > 0) {
-    tell(input.messages, input,
+    warn(input.messages, input, "withheld-model-points",
          counted(withheld, "point") + " with the flag `withheld` " +
              (withheld == 1 ? "is" : "are") + " left out of the model as deleted",
-         {{"points", static_cast<double>(withheld)}}, "withheld-model-points");
+         {{"points", static_cast<double>(withheld)}});
   }
   input.sampled_spacing = reader->info().model_spacing;
   const CloudInfo& info = reader->info();
@@ -130,8 +134,8 @@ void warn_of_two_feet(ModelInput& input, double unit, double environment_unit, d
   if (!is_foot(unit) || !is_foot(environment_unit)) return;
   const double moved = feet_apart(largest * environment_unit, unit, environment_unit);
   if (!(moved > kFeetApart)) return;
-  tell(input.messages, input, two_feet_text("its coordinates", unit, environment_unit, moved),
-       {{"metres", moved}}, "two-feet");
+  warn(input.messages, input, "two-feet",
+       two_feet_text("its coordinates", unit, environment_unit, moved), {{"metres", moved}});
 }
 
 /// Converts the model into the environment's unit, where the file's unit is known.
@@ -164,8 +168,8 @@ void scale(ModelInput& input, const ModelOptions& options) {
   input.sampled_spacing *= scaled.factor();
   warn_of_two_feet(input, unit, options.environment_unit, largest);
   if (options.environment_unit_is_assumed) {
-    tell(input.messages, input, unit_assumed_text("its coordinates", unit), {{"metres", unit}},
-         "unit-assumed");
+    warn(input.messages, input, "unit-assumed", unit_assumed_text("its coordinates", unit),
+         {{"metres", unit}});
   }
   if (options.unit.is_known()) return;
   tell(input.messages, input,
@@ -197,10 +201,10 @@ void tell_remarks(ModelInput& input) {
          "the last line has no line break; make sure that the file is whole");
   }
   if (remarks.crossing > 0) {
-    tell(input.messages, input,
+    warn(input.messages, input, "mesh-crossing-faces",
          format_count(remarks.crossing) + " faces have an outline that crosses itself, the first " +
              remarks.first_crossing + "; what they mean is not certain",
-         {{"faces", static_cast<double>(remarks.crossing)}}, "mesh-crossing-faces");
+         {{"faces", static_cast<double>(remarks.crossing)}});
   }
 }
 
@@ -328,8 +332,9 @@ void tell_bend(const ModelInput& input, double allowed, const std::string& of_wh
                            " m (" + input.remarks.largest_bend_at +
                            "); how it is cut into triangles changes the surface by about as much";
   if (bend <= allowed) return tell(messages, input, text);
-  tell(messages, input, text + ", which is more than " + of_what + ". Export the mesh as triangles",
-       {{"bend", bend}, {"spacing", allowed}}, "mesh-bent-faces");
+  warn(messages, input, "mesh-bent-faces",
+       text + ", which is more than " + of_what + ". Export the mesh as triangles",
+       {{"bend", bend}, {"spacing", allowed}});
 }
 
 std::string contents_of(const ModelInput& input) {
@@ -347,22 +352,19 @@ std::string contents_of(const ModelInput& input) {
 
 Message cut_note(const ModelInput& input, const std::string& text, std::uint64_t left_out,
                  double above, double bottom) {
-  return {Message::Severity::kNote,
-          "model-cut",
-          input.path.string() + ": " + text,
-          {{"left_out", static_cast<double>(left_out)}, {"above", above}, {"bottom", bottom}}};
+  return note("model-cut", input.path.string() + ": " + text,
+              {{"left_out", static_cast<double>(left_out)}, {"above", above}, {"bottom", bottom}});
 }
 
 Message loose_vertices_warning(const ModelInput& input, std::uint64_t vertices) {
-  return {
-      Message::Severity::kWarning,
+  return warning(
       "loose-vertices",
       input.path.string() + ": " + counted(vertices, "vertex", "vertices") +
           (vertices == 1 ? " belongs" : " belong") +
           " to no face, line or point of the file, and " + (vertices == 1 ? "is" : "are") +
           " not part of the model. If they are meant to show a part of the vehicle, such as a "
           "mast, the search does not see it: join them by lines in the program that made the file",
-      {{"vertices", static_cast<double>(vertices)}}};
+      {{"vertices", static_cast<double>(vertices)}});
 }
 
 ModelInput read_model_input(const std::filesystem::path& path, const ModelOptions& options) {
@@ -427,7 +429,7 @@ Model solids_of(const ModelInput& input, const ModelOptions& options, std::vecto
   }
   MeshParts parts = parts_with_solids(surface_of(input, options, told), input.path.string());
   const auto tell = [&](const std::string& text) {
-    told.push_back({Message::Severity::kNote, "", input.path.string() + ": " + text, {}});
+    told.push_back(plain_note(input.path.string() + ": " + text));
   };
   tell(summary_of(parts));
   const std::string faults = faults_of(parts);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "clearway/outline.hpp"
+#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
@@ -109,13 +110,11 @@ std::vector<OutlinePoint> read_outline(const std::filesystem::path& path,
   }
   if (outline.size() > 1 && outline.front() == outline.back()) outline.pop_back();
   if (messages != nullptr && !options.mirror && is_half(outline)) {
-    messages->push_back(
-        {Message::Severity::kWarning,
-         "half-outline",
-         path.string() +
-             ": all corners are on one side of the middle, y = 0, and an edge runs along it, as in "
-             "one half of a symmetric outline. The other side is taken to be free",
-         {}});
+    messages->push_back(warning(
+        "half-outline",
+        path.string() +
+            ": all corners are on one side of the middle, y = 0, and an edge runs along it, as in "
+            "one half of a symmetric outline. The other side is taken to be free"));
   }
   return outline;
 }

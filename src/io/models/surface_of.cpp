@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 
@@ -135,10 +136,8 @@ TriangleMesh surface_of(const ModelInput& input, const ModelOptions& options,
            Remedy::kModelPoints);
   }
   messages.push_back(
-      {Message::Severity::kNote,
-       "",
-       input.path.string() + ": a mesh of " + contents_of(input) + ", searched as it is",
-       {{"triangles", static_cast<double>(input.mesh.triangles.size())}}});
+      plain_note(input.path.string() + ": a mesh of " + contents_of(input) + ", searched as it is",
+                 {{"triangles", static_cast<double>(input.mesh.triangles.size())}}));
   if (options.radius > 0) {
     tell_bend(input, default_spacing(options.radius), "the spacing that points would have",
               messages);

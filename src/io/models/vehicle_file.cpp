@@ -12,6 +12,7 @@
 #include "clearway/error.hpp"
 #include "clearway/vehicle.hpp"
 #include "core/geometry/point_box.hpp"
+#include "core/messages/messages.hpp"
 #include "core/trajectory/follow/towed.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
@@ -345,15 +346,14 @@ constexpr double kFarLengths = 3;
 
 void warn_far(const std::filesystem::path& file, const BodyAhead& one, const std::string& what,
               double gap, double longest, std::vector<Message>& warnings) {
-  warnings.push_back(
-      {Message::Severity::kWarning,
-       "body-far",
-       file.string() + ": " + one.entry.at.key() + " (" + one.entry.name + "): " + what + " " +
-           format_brief(gap) + " m away, and the longest body of the vehicle has " +
-           format_brief(longest) +
-           " m. Stations and pivots are metres ahead of the path's pose, negative ones behind: "
-           "check their sign and their unit",
-       {{"gap", gap}, {"length", longest}}});
+  warnings.push_back(warning(
+      "body-far",
+      file.string() + ": " + one.entry.at.key() + " (" + one.entry.name + "): " + what + " " +
+          format_brief(gap) + " m away, and the longest body of the vehicle has " +
+          format_brief(longest) +
+          " m. Stations and pivots are metres ahead of the path's pose, negative ones behind: "
+          "check their sign and their unit",
+      {{"gap", gap}, {"length", longest}}));
 }
 
 /// Warns of bodies that are far from the others, as with mistyped stations or pivots. Such a body

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "clearway/progress.hpp"
+#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 
@@ -16,13 +17,14 @@ namespace clearway {
 struct Remarks {
   std::vector<Message> remarks;
 
-  void note(const char* code, std::string text,
-            std::vector<std::pair<std::string, double>> numbers = {}) {
-    remarks.push_back({Message::Severity::kNote, code, std::move(text), std::move(numbers)});
+  void note(NoteCode code, std::string text, MessageNumbers numbers = {}) {
+    remarks.push_back(clearway::note(code, std::move(text), std::move(numbers)));
   }
-  void warn(const char* code, std::string text,
-            std::vector<std::pair<std::string, double>> numbers = {}) {
-    remarks.push_back({Message::Severity::kWarning, code, std::move(text), std::move(numbers)});
+  void warn(WarningCode code, std::string text, MessageNumbers numbers = {}) {
+    remarks.push_back(warning(code, std::move(text), std::move(numbers)));
+  }
+  void warn_or_note(bool warns, EitherCode code, std::string text, MessageNumbers numbers = {}) {
+    remarks.push_back(warning_or_note(warns, code, std::move(text), std::move(numbers)));
   }
 };
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "core/messages/messages.hpp"
 #include "io/files/input_error.hpp"
 #include "io/scans/point_formats.hpp"
 #include "io/scans/point_reader.hpp"
@@ -134,25 +135,25 @@ void warn_of_left_out(const fs::path& path, Folder& folder, std::vector<Message>
             (files.size() == 1 ? " that looks like points (" : " that look like points (") +
             names_of(files, kMost) + ")";
   }
-  remarks.push_back({Message::Severity::kWarning,
-                     "left-out",
-                     path.string() + ": left out " + what +
-                         ". The environment lacks them; if they belong to it, name them as inputs "
-                         "too",
-                     {{"files", static_cast<double>(files.size())},
-                      {"folders", static_cast<double>(folders.size())}}});
+  remarks.push_back(
+      warning("left-out",
+              path.string() + ": left out " + what +
+                  ". The environment lacks them; if they belong to it, name them as inputs "
+                  "too",
+              {{"files", static_cast<double>(files.size())},
+               {"folders", static_cast<double>(folders.size())}}));
 }
 
 void remark_on(const fs::path& path, Folder folder, std::vector<Message>& remarks) {
   const std::vector<fs::path> poses = take_poses(folder);
   if (!poses.empty()) {
-    remarks.push_back({Message::Severity::kWarning,
-                       "poses-not-applied",
-                       path.string() + ": " + counted(poses.size(), "file") +
-                           " with the pose of a scan (" + names_of(poses) +
-                           "). Poses are applied to files with the ending 3d only, these scans "
-                           "stay as they are",
-                       {{"files", static_cast<double>(poses.size())}}});
+    remarks.push_back(
+        warning("poses-not-applied",
+                path.string() + ": " + counted(poses.size(), "file") +
+                    " with the pose of a scan (" + names_of(poses) +
+                    "). Poses are applied to files with the ending 3d only, these scans "
+                    "stay as they are",
+                {{"files", static_cast<double>(poses.size())}}));
   }
   warn_of_left_out(path, folder, remarks);
   if (folder.others.empty() && folder.folders.empty()) return;
@@ -164,11 +165,9 @@ void remark_on(const fs::path& path, Folder folder, std::vector<Message>& remark
     what += (what.empty() ? "" : " and ") + counted(folder.folders.size(), "folder") + " (" +
             names_of(folder.folders) + ")";
   }
-  remarks.push_back({Message::Severity::kNote,
-                     "left-out",
-                     path.string() + ": left out " + what,
-                     {{"files", static_cast<double>(folder.others.size())},
-                      {"folders", static_cast<double>(folder.folders.size())}}});
+  remarks.push_back(note("left-out", path.string() + ": left out " + what,
+                         {{"files", static_cast<double>(folder.others.size())},
+                          {"folders", static_cast<double>(folder.folders.size())}}));
 }
 
 std::vector<fs::path> files_of_folder(const fs::path& path, std::vector<Message>* remarks) {

@@ -12,6 +12,7 @@
 #include "core/geometry/point_box.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/messages/messages.hpp"
 #include "core/section/section_poses.hpp"
 #include "core/trajectory/pose_ranges.hpp"
 #include "core/trajectory/trajectory_doubts.hpp"
@@ -149,15 +150,14 @@ Steps check_straight_ways(const Question& question, const std::vector<Jump>& jum
             " times as long as those around it, so poses may be missing there";
   }
   if (warns) text += ". What is beside the straight way can be missed";
-  log.add({warns ? Message::Severity::kWarning : Message::Severity::kNote,
-           "large-steps",
-           text,
-           {{"share", static_cast<double>(found.size()) / static_cast<double>(steps)},
-            {"largest", worst.distance},
-            {"pose", static_cast<double>(number)},
-            {"step", moved},
-            {"turn_degrees", turned}},
-           pose_ranges(starts, 1)});
+  log.add(
+      warning_or_note(warns, "large-steps", text,
+                      {{"share", static_cast<double>(found.size()) / static_cast<double>(steps)},
+                       {"largest", worst.distance},
+                       {"pose", static_cast<double>(number)},
+                       {"step", moved},
+                       {"turn_degrees", turned}},
+                      pose_ranges(starts, 1)));
   return warns ? starts : Steps();
 }
 
@@ -249,20 +249,20 @@ void check_across(const Question& question, std::vector<LoadStep> steps, Message
   const double least = warns ? matters : noted;
   std::erase_if(steps, [&](const LoadStep& step) { return !(step.across > least); });
   if (steps.empty()) return;
-  log.add({warns ? Message::Severity::kWarning : Message::Severity::kNote,
-           "large-steps",
-           "at " + format_count(steps.size()) + " of " + counted(all, "step") +
-               " the load turns so far that it moves across by more than " +
-               length_text(least, question.unit) + ": by up to " +
-               length_text(worst.across, question.unit) + " after pose " +
-               std::to_string(question.number_of(worst.pose)) + ", where it goes on by " +
-               length_text(worst.length, question.unit) +
-               ". What comes beside it between two poses can reach deeper into it than at either",
-           {{"share", static_cast<double>(steps.size()) / static_cast<double>(all)},
-            {"largest", worst.across},
-            {"pose", static_cast<double>(question.number_of(worst.pose))},
-            {"step", worst.length}},
-           stretches_of(question, steps)});
+  log.add(warning_or_note(
+      warns, "large-steps",
+      "at " + format_count(steps.size()) + " of " + counted(all, "step") +
+          " the load turns so far that it moves across by more than " +
+          length_text(least, question.unit) + ": by up to " +
+          length_text(worst.across, question.unit) + " after pose " +
+          std::to_string(question.number_of(worst.pose)) + ", where it goes on by " +
+          length_text(worst.length, question.unit) +
+          ". What comes beside it between two poses can reach deeper into it than at either",
+      {{"share", static_cast<double>(steps.size()) / static_cast<double>(all)},
+       {"largest", worst.across},
+       {"pose", static_cast<double>(question.number_of(worst.pose))},
+       {"step", worst.length}},
+      stretches_of(question, steps)));
 }
 
 /// Warns of what the load of a section passes between two poses, of which only the poses are
@@ -473,13 +473,12 @@ void warn_sideways(const Question& question, const Drive& drive, MessageLog& log
 void tell_backwards(const Question& question, const Drive& drive, MessageLog& log) {
   const double along = drive.forwards(0);
   if (along > -kAlongAxis) return;
-  log.add({Message::Severity::kNote,
-           "drives-backwards",
-           "the " + std::string(question.words().mover) +
-               " moves backwards, against its x axis: if it does not reverse, turn the poses" +
-               (question.is_load() ? "" : " or the model") +
-               " by 180 degrees, because left and right are swapped",
-           {{"share", -along}}});
+  log.add(note("drives-backwards",
+               "the " + std::string(question.words().mover) +
+                   " moves backwards, against its x axis: if it does not reverse, turn the poses" +
+                   (question.is_load() ? "" : " or the model") +
+                   " by 180 degrees, because left and right are swapped",
+               {{"share", -along}}));
 }
 
 /// Whether the poses hardly turn the model. If so, it is not a crane that slews on the spot.

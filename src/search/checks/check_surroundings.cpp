@@ -143,7 +143,7 @@ class Stretches {
 
   /// Warns of runs, unless there are none. text: follows the words that say where they are.
   /// numbers: of the warning, besides those of the runs.
-  void warn(const char* code, const std::vector<LookRun>& runs, const std::string& text,
+  void warn(WarningCode code, const std::vector<LookRun>& runs, const std::string& text,
             MessageLog& log,
             const std::vector<std::pair<std::string, double>>& numbers = {}) const {
     if (runs.empty()) return;

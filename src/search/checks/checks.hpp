@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/util/messages.hpp"
+#include "core/messages/messages.hpp"
 #include "search/checks/facts/path_facts.hpp"
 #include "search/checks/facts/path_looks.hpp"
 #include "search/checks/question.hpp"

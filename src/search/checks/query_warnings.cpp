@@ -1,7 +1,6 @@
 #include "search/checks/query_warnings.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -12,7 +11,7 @@
 #include "clearway/error.hpp"
 #include "clearway/unsearched.hpp"
 #include "core/geometry/point_box.hpp"
-#include "core/query/warning_meaning.hpp"
+#include "core/messages/messages.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
 #include "core/trajectory/pose_ranges.hpp"
@@ -26,17 +25,13 @@
 namespace clearway {
 namespace {
 
-/// Codes of warnings that concern the vehicle and not a single body: a roof is always above the
-/// ground, and in a cutting a bogie has a wall on its own side only.
-constexpr std::array<std::string_view, 4> kOfVehicle{"floats", "nothing-below", "nothing-beside",
-                                                     "one-side"};
-
 bool has(const BodyMessages& body, std::string_view code) {
   return std::ranges::any_of(body.messages, [&](const Message& m) { return m.code == code; });
 }
 
 bool is_of_vehicle(const Message& message) {
-  return std::ranges::find(kOfVehicle, message.code) != kOfVehicle.end();
+  const MessageKind* const kind = find_message_kind(message.code);
+  return kind != nullptr && kind->effect.of_vehicle;
 }
 
 /// Whether every body that is near the scan has a warning with this code. For a body that is
@@ -356,17 +351,16 @@ void warn_of_bodies(const StoreReader& store, const Question& path, const Query&
 /// warning of the store says so.
 void note_withheld(const StoreMetadata& store, MessageLog& log) {
   const std::uint64_t points = store.withheld ? store.withheld->left_out() : 0;
-  constexpr const char* kCode = "withheld-points";
+  constexpr NoteCode kCode = "withheld-points";
   const bool is_warning =
-      std::ranges::find(store.warnings, kCode, &Message::code) != store.warnings.end();
+      std::ranges::find(store.warnings, kCode.view(), &Message::code) != store.warnings.end();
   if (points == 0 || is_warning) return;
-  log.add({Message::Severity::kNote,
-           kCode,
-           counted(points, "point") + " of the scans " + (points == 1 ? "is" : "are") +
-               " not searched, because " + (points == 1 ? "it has" : "they have") +
-               " the flag `withheld` and the conversion left " + (points == 1 ? "it" : "them") +
-               " out",
-           {{"points", static_cast<double>(points)}}});
+  log.add(note(kCode,
+               counted(points, "point") + " of the scans " + (points == 1 ? "is" : "are") +
+                   " not searched, because " + (points == 1 ? "it has" : "they have") +
+                   " the flag `withheld` and the conversion left " + (points == 1 ? "it" : "them") +
+                   " out",
+               {{"points", static_cast<double>(points)}}));
 }
 
 /// Warns of scan and path as they are. Returns whether there is more to check.

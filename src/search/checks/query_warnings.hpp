@@ -10,7 +10,7 @@
 #include "clearway/progress.hpp"
 #include "clearway/query.hpp"
 #include "clearway/section.hpp"
-#include "core/util/messages.hpp"
+#include "core/messages/messages.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/checks/facts/model_looks.hpp"
 

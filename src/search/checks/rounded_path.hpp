@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/util/messages.hpp"
+#include "core/messages/messages.hpp"
 #include "search/checks/question.hpp"
 
 namespace clearway {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "clearway/vec3.hpp"
-#include "core/util/messages.hpp"
+#include "core/messages/messages.hpp"
 #include "search/checks/question.hpp"
 
 namespace clearway {

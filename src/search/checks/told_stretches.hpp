@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/util/messages.hpp"
+#include "core/messages/messages.hpp"
 #include "search/checks/facts/path_looks.hpp"
 #include "search/checks/question.hpp"
 

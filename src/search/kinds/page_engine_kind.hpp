@@ -10,10 +10,10 @@
 
 #include "clearway/search.hpp"
 #include "core/grid/grid_scene.hpp"
+#include "core/messages/messages.hpp"
 #include "core/page/page_engine.hpp"
 #include "core/page/page_pool.hpp"
 #include "core/page/pose_reach.hpp"
-#include "core/util/messages.hpp"
 #include "search/query_trees.hpp"
 #include "stream/plan.hpp"
 

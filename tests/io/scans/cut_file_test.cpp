@@ -126,7 +126,7 @@ TEST_CASE("a cut PTS file is refused at every byte before its last number") {
   check_every_cut("a.pts", text, false, 3);
 }
 
-TEST_CASE("a text that ends within a number is refused, one without a line break is noted") {
+TEST_CASE("a text that ends within a number is refused, one without a line break is read") {
   ReaderScratch scratch;
   const std::string ply = "ply\nformat ascii 1.0\nelement vertex 1\n" + kXyz + "end_header\n";
   CHECK(refusal_of(scratch.write("a.ply", ply + "1 2 3.")) != "");
@@ -135,9 +135,7 @@ TEST_CASE("a text that ends within a number is refused, one without a line break
        {scratch.write("b.ply", ply + "1 2 3.5"), scratch.write("b.pts", "1\n1 2 3.5")}) {
     const ReadCloud cloud = read_all(path);
     CHECK(cloud.positions == std::vector<Vec3>{{1, 2, 3.5}});
-    REQUIRE(cloud.info.remarks.size() == 1);
-    CHECK(cloud.info.remarks[0].severity == Message::Severity::kNote);
-    CHECK(cloud.info.remarks[0].code == "no-line-break");
+    CHECK(cloud.info.remarks.empty());
   }
 }
 

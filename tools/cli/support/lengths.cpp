@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "cli/support/options.hpp"
+#include "core/messages/messages.hpp"
 #include "io/scans/length_unit.hpp"
 #include "io/scans/scan_crs.hpp"
 #include "io/scans/text/table_header.hpp"
@@ -170,10 +171,9 @@ std::optional<Message> LengthOptions::convert_for(const Store& store) const {
     const bool of_ten = parsed.unit == FileUnit(kMetresPerMillimetre) ||
                         parsed.unit == FileUnit(kMetresPerCentimetre) || parsed.unit.metres() >= 1;
     if (of_ten || parsed.unit == FileUnit(0.1)) continue;
-    return Message{Message::Severity::kWarning,
-                   "unit-assumed",
+    return warning("unit-assumed",
                    unit_assumed_text("lengths of the command", parsed.unit.metres()),
-                   {{"metres", parsed.unit.metres()}}};
+                   {{"metres", parsed.unit.metres()}});
   }
   return std::nullopt;
 }
@@ -200,9 +200,9 @@ bool names_unit(const FileUnit& option, std::span<const Message> told) {
 
 std::optional<Message> note_on_feet(const Store& store) {
   if (!is_foot(store.metres_per_unit())) return std::nullopt;
-  return Message{Message::Severity::kNote, "feet",
-                 "the environment is in feet; the lengths, the model and the trajectory name their "
-                 "units, so nothing is assumed"};
+  return note("feet",
+              "the environment is in feet; the lengths, the model and the trajectory name their "
+              "units, so nothing is assumed");
 }
 
 void add_chainage_option(CLI::App& command, LengthOptions& lengths, double& start) {

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -17,6 +18,7 @@
 #include "cli/support/console.hpp"
 #include "cli/support/mistyped.hpp"
 #include "cli/support/options.hpp"
+#include "core/messages/remedies.hpp"
 #include "core/util/format.hpp"
 #include "io/files/hdf5.hpp"
 #include "io/files/mapped_file.hpp"
@@ -24,11 +26,6 @@
 
 namespace clearway::tool {
 namespace {
-
-/// An option with a size in a form that it takes, without rounding.
-std::string size_option(const std::string& name, double bytes) {
-  return name + " " + std::to_string(static_cast<std::uint64_t>(bytes));
-}
 
 /// The name in options of a unit of length, or UNIT where it has none.
 std::string option_of_length(double metres) {
@@ -39,124 +36,35 @@ std::string option_of_length(double metres) {
   return "UNIT";
 }
 
-/// Three columns from `first` on, counted from 1, as --columns takes them; from 2 on for 0.
+/// Three columns from `first` on, counted from 1, as --columns takes them.
 std::string columns_from(double first) {
-  const auto x = first > 0 ? static_cast<unsigned>(first) : 2u;
+  const auto x = static_cast<unsigned>(first);
   return std::to_string(x) + "," + std::to_string(x + 1) + "," + std::to_string(x + 2);
+}
+
+/// The amount of a remedy in a form that options take.
+std::string text_of(double amount, RemedyAmount kind) {
+  switch (kind) {
+    case RemedyAmount::kBytes:
+      return std::to_string(static_cast<std::uint64_t>(amount));
+    case RemedyAmount::kColumn:
+      return columns_from(amount);
+    case RemedyAmount::kLengthUnit:
+      return option_of_length(amount);
+    case RemedyAmount::kNumber:
+    case RemedyAmount::kNothing:
+      break;
+  }
+  return format_number(amount);
 }
 
 }  // namespace
 
 std::string advice_on(const Error& error) {
-  switch (error.remedy()) {
-    case Remedy::kNone:
-      return "";
-    case Remedy::kMoreMemory:
-      if (error.amount() == 0) return "; give more with --memory";
-      return "; " + size_option("--memory", error.amount()) + " is enough";
-    case Remedy::kMoreDeviceMemory:
-      return "; " + size_option("--device-memory", error.amount()) + " is enough";
-    case Remedy::kOtherGpu:
-      return "; nvidia-smi lists what else uses it: take other GPUs with --gpus, or --device cpu";
-    case Remedy::kCpuDevice:
-      return "; --device cpu does without a GPU; nvidia-smi lists the GPUs that can be used; an "
-             "unfinished run continues with --resume";
-    case Remedy::kNewProcess:
-      return "; start the command again, where --resume continues an unfinished run, or take "
-             "--device cpu";
-    case Remedy::kLessDeviceMemory:
-      return "; nvidia-smi lists what else uses the GPU: take less --device-memory, or --device "
-             "cpu";
-    case Remedy::kLessMemory:
-      return "; take less --memory, or --device cpu";
-    case Remedy::kFewerThreads:
-      return "; give fewer --threads, or raise the limit";
-    case Remedy::kSweepEngine:
-      return "; take --engine sweep";
-    case Remedy::kCudaDevice:
-      return "; take --device cuda";
-    case Remedy::kMoreCellPoints:
-      return "; with more --cell-points there are fewer cells";
-    case Remedy::kFewerCellPoints:
-      return "; fewer --cell-points avoid that";
-    case Remedy::kScale:
-      return error.amount() > 0 ? "; --scale " + format_number(error.amount()) + " fits"
-                                : "; a coarser --scale is needed";
-    case Remedy::kOneScale:
-      return "; --scale " + (error.amount() > 0 ? format_number(error.amount()) : "METRES") +
-             " sets one for all";
-    case Remedy::kAcceptScale:
-      return "; --scale " + format_number(error.amount()) + " accepts that step";
-    case Remedy::kColumns:
-      return "; --columns says which ones hold x, y and z, for example --columns " +
-             columns_from(error.amount());
-    case Remedy::kStandardInput:
-      return "; clearway convert - < FILE takes it as standard input";
-    case Remedy::kSampleMesh:
-      return "; clearway model samples its surface to points in PLY";
-    case Remedy::kSkipUnreadable:
-      return "; --skip-unreadable leaves out the files that cannot be read";
-    case Remedy::kIgnoreCrs:
-      return error.amount() > 0 ? "; --unit-z " + option_of_length(error.amount()) +
-                                      " converts the heights, and --ignore-crs takes the "
-                                      "coordinates as they are"
-                                : "; --ignore-crs takes the coordinates as they are";
-    case Remedy::kOverwrite:
-      return "; --force overwrites it, or give another name for the output";
-    case Remedy::kReadOrOverwrite:
-      return "; --resume repeats that answer without a search, and --force searches again";
-    case Remedy::kResumeOrOverwrite:
-      return "; --resume continues it, --force starts again";
-    case Remedy::kOverwriteNotResume:
-      return "; --force instead of --resume overwrites it, or give another name for the output";
-    case Remedy::kRestoreOptions:
-      return "; give the options and files that it was started with, or --force to start again";
-    case Remedy::kNameFormat:
-      return "; --trajectory-format names it";
-    case Remedy::kNameCrs:
-      return "; --trajectory-crs names it, for example --trajectory-crs EPSG:25832";
-    case Remedy::kDeclareAngles:
-      return "; --angles says it: deg or rad, ned or enu, for example --angles deg,ned";
-    case Remedy::kDeclareLength:
-      return "; --trajectory-unit says it";
-    case Remedy::kAllowNonRigid:
-      return "; --allow-non-rigid accepts any invertible matrix";
-    case Remedy::kGiveHeight:
-      return "; --height gives one for all of it, and --on-ground takes that of the ground in a "
-             "scan";
-    case Remedy::kRoundCorners:
-      return "; --corner-radius METRES puts arcs at the vertices, and more vertices describe a "
-             "curve";
-    case Remedy::kAskForClearance:
-      return "; run with --clearance";
-    case Remedy::kAskForFirstPose:
-      return "; run with --first-pose";
-    case Remedy::kSameTrajectory:
-      return ". --trajectory takes the file of the run, with the same options";
-    case Remedy::kSameModel:
-      return ". --model or --vehicle takes the file of the run, with the same --model-... options";
-    case Remedy::kSameEnvironment:
-      return ". --env takes the store of the run, or another one of the same scans";
-    case Remedy::kAskForProfile:
-      return "; run with --profile";
-    case Remedy::kModelSpacing:
-      return "; --model-spacing " +
-             (error.amount() > 0 ? format_number(error.amount()) : "METRES") +
-             " sets it, and --model-unit says what the file counts in";
-    case Remedy::kResume:
-      return "; the same command with --resume, without --force, continues from the finished work";
-    case Remedy::kModelPoints:
-      return "; --model-as points searches points of it, and the answer says how far its surface "
-             "may be from them";
-    case Remedy::kMerge:
-      return "; clearway merge makes the result of all parts";
-    case Remedy::kFreeDisk:
-      return "; free some room, or write to a disk with more";
-    case Remedy::kOtherPart:
-      return "; give the same --shard as its run, or another output. --force instead of --resume "
-             "overwrites it";
-  }
-  return "";
+  const RemedyKind& kind = kind_of(error.remedy());
+  if (kind.words_with_amount.empty() || !(error.amount() > 0)) return std::string(kind.words);
+  std::string words(kind.words_with_amount);
+  return words.replace(words.find("{}"), 2, text_of(error.amount(), kind.amount));
 }
 
 namespace {

@@ -7,6 +7,7 @@
 
 #include "clearway/error.hpp"
 #include "core/geometry/angle.hpp"
+#include "core/messages/messages.hpp"
 #include "core/trajectory/pose_ranges.hpp"
 #include "core/util/format.hpp"
 
@@ -157,15 +158,11 @@ bool only_at_ends(const std::vector<std::uint64_t>& poses, std::size_t count) {
   return first + last >= poses.size();
 }
 
-Message message(Message::Severity severity, const std::string& code, const std::string& text,
-                const std::vector<std::uint64_t>& poses) {
-  return {severity,
-          code,
-          text,
-          {{"poses", static_cast<double>(poses.size())},
-           {"first", static_cast<double>(poses.front())},
-           {"last", static_cast<double>(poses.back())}},
-          pose_ranges(poses)};
+/// The numbers of a message about these poses.
+MessageNumbers numbers_of(const std::vector<std::uint64_t>& poses) {
+  return {{"poses", static_cast<double>(poses.size())},
+          {"first", static_cast<double>(poses.front())},
+          {"last", static_cast<double>(poses.back())}};
 }
 
 /// "body wagon: 6 of 21 poses of the path (poses 0-5, from 0): ".
@@ -185,11 +182,11 @@ Message off_path_message(const std::string& name, const std::vector<std::uint64_
   // about it.
   const bool mostly = missing.size() > path_poses / 2;
   const bool expected = !mostly && only_at_ends(missing, path_poses);
-  return message(expected ? Message::Severity::kNote : Message::Severity::kWarning, "body-off-path",
-                 share_text(name, missing, path_poses) + "the body has no pose there, " + why +
-                     ". " + (mostly ? "Most of the path is not searched for this body. " : "") +
-                     remedy,
-                 missing);
+  return warning_or_note(
+      !expected, "body-off-path",
+      share_text(name, missing, path_poses) + "the body has no pose there, " + why + ". " +
+          (mostly ? "Most of the path is not searched for this body. " : "") + remedy,
+      numbers_of(missing), pose_ranges(missing));
 }
 
 namespace {
@@ -225,8 +222,8 @@ const MountTexts& texts_of(const BodyMount& mount) {
 Message transient_message(const FollowedPath& followed, const std::string& where) {
   constexpr double kStraight = 5 * kDegree;
   const bool bends = followed.transient_turn > kStraight;
-  Message out = message(
-      bends ? Message::Severity::kWarning : Message::Severity::kNote, "body-transient",
+  Message out = warning_or_note(
+      bends, "body-transient",
       where +
           "where the body stands when the path begins is not known, so it begins in line with its "
           "tower. That still matters while the hitch goes three times as far as from the hitch to "
@@ -235,7 +232,7 @@ Message transient_message(const FollowedPath& followed, const std::string& where
                        " degrees meanwhile, so where the body is there is a guess"
                  : std::string()) +
           ". Begin the path earlier, where it is straight",
-      followed.transient);
+      numbers_of(followed.transient), pose_ranges(followed.transient));
   out.numbers.push_back({"turn_degrees", followed.transient_turn / kDegree});
   return out;
 }
@@ -247,10 +244,11 @@ std::vector<Message> doubts_about(const FollowedPath& followed, const PathStatio
   std::vector<Message> doubts;
   const std::size_t count = path.poses().size();
   const MountTexts& texts = texts_of(mount);
-  const auto tell = [&](Message::Severity severity, const std::string& code,
-                        const std::vector<std::uint64_t>& poses, const std::string& what) {
+  const auto warn = [&](WarningCode code, const std::vector<std::uint64_t>& poses,
+                        const std::string& what) {
     if (poses.empty()) return;
-    doubts.push_back(message(severity, code, share_text(name, poses, count) + what, poses));
+    doubts.push_back(warning(code, share_text(name, poses, count) + what, numbers_of(poses),
+                             pose_ranges(poses)));
   };
   if (!followed.off_path.empty()) {
     const bool mostly = followed.off_path.size() > count / 2;
@@ -260,19 +258,15 @@ std::vector<Message> doubts_about(const FollowedPath& followed, const PathStatio
                                       mostly ? "Check its stations, or make the path longer"
                                              : "Make the path longer to search there too"));
   }
-  constexpr auto kWarning = Message::Severity::kWarning, kNote = Message::Severity::kNote;
-  tell(kWarning, "body-undefined", followed.undefined,
+  warn("body-undefined", followed.undefined,
        std::string("the body has no pose there. ") + texts.undefined);
-  tell(kWarning, "body-folded", followed.folded,
+  warn("body-folded", followed.folded,
        "the path turns back between the pivots. They are closer together than half their way "
        "along the path. Split the path where it turns back");
-  tell(kWarning, "body-turned", followed.turned, texts.turned);
+  warn("body-turned", followed.turned, texts.turned);
   if (!followed.transient.empty()) {
     doubts.push_back(transient_message(followed, share_text(name, followed.transient, count)));
   }
-  tell(kNote, "body-rolls-back", followed.rolled_back,
-       "the hitch goes back a little, or has not come as far again. The body does not turn while "
-       "its hitch goes back");
   return doubts;
 }
 

@@ -116,13 +116,7 @@ void remark_cant_ends(const LandXml& xml, const Alignment& track, const Reach& r
                            " to " + brief(last / unit) +
                            " only; beyond its ends the last value was kept, which is " +
                            (canted ? "not 0" : "0");
-  const std::vector<std::pair<std::string, double>> numbers{{"first", first / unit},
-                                                            {"last", last / unit}};
-  if (canted) {
-    out.warn("cant-ends", text, numbers);
-  } else {
-    out.note("cant-ends", text, numbers);
-  }
+  out.warn_or_note(canted, "cant-ends", text, {{"first", first / unit}, {"last", last / unit}});
 }
 
 /// Warns where it matters which foot the file means.

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "core/geometry/angle.hpp"
+#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/paths/geographic/map_projection.hpp"
@@ -85,19 +86,12 @@ void remark_heights(const MapProjection& map, const TrajectoryOptions& options,
              name + ": heights are those of " + map.name() + ", from " + ranges.height.text());
     return;
   }
-  const std::string what =
-      name + ": heights are ellipsoidal, as in the file, from " + ranges.height.text();
-  const std::vector<std::pair<std::string, double>> numbers{{"least", ranges.height.least},
-                                                            {"greatest", ranges.height.greatest}};
-  if (options.crs.ends_with("+ellipsoidal")) {
-    out.note("ellipsoidal-heights", what, numbers);
-    return;
-  }
+  if (options.crs.ends_with("+ellipsoidal")) return;
   out.warn("ellipsoidal-heights",
-           what +
+           name + ": heights are ellipsoidal, as in the file, from " + ranges.height.text() +
                ". Heights above sea level differ by up to 107 m. Give a CRS with a vertical part, "
                "or add +ellipsoidal to it where the scan has such heights too",
-           numbers);
+           {{"least", ranges.height.least}, {"greatest", ranges.height.greatest}});
 }
 
 void remark_map(const MapProjection& map, const TrajectoryOptions& options, const Ranges& ranges,
@@ -146,11 +140,8 @@ void remark_datum(const MapProjection& map, const TrajectoryOptions& options,
                            map.name() + " is reached with an accuracy of " +
                            (accuracy > 0 ? brief(accuracy) + " m" : "unknown size") +
                            "; name the datum of the file where it is another";
-  if (accuracy > 0 && accuracy <= kExpected) {
-    out.note("datum-accuracy", text, {{"metres", accuracy}});
-  } else {
-    out.warn("datum-accuracy", text, {{"metres", accuracy}});
-  }
+  const bool is_expected = accuracy > 0 && accuracy <= kExpected;
+  out.warn_or_note(!is_expected, "datum-accuracy", text, {{"metres", accuracy}});
 }
 
 }  // namespace

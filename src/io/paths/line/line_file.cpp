@@ -9,6 +9,7 @@
 #include "clearway/error.hpp"
 #include "clearway/store.hpp"
 #include "core/geometry/angle.hpp"
+#include "core/messages/messages.hpp"
 #include "core/trajectory/line/line_path.hpp"
 #include "core/trajectory/trajectory_doubts.hpp"
 #include "core/util/format.hpp"
@@ -268,12 +269,7 @@ void remark_curve(const std::string& name, const LineVertices& line,
       format_brief(aside) + " m beside the straight legs and " + format_brief(above) +
       " m above or below them, the most after " + vertex_text(line, at) + " (" + line.place_of(at) +
       "). More vertices keep it closer";
-  const std::vector<std::pair<std::string, double>> numbers{{"aside", aside}, {"above", above}};
-  if (most > kWarned) {
-    out.warn("line-curved", text, numbers);
-  } else {
-    out.note("line-curved", text, numbers);
-  }
+  out.warn_or_note(most > kWarned, "line-curved", text, {{"aside", aside}, {"above", above}});
 }
 
 void remark_closed(const std::string& name, const LineVertices& line, Remarks& out) {

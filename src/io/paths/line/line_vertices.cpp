@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/file.hpp"
 #include "io/files/input_error.hpp"
@@ -383,16 +384,14 @@ bool holds_json(InputBuffer& input) {
 }
 
 /// Leaves out vertices that stand twice in a row.
-void drop_repeated(const std::string& name, LineVertices& line, Remarks& remarks) {
+void drop_repeated(const std::string& name, LineVertices& line) {
   std::size_t kept = 0;
-  std::string where;  // of the first that is left out
   const auto each_list = [&](const auto& change) {
     for (auto* list : {&line.x, &line.y, &line.z, &line.station, &line.cant}) {
       if (!list->empty()) change(*list);
     }
     change(line.place);
   };
-  std::size_t dropped = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
     const bool same = kept > 0 && line.x[i] == line.x[kept - 1] && line.y[i] == line.y[kept - 1];
     const auto differs = [&](const std::vector<double>& list) {
@@ -406,20 +405,11 @@ void drop_repeated(const std::string& name, LineVertices& line, Remarks& remarks
                        "but its " + what + " differs by " + brief((*list)[i] - (*list)[kept - 1]) +
                        " m");
     }
-    if (same) {
-      if (dropped++ == 0) where = line.place_of(i);
-      continue;
-    }
+    if (same) continue;
     each_list([&](auto& list) { list[kept] = list[i]; });
     ++kept;
   }
-  if (dropped == 0) return;
   each_list([&](auto& list) { list.resize(kept); });
-  remarks.note("repeated-vertices",
-               name + ": " + counted(dropped, "vertex", "vertices") +
-                   " at the place of the one before, the first at " + where + ", " +
-                   (dropped == 1 ? "was" : "were") + " left out",
-               {{"vertices", static_cast<double>(dropped)}});
 }
 
 }  // namespace
@@ -441,7 +431,7 @@ LineVertices read_line_vertices(const std::filesystem::path& path, const LineOpt
   }
   LineVertices line =
       json ? GeoJsonLine(path, options).read(out) : LineTable(std::move(input), options).read(out);
-  drop_repeated(path.string(), line, out);
+  drop_repeated(path.string(), line);
   if (line.size() < 2) {
     refuse(path.string(),
            "holds only one place; expected a line with at least two vertices at different places");

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "clearway/progress.hpp"
+#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/scans/declared_box.hpp"
@@ -39,7 +40,7 @@ class E57Remarks {
 };
 
 Message note(std::string text, std::vector<std::pair<std::string, double>> numbers) {
-  return {Message::Severity::kNote, {}, std::move(text), std::move(numbers)};
+  return plain_note(std::move(text), std::move(numbers));
 }
 
 std::string scans(std::uint64_t count) {
@@ -90,12 +91,11 @@ std::vector<Message> E57Remarks::messages(const std::string& file) const {
                        {{"absent", number(absent_)}, {"records", number(records_)}}));
   }
   if (beyond_bounds_ > 0) {
-    all.push_back({Message::Severity::kWarning,
-                   "declared-bounds",
-                   file + ": " + scans(beyond_bounds_) +
-                       " with points far beyond the declared bounds (" + first_beyond_bounds_ +
-                       ", metres). Is the unit of length right?",
-                   {{"scans_beyond_bounds", number(beyond_bounds_)}}});
+    all.push_back(warning("declared-bounds",
+                          file + ": " + scans(beyond_bounds_) +
+                              " with points far beyond the declared bounds (" +
+                              first_beyond_bounds_ + ", metres). Is the unit of length right?",
+                          {{"scans_beyond_bounds", number(beyond_bounds_)}}));
   }
   return all;
 }
@@ -137,10 +137,11 @@ void refuse_points_from_nothing(const std::string& name, const std::vector<E57Sc
 }
 
 Message foot_warning(const std::string& name) {
-  return {Message::Severity::kWarning, "e57-unit",
-          name +
-              ": its coordinate reference system is in feet, but lengths in E57 are metres by the "
-              "standard. They are taken for feet: check them"};
+  return warning(
+      "e57-unit",
+      name +
+          ": its coordinate reference system is in feet, but lengths in E57 are metres by the "
+          "standard. They are taken for feet: check them");
 }
 
 class E57Reader final : public PointReader {

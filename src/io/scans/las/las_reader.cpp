@@ -8,6 +8,7 @@
 
 #include "clearway/error.hpp"
 #include "core/cloud/packed_cloud.hpp"
+#include "core/messages/messages.hpp"
 #include "io/files/bytes.hpp"
 #include "io/files/input_error.hpp"
 #include "io/scans/las/las_header.hpp"
@@ -207,14 +208,13 @@ class LasReader final : public PointReader {
     info_.set(crs_.stated());
     tail_read_ = true;
     if (points_ == header_.points) return;
-    info_.remarks.push_back({Message::Severity::kWarning,
-                             "las-count",
-                             input_.name() + ": its header declares " +
-                                 std::to_string(header_.points) + " points, but " +
-                                 std::to_string(points_) + " came before its end. " + kWhyMore +
-                                 ". All of them were read",
-                             {{"declared", static_cast<double>(header_.points)},
-                              {"read", static_cast<double>(points_)}}});
+    info_.remarks.push_back(warning("las-count",
+                                    input_.name() + ": its header declares " +
+                                        std::to_string(header_.points) + " points, but " +
+                                        std::to_string(points_) + " came before its end. " +
+                                        kWhyMore + ". All of them were read",
+                                    {{"declared", static_cast<double>(header_.points)},
+                                     {"read", static_cast<double>(points_)}}));
   }
 
   InputBuffer input_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "core/messages/messages.hpp"
 #include "io/files/bytes.hpp"
 #include "io/files/input_error.hpp"
 #include "io/scans/laz/chunk_table.hpp"
@@ -269,12 +270,9 @@ std::unique_ptr<PointReader> read_laz_points(InputBuffer input, const Scheme& sc
              "has no chunk table, and its chunks differ in size; expected a table. Its writer was "
              "interrupted: write the file again");
     }
-    info.remarks.push_back({Message::Severity::kNote,
-                            "",
-                            input.name() + ": has no chunk table; its " +
-                                std::to_string(bytes.points) +
-                                " points are read one chunk after the other",
-                            {}});
+    info.remarks.push_back(plain_note(input.name() + ": has no chunk table; its " +
+                                      std::to_string(bytes.points) +
+                                      " points are read one chunk after the other"));
   }
   return std::make_unique<UntabledReader>(std::move(input), scheme, bytes, std::move(info));
 }

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/bytes.hpp"
 #include "io/files/input_error.hpp"
@@ -285,15 +286,14 @@ std::optional<Message> remark_on_viewpoint(const std::array<double, 7>& viewpoin
       degrees == 0) {
     return std::nullopt;
   }
-  return Message{
-      Message::Severity::kWarning,
+  return warning(
       "pcd-viewpoint",
       name + ": its VIEWPOINT lies at (" + brief(viewpoint[0]) + ", " + brief(viewpoint[1]) + ", " +
           brief(viewpoint[2]) + "), turned by " + brief(degrees) +
           " degrees. It is not applied: PCL defines it as the place of the sensor. If the points "
           "are in the sensor's frame, apply it first, for example with "
           "pcl_transform_from_viewpoint",
-      {{"x", viewpoint[0]}, {"y", viewpoint[1]}, {"z", viewpoint[2]}, {"degrees", degrees}}};
+      {{"x", viewpoint[0]}, {"y", viewpoint[1]}, {"z", viewpoint[2]}, {"degrees", degrees}});
 }
 
 }  // namespace
@@ -309,10 +309,10 @@ PcdBodyReader::PcdBodyReader(InputBuffer input, PcdHeader header)
     info_.origins_rest_on = "viewpoints of PCD";
     return;
   }
-  info_.remarks.push_back({Message::Severity::kNote, "pcd-default-viewpoint",
-                           input_.name() +
-                               ": its VIEWPOINT is the default of PCD, 0 0 0 1 0 0 0, so it does "
-                               "not tell from where the points were seen"});
+  info_.remarks.push_back(
+      note("pcd-default-viewpoint",
+           input_.name() + ": its VIEWPOINT is the default of PCD, 0 0 0 1 0 0 0, so it does "
+                           "not tell from where the points were seen"));
 }
 
 bool PcdBodyReader::read(PointBatch& batch) {
@@ -351,13 +351,12 @@ void PcdBodyReader::finish() {
   check_end();
   finished_ = true;
   if (absent_ == 0) return;
-  info_.remarks.push_back({Message::Severity::kNote,
-                           "absent-points",
-                           input_.name() + ": " + format_count(absent_) + " of " +
-                               format_count(header_.points) +
-                               " places of the organised cloud hold no point",
-                           {{"absent", static_cast<double>(absent_)},
-                            {"records", static_cast<double>(header_.points)}}});
+  info_.remarks.push_back(note("absent-points",
+                               input_.name() + ": " + format_count(absent_) + " of " +
+                                   format_count(header_.points) +
+                                   " places of the organised cloud hold no point",
+                               {{"absent", static_cast<double>(absent_)},
+                                {"records", static_cast<double>(header_.points)}}));
 }
 
 void PcdBodyReader::check_only_padding() {

@@ -121,7 +121,6 @@ class AsciiPlyReader final : public PlyBodyReader {
     const std::string what = "the file ends without a line break";
     if (!vertices_end_file()) fail(what + " in the last vertex, so it is cut; expected more lines");
     if (line.ends_with('.')) fail(what + " within a number; expected all of it");
-    note("no-line-break", what);
   }
 
   /// Throws InputError where the file has more lines than declared.

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "core/messages/messages.hpp"
 #include "io/scans/input_buffer.hpp"
 #include "io/scans/ply/ply_header.hpp"
 #include "io/scans/point_reader.hpp"
@@ -49,10 +50,6 @@ class PlyBodyReader : public PointReader {
     const auto behind = header_.elements.begin() + static_cast<std::ptrdiff_t>(header_.vertex) + 1;
     return std::all_of(behind, header_.elements.end(),
                        [](const PlyElement& element) { return element.count == 0; });
-  }
-
-  void note(const char* code, const std::string& text) {
-    info_.remarks.push_back({Message::Severity::kNote, code, input_.name() + ": " + text, {}});
   }
 
   InputBuffer input_;

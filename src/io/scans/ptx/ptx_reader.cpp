@@ -11,6 +11,7 @@
 
 #include "clearway/vec3.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
@@ -166,45 +167,43 @@ struct PtxFindings {
 double number(std::uint64_t count) { return static_cast<double>(count); }
 
 Message remark_on_scans(const PtxFindings& found, const std::string& name) {
-  return {Message::Severity::kNote,
-          "scans-placed",
-          name + ": " + format_count(found.scans) + (found.scans == 1 ? " scan" : " scans") +
-              ", placed by the matrix in the file; " + format_count(found.absent) + " of " +
-              format_count(found.records) + " records hold no point",
-          {{"scans", number(found.scans)},
-           {"absent", number(found.absent)},
-           {"records", number(found.records)}}};
+  return note("scans-placed",
+              name + ": " + format_count(found.scans) + (found.scans == 1 ? " scan" : " scans") +
+                  ", placed by the matrix in the file; " + format_count(found.absent) + " of " +
+                  format_count(found.records) + " records hold no point",
+              {{"scans", number(found.scans)},
+               {"absent", number(found.absent)},
+               {"records", number(found.records)}});
 }
 
 Message remark_on_stretch(const PtxFindings& found, const std::string& name) {
   const PtxHeader& h = found.first_not_rigid;
-  return {Message::Severity::kWarning,
-          "scan-not-rigid",
-          name + ": " + format_count(found.not_rigid) + " of " + format_count(found.scans) +
-              " scans have a matrix that scales, shears or mirrors. The first is at line " +
-              std::to_string(h.line) + ": singular values from " + brief(h.stretch[0]) + " to " +
-              brief(h.stretch[1]) + ", determinant " + brief(h.determinant) +
-              ". The matrices are applied as they are",
-          {{"scans", number(found.not_rigid)},
-           {"line", number(h.line)},
-           {"least", h.stretch[0]},
-           {"greatest", h.stretch[1]},
-           {"determinant", h.determinant}}};
+  return warning("scan-not-rigid",
+                 name + ": " + format_count(found.not_rigid) + " of " + format_count(found.scans) +
+                     " scans have a matrix that scales, shears or mirrors. The first is at line " +
+                     std::to_string(h.line) + ": singular values from " + brief(h.stretch[0]) +
+                     " to " + brief(h.stretch[1]) + ", determinant " + brief(h.determinant) +
+                     ". The matrices are applied as they are",
+                 {{"scans", number(found.not_rigid)},
+                  {"line", number(h.line)},
+                  {"least", h.stretch[0]},
+                  {"greatest", h.stretch[1]},
+                  {"determinant", h.determinant}});
 }
 
 Message remark_on_axes(const PtxFindings& found, const std::string& name) {
   const PtxHeader& h = found.most_contradicting;
-  return {Message::Severity::kWarning,
-          "scan-axes-contradict",
-          name + ": the scanner's position and axes contradict the matrix in " +
-              format_count(found.contradicting) + " of " + format_count(found.scans) +
-              " scans. In the one at line " + std::to_string(h.line) + " the positions are " +
-              brief(h.position_differs) + " apart, and the axes differ by " + brief(h.axes_differ) +
-              ". The matrix is applied",
-          {{"scans", number(found.contradicting)},
-           {"line", number(h.line)},
-           {"position", h.position_differs},
-           {"axes", h.axes_differ}}};
+  return warning("scan-axes-contradict",
+                 name + ": the scanner's position and axes contradict the matrix in " +
+                     format_count(found.contradicting) + " of " + format_count(found.scans) +
+                     " scans. In the one at line " + std::to_string(h.line) +
+                     " the positions are " + brief(h.position_differs) +
+                     " apart, and the axes differ by " + brief(h.axes_differ) +
+                     ". The matrix is applied",
+                 {{"scans", number(found.contradicting)},
+                  {"line", number(h.line)},
+                  {"position", h.position_differs},
+                  {"axes", h.axes_differ}});
 }
 
 void PtxFindings::append_to(std::vector<Message>& remarks, const std::string& name) const {

@@ -1,5 +1,6 @@
 #include <utility>
 
+#include "core/messages/messages.hpp"
 #include "io/scans/ptx/ptx_reader.hpp"
 #include "io/scans/text/point_blocks.hpp"
 #include "io/scans/text/xyz_reader.hpp"
@@ -21,8 +22,8 @@ int count_lines(InputBuffer& input) {
 
 std::vector<Message> named_otherwise(const InputBuffer& input, const char* format,
                                      const char* counts) {
-  return {{Message::Severity::kNote, "named-otherwise",
-           input.name() + ": is read as " + format + ", as it starts with " + counts}};
+  return {note("named-otherwise",
+               input.name() + ": is read as " + format + ", as it starts with " + counts)};
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/messages/messages.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
 #include "io/scans/text/table_header.hpp"
@@ -486,8 +487,8 @@ class PrologueReader {
     all_named_ = all_named_ || !options_.columns.empty();
   }
 
-  void warn(const char* code, const std::string& what) {
-    out_.remarks.push_back({Message::Severity::kWarning, code, input_.name() + ": " + what, {}});
+  void warn(WarningCode code, const std::string& what) {
+    out_.remarks.push_back(warning(code, input_.name() + ": " + what));
   }
 
   void warn_of_misfit(const Comment& comment) {

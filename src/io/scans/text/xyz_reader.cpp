@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/scans/text/point_blocks.hpp"
@@ -39,15 +40,9 @@ void OpenEnd::look(const InputBuffer& input, std::string_view line) {
 }
 
 void OpenEnd::append_to(std::vector<Message>& remarks, const std::string& name) const {
-  if (line_ == 0) return;
-  if (counted_) {
-    remarks.push_back({Message::Severity::kNote, "no-line-break", name + ": " + kNoLineBreak, {}});
-  } else if (found_ < values_) {
-    remarks.push_back({Message::Severity::kWarning,
-                       "cut-text",
-                       name + ": " + missing(found_, values_),
-                       {{"line", static_cast<double>(line_)}}});
-  }
+  if (line_ == 0 || counted_ || found_ >= values_) return;
+  remarks.push_back(warning("cut-text", name + ": " + missing(found_, values_),
+                            {{"line", static_cast<double>(line_)}}));
 }
 
 namespace {
@@ -212,13 +207,6 @@ class XyzReader final : public PointReader {
       refuse(input_.name(), "ends after line " + std::to_string(input_.line()) + " with " +
                                 std::to_string(next_) + " points; expected " +
                                 std::to_string(count_.points) + " as " + as_declared());
-    }
-    if (counts_ > 1) {
-      info_.remarks.push_back({Message::Severity::kNote,
-                               "several-counts",
-                               input_.name() + ": " + format_count(counts_) +
-                                   " scans one after the other, each with its number of points",
-                               {{"scans", static_cast<double>(counts_)}}});
     }
     open_end_.append_to(info_.remarks, input_.name());
   }

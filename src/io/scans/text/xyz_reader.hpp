@@ -14,8 +14,8 @@
 namespace clearway {
 
 /// Notices, while a text file with one point per line is read, that its last line lacks a line
-/// break. Where the file declares its number of points, this is noted, and refused where values or
-/// digits are missing. Otherwise missing values cause a warning, because the file may be cut.
+/// break. Where the file declares its number of points, missing values or digits are refused.
+/// Otherwise missing values cause a warning, because the file may be cut.
 class OpenEnd {
  public:
   explicit OpenEnd(bool counted = true) : counted_(counted) {}

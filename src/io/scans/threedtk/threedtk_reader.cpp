@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "core/messages/messages.hpp"
 #include "io/files/input_error.hpp"
 #include "io/scans/text/point_blocks.hpp"
 #include "io/scans/text/xyz_reader.hpp"
@@ -40,12 +41,6 @@ Neighbours neighbours_of(const fs::path& scan) {
   return found;
 }
 
-Message note(const std::string& text) { return {Message::Severity::kNote, "scan-placed", text}; }
-
-Message warning(const char* code, const std::string& text) {
-  return {Message::Severity::kWarning, code, text};
-}
-
 /// Finds the pose of a scan and adds remarks about it.
 Pose find_pose(const fs::path& scan, std::vector<Message>& remarks) {
   constexpr const char* kFrame =
@@ -60,12 +55,13 @@ Pose find_pose(const fs::path& scan, std::vector<Message>& remarks) {
     remarks.push_back(warning("scan-without-pose",
                               scan.string() + ": has neither a .frames nor a .pose file, so it "
                                               "stays where its scanner was the origin"));
-    remarks.push_back(note(scan.string() + ": one scan" + kFrame));
+    remarks.push_back(note("scan-placed", scan.string() + ": one scan" + kFrame));
     return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
   }
   const bool framed = file->extension() == ".frames";
-  remarks.push_back(note(scan.string() + ": placed by " + (framed ? "the last line of " : "") +
-                         file->filename().string() + kFrame));
+  remarks.push_back(note("scan-placed", scan.string() + ": placed by " +
+                                            (framed ? "the last line of " : "") +
+                                            file->filename().string() + kFrame));
   if (!framed && neighbours.frames) {
     remarks.push_back(warning("scan-not-registered",
                               scan.string() + ": has a .pose file only, while other scans of the "
@@ -142,7 +138,6 @@ class ThreedtkReader final : public PointReader {
         refuse_line(input_.name(), input_.line(),
                     excerpt(line) + "; expected points x y z after ten other lines at most");
       }
-      header_lines_ = lines + 1;
     }
     input_.return_to(start);
   }
@@ -150,13 +145,6 @@ class ThreedtkReader final : public PointReader {
   void finish() {
     if (finished_) return;
     finished_ = true;
-    if (header_lines_ > 0) {
-      info_.remarks.push_back({Message::Severity::kNote,
-                               "header-lines",
-                               input_.name() + ": " + std::to_string(header_lines_) +
-                                   " lines before the first point are passed over",
-                               {{"lines", header_lines_}}});
-    }
     open_end_.append_to(info_.remarks, input_.name());
   }
 
@@ -164,7 +152,6 @@ class ThreedtkReader final : public PointReader {
   CloudInfo info_;
   Pose pose_{};
   InputBuffer::Mark first_point_;
-  int header_lines_ = 0;
   OpenEnd open_end_;
   bool finished_ = false;
 };

@@ -17,8 +17,8 @@
 #include "clearway/convert.hpp"
 #include "clearway/error.hpp"
 #include "core/cloud/packed_cloud.hpp"
+#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
-#include "core/util/messages.hpp"
 #include "core/util/progress.hpp"
 #include "core/util/stopwatch.hpp"
 #include "core/util/threads.hpp"
@@ -473,11 +473,11 @@ std::vector<Message> kept_warnings(const std::vector<Message>& warnings) {
   }
   if (all > kMost) {
     const std::size_t more = all - kMost + 1;
-    kept.back() = {Message::Severity::kWarning,
-                   "more-warnings",
-                   "the conversion gave " + format_count(more) +
-                       " more warnings, which the store does not keep; convert again to see them",
-                   {{"warnings", static_cast<double>(more)}}};
+    kept.back() =
+        warning("more-warnings",
+                "the conversion gave " + format_count(more) +
+                    " more warnings, which the store does not keep; convert again to see them",
+                {{"warnings", static_cast<double>(more)}});
   }
   return kept;
 }

@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/store/convert/read_points.hpp"
@@ -140,13 +141,13 @@ std::vector<Message> warn_of_lost_digits(std::span<const Vec3> samples) {
     coarsest = std::max(coarsest, step);
   }
   if (coarsest == 0) return warnings;
-  warnings.push_back({Message::Severity::kWarning,
-                      "lost-digits",
-                      "all coordinates " + axes + " are multiples of " + steps +
-                          ". Rounded text or single floats have lost their digits, so points may "
-                          "be wrong by " +
-                          brief(coarsest / 2) + " m. Export the scan with more digits",
-                      {{"step", coarsest}}});
+  warnings.push_back(
+      warning("lost-digits",
+              "all coordinates " + axes + " are multiples of " + steps +
+                  ". Rounded text or single floats have lost their digits, so points may "
+                  "be wrong by " +
+                  brief(coarsest / 2) + " m. Export the scan with more digits",
+              {{"step", coarsest}}));
   return warnings;
 }
 

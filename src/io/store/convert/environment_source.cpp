@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "clearway/error.hpp"
-#include "core/util/messages.hpp"
+#include "core/messages/messages.hpp"
 #include "io/files/input_error.hpp"
 #include "io/store/convert/converted_heights.hpp"
 #include "io/store/convert/coordinate_range.hpp"
@@ -88,9 +88,9 @@ void EnvironmentSource::find_crs() {
   crs_ = common_crs(files(), infos_, {options_.unit, options_.unit_z, options_.ignore_crs});
   for (std::size_t i = 0; i < files().size(); ++i) {
     if (infos_[i].faces == 0) continue;
-    crs_.warnings.push_back({Message::Severity::kWarning, "mesh-faces",
-                             files()[i].string() + ": its " + std::to_string(infos_[i].faces) +
-                                 " faces are not read, its vertices are"});
+    crs_.warnings.push_back(warning("mesh-faces", files()[i].string() + ": its " +
+                                                      std::to_string(infos_[i].faces) +
+                                                      " faces are not read, its vertices are"));
   }
 }
 

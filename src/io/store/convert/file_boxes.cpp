@@ -5,6 +5,7 @@
 #include <numeric>
 #include <optional>
 
+#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/scans/declared_box.hpp"
 
@@ -68,12 +69,11 @@ class Inputs {
       other = i;
       gap = to_i;
     }
-    return Message{Message::Severity::kWarning,
-                   "far-apart",
+    return warning("far-apart",
                    name(lone) + " lies " + format_brief(gap) + " m from " + name(*other) +
                        ", the nearest of the others: one may be in another frame or unit. Boxes: " +
                        text_of(boxes_[lone]) + "; " + text_of(boxes_[*other]),
-                   {{"gap", gap}, {"files", static_cast<double>(members[group[lone]])}}};
+                   {{"gap", gap}, {"files", static_cast<double>(members[group[lone]])}});
   }
 
   /// The warning where consecutive sizes differ by a large factor.
@@ -87,13 +87,12 @@ class Inputs {
     for (std::size_t i = 1; i < order.size(); ++i) {
       const double small = sizes_[order[i - 1]], large = sizes_[order[i]];
       if (large < kLargeLength || large < kSizeRatio * small) continue;
-      return Message{Message::Severity::kWarning,
-                     "other-size",
+      return warning("other-size",
                      name(order[i]) + " is " + format_brief(large / small) + " times as large as " +
                          name(order[i - 1]) +
                          ": one may be in another unit, such as millimetres. Boxes: " +
                          text_of(boxes_[order[i]]) + "; " + text_of(boxes_[order[i - 1]]),
-                     {{"ratio", large / small}, {"files", static_cast<double>(order.size() - i)}}};
+                     {{"ratio", large / small}, {"files", static_cast<double>(order.size() - i)}});
     }
     return std::nullopt;
   }
@@ -136,11 +135,10 @@ std::optional<Message> without_points(std::span<const FileBox> boxes,
   }
   if (count == 0) return std::nullopt;
   if (count > kNamed) names += " and " + std::to_string(count - kNamed) + " more";
-  return Message{Message::Severity::kWarning,
-                 "no-points",
+  return warning("no-points",
                  names + ": no point that can be stored" +
                      (count == boxes.size() ? ", so nothing can collide with this store" : ""),
-                 {{"files", static_cast<double>(count)}}};
+                 {{"files", static_cast<double>(count)}});
 }
 
 }  // namespace
@@ -201,10 +199,9 @@ std::optional<Message> beyond_declared_boxes(std::span<const FileBox> boxes,
   }
   if (count == 0) return std::nullopt;
   if (count > 1) first += ". " + format_count(count - 1) + " more files are alike";
-  return Message{Message::Severity::kWarning,
-                 "declared-bounds",
+  return warning("declared-bounds",
                  first + ". Some records may be damaged or zero, or the header of another scan",
-                 {{"files", static_cast<double>(count)}}};
+                 {{"files", static_cast<double>(count)}});
 }
 
 std::vector<Message> warnings_on_boxes(std::span<const FileBox> boxes,

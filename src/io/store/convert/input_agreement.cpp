@@ -5,6 +5,7 @@
 #include <map>
 
 #include "clearway/error.hpp"
+#include "core/messages/messages.hpp"
 #include "io/files/input_error.hpp"
 #include "io/scans/map_scale.hpp"
 #include "io/scans/scan_crs.hpp"
@@ -37,8 +38,8 @@ std::optional<std::array<std::int64_t, 3>> whole_shift(const double* offset,
 
 bool has_integers(const CloudInfo& info) { return info.quantisation.has_value(); }
 
-void warn(CommonCrs& common, const char* code, const std::string& text) {
-  common.warnings.push_back({Message::Severity::kWarning, code, text});
+void warn(CommonCrs& common, WarningCode code, const std::string& text) {
+  common.warnings.push_back(warning(code, text));
 }
 
 bool has_unit(const CloudInfo& info) { return info.unit != LengthUnit::kUnknown; }
@@ -174,13 +175,13 @@ void choose_crs(std::span<const std::filesystem::path> files, std::span<const Cl
     }
   }
   if (unnamed == 0) return;
-  common.warnings.push_back({Message::Severity::kNote,
-                             "no-crs",
-                             std::to_string(unnamed) + " of " + std::to_string(infos.size()) +
-                                 " files name no coordinate reference system. They are taken to "
-                                 "be in that of " +
-                                 source,
-                             {{"files", static_cast<double>(unnamed)}}});
+  common.warnings.push_back(
+      note("no-crs",
+           std::to_string(unnamed) + " of " + std::to_string(infos.size()) +
+               " files name no coordinate reference system. They are taken to "
+               "be in that of " +
+               source,
+           {{"files", static_cast<double>(unnamed)}}));
 }
 
 }  // namespace
@@ -241,11 +242,11 @@ void choose_heights(std::span<const std::filesystem::path> files, std::span<cons
         given.ignore_crs, common);
   }
   if (common.height_factor == 1) return;
-  common.warnings.push_back({Message::Severity::kNote,
-                             "heights-converted",
-                             "heights are converted from " + name_of_length(common.height_unit) +
-                                 " to " + name_of_length(plane),
-                             {{"factor", common.height_factor}}});
+  common.warnings.push_back(note("heights-converted",
+                                 "heights are converted from " +
+                                     name_of_length(common.height_unit) + " to " +
+                                     name_of_length(plane),
+                                 {{"factor", common.height_factor}}));
 }
 
 /// Warns of heights whose unit an input names, while it names none for its other coordinates.
@@ -332,9 +333,8 @@ std::optional<Message> remark_on_mixture(std::span<const std::filesystem::path> 
   const bool as_models_are = std::any_of(files.begin(), files.end(), [](const auto& file) {
     return file.extension() == ".ply" || file.extension() == ".PLY";
   });
-  return Message{
-      step > kCoarseStep || as_models_are ? Message::Severity::kWarning : Message::Severity::kNote,
-      "floating-point-rounded",
+  return warning_or_note(
+      step > kCoarseStep || as_models_are, "floating-point-rounded",
       std::to_string(count) + " of " + std::to_string(infos.size()) +
           " files have floating-point coordinates, the first is " +
           files[static_cast<std::size_t>(floating - infos.begin())].string() +
@@ -343,7 +343,7 @@ std::optional<Message> remark_on_mixture(std::span<const std::filesystem::path> 
           (as_models_are ? ". Is one of them the model? It does not belong among the "
                            "scans"
                          : ""),
-      {{"files", static_cast<double>(count)}, {"step", step}}};
+      {{"files", static_cast<double>(count)}, {"step", step}});
 }
 
 }  // namespace clearway

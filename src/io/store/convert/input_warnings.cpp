@@ -1,6 +1,7 @@
 #include "io/store/convert/input_warnings.hpp"
 
 #include "clearway/error.hpp"
+#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/store/convert/same_scans.hpp"
@@ -39,10 +40,7 @@ std::optional<Message> warning_on_skipped(std::span<const std::string> reasons) 
                      (reasons.size() == 1 ? " file is left out" : " files are left out");
   for (std::size_t i = 0; i < reasons.size() && i < kNamed; ++i) text += "; " + reasons[i];
   if (reasons.size() > kNamed) text += "; and " + std::to_string(reasons.size() - kNamed) + " more";
-  return Message{Message::Severity::kWarning,
-                 "skipped-files",
-                 text,
-                 {{"files", static_cast<double>(reasons.size())}}};
+  return warning("skipped-files", text, {{"files", static_cast<double>(reasons.size())}});
 }
 
 namespace {
@@ -77,15 +75,13 @@ void warn_of_missing(const EnvironmentSource& environment, const StoreMetadata& 
   const auto withheld = static_cast<double>(environment.withheld_points());
   if (withheld > 0) {
     const bool kept = metadata.withheld && metadata.withheld->kept;
-    log.add({kept || withheld <= kMostWithheld * records ? Message::Severity::kNote
-                                                         : Message::Severity::kWarning,
-             "withheld-points",
-             format_count(environment.withheld_points()) + " of " +
-                 format_count(metadata.input_points) + " points (" +
-                 percentage(withheld / records) + ") have the flag `withheld` and are " +
-                 (kept ? "kept; the first is " : "left out as deleted; the first is ") +
-                 name_of(environment, environment.first_withheld()),
-             {{"points", withheld}, {"share", withheld / records}, {"kept", kept ? 1.0 : 0.0}}});
+    log.add(warning_or_note(
+        !kept && withheld > kMostWithheld * records, "withheld-points",
+        format_count(environment.withheld_points()) + " of " + format_count(metadata.input_points) +
+            " points (" + percentage(withheld / records) + ") have the flag `withheld` and are " +
+            (kept ? "kept; the first is " : "left out as deleted; the first is ") +
+            name_of(environment, environment.first_withheld()),
+        {{"points", withheld}, {"share", withheld / records}, {"kept", kept ? 1.0 : 0.0}}));
   }
   if (absent > kMostAbsent * records && metadata.point_count > 0) {
     log.warn("absent-points",

@@ -9,7 +9,7 @@
 
 #include "clearway/box.hpp"
 #include "clearway/progress.hpp"
-#include "core/util/messages.hpp"
+#include "core/messages/messages.hpp"
 #include "core/util/progress.hpp"
 #include "io/scans/point_reader.hpp"
 #include "io/store/convert/environment_source.hpp"

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "clearway/box.hpp"
-#include "core/util/messages.hpp"
+#include "core/messages/messages.hpp"
 #include "io/store/convert/environment_source.hpp"
 #include "io/store/convert/file_boxes.hpp"
 

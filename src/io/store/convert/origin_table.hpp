@@ -11,7 +11,7 @@
 #include "clearway/box.hpp"
 #include "clearway/vec3.hpp"
 #include "core/geometry/quantisation.hpp"
-#include "core/util/messages.hpp"
+#include "core/messages/messages.hpp"
 #include "io/store/convert/distribute.hpp"
 #include "io/store/convert/environment_source.hpp"
 #include "io/store/convert/quanta_batch.hpp"

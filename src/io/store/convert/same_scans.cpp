@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 
 namespace clearway {
@@ -138,10 +139,9 @@ std::optional<Message> warning_on_same_scans(std::span<const std::filesystem::pa
   }
   if (count == 0) return std::nullopt;
   if (count > kNamed) names += "; and " + std::to_string(count - kNamed) + " more";
-  return Message{Message::Severity::kWarning,
-                 "same-scan",
+  return warning("same-scan",
                  names + ": " + format_count(points) + " points are in the store twice",
-                 {{"files", static_cast<double>(count)}, {"points", static_cast<double>(points)}}};
+                 {{"files", static_cast<double>(count)}, {"points", static_cast<double>(points)}});
 }
 
 }  // namespace clearway

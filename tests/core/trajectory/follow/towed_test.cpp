@@ -377,11 +377,8 @@ TEST_CASE("a towed body that is pushed for more than 0.1 m is refused with the p
     return;
   }
   const auto bodies = follow_all(path, {mounts[2]}, &told);
-  const auto notes = with_code(told, "body-rolls-back");
-  REQUIRE(notes.size() == 1);
-  CHECK(notes[0].severity == Message::Severity::kNote);
-  CHECK(with_code(told, "body-transient").size() == 1);
-  CHECK(told.size() == 2);
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].code == "body-transient");
   for (std::size_t i = 0; i < path.size(); ++i) {
     CHECK(std::abs(bodies[0].poses[i].translation[0] - path[i].translation[0] + 6) < 1e-12);
     CHECK(std::abs(bodies[0].poses[i].translation[1]) < 1e-12);
@@ -416,8 +413,8 @@ TEST_CASE("a recorded path that stands and jitters by millimetres leaves a trail
   std::vector<Message> told;
   const BodyMount tow = BodyTowed{"", -0.6, 8, 0};
   const auto jittering = follow_all(path, {tow}, &told), still = follow_all(clean, {tow});
-  CHECK(with_code(told, "body-rolls-back").size() == 1);
-  CHECK(told.size() == 2);  // and "body-transient", because the path begins in a bend
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].code == "body-transient");  // because the path begins in a bend
   const Pose& standing = jittering[0].poses[3400];
   CHECK(distance(standing.position(), still[0].poses[400].position()) < 0.03);
   CHECK(distance(axis_of(standing, 0), axis_of(still[0].poses[400], 0)) < 0.004);

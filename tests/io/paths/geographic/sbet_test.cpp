@@ -173,8 +173,7 @@ TEST_CASE("heights, units and datum of a CRS are said") {
   CHECK(feet.find("datum-accuracy")->severity == Message::Severity::kWarning);
   const Read own = read(california.bytes(), {.crs = "EPSG:6425+ellipsoidal", .datum = "EPSG:6319"});
   CHECK(own.find("datum-accuracy") == nullptr);
-  REQUIRE(own.find("ellipsoidal-heights"));
-  CHECK(own.find("ellipsoidal-heights")->severity == Message::Severity::kNote);
+  CHECK(own.find("ellipsoidal-heights") == nullptr);
   const Read europe = read(SbetRecord().bytes(), {.crs = "EPSG:25832"});
   REQUIRE(europe.find("datum-accuracy"));
   CHECK(europe.find("datum-accuracy")->severity == Message::Severity::kNote);

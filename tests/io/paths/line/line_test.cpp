@@ -205,8 +205,7 @@ TEST_CASE("heights come from the line or from an option, and from one of them") 
 
 TEST_CASE("vertices that stand twice in a row are left out, if they agree") {
   const Made made = made_of("x,y,z\n0,0,1\n0,0,1\n10,0,2\n20,0,3\n20,0,3\n20,0,3\n");
-  CHECK(made.codes() == Codes{"note repeated-vertices"});
-  CHECK_THAT(made.text(), Contains("3 vertices") && Contains("the first at line 3"));
+  CHECK(made.codes().empty());
   CHECK(made.poses == made_of(kStraight).poses);
   CHECK_THAT(refusal_by("x,y,z\n0,0,1\n10,0,2\n10,0,2.5\n"),
              Contains("line 4") && Contains("height differs by 0.5 m"));

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/util/messages.hpp"
+#include "core/messages/messages.hpp"
 #include "read_environment.hpp"
 
 using namespace clearway;

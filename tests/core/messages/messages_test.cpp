@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "clearway/error.hpp"
-#include "core/util/messages.hpp"
+#include "core/messages/messages.hpp"
 
 namespace clearway {
 namespace {

@@ -1,0 +1,98 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+#include "core/messages/message_table.hpp"
+#include "core/messages/remedies.hpp"
+#include "support/generated_text.hpp"
+
+namespace clearway {
+namespace {
+
+using message_table::kMessageKinds;
+
+const char* name_of(Severities severities) {
+  switch (severities) {
+    case Severities::kNote:
+      return "note";
+    case Severities::kWarning:
+      return "warning";
+    case Severities::kEither:
+      break;
+  }
+  return "note or warning";
+}
+
+std::string in_code(std::string_view text) { return "`" + std::string(text) + "`"; }
+
+std::string table_of(Subject subject) {
+  std::string text = "| code | kind | meaning |\n|---|---|---|\n";
+  for (const MessageKind& kind : kMessageKinds) {
+    if (kind.subject != subject) continue;
+    text += "| " + in_code(kind.code) + " | " + name_of(kind.severities) + " | " +
+            std::string(kind.sentence) + " |\n";
+  }
+  return text;
+}
+
+std::string codes_with(Doubt doubt) {
+  std::string text;
+  for (const MessageKind& kind : kMessageKinds) {
+    if (kind.effect.doubt == doubt) text += (text.empty() ? "" : ", ") + in_code(kind.code);
+  }
+  return text;
+}
+
+std::string table_of_doubts() {
+  return "| what is in doubt | warnings |\n|---|---|\n| the whole query | " +
+         codes_with(Doubt::kQuestion) + " |\n| the stretches of the path that the warning names | " +
+         codes_with(Doubt::kStretch) + " |\n";
+}
+
+/// The words of the command line as a sentence of a table, with the amount in capitals.
+std::string sentence_of(const RemedyKind& kind) {
+  std::string words(kind.words_with_amount.empty() ? kind.words : kind.words_with_amount);
+  words = words.substr(2);
+  if (const std::size_t at = words.find("{}"); at != std::string::npos) {
+    words.replace(at, 2, kind.amount == RemedyAmount::kBytes ? "BYTES" : "AMOUNT");
+  }
+  return words;
+}
+
+std::string table_of_remedies() {
+  std::string text = "| remedy | what the program says |\n|---|---|\n";
+  for (const RemedyKind& kind : remedy_table::kRemedies) {
+    if (kind.remedy == Remedy::kNone) continue;
+    text += "| " + in_code(kind.name) + " | " + sentence_of(kind) + " |\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("the codes of each subject ascend, so each is there once") {
+  CHECK(std::ranges::is_sorted(kMessageKinds, [](const auto& a, const auto& b) {
+    return a.subject < b.subject || (a.subject == b.subject && a.code < b.code);
+  }));
+  std::vector<std::string_view> codes;
+  for (const MessageKind& kind : kMessageKinds) codes.push_back(kind.code);
+  std::ranges::sort(codes);
+  CHECK(std::ranges::adjacent_find(codes) == codes.end());
+}
+
+TEST_CASE("the guide's tables of warnings are those of the table of messages") {
+  const std::string page = CLEARWAY_GUIDE "/warnings.md";
+  check_generated(page, "table of doubts", table_of_doubts());
+  check_generated(page, "table of scans", table_of(Subject::kScans));
+  check_generated(page, "table of models", table_of(Subject::kModels));
+  check_generated(page, "table of trajectories", table_of(Subject::kTrajectories));
+  check_generated(page, "table of queries", table_of(Subject::kQueries));
+  check_generated(page, "table of findings", table_of(Subject::kFindings));
+}
+
+TEST_CASE("the guide's table of remedies is the table of remedies") {
+  check_generated(CLEARWAY_GUIDE "/command-line.md", "table of remedies", table_of_remedies());
+}
+
+}  // namespace clearway
