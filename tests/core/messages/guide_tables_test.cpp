@@ -46,8 +46,9 @@ std::string codes_with(Doubt doubt) {
 
 std::string table_of_doubts() {
   return "| what is in doubt | warnings |\n|---|---|\n| the whole query | " +
-         codes_with(Doubt::kQuestion) + " |\n| the stretches of the path that the warning names | " +
-         codes_with(Doubt::kStretch) + " |\n";
+         codes_with(Doubt::kQuestion) +
+         " |\n| the stretches of the path that the warning names | " + codes_with(Doubt::kStretch) +
+         " |\n";
 }
 
 /// The words of the command line as a sentence of a table, with the amount in capitals.

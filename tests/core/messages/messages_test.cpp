@@ -1,22 +1,18 @@
+#include "core/messages/messages.hpp"
+
 #include <catch2/catch.hpp>
 
 #include "clearway/error.hpp"
-#include "core/messages/messages.hpp"
 
 namespace clearway {
-namespace {
-
-Message warning(const char* code) { return {Message::Severity::kWarning, code, "text", {}}; }
-
-}  // namespace
-
 TEST_CASE("a strict call refuses warnings and names their codes") {
   CHECK_NOTHROW(refuse_warnings({}));
-  CHECK_THROWS_AS(refuse_warnings({warning("feet")}), InputError);
-  CHECK_THROWS_WITH(refuse_warnings({warning("feet")}),
+  CHECK_THROWS_AS(refuse_warnings({warning("feet", "text")}), InputError);
+  CHECK_THROWS_WITH(refuse_warnings({warning("feet", "text")}),
                     "strict: 1 warning (feet), expected none; no output was written");
-  CHECK_THROWS_WITH(refuse_warnings({warning("same-scan"), warning("feet"), warning("same-scan")}),
-                    "strict: 3 warnings (same-scan, feet), expected none; no output was written");
+  CHECK_THROWS_WITH(
+      refuse_warnings({warning("same-scan", "a"), warning("feet", "b"), warning("same-scan", "c")}),
+      "strict: 3 warnings (same-scan, feet), expected none; no output was written");
 }
 
 TEST_CASE("a log tells notes and warnings, and keeps warnings") {
@@ -24,10 +20,10 @@ TEST_CASE("a log tells notes and warnings, and keeps warnings") {
   const MessageCallback tell = [&told](const Message& message) { told.push_back(message); };
   MessageLog log(tell, kept);
   log.note("a note");
-  log.warn("code", "a warning", {{"points", 3}});
+  log.warn("feet", "a warning", {{"points", 3}});
   REQUIRE(told.size() == 2);
   REQUIRE(kept.size() == 1);
-  CHECK(kept[0].code == "code");
+  CHECK(kept[0].code == "feet");
   CHECK(kept[0].numbers == std::vector<std::pair<std::string, double>>{{"points", 3}});
 }
 

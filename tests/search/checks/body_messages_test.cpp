@@ -7,7 +7,7 @@ using namespace clearway;
 
 namespace {
 
-Message warning(const std::string& code, const std::string& text = "text") {
+Message warned(const std::string& code, const std::string& text = "text") {
   return {Message::Severity::kWarning, code, text};
 }
 
@@ -28,25 +28,25 @@ std::vector<std::string> codes(const std::vector<Message>& messages) {
 }  // namespace
 
 TEST_CASE("a warning of one body names it") {
-  const auto found = told({{"a", {}}, {"b", {warning("model-size", "large")}}});
+  const auto found = told({{"a", {}}, {"b", {warned("model-size", "large")}}});
   REQUIRE(found.size() == 1);
   CHECK(found[0].code == "model-size");
   CHECK(found[0].text == "body b: large");
 }
 
 TEST_CASE("what several bodies are told alike is told once") {
-  const Message same = warning("radius-size", "odd");
+  const Message same = warned("radius-size", "odd");
   auto found = told({{"a", {same}}, {"b", {same}}, {"c", {same}}});
   REQUIRE(found.size() == 1);
   CHECK(found[0].text == "each body: odd");
-  found = told({{"a", {same}}, {"b", {}}, {"c", {same, warning("radius-size", "other")}}});
+  found = told({{"a", {same}}, {"b", {}}, {"c", {same, warned("radius-size", "other")}}});
   REQUIRE(found.size() == 2);
   CHECK(found[0].text == "bodies a, c: odd");
   CHECK(found[1].text == "body c: other");
 }
 
 TEST_CASE("the vehicle floats where all of its bodies do") {
-  const Message floats = warning("floats"), beside = warning("nothing-beside");
+  const Message floats = warned("floats"), beside = warned("nothing-beside");
   CHECK(told({{"roof", {floats}}, {"bogie", {}}}).empty());
   CHECK(codes(told({{"roof", {floats}}, {"bogie", {floats}}})) ==
         std::vector<std::string>{"floats"});
@@ -58,9 +58,9 @@ TEST_CASE("the vehicle floats where all of its bodies do") {
 }
 
 TEST_CASE("a body that is nowhere near the scan does not hide what others lack") {
-  const auto found = told({{"far", {warning("out-of-reach", "far away")}},
-                           {"near", {warning("nothing-below", "no ground")}},
-                           {"still", {warning("no-poses")}}});
+  const auto found = told({{"far", {warned("out-of-reach", "far away")}},
+                           {"near", {warned("nothing-below", "no ground")}},
+                           {"still", {warned("no-poses")}}});
   CHECK(codes(found) == std::vector<std::string>{"out-of-reach", "nothing-below", "no-poses"});
   CHECK(found[0].text == "body far: far away");
   CHECK(found[1].text == "the vehicle, as its body near: no ground");
@@ -69,7 +69,7 @@ TEST_CASE("a body that is nowhere near the scan does not hide what others lack")
 namespace {
 
 Message of_stretch(const std::string& code, double from, double to) {
-  Message message = warning(code, "from " + std::to_string(static_cast<int>(from)));
+  Message message = warned(code, "from " + std::to_string(static_cast<int>(from)));
   message.numbers = {{"chainage_from", from}, {"chainage_to", to}};
   return message;
 }
@@ -87,8 +87,8 @@ TEST_CASE("a stretch without ground below one body is told, once, as the body wi
     CHECK(found[0].text == "the vehicle, as its body rear: from 11");
   }
   // That a roof is above the ground everywhere does not hide what its bogie meets.
-  const auto found = told(
-      {{"roof", {warning("floats", "everywhere")}}, {"bogie", {of_stretch("floats", 10, 16)}}});
+  const auto found =
+      told({{"roof", {warned("floats", "everywhere")}}, {"bogie", {of_stretch("floats", 10, 16)}}});
   REQUIRE(found.size() == 1);
   CHECK(found[0].text == "the vehicle, as its body bogie: from 10");
 }
@@ -105,7 +105,7 @@ TEST_CASE("a warning of the vehicle has the stretches of all of its bodies") {
             {"roof", {on(of_stretch("nothing-below", 50, 53), {{500, 530}})}}});
   REQUIRE(below.size() == 1);
   CHECK((below[0].stretches == Stretches{{30, 160}, {300, 310}, {500, 530}}));
-  const Message steps = warning("large-steps");
+  const Message steps = warned("large-steps");
   const auto alike = told(
       {{"a", {on(steps, {{7, 8}})}}, {"b", {on(steps, {{3, 4}})}}, {"c", {on(steps, {{4, 5}})}}});
   REQUIRE(alike.size() == 1);
