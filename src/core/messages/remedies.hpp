@@ -86,7 +86,7 @@ inline constexpr auto kRemedies = std::to_array<RemedyKind>({
     {kSameTrajectory, "same_trajectory",
      ". --trajectory takes the file of the run, with the same options"},
     {kSameModel, "same_model",
-     ". --model or --vehicle takes the file of the run, with the same --model-... options"},
+     ". --model or --vehicle takes the file of the run, with the same options of the model"},
     {kSameEnvironment, "same_environment",
      ". --env takes the store of the run, or another one of the same scans"},
     {kAskForProfile, "ask_for_profile", "; run with --profile"},
