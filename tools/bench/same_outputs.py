@@ -29,7 +29,7 @@ from pathlib import Path
 from outputs import inputs, questions
 from outputs.difference import Comparison, Naming, missing_tools
 
-SECONDS = 120  # that a command may take
+SECONDS = 300  # that a command may take, on a busy machine
 TRIES = 6      # to stop a run between its beginning and its end
 
 

@@ -366,8 +366,8 @@ COMPARE = [
       f"--allow-other-question {options} => 1" for options in (
           "", "--json", "--worse-by 0.001 --show 2 --split 5 -o @.csv", "-o @.json", "-o @.html")),
     "compare tables.h5 smaller.h5 --conflicts --trajectory hall/trajectory.txt => 1",
-    "compare tables.h5 tables.h5 --conflicts --trajectory hall/trajectory.txt --chainage-start 10 -o @.html",
-    "compare wagon.h5 wagon.h5 --conflicts --trajectory tunnel/trajectory.txt --vehicle wagon.json -o @.json",
+    "compare tables.h5 tables.h5 --conflicts --trajectory hall/trajectory.txt --chainage-start 10 -o @.html => 6",
+    "compare wagon.h5 wagon.h5 --conflicts --trajectory tunnel/trajectory.txt --vehicle wagon.json -o @.json => 6",
 ]
 
 REPORT = [
