@@ -72,8 +72,7 @@ struct TableSummary {
   std::uint64_t profile_poses = 0;
   /// The point with the smallest first pose, the one with the least clearance, and the least
   /// distance of the profile at its first pose, each where the query asks for it. Among equal
-  /// points, the one with the smallest source index is given. Coordinates are NaN for files before
-  /// version 3, which lack them.
+  /// points, the one with the smallest source index is given.
   std::optional<FoundPlace> first_place, least_clearance, least_profile;
 };
 
@@ -93,17 +92,15 @@ struct Answer : TableSummary {
   /// those of the parameters.
   IgnoredPointCounts ignored;
   /// How many of the ignored points would collide if they were searched, and how many of these the
-  /// model first touches more than half a metre above its lowest point. 0 if no point is ignored,
-  /// nullopt if the number is not known, as in results of earlier releases.
-  std::optional<std::uint64_t> ignored_colliding = 0, ignored_colliding_high = 0;
+  /// model first touches more than half a metre above its lowest point.
+  std::uint64_t ignored_colliding = 0, ignored_colliding_high = 0;
   std::vector<std::string> bodies;  ///< names of the bodies, if the query has several
   std::optional<Shard> shard;  ///< the shard that this answer is about; nullopt for a whole query
   /// Warnings about the question and its inputs, in the order in which they were given. Results
   /// keep them, and those of the machine that searched are not among them.
   std::vector<Message> warnings;
   /// How much of the path the answer is about, because bodies on pivots have no pose at its ends.
-  /// nullopt where it is not known: in files of one model, whose path was searched to its whole
-  /// length, and in files of several bodies that an earlier release wrote.
+  /// nullopt for one model, whose path was searched to its whole length.
   std::optional<SearchedLength> searched;
 
   /// The error budget; nullopt if none was given, and the verdict is about the scanned points.

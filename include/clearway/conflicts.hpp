@@ -52,9 +52,6 @@ struct ConflictOptions {
   /// Axes of the model's frame; must not be parallel. They say how the model is seen and turn
   /// nothing. For a result whose model was turned when it was read, they stay as they are here.
   Axis forward = Axis::kPlusX, up = Axis::kPlusZ;
-  /// Box of the model's points, for results that do not hold it. Without any box, sides are
-  /// unknown.
-  std::optional<Box> model_box = {};
   /// The one model of the search, from which least shifts are computed; it must outlive the call. A
   /// vehicle has `bodies` instead. Without either, shifts are not known.
   const Model* model = nullptr;
@@ -79,7 +76,7 @@ struct Conflict {
   Box box{};                 ///< box around its points, metres
   Vec3 centroid{};           ///< mean of its points, metres, from exact sums of the stored integers
   /// The least and the greatest index of a pose that touches one of its points. Between poses, each
-  /// index stands for the way from that pose to the next. See Conflicts::has_last_poses.
+  /// index stands for the way from that pose to the next.
   std::uint32_t first_pose = 0, last_pose = 0;
   /// Chainage of first_pose and of last_pose, in metres along the path. With motion between poses,
   /// chainage_to is that of the pose after last_pose.
@@ -107,7 +104,7 @@ struct Conflict {
   /// clearances.
   std::optional<double> depth = {};
   std::optional<std::uint64_t> points_inside = {};
-  /// Position of nearest_source; none for results before version 3
+  /// Position of nearest_source
   std::optional<Vec3> nearest_point = {};
   /// The side of the model or body on which the points lie that it touches at the first pose
   /// (docs/design/findings.md, "Stations and sides").
@@ -148,11 +145,7 @@ struct Conflicts {
   /// Numbers of the groups that are not listed, and of their points
   std::uint64_t small_groups = 0, small_points = 0;
   std::vector<SmallGroup> small;  ///< the groups that are not listed, by chainage_from, then source
-  /// Whether the result keeps the last poses of its points. Results of older releases do not. Then
-  /// a conflict's last pose is the greatest first pose of its points, or the nearest pose if that
-  /// is greater, and the model may touch the points later still.
-  bool has_last_poses = false;
-  double path_length = 0;  ///< length of the path, metres
+  double path_length = 0;         ///< length of the path, metres
   /// Longest stretch of the path that a single group has before it is cut, in metres.
   double longest_group = 0;
   std::uint64_t longest_group_points = 0;

@@ -24,14 +24,13 @@ struct Collisions {
   std::vector<std::uint64_t> source;  ///< index of the point in the order of the scans
   std::vector<Vec3> xyz;
   /// The first pose that touches each point, as QueryParameters::first_pose defines it; empty
-  /// unless the query asked for it. In files of release 0.1.0 with motion between poses it may be
-  /// one higher, because their ways did not include their ends.
+  /// unless the query asked for it.
   std::vector<std::uint32_t> first_pose = {};
   /// Index of the body that touches each point at its first pose. Empty unless the query has bodies
   /// and asked for first poses.
   std::vector<std::uint32_t> body = {};
   /// The greatest index of a pose that touches each point; between poses, the start of the last way
-  /// that does. Empty if there are no first poses, and for files of older releases.
+  /// that does. Empty if there are no first poses.
   std::vector<std::uint32_t> last_pose = {};
 
   /// 1 for each point that the error budget says is certainly too close, otherwise 0; empty without
@@ -58,7 +57,7 @@ struct Nearby {
 /// Distances of environment points to the model, one row per point, ascending by source index.
 struct Clearances {
   std::vector<std::uint64_t> source;
-  std::vector<Vec3> xyz;                 ///< empty in files before version 3
+  std::vector<Vec3> xyz;
   std::vector<double> distance;          ///< metres, the least over all poses
   std::vector<std::uint32_t> pose;       ///< the first pose that has this distance
   std::vector<std::uint32_t> body = {};  ///< the body that has this distance; empty without bodies
@@ -70,8 +69,7 @@ struct Clearances {
 struct Profile {
   static constexpr std::uint64_t kNoPoint = ~std::uint64_t{0};
   /// Metres; infinity if the distance is not below the one asked for, and NaN where no body of a
-  /// vehicle has a pose, because nothing is known there. Results of earlier releases have infinity
-  /// there too.
+  /// vehicle has a pose, because nothing is known there.
   std::vector<double> distance;
   /// Source index of the nearest point, the smallest if several are; or kNoPoint
   std::vector<std::uint64_t> source;
@@ -116,13 +114,12 @@ class Result {
   Clearances clearance() const;  ///< empty unless the query asked for clearances
   Profile profile() const;       ///< empty unless the query asked for a profile
   /// Largest gap between the samples of the mesh, metres, the greatest of all bodies; 0 if no model
-  /// is a sampled mesh, and in files of earlier releases.
+  /// is a sampled mesh.
   double model_spacing() const;
   /// The axes of the model's file that pointed ahead and up before the search turned the model; for
   /// a vehicle, those of all its bodies' files. They need no turn where nothing was turned.
   ModelAxes model_axes() const;
-  /// Box around the model's points; none in files before version 3.
-  std::optional<Box> model_box() const;
+  Box model_box() const;  ///< box around the model's points
 
   /// The reader behind this result, for the library itself.
   const ResultReader& reader() const { return *reader_; }

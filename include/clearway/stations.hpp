@@ -25,8 +25,6 @@ struct StationOptions {
       0;  ///< chainage of the first pose, metres; it does not move the stretches
   /// Axes of the model's frame; must not be parallel
   Axis forward = Axis::kPlusX, up = Axis::kPlusZ;
-  /// Box of the model's points, for results that do not hold it. Not used for a vehicle.
-  std::optional<Box> model_box = {};
   /// Bodies of the search whose result is a vehicle's; they must outlive the call. Without them
   /// neither sides nor overthrow are known, and no stretch of such a result is clear unless all
   /// bodies were searched on the whole path.

@@ -65,7 +65,7 @@ nlohmann::ordered_json question_of(const ResultHeader& header) {
                    {"trajectory_hash", hash_text(header.trajectory_hash)}});
   if (header.ignores_points()) question["ignored"] = ignored_of(header);
   if (header.model_triangles > 0) question["model_triangles"] = header.model_triangles;
-  if (const ModelAxes axes = header.model_axes.axes; axes.need_turn()) {
+  if (const ModelAxes axes = header.notes.model_axes; axes.need_turn()) {
     question["model_axes"] = {name_of(axes.forward), name_of(axes.up)};
   }
   if (header.part) ask_for_part(header.part->shard, hash_text(header.part->store), question);
@@ -306,7 +306,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kFormat = 2;  // format 1 has no fingerprints of the stores of shards
+constexpr int kFormat = 2;
 constexpr std::string_view kEnd = "]}";
 
 ordered_json json_of(const Task& task) {

@@ -1,16 +1,10 @@
 #include "campaign/slurm_script.hpp"
 
 #include "core/util/exit_code.hpp"
+#include "core/util/shell_words.hpp"
 
 namespace clearway::campaign {
 namespace {
-
-/// Quotes any text as one word of a shell.
-std::string shell_word(const std::string& text) {
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
-}
 
 /// Bytes that the program takes besides --memory: itself, its libraries, and buffers of the file
 /// system.

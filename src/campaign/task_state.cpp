@@ -386,8 +386,8 @@ std::optional<TaskState> read_state(const std::filesystem::path& folder) {
     json.at("seconds").get_to(state.seconds);
     json.at("host").get_to(state.host);
     json.at("time").get_to(state.time);
-    state.inputs_changed = json.value("inputs_changed", false);
-    state.inputs = stamps_in(json.value("inputs", ordered_json::array()));
+    state.inputs_changed = json.at("inputs_changed");
+    state.inputs = stamps_in(json.at("inputs"));
     state.facts = json.at("facts");
     return state;
   } catch (const JsonError&) {

@@ -52,7 +52,7 @@ struct TaskState {
   /// Whether the task failed because an input is not the planned one. Another try succeeds once the
   /// input is put back.
   bool inputs_changed = false;
-  /// The files that the task read, as they were when it began. Empty in states of earlier releases.
+  /// The files that the task read, as they were when it began.
   std::vector<InputStamp> inputs = {};
   /// Facts about the result once the task is done: see task_facts().
   nlohmann::ordered_json facts;

@@ -71,7 +71,7 @@ void check_conflicts(const ResultReader& result, const std::vector<Pose>& poses,
 }
 
 void check_axes(const ResultReader& result, const ConflictOptions& options) {
-  const ModelAxes kept = result.header().model_axes.axes;
+  const ModelAxes kept = result.header().notes.model_axes;
   const ModelAxes asked{options.forward, options.up};
   if (!kept.need_turn() || !asked.need_turn()) return;
   throw UsageError(result.name() + ": its search turned the model, whose file had " +

@@ -99,9 +99,7 @@ CollidingPoints read_colliding_points(const ResultReader& result, Progress& prog
     }
     out.source.insert(out.source.end(), rows.source.begin(), rows.source.end());
     out.first_pose.insert(out.first_pose.end(), rows.first_pose.begin(), rows.first_pose.end());
-    const std::vector<std::uint32_t>& last =
-        result.header().last_pose ? rows.last_pose : rows.first_pose;
-    out.last_pose.insert(out.last_pose.end(), last.begin(), last.end());
+    out.last_pose.insert(out.last_pose.end(), rows.last_pose.begin(), rows.last_pose.end());
     for (const std::uint32_t body : rows.body) out.body.push_back(static_cast<std::uint8_t>(body));
     for (const std::uint8_t certain : rows.certain) {
       out.kind.push_back(certain != 0 ? CollidingPoints::kCertain : CollidingPoints::kColliding);

@@ -112,7 +112,7 @@ struct ConflictDistance {
   /// Source index; of equally near points the smallest.
   std::uint64_t source = kNone;
   std::uint32_t pose = 0;
-  std::optional<Vec3> xyz;  ///< missing in files before version 3
+  Vec3 xyz{};
   /// The body that is so near, for a vehicle.
   std::optional<std::uint32_t> body = {};
   std::uint64_t inside = 0;  ///< number of points with a distance below 0
@@ -141,7 +141,7 @@ std::vector<ConflictDistance> least_distances(const ResultReader& result,
         least = {rows.distance[i],
                  rows.source[i],
                  rows.pose[i],
-                 rows.xyz.empty() ? std::nullopt : std::optional(rows.xyz[i]),
+                 rows.xyz[i],
                  rows.body.empty() ? std::nullopt : std::optional(rows.body[i]),
                  least.inside};
       }
@@ -179,7 +179,6 @@ class ConflictSearch {
     out_.path_length = chainage_.empty() ? 0 : chainage_.back();
     out_.colliding_points = reader_.collisions();
     out_.near_points = reader_.near();
-    out_.has_last_poses = reader_.header().last_pose;
     if (conflict_of != nullptr) conflict_of->clear();
     if (conflict_of_near != nullptr) conflict_of_near->clear();
     if (out_.colliding_points + out_.near_points == 0) return std::move(out_);
@@ -388,9 +387,7 @@ class ConflictSearch {
   static std::vector<Box> boxes_of(const Result& result, const ConflictOptions& options) {
     std::vector<Box> boxes;
     for (const Body& body : options.bodies) boxes.push_back(box_of(body.model.vertices));
-    if (!result.bodies().empty()) return boxes;
-    const std::optional<Box> box = options.model_box ? options.model_box : result.model_box();
-    if (box) boxes.push_back(*box);
+    if (result.bodies().empty()) boxes.push_back(result.model_box());
     return boxes;
   }
 
@@ -440,9 +437,6 @@ class ConflictSearch {
 
   void complete(Conflict& conflict) const {
     conflict.chainage_from += options_.chainage_start;
-    if (!out_.has_last_poses && conflict.nearest_pose) {
-      conflict.last_pose = std::max(conflict.last_pose, *conflict.nearest_pose);
-    }
     conflict.chainage_to = chainage_[end_of(conflict.last_pose)] + options_.chainage_start;
     conflict.station_from = station_of(conflict.first_pose);
     conflict.station_to = station_of(end_of(conflict.last_pose));

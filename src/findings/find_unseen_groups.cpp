@@ -93,9 +93,9 @@ class GroupSearch {
       }
       return;
     }
-    if (!result_.bodies().empty()) return;
-    const auto box = options_.model_box ? options_.model_box : result_.model_box();
-    if (box) model_box_ = turned(*box, options_.forward, options_.up);
+    if (result_.bodies().empty()) {
+      model_box_ = turned(result_.model_box(), options_.forward, options_.up);
+    }
   }
 
   /// Finds where each cube lies, seen from the pose of the path that first reaches it.

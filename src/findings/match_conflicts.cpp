@@ -114,9 +114,7 @@ void for_each_row(const GroupedResult& of, std::span<const std::uint32_t> confli
   for (Rows rows; stream.read(rows);) {
     for (std::size_t i = 0; i < rows.size(); ++i, ++row) {
       std::uint32_t last = rows.first_pose[i];
-      if constexpr (requires { rows.last_pose; }) {
-        if (!rows.last_pose.empty()) last = rows.last_pose[i];
-      }
+      if constexpr (requires { rows.last_pose; }) last = rows.last_pose[i];
       visit(PointRow{{rows.xyz[i], conflict_of[row]}, rows.source[i], rows.first_pose[i], last});
     }
   }

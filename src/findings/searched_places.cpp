@@ -83,9 +83,9 @@ void SearchedPlaces::compare_questions(const std::vector<Pose>& poses_a,
 void SearchedPlaces::compare_ignored(const ResultFindings& findings) {
   const bool more_classes = !std::ranges::includes(a_.ignore_classes, b_.ignore_classes);
   // The ground that both ignore collides in both. What is higher was hit, or classified anew.
-  const std::optional<std::uint64_t>& hidden =
+  const std::uint64_t hidden =
       more_classes ? findings.ignored_colliding : findings.ignored_colliding_high;
-  if (!b_.ignore_classes.empty() && hidden.value_or(1) > 0) everywhere_.insert("ignored");
+  if (!b_.ignore_classes.empty() && hidden > 0) everywhere_.insert("ignored");
 }
 
 void SearchedPlaces::take_warnings(const Answer& a, const Answer& b) {

@@ -44,9 +44,7 @@ class TableMaker {
         rows_(chainage_of(poses), options.every),
         bodies_(moving_bodies(kNoModel, poses, options.bodies)) {
     for (const Body& body : options.bodies) boxes_.push_back(box_of(body.model.vertices));
-    if (!header_.bodies.empty()) return;
-    const auto box = options.model_box ? options.model_box : result.model_box();
-    if (box) boxes_.push_back(*box);
+    if (header_.bodies.empty()) boxes_.push_back(result.model_box());
   }
 
   StationTable run() {
@@ -90,13 +88,13 @@ class TableMaker {
                                        "left, to the right and above"));
       return;
     }
-    const bool sides = knows_bodies() && header_.has_clearance_xyz();
+    const bool sides = knows_bodies();
     if (!sides) {
       table_.warnings.push_back(
           warning("sides-unknown",
-                  reader_.name() + ": without the " +
-                      (header_.bodies.empty() ? "model's box" : "bodies of the vehicle") +
-                      " the table cannot say which points are to the left, to the right or above"));
+                  reader_.name() +
+                      ": without the bodies of the vehicle the table cannot say which points are "
+                      "to the left, to the right or above"));
     }
     progress_.begin("distances", reader_.clearances(), "points");
     RowStream<Clearances> stream(reader_);
@@ -104,7 +102,7 @@ class TableMaker {
       throw_if_stopped(progress_);
       for (std::size_t i = 0; i < rows.size(); ++i) {
         FoundPlace found{rows.source[i], rows.pose[i], {}, rows.distance[i]};
-        if (!rows.xyz.empty()) found.xyz = rows.xyz[i];
+        found.xyz = rows.xyz[i];
         if (!rows.body.empty()) found.body = rows.body[i];
         StationRow& row = table_.rows[rows_.of_pose(found.pose)];
         keep_least(found, row.least);
@@ -183,7 +181,6 @@ class TableMaker {
   void add_touched(const Collisions& rows, std::size_t i, RowSet& set) {
     const auto first = rows_of(rows.first_pose[i]);
     add(first, set);
-    if (rows.last_pose.empty()) return;
     const auto last = rows_of(rows.last_pose[i]);
     add(last, set);
     add_near(rows.xyz[i], header_.radius, first[1], last[0], set);
@@ -288,18 +285,9 @@ class TableMaker {
       for (std::size_t i = 0; i < rows.size(); ++i, ++row) {
         const bool counts = !header_.budget || certain[row];
         add_touched(rows, i, counts ? conflict : near);
-        if (rows.last_pose.empty()) {
-          add_near(rows.xyz[i], header_.radius, rows_of(rows.first_pose[i])[1], rows_.size(), near);
-        }
       }
       progress_.advance(rows.size());
     }
-    if (header_.last_pose || reader_.collisions() == 0) return;
-    table_.warnings.push_back(warning(
-        "no-last-poses", reader_.name() +
-                             ": has no last poses, so it does not say where a contact ends; "
-                             "stretches behind a first contact are undecided as long as a "
-                             "body's box is near the point. Run the search again"));
   }
 
   /// Adds the rows on which near points are near: that of their first pose, and later ones on which

@@ -58,7 +58,6 @@ template <typename Table, typename Make>
 CollisionColumns collision_columns(Table& table, const QueryParameters& asked, bool has_bodies,
                                    const Make& make) {
   CollisionColumns columns;
-  const std::size_t rows = table.size();
   columns.source = make(table.source);
   columns.xyz = make(table.xyz);
   if (asked.first_pose) {
@@ -66,10 +65,7 @@ CollisionColumns collision_columns(Table& table, const QueryParameters& asked, b
     if (has_bodies) columns.body = make(table.body);
   }
   if constexpr (requires { table.last_pose; }) {
-    // Files of older releases have no last poses.
-    if (asked.first_pose && table.last_pose.size() == rows) {
-      columns.last_pose = make(table.last_pose);
-    }
+    if (asked.first_pose) columns.last_pose = make(table.last_pose);
     if (asked.has_budget()) columns.certain = make(table.certain).attr("view")("bool");
   }
   return columns;

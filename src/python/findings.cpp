@@ -55,9 +55,6 @@ void add_conflicts(py::module_& module) {
       .def_property_readonly(
           "small", [](const Found& c) { return c.small; },
           "A list of SmallGroup along the path: the groups that are not listed.")
-      .def_readonly("has_last_poses", &Found::has_last_poses,
-                    "Whether the result keeps last poses. Otherwise a conflict's last pose is the "
-                    "last that is known to touch it.")
       .def_property_readonly(
           "conflict_of", [](const Found& c) { return to_array(c.conflict_of); },
           "The id of the conflict of each row of the result: n uint32; 0 where its group is too "
@@ -87,11 +84,10 @@ void add_find_conflicts(py::module_& module) {
       "find_conflicts",
       [](const Result& result, const py::object& poses, double gap, std::uint64_t min_points,
          double split, double chainage_start, const std::string& forward, const std::string& up,
-         std::optional<Box> model_box, const py::object& model,
-         const std::vector<PlacedBody>& bodies, const PoseLabels* labels,
+         const py::object& model, const std::vector<PlacedBody>& bodies, const PoseLabels* labels,
          std::uint64_t memory_bytes, int threads, py::object progress, py::object stop) {
         ConflictOptions options = conflict_options(gap, min_points, split, chainage_start, forward,
-                                                   up, model_box, memory_bytes, threads);
+                                                   up, memory_bytes, threads);
         const std::vector<Pose> path = poses_of(poses_array(poses, "poses"), "poses");
         const std::vector<Body> placed = bodies_on(bodies, path);
         options.bodies = placed;
@@ -111,11 +107,11 @@ void add_find_conflicts(py::module_& module) {
       },
       "result"_a, "poses"_a, py::kw_only(), "gap"_a = ConflictOptions{}.gap,
       "min_points"_a = ConflictOptions{}.min_points, "split"_a = ConflictOptions{}.split,
-      "chainage_start"_a = 0.0, "forward"_a = "+x", "up"_a = "+z", "model_box"_a = py::none(),
-      "model"_a = py::none(), "bodies"_a = py::tuple(), "labels"_a = py::none(),
+      "chainage_start"_a = 0.0, "forward"_a = "+x", "up"_a = "+z", "model"_a = py::none(),
+      "bodies"_a = py::tuple(), "labels"_a = py::none(),
       "memory_bytes"_a = ConflictOptions{}.memory_bytes, "threads"_a = 0, "progress"_a = py::none(),
       "stop"_a = py::none(),
-      R"(find_conflicts(result, poses, *, gap=0.3, min_points=10, split=25.0, chainage_start=0.0, forward='+x', up='+z', model_box=None, model=None, bodies=(), labels=None, memory_bytes=4294967296, threads=0, progress=None, stop=None)
+      R"(find_conflicts(result, poses, *, gap=0.3, min_points=10, split=25.0, chainage_start=0.0, forward='+x', up='+z', model=None, bodies=(), labels=None, memory_bytes=4294967296, threads=0, progress=None, stop=None)
 --
 
 Group the colliding points of a result, place by place. Returns a Conflicts.
@@ -127,7 +123,6 @@ min_points: groups of fewer are counted, not listed.
 split: metres along the path; longer groups are cut at multiples of it; 0: never.
 chainage_start: the chainage of the first pose, metres.
 forward, up: which axes of the model point ahead and up, such as '+x' or '-z'.
-model_box: the Box around the model, where the result does not hold it.
 model: the one model of the search, an n x 3 array or a Model: for shift_left, shift_right.
 bodies: the bodies of the search, where it was one of a vehicle; sides and offsets are then
     seen from the body that touches.
@@ -169,15 +164,13 @@ void add_station_table(py::module_& module) {
   module.def(
       "station_table",
       [](const Result& result, const py::object& poses, double every, double chainage_start,
-         const std::string& forward, const std::string& up, std::optional<Box> model_box,
-         const std::vector<PlacedBody>& bodies, const PoseLabels* labels, int threads,
-         py::object progress, py::object stop) {
+         const std::string& forward, const std::string& up, const std::vector<PlacedBody>& bodies,
+         const PoseLabels* labels, int threads, py::object progress, py::object stop) {
         StationOptions options;
         options.every = every;
         options.chainage_start = chainage_start;
         options.forward = value_of("forward", kChoices<Axis>, forward);
         options.up = value_of("up", kChoices<Axis>, up);
-        options.model_box = model_box;
         options.threads = threads;
         const std::vector<Pose> path = poses_of(poses_array(poses, "poses"), "poses");
         const std::vector<Body> placed = bodies_on(bodies, path);
@@ -189,10 +182,9 @@ void add_station_table(py::module_& module) {
         return watch.run([&] { return station_table(result, path, options); });
       },
       "result"_a, "poses"_a, py::kw_only(), "every"_a = StationOptions{}.every,
-      "chainage_start"_a = 0.0, "forward"_a = "+x", "up"_a = "+z", "model_box"_a = py::none(),
-      "bodies"_a = py::tuple(), "labels"_a = py::none(), "threads"_a = 0, "progress"_a = py::none(),
-      "stop"_a = py::none(),
-      R"(station_table(result, poses, *, every=5.0, chainage_start=0.0, forward='+x', up='+z', model_box=None, bodies=(), labels=None, threads=0, progress=None, stop=None)
+      "chainage_start"_a = 0.0, "forward"_a = "+x", "up"_a = "+z", "bodies"_a = py::tuple(),
+      "labels"_a = py::none(), "threads"_a = 0, "progress"_a = py::none(), "stop"_a = py::none(),
+      R"(station_table(result, poses, *, every=5.0, chainage_start=0.0, forward='+x', up='+z', bodies=(), labels=None, threads=0, progress=None, stop=None)
 --
 
 Describe the path of a result stretch by stretch. Returns a StationTable.
@@ -200,7 +192,7 @@ Describe the path of a result stretch by stretch. Returns a StationTable.
 result: the Result of a query with first_pose=True; with a clearance it has distances too.
 poses: the poses of the search, n x 4 x 4.
 every: metres; the length of a stretch. The last one may be shorter.
-chainage_start, forward, up, model_box: as find_conflicts() takes them.
+chainage_start, forward, up: as find_conflicts() takes them.
 bodies: the bodies of the search, where it was one of a vehicle. Without them sides and overthrow
     are unknown, and no stretch is clear unless all bodies were searched on the whole path.
 labels: the PoseLabels that read_trajectory() filled; with stations, rows have theirs too.
@@ -211,8 +203,7 @@ threads, progress, stop: as search() takes them.)");
 
 ConflictOptions conflict_options(double gap, std::uint64_t min_points, double split,
                                  double chainage_start, const std::string& forward,
-                                 const std::string& up, std::optional<Box> model_box,
-                                 std::uint64_t memory_bytes, int threads) {
+                                 const std::string& up, std::uint64_t memory_bytes, int threads) {
   ConflictOptions options;
   options.gap = gap;
   options.min_points = min_points;
@@ -220,7 +211,6 @@ ConflictOptions conflict_options(double gap, std::uint64_t min_points, double sp
   options.chainage_start = chainage_start;
   options.forward = value_of("forward", kChoices<Axis>, forward);
   options.up = value_of("up", kChoices<Axis>, up);
-  options.model_box = model_box;
   options.memory_bytes = memory_bytes;
   options.threads = threads;
   return options;

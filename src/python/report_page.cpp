@@ -93,7 +93,7 @@ void add_write_report(py::module_& module) {
                               std::move(classes),
                               max_points,
                               conflict_options(gap, min_points, split, chainage_start, forward, up,
-                                               std::nullopt, memory_bytes, threads),
+                                               memory_bytes, threads),
                               labels == nullptr ? PoseLabels{} : *labels,
                               every,
                               messages_of(warnings),

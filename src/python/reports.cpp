@@ -146,12 +146,11 @@ void add_answer(py::module_& module) {
       .def_readonly("ignored", &Answer::ignored,
                     "How many points of the environment the query left out: IgnoredPointCounts.")
       .def_readonly("ignored_colliding", &Answer::ignored_colliding,
-                    "How many ignored points would collide if they were searched; None where an "
-                    "earlier release wrote the result.")
+                    "How many ignored points would collide if they were searched.")
       .def_readonly(
           "ignored_colliding_high", &Answer::ignored_colliding_high,
           "How many ignored points the model would first touch more than half a metre above its "
-          "lowest point; or None as for ignored_colliding.")
+          "lowest point.")
       .def_readonly("first_place", &Answer::first_place,
                     "The colliding point with the smallest first pose: a FoundPlace. None where "
                     "nothing collides or first poses were not asked for.")
@@ -168,10 +167,10 @@ void add_answer(py::module_& module) {
           "least", [](const Answer& a) { return a.nearest(); },
           "The place of the least distance that is known, of profile and clearances: a FoundPlace. "
           "None where nothing is that close or neither was asked for.")
-      .def_readonly("searched", &Answer::searched,
-                    "How much of the path was searched: a SearchedLength. None where a file does "
-                    "not say it: one model is searched on the whole path, and earlier releases did "
-                    "not write it for several bodies.")
+      .def_readonly(
+          "searched", &Answer::searched,
+          "How much of the path was searched: a SearchedLength. None for one model, which "
+          "is searched on the whole path.")
       .def_property_readonly(
           "shard",
           [](const Answer& a) -> py::object {

@@ -49,9 +49,7 @@ py::object first_pose(const Result& result) {
 
 py::object last_pose(const Result& result) {
   if (!result.parameters().first_pose) return py::none();
-  std::vector<std::uint32_t> poses = without_gil([&] { return result.last_pose(); });
-  if (poses.size() != result.size()) return py::none();
-  return to_array(std::move(poses));
+  return to_array(without_gil([&] { return result.last_pose(); }));
 }
 
 py::object first_body(const Result& result) {
@@ -72,8 +70,7 @@ void add_columns(py::module_& module) {
                     "not ask for it.")
       .def_readonly("last_pose", &CollisionColumns::last_pose,
                     "The last pose that touches each point: n uint32. Between poses, the start of "
-                    "the last way that does. None where the query did not ask for first poses, or "
-                    "an older release wrote the file.")
+                    "the last way that does. None where the query did not ask for first poses.")
       .def_readonly("body", &CollisionColumns::body,
                     "The body that touches each point at its first pose, as an index of "
                     "Result.bodies(): n uint32. None where there is one model, or the query did "
@@ -98,8 +95,7 @@ void add_columns(py::module_& module) {
       .def_readonly("source", &ClearanceColumns::source,
                     "The index of each point in the order of the scans, ascending: n uint64.")
       .def_readonly("xyz", &ClearanceColumns::xyz,
-                    "The coordinates of the points: n x 3 float64, metres. Empty in files of "
-                    "versions before 3.")
+                    "The coordinates of the points: n x 3 float64, metres.")
       .def_readonly("distance", &ClearanceColumns::distance,
                     "The least distance of each point over all poses: n float64, metres.")
       .def_readonly("pose", &ClearanceColumns::pose,
@@ -217,9 +213,7 @@ void add_results(py::module_& module) {
           "model_axes", [](const Result& r) { return to_tuple(r.model_axes()); },
           "The axes of the model's file that pointed ahead and up before the search turned the "
           "model, such as ('+y', '+z'); ('+x', '+z') where nothing was turned.")
-      .def("model_box", &Result::model_box,
-           "The box around the model in its own frame: a Box, or None where the file does not have "
-           "it.")
+      .def("model_box", &Result::model_box, "The box around the model in its own frame: a Box.")
       .def("__repr__", [](const Result& r) {
         return text("<Result: " + std::to_string(r.size()) + " of " +
                     std::to_string(r.environment_points()) + " points collide>");

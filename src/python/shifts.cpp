@@ -92,9 +92,8 @@ void add_find_shifts(py::module_& module) {
          double split, double chainage_start, const std::string& forward, const std::string& up,
          const std::vector<PlacedBody>& bodies, const PoseLabels* labels,
          std::uint64_t memory_bytes, int threads, py::object progress, py::object stop) {
-        const ConflictOptions find =
-            conflict_options(gap, min_points, split, chainage_start, forward, up, std::nullopt,
-                             memory_bytes, threads);
+        const ConflictOptions find = conflict_options(gap, min_points, split, chainage_start,
+                                                      forward, up, memory_bytes, threads);
         ShiftOptions options;
         options.lateral_from = lateral[0];
         options.lateral_to = lateral[1];

@@ -2,16 +2,15 @@
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <stdexcept>
 #include <string_view>
 #include <tuple>
 #include <utility>
 
+#include "io/files/deflate.hpp"
 #include "io/files/file.hpp"
 #include "io/result/conflicts/markup_text.hpp"
 
@@ -43,17 +42,6 @@ struct Placed {
     return all(a) < all(b);
   }
 };
-
-std::string zlib_of(std::string_view bytes) {
-  uLongf size = compressBound(static_cast<uLong>(bytes.size()));
-  std::string out(size, '\0');
-  const int status = compress2(reinterpret_cast<Bytef*>(out.data()), &size,
-                               reinterpret_cast<const Bytef*>(bytes.data()),
-                               static_cast<uLong>(bytes.size()), kDeflateLevel);
-  if (status != Z_OK) throw std::runtime_error("zlib: compress2 failed");
-  out.resize(size);
-  return out;
-}
 
 }  // namespace
 
@@ -120,7 +108,7 @@ std::string delta_planes(std::span<const std::int32_t> values) {
 std::string deflated_base64(std::string_view bytes) {
   static constexpr char kDigits[] =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  const std::string deflated = zlib_of(bytes);
+  const std::string deflated = clearway::deflated(bytes, DeflateForm::kZlib, kDeflateLevel);
   std::string out;
   out.reserve((deflated.size() + 2) / 3 * 4);
   for (std::size_t i = 0; i < deflated.size(); i += 3) {

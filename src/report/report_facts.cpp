@@ -73,8 +73,8 @@ void write_body(JsonText& json, const ReportFacts& facts,
 
 /// The spacing of a mesh that was searched as points; nothing for other models.
 std::optional<double> spacing_of(const ResultHeader& header) {
-  if (!(header.model_spacing.metres > 0)) return std::nullopt;
-  return header.model_spacing.metres;
+  if (!(header.notes.model_spacing > 0)) return std::nullopt;
+  return header.notes.model_spacing;
 }
 
 void write_inputs(JsonText& json, const ReportFacts& facts) {
@@ -95,7 +95,7 @@ void write_inputs(JsonText& json, const ReportFacts& facts) {
   json.field("surface_triangles", surface_triangles(facts.bodies));
   json.field("spacing", spacing_of(header));
   write_box(json, "box", facts.model_box);
-  if (const ModelAxes axes = header.model_axes.axes; axes.need_turn()) {
+  if (const ModelAxes axes = header.notes.model_axes; axes.need_turn()) {
     json.key("axes").begin('[').value(name_of(axes.forward)).value(name_of(axes.up)).end(']');
   }
   json.field("above", options.model_above).field("left_out", options.model_left_out);
@@ -173,7 +173,7 @@ void write_classes(JsonText& json, const ReportFacts& facts) {
     json.field("points", facts.points.of_class[k]);
     json.field("shown", facts.points.shown_class[k]).end('}');
   }
-  json.end(']').field("points_without_place", facts.points.without_place);
+  json.end(']');
 }
 
 /// Writes the value of a column, if the row has one or the column is never left out.
@@ -255,7 +255,6 @@ void write_conflicts(JsonText& json, const ReportFacts& facts) {
   json.field("gap", options.gap).field("min_points", options.min_points);
   json.field("split", options.split).field("groups", found.groups);
   json.field("small_groups", found.small_groups).field("small_points", found.small_points);
-  json.field("has_last_poses", found.has_last_poses);
   write_first_small(json, found);
   json.field("longest_group", found.longest_group);
   json.field("longest_group_points", found.longest_group_points);

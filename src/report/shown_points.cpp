@@ -50,7 +50,6 @@ class PointReader {
   PointReader(const Result& result, const PageLattice& lattice, const PointSelection& selection)
       : result_(result.reader()),
         radius_(result.parameters().radius),
-        has_places_(result_.header().has_clearance_xyz()),
         lattice_(lattice),
         selection_(selection),
         picks_(picks_of(selection, result.size())),
@@ -69,7 +68,6 @@ class PointReader {
           !clearance.at_end() && (!collides || row.source() == clearance.source());
       if (collides) summarise_batch(row);
       if (measured) summarise_batch(clearance);
-      if (measured && collides) place_least(row);
       if (collides) add_colliding(row, measured ? clearance.get(&Clearances::distance) : radius_);
       if (measured && !collides) add_other(clearance);
       if (collides) row.advance();
@@ -102,14 +100,6 @@ class PointReader {
     if (!cursor.at_end() && cursor.index() == 0) summarise(cursor.rows(), out_.summary);
   }
 
-  /// Gives the least clearance of a result without coordinates of clearances those of the colliding
-  /// point that it is.
-  void place_least(const CollisionCursor& row) {
-    std::optional<FoundPlace>& least = out_.summary.least_clearance;
-    if (has_places_ || !least || least->source != row.source()) return;
-    least->xyz = row.get(&Collisions::xyz);
-  }
-
   void add_colliding(const CollisionCursor& row, double distance) {
     const std::uint8_t k = class_of(distance, true);
     const std::size_t at = row_++;
@@ -130,9 +120,7 @@ class PointReader {
     if (clearance.get(&Clearances::distance) >= selection_.classes.back()) return;
     const std::uint8_t k = class_of(clearance.get(&Clearances::distance), false);
     ++out_.of_class[k];
-    if (!has_places_) {
-      ++out_.without_place;
-    } else if (other_pick_.next()) {
+    if (other_pick_.next()) {
       ++out_.shown_class[k];
       out_.points.push_back(page_point(lattice_, clearance.get(&Clearances::xyz), k));
     }
@@ -140,7 +128,6 @@ class PointReader {
 
   const ResultReader& result_;
   const double radius_;
-  const bool has_places_;  ///< whether clearances have coordinates
   const PageLattice& lattice_;
   const PointSelection& selection_;
   std::vector<EvenPick> picks_;

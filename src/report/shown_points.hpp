@@ -23,9 +23,6 @@ struct ShownPoints {
   std::array<std::uint64_t, kMostClasses> of_class{};
   /// Number of points of each class on the page.
   std::array<std::uint64_t, kMostClasses> shown_class{};
-  /// Number of points that do not collide, are closer than the last class, and have no
-  /// coordinates, because the result has none for clearances.
-  std::uint64_t without_place = 0;
   TableSummary summary;  ///< what collisions and clearances say in short
   /// Coordinates of the colliding points whose source was asked for, by source.
   std::map<std::uint64_t, Vec3> places;

@@ -205,7 +205,6 @@ class Report {
     how.chainage_start = options_.conflicts.chainage_start;
     how.forward = options_.conflicts.forward;
     how.up = options_.conflicts.up;
-    how.model_box = model_box_;
     how.bodies = options_.bodies;
     how.station = options_.labels.station;
     how.threads = options_.conflicts.threads;
@@ -246,12 +245,10 @@ class Report {
     const auto& nearest = has_clearance ? answer_.least_clearance : answer_.least_profile;
     if (!nearest) return;
     least_of_ = has_clearance ? "clearance" : "profile";
-    // Clearances of results before version 3 have no coordinates.
-    const bool has_place = std::isfinite(nearest->xyz.x);
     least_ = {.distance = nearest->distance,
               .pose = nearest->pose,
               .source = nearest->source,
-              .xyz = has_place ? std::optional(nearest->xyz) : std::nullopt};
+              .xyz = nearest->xyz};
     if (!has_clearance && is_vehicle()) find_nearest_body();
     if (has_clearance && !answer_.bodies.empty()) least_->body = nearest->body;
     place_least();

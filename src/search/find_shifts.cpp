@@ -437,7 +437,7 @@ class ShiftSearch {
       throw_if_stopped(progress_);
       for (std::size_t i = 0; i < rows.size() && !rows.first_pose.empty(); ++i) {
         of_pose[rows.first_pose[i]].add(rows.xyz[i]);
-        if (!rows.last_pose.empty() && rows.last_pose[i] != rows.first_pose[i]) {
+        if (rows.last_pose[i] != rows.first_pose[i]) {
           of_pose[rows.last_pose[i]].add(rows.xyz[i]);
         }
       }

@@ -249,9 +249,8 @@ CollidingIgnored count_colliding_ignored(const StoreReader& store, const Query& 
 
 void warn_of_colliding_ignored(const Answer& answer, bool model_is_cut, LengthUnit unit,
                                MessageLog& log) {
-  if (!answer.ignored_colliding || answer.shard) return;
-  const std::uint64_t colliding = *answer.ignored_colliding;
-  const std::uint64_t high = answer.ignored_colliding_high.value_or(0);
+  if (answer.shard) return;
+  const std::uint64_t colliding = answer.ignored_colliding, high = answer.ignored_colliding_high;
   const auto warn = [&](WarningCode code, std::string text, double points) {
     log.warn(code, std::move(text), {{"colliding", points}});
   };

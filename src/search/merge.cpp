@@ -40,11 +40,12 @@ MergeReport report_of(const PartSet& set) {
 /// Adds to the warnings of the parts what can be judged only for all parts together: groups of
 /// unseen cubes that are too small to be listed, and ignored points that may have made the answer.
 void warn_of_all(const PartSet& set, const MergeOptions& options, MergeReport& report) {
-  const ResultPart& part = *set.parts().front().header().part;
+  const ResultHeader& first = set.parts().front().header();
   std::vector<Message> warnings;
   MessageLog log(options.message, warnings);
   if (report.seen) warn_of_small_groups(*report.seen, set.header(), log);
-  warn_of_colliding_ignored(report, part.model_is_cut, length_unit_of(part.length_unit), log);
+  warn_of_colliding_ignored(report, first.notes.model_is_cut,
+                            length_unit_of(first.part->length_unit), log);
   add_warnings(warnings, report.warnings);
   for (Message& warning : warnings) {
     report.part_warnings.push_back({std::move(warning), report.parts});

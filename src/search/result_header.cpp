@@ -61,30 +61,25 @@ ResultHeader result_header(
   sort_ignored(asked);
   IgnoredPointCounts ignored = ignored_by(asked);
   choose_gap(asked, metre_of(store));
-  const bool by_class = !asked.ignore_classes.empty();
-  ResultHeader header{
-      std::move(asked),
-      metadata.input_points,
-      metadata.points_hash,
-      points_of(query),
-      query.bodies.empty() ? model_hashes.front() : hash_of_bodies(query.bodies, model_hashes),
-      query.poses.size(),
-      hash_of_trajectory(query.poses),
-      metadata.quantisation,
-      metadata.crs_wkt,
-      false,
-      model_box(query),
-      std::nullopt,
-      triangles_of(query),
-      solid_count(query),
-      std::move(ignored),
-      by_class ? metadata.classes->hash : 0,
-      names_of(query),
-      {model_spacing(query)},
-      {file_axes(query)}};
-  header.last_pose = header.first_pose;
+  ResultHeader header;
+  static_cast<QueryParameters&>(header) = std::move(asked);
+  header.environment_points = metadata.input_points;
+  header.environment_hash = metadata.points_hash;
+  header.model_points = points_of(query);
+  header.model_hash =
+      query.bodies.empty() ? model_hashes.front() : hash_of_bodies(query.bodies, model_hashes);
+  header.model_triangles = triangles_of(query);
+  header.model_solids = solid_count(query);
+  header.model_box = model_box(query);
+  header.poses = query.poses.size();
+  header.trajectory_hash = hash_of_trajectory(query.poses);
+  header.quantisation = metadata.quantisation;
+  header.crs_wkt = metadata.crs_wkt;
+  header.bodies = names_of(query);
+  header.ignored = std::move(ignored);
+  if (!header.ignore_classes.empty()) header.classes_hash = metadata.classes->hash;
   header.budget = error_budget_of(query, metadata.quantisation);
-  header.version = header.written_version();
+  header.notes = {.model_spacing = model_spacing(query), .model_axes = file_axes(query)};
   return header;
 }
 

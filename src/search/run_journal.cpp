@@ -25,12 +25,6 @@ std::string text_of(const std::optional<double>& value) {
   return value ? format_number(*value) : "none";
 }
 
-/// Whether first poses are asked for, and between poses with "closed way" for ways that include
-/// their ends. Journals of version 0.1.0 have "yes" there, because their ways did not include them.
-std::string first_pose_text(const ResultHeader& header) {
-  return header.has_poses_of_ways() ? "closed way" : yes_or_no(header.first_pose);
-}
-
 std::string classes_text(const ResultHeader& header) {
   std::string text;
   for (const std::uint8_t value : header.ignore_classes) {
@@ -53,16 +47,19 @@ std::string value_of(const JournalIdentity& identity, const std::string& name) {
 
 JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header,
                             const std::string& engine, const std::string& device, bool replaces) {
+  const bool is_surface = header.model_triangles > 0;
   JournalIdentity identity{{"environment", hash_text(store.fingerprint())},
                            {"model", hash_text(header.model_hash)},
+                           {"model_as", header.model_solids > 0 ? "solid"
+                                        : is_surface            ? "surface"
+                                                                : "points"},
                            {"trajectory", hash_text(header.trajectory_hash)},
-                           {"radius", format_number(header.radius)},
-                           {"first_pose", first_pose_text(header)},
-                           {"clearance", format_number(header.clearance)},
-                           {"between_poses", yes_or_no(header.between_poses)},
                            {"engine", engine},
                            {"device", device},
                            {kReplaces, yes_or_no(replaces)}};
+  for_each_field(kQueryValues, [&](const auto& field) {
+    identity.emplace_back(field.key, text_of(field.of(header)));
+  });
   if (header.part) {
     identity.emplace_back("shard", to_string(header.part->shard));
     identity.emplace_back("division", hash_text(header.part->division));
@@ -71,17 +68,6 @@ JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header
     identity.emplace_back("ignored_classes", classes_text(header));
     identity.emplace_back("ignored_boxes", boxes_text(header.ignore_boxes));
   }
-  if (header.model_triangles > 0) {
-    identity.emplace_back("model_as", header.model_solids > 0 ? "solid" : "surface");
-  }
-  // Later parameters are named only where they are asked for, so that earlier journals stay valid.
-  for_each_field(kQueryValues, [&](const auto& field) {
-    const bool known =
-        std::ranges::any_of(identity, [&](const auto& named) { return named.first == field.key; });
-    if (!known && !field.is_default(header)) {
-      identity.emplace_back(field.key, text_of(field.of(header)));
-    }
-  });
   return identity;
 }
 

@@ -554,7 +554,7 @@ class Search {
 
   void publish(const Found& found) {
     const Stopwatch write;
-    if (header_.part) header_.part->model_is_cut = options_.model_is_cut;
+    header_.notes.model_is_cut = options_.model_is_cut;
     try {
       static_cast<TableSummary&>(report_) =
           write_result(store_, found.result, header_, file_->pending.partial(), found.write_bytes,
@@ -627,7 +627,8 @@ bool is_result(const std::filesystem::path& file) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(file, unknown)) return false;
   try {
-    return ResultReader(file, Parts::kAccepted).header().version > 0;
+    const ResultReader opened(file, Parts::kAccepted);
+    return true;
   } catch (const Error&) {
     return false;
   }

@@ -81,7 +81,7 @@ void put_touched_columns(const RowMeaning& meaning, Columns& columns, Put put) {
 template <typename Put>
 void put_columns(const RowMeaning& meaning, Collisions& columns, Put put) {
   put_touched_columns(meaning, columns, put);
-  if (meaning.header.last_pose) {
+  if (meaning.header.first_pose) {
     put(columns.last_pose, [](const CollisionRow& row) { return row.last_pose; });
   }
   if (meaning.header.budget) {
@@ -303,8 +303,8 @@ class ResultRows {
       return [&, q = store_.coordinates(cell)](std::uint64_t source, std::uint64_t entry,
                                                std::uint32_t i) {
         const std::uint32_t touched = first_pose ? hits.first_pose(entry) : 0;
-        const std::uint32_t last =
-            last_poses ? last_poses->at(entry, meaning_.numbers.pose_of(touched)) : 0;
+        const std::uint32_t first = meaning_.numbers.pose_of(touched);
+        const std::uint32_t last = last_poses != nullptr ? last_poses->at(entry, first) : first;
         const bool is_certain = certain != nullptr && certain->contains(entry);
         return CollisionRow{source, {q[0][i], q[1][i], q[2][i]}, touched, last, is_certain};
       };

@@ -45,7 +45,6 @@ struct Found {
     out.model_box = {{-1, -1, -1}, {1, 1, 1}};
     for (const Body& one : bodies) out.bodies.push_back(one.name);
     if (!bodies.empty()) out.model_hash = hash_of_bodies(bodies);
-    out.version = out.written_version();
     return out;
   }
 

@@ -100,7 +100,6 @@ TEST_CASE("a conflict's poses hold the one of its least distance, and shifts fre
     std::vector<std::uint32_t> conflict_of;
     const Conflicts found = scene.conflicts(&conflict_of);
     REQUIRE(found.listed.size() > 1);
-    CHECK(found.has_last_poses);
     const Result result(scene.folder / "out.h5");
     const auto first = result.first_pose(), last = result.last_pose();
     const auto source = result.source();

@@ -305,22 +305,6 @@ TEST_CASE("a path that comes back later does not touch all the way") {
   }
 }
 
-TEST_CASE("a result without last poses leaves open where a contact ends") {
-  Found found;
-  found.poses = straight_path(20, 1);
-  found.quanta = {{5000, 1200, 0}};
-  found.first_pose = {4};
-  const ScratchFolder folder;
-  StationOptions options;
-  options.every = 2;
-  const StationTable table = station_table(found.write(folder), found.poses, options);
-  REQUIRE(table.warnings.size() == 2);
-  CHECK(table.warnings[1].code == "no-last-poses");
-  std::string verdicts;
-  for (const StationRow& row : table.rows) verdicts += name_of(row.verdict)[1];
-  CHECK(verdicts == "llonllllll");  // cLear, cOnflict, uNdecided
-}
-
 namespace {
 
 /// A body whose poses are exact on a circle, with pivots that are `apart` metres apart.

@@ -352,7 +352,6 @@ class FindsWhatBruteForceFinds(SceneTest):
             np.testing.assert_array_equal(result.xyz()[of].min(axis=0), conflict.box.lo)
         self.assertEqual(sum(c.points for c in found.listed) + found.small_points, len(result))
         self.assertEqual(sum(g.points for g in found.small), found.small_points)
-        self.assertTrue(found.has_last_poses)
         for conflict in found.listed:
             of = found.conflict_of == conflict.id
             self.assertEqual(conflict.first_pose, result.first_pose()[of].min())

@@ -81,6 +81,7 @@ inline Collisions sample_rows(const ResultHeader& header, std::size_t count) {
     if (header.first_pose)
       rows.first_pose.push_back(static_cast<std::uint32_t>(i * 4050343 % header.poses));
   }
+  rows.last_pose = rows.first_pose;
   return rows;
 }
 
@@ -132,7 +133,7 @@ void append_in_steps(ResultWriter& writer, const ResultHeader& header, const Row
     Rows part = part_of(rows, from, std::min(step, rows.size() - from));
     if constexpr (std::is_same_v<Rows, Collisions>) {
       if (!header.first_pose) part.first_pose.clear();
-      if (!header.last_pose) part.last_pose.clear();
+      if (part.last_pose.size() != part.first_pose.size()) part.last_pose = part.first_pose;
     }
     writer.append(part);
   }

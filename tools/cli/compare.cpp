@@ -1,6 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <array>
-#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -13,6 +11,7 @@
 #include "cli/support/options.hpp"
 #include "cli/verdict.hpp"
 #include "core/util/format.hpp"
+#include "io/files/input_error.hpp"
 #include "io/result/check_results.hpp"
 
 namespace clearway::tool {
@@ -37,11 +36,7 @@ const char* kind_text(PointDifference::Kind kind) {
 std::string point_text(const PointDifference& point) {
   std::string text = "  ";
   text.append(kind_text(point.kind)).append("  ").append(std::to_string(point.source)).append(" ");
-  for (int k = 0; k < 3; ++k) {
-    std::array<char, 32> digits{};
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), point.xyz[k]).ptr;
-    text.append(" ").append(digits.data(), end);
-  }
+  for (int k = 0; k < 3; ++k) text.append(" ").append(shown(point.xyz[k]));
   if (point.kind == PointDifference::Kind::kFirstPose) {
     text += "  pose " + std::to_string(*point.first_pose_a) + " / " +
             std::to_string(*point.first_pose_b);

@@ -77,10 +77,6 @@ Exported export_table(const ResultReader& result, ExportOptions& options) {
   ConsoleProgress progress;
   if (options.what == "clearance") {
     export_clearances(result, options.output, options.force, progress);
-    if (!result.header().has_clearance_xyz()) {
-      spdlog::warn("{}: is of version 2; its clearances have no coordinates, run the query again",
-                   options.result.string());
-    }
     return {result.clearances(), "clearance"};
   }
   if (options.what == "near") {

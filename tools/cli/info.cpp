@@ -125,7 +125,7 @@ ordered_json describe(const SectionData& section) {
 ordered_json describe(const ResultReader& result) {
   const ResultHeader& h = result.header();
   ordered_json description{{"kind", "result"},
-                           {"version", h.version},
+                           {"version", result_names::kVersion},
                            {"colliding_points", result.collisions()},
                            {"environment_points", h.environment_points},
                            {"radius", h.radius},
@@ -136,7 +136,7 @@ ordered_json describe(const ResultReader& result) {
                            {"model_triangles", h.model_triangles},
                            {"model_solids", h.model_solids},
                            {"model_spacing", nullptr},
-                           {"model_box", h.has_model_box() ? box_json(h.model_box) : nullptr},
+                           {"model_box", box_json(h.model_box)},
                            {"poses", h.poses},
                            {"first_pose", h.first_pose},
                            {"clearance", h.clearance},
@@ -149,8 +149,8 @@ ordered_json describe(const ResultReader& result) {
                            {"environment_hash", hash_text(h.environment_hash)},
                            {"model_hash", hash_text(h.model_hash)},
                            {"trajectory_hash", hash_text(h.trajectory_hash)}};
-  if (h.model_spacing.metres > 0) description["model_spacing"] = h.model_spacing.metres;
-  if (const ModelAxes axes = h.model_axes.axes; axes.need_turn()) {
+  if (h.notes.model_spacing > 0) description["model_spacing"] = h.notes.model_spacing;
+  if (const ModelAxes axes = h.notes.model_axes; axes.need_turn()) {
     description["model_axes"] = {{"forward", name_of(axes.forward)}, {"up", name_of(axes.up)}};
   }
   if (!h.bodies.empty()) description["bodies"] = h.bodies;
@@ -195,11 +195,6 @@ ordered_json describe(const ResultReader& result) {
   }
   if (const std::uint64_t withheld = result.findings().withheld_points; withheld > 0) {
     description["withheld_points"] = withheld;
-  }
-  if (h.last_pose) description["last_pose"] = true;
-  if (h.has_poses_of_ways()) {
-    description["first_pose_of"] =
-        h.ways_without_ends ? "way without its end (version 0.1.0)" : "closed way";
   }
   return description;
 }

@@ -9,8 +9,8 @@
 
 #include "cli/run_options.hpp"
 #include "cli/support/options.hpp"
-#include "cli/support/shell_words.hpp"
 #include "core/util/format.hpp"
+#include "core/util/shell_words.hpp"
 #include "io/result/result.hpp"
 
 namespace clearway::tool {
@@ -58,7 +58,7 @@ std::string model_words(const ResultHeader& header, const CLI::App& command) {
                      (!file.empty() ? shell_word(file)
                       : one         ? "MODEL"
                                     : "VEHICLE.json");
-  if (const ModelAxes axes = header.model_axes.axes; axes.need_turn()) {
+  if (const ModelAxes axes = header.notes.model_axes; axes.need_turn()) {
     text += std::string(" --forward ") + name_of(axes.forward) + " --up " + name_of(axes.up);
   }
   if (header.model_solids > 0) return text + " --model-as solid";

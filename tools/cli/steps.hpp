@@ -71,7 +71,7 @@ ConflictsOutcome perform(ConflictsCommand& options);
 
 /// The options of `clearway stations`.
 struct StationsCommand : ConflictCommand {
-  std::filesystem::path result, trajectory, model, vehicle;
+  std::filesystem::path result, trajectory, vehicle;
   std::vector<std::filesystem::path> outputs;
   ModelOptions model_options;
   double every = StationOptions{}.every;

@@ -79,10 +79,8 @@ std::string ignored_clause(const Answer& answer) {
   if (!answer.parameters.ignores_points()) return "";
   if (answer.ignored.points == 0) return "";
   std::string text = ", with " + ignored_text(answer.parameters, answer.ignored) + ", ";
-  if (!answer.ignored_colliding)
-    return text + "of which it is not known whether they would collide";
-  if (*answer.ignored_colliding == 0) return text + "none of which would collide";
-  return text + format_count(*answer.ignored_colliding) + " of which would collide";
+  if (answer.ignored_colliding == 0) return text + "none of which would collide";
+  return text + format_count(answer.ignored_colliding) + " of which would collide";
 }
 
 /// " on 3.2 of 68.0 m", or " on 3.2 m of the path" where its length is not known. What would round

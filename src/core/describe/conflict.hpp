@@ -54,7 +54,7 @@ inline constexpr std::tuple kConflictColumns = std::tuple_cat(
             .member = &Conflict::last_pose,
             .key = "last_pose",
             .doc = "The greatest index of a pose that touches one of its points; between poses, "
-                   "the start of the last way that does. See Conflicts.has_last_poses."}},
+                   "the start of the last way that does."}},
     kChainagesOfStretch<Conflict>, kStationsOfStretch<Conflict>,
     std::tuple{
         FindingColumn{

@@ -125,10 +125,6 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
      "100 m away from there. That is wrong for scans that were moved or merged."},
     {"origins-far", kWarning, kScans,
      "Origins are more than 1 km away from all points. They may be in other coordinates."},
-    {"origins-missing", kWarning, kScans,
-     "`convert --resume` found the store of these inputs, which tell from where their points "
-     "were seen. An earlier release made it without these origins, so convert again with "
-     "`--force`."},
     {"origins-path-gap", kWarning, kScans,
      "With `--origins-path`, points are from before the first pose, from after the last one, or "
      "from between poses more than 1 s apart, and have no origin."},
@@ -491,10 +487,6 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
     {"no-clearances", kWarning, kFindings,
      "The result has no clearances, so the table of stations has no distances. Run again with "
      "`--clearance`."},
-    {"no-last-poses", kWarning, kFindings,
-     "A result of an earlier release does not say where a contact ends, so stretches behind a "
-     "first contact are undecided as long as the model's box is near the point. Run the search "
-     "again."},
     {"no-overthrow", kWarning, kFindings,
      "The path is none that a body can follow, for example because it mirrors the model by "
      "turns, so overthrow is not known."},
@@ -505,8 +497,8 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
      "Some bodies have no pose on a part of the path, and without `--vehicle` it is not known "
      "where, so no stretch is called clear."},
     {"sides-unknown", kWarning, kFindings,
-     "Without `--vehicle`, or for an earlier release's result without `--model`, the table of "
-     "stations cannot say what is to the left, to the right and above."},
+     "For a vehicle, without `--vehicle`, the table of stations cannot say what is to the left, to "
+     "the right and above."},
     {"unmatched-files", kNote, kFindings,
      "A pattern of a campaign leaves out files beside those that it matches, with the same "
      "ending or another one of the same kind."},

@@ -40,7 +40,6 @@ void summarise(const Collisions& rows, TableSummary& summary) {
 void summarise(const Nearby& rows, TableSummary& summary) { summary.near_points += rows.size(); }
 
 void summarise(const Clearances& rows, TableSummary& summary) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   summary.clearance_points += rows.size();
   summary.inside_points += static_cast<std::uint64_t>(
       std::ranges::count_if(rows.distance, [](double distance) { return distance < 0; }));
@@ -48,8 +47,7 @@ void summarise(const Clearances& rows, TableSummary& summary) {
   if (nearest == rows.distance.end()) return;
   const auto i = static_cast<std::size_t>(nearest - rows.distance.begin());
   keep_least(
-      {rows.source[i], rows.pose[i], rows.xyz.empty() ? Vec3{kNone, kNone, kNone} : rows.xyz[i],
-       *nearest, rows.body.empty() ? 0 : rows.body[i]},
+      {rows.source[i], rows.pose[i], rows.xyz[i], *nearest, rows.body.empty() ? 0 : rows.body[i]},
       summary.least_clearance, is_nearer);
 }
 
@@ -85,12 +83,8 @@ Answer answer_of(const ResultHeader& header) {
   answer.model_points = header.model_points;
   answer.poses = header.poses;
   answer.model_solids = header.model_solids;
-  answer.model_spacing = header.model_spacing.metres;
+  answer.model_spacing = header.notes.model_spacing;
   answer.ignored = header.ignored;
-  if (header.ignores_points()) {
-    answer.ignored_colliding.reset();
-    answer.ignored_colliding_high.reset();
-  }
   answer.budget = header.budget;
   answer.bodies = header.bodies;
   if (header.part) answer.shard = header.part->shard;
@@ -126,7 +120,6 @@ void add_findings(const ResultFindings& findings, Answer& answer) {
   answer.searched = findings.searched;
   answer.certain = findings.certain.value_or(CertainPoints{});
   answer.seen = findings.seen;
-  if (!answer.parameters.ignores_points()) return;
   answer.ignored_colliding = findings.ignored_colliding;
   answer.ignored_colliding_high = findings.ignored_colliding_high;
 }

@@ -70,10 +70,7 @@ bool is_intact_result(const std::filesystem::path& file, const ResultHeader& hea
                       Progress& progress) {
   try {
     const ResultReader result(file, Parts::kAccepted);
-    ResultHeader found = result.header();
-    found.last_pose =
-        header.last_pose;  // Older releases wrote no last poses, but answered the same question.
-    return found == header && !verify_result(result, progress);
+    return same_answer(result.header(), header) && !verify_result(result, progress);
   } catch (const InputError&) {
     return false;
   }
@@ -187,8 +184,9 @@ class Merge {
     out_.in_a = a.collisions();
     out_.in_b = b.collisions();
     out_.queries = query_differences(a.header(), b.header());
-    if (a.header().first_pose && b.header().first_pose) out_.differing_first_poses = 0;
-    if (a.header().last_pose && b.header().last_pose) out_.differing_last_poses = 0;
+    if (a.header().first_pose && b.header().first_pose) {
+      out_.differing_first_poses = out_.differing_last_poses = 0;
+    }
     same_bodies_ = a.header().bodies == b.header().bodies;
   }
 

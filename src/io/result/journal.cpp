@@ -63,8 +63,8 @@ void check_head(const File& file) {
   }
   if (const auto version = load<std::uint32_t>(found.data() + sizeof kJournalMagic);
       version != kJournalVersion) {
-    refuse(file.name(), "journal format version " + std::to_string(version) + ", expected " +
-                            std::to_string(kJournalVersion));
+    refuse(file.name(), "is a journal of version " + std::to_string(version) +
+                            " of another release; run it again");
   }
   if (found != journal_head()) refuse(file.name(), "damaged: bytes 12 to 15 are not zero");
 }

@@ -21,7 +21,7 @@
 /// (docs/design/journal.md).
 namespace clearway {
 
-inline constexpr std::uint32_t kJournalVersion = 1;
+inline constexpr std::uint32_t kJournalVersion = 2;
 
 /// The identity of a journal, which says what it belongs to, as named values in a fixed order.
 using JournalIdentity = std::vector<std::pair<std::string, std::string>>;

@@ -51,10 +51,7 @@ std::string difference_of(const ResultReader& part, const ResultReader& other) {
     return "answers another question than " + other.name() + ": " + first.what + " is " + first.a +
            ", not " + first.b;
   }
-  ResultHeader as_other = a;
-  as_other.part = b.part;
-  as_other.last_pose = b.last_pose;
-  if (as_other != b) return "answers another question than " + other.name();
+  if (a.question() != b.question()) return "answers another question than " + other.name();
   if (a.part->division != b.part->division) {
     return "divides the work otherwise than " + other.name() +
            ": the stores differ, or the versions of clearway; run the parts with the same";
@@ -114,11 +111,9 @@ PartSet::PartSet(const std::vector<std::filesystem::path>& files) {
   header_ = parts_.front().header();
   header_.part.reset();
   for (const ResultReader& part : parts_) {
-    double& metres = header_.model_spacing.metres;
-    metres = std::max(metres, part.header().model_spacing.metres);
+    double& metres = header_.notes.model_spacing;
+    metres = std::max(metres, part.header().notes.model_spacing);
   }
-  header_.last_pose =
-      std::ranges::all_of(parts_, [](const ResultReader& part) { return part.header().last_pose; });
 }
 
 std::vector<PartWarning> PartSet::warnings() const {
@@ -163,19 +158,9 @@ ResultFindings PartSet::findings() const {
     out.withheld_points = part.findings().withheld_points;  // the same of each part
     if (!out.searched) out.searched = part.findings().searched;
     if (out.without_bodies.empty()) out.without_bodies = part.findings().without_bodies;
+    out.ignored_colliding += part.findings().ignored_colliding;
+    out.ignored_colliding_high += part.findings().ignored_colliding_high;
   }
-  if (!header_.ignores_points()) return out;
-  const auto sum_of = [&](auto member) {
-    std::optional<std::uint64_t> sum = 0;
-    for (const ResultReader& part : parts_) {
-      const std::optional<std::uint64_t>& of_part = part.findings().*member;
-      if (!of_part) return std::optional<std::uint64_t>();
-      *sum += *of_part;
-    }
-    return sum;
-  };
-  out.ignored_colliding = sum_of(&ResultFindings::ignored_colliding);
-  out.ignored_colliding_high = sum_of(&ResultFindings::ignored_colliding_high);
   return out;
 }
 

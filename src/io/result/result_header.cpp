@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
+#include <span>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -18,7 +20,6 @@
 #include "io/files/kept_warnings.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/as_numbers.hpp"
-#include "io/result/result.hpp"
 #include "io/result/result_names.hpp"
 
 namespace clearway {
@@ -80,7 +81,7 @@ void check_lists(const ResultHeader& header, const std::string& name) {
   }
 }
 
-/// Writes what a result of version 4 ignores: the group /ignored and its attributes.
+/// Writes what a result ignores: the group /ignored and its attributes.
 void write_ignored(const hdf5::Id& file, const ResultHeader& header) {
   const hdf5::Id group = hdf5::create_group(file, names::kIgnoredGroup);
   hdf5::write_dataset<std::uint8_t>(group, names::kClassesIgnored, header.ignore_classes);
@@ -89,9 +90,7 @@ void write_ignored(const hdf5::Id& file, const ResultHeader& header) {
   hdf5::write_dataset<std::uint64_t>(group, names::kBoxPoints, header.ignored.in_boxes);
   hdf5::write_number(file, names::kIgnoredPoints, header.ignored.points);
   hdf5::write_number(file, names::kIgnoredHash, hash_of(header));
-  if (!header.ignore_classes.empty()) {
-    hdf5::write_number(file, names::kClassesHash, header.classes_hash);
-  }
+  hdf5::write_number(file, names::kClassesHash, header.classes_hash);
 }
 
 /// Reads the group /ignored and its attributes into `header`. name: the file's, for messages.
@@ -108,127 +107,184 @@ void read_ignored(const hdf5::Id& file, const std::string& name, ResultHeader& h
   header.ignored.in_boxes =
       hdf5::read_dataset<std::uint64_t>(group, names::kBoxPoints, boxes, 0, name);
   header.ignored.points = hdf5::read_number<std::uint64_t>(file, names::kIgnoredPoints, name);
+  header.classes_hash = hdf5::read_number<std::uint64_t>(file, names::kClassesHash, name);
   if (hash_of(header) != hdf5::read_number<std::uint64_t>(file, names::kIgnoredHash, name)) {
     refuse(name, "group 'ignored' is damaged (its hash is not the one recorded)");
   }
   check_lists(header, name);
-  if (!header.ignore_classes.empty()) {
-    header.classes_hash = hdf5::read_number<std::uint64_t>(file, names::kClassesHash, name);
-  }
 }
 
-namespace names = result_names;
-
-/// Checks the format and version attributes. Returns whether the file is a part rather than a whole
-/// result.
+/// Checks the attributes `format`, `version` and `complete`. Returns whether the file is a part
+/// rather than a whole result.
 bool read_format(const hdf5::Id& file, const std::string& name) {
-  if (hdf5::has_attribute(file, "format", name)) {
-    const std::string format = hdf5::read_text_attribute(file, "format", name);
-    if (format == names::kFormat) return false;
-    if (format == names::kPartFormat) return true;
+  const std::string format = hdf5::has_attribute(file, "format", name)
+                                 ? hdf5::read_text_attribute(file, "format", name)
+                                 : "";
+  if (format != names::kFormat && format != names::kPartFormat) {
+    throw InputError(name + ": attribute 'format': expected \"" + names::kFormat +
+                     "\"; this HDF5 file is not a result of clearway run");
   }
-  throw InputError(name + ": attribute 'format': expected \"" + names::kFormat +
-                   "\"; this HDF5 file is not a result of clearway run");
-}
-
-std::uint32_t read_version(const hdf5::Id& file, const std::string& name) {
   const auto version = hdf5::read_number<std::uint32_t>(file, "version", name);
-  if (version < names::kOldestVersion || version > names::kNewestVersion) {
-    throw InputError(name + ": attribute 'version' is " + std::to_string(version) + ", expected " +
-                     std::to_string(names::kOldestVersion) + " to " +
-                     std::to_string(names::kNewestVersion) +
-                     "; another release of clearway wrote it");
+  if (version != names::kVersion) {
+    throw InputError(name + ": is a result of version " + std::to_string(version) +
+                     " of another release; run it again");
   }
   if (!hdf5::has_attribute(file, "complete", name) ||
       hdf5::read_number<std::uint8_t>(file, "complete", name) != 1) {
     throw InputError(name + ": not complete: the run that wrote it was interrupted");
   }
-  return version;
+  return format == names::kPartFormat;
 }
 
-void read_axes(const hdf5::Id& file, const std::string& attribute, const std::string& name,
-               double (&out)[3]) {
-  const auto values = hdf5::read_attribute<double>(file, attribute, 3, name);
-  for (int k = 0; k < 3; ++k) out[k] = values[k];
+// How values of every type are kept as an attribute. name: the file's, for messages.
+
+template <typename Number>
+requires std::is_arithmetic_v<Number>
+void write_value(const hdf5::Id& file, const char* attribute, Number value) {
+  using Kept = std::conditional_t<std::is_same_v<Number, bool>, std::uint8_t, Number>;
+  hdf5::write_number(file, attribute, static_cast<Kept>(value));
 }
 
-void check_spacing(double spacing, const std::string& name) {
-  if (spacing > 0 && std::isfinite(spacing)) return;
-  throw InputError(name + ": attribute 'model_spacing' is " + std::to_string(spacing) +
-                   ", expected a finite length above 0");
+template <typename Number>
+requires std::is_arithmetic_v<Number>
+void read_value(const hdf5::Id& file, const char* attribute, const std::string& name,
+                Number& value) {
+  using Kept = std::conditional_t<std::is_same_v<Number, bool>, std::uint8_t, Number>;
+  value = static_cast<Number>(hdf5::read_number<Kept>(file, attribute, name));
 }
 
-/// Whether the file has the attribute. The only valid value is `value`; for another it throws
-/// InputError.
-bool has_value(const hdf5::Id& file, const char* attribute, const char* value,
-               const std::string& name) {
-  if (!hdf5::has_attribute(file, attribute, name)) return false;
-  const std::string found = hdf5::read_text_attribute(file, attribute, name);
-  if (found == value) return true;
-  refuse(name,
-         std::string("attribute '") + attribute + "' is " + excerpt(found) + ", expected " + value);
+/// An error that was not given has no attribute.
+void write_value(const hdf5::Id& file, const char* attribute, const std::optional<double>& value) {
+  if (value) hdf5::write_number(file, attribute, *value);
+}
+
+void read_value(const hdf5::Id& file, const char* attribute, const std::string& name,
+                std::optional<double>& value) {
+  if (!hdf5::has_attribute(file, attribute, name)) return;
+  value = hdf5::read_number<double>(file, attribute, name);
+}
+
+void write_value(const hdf5::Id& file, const char* attribute, const std::string& text) {
+  hdf5::write_attribute(file, attribute, text);
+}
+
+void read_value(const hdf5::Id& file, const char* attribute, const std::string& name,
+                std::string& text) {
+  text = hdf5::read_text_attribute(file, attribute, name);
+}
+
+void write_value(const hdf5::Id& file, const char* attribute, const double (&axes)[3]) {
+  hdf5::write_attribute(file, attribute, std::span<const double>(axes));
+}
+
+void read_value(const hdf5::Id& file, const char* attribute, const std::string& name,
+                double (&axes)[3]) {
+  std::ranges::copy(hdf5::read_attribute<double>(file, attribute, 3, name), axes);
+}
+
+void write_value(const hdf5::Id& file, const char* attribute, const Box& box) {
+  const Vec3 corners[]{box.lo, box.hi};
+  hdf5::write_attribute(file, attribute, as_numbers(std::span(corners)), 3);
+}
+
+void read_value(const hdf5::Id& file, const char* attribute, const std::string& name, Box& box) {
+  const auto n = hdf5::read_attribute<double>(file, attribute, 6, name);
+  box = {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+}
+
+void write_value(const hdf5::Id& file, const char* attribute, const Shard& shard) {
+  const std::uint32_t numbers[]{shard.number, shard.count};
+  hdf5::write_attribute(file, attribute, std::span<const std::uint32_t>(numbers));
+}
+
+void read_value(const hdf5::Id& file, const char* attribute, const std::string& name,
+                Shard& shard) {
+  const auto numbers = hdf5::read_attribute<std::uint32_t>(file, attribute, 2, name);
+  shard = {numbers[0], numbers[1]};
 }
 
 std::string text_of(const ModelAxes& axes) {
   return std::string(name_of(axes.forward)) + "," + name_of(axes.up);
 }
 
-/// Reads the attribute "+y,+z" of a model whose y axis pointed ahead and whose z axis up.
-ModelAxes read_model_axes(const hdf5::Id& file, const std::string& name) {
-  if (!hdf5::has_attribute(file, names::kModelAxes, name)) return {};
-  const std::string found = hdf5::read_text_attribute(file, names::kModelAxes, name);
+/// "+y,+z" for a model whose y axis pointed ahead and whose z axis up.
+void write_value(const hdf5::Id& file, const char* attribute, const ModelAxes& axes) {
+  hdf5::write_attribute(file, attribute, text_of(axes));
+}
+
+void read_value(const hdf5::Id& file, const char* attribute, const std::string& name,
+                ModelAxes& axes) {
+  const std::string found = hdf5::read_text_attribute(file, attribute, name);
   for (int forward = 0; forward < 6; ++forward) {
     for (int up = 0; up < 6; ++up) {
-      const ModelAxes axes{static_cast<Axis>(forward), static_cast<Axis>(up)};
-      if (!along_one_line(axes.forward, axes.up) && text_of(axes) == found) return axes;
+      axes = {static_cast<Axis>(forward), static_cast<Axis>(up)};
+      if (!along_one_line(axes.forward, axes.up) && text_of(axes) == found) return;
     }
   }
-  refuse(name, "attribute 'model_axes' is " + excerpt(found) +
+  refuse(name, "attribute '" + std::string(attribute) + "' is " + excerpt(found) +
                    ", expected the axes that point ahead and up, for example +y,+z");
 }
 
-void read_model_box(const hdf5::Id& file, const std::string& name, Box& box) {
-  const auto numbers = hdf5::read_attribute<double>(file, names::kModelBox, 6, name);
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (!(numbers[k] <= numbers[3 + k]) || !std::isfinite(numbers[k]) ||
-        !std::isfinite(numbers[3 + k])) {
-      refuse(name, "attribute 'model_box' goes from " + shown(numbers[k]) + " to " +
-                       shown(numbers[3 + k]) + ", expected two finite numbers that ascend");
-    }
-    box.lo[static_cast<int>(k)] = numbers[k];
-    box.hi[static_cast<int>(k)] = numbers[3 + k];
-  }
+/// An attribute of the file: its name, and the member that it keeps.
+template <typename Struct, typename Value>
+struct Attribute {
+  const char* name;
+  Value Struct::*member;
+};
+
+using Q = ResultQuestion;
+constexpr std::tuple kQuestion{Attribute{"environment_points", &Q::environment_points},
+                               Attribute{"environment_hash", &Q::environment_hash},
+                               Attribute{"model_points", &Q::model_points},
+                               Attribute{"model_hash", &Q::model_hash},
+                               Attribute{"model_triangles", &Q::model_triangles},
+                               Attribute{"model_solids", &Q::model_solids},
+                               Attribute{"model_box", &Q::model_box},
+                               Attribute{"poses", &Q::poses},
+                               Attribute{"trajectory_hash", &Q::trajectory_hash},
+                               Attribute{"crs_wkt", &Q::crs_wkt}};
+constexpr std::tuple kQuantisation{Attribute{"scale", &Quantisation::scale},
+                                   Attribute{"offset", &Quantisation::offset}};
+constexpr std::tuple kNotes{Attribute{"model_spacing", &ResultNotes::model_spacing},
+                            Attribute{"model_axes", &ResultNotes::model_axes}};
+constexpr std::tuple kNotesOfPart{Attribute{"model_is_cut", &ResultNotes::model_is_cut}};
+constexpr std::tuple kPart{
+    Attribute{"shard", &ResultPart::shard}, Attribute{"division", &ResultPart::division},
+    Attribute{"store", &ResultPart::store}, Attribute{"length_unit", &ResultPart::length_unit}};
+/// What a budget has besides the parameters of the query.
+constexpr std::tuple kBudget{Attribute{"budget_step", &ErrorBudget::step},
+                             Attribute{"budget_lever", &ErrorBudget::lever},
+                             Attribute{"budget_motion", &ErrorBudget::motion},
+                             Attribute{"budget_chord", &ErrorBudget::chord},
+                             Attribute{"budget_spacing", &ErrorBudget::spacing}};
+constexpr std::tuple kWithheld{Attribute{"withheld_points", &ResultFindings::withheld_points}};
+constexpr std::tuple kIgnoredColliding{
+    Attribute{"ignored_colliding", &ResultFindings::ignored_colliding},
+    Attribute{"ignored_colliding_high", &ResultFindings::ignored_colliding_high}};
+constexpr std::tuple kSeen{Attribute{"unseen_cube_side", &SeenSummary::cube},
+                           Attribute{"swept_cubes", &SeenSummary::swept},
+                           Attribute{"unseen_cubes", &SeenSummary::unseen},
+                           Attribute{"unseen_groups", &SeenSummary::groups},
+                           Attribute{"unseen_listed_groups", &SeenSummary::listed_groups},
+                           Attribute{"unseen_listed_cubes", &SeenSummary::listed_cubes},
+                           Attribute{"not_scanned_length", &SeenSummary::not_scanned_length}};
+constexpr std::tuple kCertain{Attribute{"certain_points", &CertainPoints::points},
+                              Attribute{"certain_group", &CertainPoints::has_group}};
+constexpr std::tuple kSearched{Attribute{"path_length", &SearchedLength::path},
+                               Attribute{"searched_length", &SearchedLength::whole},
+                               Attribute{"partly_searched_length", &SearchedLength::part}};
+
+template <typename Struct, typename... Attributes>
+void write_all(const hdf5::Id& file, const std::tuple<Attributes...>& list, const Struct& from) {
+  std::apply([&](const auto&... one) { (write_value(file, one.name, from.*one.member), ...); },
+             list);
 }
 
-void check_profile(const ResultHeader& header, const std::string& name) {
-  if (header.profile >= 0 && std::isfinite(header.profile)) return;
-  refuse(name,
-         "attribute 'profile' is " + shown(header.profile) + ", expected a length, or 0 for none");
-}
-
-/// Writes a parameter as a number; one that need not be given has to be there.
-template <typename Value>
-void write_field(const hdf5::Id& file, const Field<QueryParameters, Value>& field,
-                 const QueryParameters& query) {
-  if constexpr (std::is_same_v<Value, bool>) {
-    hdf5::write_number(file, field.key, static_cast<std::uint8_t>(field.of(query)));
-  } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
-    hdf5::write_number(file, field.key, *field.of(query));
-  } else {
-    hdf5::write_number(file, field.key, field.of(query));
-  }
-}
-
-template <typename Value>
-void read_field(const hdf5::Id& file, const Field<QueryParameters, Value>& field,
-                const std::string& name, QueryParameters& query) {
-  if constexpr (std::is_same_v<Value, bool>) {
-    field.of(query) = hdf5::read_number<std::uint8_t>(file, field.key, name) != 0;
-  } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
-    field.of(query) = hdf5::read_number<double>(file, field.key, name);
-  } else {
-    field.of(query) = hdf5::read_number<Value>(file, field.key, name);
-  }
+template <typename Struct, typename... Attributes>
+void read_all(const hdf5::Id& file, const std::string& name, const std::tuple<Attributes...>& list,
+              Struct& to) {
+  std::apply([&](const auto&... one) { (read_value(file, one.name, name, to.*one.member), ...); },
+             list);
 }
 
 std::string lines_of(const std::vector<std::string>& texts) {
@@ -255,20 +311,6 @@ std::vector<std::string> read_lines(const hdf5::Id& file, const std::string& nam
   return texts;
 }
 
-ResultPart read_part(const hdf5::Id& file, const std::string& name) {
-  const auto shard = hdf5::read_attribute<std::uint32_t>(file, names::kShard, 2, name);
-  ResultPart part{{shard[0], shard[1]},
-                  hdf5::read_number<std::uint64_t>(file, names::kDivision, name),
-                  hdf5::read_number<std::uint64_t>(file, names::kStore, name),
-                  hdf5::read_text_attribute(file, names::kLengthUnit, name)};
-  if (!part.shard.is_valid()) {
-    refuse(name, "attribute 'shard' is " + to_string(part.shard) + ", expected a part of at most " +
-                     std::to_string(Shard::kMost));
-  }
-  part.model_is_cut = hdf5::has_attribute(file, names::kModelIsCut, name);
-  return part;
-}
-
 // Most runs of poses in an attribute, for which HDF5 allows 64 KiB.
 constexpr std::size_t kMostRuns = 4000;
 
@@ -293,73 +335,56 @@ std::vector<std::array<std::uint32_t, 2>> read_runs(const hdf5::Id& file, const 
   return runs;
 }
 
-/// Reads three attributes of which a file has all or none.
-std::optional<SearchedLength> read_searched(const hdf5::Id& file, const std::string& name) {
-  if (!hdf5::has_attribute(file, names::kSearchedLength, name)) return {};
-  const SearchedLength read{hdf5::read_number<double>(file, names::kPathLength, name),
-                            hdf5::read_number<double>(file, names::kSearchedLength, name),
-                            hdf5::read_number<double>(file, names::kPartlySearchedLength, name)};
+/// A number that has to be finite and 0 or above.
+void check_length(double length, const char* what, const std::string& name) {
+  if (length >= 0 && std::isfinite(length)) return;
+  refuse(name,
+         std::string(what) + " is " + shown(length) + ", expected a finite number, 0 or above");
+}
+
+void check_budget(const ErrorBudget& b, double gap, const std::string& name) {
+  for (const double number : {b.scan, b.registration, b.pose, b.angle, b.model, b.sigmas, b.step,
+                              b.lever, b.motion, b.chord, b.spacing}) {
+    check_length(number, "a number of the error budget", name);
+  }
+  if (!(gap > 0) || !std::isfinite(gap)) {
+    refuse(name, "the error budget has the gap " + shown(gap) + ", expected one above 0");
+  }
+}
+
+void check_searched(const SearchedLength& read, const std::string& name) {
   const bool sound = std::isfinite(read.path) && read.whole >= 0 && read.whole <= read.path &&
                      read.part >= 0 && read.part <= read.path;
-  if (sound) return read;
+  if (sound) return;
   refuse(name, "attributes 'searched_length' and 'partly_searched_length' are " +
                    shown(read.whole) + " and " + shown(read.part) +
                    ", expected lengths up to that of the path, which is " + shown(read.path));
 }
 
-void write_part(const hdf5::Id& file, const ResultHeader& header) {
-  const ResultPart& part = *header.part;
-  const std::uint32_t shard[]{part.shard.number, part.shard.count};
-  hdf5::write_attribute(file, names::kShard, std::span<const std::uint32_t>(shard));
-  hdf5::write_number(file, names::kDivision, part.division);
-  hdf5::write_number(file, names::kStore, part.store);
-  hdf5::write_attribute(file, names::kLengthUnit, part.length_unit);
-  if (part.model_is_cut) hdf5::write_number(file, names::kModelIsCut, std::uint8_t{1});
-}
-
-/// Calls visit(attribute, number) for what a budget has besides the parameters of the query.
-template <typename Budget, typename Visit>
-void for_each_derived(Budget& budget, Visit visit) {
-  visit(names::kBudgetStep, budget.step);
-  visit(names::kBudgetLever, budget.lever);
-  visit(names::kBudgetMotion, budget.motion);
-  visit(names::kBudgetChord, budget.chord);
-  visit(names::kBudgetSpacing, budget.spacing);
-}
-
-/// Reads the error budget, which only version 5 has.
-void read_budget(const hdf5::Id& file, const std::string& name, ResultHeader& header) {
-  header.budget = given_errors(header);
-  if (!header.budget) return;
-  if (header.version < 5) {
-    refuse(name, "has an error budget, which version " + std::to_string(header.version) +
-                     " does not have");
-  }
-  for_each_derived(*header.budget, [&](const char* attribute, double& number) {
-    number = hdf5::read_number<double>(file, attribute, name);
-  });
-  const ErrorBudget& b = *header.budget;
-  for (const double number : {b.scan, b.registration, b.pose, b.angle, b.model, b.sigmas, b.step,
-                              b.lever, b.motion, b.chord, b.spacing}) {
-    if (std::isfinite(number) && number >= 0) continue;
-    refuse(name, "the error budget has the number " + shown(number) + ", expected 0 or above");
-  }
-  if (!(header.gap > 0) || !std::isfinite(header.gap)) {
-    refuse(name, "the error budget has the gap " + shown(header.gap) + ", expected one above 0");
+void check_seen(const SeenSummary& seen, const std::string& name) {
+  if (seen.unseen > seen.swept || seen.groups > seen.unseen || seen.listed_groups > seen.groups ||
+      seen.listed_cubes > seen.unseen || !(seen.cube > 0) || !(seen.not_scanned_length >= 0)) {
+    refuse(name, "the numbers of swept and unseen cubes contradict each other");
   }
 }
 
-/// Reads what versions before 4 do not have: bodies, ignored points, or both.
-void read_more(const hdf5::Id& file, const std::string& name, ResultHeader& header) {
-  const bool bodies = hdf5::has_attribute(file, names::kBodies, name);
-  if (header.version < 4) {
-    if (!bodies) return;
-    refuse(name, "has bodies, which version " + std::to_string(header.version) + " does not have");
+void check_at_most(std::uint64_t count, std::uint64_t most, const char* attribute,
+                   const std::string& name) {
+  if (count <= most) return;
+  refuse(name, "attribute '" + std::string(attribute) + "' is " + std::to_string(count) +
+                   ", expected at most " + std::to_string(most));
+}
+
+void check_header(const ResultHeader& header, const std::string& name) {
+  check_length(header.profile, "attribute 'profile'", name);
+  check_length(header.notes.model_spacing, "attribute 'model_spacing'", name);
+  if (!is_box(header.model_box)) {
+    refuse(name, "attribute 'model_box': expected two finite corners, the least x, y, z first");
   }
-  if (bodies) header.bodies = read_lines(file, name, names::kBodies, "names", kMostBodies);
-  const bool ignores = header.version == 4 && !bodies;
-  if (ignores || hdf5::has_attribute(file, names::kIgnoredPoints, name)) {
-    read_ignored(file, name, header);
+  if (header.budget) check_budget(*header.budget, header.gap, name);
+  if (header.part && !header.part->shard.is_valid()) {
+    refuse(name, "attribute 'shard' is " + to_string(header.part->shard) +
+                     ", expected a part of at most " + std::to_string(Shard::kMost));
   }
 }
 
@@ -371,156 +396,57 @@ std::string environment_text(const ResultHeader& header) {
 }
 
 void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
-  const Vec3 model_box[2] = {header.model_box.lo, header.model_box.hi};
   hdf5::write_attribute(file, "format",
                         std::string(header.part ? names::kPartFormat : names::kFormat));
-  hdf5::write_number(file, "version", header.written_version());
-  hdf5::write_number(file, "environment_points", header.environment_points);
-  hdf5::write_number(file, "environment_hash", header.environment_hash);
-  hdf5::write_number(file, "model_points", header.model_points);
-  hdf5::write_number(file, "model_hash", header.model_hash);
-  hdf5::write_number(file, "poses", header.poses);
-  hdf5::write_number(file, "trajectory_hash", header.trajectory_hash);
-  for_each_field(kQueryValues, [&](const auto& field) {
-    if (field.is_always_listed) write_field(file, field, header);
-  });
-  hdf5::write_attribute(file, names::kModelBox, as_numbers(std::span(model_box)), 3);
-  hdf5::write_attribute(file, "scale", std::span<const double>(header.quantisation.scale));
-  hdf5::write_attribute(file, "offset", std::span<const double>(header.quantisation.offset));
-  hdf5::write_attribute(file, "crs_wkt", header.crs_wkt);
-  for_each_field(kQueryValues, [&](const auto& field) {
-    if (!field.is_always_listed && !field.is_default(header)) write_field(file, field, header);
-  });
-  if (header.has_poses_of_ways() && !header.ways_without_ends) {
-    hdf5::write_attribute(file, names::kFirstPoseOf, names::kClosedWay);
-  }
-  if (header.model_triangles > 0) {
-    hdf5::write_number(file, names::kModelTriangles, header.model_triangles);
-  }
-  if (header.model_solids > 0) {
-    hdf5::write_number(file, names::kModelSolids, header.model_solids);
-  }
-  if (header.model_spacing.metres > 0) {
-    hdf5::write_number(file, names::kModelSpacing, header.model_spacing.metres);
-  }
-  if (header.model_axes.axes.need_turn()) {
-    hdf5::write_attribute(file, names::kModelAxes, text_of(header.model_axes.axes));
-  }
-  if (header.budget) {
-    for_each_derived(*header.budget, [&](const char* attribute, const double& number) {
-      hdf5::write_number(file, attribute, number);
-    });
-  }
-  if (header.ignores_points()) write_ignored(file, header);
+  hdf5::write_number(file, "version", names::kVersion);
+  write_all(file, kQuestion, header.question());
+  write_all(file, kQuantisation, header.quantisation);
+  for_each_field(kQueryValues,
+                 [&](const auto& field) { write_value(file, field.key, field.of(header)); });
+  write_all(file, kNotes, header.notes);
   if (!header.bodies.empty()) {
     hdf5::write_attribute(file, names::kBodies, lines_of(header.bodies));
   }
-  if (header.part) write_part(file, header);
+  if (header.budget) write_all(file, kBudget, *header.budget);
+  if (header.ignores_points()) write_ignored(file, header);
+  if (!header.part) return;
+  write_all(file, kPart, *header.part);
+  write_all(file, kNotesOfPart, header.notes);
 }
 
 ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
-  ResultHeader header;
   const bool is_part = read_format(file, name);
-  header.version = read_version(file, name);
-  header.environment_points = hdf5::read_number<std::uint64_t>(file, "environment_points", name);
-  header.environment_hash = hdf5::read_number<std::uint64_t>(file, "environment_hash", name);
-  header.model_points = hdf5::read_number<std::uint64_t>(file, "model_points", name);
-  header.model_hash = hdf5::read_number<std::uint64_t>(file, "model_hash", name);
-  header.poses = hdf5::read_number<std::uint64_t>(file, "poses", name);
-  header.trajectory_hash = hdf5::read_number<std::uint64_t>(file, "trajectory_hash", name);
+  ResultHeader header;
+  read_all(file, name, kQuestion, static_cast<ResultQuestion&>(header));
+  read_all(file, name, kQuantisation, header.quantisation);
   for_each_field(kQueryValues, [&](const auto& field) {
-    const bool always = field.is_always_listed && header.version > 2;
-    if (always || hdf5::has_attribute(file, field.key, name)) {
-      read_field(file, field, name, header);
-    }
+    read_value(file, field.key, name, header.*field.member);
   });
-  read_axes(file, "scale", name, header.quantisation.scale);
-  read_axes(file, "offset", name, header.quantisation.offset);
-  header.crs_wkt = hdf5::read_text_attribute(file, "crs_wkt", name);
-  header.last_pose = header.first_pose && hdf5::has_attribute(file, names::kLastPoseHash, name);
-  if (hdf5::has_attribute(file, names::kModelTriangles, name)) {
-    header.model_triangles = hdf5::read_number<std::uint64_t>(file, names::kModelTriangles, name);
+  read_all(file, name, kNotes, header.notes);
+  if (hdf5::has_attribute(file, names::kBodies, name)) {
+    header.bodies = read_lines(file, name, names::kBodies, "names", kMostBodies);
   }
-  if (hdf5::has_attribute(file, names::kModelSolids, name)) {
-    header.model_solids = hdf5::read_number<std::uint64_t>(file, names::kModelSolids, name);
-  }
-  if (hdf5::has_attribute(file, names::kModelSpacing, name)) {
-    header.model_spacing.metres = hdf5::read_number<double>(file, names::kModelSpacing, name);
-    check_spacing(header.model_spacing.metres, name);
-  }
-  header.model_axes.axes = read_model_axes(file, name);
-  header.ways_without_ends =
-      header.has_poses_of_ways() && !has_value(file, names::kFirstPoseOf, names::kClosedWay, name);
-  if (header.version >= 3) {
-    read_model_box(file, name, header.model_box);
-    check_profile(header, name);
-  }
-  read_budget(file, name, header);
-  read_more(file, name, header);
+  header.budget = given_errors(header);
+  if (header.budget) read_all(file, name, kBudget, *header.budget);
+  if (hdf5::has_attribute(file, names::kIgnoredPoints, name)) read_ignored(file, name, header);
   if (is_part) {
-    if (header.version < 3) refuse(name, "is a part of version 2, which has none");
-    header.part = read_part(file, name);
+    read_all(file, name, kPart, header.part.emplace());
+    read_all(file, name, kNotesOfPart, header.notes);
   }
+  check_header(header, name);
   return header;
 }
 
-namespace {
-
-void write_seen(const hdf5::Id& file, const SeenSummary& seen) {
-  hdf5::write_number(file, names::kCubeSide, seen.cube);
-  hdf5::write_number(file, names::kSweptCubes, seen.swept);
-  hdf5::write_number(file, names::kUnseenCubes, seen.unseen);
-  hdf5::write_number(file, names::kUnseenGroups, seen.groups);
-  hdf5::write_number(file, names::kListedGroups, seen.listed_groups);
-  hdf5::write_number(file, names::kListedCubes, seen.listed_cubes);
-  hdf5::write_number(file, names::kNotScanned, seen.not_scanned_length);
-}
-
-SeenSummary read_seen(const hdf5::Id& file, const std::string& name) {
-  const auto count = [&](const char* attribute) {
-    return hdf5::read_number<std::uint64_t>(file, attribute, name);
-  };
-  SeenSummary seen;
-  seen.cube = hdf5::read_number<double>(file, names::kCubeSide, name);
-  seen.swept = count(names::kSweptCubes);
-  seen.unseen = count(names::kUnseenCubes);
-  seen.groups = count(names::kUnseenGroups);
-  seen.listed_groups = count(names::kListedGroups);
-  seen.listed_cubes = count(names::kListedCubes);
-  seen.not_scanned_length = hdf5::read_number<double>(file, names::kNotScanned, name);
-  if (seen.unseen > seen.swept || seen.groups > seen.unseen || seen.listed_groups > seen.groups ||
-      seen.listed_cubes > seen.unseen || !(seen.cube > 0) || !(seen.not_scanned_length >= 0)) {
-    refuse(name, "the numbers of swept and unseen cubes contradict each other");
-  }
-  seen.seen = seen.swept - seen.unseen;
-  return seen;
-}
-
-}  // namespace
-
-void write_result_findings(const hdf5::Id& file, const ResultFindings& findings) {
+void write_result_findings(const hdf5::Id& file, const ResultFindings& findings,
+                           const ResultHeader& header) {
   write_warnings(file, findings.warnings);
   write_scan_dates(file, findings.scanned);
-  if (findings.withheld_points > 0) {
-    hdf5::write_number(file, names::kWithheldPoints, findings.withheld_points);
-  }
-  if (findings.ignored_colliding) {
-    hdf5::write_number(file, names::kIgnoredColliding, *findings.ignored_colliding);
-  }
-  if (findings.ignored_colliding_high) {
-    hdf5::write_number(file, names::kIgnoredHigh, *findings.ignored_colliding_high);
-  }
-  if (findings.seen) write_seen(file, *findings.seen);
-  if (findings.certain) {
-    hdf5::write_number(file, names::kCertainPoints, findings.certain->points);
-    hdf5::write_number(file, names::kCertainGroup,
-                       static_cast<std::uint8_t>(findings.certain->has_group));
-  }
-  if (findings.searched) {
-    hdf5::write_number(file, names::kPathLength, findings.searched->path);
-    hdf5::write_number(file, names::kSearchedLength, findings.searched->whole);
-    hdf5::write_number(file, names::kPartlySearchedLength, findings.searched->part);
-  }
+  write_all(file, kWithheld, findings);
+  if (header.ignores_points()) write_all(file, kIgnoredColliding, findings);
+  if (findings.seen) write_all(file, kSeen, *findings.seen);
+  if (findings.certain) write_all(file, kCertain, *findings.certain);
+  if (!header.bodies.empty())
+    write_all(file, kSearched, findings.searched.value_or(SearchedLength{}));
   if (!findings.without_bodies.empty() && findings.without_bodies.size() <= kMostRuns) {
     std::vector<std::uint32_t> ends;
     for (const auto& run : findings.without_bodies) ends.insert(ends.end(), run.begin(), run.end());
@@ -535,28 +461,24 @@ ResultFindings read_result_findings(const hdf5::Id& file, const std::string& nam
   ResultFindings findings;
   findings.warnings = read_warnings(file, name);
   findings.scanned = read_scan_dates(file, name);
-  const auto read_count = [&](const char* attribute, std::uint64_t most) {
-    std::optional<std::uint64_t> count;
-    if (!hdf5::has_attribute(file, attribute, name)) return count;
-    count = hdf5::read_number<std::uint64_t>(file, attribute, name);
-    if (*count > most) {
-      refuse(name, "attribute '" + std::string(attribute) + "' is " + std::to_string(*count) +
-                       ", expected at most " + std::to_string(most));
-    }
-    return count;
-  };
-  constexpr std::uint64_t kAny = std::numeric_limits<std::uint64_t>::max();
-  findings.withheld_points = read_count(names::kWithheldPoints, kAny).value_or(0);
-  findings.ignored_colliding = read_count(names::kIgnoredColliding, header.ignored.points);
-  findings.ignored_colliding_high =
-      read_count(names::kIgnoredHigh, findings.ignored_colliding.value_or(0));
-  if (header.seen) findings.seen = read_seen(file, name);
-  if (header.budget) {
-    findings.certain =
-        CertainPoints{hdf5::read_number<std::uint64_t>(file, names::kCertainPoints, name),
-                      hdf5::read_number<std::uint8_t>(file, names::kCertainGroup, name) != 0};
+  read_all(file, name, kWithheld, findings);
+  if (header.ignores_points()) {
+    read_all(file, name, kIgnoredColliding, findings);
+    check_at_most(findings.ignored_colliding, header.ignored.points, "ignored_colliding", name);
+    check_at_most(findings.ignored_colliding_high, findings.ignored_colliding,
+                  "ignored_colliding_high", name);
   }
-  findings.searched = read_searched(file, name);
+  if (header.seen) {
+    SeenSummary& seen = findings.seen.emplace();
+    read_all(file, name, kSeen, seen);
+    check_seen(seen, name);
+    seen.seen = seen.swept - seen.unseen;
+  }
+  if (header.budget) read_all(file, name, kCertain, findings.certain.emplace());
+  if (!header.bodies.empty()) {
+    read_all(file, name, kSearched, findings.searched.emplace());
+    check_searched(*findings.searched, name);
+  }
   findings.without_bodies = read_runs(file, name, header);
   return findings;
 }

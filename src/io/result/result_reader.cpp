@@ -145,11 +145,6 @@ class TableReader {
       using Value = typename std::decay_t<decltype(column)>::Value;
       using Dataset = typename std::decay_t<decltype(dataset)>::value_type;
       if (!column.is_in(header)) return;
-      if (column.own_hash != nullptr) {
-        // A release before the column wrote neither it nor its hash.
-        if (!hdf5::has_attribute(file, column.own_hash, name)) return;
-        own_hashes_.push_back(hdf5::read_number<std::uint64_t>(file, column.own_hash, name));
-      }
       const std::string path = std::string(Table<Rows>::kGroup) + "/" + column.dataset;
       dataset.emplace(Dataset::open(file, path, StoredValue<Value>::kNumbers, name));
       if (!rows_) rows_ = dataset->rows();
@@ -176,15 +171,14 @@ class TableReader {
   void check_hashes(const RowHashes<Rows>& hashes) const {
     if (!rows_) return;
     ColumnHashes of_table;
-    std::size_t i = 0, own = 0;
-    for_each_column<Rows>(datasets_, [&](const auto& column, const auto& dataset) {
+    std::size_t i = 0;
+    for_each_column<Rows>(datasets_, [&](const auto&, const auto& dataset) {
       const std::uint64_t digest = hashes[i++].digest();
-      if (!dataset) return;
-      if (column.own_hash == nullptr) return of_table.add_digest(digest);
-      if (digest == own_hashes_[own++]) return;
-      refuse_damaged(std::string(Table<Rows>::kGroup) + "/" + column.dataset);
+      if (dataset) of_table.add_digest(digest);
     });
-    if (of_table.digest() != hash_) refuse_damaged(Table<Rows>::kGroup);
+    if (of_table.digest() == hash_) return;
+    throw InputError(name_ + ": /" + Table<Rows>::kGroup +
+                     ": its rows are damaged (their hash is not the one recorded)");
   }
 
   template <typename Value>
@@ -203,11 +197,6 @@ class TableReader {
  private:
   RowsRead read_from(std::uint64_t first) const {
     return {name_, header_, Table<Rows>::kGroup, first};
-  }
-
-  [[noreturn]] void refuse_damaged(const std::string& path) const {
-    throw InputError(name_ + ": /" + path +
-                     ": its rows are damaged (their hash is not the one recorded)");
   }
 
   template <typename Value, typename Dataset>
@@ -268,7 +257,6 @@ class TableReader {
   PerColumn<Rows, OptionalRead> datasets_;
   std::optional<std::uint64_t> rows_;  ///< nullopt where the result does not have the table
   std::uint64_t hash_ = 0;
-  std::vector<std::uint64_t> own_hashes_;  ///< of the columns that have their own
 };
 
 }  // namespace
@@ -444,13 +432,10 @@ Profile Result::profile() const {
   return std::move(static_cast<Profile&>(out));
 }
 
-double Result::model_spacing() const { return reader_->header().model_spacing.metres; }
+double Result::model_spacing() const { return reader_->header().notes.model_spacing; }
 
-ModelAxes Result::model_axes() const { return reader_->header().model_axes.axes; }
+ModelAxes Result::model_axes() const { return reader_->header().notes.model_axes; }
 
-std::optional<Box> Result::model_box() const {
-  if (!reader_->header().has_model_box()) return std::nullopt;
-  return reader_->header().model_box;
-}
+Box Result::model_box() const { return reader_->header().model_box; }
 
 }  // namespace clearway

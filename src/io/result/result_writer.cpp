@@ -142,17 +142,12 @@ class TableWriter {
                columns_);
   }
 
-  /// Writes the hash of the table, and then those of the columns that have their own.
-  void write_hashes(const hdf5::Id& file) {
+  void write_hash(const hdf5::Id& file) {
     ColumnHashes hashes;
-    for_each_column<Rows>(columns_, [&](const auto& column, const auto& dataset) {
-      if (dataset && column.own_hash == nullptr) hashes.add_digest(dataset->digest());
+    for_each_column<Rows>(columns_, [&](const auto&, const auto& dataset) {
+      if (dataset) hashes.add_digest(dataset->digest());
     });
     hdf5::write_number(file, Table<Rows>::kHash, hashes.digest());
-    for_each_column<Rows>(columns_, [&](const auto& column, const auto& dataset) {
-      if (!dataset || column.own_hash == nullptr) return;
-      hdf5::write_number(file, column.own_hash, dataset->digest());
-    });
   }
 
  private:
@@ -310,8 +305,8 @@ void ResultWriter::finish(const ResultFindings& findings) {
   State& s = *state_;
   s.each([&](auto& table) { s.complete(table); });
   hdf5::naming(s.name, [&] {
-    s.each([&](auto& table) { table.write_hashes(s.file); });
-    write_result_findings(s.file, findings);
+    s.each([&](auto& table) { table.write_hash(s.file); });
+    write_result_findings(s.file, findings, s.header);
     hdf5::write_number(s.file, "complete", std::uint8_t{1});
     s.each([](auto& table) { table.write_held(); });
     hdf5::check(H5Fflush(s.file.get(), H5F_SCOPE_LOCAL), "write the result");

@@ -53,9 +53,6 @@ struct Column {
   /// Describes the column in exported files, in up to 31 characters. Null for a column that is not
   /// exported as a field of its own.
   const char* field = nullptr;
-  /// The attribute that keeps the hash of this column alone, which is therefore no part of the
-  /// table's hash: a column that was added later must not change what older readers check.
-  const char* own_hash = nullptr;
 };
 
 // Checks of values that several columns share.
@@ -114,8 +111,7 @@ struct Table<Collisions> : AscendingSources<Collisions> {
                                   [](const ResultHeader& h) { return h.has_first_bodies(); },
                                   check_bodies, "body of that pose"},
       Column<Rows, std::uint32_t>{result_names::kLastPose, &Rows::last_pose,
-                                  [](const ResultHeader& h) { return h.last_pose; }, check_poses,
-                                  nullptr, result_names::kLastPoseHash},
+                                  [](const ResultHeader& h) { return h.first_pose; }, check_poses},
       Column<Rows, std::uint8_t>{result_names::kCertain, &Rows::certain,
                                  [](const ResultHeader& h) { return h.budget.has_value(); },
                                  check_flags}};
@@ -155,8 +151,7 @@ struct Table<Clearances> : AscendingSources<Clearances> {
   static constexpr std::tuple kColumns{
       Column<Rows, std::uint64_t>{result_names::kSource, &Rows::source, in_every_result,
                                   check_sources},
-      Column<Rows, Vec3>{result_names::kXyz, &Rows::xyz,
-                         [](const ResultHeader& h) { return h.has_clearance_xyz(); }, check_points},
+      Column<Rows, Vec3>{result_names::kXyz, &Rows::xyz, in_every_result, check_points},
       Column<Rows, double>{result_names::kDistance, &Rows::distance, in_every_result,
                            check_clearances, "least distance to the model"},
       Column<Rows, std::uint32_t>{result_names::kPose, &Rows::pose, in_every_result, check_poses,

@@ -22,7 +22,7 @@ namespace {
 
 namespace names {
 constexpr const char* kFormat = "clearway section";
-constexpr std::uint32_t kVersion = 1, kVersionWithSeen = 2;
+constexpr std::uint32_t kVersion = 3;
 
 constexpr const char* kCells = "section";  // the group by which the file is recognised
 constexpr const char* kJ = "j";
@@ -381,7 +381,7 @@ void write_section(const SectionData& section, const SectionRows& blocked,
   hdf5::naming(path.string(), [&] {
     hdf5::Id file = hdf5::create_file(path);
     hdf5::write_attribute(file, "format", names::kFormat);
-    hdf5::write_number(file, "version", unknown ? names::kVersionWithSeen : names::kVersion);
+    hdf5::write_number(file, "version", names::kVersion);
     hdf5::write_attribute<double>(file, "numbers", numbers_of(section));
     hdf5::write_attribute<std::uint64_t>(file, "counts", counts_of(section));
     hdf5::write_attribute(file, "crs_wkt", section.crs_wkt);
@@ -423,10 +423,9 @@ SectionData read_section(const std::filesystem::path& path) {
       refuse(name, "is not a section; expected a file of clearway section find");
     }
     const auto version = hdf5::read_number<std::uint32_t>(file, "version", name);
-    if (version != names::kVersion && version != names::kVersionWithSeen) {
-      refuse(name, "is a section of version " + std::to_string(version) + "; expected version " +
-                       std::to_string(names::kVersion) + " or " +
-                       std::to_string(names::kVersionWithSeen));
+    if (version != names::kVersion) {
+      refuse(name, "is a section of version " + std::to_string(version) +
+                       " of another release; run section find again");
     }
     if (!hdf5::has_attribute(file, "complete", name)) {
       refuse(name, "not complete: the command that wrote it was interrupted");
@@ -441,8 +440,8 @@ SectionData read_section(const std::filesystem::path& path) {
         read_cells(file, names::kCells, names::kCount, name, section.bin_cells);
     std::optional<CellSums> unknown;
     CellRuns runs;
-    if (version == names::kVersionWithSeen) {
-      section.parameters.seen = true;
+    section.parameters.seen = hdf5::has_attribute(file, names::kSeenCube, name);
+    if (section.parameters.seen) {
       section.parameters.seen_cube = hdf5::read_number<double>(file, names::kSeenCube, name);
       unknown = read_cells(file, names::kUnknown, names::kUnknown, name, runs.first);
       runs.length = read_column<std::uint32_t>(hdf5::open_group(file, names::kUnknown, name),

@@ -10,8 +10,8 @@
 namespace clearway {
 
 /// A value of every point that only some stores have: its group, and the dataset of its packed
-/// chunks, [cells, cell_points]. A column has hashes of its own, because earlier releases check the
-/// index's hash without it and so still read the store.
+/// chunks, [cells, cell_points]. A column has hashes of its own, so that what it holds does not
+/// change the hash of the index.
 struct PointColumn {
   const char* group;
   const char* dataset;

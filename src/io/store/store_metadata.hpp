@@ -116,8 +116,7 @@ struct StoreMetadata {
   double height_unit = 0;
   std::uint64_t points_hash = 0;
   std::vector<SourceFile> sources;
-  /// Number of points of each source file; 0 for files of poses. Empty for a single scan, and in
-  /// stores of 0.1.0.
+  /// Number of points of each source file; 0 for files of poses. Empty for a single scan.
   std::vector<std::uint64_t> source_points = {};
   std::optional<StoreClasses> classes = {};  ///< only where some point has a class above 0
   std::optional<StoreOrigins> origins = {};  ///< only where some point has an origin

@@ -47,13 +47,12 @@ std::vector<SourceFile> read_sources(const hdf5::Id& file, const std::string& fi
   return sources;
 }
 
-/// Reads /sources/points. It is not part of the index's hash, which older releases check without
-/// it, so damage is found by comparing the sum with the number of input points.
+/// Reads /sources/points. It is not part of the index's hash, so damage is found by comparing the
+/// sum with the number of input points.
 std::vector<std::uint64_t> read_source_points(const hdf5::Id& file, const std::string& name,
                                               const StoreMetadata& metadata) {
   const hdf5::Id group = hdf5::open_group(file, "sources", name);
-  const htri_t found = H5Lexists(group.get(), kSourcePoints, H5P_DEFAULT);
-  if (found <= 0) return {};
+  if (H5Lexists(group.get(), kSourcePoints, H5P_DEFAULT) <= 0) return {};
   auto points =
       hdf5::read_dataset<std::uint64_t>(group, kSourcePoints, metadata.sources.size(), 0, name);
   std::uint64_t sum = 0;
@@ -102,8 +101,8 @@ StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name, Colum
   }
   const auto version = hdf5::read_number<std::uint32_t>(file, "version", name);
   if (version != kStoreVersion) {
-    refuse(name, "store format version " + std::to_string(version) + ", expected " +
-                     std::to_string(kStoreVersion));
+    refuse(name, "is a store of version " + std::to_string(version) +
+                     " of another release; convert again");
   }
   if (!hdf5::has_attribute(file, "complete", name) ||
       hdf5::read_number<std::uint32_t>(file, "complete", name) != 1) {

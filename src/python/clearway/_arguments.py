@@ -241,7 +241,6 @@ _CHECKS = {
     "lateral": _of_type("Sequence[float]")(_tuple_of(
         2, _finite, "two numbers of metres, the shift farthest to the right and to the left")),
     "bodies": _each(_kind(_clearway.Body)),
-    "model_box": _kind(_clearway.Box),
     "labels": _kind(_clearway.PoseLabels),
     "shifts": _kind(_clearway.ShiftTable),
     **dict.fromkeys(("store", "ground"), _kind(_clearway.Store)),

@@ -69,13 +69,9 @@ function environmentNote() {
       ? `those within ${near} (${count(shown.environment_near)}), thinned to about one in ` +
         `${shortLength(+shown.environment_spacing.toPrecision(2))} squared, fewer far from the path.`
       : `all within ${near}.`;
-  const all = classes.reduce((sum, c) => sum + c.points, 0) - page.facts.points_without_place;
+  const all = classes.reduce((sum, c) => sum + c.points, 0);
   const drawn = classes.reduce((sum, c) => sum + c.shown, 0);
   text += drawn === all ? " All points of the classes are drawn."
       : ` Of ${count(all)} points of the classes ${count(drawn)} are drawn, thinned evenly.`;
-  if (page.facts.points_without_place > 0) {
-    text += ` ${count(page.facts.points_without_place)} points that do not collide are missing: the ` +
-        "result is of an older version and has no coordinates for them. Run again to see them.";
-  }
   return text;
 }

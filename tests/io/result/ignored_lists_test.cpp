@@ -18,7 +18,6 @@ ResultHeader ignoring_header() {
   header.ignore_boxes = {{{-1, -2, -3}, {4, 5, 6}}, {{0, 0, 0}, {1, 1, 1}}};
   header.ignored = {1234, {1000, 200}, {0, 34}};
   header.classes_hash = 0x123456789abcdef0;
-  header.version = 4;
   return header;
 }
 
@@ -38,7 +37,7 @@ TEST_CASE("a result keeps what was ignored") {
     header.classes_hash = 0;
   }
   write_result(folder / "a.h5", header, sample_rows(header, 10));
-  CHECK(ResultReader(folder / "a.h5").header() == header);
+  CHECK(same_answer(ResultReader(folder / "a.h5").header(), header));
 }
 
 TEST_CASE("damage to what was ignored is noticed") {
@@ -53,7 +52,7 @@ TEST_CASE("damage to what was ignored is noticed") {
     changed[at] = static_cast<char>(changed[at] ^ 0x20);
     put_bytes(folder / "b.h5", changed);
     try {
-      unseen += !(ResultReader(folder / "b.h5").header() == header);
+      unseen += !same_answer(ResultReader(folder / "b.h5").header(), header);
     } catch (const InputError&) {
     }
   }

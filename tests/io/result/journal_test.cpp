@@ -145,9 +145,9 @@ TEST_CASE("what is no journal, or one of another version, is refused") {
   CHECK_FALSE(JournalReader(path).identity());
   put_bytes(path, "CLWYJRX");
   CHECK_THROWS_AS(JournalReader(path), InputError);
-  put_bytes(path, std::string("CLWYJRNL\2\0\0\0\0\0\0\0", 16));
-  CHECK_THROWS_WITH(JournalReader(path), Contains("version 2, expected 1"));
-  put_bytes(path, std::string("CLWYJRNL\1\0\0\0\0\0\0\1", 16));
+  put_bytes(path, std::string("CLWYJRNL\1\0\0\0\0\0\0\0", 16));
+  CHECK_THROWS_WITH(JournalReader(path), Contains("journal of version 1 of another release"));
+  put_bytes(path, std::string("CLWYJRNL\2\0\0\0\0\0\0\1", 16));
   CHECK_THROWS_AS(JournalReader(path), InputError);
   put_bytes(path, "");
   CHECK_FALSE(is_journal(path));

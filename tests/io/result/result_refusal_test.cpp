@@ -19,7 +19,7 @@ namespace {
 bool reads_as(const std::filesystem::path& path, const ResultHeader& header,
               const Collisions& rows) {
   const ResultReader reader(path);
-  return reader.header() == header && same_rows(read_rows(reader), rows);
+  return same_answer(reader.header(), header) && same_rows(read_rows(reader), rows);
 }
 
 /// Reads every table. True where they and the header are as written; throws InputError where damage
@@ -167,18 +167,10 @@ TEST_CASE("datasets of another type or shape, or with impossible values, are ref
     {
       const hdf5::Id file = open_to_change(path);
       REQUIRE(H5Adelete(file.get(), "version") >= 0);
-      const std::uint32_t version = 6;
+      const std::uint32_t version = 5;
       hdf5::write_attribute(file, "version", std::span<const std::uint32_t>(&version, 1));
     }
-    refused("'version' is 6");
-  }
-  SECTION("another definition of the first poses") {
-    ResultHeader between = header;
-    between.between_poses = between.ways_without_ends = true;
-    write_result(path, between, rows);
-    CHECK(reads_as(path, between, rows));
-    hdf5::write_attribute(open_to_change(path), "first_pose_of", std::string("open way"));
-    refused("'first_pose_of' is \"open way\", expected closed way");
+    refused("is a result of version 5");
   }
 }
 

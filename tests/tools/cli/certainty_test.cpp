@@ -91,7 +91,7 @@ TEST_CASE("without errors nothing of a run changes") {
   CHECK(report["margins"].is_null());
   CHECK_FALSE(report.contains("near_points"));
   const json info = json::parse(bench.program("info --json out.h5").out);
-  CHECK(info["version"] == 3);
+  CHECK(info["version"] == 6);
 }
 
 TEST_CASE("a point is near closer than the margin plus U_clear, to the last digit") {
@@ -237,7 +237,7 @@ TEST_CASE("parts with an error budget merge to the bytes of the whole, and resum
   INFO(merged.err);
   REQUIRE(merged.exit_code == 0);
   const json whole = json::parse(bench.program("info --json whole.h5").out);
-  CHECK(whole["version"] == 5);
+  CHECK(whole["version"] == 6);
   CHECK(whole["near_points"].get<int>() > 0);
   CHECK(whole["certain_points"].get<int>() > 0);
   CHECK(json::parse(merged.out)["verdict"] == whole["verdict"]);

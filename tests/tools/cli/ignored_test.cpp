@@ -92,7 +92,7 @@ TEST_CASE("a verdict says what was ignored") {
   const json info = json::parse(garden.program("info d.h5 --json").out);
   CHECK(info["ignored"]["points"] == 2000);
   CHECK(info["ignored"]["colliding"] == 0);
-  CHECK(info["version"] == 4);
+  CHECK(info["version"] == 6);
   CHECK_THAT(garden.program("info site.h5").out, Contains("6 (building): 2,000 points"));
   CHECK(garden.program("verify d.h5").exit_code == 0);
 }

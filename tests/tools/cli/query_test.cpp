@@ -231,28 +231,6 @@ TEST_CASE("between poses both engines find what brute force finds") {
   CHECK_THAT(compare.out, Contains("between poses"));
 }
 
-TEST_CASE("a result of version 0.1.0 with first poses between poses is told apart") {
-  const Work work{Hall::small()};
-  const std::string site = work.hall / "site.h5", options = "--between-poses --first-pose";
-  const std::string now = work.path("now.h5"), earlier = work.path("earlier.h5");
-  REQUIRE(work.run_hall(site, "now.h5", options).exit_code == 0);
-  {
-    const ResultReader reader(work.folder / "now.h5");
-    CHECK_FALSE(reader.header().ways_without_ends);
-    ResultHeader header = reader.header();
-    header.ways_without_ends = true;
-    header.last_pose = false;  // that version did not know last poses
-    write_result(work.folder / "earlier.h5", header, read_rows(reader));
-  }
-  CHECK_THAT(work.run("info " + now).out, Contains("first_pose_of") && Contains("closed way"));
-  CHECK_THAT(work.run("info " + earlier).out, Contains("way without its end (version 0.1.0)"));
-  CHECK(work.run("verify " + earlier).exit_code == 0);
-  CHECK_THAT(work.run("compare " + now + " " + earlier).out,
-             Contains("asked for, as version 0.1.0 defined them"));
-  CHECK(work.run_hall(site, "now.h5", options + " --resume").exit_code == 0);
-  check_refused(work.run_hall(site, "earlier.h5", options + " --resume"), 2, "exists already");
-}
-
 TEST_CASE("queries that no engine or not this engine answers are wrong usage") {
   const Work work;
   const std::string site = work.hall / "site.h5";

@@ -115,7 +115,7 @@ TEST_CASE("a vehicle may touch what the search ignores") {
   CHECK(result.size() == 0);
   CHECK(result.ignored().points > 9);
   const json info = json::parse(yard.program("info out.h5 --json").out);
-  CHECK(info["version"] == 4);
+  CHECK(info["version"] == 6);
   CHECK(info["bodies"] == json{"truck", "trailer"});
   CHECK(info["ignored"]["points"] == result.ignored().points);
   CHECK(yard.program("verify out.h5").exit_code == 0);

@@ -142,7 +142,7 @@ std::uint32_t QuestionReader::add_model(const PlannedRun& run, const RunOptions&
   header.model_points = points.count;
   header.model_triangles = points.triangles;
   header.model_hash = points.hash;
-  header.model_axes = {{options.model_options.forward, options.model_options.up}};
+  header.notes.model_axes = {options.model_options.forward, options.model_options.up};
   const std::uint64_t estimated = points_to_search(points.count, points.triangles);
   return named(run.environment.key, [&] {
     return estimate_.shards(options, {{points.box, estimated, path.poses}});
@@ -172,7 +172,7 @@ std::uint32_t QuestionReader::add_bodies(const PlannedRun& run, const RunOptions
                       body.poses});
   }
   header.model_hash = hash_of_bodies(query.bodies);
-  header.model_axes = {file_axes(query)};
+  header.notes.model_axes = file_axes(query);
   return named(run.environment.key, [&] { return estimate_.shards(options, models); });
 }
 

@@ -88,8 +88,8 @@ std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOption
 ModelOptions model_options_of(const Result& result, ModelOptions options) {
   const ResultHeader& header = result.reader().header();
   options.radius = header.radius;
-  options.forward = header.model_axes.axes.forward;
-  options.up = header.model_axes.axes.up;
+  options.forward = header.notes.model_axes.forward;
+  options.up = header.notes.model_axes.up;
   if (header.model_solids > 0) {
     options.as = ModelAs::kSolid;
   } else if (header.model_triangles > 0) {
@@ -97,7 +97,7 @@ ModelOptions model_options_of(const Result& result, ModelOptions options) {
     options.as = header.bodies.empty() ? ModelAs::kSurface : ModelAs::kAuto;
   } else {
     options.as = ModelAs::kPoints;
-    if (!options.asks_for_points()) options.spacing = header.model_spacing.metres;
+    if (!options.asks_for_points()) options.spacing = header.notes.model_spacing;
   }
   return options;
 }

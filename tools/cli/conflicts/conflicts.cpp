@@ -162,11 +162,6 @@ std::string conflict_text(const ConflictFile& file, std::size_t most) {
   if (rows.front().certain) text += fmt::format("  {:>8}", "class");
   text += "  centroid\n";
   for (const Conflict& conflict : rows) text += row_text(conflict, distances, depths, shifts);
-  if (!conflicts.has_last_poses) {
-    text +=
-        "chainages end where a point is touched for the first time, because this result has no "
-        "last poses; run the search again to see where the touch ends\n";
-  }
   return text;
 }
 
@@ -220,7 +215,6 @@ SeenFrom read_seen_from(ConflictsCommand& options, const std::vector<Pose>& pose
   SeenFrom out;
   if (!options.model.empty()) {
     out.model = read_model_of(options.model, options.model_options, result);
-    options.find.model_box = box_of(out.model.vertices);
   }
   if (!options.vehicle.empty()) {
     std::vector<Message> told;

@@ -50,7 +50,7 @@ struct StationOutput {
 std::vector<std::unique_ptr<StationOutput>> open_outputs(const StationsCommand& options) {
   std::vector<std::unique_ptr<StationOutput>> out;
   for (const std::filesystem::path& path : options.outputs) station_format_of(path);
-  std::vector<std::filesystem::path> inputs{options.result, options.trajectory, options.model};
+  std::vector<std::filesystem::path> inputs{options.result, options.trajectory};
   if (!options.vehicle.empty()) inputs = vehicle_inputs(options.vehicle, std::move(inputs));
   for (const std::filesystem::path& path : options.outputs) {
     refuse_overwriting(path, inputs);
@@ -160,15 +160,11 @@ void add_inputs(CLI::App& command, StationsCommand& options) {
       .add_option("-o,--output", options.outputs,
                   "Output: .csv or .json; may be given several times")
       ->type_name("FILE");
-  CLI::Option* model =
-      command
-          .add_option("--model", options.model,
-                      "The model of the run: only for the sides of results of earlier releases")
-          ->type_name("FILE");
-  add_vehicle_option(command, options.vehicle,
-                     "The vehicle of several bodies of the run: for sides and overthrow, and to "
-                     "know where it was searched",
-                     model);
+  command
+      .add_option("--vehicle", options.vehicle,
+                  "The vehicle of several bodies of the run: for sides and overthrow, and to know "
+                  "where it was searched")
+      ->type_name("FILE");
   add_model_options(command, options.model_options, options.lengths);
   add_trajectory_options(command, options.trajectory_options, options.lengths);
 }
@@ -180,7 +176,9 @@ StationsOutcome perform(StationsCommand& command) {
   check_is_trajectory(command.trajectory);
   const Result result(command.result);
   repeat_warnings(result.reader());
-  check_kind_of_model(result, command.model, command.vehicle);
+  if (!command.vehicle.empty() && result.bodies().empty()) {
+    throw InputError(command.result.string() + ": is of one model; leave out --vehicle");
+  }
   check_axes(result, command);
   const ResultHeader& header = result.reader().header();
   const double metre = command.lengths.convert_for(command.result.string(), header.crs_wkt);
@@ -194,10 +192,6 @@ StationsOutcome perform(StationsCommand& command) {
       read_poses(command.trajectory, command.trajectory_options, result, &labels);
   StationOptions options = options_of(command);
   options.station = labels.station;
-  if (!command.model.empty()) {
-    options.model_box =
-        box_of(read_model_of(command.model, command.model_options, result).vertices);
-  }
   std::vector<Body> bodies;
   if (!command.vehicle.empty()) {
     std::vector<Message> told;

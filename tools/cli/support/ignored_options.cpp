@@ -109,11 +109,10 @@ nlohmann::ordered_json ignored_json(const Answer& answer) {
                      {"hi", {box.hi.x, box.hi.y, box.hi.z}},
                      {"points", counts.in_boxes[i]}});
   }
-  nlohmann::ordered_json out{{"points", counts.points}, {"colliding", nullptr}};
-  if (answer.ignored_colliding) out["colliding"] = *answer.ignored_colliding;
-  out["classes"] = std::move(classes);
-  out["boxes"] = std::move(boxes);
-  return out;
+  return {{"points", counts.points},
+          {"colliding", answer.ignored_colliding},
+          {"classes", std::move(classes)},
+          {"boxes", std::move(boxes)}};
 }
 
 }  // namespace clearway::tool

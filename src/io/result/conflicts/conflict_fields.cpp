@@ -101,8 +101,7 @@ std::string summary_json(const ConflictFile& file) {
   }
   if (header.ignores_points()) {
     out.add_count("ignored_points", header.ignored.points);
-    const auto& colliding = file.answer.ignored_colliding;
-    out.add("ignored_colliding", colliding ? std::to_string(*colliding) : "null");
+    out.add_count("ignored_colliding", file.answer.ignored_colliding);
     out.add("ignored", json_string(ignored_text(header)));
   }
   out.add_length("gap", file.options.gap);
@@ -123,7 +122,6 @@ std::string summary_json(const ConflictFile& file) {
   out.add_count("small_groups", conflicts.small_groups);
   out.add_count("small_points", conflicts.small_points);
   out.add("small", small_json(conflicts.small));
-  out.add("has_last_poses", conflicts.has_last_poses ? "true" : "false");
   out.add_length("longest_group", conflicts.longest_group);
   out.add_count("longest_group_points", conflicts.longest_group_points);
   out.add("warnings", json_messages(file.all_warnings()));

@@ -178,8 +178,7 @@ class XyzSink final : public RowSink<Rows> {
   const PositionText position_;
 };
 
-/// Writes source, coordinates and fields. The clearances of a result of version 2 have no
-/// coordinates.
+/// Writes source, coordinates and fields.
 template <typename Rows>
 class CsvSink final : public RowSink<Rows> {
  public:
@@ -202,7 +201,7 @@ class CsvSink final : public RowSink<Rows> {
       PositionText position = position_;
       for (std::size_t i = first; i < end; ++i) {
         out << rows.source[i];
-        if (!rows.xyz.empty()) position.write(out << ",", rows.xyz[i], ",");
+        position.write(out << ",", rows.xyz[i], ",");
         for (const FieldValues& field : values) {
           std::visit([&](const auto& of_points) { out << "," << of_points[i]; }, field);
         }
@@ -317,11 +316,6 @@ void export_clearances(const ResultReader& result, const std::filesystem::path& 
                        bool overwrite, Progress& progress) {
   if (!(result.header().clearance > 0)) {
     throw UsageError(result.name() + ": has no clearances", Remedy::kAskForClearance);
-  }
-  if (!result.header().has_clearance_xyz() && export_format_of(output) != ExportFormat::kCsv) {
-    throw InputError(result.name() +
-                     ": is of version 2 and has no coordinates of clearances; run the query again, "
-                     "or export a .csv without coordinates");
   }
   export_table<Clearances>(result, output, overwrite, progress);
 }

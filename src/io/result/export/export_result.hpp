@@ -57,8 +57,7 @@ void export_near(const ResultReader& result, const std::filesystem::path& output
 
 /// Writes the clearances of `result` to `output` in the formats of export_result(), with distance
 /// (double, metres) and pose (uint32) in the place of first_pose; a line of .xyz is "x y z distance
-/// pose". Throws UsageError for a result without clearances. A result of version 2 has no
-/// coordinates of clearances and can only be written as .csv, without them.
+/// pose". Throws UsageError for a result without clearances.
 void export_clearances(const ResultReader& result, const std::filesystem::path& output,
                        bool overwrite, Progress& progress);
 

@@ -571,32 +571,7 @@ bool is_converted(const ConversionOptions& options, Progress& progress) {
                    Remedy::kOverwriteNotResume);
 }
 
-namespace {
-
-/// Whether a file says from where its points were seen, as far as its header tells.
-bool tells_origins(const std::filesystem::path& file) {
-  if (format_of_name(file) == PointFormat::kPtx) return true;
-  return !open_point_file(file)->info().origins.empty();
-}
-
-/// Warns of a store that an earlier release made without the origins that its inputs tell.
-void warn_of_missing_origins(const ConversionOptions& options, const StoreMetadata& store,
-                             MessageLog& log) {
-  if (store.origins || store.point_count == 0) return;
-  std::vector<std::filesystem::path> files = list_point_files(options.inputs);
-  if (options.skip_unreadable) {
-    NoProgress quiet;
-    files = readable_files(files, {}, quiet).files;
-  }
-  const auto found = std::find_if(files.begin(), files.end(), tells_origins);
-  if (found == files.end()) return;
-  log.warn("origins-missing",
-           options.output.string() + ": does not know from where its points were seen, although " +
-               found->string() +
-               " tells it; an earlier release made the store. Convert again to have the origins");
-}
-
-}  // namespace
+namespace {}  // namespace
 
 ConvertReport convert(const std::vector<std::filesystem::path>& inputs,
                       const std::filesystem::path& output, const ConvertOptions& options) {
@@ -607,7 +582,6 @@ ConvertReport convert(const std::vector<std::filesystem::path>& inputs,
     MessageLog log(options.message, report.warnings);
     const StoreReader store(output);
     for (const Message& warning : store.metadata().warnings) log.add(warning);
-    warn_of_missing_origins(conversion, store.metadata(), log);
     if (options.strict) refuse_warnings(report.warnings);
     return report;
   }

@@ -1,12 +1,12 @@
 #include "io/store/convert/source_description.hpp"
 
-#include <charconv>
 #include <cstddef>
 #include <span>
 #include <utility>
 
 #include "core/util/threads.hpp"
 #include "io/files/file.hpp"
+#include "io/files/input_error.hpp"
 #include "io/files/xxh64.hpp"
 
 namespace clearway {
@@ -53,10 +53,7 @@ std::vector<SourceFile> SourceDescription::get(std::vector<std::optional<SourceF
 }
 
 std::string layout_name(const std::optional<double>& regular_size) {
-  if (!regular_size) return "adaptive";
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, *regular_size).ptr;
-  return "regular:" + std::string(text, end);
+  return regular_size ? "regular:" + shown(*regular_size) : "adaptive";
 }
 
 }  // namespace clearway

@@ -141,18 +141,6 @@ TEST_CASE("every part of the query that differs is named, the sets decide") {
   CHECK(comparison.queries[3].b == "between poses");
 }
 
-TEST_CASE("another definition of the first poses is named") {
-  Side a = sample(5);
-  a.header.between_poses = true;
-  Side b = a;
-  b.header.ways_without_ends = true;
-  const Comparison comparison = compare(a, b);
-  CHECK(comparison.equal());
-  REQUIRE(comparison.queries.size() == 1);
-  CHECK(comparison.queries[0].what == "first poses");
-  CHECK(comparison.queries[0].b == "asked for, as version 0.1.0 defined them");
-}
-
 TEST_CASE("results about different environments are refused") {
   const Side a = sample(5);
   Side b = a;

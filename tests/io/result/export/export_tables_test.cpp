@@ -5,7 +5,6 @@
 #include "io/result/export/export_result.hpp"
 #include "io/scans/point_reader.hpp"
 #include "support/result_fixture.hpp"
-#include "support/result_version_2.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -79,19 +78,6 @@ TEST_CASE("a result without clearances or profile is refused with the remedy") {
   CHECK_THROWS_AS(export_clearances(result, folder / "b.csv", false, progress), UsageError);
   CHECK_THROWS_WITH(export_profile(result, {}, 0, folder / "b.csv", false, progress),
                     Contains("has no profile"));
-}
-
-TEST_CASE("clearances of version 2 are exported without places, and only as CSV") {
-  const ScratchFolder folder;
-  write_version_2(folder / "a.h5");
-  const ResultReader result(folder / "a.h5");
-  NoProgress progress;
-  export_clearances(result, folder / "a.csv", false, progress);
-  CHECK(bytes_of(folder / "a.csv") == "source,distance,pose\n3,0.05,3\n5,0.3,1\n8,0.02,0\n");
-  for (const char* name : {"a.las", "a.ply", "a.xyz"}) {
-    CHECK_THROWS_WITH(export_clearances(result, folder / name, false, progress),
-                      Contains("version 2") && Contains("run the query again"));
-  }
 }
 
 TEST_CASE("a profile is exported as CSV, without values where there is no point") {

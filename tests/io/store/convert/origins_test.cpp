@@ -200,35 +200,6 @@ TEST_CASE("resuming knows the origins that a store was given") {
   CHECK(is_converted(scan.options, progress));
 }
 
-TEST_CASE("resuming warns of a store that an earlier release made without its inputs' origins") {
-  const ScratchFolder folder;
-  const std::string lonely = "6 7 8\n7 8 9\n";
-  put_bytes(folder / "a.ptx",
-            "1\n1\n5 6 7\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n5 6 7 1\n1 1 1 0.5\n");
-  put_bytes(folder / "b.xyz", lonely);
-  ConvertOptions options{.resume = true};
-  const auto codes = [&](const char* input) {
-    const ConvertReport report = convert({folder / input}, folder / "s.h5", options);
-    std::string text = report.was_finished ? "resumed" : "converted";
-    for (const Message& warning : report.warnings) text += " " + warning.code;
-    return text;
-  };
-  CHECK(codes("a.ptx") == "converted");
-  CHECK(codes("a.ptx") == "resumed");
-  const hid_t store = H5Fopen((folder / "s.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  REQUIRE(H5Ldelete(store, "origins", H5P_DEFAULT) >= 0);
-  for (const char* attribute : {"origins_hash", "origins_given_hash", "origins_index_hash"}) {
-    REQUIRE(H5Adelete(store, attribute) >= 0);
-  }
-  REQUIRE(H5Fclose(store) >= 0);
-  CHECK(codes("a.ptx") == "resumed origins-missing");
-  options.strict = true;
-  CHECK_THROWS_AS(codes("a.ptx"), InputError);
-  std::filesystem::remove(folder / "s.h5");
-  CHECK(codes("b.xyz") == "converted");
-  CHECK(codes("b.xyz") == "resumed");
-}
-
 TEST_CASE("a scan of E57 has its pose's place as origin, or that of its spherical coordinates") {
   const ScratchFolder folder;
   E57Bytes e57;

@@ -10,11 +10,6 @@
 
 namespace clearway {
 
-enum class DeflateForm { kRaw, kZlib };  ///< without or with zlib's header and checksum
-
-/// The bytes compressed by zlib. Throws std::bad_alloc. Source: RFC 1951, RFC 1950.
-std::string deflated(std::string_view bytes, DeflateForm form);
-
 /// The points of each conflict, in the order of the list of conflicts.
 using ConflictPoints = std::vector<std::vector<Vec3>>;
 

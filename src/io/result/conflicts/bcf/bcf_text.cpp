@@ -136,10 +136,8 @@ std::string description_of(const ConflictFile& file, const Conflict& c) {
            length_text(file, format_brief(*c.obstacle_chainage)) + ".";
   }
   out += shift_text(file, c);
-  out +=
-      " Poses " + std::to_string(c.first_pose) + " to " + std::to_string(c.last_pose) +
-      ", counted from 0, touch it" +
-      (file.conflicts.has_last_poses ? "." : "; later ones may, which this result does not tell.");
+  out += " Poses " + std::to_string(c.first_pose) + " to " + std::to_string(c.last_pose) +
+         ", counted from 0, touch it.";
   return out + small_text(file);
 }
 

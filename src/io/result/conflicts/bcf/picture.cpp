@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "io/result/conflicts/bcf/bcf.hpp"
+#include "io/files/deflate.hpp"
 
 namespace clearway {
 namespace {

@@ -1,10 +1,10 @@
-#include "cli/support/shell_words.hpp"
+#include "core/util/shell_words.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <string_view>
 
-namespace clearway::tool {
+namespace clearway {
 
 std::string shell_word(const std::string& text) {
   constexpr std::string_view kPlain = "_./:=,+@%-";
@@ -23,4 +23,4 @@ std::string shell_line(const std::vector<std::string>& words) {
   return line;
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway
