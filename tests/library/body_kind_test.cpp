@@ -32,7 +32,7 @@ template <typename Element>
 class HostKindOf final : public SweepKindOf<Element> {
  public:
   HostKindOf(const StoreReader& store, const Query& query, const SearchOptions& options)
-      : SweepKindOf<Element>(needs_of_devices(), store, query, options, 3) {
+      : SweepKindOf<Element>(needs_of_devices(), store, query, options, 3, {}) {
     this->needs_.most_device_bytes = std::uint64_t{1} << 40;
   }
   std::uint64_t host_bytes(const SlotLayout&, std::uint64_t) const override { return 0; }
