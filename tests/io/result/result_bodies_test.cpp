@@ -87,6 +87,7 @@ TEST_CASE("bodies without first poses are only those of clearances") {
   Vehicle vehicle;
   vehicle.header.first_pose = false;
   vehicle.rows.first_pose.clear();
+  vehicle.rows.last_pose.clear();
   vehicle.rows.body.clear();
   vehicle.write("out.h5");
   CHECK_FALSE(vehicle.fault("out.h5"));

@@ -31,7 +31,9 @@ Side sample(std::size_t count, bool first_pose = true) {
 void erase_row(Collisions& rows, std::ptrdiff_t at) {
   rows.source.erase(rows.source.begin() + at);
   rows.xyz.erase(rows.xyz.begin() + at);
-  if (!rows.first_pose.empty()) rows.first_pose.erase(rows.first_pose.begin() + at);
+  if (rows.first_pose.empty()) return;
+  rows.first_pose.erase(rows.first_pose.begin() + at);
+  rows.last_pose.erase(rows.last_pose.begin() + at);
 }
 
 }  // namespace
@@ -93,6 +95,7 @@ TEST_CASE("first poses count where both results have them") {
   const Side a = sample(10);
   Side b = a;
   b.rows.first_pose[4] += 1;
+  b.rows.last_pose[4] += 1;
   const Comparison differing = compare(a, b);
   CHECK_FALSE(differing.equal());
   CHECK(differing.differing_first_poses == 1u);
