@@ -17,8 +17,8 @@
 #include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
+#include "io/files/json.hpp"
 #include "io/models/model_input.hpp"
-#include "io/result/conflicts/json_text.hpp"
 
 namespace clearway::campaign {
 namespace {

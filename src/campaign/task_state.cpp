@@ -412,8 +412,7 @@ void write_state(const std::filesystem::path& folder, const TaskState& state) {
                           {"inputs_changed", state.inputs_changed},
                           {"inputs", json_of(state.inputs)},
                           {"facts", state.facts}};
-  replace_file(folder / kStateName,
-               json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+  replace_file(folder / kStateName, indented_text(json, 1));
 }
 
 ordered_json task_facts(const std::filesystem::path& run_json) {

@@ -26,27 +26,29 @@ Box turned_box(const Box& box, const ModelAxes& axes) {
   return out;
 }
 
-void write_mount(JsonText& json, const BodyMount& mount) {
+void add_mount(Json& json, const BodyMount& mount) {
   if (const auto* station = std::get_if<BodyStation>(&mount)) {
-    if (station->at != 0) json.field("at", station->at);
+    if (station->at != 0) json["at"] = station->at;
   } else if (const auto* pivots = std::get_if<BodyPivots>(&mount)) {
-    json.key("pivots").begin('[').value(pivots->front).value(pivots->rear).end(']');
+    json["pivots"] = Json::array({pivots->front, pivots->rear});
   } else if (const auto* towed = std::get_if<BodyTowed>(&mount)) {
-    json.field("towed_by", towed->by).field("coupled_at", towed->at);
-    json.field("hitch", towed->hitch).field("axle", towed->axle);
+    json["towed_by"] = towed->by;
+    json["coupled_at"] = towed->at;
+    json["hitch"] = towed->hitch;
+    json["axle"] = towed->axle;
   }
 }
 
-void write_bodies(JsonText& json, const ReportFacts& facts, const ModelAxes& axes) {
+Json json_of_bodies_on_site(const ReportFacts& facts, const ModelAxes& axes) {
   const std::vector<BodyMount>& mounts = facts.options.mounts;
-  json.key("bodies").begin('[');
+  Json out = Json::array();
   for (std::size_t i = 0; i < facts.bodies.size(); ++i) {
     const Box box = turned_box(facts.bodies[i].box, axes);
-    json.begin('{').field("name", facts.bodies[i].name).field("lo", box.lo).field("hi", box.hi);
-    if (i < mounts.size()) write_mount(json, mounts[i]);
-    json.end('}');
+    Json& body =
+        out.emplace_back(Json{{"name", facts.bodies[i].name}, {"lo", box.lo}, {"hi", box.hi}});
+    if (i < mounts.size()) add_mount(body, mounts[i]);
   }
-  json.end(']');
+  return out;
 }
 
 /// Degrees clockwise from the environment's y axis, from 0 to below 360; none for a direction that
@@ -59,22 +61,21 @@ std::optional<double> bearing_of(const Vec3& direction) {
   return bearing < 0 ? bearing + 360 : bearing;
 }
 
-void write_place(JsonText& json, const char* name, const ReportFacts& facts, std::size_t pose,
-                 const ModelAxes& axes) {
+Json json_of_place(const ReportFacts& facts, std::size_t pose, const ModelAxes& axes) {
   const Pose& at = facts.poses[pose];
   const double* r = at.rotation;
   const std::vector<double>& stations = facts.options.labels.station;
   const double start = facts.options.conflicts.chainage_start;
-  json.key(name).begin('{').field("pose", std::uint64_t{pose});
-  json.field("chainage", start + (pose > 0 ? facts.searched.path : 0));
-  if (!stations.empty()) json.field("station", std::optional(stations[pose]));
-  json.field("position", Vec3{at.translation[0], at.translation[1], at.translation[2]});
+  Json out{{"pose", pose}, {"chainage", start + (pose > 0 ? facts.searched.path : 0)}};
+  if (!stations.empty()) out["station"] = stations[pose];
+  out["position"] = at.position();
   const std::optional<Vec3> travel = travel_direction(facts.poses, pose);
   const int line = line_of(axes.forward);
   const double sign = is_negative(axes.forward) ? -1 : 1;
   const Vec3 ahead{sign * r[line], sign * r[3 + line], sign * r[6 + line]};
-  json.field("bearing", travel ? bearing_of(*travel) : std::nullopt);
-  json.field("front_bearing", bearing_of(ahead)).end('}');
+  out["bearing"] = or_null(travel ? bearing_of(*travel) : std::nullopt);
+  out["front_bearing"] = or_null(bearing_of(ahead));
+  return out;
 }
 
 /// A bend of the path: the radius of the circle through three places of it, seen from above.
@@ -112,8 +113,8 @@ Bend tightest_bend(std::span<const Pose> poses, double arm) {
   return best;
 }
 
-/// Writes the tightest bend; null where the path is straight or too short to tell.
-void write_bend(JsonText& json, const ReportFacts& facts, const ModelAxes& axes) {
+/// The tightest bend; null where the path is straight or too short to tell.
+Json json_of_bend(const ReportFacts& facts, const ModelAxes& axes) {
   constexpr double kStraight = 5000;  // metres
   const double metre = 1 / facts.store.metres_per_unit();
   double longest = 0;
@@ -122,28 +123,21 @@ void write_bend(JsonText& json, const ReportFacts& facts, const ModelAxes& axes)
     longest = std::max(longest, box.hi.x - box.lo.x);
   }
   const Bend bend = tightest_bend(facts.poses, std::max(metre, longest / 4));
-  json.key("bend");
-  if (!(bend.radius < kStraight * metre)) {
-    json.raw("null");
-    return;
-  }
+  if (!(bend.radius < kStraight * metre)) return {};
   const double at = path_length(facts.poses.first(bend.pose + 1));
-  json.begin('{').field("radius", bend.radius);
-  json.field("chainage", facts.options.conflicts.chainage_start + at).end('}');
+  return {{"radius", bend.radius}, {"chainage", facts.options.conflicts.chainage_start + at}};
 }
 
 }  // namespace
 
-void write_on_site(JsonText& json, const ReportFacts& facts) {
+Json on_site(const ReportFacts& facts) {
   const ModelAxes axes{facts.options.conflicts.forward, facts.options.conflicts.up};
-  json.key("on_site").begin('{');
-  write_bodies(json, facts, axes);
-  if (!facts.poses.empty()) {
-    write_place(json, "first", facts, 0, axes);
-    write_place(json, "last", facts, facts.poses.size() - 1, axes);
-    write_bend(json, facts, axes);
-  }
-  json.end('}');
+  Json out{{"bodies", json_of_bodies_on_site(facts, axes)}};
+  if (facts.poses.empty()) return out;
+  out["first"] = json_of_place(facts, 0, axes);
+  out["last"] = json_of_place(facts, facts.poses.size() - 1, axes);
+  out["bend"] = json_of_bend(facts, axes);
+  return out;
 }
 
 }  // namespace clearway

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <concepts>
 #include <cstdint>
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,12 +16,11 @@
 #include "core/query/ignored_points.hpp"
 #include "core/util/format.hpp"
 #include "findings/conflict_rank.hpp"
+#include "io/files/json.hpp"
 #include "io/files/xxh64.hpp"
-#include "io/result/conflicts/json_text.hpp"
 #include "io/result/result.hpp"
 #include "io/store/store_metadata.hpp"
 #include "io/store/store_reader.hpp"
-#include "report/facts_text.hpp"
 #include "report/on_site.hpp"
 #include "report/shown_poses.hpp"
 
@@ -31,10 +28,6 @@ namespace clearway {
 namespace {
 
 constexpr const char* kClassNames[] = {"hit", "near", "watch"};
-
-void write_box(JsonText& json, const char* name, const Box& box) {
-  json.key(name).begin('{').field("lo", box.lo).field("hi", box.hi).end('}');
-}
 
 /// The number of triangles that belong to no solid.
 std::uint64_t surface_triangles(const Model& model) {
@@ -48,27 +41,24 @@ std::uint64_t surface_triangles(std::span<const DrawnBody> bodies) {
   return count;
 }
 
-void write_bodies(JsonText& json, const ReportFacts& facts) {
-  json.key("bodies").begin('[');
+Json json_of_bodies(const ReportFacts& facts) {
+  Json out = Json::array();
   for (const DrawnBody& body : facts.bodies) {
-    json.begin('{')
-        .field("name", body.name)
-        .field("points", std::uint64_t{body.model.vertices.size()});
-    json.field("triangles", std::uint64_t{body.model.triangles.size()});
-    json.field("solids", body.model.solid_count());
-    json.field("surface_triangles", surface_triangles(body.model));
-    json.field("poses", std::uint64_t{body.poses.size()});
-    json.field("shown_points", std::uint64_t{body.shown_points});
-    write_box(json, "box", body.box);
-    json.end('}');
+    out.push_back({{"name", body.name},
+                   {"points", body.model.vertices.size()},
+                   {"triangles", body.model.triangles.size()},
+                   {"solids", body.model.solid_count()},
+                   {"surface_triangles", surface_triangles(body.model)},
+                   {"poses", body.poses.size()},
+                   {"shown_points", body.shown_points},
+                   {"box", body.box}});
   }
-  json.end(']');
+  return out;
 }
 
-/// Writes the name of a body; nothing for a single model.
-void write_body(JsonText& json, const ReportFacts& facts,
-                const std::optional<std::uint32_t>& body) {
-  if (body) json.field("body", facts.bodies[*body].name);
+/// Adds the name of a body; nothing for a single model.
+void add_body(Json& json, const ReportFacts& facts, const std::optional<std::uint32_t>& body) {
+  if (body) json["body"] = facts.bodies[*body].name;
 }
 
 /// The spacing of a mesh that was searched as points; nothing for other models.
@@ -77,153 +67,155 @@ std::optional<double> spacing_of(const ResultHeader& header) {
   return header.notes.model_spacing;
 }
 
-void write_inputs(JsonText& json, const ReportFacts& facts) {
+Json json_of_inputs(const ReportFacts& facts) {
   const ReportOptions& options = facts.options;
   const ResultHeader& header = facts.result.reader().header();
-  json.key("inputs").begin('{');
-  json.key("result").begin('{').field("name", options.result_name);
-  json.field("hash", hash_text(facts.result.reader().recorded_hash<Collisions>())).end('}');
-  json.key("environment").begin('{').field("name", options.environment_name);
-  json.field("points", header.environment_points);
-  json.field("hash", hash_text(header.environment_hash));
-  json.field("files", std::uint64_t{facts.store.reader().metadata().sources.size()});
-  write_box(json, "box", facts.store.box());
-  json.field("crs_wkt", header.crs_wkt).end('}');
-  json.key("model").begin('{').field("name", options.model_name);
-  json.field("points", header.model_points).field("hash", hash_text(header.model_hash));
-  json.field("triangles", header.model_triangles).field("solids", header.model_solids);
-  json.field("surface_triangles", surface_triangles(facts.bodies));
-  json.field("spacing", spacing_of(header));
-  write_box(json, "box", facts.model_box);
+  Json model{{"name", options.model_name},
+             {"points", header.model_points},
+             {"hash", hash_text(header.model_hash)},
+             {"triangles", header.model_triangles},
+             {"solids", header.model_solids},
+             {"surface_triangles", surface_triangles(facts.bodies)},
+             {"spacing", or_null(spacing_of(header))},
+             {"box", facts.model_box}};
   if (const ModelAxes axes = header.notes.model_axes; axes.need_turn()) {
-    json.key("axes").begin('[').value(name_of(axes.forward)).value(name_of(axes.up)).end(']');
+    model["axes"] = Json::array({name_of(axes.forward), name_of(axes.up)});
   }
-  json.field("above", options.model_above).field("left_out", options.model_left_out);
-  if (!header.bodies.empty()) write_bodies(json, facts);
-  json.end('}');
-  json.key("trajectory").begin('{').field("name", options.trajectory_name);
-  json.field("poses", header.poses).field("hash", hash_text(header.trajectory_hash));
-  json.field("chainage_start", facts.options.conflicts.chainage_start);
-  json.field("length", facts.searched.path);
-  json.field("searched_length", facts.searched.whole);
-  json.field("partly_searched_length", facts.searched.part).end('}').end('}');
+  model["above"] = or_null(options.model_above);
+  model["left_out"] = options.model_left_out;
+  if (!header.bodies.empty()) model["bodies"] = json_of_bodies(facts);
+  return {{"result",
+           {{"name", options.result_name},
+            {"hash", hash_text(facts.result.reader().recorded_hash<Collisions>())}}},
+          {"environment",
+           {{"name", options.environment_name},
+            {"points", header.environment_points},
+            {"hash", hash_text(header.environment_hash)},
+            {"files", facts.store.reader().metadata().sources.size()},
+            {"box", facts.store.box()},
+            {"crs_wkt", header.crs_wkt}}},
+          {"model", std::move(model)},
+          {"trajectory",
+           {{"name", options.trajectory_name},
+            {"poses", header.poses},
+            {"hash", hash_text(header.trajectory_hash)},
+            {"chainage_start", facts.options.conflicts.chainage_start},
+            {"length", facts.searched.path},
+            {"searched_length", facts.searched.whole},
+            {"partly_searched_length", facts.searched.part}}}};
 }
 
-/// Writes the stretches where bodies have no pose, so that nothing is known about them.
-void write_unsearched(JsonText& json, const ReportFacts& facts) {
+/// The stretches where bodies have no pose, so that nothing is known about them.
+Json json_of_unsearched(const ReportFacts& facts) {
   const double start = facts.options.conflicts.chainage_start;
-  json.key("unsearched").begin('[');
+  Json out = Json::array();
   for (const UnsearchedStretch& stretch : facts.unsearched) {
-    json.begin('{').field("first_pose", std::uint64_t{stretch.first_pose});
-    json.field("last_pose", std::uint64_t{stretch.last_pose});
-    json.field("chainage_from", start + stretch.chainage_from);
-    json.field("chainage_to", start + stretch.chainage_to);
-    json.key("bodies").begin('[');
-    for (const std::uint32_t body : stretch.bodies) json.value(facts.bodies[body].name);
-    json.end(']').field("has_answer", stretch.has_answer).end('}');
+    Json bodies = Json::array();
+    for (const std::uint32_t body : stretch.bodies) bodies.push_back(facts.bodies[body].name);
+    out.push_back({{"first_pose", stretch.first_pose},
+                   {"last_pose", stretch.last_pose},
+                   {"chainage_from", start + stretch.chainage_from},
+                   {"chainage_to", start + stretch.chainage_to},
+                   {"bodies", std::move(bodies)},
+                   {"has_answer", stretch.has_answer}});
   }
-  json.end(']');
+  return out;
 }
 
-/// Writes what the search left out; null where it left out nothing.
-void write_ignored_points(JsonText& json, const ResultHeader& header, const Answer& answer) {
-  json.key("ignored");
-  if (!header.ignores_points()) {
-    json.raw("null");
-    return;
-  }
-  json.begin('{').field("points", header.ignored.points);
-  json.field("colliding", answer.ignored_colliding);
-  json.field("what", ignored_text(header)).key("classes").begin('[');
+/// What the search left out; null where it left out nothing.
+Json json_of_ignored_points(const ResultHeader& header, const Answer& answer) {
+  if (!header.ignores_points()) return {};
+  Json classes = Json::array(), boxes = Json::array();
   for (std::size_t i = 0; i < header.ignore_classes.size(); ++i) {
-    json.begin('{').field("class", std::uint64_t{header.ignore_classes[i]});
-    json.field("name", class_name(header.ignore_classes[i]));
-    json.field("points", header.ignored.of_classes[i]).end('}');
+    classes.push_back({{"class", header.ignore_classes[i]},
+                       {"name", class_name(header.ignore_classes[i])},
+                       {"points", header.ignored.of_classes[i]}});
   }
-  json.end(']').key("boxes").begin('[');
   for (std::size_t i = 0; i < header.ignore_boxes.size(); ++i) {
-    json.begin('{').field("lo", header.ignore_boxes[i].lo).field("hi", header.ignore_boxes[i].hi);
-    json.field("points", header.ignored.in_boxes[i]).end('}');
+    Json box = header.ignore_boxes[i];
+    box["points"] = header.ignored.in_boxes[i];
+    boxes.push_back(std::move(box));
   }
-  json.end(']').end('}');
+  return {{"points", header.ignored.points},
+          {"colliding", answer.ignored_colliding},
+          {"what", ignored_text(header)},
+          {"classes", std::move(classes)},
+          {"boxes", std::move(boxes)}};
 }
 
-void write_query(JsonText& json, const ReportFacts& facts) {
+Json json_of_query(const ReportFacts& facts) {
   const ResultHeader& header = facts.result.reader().header();
-  json.key("query").begin('{');
+  Json out = Json::object();
   for_each_field(kQueryValues, [&](const auto& field) {
-    using Value = std::decay_t<decltype(field.of(header))>;
     if (!is_listed(field, header)) return;
-    if constexpr (std::is_same_v<Value, std::optional<double>>) {
-      json.field(field.key, *field.of(header));
-    } else if constexpr (std::is_same_v<Value, std::uint32_t>) {
-      json.field(field.key, std::uint64_t{field.of(header)});
+    if constexpr (requires { *field.of(header); }) {
+      out[field.key] = *field.of(header);
     } else {
-      json.field(field.key, field.of(header));
+      out[field.key] = field.of(header);
     }
   });
-  json.end('}');
-  write_ignored_points(json, header, facts.answer);
+  return out;
 }
 
-void write_classes(JsonText& json, const ReportFacts& facts) {
-  json.key("classes").begin('[');
+Json json_of_classes(const ReportFacts& facts) {
+  Json out = Json::array();
   for (std::size_t k = 0; k < facts.classes.size(); ++k) {
-    json.begin('{').field("name", kClassNames[k]).field("below", facts.classes[k]);
-    json.field("points", facts.points.of_class[k]);
-    json.field("shown", facts.points.shown_class[k]).end('}');
+    out.push_back({{"name", kClassNames[k]},
+                   {"below", facts.classes[k]},
+                   {"points", facts.points.of_class[k]},
+                   {"shown", facts.points.shown_class[k]}});
   }
-  json.end(']');
+  return out;
 }
 
-/// Writes the value of a column, if the row has one or the column is never left out.
+/// Adds the labels of the stations from which and to which something reaches, where it has them.
+template <typename Labelled>
+void add_stations(Json& json, const Labelled& labelled) {
+  if (labelled.station_from) json["station_from"] = *labelled.station_from;
+  if (labelled.station_to) json["station_to"] = *labelled.station_to;
+}
+
+/// Adds the value of a column, if the row has one or the column is never left out.
 template <typename Column, typename Row>
-void write_finding(JsonText& json, const Column& column, const Row& row) {
+void add_finding(Json& json, const Column& column, const Row& row) {
   const auto& value = column.of(row);
   using Value = typename Column::Value;
   if constexpr (std::is_same_v<Value, Box>) {
-    json.field("lo", value.lo).field("hi", value.hi);
+    json["lo"] = value.lo;
+    json["hi"] = value.hi;
   } else if constexpr (std::is_enum_v<Value>) {
-    json.field(column.key, name_of(value));
+    json[column.key] = name_of(value);
   } else if constexpr (requires { value.has_value(); }) {
-    if (value || !column.is_left_out) json.field(column.key, value);
+    if (value || !column.is_left_out) json[column.key] = or_null(value);
   } else {
-    json.field(column.key, value);
+    json[column.key] = value;
   }
 }
 
-/// Writes a conflict. rank: 1 for the worst of all.
-void write_conflict(JsonText& json, const Conflict& conflict, std::size_t rank,
-                    const ReportFacts& facts) {
-  json.begin('{').field("rank", std::uint64_t{rank});
+/// A conflict. rank: 1 for the worst of all.
+Json json_of(const Conflict& conflict, std::size_t rank, const ReportFacts& facts) {
+  Json out{{"rank", rank}};
   for_each_field(kConflictColumns, [&](const auto& column) {
-    if (column.is_in_files) write_finding(json, column, conflict);
+    if (column.is_in_files) add_finding(out, column, conflict);
   });
-  if (conflict.certain) json.field("class", *conflict.certain ? "certain" : "possible");
+  if (conflict.certain) out["class"] = *conflict.certain ? "certain" : "possible";
   const auto place = conflict.nearest_source ? facts.points.places.find(*conflict.nearest_source)
                                              : facts.points.places.end();
-  json.key("nearest_point");
-  if (place == facts.points.places.end()) {
-    json.raw("null");
-  } else {
-    json.value(place->second);
-  }
-  write_body(json, facts, conflict.body);
-  json.end('}');
+  out["nearest_point"] = place == facts.points.places.end() ? Json() : Json(place->second);
+  add_body(out, facts, conflict.body);
+  return out;
 }
 
-/// Writes the first group along the path that is too small for the list; null where there is none.
-void write_first_small(JsonText& json, const Conflicts& found) {
-  json.key("first_small");
-  if (found.small.empty()) {
-    json.raw("null");
-    return;
-  }
+/// The first group along the path that is too small for the list; null where there is none.
+Json first_small(const Conflicts& found) {
+  if (found.small.empty()) return {};
   const SmallGroup& first = found.small.front();
-  json.begin('{').field("points", first.points).field("source", first.source);
-  json.field("lo", first.box.lo).field("hi", first.box.hi);
-  json.field("chainage_from", first.chainage_from).field("chainage_to", first.chainage_to);
-  json.end('}');
+  return {{"points", first.points},
+          {"source", first.source},
+          {"lo", first.box.lo},
+          {"hi", first.box.hi},
+          {"chainage_from", first.chainage_from},
+          {"chainage_to", first.chainage_to}};
 }
 
 /// A conflict and its rank, 1 for the worst.
@@ -243,232 +235,212 @@ std::vector<RankedConflict> listed_in_page(const Conflicts& conflicts) {
   return ranked;
 }
 
-void write_conflicts(JsonText& json, const ReportFacts& facts) {
-  json.key("conflicts");
-  if (facts.conflicts == nullptr) {
-    json.raw("null");
-    return;
-  }
+Json json_of_conflicts(const ReportFacts& facts) {
+  if (facts.conflicts == nullptr) return {};
   const Conflicts& found = *facts.conflicts;
   const ConflictOptions& options = facts.options.conflicts;
-  json.begin('{').field("count", std::uint64_t{found.listed.size()});
-  json.field("gap", options.gap).field("min_points", options.min_points);
-  json.field("split", options.split).field("groups", found.groups);
-  json.field("small_groups", found.small_groups).field("small_points", found.small_points);
-  write_first_small(json, found);
-  json.field("longest_group", found.longest_group);
-  json.field("longest_group_points", found.longest_group_points);
   const Conflict* worst = worst_of(found);
-  json.key("worst");
-  if (worst == nullptr) {
-    json.raw("null");
-  } else {
-    json.value(std::uint64_t{worst->id});
-  }
-  json.key("list").begin('[');
+  Json list = Json::array();
   for (const auto& [conflict, rank] : listed_in_page(found)) {
-    write_conflict(json, *conflict, rank, facts);
+    list.push_back(json_of(*conflict, rank, facts));
   }
-  json.end(']').end('}');
+  return {{"count", found.listed.size()},
+          {"gap", options.gap},
+          {"min_points", options.min_points},
+          {"split", options.split},
+          {"groups", found.groups},
+          {"small_groups", found.small_groups},
+          {"small_points", found.small_points},
+          {"first_small", first_small(found)},
+          {"longest_group", found.longest_group},
+          {"longest_group_points", found.longest_group_points},
+          {"worst", worst == nullptr ? Json() : Json(worst->id)},
+          {"list", std::move(list)}};
 }
 
-void write_place(JsonText& json, const char* name, const std::optional<FoundPlace>& place) {
-  const std::string prefix = name;
-  json.field(name, place ? std::optional(place->distance) : std::nullopt);
-  json.field((prefix + "_source").c_str(), place ? std::optional(place->source) : std::nullopt);
-  json.field((prefix + "_pose").c_str(), place ? std::optional(place->pose) : std::nullopt);
+void add_place(Json& json, const std::string& name, const std::optional<FoundPlace>& place) {
+  json[name] = place ? Json(place->distance) : Json();
+  json[name + "_source"] = place ? Json(place->source) : Json();
+  json[name + "_pose"] = place ? Json(place->pose) : Json();
 }
 
-void write_station_row(JsonText& json, const StationRow& row) {
-  json.begin('{').field("chainage_from", row.chainage_from).field("chainage_to", row.chainage_to);
-  if (row.station_from) json.field("station_from", row.station_from);
-  if (row.station_to) json.field("station_to", row.station_to);
-  write_place(json, "least", row.least);
-  write_place(json, "left", row.left);
-  write_place(json, "right", row.right);
-  write_place(json, "above", row.above);
-  json.field("verdict", name_of(row.verdict)).key("reasons").begin('[');
-  for (const Reason reason : row.reasons) json.value(name_of(reason));
-  json.end(']').key("doubts").begin('[');
-  for (const std::string& code : row.doubts) json.value(code);
-  json.end(']').field("searched", row.is_searched).key("overthrow").begin('[');
+Json json_of(const StationRow& row) {
+  Json out{{"chainage_from", row.chainage_from}, {"chainage_to", row.chainage_to}};
+  add_stations(out, row);
+  add_place(out, "least", row.least);
+  add_place(out, "left", row.left);
+  add_place(out, "right", row.right);
+  add_place(out, "above", row.above);
+  out["verdict"] = name_of(row.verdict);
+  out["reasons"] = names_of(row.reasons);
+  out["doubts"] = row.doubts;
+  out["searched"] = row.is_searched;
+  Json& overthrow = out["overthrow"] = Json::array();
   for (const Overthrow& body : row.overthrow) {
-    json.begin('{').field("end", body.end).field("middle", body.middle).end('}');
+    overthrow.push_back({{"end", or_null(body.end)}, {"middle", or_null(body.middle)}});
   }
-  json.end(']').end('}');
+  return out;
 }
 
-/// Writes the table of stations; null where the result has no first poses.
-void write_stations(JsonText& json, const ReportFacts& facts) {
-  json.key("stations");
-  if (facts.stations == nullptr) {
-    json.raw("null");
-    return;
-  }
-  json.begin('{').field("every", facts.every).key("bodies").begin('[');
-  for (const std::string& name : facts.stations->bodies) json.value(name);
-  json.end(']').key("notes").begin('[');
-  for (const Message& message : facts.stations->warnings) json.value(message.text);
-  json.end(']').key("list").begin('[');
-  for (const StationRow& row : facts.stations->rows) write_station_row(json, row);
-  json.end(']').end('}');
+/// The table of stations; null where the result has no first poses.
+Json json_of_stations(const ReportFacts& facts) {
+  if (facts.stations == nullptr) return {};
+  Json notes = Json::array(), list = Json::array();
+  for (const Message& message : facts.stations->warnings) notes.push_back(message.text);
+  for (const StationRow& row : facts.stations->rows) list.push_back(json_of(row));
+  return {{"every", facts.every},
+          {"bodies", facts.stations->bodies},
+          {"notes", std::move(notes)},
+          {"list", std::move(list)}};
 }
 
-void write_shift(JsonText& json, const StretchShift& row) {
-  json.begin('{').field("conflict", std::uint64_t{row.conflict}).field("shift", row.shift);
-  json.field("least_distance", row.least_distance).end('}');
+Json json_of(const StretchShift& row) {
+  return {{"conflict", row.conflict},
+          {"shift", or_null(row.shift)},
+          {"least_distance", or_null(row.least_distance)}};
 }
 
-/// Writes the shifts that free the path and its conflicts; nothing where they were not given.
-void write_shifts(JsonText& json, const ReportFacts& facts) {
-  if (!facts.options.shifts) return;
-  const ShiftTable& table = *facts.options.shifts;
-  json.key("shifts").begin('{').field("lateral_from", table.lateral_from);
-  json.field("lateral_to", table.lateral_to).field("step", table.step).key("path");
-  write_shift(json, table.path);
-  json.key("list").begin('[');
-  for (const StretchShift& row : table.conflicts) write_shift(json, row);
-  json.end(']').end('}');
+Json json_of(const ShiftTable& table) {
+  Json list = Json::array();
+  for (const StretchShift& row : table.conflicts) list.push_back(json_of(row));
+  return {{"lateral_from", table.lateral_from},
+          {"lateral_to", table.lateral_to},
+          {"step", table.step},
+          {"path", json_of(table.path)},
+          {"list", std::move(list)}};
 }
 
-void write_least(JsonText& json, const ReportFacts& facts) {
-  json.key("least_distance");
-  if (!facts.least) {
-    json.raw("null");
-    return;
-  }
-  json.begin('{').field("distance", facts.least->distance);
-  json.field("pose", std::uint64_t{facts.least->pose}).field("chainage", facts.least_chainage);
-  json.field("source", facts.least->source).field("point", facts.least->xyz);
-  json.field("side", name_of(facts.least->side)).field("lateral", facts.least->lateral);
-  write_body(json, facts, facts.least->body);
-  json.field("height", facts.least->height).field("of", facts.least_of).end('}');
+Json json_of_least(const ReportFacts& facts) {
+  if (!facts.least) return {};
+  Json out{{"distance", facts.least->distance},       {"pose", facts.least->pose},
+           {"chainage", facts.least_chainage},        {"source", facts.least->source},
+           {"point", or_null(facts.least->xyz)},      {"side", name_of(facts.least->side)},
+           {"lateral", or_null(facts.least->lateral)}};
+  add_body(out, facts, facts.least->body);
+  out["height"] = or_null(facts.least->height);
+  out["of"] = facts.least_of;
+  return out;
 }
 
-/// Writes how many points are inside solids of the model, and how deep; null where that is not
-/// known.
-void write_inside(JsonText& json, const ReportFacts& facts) {
+/// How many points are inside solids of the model, and how deep; null where that is not known.
+Json json_of_inside(const ReportFacts& facts) {
   const ResultHeader& header = facts.result.reader().header();
-  json.key("inside");
-  if (header.model_solids == 0 || !(std::max(header.clearance, header.profile) > 0)) {
-    json.raw("null");
-    return;
-  }
-  const bool counts = header.clearance > 0;
-  const double depth = facts.least ? std::max(0.0, -facts.least->distance) : 0;
-  json.begin('{').field("points",
-                        counts ? std::optional(facts.points.summary.inside_points) : std::nullopt);
-  json.field("depth", depth).end('}');
+  if (header.model_solids == 0 || !(std::max(header.clearance, header.profile) > 0)) return {};
+  return {{"points", header.clearance > 0 ? Json(facts.points.summary.inside_points) : Json()},
+          {"depth", facts.least ? std::max(0.0, -facts.least->distance) : 0.0}};
 }
 
-void write_lattice(JsonText& json, const char* name, const PageLattice& lattice) {
-  json.key(name).begin('{').field("origin", lattice.origin).field("step", lattice.step).end('}');
+Json json_of(const PageLattice& lattice) {
+  return {{"origin", lattice.origin}, {"step", lattice.step}};
 }
 
-/// Writes how much of everything the page holds, and the units of its columns.
-void write_page_facts(JsonText& json, const ReportFacts& facts) {
-  json.key("page").begin('{');
-  json.field("environment_points", std::uint64_t{facts.environment.points.size()});
-  json.field("environment_near", facts.environment.near_points);
-  json.field("environment_spacing", facts.environment.spacing);
-  json.field("reach", facts.reach).field("dense_reach", facts.dense_reach);
-  json.field("points", std::uint64_t{facts.points.points.size()});
-  json.field("poses", std::uint64_t{facts.shown_poses});
-  json.field("model_points", std::uint64_t{facts.shown_model_points});
-  json.field("most_listed", std::uint64_t{kMostListedConflicts});
-  write_lattice(json, "lattice", facts.lattice);
-  write_lattice(json, "environment_lattice", facts.environment_lattice);
-  write_lattice(json, "model_lattice", facts.model_lattice);
-  json.field("rotation_step", kRotationStep).field("distance_step", kDistanceStep);
-  json.field("no_distance", double{kNoDistance});
-  json.field("chainage_step", kChainageStep).field("time_step", kTimeStep);
+/// How much of everything the page holds, and the units of its columns.
+Json json_of_page(const ReportFacts& facts) {
   const auto& times = facts.options.labels.time;
-  json.field("time_origin", times.empty() ? 0.0 : times[0]);
-  json.field("forward", std::uint64_t(facts.options.conflicts.forward));
-  json.field("up", std::uint64_t(facts.options.conflicts.up)).end('}');
+  return {{"environment_points", facts.environment.points.size()},
+          {"environment_near", facts.environment.near_points},
+          {"environment_spacing", facts.environment.spacing},
+          {"reach", facts.reach},
+          {"dense_reach", facts.dense_reach},
+          {"points", facts.points.points.size()},
+          {"poses", facts.shown_poses},
+          {"model_points", facts.shown_model_points},
+          {"most_listed", kMostListedConflicts},
+          {"lattice", json_of(facts.lattice)},
+          {"environment_lattice", json_of(facts.environment_lattice)},
+          {"model_lattice", json_of(facts.model_lattice)},
+          {"rotation_step", kRotationStep},
+          {"distance_step", kDistanceStep},
+          {"no_distance", kNoDistance},
+          {"chainage_step", kChainageStep},
+          {"time_step", kTimeStep},
+          {"time_origin", times.empty() ? 0.0 : times[0]},
+          {"forward", static_cast<unsigned>(facts.options.conflicts.forward)},
+          {"up", static_cast<unsigned>(facts.options.conflicts.up)}};
 }
 
-/// The error budget with its two margins, in the environment's unit; nothing without one.
-void write_budget(JsonText& json, const Answer& answer) {
+/// Adds the error budget with its two margins, in the environment's unit; nothing without one.
+void add_budget(Json& json, const Answer& answer) {
   if (!answer.budget) return;
   const ErrorBudget& b = *answer.budget;
-  json.key("margins").begin('{').field("clear", b.clear()).field("conflict", b.conflict()).end('}');
-  json.key("budget").begin('{').field("scan", b.scan).field("registration", b.registration);
-  json.field("pose", b.pose).field("angle", b.angle).field("lever", b.lever);
-  json.field("model", b.model).field("step", b.step).field("motion", b.motion);
-  json.field("chord", b.chord).field("spacing", b.spacing).field("sigmas", b.sigmas).end('}');
-  json.field("near_points", answer.near_points).field("certain_points", answer.certain.points);
+  json["margins"] = {{"clear", b.clear()}, {"conflict", b.conflict()}};
+  json["budget"] = {{"scan", b.scan},    {"registration", b.registration},
+                    {"pose", b.pose},    {"angle", b.angle},
+                    {"lever", b.lever},  {"model", b.model},
+                    {"step", b.step},    {"motion", b.motion},
+                    {"chord", b.chord},  {"spacing", b.spacing},
+                    {"sigmas", b.sigmas}};
+  json["near_points"] = answer.near_points;
+  json["certain_points"] = answer.certain.points;
 }
 
-void write_unseen_group(JsonText& json, const UnseenGroup& group, const ReportFacts& facts) {
-  json.begin('{').field("id", std::uint64_t{group.id}).field("cubes", group.cubes);
-  json.field("shown", shown_cubes(facts.unseen, group));
-  json.field("lo", group.box.lo).field("hi", group.box.hi).field("middle", group.middle);
-  json.field("first_pose", std::uint64_t{group.first_pose});
-  json.field("last_pose", std::uint64_t{group.last_pose});
-  json.field("chainage_from", group.chainage_from).field("chainage_to", group.chainage_to);
-  json.field("side", name_of(group.side));
-  json.key("seen");
-  if (group.seen) {
-    json.begin('{').field("lo", group.seen->lo).field("hi", group.seen->hi).end('}');
-  } else {
-    json.raw("null");
-  }
-  json.field("behind_conflict", group.behind_conflict).field("along_path", group.along_path);
-  json.field("is_ground", group.is_ground).field("is_sky", group.is_sky).end('}');
+Json json_of(const UnseenGroup& group, const ReportFacts& facts) {
+  return {{"id", group.id},
+          {"cubes", group.cubes},
+          {"shown", shown_cubes(facts.unseen, group)},
+          {"lo", group.box.lo},
+          {"hi", group.box.hi},
+          {"middle", group.middle},
+          {"first_pose", group.first_pose},
+          {"last_pose", group.last_pose},
+          {"chainage_from", group.chainage_from},
+          {"chainage_to", group.chainage_to},
+          {"side", name_of(group.side)},
+          {"seen", or_null(group.seen)},
+          {"behind_conflict", group.behind_conflict},
+          {"along_path", group.along_path},
+          {"is_ground", group.is_ground},
+          {"is_sky", group.is_sky}};
 }
 
-/// Writes what is known of the space that the model sweeps; nothing where that was not asked for.
-void write_seen(JsonText& json, const ReportFacts& facts) {
-  if (!facts.answer.seen) return;
-  json.key("seen");
-  const SeenSummary& seen = *facts.answer.seen;
+/// What is known of the space that the model sweeps.
+Json json_of(const SeenSummary& seen, const ReportFacts& facts) {
   const UnseenGroups& unseen = facts.unseen;
-  json.begin('{').field("cube", seen.cube).field("swept", seen.swept).field("seen", seen.seen);
-  json.field("unseen", seen.unseen).field("groups", seen.groups);
-  json.field("listed_groups", seen.listed_groups).field("listed_cubes", seen.listed_cubes);
-  json.field("not_scanned_length", seen.not_scanned_length);
-  json.field("radius", facts.answer.budget
-                           ? facts.answer.budget->near_radius(facts.answer.parameters.radius)
-                           : facts.answer.parameters.radius);
-  json.field("seen_min", std::uint64_t{facts.answer.parameters.seen_min});
-  json.field("behind_conflicts", unseen.behind_conflicts);
-  json.key("origins").begin('[');
+  const UnseenFront& front = unseen.front;
+  const Answer& answer = facts.answer;
   const auto& origins = facts.store.reader().metadata().origins;
+  Json rest_on = Json::array(), list = Json::array(), stretches = Json::array();
   if (origins) {
     for (const OriginBasis& basis : origins->rest_on) {
-      json.begin('{').field("what", basis.what).field("points", basis.points).end('}');
+      rest_on.push_back({{"what", basis.what}, {"points", basis.points}});
     }
   }
-  json.end(']').field("points_without_origin",
-                      origins ? origins->points_without : facts.answer.environment_points);
-  json.field("places", std::uint64_t{origins ? origins->quanta.size() : 0});
-  json.key("list").begin('[');
-  for (const UnseenGroup& group : unseen.listed) write_unseen_group(json, group, facts);
-  json.end(']').key("stretches").begin('[');
-  for (const auto& [from, to] : unseen.stretches) json.begin('[').value(from).value(to).end(']');
-  const UnseenFront& front = unseen.front;
-  json.end(']').key("front").begin('{').field("cell", front.cell);
-  json.field("columns", std::uint64_t{front.columns}).field("rows", std::uint64_t{front.rows});
-  json.field("left", front.left).field("up", front.up);
-  json.key("swept").begin('[');
-  for (const double length : front.swept) json.value(length);
-  json.end(']').key("unseen").begin('[');
-  for (const double length : front.unseen) json.value(length);
-  json.end(']').end('}').end('}');
+  for (const UnseenGroup& group : unseen.listed) list.push_back(json_of(group, facts));
+  for (const auto& [from, to] : unseen.stretches) stretches.push_back(Json::array({from, to}));
+  return {{"cube", seen.cube},
+          {"swept", seen.swept},
+          {"seen", seen.seen},
+          {"unseen", seen.unseen},
+          {"groups", seen.groups},
+          {"listed_groups", seen.listed_groups},
+          {"listed_cubes", seen.listed_cubes},
+          {"not_scanned_length", seen.not_scanned_length},
+          {"radius", answer.budget ? answer.budget->near_radius(answer.parameters.radius)
+                                   : answer.parameters.radius},
+          {"seen_min", answer.parameters.seen_min},
+          {"behind_conflicts", unseen.behind_conflicts},
+          {"origins", std::move(rest_on)},
+          {"points_without_origin", origins ? origins->points_without : answer.environment_points},
+          {"places", origins ? origins->quanta.size() : 0},
+          {"list", std::move(list)},
+          {"stretches", std::move(stretches)},
+          {"front",
+           {{"cell", front.cell},
+            {"columns", front.columns},
+            {"rows", front.rows},
+            {"left", front.left},
+            {"up", front.up},
+            {"swept", front.swept},
+            {"unseen", front.unseen}}}};
 }
 
-void write_warnings(JsonText& json, const std::vector<Message>& warnings) {
-  json.key("warnings").begin('[');
+Json json_of_warnings(const std::vector<Message>& warnings) {
+  Json out = Json::array();
   for (const Message& warning : warnings) {
-    json.begin('{').field("code", warning.code).field("message", warning.text);
-    json.key("stretches").begin('[');
-    for (const auto& [first, last] : warning.stretches) {
-      json.begin('[').value(first).value(last).end(']');
-    }
-    json.end(']').end('}');
+    out.push_back(
+        {{"code", warning.code}, {"message", warning.text}, {"stretches", warning.stretches}});
   }
-  json.end(']');
+  return out;
 }
 
 }  // namespace
@@ -490,38 +462,35 @@ std::uint64_t shown_cubes(const UnseenGroups& unseen, const UnseenGroup& group) 
 }
 
 std::string json_of(const ReportFacts& facts) {
-  JsonText json;
-  json.begin('{').field("clearway", CLEARWAY_VERSION).field("title", facts.title);
-  json.field("project", facts.options.project).field("client", facts.options.client);
-  json.field("author", facts.options.author).field("date", facts.options.date);
-  json.field("verdict", name_of(facts.answer.verdict()));
-  json.key("reasons").begin('[');
-  for (const Reason reason : facts.answer.reasons()) json.value(name_of(reason));
-  json.end(']').key("doubts").begin('[');
-  for (const std::string& code : facts.answer.doubts()) json.value(code);
-  json.end(']');
-  write_budget(json, facts.answer);
-  write_seen(json, facts);
-  json.field("colliding_points", facts.result.size());
-  json.field("unit", facts.store.length_unit());
-  write_least(json, facts);
-  write_inside(json, facts);
-  write_query(json, facts);
-  write_inputs(json, facts);
-  write_unsearched(json, facts);
-  write_on_site(json, facts);
-  write_warnings(json, facts.answer.warnings);
-  write_classes(json, facts);
-  write_conflicts(json, facts);
-  write_stations(json, facts);
-  if (facts.section != nullptr) {
-    json.key("section");
-    facts.section->write_facts(json);
-  }
-  write_shifts(json, facts);
-  write_page_facts(json, facts);
-  json.end('}');
-  return json.text();
+  const Answer& answer = facts.answer;
+  Json out{{"clearway", CLEARWAY_VERSION},
+           {"title", facts.title},
+           {"project", facts.options.project},
+           {"client", facts.options.client},
+           {"author", facts.options.author},
+           {"date", facts.options.date},
+           {"verdict", name_of(answer.verdict())},
+           {"reasons", names_of(answer.reasons())},
+           {"doubts", answer.doubts()}};
+  add_budget(out, answer);
+  if (answer.seen) out["seen"] = json_of(*answer.seen, facts);
+  out["colliding_points"] = facts.result.size();
+  out["unit"] = facts.store.length_unit();
+  out["least_distance"] = json_of_least(facts);
+  out["inside"] = json_of_inside(facts);
+  out["query"] = json_of_query(facts);
+  out["ignored"] = json_of_ignored_points(facts.result.reader().header(), answer);
+  out["inputs"] = json_of_inputs(facts);
+  out["unsearched"] = json_of_unsearched(facts);
+  out["on_site"] = on_site(facts);
+  out["warnings"] = json_of_warnings(answer.warnings);
+  out["classes"] = json_of_classes(facts);
+  out["conflicts"] = json_of_conflicts(facts);
+  out["stations"] = json_of_stations(facts);
+  if (facts.section != nullptr) out["section"] = facts.section->facts();
+  if (facts.options.shifts) out["shifts"] = json_of(*facts.options.shifts);
+  out["page"] = json_of_page(facts);
+  return page_text(out);
 }
 
 }  // namespace clearway

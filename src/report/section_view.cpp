@@ -247,122 +247,115 @@ bool SectionView::has_cells_of_bins() const {
 
 namespace {
 
-void write_cell(JsonText& json, const std::array<std::int32_t, 2>& cell) {
-  json.key("cell").begin('[').value(double{0} + cell[0]).value(double{0} + cell[1]).end(']');
+Json json_of(const SectionWitness& witness) {
+  return {{"source", witness.source},
+          {"xyz", witness.xyz},
+          {"class", witness.point_class},
+          {"class_name", class_name(witness.point_class)}};
 }
 
-void write_witness(JsonText& json, const std::optional<SectionWitness>& witness) {
-  json.key("witness");
-  if (!witness) {
-    json.raw("null");
-    return;
-  }
-  json.begin('{').field("source", witness->source).field("xyz", witness->xyz);
-  json.field("class", std::uint64_t{witness->point_class});
-  json.field("class_name", class_name(witness->point_class)).end('}');
-}
-
-void write_intrusion(JsonText& json, const ShownIntrusion& shown, double cell) {
+Json json_of(const ShownIntrusion& shown, double cell) {
   const SectionIntrusion& in = shown.intrusion;
-  json.begin('{').field("side", name_of(in.side)).field("depth", in.depth);
-  json.field("clear_to", cleared_to(in, cell)).field("cells", in.cells);
-  json.field("first_pose", std::uint64_t{in.first_pose}).field("chainage", in.chainage);
-  write_cell(json, in.cell);
-  json.field("y_from", in.y_from).field("y_to", in.y_to);
-  json.field("z_from", in.z_from).field("z_to", in.z_to);
-  json.field("obstacle", shown.obstacle);
-  write_witness(json, shown.witness);
-  json.end('}');
+  return {{"side", name_of(in.side)},
+          {"depth", in.depth},
+          {"clear_to", cleared_to(in, cell)},
+          {"cells", in.cells},
+          {"first_pose", in.first_pose},
+          {"chainage", in.chainage},
+          {"cell", in.cell},
+          {"y_from", in.y_from},
+          {"y_to", in.y_to},
+          {"z_from", in.z_from},
+          {"z_to", in.z_to},
+          {"obstacle", shown.obstacle},
+          {"witness", shown.witness ? json_of(*shown.witness) : Json()}};
 }
 
-void write_band(JsonText& json, const SectionData& data, const SectionBand& band) {
-  const auto width = [](const std::optional<HalfWidth>& half) -> std::optional<double> {
-    return half ? std::optional(half->width) : std::nullopt;
+Json json_of(const SectionData& data, const SectionBand& band) {
+  const auto width = [](const std::optional<HalfWidth>& half) {
+    return half ? Json(half->width) : Json();
   };
-  json.begin('{').field("z_from", band.z_from).field("z_to", band.z_to);
-  json.field("left", width(band.left)).field("right", width(band.right));
-  json.field("symmetric_width", symmetric_width(data, band)).end('}');
+  return {{"z_from", band.z_from},
+          {"z_to", band.z_to},
+          {"left", width(band.left)},
+          {"right", width(band.right)},
+          {"symmetric_width", or_null(symmetric_width(data, band))}};
+}
+
+Json json_of(const SectionData& data, const std::vector<SectionBand>& bands) {
+  Json out = Json::array();
+  for (const SectionBand& band : bands) out.push_back(json_of(data, band));
+  return out;
 }
 
 }  // namespace
 
-void SectionView::write_question(JsonText& json) const {
+void SectionView::add_question(Json& json) const {
   const SectionData& data = section_.data();
   const SectionParameters& asked = data.parameters;
-  json.field("rear", asked.rear).field("front", asked.front).field("cell", asked.cell);
-  json.field("bin", asked.bin).field("margin", asked.margin);
-  json.field("between_poses", asked.between_poses).key("pivots");
-  if (asked.pivots) {
-    json.begin('[').value(asked.pivots->front).value(asked.pivots->rear).end(']');
-  } else {
-    json.raw("null");
-  }
-  json.field("rounding", data.rounding).field("kept", kept_beside(data));
-  json.field("points", data.environment_points).field("ignored_points", data.ignored_points);
-  json.field("ignored", ignored_text(ignored_by(asked))).key("ignored_cells");
+  json["rear"] = asked.rear;
+  json["front"] = asked.front;
+  json["cell"] = asked.cell;
+  json["bin"] = asked.bin;
+  json["margin"] = asked.margin;
+  json["between_poses"] = asked.between_poses;
+  json["pivots"] = asked.pivots ? Json::array({asked.pivots->front, asked.pivots->rear}) : Json();
+  json["rounding"] = data.rounding;
+  json["kept"] = kept_beside(data);
+  json["points"] = data.environment_points;
+  json["ignored_points"] = data.ignored_points;
+  json["ignored"] = ignored_text(ignored_by(asked));
+  json["ignored_cells"] = Json();
   if (data.ignored_cells) {
-    json.begin('{').field("blocked", data.ignored_cells->blocked);
-    json.field("high", data.ignored_cells->high).end('}');
-  } else {
-    json.raw("null");
+    json["ignored_cells"] = {{"blocked", data.ignored_cells->blocked},
+                             {"high", data.ignored_cells->high}};
   }
-  json.field("poses", data.poses).field("load_poses", data.load_poses);
-  json.field("length", data.chainage.empty() ? 0.0 : data.chainage.back());
-  json.field("environment_hash", hash_text(data.environment_hash));
-  json.field("trajectory_hash", hash_text(data.trajectory_hash));
+  json["poses"] = data.poses;
+  json["load_poses"] = data.load_poses;
+  json["length"] = data.chainage.empty() ? 0.0 : data.chainage.back();
+  json["environment_hash"] = hash_text(data.environment_hash);
+  json["trajectory_hash"] = hash_text(data.trajectory_hash);
 }
 
-void SectionView::write_check(JsonText& json) const {
-  json.key("check");
-  if (!check_) {
-    json.raw("null");
-    return;
-  }
-  json.begin('{').field("verdict", name_of(check_->verdict)).field("reason", check_->reason);
-  json.field("outline_name", picture_.outline_name).field("margin", margin());
-  json.key("outline").begin('[');
-  for (const OutlinePoint& p : picture_.outline) {
-    json.begin('[').value(p.y).value(p.z).end(']');
-  }
-  json.end(']').key("stops").begin('[');
+Json SectionView::json_of_check() const {
+  if (!check_) return {};
+  Json outline = Json::array(), stops = Json::array();
+  for (const OutlinePoint& p : picture_.outline) outline.push_back(Json::array({p.y, p.z}));
   for (const ShownStop& shown : stops_) {
-    json.begin('{').field("bin", std::uint64_t{shown.stop.bin});
-    json.field("first_pose", std::uint64_t{shown.stop.first_pose});
-    json.field("chainage", shown.stop.chainage);
-    write_cell(json, shown.stop.cell);
-    json.field("remedy", remedy(shown)).key("obstacles").begin('[');
-    for (const std::string& name : shown.obstacles) json.value(name);
-    json.end(']').key("intrusions").begin('[');
-    for (const ShownIntrusion& in : shown.intrusions) write_intrusion(json, in, lattice_.cell);
-    json.end(']').end('}');
+    Json intrusions = Json::array();
+    for (const ShownIntrusion& in : shown.intrusions) {
+      intrusions.push_back(json_of(in, lattice_.cell));
+    }
+    stops.push_back({{"bin", shown.stop.bin},
+                     {"first_pose", shown.stop.first_pose},
+                     {"chainage", shown.stop.chainage},
+                     {"cell", shown.stop.cell},
+                     {"remedy", remedy(shown)},
+                     {"obstacles", shown.obstacles},
+                     {"intrusions", std::move(intrusions)}});
   }
-  json.end(']').end('}');
+  return {{"verdict", name_of(check_->verdict)},   {"reason", check_->reason},
+          {"outline_name", picture_.outline_name}, {"margin", margin()},
+          {"outline", std::move(outline)},         {"stops", std::move(stops)}};
 }
 
-void SectionView::write_facts(JsonText& json) const {
-  json.begin('{').field("name", picture_.section_name).field("sentence", sentence());
-  json.field("caution", caution());
-  write_question(json);
-  json.field("columns", std::uint64_t{lattice_.columns})
-      .field("rows", std::uint64_t{lattice_.rows});
-  json.field("j_from", lattice_.j_from).field("k_from", lattice_.k_from);
-  json.key("colours").begin('[');
-  for (const char* colour : kSectionColours) json.value(colour);
-  json.end(']');
-  json.field("blocked", std::uint64_t{section_.cells().size()});
-  json.field("not_known", std::uint64_t{not_known().size()});
-  json.field("has_cells_of_bins", has_cells_of_bins());
-  json.key("bins").begin('[');
-  for (const std::uint32_t bin : section_.data().bins) json.value(std::uint64_t{bin});
-  json.end(']').key("bands").begin('[');
-  for (const SectionBand& band : bands_) write_band(json, section_.data(), band);
-  json.end(']').key("boxes").begin('[');
-  for (const SectionBand& box : section_boxes(section_, picture_.heights)) {
-    write_band(json, section_.data(), box);
-  }
-  json.end(']');
-  write_check(json);
-  json.end('}');
+Json SectionView::facts() const {
+  const SectionData& data = section_.data();
+  Json out{{"name", picture_.section_name}, {"sentence", sentence()}, {"caution", caution()}};
+  add_question(out);
+  out["columns"] = lattice_.columns;
+  out["rows"] = lattice_.rows;
+  out["j_from"] = lattice_.j_from;
+  out["k_from"] = lattice_.k_from;
+  out["colours"] = kSectionColours;
+  out["blocked"] = section_.cells().size();
+  out["not_known"] = not_known().size();
+  out["has_cells_of_bins"] = has_cells_of_bins();
+  out["bins"] = data.bins;
+  out["bands"] = json_of(data, bands_);
+  out["boxes"] = json_of(data, section_boxes(section_, picture_.heights));
+  out["check"] = json_of_check();
+  return out;
 }
 
 namespace {

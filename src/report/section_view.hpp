@@ -10,7 +10,7 @@
 #include "clearway/section.hpp"
 #include "core/section/section_lattice.hpp"
 #include "core/section/section_tables.hpp"
-#include "report/facts_text.hpp"
+#include "io/files/json.hpp"
 #include "report/page.hpp"
 
 /// What pages and pictures show of a section.
@@ -64,8 +64,8 @@ class SectionView {
   /// Chainage at which a bin begins.
   double chainage_of_bin(double number) const { return number * section_.data().parameters.bin; }
 
-  /// Writes the object "section" of the facts.
-  void write_facts(JsonText& json) const;
+  /// The object "section" of the page's facts.
+  Json facts() const;
   /// The columns that the page draws from. docs/design/report.md describes them.
   void add_columns(std::vector<PageColumn>& columns) const;
   /// Whether the page has the cells of each stretch, which it lacks where they would be too many.
@@ -73,8 +73,8 @@ class SectionView {
 
  private:
   void find_obstacles();
-  void write_question(JsonText& json) const;
-  void write_check(JsonText& json) const;
+  void add_question(Json& json) const;
+  Json json_of_check() const;
   std::string sentence_of_widths() const;
 
   const Section& section_;

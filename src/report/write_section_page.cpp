@@ -15,16 +15,16 @@ std::string title_of(const SectionPageOptions& options) {
   return options.outline_name.empty() ? "Section of " + name : options.outline_name + " in " + name;
 }
 
-void write_warnings(JsonText& json, const SectionView& view, const SectionPageOptions& options) {
-  json.key("warnings").begin('[');
-  const auto write = [&](const std::string& code, const std::string& text) {
-    json.begin('{').field("code", code).field("message", text).end('}');
+Json json_of_warnings(const SectionView& view, const SectionPageOptions& options) {
+  Json out = Json::array();
+  const auto add = [&](const Message& warning) {
+    out.push_back({{"code", warning.code}, {"message", warning.text}});
   };
-  for (const Message& warning : view.section().data().warnings) write(warning.code, warning.text);
+  for (const Message& warning : view.section().data().warnings) add(warning);
   for (const Message& warning : options.warnings) {
-    if (warning.severity == Message::Severity::kWarning) write(warning.code, warning.text);
+    if (warning.severity == Message::Severity::kWarning) add(warning);
   }
-  json.end(']');
+  return out;
 }
 
 }  // namespace
@@ -33,18 +33,18 @@ SectionPageSummary write_section_page(const Section& section, const std::filesys
                                       const SectionPageOptions& options) {
   PendingFile file(output, options.overwrite);
   const SectionView view(section, options);
-  JsonText json;
   const std::string title = title_of(options);
-  json.begin('{').field("clearway", CLEARWAY_VERSION).field("title", title);
-  json.field("project", options.project).field("client", options.client);
-  json.field("author", options.author).field("date", options.date);
-  json.field("unit", section.data().length_unit);
-  write_warnings(json, view, options);
-  json.key("section");
-  view.write_facts(json);
-  json.end('}');
+  const Json facts{{"clearway", CLEARWAY_VERSION},
+                   {"title", title},
+                   {"project", options.project},
+                   {"client", options.client},
+                   {"author", options.author},
+                   {"date", options.date},
+                   {"unit", section.data().length_unit},
+                   {"warnings", json_of_warnings(view, options)},
+                   {"section", view.facts()}};
   SectionPageSummary summary{.check = view.check(), .sentence = view.sentence()};
-  summary.facts = json.text();
+  summary.facts = page_text(facts);
   PageContent content{
       .title = title, .facts = summary.facts, .section = section_svg(view, false), .columns = {}};
   view.add_columns(content.columns);

@@ -6,10 +6,10 @@
 
 #include "clearway/error.hpp"
 #include "findings/conflict_fixture.hpp"
+#include "io/files/json.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/conflicts/bcf/bcf_text.hpp"
 #include "io/result/conflicts/conflict_fields.hpp"
-#include "io/result/conflicts/json_text.hpp"
 #include "io/result/conflicts/markup_text.hpp"
 #include "io/result/conflicts/write_conflicts.hpp"
 #include "io/scans/scan_crs.hpp"
@@ -166,7 +166,8 @@ TEST_CASE("files of conflicts have stations where the trajectory has them, and o
   const Answer answer = counted_answer(result.reader());
   const ConflictFile file{found,  small.options,     result.reader().header(),
                           answer, small.found.poses, {}};
-  CHECK_THAT("{" + summary_json(file) + "}", Catch::Contains("\"station_from\": 1234.5"));
+  CHECK_THAT("{" + member_lines(summary_of(file)) + "}",
+             Catch::Contains("\"station_from\": 1234.5"));
   const std::vector<double> two{1, 2};
   small.options.station = two;
   CHECK_THROWS_WITH(find_conflicts(result, small.found.poses, small.options),

@@ -12,6 +12,7 @@
 #include "cli/verdict.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
+#include "io/files/json.hpp"
 #include "io/result/check_results.hpp"
 
 namespace clearway::tool {
@@ -141,7 +142,7 @@ std::string comparison_json(const Comparison& c, const std::string& a, const std
   auto& points = out["differences"] = nlohmann::ordered_json::array();
   for (const PointDifference& point : c.points) points.push_back(point_json(point));
   // File names need not be UTF-8.
-  return out.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return indented_text(out, -1);
 }
 
 struct CompareOptions {

@@ -20,6 +20,7 @@
 #include "core/geometry/quantisation.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
+#include "io/files/json.hpp"
 #include "io/store/store_reader.hpp"
 
 namespace clearway::tool {
@@ -101,7 +102,7 @@ nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertCommand
     out["largest_change"] = report.largest_change;
     out["temporary_bytes"] = report.temporary_bytes;
   }
-  out["warnings"] = warnings_json(report.warnings);
+  out["warnings"] = report.warnings;
   out["seconds"] = {{"total", total_seconds},
                     {"count", report.count_seconds},
                     {"distribute", report.distribute_seconds},
@@ -192,7 +193,7 @@ void add_convert(CLI::App& program) {
     run_stoppable(options->output, "the same command starts it again, from the beginning", [&] {
       const Stopwatch total;
       const ConvertReport report = perform(*options);
-      if (options->json) print(text_of_json(json_of(report, *options, total.seconds())));
+      if (options->json) print(indented_text(json_of(report, *options, total.seconds())));
     });
   });
 }

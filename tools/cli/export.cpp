@@ -17,6 +17,7 @@
 #include "cli/support/trajectory_options.hpp"
 #include "cli/verdict.hpp"
 #include "core/util/format.hpp"
+#include "io/files/json.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/paths/content_hash.hpp"
 #include "io/result/answer.hpp"
@@ -121,9 +122,9 @@ void run_export(ExportOptions& options) {
   out["verdict"] = name_of(answer.verdict());
   out["doubts"] = answer.doubts();
   out["warned_of"] = answer.warned_of();
-  out["warnings"] = warnings_json(answer.warnings);
+  out["warnings"] = answer.warnings;
   out["ignored"] = ignored_json(answer);
-  print(text_of_json(out));
+  print(indented_text(out));
 }
 
 constexpr const char* kFooter =

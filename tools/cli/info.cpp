@@ -15,6 +15,7 @@
 #include "core/geometry/point_box.hpp"
 #include "core/util/format.hpp"
 #include "io/files/file.hpp"
+#include "io/files/json.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/journal.hpp"
@@ -74,7 +75,7 @@ ordered_json describe(const StoreReader& store) {
                            {"points_hash", hash_text(m.points_hash)},
                            {"fingerprint", hash_text(store.fingerprint())},
                            {"sources", sources_json(m)},
-                           {"warnings", warnings_json(store_warnings(m))}};
+                           {"warnings", store_warnings(m)}};
   if (m.height_unit != 0) description["height_unit"] = m.height_unit;
   if (m.withheld) {
     description["withheld"] = {{"points", m.withheld->points},
@@ -108,7 +109,7 @@ ordered_json describe(const SectionData& section) {
                            {"crs_wkt", section.crs_wkt},
                            {"environment_hash", hash_text(section.environment_hash)},
                            {"trajectory_hash", hash_text(section.trajectory_hash)},
-                           {"warnings", warnings_json(section.warnings)}};
+                           {"warnings", section.warnings}};
   if (asked.pivots) description["pivots"] = {asked.pivots->front, asked.pivots->rear};
   if (section.motion) description["motion"] = *section.motion;
   if (section.ignored_cells) {
@@ -168,7 +169,7 @@ ordered_json describe(const ResultReader& result) {
   if (answer.seen) description["seen"] = seen_json(answer);
   if (const auto doubts = answer.doubts(); !doubts.empty()) description["doubts"] = doubts;
   if (const auto codes = answer.warned_of(); !codes.empty()) description["warned_of"] = codes;
-  description["warnings"] = warnings_json(answer.warnings);
+  description["warnings"] = answer.warnings;
   if (h.model_solids > 0) {
     const auto inside = answer.points_inside();
     const auto depth = answer.greatest_depth();
@@ -369,8 +370,7 @@ void run_info(const InfoOptions& options) {
   File::open_regular(options.file);  // opening a pipe without a writer would wait for ever
   const ordered_json description = describe(options.file);
   // File names need not be UTF-8.
-  constexpr auto kReplace = ordered_json::error_handler_t::replace;
-  print(options.json ? description.dump(2, ' ', false, kReplace) + "\n" : text_of(description));
+  print(options.json ? indented_text(description) : text_of(description));
 }
 
 }  // namespace

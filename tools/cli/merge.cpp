@@ -18,6 +18,7 @@
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/files/file.hpp"
+#include "io/files/json.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -33,7 +34,7 @@ struct MergeCommand {
 /// The warnings of the runs, each with the number of parts that have it.
 nlohmann::ordered_json warnings_of(const MergeReport& report) {
   nlohmann::ordered_json out =
-      warnings_json({report.part_warnings.begin(), report.part_warnings.end()});
+      std::vector<Message>(report.part_warnings.begin(), report.part_warnings.end());
   for (std::size_t i = 0; i < out.size(); ++i) out[i]["parts"] = report.part_warnings[i].parts;
   return out;
 }
@@ -70,7 +71,7 @@ Verdict run_merge(MergeCommand& options) {
                found_text(report.colliding_points, report.environment_points));
   if (options.json) {
     spdlog::info("{}", sentence);
-    print(text_of_json(json_of(options, report, total.seconds())));
+    print(indented_text(json_of(options, report, total.seconds())));
   } else {
     print(sentence + "\n");
   }

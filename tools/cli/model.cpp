@@ -18,6 +18,7 @@
 #include "cli/support/options.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/util/format.hpp"
+#include "io/files/json.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/models/mesh/mesh_writer.hpp"
 #include "io/models/mesh_facts.hpp"
@@ -236,7 +237,7 @@ void run_model(const ModelCommand& options) {
     messages = input.messages;
   }
   for (const Message& message : messages) log_message(message);
-  print(options.json ? facts.dump(2) + "\n" : facts_text(facts));
+  print(options.json ? indented_text(facts) : facts_text(facts));
 }
 
 }  // namespace

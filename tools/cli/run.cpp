@@ -38,6 +38,7 @@
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/files/file.hpp"
+#include "io/files/json.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/thread_limit.hpp"
 
@@ -208,7 +209,7 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["peak_host_bytes"] = program.peak_host_bytes + report.pinned_bytes;
   out["peak_device_bytes"] = report.peak_device_bytes;
   out["seconds"] = seconds_of(report.seconds, program);
-  out["warnings"] = warnings_json(report.warnings);
+  out["warnings"] = report.warnings;
   return out;
 }
 
@@ -357,7 +358,7 @@ void add_run(CLI::App& program, int& exit_code) {
       const RunOutcome outcome = perform(*options);
       if (options->json) {
         spdlog::info("{}", outcome.sentence);
-        print(text_of_json(outcome.json));
+        print(indented_text(outcome.json));
       } else {
         print_verdict(outcome.sentence);
       }

@@ -27,6 +27,7 @@
 #include "cli/support/trajectory_options.hpp"
 #include "core/describe/section.hpp"
 #include "core/util/format.hpp"
+#include "io/files/json.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/thread_limit.hpp"
 #include "report/section_words.hpp"
@@ -81,7 +82,7 @@ ordered_json json_of(const SectionReport& report, const FindCommand& options) {
                     {"search", report.search_seconds},
                     {"engine", report.engine_seconds},
                     {"context_wait", report.context_wait_seconds}};
-  out["warnings"] = warnings_json(report.warnings);
+  out["warnings"] = report.warnings;
   return out;
 }
 
@@ -148,7 +149,7 @@ void run_find(FindCommand& options) {
   spdlog::info("{}: {}; {}{:.2f} s", options.output.string(), sentence,
                report.device == Device::kCuda ? "on " + report.device_name + ", " : "",
                report.seconds);
-  print(options.json ? text_of_json(json_of(report, options)) : sentence + "\n");
+  print(options.json ? indented_text(json_of(report, options)) : sentence + "\n");
 }
 
 void add_question(CLI::App& command, FindCommand& options) {
@@ -256,7 +257,7 @@ ordered_json json_of(const SectionCheck& check, double margin, const Witnesses& 
   }
   std::vector<Message> warnings = section.data().warnings;
   warnings.insert(warnings.end(), options.load.messages.begin(), options.load.messages.end());
-  out["warnings"] = warnings_json(warnings);
+  out["warnings"] = warnings;
   return out;
 }
 
@@ -285,7 +286,7 @@ int run_check(CheckCommand& options) {
   const std::string sentence = verdict_sentence(check, section.data(), margin);
   if (options.json) {
     spdlog::info("{}", sentence);
-    print(text_of_json(json_of(check, margin, witnesses, section, options)));
+    print(indented_text(json_of(check, margin, witnesses, section, options)));
   } else {
     print(sentence + "\n");
   }

@@ -11,6 +11,7 @@
 #include "cli/support/options.hpp"
 #include "cli/support/program_json.hpp"
 #include "io/files/hdf5.hpp"
+#include "io/files/json.hpp"
 #include "io/result/check_results.hpp"
 #include "io/result/journal.hpp"
 #include "io/section/section_file.hpp"
@@ -76,7 +77,7 @@ bool run_verify(const VerifyOptions& options) {
     out["faults"] = found.faults;
     out["remark"] = nullptr;
     if (!found.remark.empty()) out["remark"] = found.remark;
-    print(text_of_json(out));
+    print(indented_text(out));
     return sound;
   }
   for (const std::string& fault : found.faults) print(fault + "\n");

@@ -1,6 +1,9 @@
 #include "io/files/json.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <set>
 #include <string>
 #include <utility>
@@ -10,6 +13,169 @@
 #include "io/files/input_error.hpp"
 
 namespace clearway {
+namespace {
+
+/// Number of bytes of the UTF-8 character at the start of the text; 0 where there is none. Source:
+/// RFC 3629.
+std::size_t character_bytes(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const auto follows = [&](std::size_t i, unsigned lo = 0x80, unsigned hi = 0xbf) {
+    return i < text.size() && byte(i) >= lo && byte(i) <= hi;
+  };
+  const unsigned first = byte(0);
+  if (first < 0x80) return 1;
+  if (first >= 0xc2 && first <= 0xdf) return follows(1) ? 2 : 0;
+  if (first >= 0xe0 && first <= 0xef) {
+    const bool second = follows(1, first == 0xe0 ? 0xa0 : 0x80, first == 0xed ? 0x9f : 0xbf);
+    return second && follows(2) ? 3 : 0;
+  }
+  if (first >= 0xf0 && first <= 0xf4) {
+    const bool second = follows(1, first == 0xf0 ? 0x90 : 0x80, first == 0xf4 ? 0x8f : 0xbf);
+    return second && follows(2) && follows(3) ? 4 : 0;
+  }
+  return 0;
+}
+
+void append_escaped(std::string& out, char c) {
+  constexpr std::string_view kHex = "0123456789abcdef";
+  const auto byte = static_cast<unsigned char>(c);
+  if (c == '"' || c == '\\') {
+    out += {'\\', c};
+  } else if (byte < 0x20 || byte == 0x7f) {
+    out += {'\\', 'u', '0', '0', kHex[byte >> 4], kHex[byte & 15]};
+  } else {
+    out += c;
+  }
+}
+
+/// How the text of a value is made.
+struct JsonStyle {
+  const char *between_values, *after_key;
+  std::string (*number)(double);
+  bool escapes_tags;
+};
+
+/// 1e+05 for 100000, because it is shorter.
+constexpr JsonStyle kLine{", ", ": ", json_number, false};
+constexpr JsonStyle kPage{
+    ",", ":", [](double number) { return std::isfinite(number) ? format_number(number) : "null"; },
+    true};
+
+void append_string(std::string& out, std::string_view text, const JsonStyle& style) {
+  for (const char c : json_string(text)) {
+    if (c == '<' && style.escapes_tags) {
+      out += "\\u003c";
+    } else {
+      out += c;
+    }
+  }
+}
+
+void append_value(std::string& out, const Json& json, const JsonStyle& style) {
+  const char* between = "";
+  const auto next = [&] {
+    out += between;
+    between = style.between_values;
+  };
+  switch (json.type()) {
+    case Json::value_t::object:
+      out += '{';
+      for (const auto& [key, value] : json.items()) {
+        next();
+        append_string(out, key, style);
+        out += style.after_key;
+        append_value(out, value, style);
+      }
+      out += '}';
+      return;
+    case Json::value_t::array:
+      out += '[';
+      for (const Json& value : json) {
+        next();
+        append_value(out, value, style);
+      }
+      out += ']';
+      return;
+    case Json::value_t::string:
+      return append_string(out, json.get_ref<const std::string&>(), style);
+    case Json::value_t::number_float:
+      out += style.number(json.get<double>());
+      return;
+    default:
+      out += json.dump();
+  }
+}
+
+std::string text_of(const Json& json, const JsonStyle& style) {
+  std::string out;
+  append_value(out, json, style);
+  return out;
+}
+
+}  // namespace
+
+std::string valid_utf8(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t bytes = character_bytes(text);
+    out += bytes == 0 ? "\xef\xbf\xbd" : text.substr(0, bytes);
+    text.remove_prefix(bytes == 0 ? 1 : bytes);
+  }
+  return out;
+}
+
+void to_json(Json& json, const Vec3& v) { json = Json::array({v.x, v.y, v.z}); }
+
+void to_json(Json& json, const Box& box) { json = {{"lo", box.lo}, {"hi", box.hi}}; }
+
+void to_json(Json& json, const PoseRange& range) { json = Json::array({range.first, range.last}); }
+
+void to_json(Json& json, const Message& message) {
+  Json numbers = Json::object();
+  for (const auto& [name, value] : message.numbers) numbers[name] = value;
+  json = {{"code", message.code}, {"message", message.text}, {"numbers", std::move(numbers)}};
+  if (!message.stretches.empty()) json["stretches"] = message.stretches;
+}
+
+std::string indented_text(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string page_text(const Json& json) { return text_of(json, kPage); }
+
+std::string line_text(const Json& json) { return text_of(json, kLine); }
+
+std::string member_lines(const Json& object) {
+  std::string out;
+  for (const auto& [key, value] : object.items()) {
+    out += (out.empty() ? "  " : ",\n  ") + json_string(key) + ": " + line_text(value);
+  }
+  return out;
+}
+
+std::string json_string(std::string_view text) {
+  std::string out = "\"";
+  while (!text.empty()) {
+    const std::size_t bytes = character_bytes(text);
+    if (bytes == 0) {
+      out += "\xef\xbf\xbd";
+    } else if (bytes == 1) {
+      append_escaped(out, text.front());
+    } else {
+      out += text.substr(0, bytes);
+    }
+    text.remove_prefix(bytes == 0 ? 1 : bytes);
+  }
+  return out + "\"";
+}
+
+std::string json_number(double value) {
+  if (!std::isfinite(value)) return "null";
+  std::array<char, 32> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  return {digits.data(), end};
+}
+
 namespace {
 
 using nlohmann::ordered_json;

@@ -1,16 +1,63 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "clearway/box.hpp"
+#include "clearway/progress.hpp"
+#include "clearway/vec3.hpp"
+
 namespace clearway {
+
+/// A value of JSON whose objects keep the order of their members.
+using Json = nlohmann::ordered_json;
+
+void to_json(Json& json, const Vec3& v);           ///< [x, y, z]
+void to_json(Json& json, const Box& box);          ///< {"lo", "hi"}
+void to_json(Json& json, const PoseRange& range);  ///< [first, last]
+/// {"code", "message", "numbers"} and, where it has any, "stretches"
+void to_json(Json& json, const Message& message);
+
+/// The value, or null.
+template <typename Value>
+Json or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json();
+}
+
+/// The name_of() each of them, such as the reasons of a verdict.
+template <typename Values>
+Json names_of(const Values& values) {
+  Json names = Json::array();
+  for (const auto& value : values) names.push_back(name_of(value));
+  return names;
+}
+
+/// The text of a value as programs print it and keep it, and a line break. indent: the blanks of
+/// each level; -1 for all on one line. Like all texts below, it has U+FFFD instead of bytes that
+/// are not UTF-8.
+std::string indented_text(const Json& json, int indent = 2);
+/// The text of a value without blanks, in which "<" is escaped, so that it may stand in a page.
+std::string page_text(const Json& json);
+/// The text of a value on one line of a file.
+std::string line_text(const Json& json);
+/// The members of an object without its braces, each on a line that begins with two blanks.
+std::string member_lines(const Json& object);
+
+/// The text as valid UTF-8. Bytes that are not UTF-8 become U+FFFD.
+std::string valid_utf8(std::string_view text);
+/// The text as a JSON string, including quotes.
+std::string json_string(std::string_view text);
+/// A number with the fewest digits that give it back; null where it is not finite.
+std::string json_number(double value);
 
 /// Thrown by parse_json(). It says what is wrong with the text and where, but does not name the
 /// file.

@@ -14,6 +14,7 @@
 #include "cli/campaign/commands.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/program_json.hpp"
+#include "io/files/json.hpp"
 #include "io/files/pending_file.hpp"
 
 namespace clearway::tool {
@@ -48,7 +49,7 @@ void write_campaign_page(CampaignReportOptions& options) {
   const auto facts = campaign::page_facts(runs.plan, runs.looks, options.date);
   spdlog::info("{}: {}", (options.folder / kPageName).string(),
                campaign::OutcomeCounts(runs.looks).text());
-  if (options.json) print(text_of_json(facts));
+  if (options.json) print(indented_text(facts));
 }
 
 }  // namespace

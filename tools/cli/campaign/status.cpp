@@ -13,6 +13,7 @@
 #include "cli/support/console.hpp"
 #include "cli/support/program_json.hpp"
 #include "core/util/format.hpp"
+#include "io/files/json.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -132,7 +133,7 @@ void run_status(const CampaignStatusOptions& options) {
     const campaign::TaskList tasks = tasks_to_do(looks, options.failed);
     return print(tasks.empty() ? "" : campaign::task_list_text(tasks) + "\n");
   }
-  print(options.json ? text_of_json(status_json(plan, looks)) : status_text(plan, looks));
+  print(options.json ? indented_text(status_json(plan, looks)) : status_text(plan, looks));
 }
 
 }  // namespace

@@ -32,6 +32,7 @@
 #include "cli/support/program_json.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "core/util/shell_words.hpp"
+#include "io/files/json.hpp"
 #include "io/models/model_input.hpp"
 #include "io/result/journal.hpp"
 #include "io/result/result.hpp"
@@ -402,7 +403,7 @@ class Check {
     }
     if (options_.json) {
       spdlog::info("{}", found.sentence);
-      print(text_of_json(json_of(found)));
+      print(indented_text(json_of(found)));
       return;
     }
     std::string text = conflicts + "these commands did it, and each can be given again by hand:\n";

@@ -102,8 +102,7 @@ void CheckRecord::note_command(const std::string& name, const std::vector<std::s
 
 void CheckRecord::write() const {
   if (now_ == read_ && exists()) return;
-  replace_file(folder_ / kRecordName,
-               now_.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+  replace_file(folder_ / kRecordName, indented_text(now_, 1));
 }
 
 }  // namespace clearway::tool

@@ -23,6 +23,7 @@
 #include "findings/conflict_rank.hpp"
 #include "findings/match_conflicts.hpp"
 #include "io/files/file.hpp"
+#include "io/files/json.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/text_writer.hpp"
 #include "io/result/answer.hpp"
@@ -694,7 +695,7 @@ std::string json_of(const ComparedConflicts& found) {
                          {"gone", json_of_list(found.a.conflicts, found.match.gone)},
                          {"same", json_of_pairs(found, found.match.same)}};
   // File names need not be UTF-8.
-  return out.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return indented_text(out, -1);
 }
 
 void check_comparison_ending(const std::filesystem::path& output) {

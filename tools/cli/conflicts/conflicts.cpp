@@ -318,7 +318,7 @@ ConflictsOutcome perform(ConflictsCommand& options) {
   for (const auto& output : outputs) output->pending.publish();
   for (const Message& warning : file.warnings) log_message(warning);
   tell_of_unknown_sides(options, result, conflicts);
-  return {conflict_text(file, options.show), "{\n" + summary_json(file) + "\n}\n",
+  return {conflict_text(file, options.show), "{\n" + member_lines(summary_of(file)) + "\n}\n",
           verdict_to_repeat(result.reader(), {{.station = labels.station}, chainage_of(poses)},
                             symbol_of(file.unit()))};
 }

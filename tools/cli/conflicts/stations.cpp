@@ -212,7 +212,7 @@ StationsOutcome perform(StationsCommand& command) {
   const std::string unit = symbol_of(unit_of_crs(header.crs_wkt));
   return {
       totals_text(table, command, path_length(poses), unit) + table_text(table, command.show, unit),
-      "{\n" + summary_json(file) + "\n}\n"};
+      "{\n" + member_lines(summary_of(file)) + "\n}\n"};
 }
 
 void add_options(CLI::App& command, StationsCommand& options) {

@@ -20,6 +20,7 @@
 #include "cli/trajectory/commands.hpp"
 #include "cli/trajectory/description.hpp"
 #include "core/util/format.hpp"
+#include "io/files/json.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/text_number.hpp"
 #include "io/paths/alignment/alignment_file.hpp"
@@ -63,7 +64,7 @@ void print_json(const AlignmentFile& made) {
       {"last_station", made.stations.back()},
       {"notes", remarks_json(made.remarks, Message::Severity::kNote)},
       {"warnings", remarks_json(made.remarks, Message::Severity::kWarning)}};
-  print(text_of_json(json));
+  print(indented_text(json));
 }
 
 void write_alignment(AlignmentCommand& options) {

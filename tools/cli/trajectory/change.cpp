@@ -24,6 +24,7 @@
 #include "core/trajectory/trajectory_doubts.hpp"
 #include "core/trajectory/trajectory_summary.hpp"
 #include "core/util/format.hpp"
+#include "io/files/json.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/paths/trajectory_file.hpp"
 
@@ -134,7 +135,7 @@ void write_changed(ChangeOptions& options, const Change& change) {
                                         {"max_motion", options.max_motion},
                                         {"largest_motion_before", motion_before},
                                         {"largest_motion_after", motion_after}};
-    print(report.dump(2) + "\n");
+    print(indented_text(report));
   }
 }
 

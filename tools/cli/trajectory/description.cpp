@@ -10,6 +10,7 @@
 #include "cli/support/program_json.hpp"
 #include "core/geometry/angle.hpp"
 #include "core/util/format.hpp"
+#include "io/files/json.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -75,7 +76,7 @@ ordered_json remarks_json(const std::vector<Message>& remarks, Message::Severity
   for (const Message& remark : remarks) {
     if (remark.severity == severity) chosen.push_back(remark);
   }
-  return warnings_json(chosen);
+  return chosen;
 }
 
 std::string axis_name(const BodyAxis& axis) {

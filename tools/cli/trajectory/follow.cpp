@@ -23,6 +23,7 @@
 #include "core/trajectory/trajectory_doubts.hpp"
 #include "core/util/format.hpp"
 #include "io/files/file.hpp"
+#include "io/files/json.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/models/vehicle_file.hpp"
@@ -156,7 +157,7 @@ void report(const FollowOptions& options, const Placed& placed, std::size_t path
     json["transient"] = ranges_of(followed.transient);
     json["rolled_back"] = ranges_of(followed.rolled_back);
   }
-  print(text_of_json(json));
+  print(indented_text(json));
 }
 
 /// Places a body of its own at the station or on the pivots of the options.

@@ -19,6 +19,7 @@
 #include "core/trajectory/trajectory_doubts.hpp"
 #include "core/trajectory/trajectory_summary.hpp"
 #include "core/util/format.hpp"
+#include "io/files/json.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -137,8 +138,7 @@ Description describe(InfoOptions& options) {
 void run_info(InfoOptions& options) {
   const Description what = describe(options);
   for (const Message& remark : what.file.remarks) log_message(remark);
-  constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
-  print(options.json ? json_of(what).dump(2, ' ', false, kReplace) + "\n" : text_of(what));
+  print(options.json ? indented_text(json_of(what)) : text_of(what));
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 #include "cli/trajectory/commands.hpp"
 #include "cli/trajectory/description.hpp"
 #include "core/util/format.hpp"
+#include "io/files/json.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/paths/line/line_file.hpp"
 #include "io/paths/trajectory_file.hpp"
@@ -57,7 +58,7 @@ void print_json(const LineFile& made) {
       {"ground", ground},
       {"notes", remarks_json(made.remarks, Message::Severity::kNote)},
       {"warnings", remarks_json(made.remarks, Message::Severity::kWarning)}};
-  print(text_of_json(json));
+  print(indented_text(json));
 }
 
 void write_line(LineCommand& options) {

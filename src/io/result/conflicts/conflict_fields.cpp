@@ -8,7 +8,8 @@
 
 #include "core/describe/conflict.hpp"
 #include "core/query/ignored_points.hpp"
-#include "io/result/conflicts/json_text.hpp"
+#include "io/files/text_writer.hpp"
+#include "io/files/xxh64.hpp"
 
 namespace clearway {
 std::vector<ConflictField> fields_of(const Conflict& c, const ResultHeader& header) {
@@ -64,68 +65,99 @@ namespace {
 /// Most small groups that a file lists, the first ones along the path; nobody reads millions.
 constexpr std::size_t kMostSmallGroups = 1000;
 
-std::string small_json(const std::vector<SmallGroup>& groups) {
-  std::string out;
+Json small_json(const std::vector<SmallGroup>& groups) {
+  Json out = Json::array();
   for (std::size_t i = 0; i < std::min(groups.size(), kMostSmallGroups); ++i) {
     std::vector<ConflictField> fields;
     add_fields(fields, kSmallGroupColumns, groups[i]);
-    out += (i == 0 ? "" : ", ") + json_object(fields);
+    out.push_back(json_of(fields));
   }
-  return "[" + out + "]";
+  return out;
 }
 
 }  // namespace
 
-std::string summary_json(const ConflictFile& file) {
+Json json_of(const FieldValue& value) {
+  return std::visit(
+      [](const auto& of) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(of)>, std::monostate>) {
+          return Json();
+        } else {
+          return Json(of);
+        }
+      },
+      value);
+}
+
+Json json_of(const std::vector<ConflictField>& fields) {
+  Json out = Json::object();
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const std::string& name = fields[i].name;
+    if (!name.ends_with("_x")) {
+      out[name] = json_of(fields[i].value);
+      continue;
+    }
+    out[name.substr(0, name.size() - 2)] = Json::array(
+        {json_of(fields[i].value), json_of(fields[i + 1].value), json_of(fields[i + 2].value)});
+    i += 2;
+  }
+  return out;
+}
+
+std::string csv_value(const FieldValue& value) {
+  if (std::holds_alternative<std::monostate>(value)) return "";
+  const auto* word = std::get_if<std::string_view>(&value);
+  return word != nullptr ? csv_cell(*word) : line_text(json_of(value));
+}
+
+void add_hashes(Json& json, const ResultHeader& header) {
+  json["environment_hash"] = hash_text(header.environment_hash);
+  json["model_hash"] = hash_text(header.model_hash);
+  json["trajectory_hash"] = hash_text(header.trajectory_hash);
+}
+
+Json summary_of(const ConflictFile& file) {
   const ResultHeader& header = file.header;
   const Conflicts& conflicts = file.conflicts;
-  JsonMembers out;
-  out.add("kind", json_string("conflicts"));
-  out.add("unit", json_string(symbol_of(file.unit())));
-  out.add_length("radius", header.radius);
-  out.add_length("clearance", header.clearance);
-  out.add("between_poses", header.between_poses ? "true" : "false");
-  out.add("verdict", json_string(name_of(file.answer.verdict())));
+  Json out{{"kind", "conflicts"},
+           {"unit", symbol_of(file.unit())},
+           {"radius", header.radius},
+           {"clearance", header.clearance},
+           {"between_poses", header.between_poses},
+           {"verdict", name_of(file.answer.verdict())}};
   if (header.budget) {
-    std::vector<std::string> reasons;
-    for (const Reason reason : file.answer.reasons()) reasons.emplace_back(name_of(reason));
-    out.add("reasons", json_strings(reasons));
-    out.add("margins", "{\"clear\": " + json_number(header.budget->clear()) +
-                           ", \"conflict\": " + json_number(header.budget->conflict()) + "}");
-    out.add_count("near_points", file.answer.near_points);
-    out.add_count("certain_points", file.answer.certain.points);
+    out["reasons"] = names_of(file.answer.reasons());
+    out["margins"] = {{"clear", header.budget->clear()}, {"conflict", header.budget->conflict()}};
+    out["near_points"] = file.answer.near_points;
+    out["certain_points"] = file.answer.certain.points;
   }
-  out.add("doubts", json_strings(file.answer.doubts()));
-  if (const auto codes = file.answer.warned_of(); !codes.empty()) {
-    out.add("warned_of", json_strings(codes));
-  }
+  out["doubts"] = file.answer.doubts();
+  if (const auto codes = file.answer.warned_of(); !codes.empty()) out["warned_of"] = codes;
   if (header.ignores_points()) {
-    out.add_count("ignored_points", header.ignored.points);
-    out.add_count("ignored_colliding", file.answer.ignored_colliding);
-    out.add("ignored", json_string(ignored_text(header)));
+    out["ignored_points"] = header.ignored.points;
+    out["ignored_colliding"] = file.answer.ignored_colliding;
+    out["ignored"] = ignored_text(header);
   }
-  out.add_length("gap", file.options.gap);
-  out.add_count("min_points", file.options.min_points);
-  out.add_length("split", file.options.split);
-  out.add_count("environment_points", header.environment_points);
-  out.add_count("model_points", header.model_points);
-  out.add_count("poses", header.poses);
-  if (!header.bodies.empty()) out.add("bodies", json_strings(header.bodies));
-  out.add_hash("environment_hash", header.environment_hash);
-  out.add_hash("model_hash", header.model_hash);
-  out.add_hash("trajectory_hash", header.trajectory_hash);
-  out.add("crs_wkt", json_string(header.crs_wkt));
-  out.add_length("path_length", conflicts.path_length);
-  out.add_count("colliding_points", conflicts.colliding_points);
-  out.add_count("conflict_count", conflicts.listed.size());
-  out.add_count("groups", conflicts.groups);
-  out.add_count("small_groups", conflicts.small_groups);
-  out.add_count("small_points", conflicts.small_points);
-  out.add("small", small_json(conflicts.small));
-  out.add_length("longest_group", conflicts.longest_group);
-  out.add_count("longest_group_points", conflicts.longest_group_points);
-  out.add("warnings", json_messages(file.all_warnings()));
-  return std::move(out).text();
+  out["gap"] = file.options.gap;
+  out["min_points"] = file.options.min_points;
+  out["split"] = file.options.split;
+  out["environment_points"] = header.environment_points;
+  out["model_points"] = header.model_points;
+  out["poses"] = header.poses;
+  if (!header.bodies.empty()) out["bodies"] = header.bodies;
+  add_hashes(out, header);
+  out["crs_wkt"] = header.crs_wkt;
+  out["path_length"] = conflicts.path_length;
+  out["colliding_points"] = conflicts.colliding_points;
+  out["conflict_count"] = conflicts.listed.size();
+  out["groups"] = conflicts.groups;
+  out["small_groups"] = conflicts.small_groups;
+  out["small_points"] = conflicts.small_points;
+  out["small"] = small_json(conflicts.small);
+  out["longest_group"] = conflicts.longest_group;
+  out["longest_group_points"] = conflicts.longest_group_points;
+  out["warnings"] = file.all_warnings();
+  return out;
 }
 
 }  // namespace clearway

@@ -11,6 +11,7 @@
 
 #include "clearway/conflicts.hpp"
 #include "core/describe/finding.hpp"
+#include "io/files/json.hpp"
 #include "io/result/conflicts/conflict_file.hpp"
 #include "io/result/result.hpp"
 
@@ -90,8 +91,18 @@ std::vector<Conflict> small_groups_instead(const Conflicts& conflicts);
 /// The fields of a sample conflict of such a file, which give a table its columns.
 std::vector<ConflictField> sample_fields(const ConflictFile& file);
 
-/// The members of a JSON object about the whole result, without the braces, each on a line that
-/// begins with two blanks: the query, hashes, how conflicts were made, counts and warnings.
-std::string summary_json(const ConflictFile& file);
+/// A value as JSON: null, a number or a string.
+Json json_of(const FieldValue& value);
+/// A row as a JSON object. The three fields of a vector's coordinates become one, an array.
+Json json_of(const std::vector<ConflictField>& fields);
+/// A field's value as a cell of a CSV file, empty where it is absent.
+std::string csv_value(const FieldValue& value);
+
+/// Adds the hashes of what was searched to an object.
+void add_hashes(Json& json, const ResultHeader& header);
+
+/// A JSON object about the whole result: the query, hashes, how conflicts were made, counts and
+/// warnings.
+Json summary_of(const ConflictFile& file);
 
 }  // namespace clearway

@@ -1,6 +1,6 @@
 #include "io/result/conflicts/markup_text.hpp"
 
-#include "io/result/conflicts/json_text.hpp"
+#include "io/files/json.hpp"
 
 namespace clearway {
 

@@ -19,7 +19,6 @@
 #include "io/files/text_writer.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/conflicts/conflict_fields.hpp"
-#include "io/result/conflicts/json_text.hpp"
 
 namespace clearway {
 namespace {
@@ -41,7 +40,7 @@ void write_csv(const ShiftTable& table, const File& file) {
   const auto write = [&](const StretchShift& row, auto text_of) {
     for (const ConflictField& field : fields_of(row)) out << text_of(field) << ",";
   };
-  write({}, [](const ConflictField& field) { return std::string(field.name); });
+  write({}, [](const ConflictField& field) { return field.name; });
   out << kWarnedOf << "\n";
   const auto value = [&](const StretchShift& row) {
     write(row, [](const ConflictField& field) { return csv_value(field.value); });
@@ -57,10 +56,10 @@ void write_csv(const ShiftTable& table, const File& file) {
   out.flush();
 }
 
-std::string row_json(const StretchShift& row) {
-  std::string out = json_object(fields_of(row));
-  out.pop_back();
-  return out + ", " + json_string(kWarnedOf) + ": " + json_strings(row.warned_of) + "}";
+Json row_json(const StretchShift& row) {
+  Json out = json_of(fields_of(row));
+  out[kWarnedOf] = row.warned_of;
+  return out;
 }
 
 /// A hash of everything that the shifts of a result depend on, besides their own options: what was
@@ -73,7 +72,7 @@ std::uint64_t question_hash(const ResultReader& result) {
                      (header.between_poses ? " between" : " at") +
                      (header.ignores_points() ? ignored_text(header) : std::string()) +
                      (header.budget ? json_number(header.budget->clear()) : std::string());
-  for (const Box& box : header.ignore_boxes) text += json_vector(box.lo) + json_vector(box.hi);
+  for (const Box& box : header.ignore_boxes) text += line_text(box.lo) + line_text(box.hi);
   return xxh64(std::as_bytes(std::span(text)));
 }
 
@@ -158,34 +157,31 @@ const char* side_of(const StretchShift& stretch) {
 
 std::string json_of(const ShiftFile& file) {
   const ResultHeader& header = file.result.header();
-  JsonMembers out;
-  out.add("kind", json_string("shifts"));
-  out.add("unit", json_string(file.unit));
-  out.add_length("radius", header.radius);
-  out.add("between_poses", header.between_poses ? "true" : "false");
-  out.add_length("lateral_from", file.table.lateral_from);
-  out.add_length("lateral_to", file.table.lateral_to);
-  out.add_length("step", file.table.step);
-  out.add_length("gap", file.options.gap);
-  out.add_count("min_points", file.options.min_points);
-  out.add_length("split", file.options.split);
-  out.add_count("small_groups", file.conflicts.small_groups);
-  out.add_count("small_points", file.conflicts.small_points);
-  out.add_count("poses", header.poses);
-  out.add_count("searches", file.table.searches);
-  if (!header.bodies.empty()) out.add("bodies", json_strings(header.bodies));
-  out.add_hash("environment_hash", header.environment_hash);
-  out.add_hash("model_hash", header.model_hash);
-  out.add_hash("trajectory_hash", header.trajectory_hash);
-  out.add_hash("question_hash", question_hash(file.result));
-  out.add("path", row_json(file.table.path));
+  Json out{{"kind", "shifts"},
+           {"unit", file.unit},
+           {"radius", header.radius},
+           {"between_poses", header.between_poses},
+           {"lateral_from", file.table.lateral_from},
+           {"lateral_to", file.table.lateral_to},
+           {"step", file.table.step},
+           {"gap", file.options.gap},
+           {"min_points", file.options.min_points},
+           {"split", file.options.split},
+           {"small_groups", file.conflicts.small_groups},
+           {"small_points", file.conflicts.small_points},
+           {"poses", header.poses},
+           {"searches", file.table.searches}};
+  if (!header.bodies.empty()) out["bodies"] = header.bodies;
+  add_hashes(out, header);
+  out["question_hash"] = hash_text(question_hash(file.result));
+  out["path"] = row_json(file.table.path);
   std::string rows;
   for (const StretchShift& row : file.table.conflicts) {
-    rows += (rows.empty() ? "\n    " : ",\n    ") + row_json(row);
+    rows += (rows.empty() ? "\n    " : ",\n    ") + line_text(row_json(row));
   }
-  out.add("conflicts", "[" + rows + (rows.empty() ? "]" : "\n  ]"));
-  out.add("warnings", json_messages(file.result.findings().warnings));
-  return "{\n" + std::move(out).text() + "\n}\n";
+  return "{\n" + member_lines(out) + ",\n  \"conflicts\": [" + rows +
+         (rows.empty() ? "]" : "\n  ]") + ",\n" +
+         member_lines({{"warnings", file.result.findings().warnings}}) + "\n}\n";
 }
 
 void write_shifts(const ShiftFile& shifts, ShiftFormat format, const std::filesystem::path& path) {

@@ -11,7 +11,6 @@
 #include "io/files/file.hpp"
 #include "io/files/text_writer.hpp"
 #include "io/result/conflicts/conflict_fields.hpp"
-#include "io/result/conflicts/json_text.hpp"
 #include "io/scans/scan_crs.hpp"
 
 namespace clearway {
@@ -58,22 +57,20 @@ void write_csv(const StationFile& stations, const File& file) {
   out.flush();
 }
 
-std::string row_json(const StationRow& row, const std::vector<std::string>& bodies) {
-  std::string out = json_object(fields_of(row, bodies));
-  out.pop_back();
-  std::vector<std::string> reasons;
-  for (const Reason reason : row.reasons) reasons.emplace_back(name_of(reason));
-  return out + ", \"reasons\": " + json_strings(reasons) +
-         ", \"doubts\": " + json_strings(row.doubts) +
-         ", \"searched\": " + (row.is_searched ? "true" : "false") + "}";
+Json row_json(const StationRow& row, const std::vector<std::string>& bodies) {
+  Json out = json_of(fields_of(row, bodies));
+  out["reasons"] = names_of(row.reasons);
+  out["doubts"] = row.doubts;
+  out["searched"] = row.is_searched;
+  return out;
 }
 
 void write_json(const StationFile& stations, const File& file) {
   TextWriter out(file);
-  out << "{\n" << summary_json(stations) << ",\n  \"stations\": [";
+  out << "{\n" << member_lines(summary_of(stations)) << ",\n  \"stations\": [";
   const char* between = "\n    ";
   for (const StationRow& row : stations.table.rows) {
-    out << between << row_json(row, stations.table.bodies);
+    out << between << line_text(row_json(row, stations.table.bodies));
     between = ",\n    ";
   }
   out << (stations.table.rows.empty() ? "]\n}\n" : "\n  ]\n}\n");
@@ -89,28 +86,25 @@ StationFormat station_format_of(const std::filesystem::path& output) {
   throw UsageError(output.string() + ": unknown output format; the name must end in .csv or .json");
 }
 
-std::string summary_json(const StationFile& file) {
+Json summary_of(const StationFile& file) {
   const ResultHeader& header = file.header;
-  JsonMembers out;
-  out.add("kind", json_string("stations"));
-  out.add("unit", json_string(symbol_of(unit_of_crs(header.crs_wkt))));
-  out.add_length("radius", header.radius);
-  out.add_length("clearance", header.clearance);
-  out.add("between_poses", header.between_poses ? "true" : "false");
-  out.add("verdict", json_string(name_of(file.answer.verdict())));
-  out.add("doubts", json_strings(file.answer.doubts()));
-  out.add_length("every", file.options.every);
-  out.add_length("chainage_start", file.options.chainage_start);
-  out.add_count("station_count", file.table.rows.size());
-  out.add_count("poses", header.poses);
-  if (!header.bodies.empty()) out.add("bodies", json_strings(header.bodies));
-  out.add_hash("environment_hash", header.environment_hash);
-  out.add_hash("model_hash", header.model_hash);
-  out.add_hash("trajectory_hash", header.trajectory_hash);
+  Json out{{"kind", "stations"},
+           {"unit", symbol_of(unit_of_crs(header.crs_wkt))},
+           {"radius", header.radius},
+           {"clearance", header.clearance},
+           {"between_poses", header.between_poses},
+           {"verdict", name_of(file.answer.verdict())},
+           {"doubts", file.answer.doubts()},
+           {"every", file.options.every},
+           {"chainage_start", file.options.chainage_start},
+           {"station_count", file.table.rows.size()},
+           {"poses", header.poses}};
+  if (!header.bodies.empty()) out["bodies"] = header.bodies;
+  add_hashes(out, header);
   std::vector<Message> warnings = file.answer.warnings;
   warnings.insert(warnings.end(), file.table.warnings.begin(), file.table.warnings.end());
-  out.add("warnings", json_messages(warnings));
-  return std::move(out).text();
+  out["warnings"] = warnings;
+  return out;
 }
 
 void write_stations(const StationFile& stations, StationFormat format,

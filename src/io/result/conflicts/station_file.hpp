@@ -4,6 +4,7 @@
 
 #include "clearway/answer.hpp"
 #include "clearway/stations.hpp"
+#include "io/files/json.hpp"
 #include "io/result/result.hpp"
 
 namespace clearway {
@@ -21,9 +22,8 @@ enum class StationFormat { kCsv, kJson };
 /// The format by the ending of a name: .csv or .json. Throws UsageError for others.
 StationFormat station_format_of(const std::filesystem::path& output);
 
-/// The members of a JSON object about the whole table, without the braces and without its rows,
-/// each on a line that begins with two blanks.
-std::string summary_json(const StationFile& file);
+/// A JSON object about the whole table, without its rows.
+Json summary_of(const StationFile& file);
 
 /// Writes the table. As CSV it has a header and a row for each stretch, where absent values are
 /// empty; as JSON one object with the summary and the member `stations`. Throws ResourceError.

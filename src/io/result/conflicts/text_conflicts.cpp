@@ -1,12 +1,11 @@
 #include "io/result/conflicts/text_conflicts.hpp"
 
 #include <algorithm>
-#include <array>
-#include <string_view>
+#include <string>
+#include <vector>
 
 #include "io/files/text_writer.hpp"
 #include "io/result/conflicts/conflict_fields.hpp"
-#include "io/result/conflicts/json_text.hpp"
 #include "io/scans/scan_crs.hpp"
 
 namespace clearway {
@@ -28,10 +27,10 @@ void write_csv(const ConflictFile& conflicts, const File& file) {
 
 void write_json(const ConflictFile& conflicts, const File& file) {
   TextWriter out(file);
-  out << "{\n" << summary_json(conflicts) << ",\n  \"conflicts\": [";
+  out << "{\n" << member_lines(summary_of(conflicts)) << ",\n  \"conflicts\": [";
   const char* between = "\n    ";
   for (const Conflict& conflict : conflicts.conflicts.listed) {
-    out << between << json_object(fields_of(conflict, conflicts.header));
+    out << between << line_text(json_of(fields_of(conflict, conflicts.header)));
     between = ",\n    ";
   }
   out << (conflicts.conflicts.listed.empty() ? "]\n}\n" : "\n  ]\n}\n");
@@ -50,9 +49,8 @@ std::string crs_name(const std::string& wkt) {
 
 /// The member "crs" as defined by GeoJSON of 2008. RFC 7946 knows only WGS 84, into which a scan in
 /// a local frame cannot be converted.
-std::string crs_json(const std::string& wkt) {
-  const std::string name = crs_name(wkt);
-  return R"({"type": "name", "properties": {"name": )" + json_string(name) + "}}";
+Json crs_json(const std::string& wkt) {
+  return {{"type", "name"}, {"properties", {{"name", crs_name(wkt)}}}};
 }
 
 const char* note_on(const std::string& wkt) {
@@ -63,32 +61,27 @@ const char* note_on(const std::string& wkt) {
                "crs names: not longitudes and latitudes as in RFC 7946.";
 }
 
-std::string point_json(const Vec3& v) {
-  return R"({"type": "Point", "coordinates": )" + json_vector(v) + "}";
-}
+Json point_json(const Vec3& v) { return {{"type", "Point"}, {"coordinates", v}}; }
 
 /// The footprint of a box: a polygon, counter-clockwise, at the lowest height.
-std::string footprint_json(const Box& box) {
-  const Vec3 corners[] = {{box.lo.x, box.lo.y, box.lo.z},
-                          {box.hi.x, box.lo.y, box.lo.z},
-                          {box.hi.x, box.hi.y, box.lo.z},
-                          {box.lo.x, box.hi.y, box.lo.z},
-                          {box.lo.x, box.lo.y, box.lo.z}};
-  std::string ring;
-  for (const Vec3& corner : corners) ring += (ring.empty() ? "" : ", ") + json_vector(corner);
-  return R"({"type": "Polygon", "coordinates": [[)" + ring + "]]}";
+Json footprint_json(const Box& box) {
+  const std::vector<Vec3> corners{{box.lo.x, box.lo.y, box.lo.z},
+                                  {box.hi.x, box.lo.y, box.lo.z},
+                                  {box.hi.x, box.hi.y, box.lo.z},
+                                  {box.lo.x, box.hi.y, box.lo.z},
+                                  {box.lo.x, box.lo.y, box.lo.z}};
+  return {{"type", "Polygon"}, {"coordinates", Json::array({corners})}};
 }
 
 /// A feature. number: its number in the file; without one, readers would take the property "id",
 /// which the two features of a conflict share.
-std::string feature_json(std::uint64_t number, const Conflict& conflict, const ResultHeader& header,
-                         const char* shape, const std::string& geometry) {
-  std::string properties = R"("shape": )" + json_string(shape);
+Json feature_json(std::uint64_t number, const Conflict& conflict, const ResultHeader& header,
+                  const char* shape, const Json& geometry) {
+  Json properties{{"shape", shape}};
   for (const ConflictField& field : fields_of(conflict, header)) {
-    properties += ", " + json_string(field.name) + ": " + json_value(field.value);
+    properties[field.name] = json_of(field.value);
   }
-  return R"({"type": "Feature", "id": )" + std::to_string(number) + R"(, "geometry": )" + geometry +
-         R"(, "properties": {)" + properties + "}}";
+  return {{"type", "Feature"}, {"id", number}, {"geometry", geometry}, {"properties", properties}};
 }
 
 }  // namespace
@@ -96,14 +89,14 @@ std::string feature_json(std::uint64_t number, const Conflict& conflict, const R
 void write_geojson(const ConflictFile& conflicts, const File& file) {
   const std::string& wkt = conflicts.header.crs_wkt;
   TextWriter out(file);
-  out << "{\n  \"type\": \"FeatureCollection\",\n  \"crs\": " << crs_json(wkt)
+  out << "{\n  \"type\": \"FeatureCollection\",\n  \"crs\": " << line_text(crs_json(wkt))
       << ",\n  \"note\": " << json_string(note_on(wkt)) << ",\n  \"summary\": {\n"
-      << summary_json(conflicts) << "\n  },\n  \"features\": [";
+      << member_lines(summary_of(conflicts)) << "\n  },\n  \"features\": [";
   std::uint64_t number = 0;
-  const auto add = [&](const Conflict& of, const char* shape, const std::string& geometry) {
+  const auto add = [&](const Conflict& of, const char* shape, const Json& geometry) {
     ++number;
     out << (number == 1 ? "\n    " : ",\n    ")
-        << feature_json(number, of, conflicts.header, shape, geometry);
+        << line_text(feature_json(number, of, conflicts.header, shape, geometry));
   };
   for (const Conflict& conflict : conflicts.conflicts.listed) {
     add(conflict, "centroid", point_json(conflict.centroid));

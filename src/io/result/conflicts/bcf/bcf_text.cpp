@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "core/util/format.hpp"
+#include "io/files/json.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/conflicts/conflict_fields.hpp"
-#include "io/result/conflicts/json_text.hpp"
 #include "io/result/conflicts/markup_text.hpp"
 
 namespace clearway {
