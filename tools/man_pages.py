@@ -27,7 +27,7 @@ def escaped(text):
 
 def exit_codes():
     """[(code, meaning)] of the guide's table."""
-    section = COMMAND_LINE.read_text(encoding="utf-8").split("## Exit codes\n")[1].split("\n## ")[0]
+    section = COMMAND_LINE.read_text(encoding="utf-8").split("## Exit codes\n")[1].split("\n##")[0]
     rows = re.findall(r"^\| (\S+) \| (.*?) \|", section, re.M)
     return [(code, meaning.replace("`", "")) for code, meaning in rows
             if code not in ("code", "---") and not code.startswith("-")]

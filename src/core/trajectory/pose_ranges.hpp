@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <ranges>
 #include <vector>
 
@@ -11,12 +12,13 @@ namespace clearway {
 
 /// The poses `i` to `i + beyond` of each index i, as stretches of the path that are ascending and
 /// apart from each other. indices: ascending. beyond: 0 for poses, 1 for the steps that start
-/// there.
-template <std::ranges::range Indices>
-std::vector<PoseRange> pose_ranges(const Indices& indices, std::uint32_t beyond = 0) {
+/// there. index_of: makes an index of an element of `indices`.
+template <std::ranges::range Indices, typename Projection = std::identity>
+std::vector<PoseRange> pose_ranges(const Indices& indices, std::uint32_t beyond = 0,
+                                   const Projection& index_of = {}) {
   std::vector<PoseRange> out;
-  for (const auto index : indices) {
-    const auto first = static_cast<std::uint32_t>(index);
+  for (const auto& element : indices) {
+    const auto first = static_cast<std::uint32_t>(std::invoke(index_of, element));
     if (out.empty() || first > out.back().last + 1) out.push_back({first, first});
     out.back().last = std::max(out.back().last, first + beyond);
   }

@@ -116,7 +116,7 @@ Message jump_warning(std::span<const Jump> jumps, const std::string& prefix,
                           {"pose", static_cast<double>(worst.pose)},
                           {"step", worst.length},
                           {"median_step", worst.usual}},
-                         pose_ranges(jumps | std::views::transform(&Jump::pose), 1));
+                         pose_ranges(jumps, 1, &Jump::pose));
 }
 
 double farthest_from_origin(std::span<const Vec3> points) {

@@ -221,7 +221,7 @@ std::vector<LoadStep> steps_of_load(const Question& question, const Steps& known
 /// The steps as stretches of the path, each from the pose where steps begin to that where they end.
 std::vector<PoseRange> stretches_of(const Question& question, const std::vector<LoadStep>& steps) {
   const auto number = [&](const LoadStep& step) { return question.number_of(step.pose); };
-  return pose_ranges(steps | std::views::transform(number), 1);
+  return pose_ranges(steps, 1, number);
 }
 
 void warn_of_gaps(const Question& question, std::vector<LoadStep> steps, double length,

@@ -20,7 +20,7 @@ struct Pair {
     rows.xyz.erase(rows.xyz.begin() + 1);
     rows.first_pose.erase(rows.first_pose.begin() + 1);
     rows.first_pose[1] = 77;
-    rows.last_pose = rows.first_pose;
+    rows.last_pose.erase(rows.last_pose.begin() + 1);
     header.radius = 0.2;
     write_result(folder / "b.h5", header, rows);
     header.environment_hash = 1;

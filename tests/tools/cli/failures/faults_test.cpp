@@ -149,7 +149,8 @@ TEST_CASE("a command that gets no threads says so, or does without them") {
   std::vector<std::string> lines;
   for (const Command& command : commands(site)) lines.push_back(command.arguments + " --force");
   for (const std::string& line :
-       {"conflicts " + made + question + to_csv, "stations " + made + question + to_csv,
+       {"conflicts " + made + question + to_csv,
+        "stations " + made + " --trajectory " + site.path("trajectory.txt") + to_csv,
         "shift " + made + env + question + " --lateral -0.1,0.1" + to_csv,
         "report " + made + env + question + " --force -o " + site.path("out.html"),
         "run" + env + " --trajectory " + site.path("trajectory.txt") + " --vehicle " +

@@ -63,7 +63,6 @@ TEST_CASE("an unfinished journal is neither used nor dropped unasked") {
   check_refused(work.run("--resume --force"), 2, "--force");
   check_refused(work.run("--resume", "0.2"), 2, "its radius is 0.1, expected 0.2");
   check_refused(work.run("--resume", "0.1", "kdtree"), 2, "its engine is grid, expected kdtree");
-  check_refused(work.run("--resume --precision float"), 2, "its precision is missing");
   check_refused(work.run("--resume --between-poses", "0.1", "sweep"), 2, "between_poses is no");
   check_refused(work.run_with("model.ply", "1 2 3\n"), 2, "its model is ");
   check_refused(work.run_with("trajectory.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n"), 2,
@@ -135,11 +134,6 @@ TEST_CASE("a resumed run leaves a result alone that answers its query, and no ot
   damaged[damaged.size() / 2] ^= 1;
   put_bytes(work.output, damaged);
   check_refused(work.run("--resume"), 2, "exists already, and is ");
-
-  REQUIRE(work.run("--force --precision float").exit_code == 0);
-  check_refused(work.run("--resume"), 2, "precision: float in the file, exact here");
-  check_refused(work.run("--resume --precision float"), 2,
-                "exists already, and answers the same question, but not exactly");
 }
 
 TEST_CASE("an existing result stays until a resumed run replaces it, and only where asked for") {
