@@ -37,6 +37,15 @@ inline int threads_or_all(int threads) {
   return threads != 0 ? threads : tbb::this_task_arena::max_concurrency();
 }
 
+/// Calls body(), which uses the threads that this arena of oneTBB may have. An arena of its own,
+/// as in_threads() makes, would cost oneTBB 14 KB that it gives back late. Throws as
+/// check_threads() does.
+template <typename Body>
+auto in_all_threads(const Body& body) {
+  check_threads(threads_or_all(0));
+  return body();
+}
+
 /// Calls body() with at most this many threads of oneTBB, or as many as threads_or_all(0) says for
 /// 0, and returns what it returns. Throws as check_threads() does.
 template <typename Body>

@@ -93,7 +93,7 @@ template <typename Visit>
 void for_each_index(std::size_t count, Visit visit) {
   const ParallelScope scope;
   const auto piece = piece_of(scope, visit);
-  in_threads(0, [&] {
+  in_all_threads([&] {
     scope.begin();
     tbb::parallel_for(std::size_t{0}, count, piece);
   });

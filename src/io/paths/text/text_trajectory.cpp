@@ -88,7 +88,7 @@ class TextTrajectory {
     };
     const ParallelScope scope;
     const auto piece = piece_of(scope, read_one);
-    in_threads(0, [&] {
+    in_all_threads([&] {
       scope.begin();
       tbb::parallel_for(std::size_t{0}, parts.size(), piece);
     });
