@@ -36,7 +36,7 @@ struct SectionParameters {
   /// The window of the cross-section; none: y from -4 to 4 m, z from 0 to 6 m.
   std::optional<SectionWindow> window = {};
   double cell = 0;  ///< side of a cell; 0: 0.02 m
-  double bin = 0;   ///< length of the stretches for which cells are told apart; 0: 5 m
+  double bin = 0;   ///< length of the stretches into which the path is divided; 0: 5 m
   /// The greatest distance that a later check may keep: points as far before the rear and behind
   /// the front count too.
   double margin = 0;

@@ -24,9 +24,8 @@
 #include "python/values.hpp"
 
 /// Properties and keyword arguments of Python from described fields. A call takes those arguments
-/// as
-/// **kwargs; its docstring begins with the signature that Python users see and that _arguments.py
-/// checks, so that only names of the signature arrive here.
+/// as `**kwargs`; its docstring begins with the signature that Python users see and that
+/// _arguments.py checks, so that only names of the signature arrive here.
 namespace clearway::python {
 
 /// A value as Python has it: the name of a choice, otherwise what pybind11 makes of it.

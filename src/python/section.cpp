@@ -496,7 +496,7 @@ pivots: (front, rear), two places of the load that lie on the path; None: the lo
 )DOC" + lines_of(kSectionFields) +
        lines_of(kMachineFields<SectionOptions>) +
        R"DOC(overwrite: replaces an existing section.
-strict: raises InputError where anything is warned of, and writes nothing.
+strict: treats warnings as errors: raises InputError, and writes nothing.
 input_warnings: messages of read_trajectory(), which the section keeps, and which strict counts.
 progress, message, stop: as search() takes them.)DOC")
           .c_str());

@@ -6,11 +6,12 @@
 #include <list>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "clearway/error.hpp"
-#include "core/describe/session.hpp"
+#include "core/describe/search.hpp"
 #include "python/arrays.hpp"
 #include "python/columns.hpp"
 #include "python/fields.hpp"
@@ -23,6 +24,10 @@ namespace clearway::python {
 namespace {
 
 using namespace py::literals;
+
+/// How one question of a session is asked.
+constexpr std::tuple kQuestionFields{kEngine<QuestionOptions>, kStrict<QuestionOptions>,
+                                     kModelIsCut<QuestionOptions>};
 
 /// Queries that still hold the copy of a Model, so that further questions about the same Model need
 /// not copy it. A Model cannot be changed from Python, which arrays can, so arrays are copied for

@@ -21,13 +21,6 @@ inline constexpr std::tuple kStationsOfStretch{
                   .doc = "Station along the alignment of the pose of chainage_to, metres, or None.",
                   .is_left_out = true}};
 
-template <typename Row>
-inline constexpr std::tuple kChainagesOfStretch{
-    FindingColumn{
-        .member = &Row::chainage_from, .key = "chainage_from", .doc = "Metres along the path."},
-    FindingColumn{
-        .member = &Row::chainage_to, .key = "chainage_to", .doc = "Metres along the path."}};
-
 /// The columns of a conflict, in the order of its files. `certain` and `body` are written by hand
 /// there, because what they mean depends on the result.
 inline constexpr std::tuple kConflictColumns = std::tuple_cat(

@@ -105,7 +105,7 @@ inline constexpr std::tuple kConvertFields{
           .option = "--strict",
           .group = OptionGroup::kOutput,
           .help = "Treat warnings as errors: all are shown, and no store is written (exit code 3)",
-          .doc = "Raises InputError where anything is warned of."},
+          .doc = "Treats warnings as errors: raises InputError."},
     Field{.member = &ConvertOptions::overwrite,
           .key = "overwrite",
           .option = "--force",

@@ -57,7 +57,6 @@ struct Field {
   bool is_required = false;    ///< whether every question has to give it
   bool is_of_budget = false;   ///< whether only a query with an error budget may change the default
   bool is_always_listed = false;  ///< whether lists of a question name it also where not set
-  bool is_in_results = true;      ///< whether results and reports keep it
   /// Whether it comes from campaign.json, and not from the campaign itself.
   bool is_in_campaigns = true;
 

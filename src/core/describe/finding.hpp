@@ -1,5 +1,7 @@
 #pragma once
 
+#include <tuple>
+
 #include "core/describe/field.hpp"
 
 namespace clearway {
@@ -21,5 +23,13 @@ struct FindingColumn {
   const Type& of(const Row& row) const { return row.*member; }
   Type& of(Row& row) const { return row.*member; }
 };
+
+/// Where a stretch of the path begins and ends.
+template <typename Row>
+inline constexpr std::tuple kChainagesOfStretch{
+    FindingColumn{
+        .member = &Row::chainage_from, .key = "chainage_from", .doc = "Metres along the path."},
+    FindingColumn{
+        .member = &Row::chainage_to, .key = "chainage_to", .doc = "Metres along the path."}};
 
 }  // namespace clearway

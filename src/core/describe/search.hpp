@@ -74,7 +74,7 @@ inline constexpr Field kStrict{
     .option = "--strict",
     .group = OptionGroup::kOutput,
     .help = "Treat warnings as errors: nothing is searched (exit code 3)",
-    .doc = "Raises InputError where anything is warned of, and searches nothing."};
+    .doc = "Treats warnings as errors: raises InputError, and searches nothing."};
 
 /// What only programs say, which have read the inputs themselves.
 inline constexpr std::tuple kCallerFields{

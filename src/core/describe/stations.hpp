@@ -9,53 +9,52 @@ namespace clearway {
 
 /// The columns of a stretch of the path, in the order of its files, which end with the overthrow of
 /// each body and the doubts.
-inline constexpr std::tuple kStationColumns{
-    FindingColumn{.member = &StationRow::chainage_from,
-                  .key = "chainage_from",
-                  .doc = "Metres along the path."},
-    FindingColumn{
-        .member = &StationRow::chainage_to, .key = "chainage_to", .doc = "Metres along the path."},
-    FindingColumn{
-        .member = &StationRow::station_from,
-        .key = "station_from",
-        .doc = "Station along the alignment at chainage_from, metres; None unless the labels "
-               "have stations."},
-    FindingColumn{.member = &StationRow::station_to,
-                  .key = "station_to",
-                  .doc = "Station along the alignment at chainage_to, metres, or None."},
-    FindingColumn{.member = &StationRow::least,
-                  .key = "least",
-                  .doc = "The point that is nearest of all whose nearest pose is on the stretch: a "
-                         "FoundPlace, or None."},
-    FindingColumn{.member = &StationRow::left,
-                  .key = "left",
-                  .doc = "The nearest of those to the left of their body's box, or None."},
-    FindingColumn{.member = &StationRow::right,
-                  .key = "right",
-                  .doc = "The nearest of those to the right of their body's box, or None."},
-    FindingColumn{.member = &StationRow::above,
-                  .key = "above",
-                  .doc = "The nearest of those above their body's box, or None."},
-    FindingColumn{.member = &StationRow::verdict,
-                  .key = "verdict",
-                  .doc = "'clear', 'conflict' or 'undecided'."},
-    FindingColumn{.member = &StationRow::reasons,
-                  .key = "reasons",
-                  .doc = "Why the verdict is undecided: a list such as ['near'].",
-                  .is_in_files = false},
-    FindingColumn{
-        .member = &StationRow::doubts,
-        .key = "doubts",
-        .doc = "The codes of the warnings for which 'question-in-doubt' is among the reasons: a "
-               "list such as ['leaves-scan'].",
-        .is_in_files = false},
-    FindingColumn{.member = &StationRow::is_searched,
-                  .key = "searched",
-                  .doc = "Whether the whole vehicle was searched on all of the stretch.",
-                  .is_in_files = false},
-    FindingColumn{.member = &StationRow::overthrow,
-                  .key = "overthrow",
-                  .doc = "A list of Overthrow, one for each body of StationTable.bodies.",
-                  .is_in_files = false}};
+inline constexpr std::tuple kStationColumns = std::tuple_cat(
+    kChainagesOfStretch<StationRow>,
+    std::tuple{
+        FindingColumn{
+            .member = &StationRow::station_from,
+            .key = "station_from",
+            .doc = "Station along the alignment at chainage_from, metres; None unless the labels "
+                   "have stations."},
+        FindingColumn{.member = &StationRow::station_to,
+                      .key = "station_to",
+                      .doc = "Station along the alignment at chainage_to, metres, or None."},
+        FindingColumn{
+            .member = &StationRow::least,
+            .key = "least",
+            .doc = "The point that is nearest of all whose nearest pose is on the stretch: a "
+                   "FoundPlace, or None."},
+        FindingColumn{.member = &StationRow::left,
+                      .key = "left",
+                      .doc = "The nearest of those to the left of their body's box, or None."},
+        FindingColumn{.member = &StationRow::right,
+                      .key = "right",
+                      .doc = "The nearest of those to the right of their body's box, or None."},
+        FindingColumn{.member = &StationRow::above,
+                      .key = "above",
+                      .doc = "The nearest of those above their body's box, or None."},
+        FindingColumn{.member = &StationRow::verdict,
+                      .key = "verdict",
+                      .doc = "'clear', 'conflict' or 'undecided'."},
+        FindingColumn{.member = &StationRow::reasons,
+                      .key = "reasons",
+                      .doc = "Why the verdict is undecided: a list such as ['near'].",
+                      .is_in_files = false},
+        FindingColumn{
+            .member = &StationRow::doubts,
+            .key = "doubts",
+            .doc =
+                "The codes of the warnings for which 'question-in-doubt' is among the reasons: a "
+                "list such as ['leaves-scan'].",
+            .is_in_files = false},
+        FindingColumn{.member = &StationRow::is_searched,
+                      .key = "searched",
+                      .doc = "Whether the whole vehicle was searched on all of the stretch.",
+                      .is_in_files = false},
+        FindingColumn{.member = &StationRow::overthrow,
+                      .key = "overthrow",
+                      .doc = "A list of Overthrow, one for each body of StationTable.bodies.",
+                      .is_in_files = false}});
 
 }  // namespace clearway

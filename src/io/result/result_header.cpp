@@ -276,15 +276,13 @@ constexpr std::tuple kSearched{Attribute{"path_length", &SearchedLength::path},
 
 template <typename Struct, typename... Attributes>
 void write_all(const hdf5::Id& file, const std::tuple<Attributes...>& list, const Struct& from) {
-  std::apply([&](const auto&... one) { (write_value(file, one.name, from.*one.member), ...); },
-             list);
+  for_each_field(list, [&](const auto& one) { write_value(file, one.name, from.*one.member); });
 }
 
 template <typename Struct, typename... Attributes>
 void read_all(const hdf5::Id& file, const std::string& name, const std::tuple<Attributes...>& list,
               Struct& to) {
-  std::apply([&](const auto&... one) { (read_value(file, one.name, name, to.*one.member), ...); },
-             list);
+  for_each_field(list, [&](const auto& one) { read_value(file, one.name, name, to.*one.member); });
 }
 
 std::string lines_of(const std::vector<std::string>& texts) {
