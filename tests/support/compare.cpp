@@ -1,0 +1,178 @@
+#include "support/compare.hpp"
+
+#include <cmath>
+#include <sstream>
+
+namespace clearway::test {
+
+namespace {
+
+constexpr std::string_view kGap = " ... ";
+
+std::string place_of(const Caller& caller) {
+  return std::string(caller.file_name()) + ":" + std::to_string(caller.line()) + ":\n";
+}
+
+/// Digits from which the number can be read again.
+std::string shown(double number) {
+  std::ostringstream out;
+  out.precision(17);
+  out << number;
+  return out.str();
+}
+std::string shown(const Vec3& place) {
+  return "(" + shown(place.x) + ", " + shown(place.y) + ", " + shown(place.z) + ")";
+}
+std::string shown(std::string_view text) { return "\"" + std::string(text) + "\""; }
+std::string shown(const std::string& text) { return shown(std::string_view(text)); }
+std::string shown(bool value) { return value ? "true" : "false"; }
+template <std::unsigned_integral Number>
+std::string shown(Number number) {
+  return std::to_string(number);
+}
+std::string shown(WholeNumber number) {
+  return (number.is_negative ? "-" : "") + std::to_string(number.magnitude);
+}
+/// All elements of a list, or its first 100.
+template <typename List>
+std::string shown_list(const List& list) {
+  constexpr std::size_t kMost = 100;
+  std::string text = std::to_string(list.size()) + " elements {";
+  for (std::size_t i = 0; i < list.size() && i < kMost; ++i) {
+    text += (i == 0 ? "" : ", ") + shown(list[i]);
+  }
+  return text + (list.size() > kMost ? ", ...}" : "}");
+}
+
+void check(bool holds, const std::string& found, const std::string& expected,
+           const Caller& caller) {
+  if (holds) {
+    SUCCEED();
+  } else {
+    fail_check("found:    " + found + "\nexpected: " + expected, caller);
+  }
+}
+
+template <typename List>
+void check_equal_lists(const List& found, const List& expected, const Caller& caller) {
+  if (found.size() == expected.size()) {
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (found[i] == expected[i]) continue;
+      fail_check("element " + std::to_string(i) + " differs\nfound:    " + shown_list(found) +
+                     "\nexpected: " + shown_list(expected),
+                 caller);
+      return;
+    }
+    SUCCEED();
+  } else {
+    fail_check("found:    " + shown_list(found) + "\nexpected: " + shown_list(expected), caller);
+  }
+}
+
+}  // namespace
+
+RowName::RowName(std::string_view name, const Caller& caller)
+    : message_(Catch::MessageBuilder("row",
+                                     Catch::SourceLineInfo(caller.file_name(), caller.line()),
+                                     Catch::ResultWas::Info)
+               << "row " << shown(name)) {}
+
+void fail_check(const std::string& text, const Caller& caller) {
+  FAIL_CHECK(place_of(caller) + text);
+}
+
+void check_says(std::string_view text, std::string_view words, const Caller& caller) {
+  if (words.empty()) {
+    check(text.empty(), shown(text), "an empty text", caller);
+    return;
+  }
+  std::size_t from = 0;
+  for (std::string_view rest = words; !rest.empty();) {
+    const std::string_view part = rest.substr(0, rest.find(kGap));
+    const std::size_t at = text.find(part, from);
+    if (at == text.npos) {
+      fail_check(
+          "found:    " + shown(text) + "\nexpected: " + shown(words) + "\nmissing:  " + shown(part),
+          caller);
+      return;
+    }
+    from = at + part.size();
+    rest.remove_prefix(std::min(rest.size(), part.size() + kGap.size()));
+  }
+  SUCCEED();
+}
+
+std::string codes_of(const std::vector<Message>& messages) {
+  std::string codes;
+  for (const Message& message : messages) {
+    const bool warns = message.severity == Message::Severity::kWarning;
+    codes += (codes.empty() ? "" : ", ") + std::string(warns ? "" : "note ") + message.code;
+  }
+  return codes;
+}
+
+void check_lacks(std::string_view text, std::string_view part, const Caller& caller) {
+  check(text.find(part) == text.npos, shown(text), "a text without " + shown(part), caller);
+}
+
+void check_near(double found, double expected, double tolerance, const Caller& caller) {
+  check(std::abs(found - expected) <= tolerance, shown(found),
+        shown(expected) + " within " + shown(tolerance), caller);
+}
+
+void check_near(const Vec3& found, const Vec3& expected, double tolerance, const Caller& caller) {
+  check(std::abs(found.x - expected.x) <= tolerance &&
+            std::abs(found.y - expected.y) <= tolerance &&
+            std::abs(found.z - expected.z) <= tolerance,
+        shown(found), shown(expected) + " within " + shown(tolerance), caller);
+}
+
+void check_near(std::span<const double> found, const std::vector<double>& expected,
+                double tolerance, const Caller& caller) {
+  bool holds = found.size() == expected.size();
+  for (std::size_t i = 0; holds && i < found.size(); ++i) {
+    holds = std::abs(found[i] - expected[i]) <= tolerance;
+  }
+  check(holds, shown_list(found), shown_list(expected) + " within " + shown(tolerance), caller);
+}
+
+void check_equal(double found, double expected, const Caller& caller) {
+  check(found == expected, shown(found), shown(expected), caller);
+}
+void check_equal(std::string_view found, std::string_view expected, const Caller& caller) {
+  check(found == expected, shown(found), shown(expected), caller);
+}
+void check_equal_whole(WholeNumber found, WholeNumber expected, const Caller& caller) {
+  check(found.magnitude == expected.magnitude && found.is_negative == expected.is_negative,
+        shown(found), shown(expected), caller);
+}
+void check_equal(const std::vector<std::string>& found, const std::vector<std::string>& expected,
+                 const Caller& caller) {
+  check_equal_lists(found, expected, caller);
+}
+void check_equal(const std::vector<double>& found, const std::vector<double>& expected,
+                 const Caller& caller) {
+  check_equal_lists(found, expected, caller);
+}
+void check_equal(const std::vector<bool>& found, const std::vector<bool>& expected,
+                 const Caller& caller) {
+  check_equal_lists(found, expected, caller);
+}
+void check_equal(const std::vector<std::uint8_t>& found, const std::vector<std::uint8_t>& expected,
+                 const Caller& caller) {
+  check_equal_lists(found, expected, caller);
+}
+void check_equal(const std::vector<std::uint32_t>& found,
+                 const std::vector<std::uint32_t>& expected, const Caller& caller) {
+  check_equal_lists(found, expected, caller);
+}
+void check_equal(const std::vector<std::uint64_t>& found,
+                 const std::vector<std::uint64_t>& expected, const Caller& caller) {
+  check_equal_lists(found, expected, caller);
+}
+void check_equal(const std::vector<Vec3>& found, const std::vector<Vec3>& expected,
+                 const Caller& caller) {
+  check_equal_lists(found, expected, caller);
+}
+
+}  // namespace clearway::test
