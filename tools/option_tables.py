@@ -5,22 +5,35 @@
     option_tables.py PROGRAM PAGE... --check  says which are stale
 
 A table stands between two lines: <!-- options of COMMAND: GROUP --> and <!-- end of options -->.
-Without a group it has all options of the command that are in no other table of the page.
+Without a group it has all options of the command that are in no other table of the page. Options
+that another command has with the same text, such as those of the trajectory, share one row, which
+names that command.
 """
 
 import re
 import sys
 from pathlib import Path
 
-from prose.program import Program
+from prose.program import OPTION, Program
 
 TABLE = re.compile(r"<!-- options of ([^:]*?)(?:: (.*?))? -->\n(.*?)<!-- end of options -->", re.S)
 
 
-def row(name, text):
-    """A row of the table, from what the help has on its left and right side."""
+# The commands to which the tables of others refer, in this order.
+BASES = ("clearway run", "clearway convert", "clearway conflicts", "clearway report")
+ALWAYS_SHOWN = ("--force", "--json")
+
+
+def in_code(found, options):
+    """An option as a code span; that of another program with its name, as in `sbatch --array`."""
+    before = found[1] or ""
+    return f"{before}`{found[2]}`" if found[2] in options else f"`{before}{found[2]}`"
+
+
+def row(name, text, options):
+    """A row of the table, from what the help has on its left and right side. options: of the program."""
     flags, _, rest = name.partition(" ")
-    value = re.match(r"(?!REQUIRED|Excludes:|\.\.\.)[^\s:={]+", rest)
+    value = re.match(r"(?!REQUIRED|Excludes:|Needs:|\.\.\.)[^\s:={]+", rest)
     usual = re.search(r"(?: \(default: ([^()]*(?:\([^()]*\))?[^()]*)\))", text)
     given = re.search(r"=(\S+)", rest)
     default = ("required" if re.search(r"\bREQUIRED\b", rest) else usual[1] if usual else
@@ -37,11 +50,35 @@ def row(name, text):
     if limits := re.search(r" in \[(\S+) - (\S+)\]", rest):
         meaning += (f"; {limits[1]} to {limits[2]}" if int(limits[2]) < 1_000_000 else
                     f"; at least {limits[1]}")
-    meaning = re.sub(r"(?<![\w`-])(--[a-z][\w-]*)", r"`\1`", meaning).replace("|", r"\|")
+    meaning = re.sub(rf"(\w+ )?({OPTION.pattern})", lambda found: in_code(found, options), meaning)
+    meaning = meaning.replace("|", r"\|")
     names = [f"`{flag}`" for flag in flags.split(",")]
     if value and flags.startswith("-"):
         names[-1] = f"{names[-1][:-1]} {value[0]}`"
     return f"| {', '.join(names)} | {default} | {meaning} |\n"
+
+
+def shared_row(options, base):
+    names = ", ".join(f"`{option}`" for option in options)
+    return f"| {names} | | as in [`{base}`](#{base.replace(' ', '-')}) |\n"
+
+
+def rows(program, command, entries):
+    """A row for each entry, and one for all that a command of BASES has with the same row."""
+    bases = BASES[:BASES.index(command)] if command in BASES else BASES
+    bases = [base for base in bases if base in program.entries]
+    options = program.all_options()
+    of_base = {base: {row(name, text, options) for _, name, text in program.entries[base]}
+               for base in bases}
+    own, shared = "", {base: [] for base in bases}
+    for _, name, text in entries:
+        line, option = row(name, text, options), name.split()[0].split(",")[-1]
+        base = next((base for base in bases if line in of_base[base]), None)
+        if base is None or "| required |" in line or option in ALWAYS_SHOWN:
+            own += line
+        else:
+            shared[base].append(option)
+    return own + "".join(shared_row(names, base) for base, names in shared.items() if names)
 
 
 def tables(program, page):
@@ -55,10 +92,11 @@ def tables(program, page):
                    and (entry[0] == group if group else (command, entry[0]) not in placed)]
         if not entries:
             raise SystemExit(f"option_tables.py: {command} has no options of {group}")
-        head = f"| {group or 'option'} | default | meaning |\n|---|---|---|\n"
-        rows = "".join(row(name, text) for _, name, text in entries)
+        words = command.split()
+        title = group or (f"option of `{words[-1]}`" if len(words) > 2 else "option")
+        head = f"| {title} | default | meaning |\n|---|---|---|\n"
         mark = f"<!-- options of {command}{': ' + group if group else ''} -->\n"
-        return f"{mark}{head}{rows}<!-- end of options -->"
+        return f"{mark}{head}{rows(program, command, entries)}<!-- end of options -->"
     return TABLE.sub(table, page)
 
 
