@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the tables of options of the guide, from the program's help.
+"""Writes the tables of commands and options of the guide, from the program's help.
 
     option_tables.py PROGRAM PAGE...          writes them
     option_tables.py PROGRAM PAGE... --check  says which are stale
@@ -7,7 +7,7 @@
 A table stands between two lines: <!-- options of COMMAND: GROUP --> and <!-- end of options -->.
 Without a group it has all options of the command that are in no other table of the page. Options
 that another command has with the same text, such as those of the trajectory, share one row, which
-names that command.
+names that command. <!-- commands of PROGRAM --> begins a table of the program's commands.
 """
 
 import re
@@ -16,6 +16,7 @@ from pathlib import Path
 
 from prose.program import OPTION, Program
 
+COMMANDS = re.compile(r"<!-- commands of (.*?) -->\n(.*?)<!-- end of commands -->", re.S)
 TABLE = re.compile(r"<!-- options of ([^:]*?)(?:: (.*?))? -->\n(.*?)<!-- end of options -->", re.S)
 
 
@@ -30,10 +31,25 @@ def in_code(found, options):
     return f"{before}`{found[2]}`" if found[2] in options else f"`{before}{found[2]}`"
 
 
+def with_options_in_code(text, options):
+    return re.sub(rf"(\w+ )?({OPTION.pattern})", lambda found: in_code(found, options), text)
+
+
+def commands(program):
+    """The table of the program's commands, as its help describes them."""
+    options = program.all_options()
+    rows = "".join(f"| `{program.name} {name}` | {text[:1].lower()}{with_options_in_code(text[1:], options)} |\n"
+                   for section, name, text in program.entries[program.name]
+                   if section == "Subcommands")
+    return (f"<!-- commands of {program.name} -->\n| command | what it does |\n|---|---|\n"
+            f"{rows}<!-- end of commands -->")
+
+
 def row(name, text, options):
     """A row of the table, from what the help has on its left and right side. options: of the program."""
     flags, _, rest = name.partition(" ")
     value = re.match(r"(?!REQUIRED|Excludes:|Needs:|\.\.\.)[^\s:={]+", rest)
+    text = text.replace("|", r"\|")
     usual = re.search(r"(?: \(default: ([^()]*(?:\([^()]*\))?[^()]*)\))", text)
     given = re.search(r"=(\S+)", rest)
     default = ("required" if re.search(r"\bREQUIRED\b", rest) else usual[1] if usual else
@@ -50,9 +66,8 @@ def row(name, text, options):
     if limits := re.search(r" in \[(\S+) - (\S+)\]", rest):
         meaning += (f"; {limits[1]} to {limits[2]}" if int(limits[2]) < 1_000_000 else
                     f"; at least {limits[1]}")
-    meaning = re.sub(rf"(\w+ )?({OPTION.pattern})", lambda found: in_code(found, options), meaning)
-    meaning = meaning.replace("|", r"\|")
-    names = [f"`{flag}`" for flag in flags.split(",")]
+    meaning = with_options_in_code(meaning, options)
+    names = [f"`{flag}`" for flag in re.sub(r"\{.*", "", flags).split(",")]
     if value and flags.startswith("-"):
         names[-1] = f"{names[-1][:-1]} {value[0]}`"
     return f"| {', '.join(names)} | {default} | {meaning} |\n"
@@ -97,7 +112,7 @@ def tables(program, page):
         head = f"| {title} | default | meaning |\n|---|---|---|\n"
         mark = f"<!-- options of {command}{': ' + group if group else ''} -->\n"
         return f"{mark}{head}{rows(program, command, entries)}<!-- end of options -->"
-    return TABLE.sub(table, page)
+    return COMMANDS.sub(lambda _: commands(program), TABLE.sub(table, page))
 
 
 def main():
