@@ -15,8 +15,9 @@ check_format() {
 
 # The sources of a folder are read as one, which takes a fraction of the time.
 check_tidy() {
-  if ! command -v clang-tidy >/dev/null; then
-    echo "clang-tidy is not installed: the sources are not checked with it."
+  # Older ones do not know the deduction of template arguments of aggregates.
+  if ! command -v clang-tidy-19 >/dev/null; then
+    echo "clang-tidy-19 is not installed: the sources are not checked with it."
     return
   fi
   source tools/setup.sh
@@ -29,7 +30,7 @@ import json
 for entry in json.load(open("build/lint/compile_commands.json")):
     print(entry["file"])')
   printf '%s\0' "${sources[@]}" |
-    nice -n 5 xargs -0 -P "$(nproc)" -n 1 clang-tidy -p build/lint --quiet \
+    nice -n 5 xargs -0 -P "$(nproc)" -n 1 clang-tidy-19 -p build/lint --quiet \
       --checks=-bugprone-suspicious-include --warnings-as-errors='*'
   echo "clang-tidy: clean"
 }
