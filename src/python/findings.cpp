@@ -36,7 +36,8 @@ std::vector<double> stations_of(const PoseLabels* labels) {
 void add_conflict(py::module_& module) {
   py::class_<Conflict> conflict(
       module, "Conflict",
-      "A place where the vehicle does not fit: colliding points that hang together.");
+      "A place where the vehicle does not fit: colliding points that hang together. What has no "
+      "value is None.");
   add_properties(conflict, kConflictColumns);
   conflict.def("__repr__", [](const Conflict& c) {
     return py::str("<Conflict {}: {} points, {:.3f} to {:.3f} m, {}>")
@@ -141,7 +142,8 @@ void add_station_rows(py::module_& module) {
                     "The greatest overthrow of the body's two ends, outwards: metres, or None.")
       .def_readonly("middle", &Overthrow::middle,
                     "The greatest overthrow of the body's middle, inwards: metres, or None.");
-  py::class_<StationRow> row(module, "StationRow", "A stretch of the path.");
+  py::class_<StationRow> row(module, "StationRow",
+                             "A stretch of the path. What has no value is None.");
   add_properties(row, kStationColumns);
   row.def("__repr__", [](const StationRow& stretch) {
     return py::str("<StationRow {:.2f} to {:.2f} m: {}>")

@@ -30,8 +30,10 @@ std::string words_of(const StretchShift& row) {
 }
 
 void add_tables(py::module_& module) {
-  py::class_<StretchShift> stretch(module, "StretchShift",
-                                   "The least shift that frees a stretch of the path.");
+  py::class_<StretchShift> stretch(
+      module, "StretchShift",
+      "The least shift that frees a stretch of the path. What has no value "
+      "is None.");
   add_properties(stretch, kShiftColumns);
   stretch.def("__repr__", [](const StretchShift& row) { return text("<" + words_of(row) + ">"); });
   py::class_<ShiftTable>(module, "ShiftTable", "The shifts of a path and of its conflicts.")

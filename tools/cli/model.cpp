@@ -198,7 +198,7 @@ void add_outline(CLI::App& model) {
       ->required();
   command->add_flag("--mirror", options->how.mirror,
                     "The file has height,half_width of the one half of a symmetric outline");
-  add_model_unit(*command, "--unit", options->how.unit);
+  add_unit_alone(*command, "--unit", options->how.unit);
   add_output(*command, *options);
   command->footer("Example: clearway model outline gauge.csv --mirror --x=-2,28 -o gauge.off");
   command->callback([options] {
@@ -256,7 +256,7 @@ void add_model(CLI::App& program) {
       *command, "--spacing,--model-spacing", options->how.spacing,
       "Spacing of the points on a mesh: no place of its surface is farther than this from "
       "one");
-  add_model_unit(*command, "--unit,--model-unit", options->how.unit);
+  add_unit_alone(*command, "--unit,--model-unit", options->how.unit);
   command
       ->add_flag("--vertices,--model-vertices", options->how.vertices_only,
                  "Take the vertices of a mesh alone, not its surface")

@@ -127,12 +127,13 @@ void add_report_inputs(CLI::App& command, ReportCommand& options) {
   add_searched_inputs(command, "Result of clearway run", options.result, options.environment,
                       options.model, options.vehicle, options.trajectory);
   command
-      .add_option("--section", options.section,
-                  "Section of clearway section find on the same path, to be shown on the page, too")
+      .add_option(
+          "--section", options.section,
+          "Section of clearway section find on the same path, which the page then shows too")
       ->type_name("FILE");
   command
       .add_option("--shifts", options.shifts,
-                  "Shifts that free the path and its conflicts, for the page to tell: JSON of "
+                  "Shifts that free the path and its conflicts, which the page then names: JSON of "
                   "clearway shift -o")
       ->type_name("FILE");
   command.add_option("-o,--output", options.output, "The page, an HTML file")

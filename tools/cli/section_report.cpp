@@ -37,7 +37,7 @@ CLI::Option* add_load_options(CLI::App& command, LoadInput& load, LengthOptions&
               FieldRange::kFromZero);
   command.add_flag("--mirror", load.how.mirror,
                    "The file has height,half_width of the one half of a symmetric outline");
-  add_model_unit(command, "--unit", load.how.unit);
+  add_outline_unit(command, load.how.unit);
   return outline;
 }
 

@@ -7,20 +7,6 @@
 
 namespace clearway {
 
-/// The stations of a stretch of the path, which rows have where the labels of the poses do.
-template <typename Row>
-inline constexpr std::tuple kStationsOfStretch{
-    FindingColumn{
-        .member = &Row::station_from,
-        .key = "station_from",
-        .doc = "Station along the alignment of the pose of chainage_from, metres; None unless "
-               "the labels have stations.",
-        .is_left_out = true},
-    FindingColumn{.member = &Row::station_to,
-                  .key = "station_to",
-                  .doc = "Station along the alignment of the pose of chainage_to, metres, or None.",
-                  .is_left_out = true}};
-
 /// The columns of a conflict, in the order of its files. `certain` and `body` are written by hand
 /// there, because what they mean depends on the result.
 inline constexpr std::tuple kConflictColumns = std::tuple_cat(
@@ -39,7 +25,7 @@ inline constexpr std::tuple kConflictColumns = std::tuple_cat(
                       .doc = "The box around the conflict's points, in metres."},
         FindingColumn{.member = &Conflict::centroid,
                       .key = "centroid",
-                      .doc = "The mean of the conflict's points: 3 float64, metres."},
+                      .doc = "The mean of the conflict's points, in metres."},
         FindingColumn{.member = &Conflict::first_pose,
                       .key = "first_pose",
                       .doc = "The least index of a pose that touches one of its points."},
@@ -48,80 +34,73 @@ inline constexpr std::tuple kConflictColumns = std::tuple_cat(
             .key = "last_pose",
             .doc = "The greatest index of a pose that touches one of its points; between poses, "
                    "the start of the last way that does."}},
-    kChainagesOfStretch<Conflict>, kStationsOfStretch<Conflict>,
+    kChainagesOfStretch<Conflict>, kStationsOfStretch<Conflict, true>,
     std::tuple{
-        FindingColumn{
-            .member = &Conflict::least_distance,
-            .key = "least_distance",
-            .doc = "The least distance between the conflict and the model, metres. None where "
-                   "the result has no clearances."},
+        FindingColumn{.member = &Conflict::least_distance,
+                      .key = "least_distance",
+                      .doc = "The least distance between the conflict and the model, in metres, "
+                             "below 0 inside a solid; only where the result has clearances."},
         FindingColumn{.member = &Conflict::nearest_pose,
                       .key = "nearest_pose",
-                      .doc =
-                          "The pose at which the conflict has its least distance, or None without "
-                          "clearances."},
+                      .doc = "The pose at which the conflict has its least distance; only where "
+                             "the result has clearances."},
         FindingColumn{.member = &Conflict::nearest_source,
                       .key = "nearest_source",
-                      .doc =
-                          "The source index of the point with the least distance, or None without "
-                          "clearances."},
+                      .doc = "The source index of the point with the least distance; only where "
+                             "the result has clearances."},
         FindingColumn{.member = &Conflict::nearest_point,
                       .key = "nearest_point",
                       .doc =
                           "The point with the least distance: 3 float64, metres, or None without "
                           "clearances.",
                       .is_in_files = false},
+        FindingColumn{.member = &Conflict::encroachment,
+                      .key = "encroachment",
+                      .doc = "By how much the conflict is closer than allowed: the radius less "
+                             "least_distance, in metres; only where the result has clearances."},
         FindingColumn{
-            .member = &Conflict::encroachment,
-            .key = "encroachment",
-            .doc = "By how much the conflict is closer than allowed: radius - least_distance, "
-                   "metres, or None without clearances."},
-        FindingColumn{.member = &Conflict::side,
-                      .key = "side",
-                      .doc =
-                          "On which side of the model the conflict is: 'left', 'right', 'above', "
-                          "'below', 'front', 'behind' or 'unknown'."},
-        FindingColumn{
-            .member = &Conflict::lateral,
-            .key = "lateral",
-            .doc = "How far the conflict is to the left of the model's pose, or of its body's "
-                   "with bodies=; metres, negative to the right, or None."},
+            .member = &Conflict::side,
+            .key = "side",
+            .doc = "The side of the model on which the points lie that are touched first: 'left', "
+                   "'right', 'above', 'below', 'front', 'behind' or 'unknown'."},
+        FindingColumn{.member = &Conflict::lateral,
+                      .key = "lateral",
+                      .doc = "How far the nearest point, or without clearances the first one that "
+                             "is touched, is to the left of the pose's position, in metres; below "
+                             "0 to the right. Of a vehicle, the pose is that of the body."},
         FindingColumn{.member = &Conflict::height,
                       .key = "height",
-                      .doc =
-                          "How far the conflict is above the model's pose, or of its body's with "
-                          "bodies=; metres, or None."},
+                      .doc = "How far the same point is above the pose's position, in metres; "
+                             "below 0 under it."},
         FindingColumn{.member = &Conflict::group,
                       .key = "group",
-                      .doc =
-                          "The smallest source index of the group that the conflict was cut from; "
-                          "conflicts of one group have the same."},
+                      .doc = "The smallest source index of the group that the conflict was cut "
+                             "from; conflicts of one group have the same."},
         FindingColumn{
             .member = &Conflict::depth,
             .key = "depth",
-            .doc = "How deep the conflict's deepest point is inside the model, metres; 0 where "
-                   "none is. None where the model has no solids, or the result no clearances."},
-        FindingColumn{
-            .member = &Conflict::points_inside,
-            .key = "points_inside",
-            .doc = "How many of the conflict's points are inside the model at any pose, or None "
-                   "as for depth."},
+            .doc =
+                "How deep the conflict's deepest point is inside the model at any pose, in metres; "
+                "0 where none is. Only where the model has solids and the result clearances."},
+        FindingColumn{.member = &Conflict::points_inside,
+                      .key = "points_inside",
+                      .doc = "How many of the conflict's points are inside the model at any pose; "
+                             "only where there is a depth."},
         FindingColumn{
             .member = &Conflict::obstacle_chainage,
             .key = "obstacle_chainage",
-            .doc = "Station of the obstacle itself: the chainage of the pose that it is seen "
-                   "from, plus how far ahead of it the nearest point lies, metres, or None."},
-        FindingColumn{
-            .member = &Conflict::shift_left,
-            .key = "shift_left",
-            .doc = "How far the vehicle has to be shifted to the left so that the conflict's "
-                   "own points are free, metres. None: 2 m are too little, or no model was "
-                   "given."},
+            .doc = "How far along the path the nearest point of the obstacle itself stands, in "
+                   "metres, whichever part of the vehicle meets it and whichever way it faces."},
+        FindingColumn{.member = &Conflict::shift_left,
+                      .key = "shift_left",
+                      .doc = "How far the vehicle has to be shifted to the left so that the "
+                             "conflict's own points are free, in metres. It has no value where 2 m "
+                             "are not enough, or where no model was given."},
         FindingColumn{
             .member = &Conflict::shift_right,
             .key = "shift_right",
-            .doc = "How far the vehicle has to be shifted to the right so that the conflict's "
-                   "own points are free, metres, or None as for shift_left."},
+            .doc = "How far the vehicle has to be shifted to the right so that the conflict's own "
+                   "points are free, in metres, or no value as for shift_left."},
         FindingColumn{
             .member = &Conflict::certain,
             .key = "certain",
@@ -154,6 +133,6 @@ inline constexpr std::tuple kSmallGroupColumns = std::tuple_cat(
         FindingColumn{.member = &SmallGroup::last_pose,
                       .key = "last_pose",
                       .doc = "The greatest index of a pose that touches one of its points."}},
-    kChainagesOfStretch<SmallGroup>, kStationsOfStretch<SmallGroup>);
+    kChainagesOfStretch<SmallGroup>, kStationsOfStretch<SmallGroup, true>);
 
 }  // namespace clearway

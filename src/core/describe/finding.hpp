@@ -14,7 +14,7 @@ struct FindingColumn {
 
   Type Row::*member;
   const char* key;          ///< name in files, on pages and in Python
-  const char* doc;          ///< documentation in Python
+  const char* doc;          ///< documentation in Python and in the guide
   bool is_in_files = true;  ///< whether CSV, JSON, GeoJSON, GeoPackage and pages have it
   /// Whether these leave it out where a row has no value, instead of saying that it has
   /// none. Then either all rows of a table have a value or none has.
@@ -27,9 +27,27 @@ struct FindingColumn {
 /// Where a stretch of the path begins and ends.
 template <typename Row>
 inline constexpr std::tuple kChainagesOfStretch{
-    FindingColumn{
-        .member = &Row::chainage_from, .key = "chainage_from", .doc = "Metres along the path."},
-    FindingColumn{
-        .member = &Row::chainage_to, .key = "chainage_to", .doc = "Metres along the path."}};
+    FindingColumn{.member = &Row::chainage_from,
+                  .key = "chainage_from",
+                  .doc = "Where the stretch begins, in metres along the path."},
+    FindingColumn{.member = &Row::chainage_to,
+                  .key = "chainage_to",
+                  .doc = "Where the stretch ends, in metres along the path."}};
+
+/// The stations of a stretch of the path, which rows have where the labels of the poses do.
+template <typename Row, bool kIsLeftOut = false>
+inline constexpr std::tuple kStationsOfStretch{
+    FindingColumn{.member = &Row::station_from,
+                  .key = "station_from",
+                  .doc =
+                      "The station of chainage_from along the alignment, in metres; only where the "
+                      "trajectory has stations.",
+                  .is_left_out = kIsLeftOut},
+    FindingColumn{.member = &Row::station_to,
+                  .key = "station_to",
+                  .doc =
+                      "The station of chainage_to along the alignment, in metres; only where the "
+                      "trajectory has stations.",
+                  .is_left_out = kIsLeftOut}};
 
 }  // namespace clearway

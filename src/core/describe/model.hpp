@@ -77,6 +77,15 @@ inline constexpr std::tuple kShapeOfModel{
                "metres; for\n    example wheels on the ground. Not for 'solid'.",
         .range = FieldRange::kAny}};
 
+/// The unit of a model's file for commands that have no environment.
+inline constexpr Field kUnitWithoutEnvironment{
+    .member = &ModelOptions::unit,
+    .key = "unit",
+    .option = "--unit",
+    .group = OptionGroup::kUnits,
+    .help = "Unit of the file; ft and ift are the international foot, us-ft the US survey foot",
+    .usual = "m"};
+
 /// The axes of a model's file, to which it is turned when it is read.
 inline constexpr std::tuple kTurnOfModel{
     Field{.member = &ModelOptions::forward,

@@ -13,17 +13,8 @@ inline constexpr std::tuple kShiftColumns = std::tuple_cat(
         FindingColumn{.member = &StretchShift::conflict,
                       .key = "conflict",
                       .doc = "The id of the conflict whose stretch it is; 0 for the whole path."}},
-    kChainagesOfStretch<StretchShift>,
+    kChainagesOfStretch<StretchShift>, kStationsOfStretch<StretchShift>,
     std::tuple{
-        FindingColumn{
-            .member = &StretchShift::station_from,
-            .key = "station_from",
-            .doc = "Station along the alignment of the pose of chainage_from, metres; None unless "
-                   "the labels have stations."},
-        FindingColumn{
-            .member = &StretchShift::station_to,
-            .key = "station_to",
-            .doc = "Station along the alignment of the pose of chainage_to, metres, or None."},
         FindingColumn{.member = &StretchShift::first_pose,
                       .key = "first_pose",
                       .doc = "The first pose of the stretch."},
@@ -36,14 +27,13 @@ inline constexpr std::tuple kShiftColumns = std::tuple_cat(
         FindingColumn{
             .member = &StretchShift::shift,
             .key = "shift",
-            .doc = "The shift with the least length that frees the stretch, metres, above 0 to the "
-                   "left. None where no shift that was tried does."},
-        FindingColumn{
-            .member = &StretchShift::least_distance,
-            .key = "least_distance",
             .doc =
-                "The least distance on the shifted stretch, metres. None where nothing is within "
-                "the clearance that the result was asked for, or without a shift."},
+                "The shortest shift that frees the stretch, in metres, above 0 to the left; 0 "
+                "where it is free as it is, and no value where no shift that was tried frees it."},
+        FindingColumn{.member = &StretchShift::least_distance,
+                      .key = "least_distance",
+                      .doc = "The least distance on the shifted stretch, in metres; no value where "
+                             "nothing is within the clearance of the result, or without a shift."},
         FindingColumn{.member = &StretchShift::searches,
                       .key = "searches",
                       .doc = "How many searches it took."},

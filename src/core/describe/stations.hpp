@@ -10,30 +10,21 @@ namespace clearway {
 /// The columns of a stretch of the path, in the order of its files, which end with the overthrow of
 /// each body and the doubts.
 inline constexpr std::tuple kStationColumns = std::tuple_cat(
-    kChainagesOfStretch<StationRow>,
+    kChainagesOfStretch<StationRow>, kStationsOfStretch<StationRow>,
     std::tuple{
-        FindingColumn{
-            .member = &StationRow::station_from,
-            .key = "station_from",
-            .doc = "Station along the alignment at chainage_from, metres; None unless the labels "
-                   "have stations."},
-        FindingColumn{.member = &StationRow::station_to,
-                      .key = "station_to",
-                      .doc = "Station along the alignment at chainage_to, metres, or None."},
-        FindingColumn{
-            .member = &StationRow::least,
-            .key = "least",
-            .doc = "The point that is nearest of all whose nearest pose is on the stretch: a "
-                   "FoundPlace, or None."},
+        FindingColumn{.member = &StationRow::least,
+                      .key = "least",
+                      .doc = "The point that is nearest to the vehicle, of all whose nearest pose "
+                             "is on the stretch."},
         FindingColumn{.member = &StationRow::left,
                       .key = "left",
-                      .doc = "The nearest of those to the left of their body's box, or None."},
+                      .doc = "The nearest of those to the left of their body's box."},
         FindingColumn{.member = &StationRow::right,
                       .key = "right",
-                      .doc = "The nearest of those to the right of their body's box, or None."},
+                      .doc = "The nearest of those to the right of their body's box."},
         FindingColumn{.member = &StationRow::above,
                       .key = "above",
-                      .doc = "The nearest of those above their body's box, or None."},
+                      .doc = "The nearest of those above their body's box."},
         FindingColumn{.member = &StationRow::verdict,
                       .key = "verdict",
                       .doc = "'clear', 'conflict' or 'undecided'."},

@@ -1,8 +1,12 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "core/describe/conflict.hpp"
+#include "core/describe/shift.hpp"
+#include "core/describe/stations.hpp"
 #include "core/messages/message_table.hpp"
 #include "core/messages/remedies.hpp"
 #include "support/generated_text.hpp"
@@ -70,6 +74,16 @@ std::string table_of_remedies() {
   return text;
 }
 
+/// The columns of a table of findings that its files have.
+template <typename... Columns>
+std::string table_of_columns(const std::tuple<Columns...>& columns) {
+  std::string text = "| column | meaning |\n|---|---|\n";
+  for_each_field(columns, [&](const auto& column) {
+    if (column.is_in_files) text += "| " + in_code(column.key) + " | " + column.doc + " |\n";
+  });
+  return text;
+}
+
 }  // namespace
 
 TEST_CASE("the codes of each subject ascend, so each is there once") {
@@ -94,6 +108,13 @@ TEST_CASE("the guide's tables of warnings are those of the table of messages") {
 
 TEST_CASE("the guide's table of remedies is the table of remedies") {
   check_generated(CLEARWAY_GUIDE "/command-line.md", "table of remedies", table_of_remedies());
+}
+
+TEST_CASE("the guide's tables of findings are the lists of their columns") {
+  const std::string page = CLEARWAY_GUIDE "/results.md";
+  check_generated(page, "columns of a conflict", table_of_columns(kConflictColumns));
+  check_generated(page, "columns of a shift", table_of_columns(kShiftColumns));
+  check_generated(page, "columns of a stretch", table_of_columns(kStationColumns));
 }
 
 }  // namespace clearway

@@ -237,8 +237,21 @@ void add_threads_option(CLI::App& command, int& threads) {
       ->check(CLI::Range(static_cast<int>(field.least), static_cast<int>(field.most)));
 }
 
-void add_model_unit(CLI::App& command, const std::string& names, FileUnit& unit) {
-  add_unit_option(command, names, unit, std::get<0>(kShapeOfModel).help_with_default())
+void add_model_unit(CLI::App& command, FileUnit& unit) {
+  const auto& field = std::get<0>(kShapeOfModel);
+  add_unit_option(command, field.option, unit, field.help_with_default())
+      ->group(title_of(field.group));
+}
+
+void add_unit_alone(CLI::App& command, const std::string& names, FileUnit& unit) {
+  add_unit_option(command, names, unit, kUnitWithoutEnvironment.help_with_default())
+      ->group(title_of(kUnitWithoutEnvironment.group));
+}
+
+void add_outline_unit(CLI::App& command, FileUnit& unit) {
+  add_unit_option(command, "--unit", unit,
+                  "Unit of the outline's file; ft is the environment's foot, ift the international "
+                  "and us-ft the US survey foot (default: that of the environment)")
       ->group(title_of(OptionGroup::kUnits));
 }
 

@@ -67,8 +67,14 @@ void add_memory_option(CLI::App& command, std::uint64_t& bytes);
 /// Adds --threads; 0 stands for all cores.
 void add_threads_option(CLI::App& command, int& threads);
 
-/// Adds --model-unit under all of `names`.
-void add_model_unit(CLI::App& command, const std::string& names, FileUnit& unit);
+/// Adds --model-unit.
+void add_model_unit(CLI::App& command, FileUnit& unit);
+
+/// Adds the unit of a file to a command that has no environment, under all of `names`.
+void add_unit_alone(CLI::App& command, const std::string& names, FileUnit& unit);
+
+/// Adds the unit of an outline's file to a command that has an environment.
+void add_outline_unit(CLI::App& command, FileUnit& unit);
 
 /// Adds an option that takes an axis of the model, such as "+y" or "z".
 CLI::Option* add_axis_option(CLI::App& command, const std::string& name, Axis& axis,

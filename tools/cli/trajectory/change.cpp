@@ -157,7 +157,7 @@ void add_change(CLI::App& command, const char* max_motion_help, const Change& ch
       .add_option("--env", options->environment,
                   "The store: says the unit of lengths, and which foot a ft is, and gives the CRS")
       ->type_name("FILE");
-  add_model_unit(command, "--model-unit", options->model_unit);
+  add_model_unit(command, options->model_unit);
   add_turn_options(command, options->model_axes.forward, options->model_axes.up);
   add_trajectory_options(command, options->trajectory, options->lengths);
   command.add_flag("--force", options->force, "Overwrite an existing output");

@@ -156,7 +156,7 @@ void add_trajectory_info(CLI::App& trajectory) {
                            ->add_option("--model", options->model,
                                         "The model: says how far it moves from pose to pose")
                            ->type_name("FILE");
-  add_model_unit(*command, "--model-unit", options->model_unit);
+  add_model_unit(*command, options->model_unit);
   add_turn_options(*command, options->model_axes.forward, options->model_axes.up);
   options->lengths
       .add(*command, "--radius", options->radius,
