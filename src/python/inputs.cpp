@@ -10,6 +10,7 @@
 #include "clearway/convert.hpp"
 #include "clearway/line.hpp"
 #include "core/describe/convert.hpp"
+#include "core/describe/labels.hpp"
 #include "core/describe/trajectory.hpp"
 #include "python/arrays.hpp"
 #include "python/fields.hpp"
@@ -32,26 +33,32 @@ constexpr Choice<CantLine> kCants[] = {{"file", CantLine::kFile},
 constexpr Choice<AxisOrder> kOrders[] = {{"ne", AxisOrder::kNorthingEasting},
                                          {"en", AxisOrder::kEastingNorthing}};
 
+std::string names_of_all_labels() {
+  return names_of_labels([](const auto&) { return true; });
+}
+
+py::array_t<double> label_values(const std::vector<double>& numbers) { return to_array(numbers); }
+
+py::list label_values(const std::vector<std::string>& texts) {
+  py::list out;
+  for (const std::string& each : texts) out.append(text(each));
+  return out;
+}
+
 void add_labels(py::module_& module) {
-  py::class_<PoseLabels>(module, "PoseLabels",
-                         "The times, names and stations that a file gives its poses. Make an "
-                         "empty one for read_trajectory(labels=...), read_alignment(labels=...) "
-                         "or read_line(labels=...).")
-      .def(py::init<>(), "__init__(self)\n--\n\nMake labels that read_trajectory() can fill.")
-      .def_property_readonly(
-          "time", [](const PoseLabels& l) { return to_array(l.time); },
-          "The time of each pose in seconds, as the file counts them: n float64, or empty.")
-      .def_property_readonly(
-          "station", [](const PoseLabels& l) { return to_array(l.station); },
-          "The station of each pose along its alignment or line, metres: n float64, or empty.")
-      .def_property_readonly(
-          "name",
-          [](const PoseLabels& labels) {
-            py::list names;
-            for (const std::string& name : labels.name) names.append(text(name));
-            return names;
-          },
-          "The name or index that the file gives each pose: n texts, or empty.");
+  py::class_<PoseLabels> labels(module, "PoseLabels",
+                                ("The " + names_of_all_labels() +
+                                 " that a file gives its poses. Make an "
+                                 "empty one for read_trajectory(labels=...), "
+                                 "read_alignment(labels=...) or read_line(labels=...).")
+                                    .c_str());
+  labels.def(py::init<>(), "__init__(self)\n--\n\nMake labels that read_trajectory() can fill.");
+  for_each_label([&labels](const auto& label) {
+    labels.def_property_readonly(
+        label.key,
+        [member = label.member](const PoseLabels& given) { return label_values(given.*member); },
+        label.doc);
+  });
 }
 
 void add_read_trajectory(py::module_& module) {
@@ -87,7 +94,8 @@ path: the file.
     store.metres_per_unit(), store.length_unit(), or a name. None: the metre; a file that names
     another unit is refused then.
 messages: a list to which notes and warnings are appended.
-labels: a PoseLabels, which gets the times, names and stations that the file has.)DOC")
+labels: a PoseLabels, which gets the )DOC" +
+       names_of_all_labels() + R"DOC( that the file has.)DOC")
           .c_str());
   add_checks(module, kTrajectoryFields);
 }

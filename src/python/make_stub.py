@@ -77,8 +77,6 @@ TYPES = {
     "MergeReport.warnings": "list[PartWarning]",
     "Store.path": "_Path",
     "Section.path": "_Path",
-    "PoseLabels.time": "_Doubles",
-    "PoseLabels.station": "_Doubles",
     "PoseLabels.name": "list[str]",
     "scale": "_Doubles",
     "offset": "_Doubles",

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "clearway/follow.hpp"
+#include "core/describe/labels.hpp"
 #include "core/geometry/axes.hpp"
 #include "core/trajectory/chainage.hpp"
 
@@ -64,10 +65,12 @@ std::optional<double> bearing_of(const Vec3& direction) {
 Json json_of_place(const ReportFacts& facts, std::size_t pose, const ModelAxes& axes) {
   const Pose& at = facts.poses[pose];
   const double* r = at.rotation;
-  const std::vector<double>& stations = facts.options.labels.station;
   const double start = facts.options.conflicts.chainage_start;
   Json out{{"pose", pose}, {"chainage", start + (pose > 0 ? facts.searched.path : 0)}};
-  if (!stations.empty()) out["station"] = stations[pose];
+  for_each_label({LabelPlace::kBesideChainage}, [&](const auto& label) {
+    const auto& values = label.of(facts.options.labels);
+    if (!values.empty()) out[label.key] = values[pose];
+  });
   out["position"] = at.position();
   const std::optional<Vec3> travel = travel_direction(facts.poses, pose);
   const int line = line_of(axes.forward);

@@ -12,6 +12,7 @@
 
 #include "clearway/vec3.hpp"
 #include "core/describe/conflict.hpp"
+#include "core/describe/labels.hpp"
 #include "core/describe/query.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/util/format.hpp"
@@ -334,9 +335,32 @@ Json json_of(const PageLattice& lattice) {
   return {{"origin", lattice.origin}, {"step", lattice.step}};
 }
 
+/// A label that is a number: how its column counts, and how its values are written.
+Json json_of(const PoseLabel<double>& label, const std::vector<double>& values) {
+  return {{"key", label.key},
+          {"title", label.title},
+          {"unit", symbol_of(label.unit)},
+          {"step", kLabelStep},
+          {"origin", origin_on_page(label, values)}};
+}
+
+Json json_of(const PoseLabel<std::string>& label, const std::vector<std::string>&) {
+  return {{"key", label.key}, {"title", label.title}};
+}
+
+/// The labels that the path has, in the order in which sentences of the page name them.
+Json json_of_labels(const PoseLabels& labels) {
+  Json list = Json::array();
+  for_each_label({LabelPlace::kBesideChainage, LabelPlace::kFirst, LabelPlace::kNext},
+                 [&](const auto& label) {
+                   const auto& values = label.of(labels);
+                   if (!values.empty()) list.push_back(json_of(label, values));
+                 });
+  return list;
+}
+
 /// How much of everything the page holds, and the units of its columns.
 Json json_of_page(const ReportFacts& facts) {
-  const auto& times = facts.options.labels.time;
   return {{"environment_points", facts.environment.points.size()},
           {"environment_near", facts.environment.near_points},
           {"environment_spacing", facts.environment.spacing},
@@ -353,8 +377,7 @@ Json json_of_page(const ReportFacts& facts) {
           {"distance_step", kDistanceStep},
           {"no_distance", kNoDistance},
           {"chainage_step", kChainageStep},
-          {"time_step", kTimeStep},
-          {"time_origin", times.empty() ? 0.0 : times[0]},
+          {"labels", json_of_labels(facts.options.labels)},
           {"forward", static_cast<unsigned>(facts.options.conflicts.forward)},
           {"up", static_cast<unsigned>(facts.options.conflicts.up)}};
 }

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <type_traits>
+#include <utility>
 
 namespace clearway {
 namespace {
@@ -16,7 +19,7 @@ std::int32_t whole(double value) {
 
 /// A column with one number for each shown pose.
 struct NumberColumn {
-  const char* name;
+  std::string name;
   std::vector<std::int32_t> values;
 };
 
@@ -27,8 +30,8 @@ class PoseColumns {
 
   /// Adds a column. number(i) gives the value of pose i.
   template <typename Number>
-  void add(const char* name, const Number& number) {
-    NumberColumn column{name, {}};
+  void add(std::string name, const Number& number) {
+    NumberColumn column{std::move(name), {}};
     column.values.reserve(shown_.size());
     for (const std::uint32_t i : shown_) column.values.push_back(whole(number(i)));
     columns_.push_back(std::move(column));
@@ -66,16 +69,27 @@ void add_profile(PoseColumns& out, const Profile& profile, const PageLattice& la
   }
 }
 
-std::string joined_names(std::span<const std::uint32_t> shown, const PoseLabels& labels) {
+/// A text for each shown pose, in lines.
+std::string lines_of(std::span<const std::uint32_t> shown, const std::vector<std::string>& texts) {
   std::string out;
   for (const std::uint32_t i : shown) {
-    for (const char c : labels.name[i]) out += c == '\n' ? ' ' : c;
+    for (const char c : texts[i]) out += c == '\n' ? ' ' : c;
     out += '\n';
   }
   return out;
 }
 
+/// The page's column of a label.
+template <typename Type>
+std::string column_of(const PoseLabel<Type>& label) {
+  return std::string("pose.") + label.key;
+}
+
 }  // namespace
+
+double origin_on_page(const PoseLabel<double>& label, const std::vector<double>& values) {
+  return label.is_counted_from_first ? values.front() : 0;
+}
 
 std::vector<std::uint32_t> choose_poses(std::uint64_t poses, const Profile& profile,
                                         const std::vector<Conflict>& conflicts, std::size_t most) {
@@ -112,21 +126,27 @@ void append_pose_columns(std::span<const std::uint32_t> shown, std::span<const P
   add_places(out, poses, lattice);
   out.add("pose.chainage", [&](std::uint32_t i) { return chainage[i] / kChainageStep; });
   if (!profile.distance.empty()) add_profile(out, profile, lattice);
-  if (!labels.station.empty()) {
-    out.add("pose.station", [&](std::uint32_t i) { return labels.station[i] / kChainageStep; });
-  }
-  if (!labels.time.empty()) {
-    out.add("pose.time",
-            [&](std::uint32_t i) { return (labels.time[i] - labels.time[0]) / kTimeStep; });
-  }
+  for_each_label([&](const auto& label) {
+    if constexpr (!std::decay_t<decltype(label)>::is_text()) {
+      const std::vector<double>& values = label.of(labels);
+      if (values.empty()) return;
+      const double origin = origin_on_page(label, values);
+      out.add(column_of(label), [&](std::uint32_t i) { return (values[i] - origin) / kLabelStep; });
+    }
+  });
   const std::size_t first = columns.size();
   for (const NumberColumn& column : numbers) columns.push_back({column.name, {}});
   tbb::parallel_for(std::size_t{0}, numbers.size(), [&](std::size_t k) {
     columns[first + k].base64 = deflated_base64(delta_planes(numbers[k].values));
   });
-  if (!labels.name.empty()) {
-    columns.push_back({"pose.name", deflated_base64(joined_names(shown, labels))});
-  }
+  for_each_label([&](const auto& label) {
+    if constexpr (std::decay_t<decltype(label)>::is_text()) {
+      const std::vector<std::string>& texts = label.of(labels);
+      if (!texts.empty()) {
+        columns.push_back({column_of(label), deflated_base64(lines_of(shown, texts))});
+      }
+    }
+  });
 }
 
 }  // namespace clearway

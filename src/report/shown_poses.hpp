@@ -8,6 +8,7 @@
 #include "clearway/pose.hpp"
 #include "clearway/result.hpp"
 #include "clearway/trajectory.hpp"
+#include "core/describe/labels.hpp"
 #include "report/page.hpp"
 
 namespace clearway {
@@ -21,8 +22,8 @@ std::vector<std::uint32_t> choose_poses(std::uint64_t poses, const Profile& prof
                                         const std::vector<Conflict>& conflicts,
                                         std::size_t most = kMostShownPoses);
 
-/// Appends the columns pose.*: index, place, rotation, chainage, and where known distance, point,
-/// station, time and name.
+/// Appends the columns pose.*: index, place, rotation, chainage, and where known distance, point
+/// and labels.
 void append_pose_columns(std::span<const std::uint32_t> shown, std::span<const Pose> poses,
                          std::span<const double> chainage, const Profile& profile,
                          const PoseLabels& labels, const PageLattice& lattice,
@@ -31,9 +32,11 @@ void append_pose_columns(std::span<const std::uint32_t> shown, std::span<const P
 /// The value of pose.distance for a pose without a point within the profile's distance. Depths are
 /// greater than it.
 inline constexpr std::int32_t kNoDistance = -2147483647;
-/// The step that an integer counts in the columns of rotations, distances, chainage and stations,
-/// and time.
+/// The step that an integer counts in the columns of rotations, distances, chainage, and labels.
 inline constexpr double kRotationStep = 1.0 / (1 << 17), kDistanceStep = 1e-4, kChainageStep = 1e-3,
-                        kTimeStep = 1e-3;
+                        kLabelStep = 1e-3;
+
+/// The value from which the column of a label counts. values: those of all poses, at least one.
+double origin_on_page(const PoseLabel<double>& label, const std::vector<double>& values);
 
 }  // namespace clearway

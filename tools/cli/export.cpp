@@ -171,7 +171,7 @@ void add_export(CLI::App& program) {
       ->type_name("PATH...");
   command
       ->add_option("--trajectory", options->trajectory,
-                   "The trajectory of the run: adds its times and names to a profile")
+                   "The trajectory of the run: adds its labels, such as times, to a profile")
       ->type_name("FILE");
   add_chainage_option(*command, options->lengths, options->chainage_start);
   add_trajectory_options(*command, options->trajectory_options, options->lengths);

@@ -8,6 +8,7 @@
 
 #include "cli/support/console.hpp"
 #include "cli/support/ignored_options.hpp"
+#include "cli/support/label_text.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/query/spacing_text.hpp"
 #include "core/trajectory/pose_ranges.hpp"
@@ -35,11 +36,11 @@ std::string place_text(const Answer& answer, const std::optional<FoundPlace>& pl
   std::string text = fmt::format("pose {}", pose);
   if (!path.chainage.empty()) {
     text += " (";
-    if (!path.labels.name.empty()) text += path.labels.name[pose] + ", ";
-    if (!path.labels.time.empty()) text += fmt::format("time {}, ", path.labels.time[pose]);
-    if (!path.labels.station.empty()) {
-      text += fmt::format("station {:.2f} m, ", path.labels.station[pose]);
-    }
+    for_each_label({LabelPlace::kFirst, LabelPlace::kNext, LabelPlace::kBesideChainage},
+                   [&](const auto& label) {
+                     const auto& values = label.of(path.labels);
+                     if (!values.empty()) text += label_text(label, values[pose]) + ", ";
+                   });
     text += fmt::format("{:.2f} {} along the path)", path.chainage[pose], unit);
   }
   if (const std::string body = body_of(answer, place); !body.empty()) text += ", body " + body;
@@ -205,9 +206,10 @@ ordered_json place_json(const Answer& answer, const std::optional<FoundPlace>& p
     out[axes[k]] = has_xyz(*place) ? ordered_json(place->xyz[k]) : ordered_json(nullptr);
   }
   if (const std::string body = body_of(answer, place); !body.empty()) out["body"] = body;
-  if (!path.labels.time.empty()) out["time"] = path.labels.time[place->pose];
-  if (!path.labels.name.empty()) out["name"] = path.labels.name[place->pose];
-  if (!path.labels.station.empty()) out["station"] = path.labels.station[place->pose];
+  for_each_label([&](const auto& label) {
+    const auto& values = label.of(path.labels);
+    if (!values.empty()) out[label.key] = values[place->pose];
+  });
   return out;
 }
 

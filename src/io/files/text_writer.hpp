@@ -67,4 +67,8 @@ class TextWriter {
 /// spreadsheets take as "this is text". A text that is a number, such as "-12.5", stays as it is.
 std::string csv_cell(std::string_view text);
 
+/// A label of a pose as a cell of a CSV file.
+inline double label_cell(double number) { return number; }
+inline std::string label_cell(const std::string& text) { return csv_cell(text); }
+
 }  // namespace clearway

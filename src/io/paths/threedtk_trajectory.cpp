@@ -62,7 +62,7 @@ void read_one(const std::filesystem::path& path, TrajectoryFormat format, Trajec
   InputBuffer input = open(path);
   out.poses.push_back(format == TrajectoryFormat::kThreedtkFrames ? read_threedtk_frames(input)
                                                                   : read_threedtk_pose(input));
-  out.names.push_back(path.filename().string());
+  out.labels.name.push_back(path.filename().string());
 }
 
 }  // namespace

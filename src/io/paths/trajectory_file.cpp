@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "clearway/trajectory.hpp"
+#include "core/describe/labels.hpp"
 #include "io/files/file.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/text_writer.hpp"
@@ -19,6 +20,17 @@
 #include "io/scans/length_unit.hpp"
 
 namespace clearway {
+
+namespace {
+
+/// The column of a label in the header of a table, with its unit.
+template <typename Type>
+std::string column_of(const PoseLabel<Type>& label) {
+  const std::string unit(symbol_of(label.unit));
+  return label.key + (unit.empty() ? "" : " [" + unit + "]");
+}
+
+}  // namespace
 
 void write_trajectory(std::span<const Pose> poses, const File& file, Progress& progress) {
   progress.begin("write", poses.size(), "poses");
@@ -36,18 +48,23 @@ void write_trajectory(std::span<const Pose> poses, const File& file, Progress& p
   progress.end();
 }
 
-void write_trajectory_table(std::span<const Pose> poses, const TrajectoryColumns& columns,
-                            const File& file, Progress& progress) {
+void write_trajectory_table(std::span<const Pose> poses, const PoseLabels& labels,
+                            const TrajectoryColumns& columns, const File& file,
+                            Progress& progress) {
   progress.begin("write", poses.size(), "poses");
   TextWriter out(file);
   const std::string unit = columns.in_metres ? " [m]" : "";
   if (!columns.path_pose.empty()) out << "path_pose,";
-  if (!columns.stations.empty()) out << "station [m],";
+  for_each_label([&](const auto& label) {
+    if (!label.of(labels).empty()) out << column_of(label) << ",";
+  });
   for (const char* axis : {"x", "y", "z"}) out << axis << unit << ",";
   out << "r00,r01,r02,r10,r11,r12,r20,r21,r22\n";
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (!columns.path_pose.empty()) out << std::to_string(columns.path_pose[i]) << ",";
-    if (!columns.stations.empty()) out << columns.stations[i] << ",";
+    for_each_label([&](const auto& label) {
+      if (!label.of(labels).empty()) out << label_cell(label.of(labels)[i]) << ",";
+    });
     const char* comma = "";
     for (const double coordinate : poses[i].translation) {
       out << comma << coordinate;
@@ -190,9 +207,10 @@ void apply_lever_arm(const std::filesystem::path& path, const Vec3& lever,
 }
 
 void remark_times(const std::filesystem::path& path, TrajectoryFile& found) {
-  const auto late = std::is_sorted_until(found.times.begin(), found.times.end());
-  if (late == found.times.end()) return;
-  const auto pose = static_cast<std::uint32_t>(late - found.times.begin());
+  const std::vector<double>& times = found.labels.time;
+  const auto late = std::is_sorted_until(times.begin(), times.end());
+  if (late == times.end()) return;
+  const auto pose = static_cast<std::uint32_t>(late - times.begin());
   found.warn("time-order",
              path.string() + ": time goes back at pose " + std::to_string(pose) +
                  "; poses are taken in the order of the file",
@@ -267,9 +285,7 @@ std::vector<Pose> read_trajectory(const std::filesystem::path& path,
                                   PoseLabels* labels) {
   TrajectoryFile found =
       remarks == nullptr ? read_without_doubts(path, options) : read_trajectory_file(path, options);
-  if (labels != nullptr) {
-    *labels = {std::move(found.times), std::move(found.names), std::move(found.stations)};
-  }
+  if (labels != nullptr) *labels = std::move(found.labels);
   if (remarks == nullptr) return std::move(found.poses);
   remarks->insert(remarks->end(), std::make_move_iterator(found.remarks.begin()),
                   std::make_move_iterator(found.remarks.end()));

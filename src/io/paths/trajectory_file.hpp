@@ -18,9 +18,7 @@ namespace clearway {
 /// The contents of a trajectory's file and how they were interpreted.
 struct TrajectoryFile : Remarks {
   std::vector<Pose> poses;
-  std::vector<double> times;       ///< seconds, one per pose; empty where the file has none
-  std::vector<std::string> names;  ///< one per pose; empty where the file has none
-  std::vector<double> stations;    ///< metres, one per pose; empty where the file has none
+  PoseLabels labels;
   TrajectoryFormat format = TrajectoryFormat::kAuto;
   std::string crs;  ///< CRS into which latitudes and longitudes were converted, or empty
   /// Metres per unit of the positions; 1 except for a CRS in another unit.
@@ -39,17 +37,18 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& path,
 /// The command line's name of a format: "matrix", "tum", ...
 const char* name_of(TrajectoryFormat format);
 
-/// What a table of poses has beside x, y, z and r00 to r22. A span that is empty has no column.
+/// What a table of poses has beside x, y, z, r00 to r22 and their labels.
 struct TrajectoryColumns {
-  std::span<const std::uint32_t> path_pose = {};  ///< index of the path's pose, for each pose
-  std::span<const double> stations = {};          ///< metres, for each pose
-  bool in_metres = false;                         ///< whether the header says that of x, y and z
+  /// Index of the path's pose, for each pose; no column where it is empty.
+  std::span<const std::uint32_t> path_pose = {};
+  bool in_metres = false;  ///< whether the header says that of x, y and z
 };
 
 /// Writes a table of poses with a header, and with digits that read_trajectory() reads back to the
-/// same doubles. Throws ResourceError and Interrupted.
-void write_trajectory_table(std::span<const Pose> poses, const TrajectoryColumns& columns,
-                            const File& file, Progress& progress);
+/// same doubles. labels: a column for each list that is not empty. Throws ResourceError and
+/// Interrupted.
+void write_trajectory_table(std::span<const Pose> poses, const PoseLabels& labels,
+                            const TrajectoryColumns& columns, const File& file, Progress& progress);
 
 /// Writes one pose per line as 16 numbers: its 4 x 4 matrix, row-major, with digits that
 /// read_trajectory() reads back to the same doubles. Throws ResourceError and Interrupted.

@@ -63,19 +63,25 @@ async function readPoints(name, lattice, offset = [0, 0, 0]) {
   return { count, xyz, tag, chunks: chunksOf(xyz) };
 }
 
+/** A label of the shown poses: numbers, or texts in lines. */
+async function readLabel({ key, step, origin }) {
+  const bytes = await columnBytes("pose." + key);
+  return step === undefined ? new TextDecoder().decode(bytes).split("\n")
+                            : Float64Array.from(integersOf(bytes), (n) => n * step + origin);
+}
+
 async function readPoses() {
   const facts = page.facts.page, start = page.facts.inputs.trajectory.chainage_start;
   const read = async (name) => integersOf(await columnBytes("pose." + name));
-  const [index, x, y, z, chainage, distance, px, py, pz, time, station] = await Promise.all(
-      ["index", "x", "y", "z", "chainage", "distance", "px", "py", "pz", "time", "station"].map(read));
+  const [index, x, y, z, chainage, distance, px, py, pz] = await Promise.all(
+      ["index", "x", "y", "z", "chainage", "distance", "px", "py", "pz"].map(read));
   const rotation = await Promise.all([...Array(9).keys()].map((k) => read("r" + k)));
-  const names = await columnBytes("pose.name");
+  const labels = await Promise.all(facts.labels.map(async (label) => [label.key, await readLabel(label)]));
   return {
     count: index ? index.length : 0,
-    index, x, y, z, rotation, distance, px, py, pz, time,
+    index, x, y, z, rotation, distance, px, py, pz,
     chainage: chainage ? Float64Array.from(chainage, (c) => start + c * facts.chainage_step) : [],
-    station: station ? Float64Array.from(station, (s) => s * facts.chainage_step) : null,
-    name: names ? new TextDecoder().decode(names).split("\n") : null,
+    labels: Object.fromEntries(labels),
   };
 }
 

@@ -48,8 +48,8 @@ function vehicleOnSite(bodies) {
 }
 
 function placeOnSite(place) {
-  const along = `chainage ${station(place.chainage)}` +
-      (place.station === undefined ? "" : `, station ${fixed(place.station, 2)} m`);
+  const along = [`chainage ${station(place.chainage)}`, ...page.facts.page.labels
+      .filter(({ key }) => place[key] !== undefined).map((label) => labelWords(label, place[label.key]))].join(", ");
   return make("div", {}, make("strong", {}, coordinates(place.position)), ` · ${along}`);
 }
 

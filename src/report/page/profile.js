@@ -87,7 +87,7 @@ function profileAxes() {
                     fixed(stationAt(c), profile.to - profile.from < 50 ? 2 : 0)));
     }
   }
-  if (page.poses.station) {
+  if (page.poses.labels.station) {
     out.push(make("text", { x: width - right, y: top - 8, class: "end station" }, "station (m)"));
   }
   out.push(make("text", { x: width - right, y: height - 4, class: "end" },

@@ -29,7 +29,7 @@ const missingWords = (missing, distance) => metres(missing, digitsFor([distance]
 const station = (v) => metres(v, 2);
 /** The station along the alignment at a chainage, between those of the shown poses; null without stations. */
 function stationAt(at) {
-  const { station: stations, chainage } = page.poses;
+  const { chainage, labels: { station: stations } } = page.poses;
   if (!stations || stations.length === 0) return null;
   let lo = 0, hi = chainage.length;  // the first pose behind it
   while (lo < hi) {
@@ -142,16 +142,19 @@ function worstConflict() {
   return found && found.worst !== null ? found.list.find((c) => c.id === found.worst) : null;
 }
 
+/** A label of a pose, such as "station 12.50 m"; nothing for an empty name. */
+function labelWords({ title, unit }, value) {
+  if (typeof value === "string") return value && [title, value].filter(Boolean).join(" ");
+  return [title, unit === "m" ? fixed(value, 2) : value.toFixed(2), unit].filter(Boolean).join(" ");
+}
+
 function poseLabel(i) {
   const poses = page.poses;
   const parts = [`pose ${count(poses.index[i])}`, `chainage ${station(poses.chainage[i])}`];
-  if (poses.station) parts.push(`station ${fixed(poses.station[i], 2)} m`);
-  if (poses.name && poses.name[i]) parts.push(poses.name[i]);
-  if (poses.time) {
-    const facts = page.facts.page;
-    parts.push(`time ${(poses.time[i] * facts.time_step + facts.time_origin).toFixed(2)} s`);
+  for (const label of page.facts.page.labels) {
+    parts.push(labelWords(label, poses.labels[label.key][i]));
   }
-  return parts.join(", ");
+  return parts.filter(Boolean).join(", ");
 }
 
 /** Metres of the profile at shown pose i, below 0 inside the vehicle: null where none was found, undefined without profile. */

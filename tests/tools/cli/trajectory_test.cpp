@@ -217,7 +217,7 @@ TEST_CASE("resample and thin keep stations, and put those of new poses between t
     stations.push_back(700 - 3 * static_cast<double>(i));
   }
   NoProgress progress;
-  write_trajectory_table(files.poses, {.stations = stations, .in_metres = true},
+  write_trajectory_table(files.poses, {.station = stations}, {.in_metres = true},
                          File::create(files.folder / "line.csv"), progress);
   const std::string given = "--trajectory-format csv --allow-non-rigid ";
   const auto read = [&](const std::string& name, std::vector<double>& found) {

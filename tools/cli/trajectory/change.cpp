@@ -18,7 +18,7 @@
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "cli/trajectory/commands.hpp"
-#include "cli/trajectory/stations.hpp"
+#include "cli/trajectory/made_labels.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/resample_trajectory.hpp"
 #include "core/trajectory/trajectory_doubts.hpp"
@@ -122,7 +122,7 @@ void write_changed(ChangeOptions& options, const Change& change) {
   warn_of_jumps(before, model, options, change.consequence);
   ConsoleProgress progress;
   const std::vector<Pose> after = changed(before, model, options, change, progress);
-  write_poses(after, stations_along(before, labels.station, after), output.partial(), progress);
+  write_poses(after, labels_along(before, labels, after), output.partial(), progress);
   output.publish();
 
   const double motion_after = largest_motion(model, after);

@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "cli/support/label_text.hpp"
 #include "cli/support/program_json.hpp"
+#include "core/describe/labels.hpp"
 #include "core/geometry/angle.hpp"
 #include "core/util/format.hpp"
 #include "io/files/json.hpp"
@@ -52,11 +54,21 @@ ordered_json pose_json(const Pose& pose) {
           {"roll_degrees", angles.roll}};
 }
 
-/// A pose's number with its time and its name, where the file has them.
+/// Calls visit(label, value) for each label that the file gives a pose, without those that belong
+/// beside a chainage, because there is none here.
+template <typename Visit>
+void for_each_label_of(const TrajectoryFile& file, std::size_t pose, const Visit& visit) {
+  for_each_label([&](const auto& label) {
+    const auto& values = label.of(file.labels);
+    if (label.place != LabelPlace::kBesideChainage && !values.empty()) visit(label, values[pose]);
+  });
+}
+
+/// A pose with its labels.
 ordered_json labelled_json(const TrajectoryFile& file, std::size_t pose) {
   ordered_json out = pose_json(file.poses[pose]);
-  if (!file.times.empty()) out["time"] = file.times[pose];
-  if (!file.names.empty()) out["name"] = file.names[pose];
+  for_each_label_of(file, pose,
+                    [&](const auto& label, const auto& value) { out[label.key] = value; });
   return out;
 }
 
@@ -94,7 +106,8 @@ ordered_json json_of(const Description& what) {
     out["bounds"] = box_json(s.box);
   }
   out["length"] = s.length;
-  if (!file.times.empty()) out["duration_seconds"] = file.times.back() - file.times.front();
+  const std::vector<double>& times = file.labels.time;
+  if (!times.empty()) out["duration_seconds"] = times.back() - times.front();
   out["median_step"] = s.median_step;
   out["largest_step"] = {{"from_pose", s.largest_step_pose}, {"metres", s.largest_step}};
   out["still_steps"] = s.still_steps;
@@ -128,8 +141,9 @@ std::string pose_text(const Pose& pose) {
 
 std::string labelled_text(const TrajectoryFile& file, std::size_t pose) {
   std::string text = pose_text(file.poses[pose]);
-  if (!file.times.empty()) text += fmt::format("; time {}", file.times[pose]);
-  if (!file.names.empty()) text += "; " + file.names[pose];
+  for_each_label_of(file, pose, [&](const auto& label, const auto& value) {
+    text += "; " + label_text(label, value);
+  });
   return text;
 }
 
@@ -141,8 +155,9 @@ std::string axis_text(const BodyAxis& axis, const char* where) {
 }
 
 std::string time_text(const TrajectoryFile& file, double length) {
-  if (file.times.empty()) return "not known";
-  const double seconds = file.times.back() - file.times.front();
+  const std::vector<double>& times = file.labels.time;
+  if (times.empty()) return "not known";
+  const double seconds = times.back() - times.front();
   if (!(seconds > 0)) return fmt::format("{:.6g} s", seconds);
   return fmt::format("{:.6g} s, {:.3g} m/s on average", seconds,
                      length * file.metres_per_unit / seconds);

@@ -17,7 +17,7 @@
 #include "cli/support/program_json.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "cli/trajectory/commands.hpp"
-#include "cli/trajectory/stations.hpp"
+#include "cli/trajectory/made_labels.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
 #include "core/trajectory/trajectory_doubts.hpp"
@@ -90,18 +90,19 @@ auto on_path(const FollowOptions& options, const Work& work) {
   }
 }
 
-/// The station of each pose of the body: that of the place of the path where the origin of its
-/// frame is, or between its pivots is taken to be. Empty where the path has none.
-std::vector<double> stations_of(const FollowedPath& followed, const PathStations& path, double at,
-                                const std::vector<double>& stations) {
-  std::vector<double> out;
-  if (stations.empty()) return out;
+/// The labels of each pose of the body: those of the place of the path where the origin of its
+/// frame is, or between its pivots is taken to be.
+PoseLabels labels_of(const FollowedPath& followed, const PathStations& path, double at,
+                     const PoseLabels& labels) {
   std::vector<double> lengths;
   for (std::size_t i = 0; i < path.poses().size(); ++i) lengths.push_back(path.of_pose(i));
-  for (const std::uint64_t i : followed.of) {
-    out.push_back(at == 0 ? stations[i] : value_at(lengths, stations, path.of_pose(i) + at));
-  }
-  return out;
+  return made_labels(labels, [&](const std::vector<double>& values) {
+    std::vector<double> out;
+    for (const std::uint64_t i : followed.of) {
+      out.push_back(at == 0 ? values[i] : value_at(lengths, values, path.of_pose(i) + at));
+    }
+    return out;
+  });
 }
 
 void refuse_nowhere(const FollowOptions& options, const FollowedPath& followed,
@@ -126,12 +127,12 @@ nlohmann::ordered_json ranges_of(const std::vector<std::uint64_t>& poses) {
   return ranges;
 }
 
-/// A body's poses and their stations, the lists of what is odd, and the length of the path in
+/// A body's poses and their labels, the lists of what is odd, and the length of the path in
 /// metres.
 struct Placed {
   FollowedPath followed;
   double path_length;
-  std::vector<double> stations = {};
+  PoseLabels labels = {};
 };
 
 void report(const FollowOptions& options, const Placed& placed, std::size_t path_poses) {
@@ -169,8 +170,7 @@ Placed place_by_options(const FollowOptions& options, const Path& given, int thr
   for (const Message& doubt : doubts_about(placed.followed, path, mount, options.input.string())) {
     log_message(doubt);
   }
-  placed.stations =
-      stations_of(placed.followed, path, options.at.value_or(0), given.labels.station);
+  placed.labels = labels_of(placed.followed, path, options.at.value_or(0), given.labels);
   return placed;
 }
 
@@ -187,23 +187,24 @@ Placed place_of_vehicle(const FollowOptions& options, const Path& path, int thre
   for (const Message& doubt : doubts) log_message(doubt);
   placed.followed.poses = body.poses;
   placed.followed.of.assign(body.path_pose.begin(), body.path_pose.end());
-  for (const std::uint32_t pose : body.path_pose) {
-    if (!path.labels.station.empty()) placed.stations.push_back(path.labels.station[pose]);
-  }
+  placed.labels = made_labels(path.labels, [&](const std::vector<double>& values) {
+    std::vector<double> out;
+    for (const std::uint32_t pose : body.path_pose) out.push_back(values[pose]);
+    return out;
+  });
   return placed;
 }
 
 void write(const FollowOptions& options, const Placed& placed, const File& file) {
   ConsoleProgress progress;
   const FollowedPath& followed = placed.followed;
-  if (!writes_path_poses(options) && placed.stations.empty()) {
+  if (!writes_path_poses(options) && !has_labels(placed.labels)) {
     write_trajectory(followed.poses, file, progress);
     return;
   }
   std::vector<std::uint32_t> path_pose;
   if (writes_path_poses(options)) path_pose.assign(followed.of.begin(), followed.of.end());
-  write_trajectory_table(followed.poses, {.path_pose = path_pose, .stations = placed.stations},
-                         file, progress);
+  write_trajectory_table(followed.poses, placed.labels, {.path_pose = path_pose}, file, progress);
 }
 
 void check_options(const FollowOptions& options) {

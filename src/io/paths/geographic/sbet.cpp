@@ -99,7 +99,7 @@ void read_sbet(InputBuffer& input, const TrajectoryOptions& options, TrajectoryF
       refuse_byte(input.name(), start, "record " + std::to_string(rows.size()) + ": " + objection);
     }
     rows.push_back(row_of(record));
-    out.times.push_back(record.time);
+    out.labels.time.push_back(record.time);
   }
   append_geographic_poses(rows, AngleFrame::kNed, options, input.name(), out);
   out.note("model-frame",

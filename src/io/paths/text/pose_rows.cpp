@@ -9,6 +9,7 @@
 
 #include "clearway/file_unit.hpp"
 #include "clearway/trajectory.hpp"
+#include "core/describe/labels.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
 #include "io/paths/text/trajectory_columns.hpp"
@@ -142,13 +143,16 @@ PoseRows::PoseRows(TrajectoryFormat format, std::optional<PoseColumns> columns,
   // would change if converted into metres and back.
   const bool stays = metres_ == options_.environment_unit && !is_geographic();
   if (unit_.is_known() && !stays) in_metres_ = UnitFactor(metres_);
-  if (columns_ && columns_->station) station_in_metres_ = UnitFactor(metres_of_stations());
+  if (!columns_) return;
+  for (const LabelColumn& column : columns_->labels) {
+    labels_in_metres_.emplace_back(metres_of(column));
+  }
 }
 
-/// Metres of the unit of stations: that of their own header, of the positions, or of the
-/// environment.
-double PoseRows::metres_of_stations() const {
-  const auto named = file_unit_of(columns_->station_unit);
+/// Metres of the unit of a label that is a length: that of its own header, of the positions, or of
+/// the environment.
+double PoseRows::metres_of(const LabelColumn& column) const {
+  const auto named = file_unit_of(column.unit);
   if (named) return named->metres_in(options_.environment_unit);
   return unit_.is_known() ? metres_ : options_.environment_unit;
 }
@@ -175,29 +179,32 @@ PoseRows PoseRows::for_lines(std::size_t lines) const {
   } else {
     part.poses_.reserve(lines);
   }
-  if (!times_.empty()) part.times_.reserve(lines);
-  if (!names_.empty()) part.names_.reserve(lines);
-  if (!stations_.empty()) part.stations_.reserve(lines);
+  for_each_label([&](const auto& label) {
+    if (!label.of(labels_).empty()) label.of(part.labels_).reserve(lines);
+  });
   return part;
 }
 
 void PoseRows::append(std::vector<PoseRows> parts) {
-  const auto append_all = [&parts](auto PoseRows::*list, auto& out) {
+  const auto append_all = [&parts](const auto& list_of, auto& out) {
     std::size_t all = out.size();
-    for (const PoseRows& part : parts) all += (part.*list).size();
+    for (PoseRows& part : parts) all += list_of(part).size();
     out.reserve(all);
     for (PoseRows& part : parts) {
-      auto& from = part.*list;
+      auto& from = list_of(part);
       out.insert(out.end(), std::make_move_iterator(from.begin()),
                  std::make_move_iterator(from.end()));
       from = {};
     }
   };
-  append_all(&PoseRows::poses_, poses_);
-  append_all(&PoseRows::angles_, angles_);
-  append_all(&PoseRows::times_, times_);
-  append_all(&PoseRows::names_, names_);
-  append_all(&PoseRows::stations_, stations_);
+  append_all(
+      [](PoseRows & rows) -> auto& { return rows.poses_; }, poses_);
+  append_all(
+      [](PoseRows & rows) -> auto& { return rows.angles_; }, angles_);
+  for_each_label([&](const auto& label) {
+    append_all(
+        [&](PoseRows & rows) -> auto& { return label.of(rows.labels_); }, label.of(labels_));
+  });
 }
 
 void PoseRows::push(const Pose& pose) {
@@ -241,7 +248,7 @@ Objection PoseRows::add_quaternion(std::string_view line) {
   Pose pose{};
   Objection objection = pose_of_quaternion(numbers.first<3>(), quaternion, pose);
   if (!objection.text.empty()) return objection;
-  if (tum) add_time(seconds_of(numbers_[0]));
+  if (tum) labels_.time.push_back(seconds_of(numbers_[0]));
   push(pose);
   return {};
 }
@@ -291,15 +298,26 @@ Objection PoseRows::add_angles(const std::array<double, 3>& position) {
 }
 
 void PoseRows::add_labels() {
-  if (columns_->time) {
-    const auto time = parse_whole_number(fields_[*columns_->time]);
-    if (time && std::isfinite(*time)) add_time(seconds_of(*time));
-  }
-  if (columns_->name) names_.push_back(name_of_pose(fields_[*columns_->name]));
-  if (columns_->station) {
-    const auto station = parse_whole_number(fields_[*columns_->station]);
-    if (station && std::isfinite(*station)) stations_.push_back(station_in_metres_(*station));
-  }
+  std::size_t next = 0;
+  for_each_label([&](const auto& label) {
+    const std::size_t i = next++;
+    if (const auto at = columns_->labels[i].at)
+      add_label(label, fields_[*at], labels_in_metres_[i]);
+  });
+}
+
+void PoseRows::add_label(const PoseLabel<double>& label, std::string_view field,
+                         const UnitFactor& in_metres) {
+  const auto number = parse_whole_number(field);
+  if (!number || !std::isfinite(*number)) return;
+  label.of(labels_).push_back(label.unit == FieldUnit::kMetres    ? in_metres(*number)
+                              : label.unit == FieldUnit::kSeconds ? seconds_of(*number)
+                                                                  : *number);
+}
+
+void PoseRows::add_label(const PoseLabel<std::string>& label, std::string_view field,
+                         const UnitFactor&) {
+  label.of(labels_).push_back(name_of_pose(field));
 }
 
 Objection PoseRows::numbers_in(std::span<const std::size_t> columns, std::span<double> out) const {
@@ -326,13 +344,11 @@ void PoseRows::finish(TrajectoryFile& out) {
   if (quaternions) out.rotations = RotationSource::kQuaternions;
   const bool angles = columns_ && columns_->rotation.size() == 3;
   if (angles) append_poses_of_angles(std::move(angles_), *columns_, options_, name_, out);
-  if (times_.size() == out.poses.size()) out.times = std::move(times_);
-  if (names_.size() == out.poses.size()) out.names = std::move(names_);
-  if (stations_.size() == out.poses.size()) out.stations = std::move(stations_);
-  // A column "station" may hold names too, such as numbers of scanner stations, but not where its
-  // header gives it a unit.
-  const bool is_length = columns_ && columns_->station && !columns_->station_unit.empty();
-  if (is_length && columns_->name == columns_->station) out.names.clear();
+  for_each_label([&](const auto& label) {
+    if (label.of(labels_).size() == out.poses.size()) {
+      label.of(out.labels) = std::move(label.of(labels_));
+    }
+  });
   out.unit = unit_;
   if (metres_ == 0) return;
   // Places on a map are in the map's unit already; the file's unit was that of heights.

@@ -48,10 +48,13 @@ class PoseRows {
   Objection add_columns(std::string_view line);
   Objection add_angles(const std::array<double, 3>& position);
   Objection numbers_in(std::span<const std::size_t> columns, std::span<double> out) const;
-  void add_time(double time) { times_.push_back(time); }
   void add_labels();
+  void add_label(const PoseLabel<double>& label, std::string_view field,
+                 const UnitFactor& in_metres);
+  void add_label(const PoseLabel<std::string>& label, std::string_view field,
+                 const UnitFactor& in_metres);
   void push(const Pose& pose);
-  double metres_of_stations() const;
+  double metres_of(const LabelColumn& column) const;
   bool is_geographic() const { return columns_ && columns_->geographic; }
 
   TrajectoryFormat format_;
@@ -67,10 +70,8 @@ class PoseRows {
   std::vector<std::string_view> fields_;
   std::vector<Pose> poses_;
   std::vector<AttitudeRow> angles_;
-  std::vector<double> times_;
-  std::vector<std::string> names_;
-  UnitFactor station_in_metres_{1};
-  std::vector<double> stations_;
+  PoseLabels labels_;
+  std::vector<UnitFactor> labels_in_metres_;  ///< for each label, where there are columns
 };
 
 }  // namespace clearway

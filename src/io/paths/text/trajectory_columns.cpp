@@ -95,14 +95,6 @@ constexpr std::string_view kRoll[] = {"roll"};
 constexpr std::string_view kPitch[] = {"pitch"};
 constexpr std::string_view kHeading[] = {"heading", "azimuth"};
 constexpr std::string_view kYaw[] = {"yaw"};
-constexpr std::string_view kTime[] = {"time",     "timestamp", "t",       "gpstime",
-                                      "gps_time", "sec",       "seconds", "stamp"};
-
-constexpr std::string_view kStation[] = {"station"};
-constexpr std::string_view kName[] = {"name",     "pose_name", "label", "station", "image",
-                                      "filename", "file_name", "file",  "scan"};
-constexpr std::string_view kIndex[] = {"index",   "id",    "pose",   "pose_id", "pose_index",
-                                       "pose_nr", "frame", "number", "nr",      "seq"};
 
 bool has(const ColumnNames& header, std::span<const std::string_view> names) {
   return std::any_of(header.names.begin(), header.names.end(), [names](const std::string& name) {
@@ -165,18 +157,29 @@ std::optional<PoseColumns> pose_columns(const ColumnNames& given) {
     columns.position_units[k] = header.units[columns.position[k]];
     if (columns.rotation.size() == 3) columns.angle_units[k] = header.units[columns.rotation[k]];
   }
-  columns.time = find_one(header, kTime);
-  columns.station = find_one(header, kStation);
-  if (columns.station) columns.station_unit = header.units[*columns.station];
-  columns.name = find_one(header, kName);
-  if (!columns.name) columns.name = find_one(header, kIndex);
+  std::size_t next = 0;
+  for_each_label([&](const auto& label) {
+    LabelColumn& column = columns.labels[next++];
+    column.at = find_one(header, label.columns);
+    if (!column.at) column.at = find_one(header, label.other_columns);
+    if (column.at) column.unit = header.units[*column.at];
+  });
+  // A column "station" may hold names too, such as numbers of scanner stations, but not where its
+  // header gives it a unit.
+  next = 0;
+  const auto found = columns.labels;
+  for_each_label([&](const auto& label) {
+    LabelColumn& column = columns.labels[next++];
+    const bool is_shared = column.at && std::ranges::count(found, column.at, &LabelColumn::at) > 1;
+    if (label.is_text() && is_shared && !column.unit.empty()) column.at.reset();
+  });
   // `trajectory follow` writes the column path_pose for people.
   constexpr std::string_view kForPeople = "path_pose";
   for (std::size_t i = 0; i < given.names.size(); ++i) {
     if (given.names[i] == kForPeople) continue;
     const bool read = std::ranges::find(columns.position, i) != columns.position.end() ||
                       std::ranges::find(columns.rotation, i) != columns.rotation.end() ||
-                      i == columns.time || i == columns.station || i == columns.name;
+                      std::ranges::count(found, i, &LabelColumn::at) > 0;
     if (!read && !given.names[i].empty()) columns.unread.push_back(given.names[i]);
   }
   return columns;
@@ -208,11 +211,10 @@ std::string objection_to_header(const ColumnNames& given) {
 }
 
 PoseColumns euroc_columns(std::size_t fields) {
-  PoseColumns columns{.separator = ',', .fields = fields};
-  columns.position = {1, 2, 3};
-  columns.rotation = {5, 6, 7, 4};
-  columns.time = 0;
-  return columns;
+  std::vector<std::string> names{"time", "x", "y", "z", "qw", "qx", "qy", "qz"};
+  names.resize(fields);
+  return *pose_columns(
+      {.separator = ',', .names = names, .units = std::vector<std::string>(fields)});
 }
 
 namespace {

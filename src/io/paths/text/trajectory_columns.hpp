@@ -7,11 +7,19 @@
 #include <string_view>
 #include <vector>
 
+#include "core/describe/labels.hpp"
 #include "io/paths/pose_input.hpp"
 #include "io/paths/trajectory_file.hpp"
 #include "io/scans/text/table_header.hpp"
 
 namespace clearway {
+
+/// The column of a table that gives a label of the poses. Whether its fields are such values is not
+/// known before they are read.
+struct LabelColumn {
+  std::optional<std::size_t> at{};  ///< none: the table has no such column
+  std::string unit{};               ///< its unit in the header, in lower case, or empty
+};
 
 /// The columns of a table from which poses are made.
 struct PoseColumns {
@@ -24,11 +32,8 @@ struct PoseColumns {
   bool heading = false;             ///< whether the third angle is called heading instead of yaw
   std::string position_units[3]{};  ///< units in the header, in lower case, or empty
   std::string angle_units[3]{};  ///< units of three angles in the header, in lower case, or empty
-  std::optional<std::size_t> time{};     ///< column called time
-  std::optional<std::size_t> name{};     ///< column with a name or an index
-  std::optional<std::size_t> station{};  ///< column called station, whose texts may be numbers
-  std::string station_unit{};            ///< its unit in the header, in lower case, or empty
-  std::vector<std::string> unread{};     ///< names of the columns that no pose is made from
+  std::array<LabelColumn, kPoseLabelCount> labels{};  ///< in the order of the labels
+  std::vector<std::string> unread{};  ///< names of the columns that no pose is made from
 };
 
 /// The columns that a header names; nullopt where one is missing or named twice.

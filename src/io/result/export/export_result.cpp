@@ -17,6 +17,7 @@
 
 #include "clearway/error.hpp"
 #include "clearway/result.hpp"
+#include "core/describe/labels.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "io/files/file.hpp"
 #include "io/files/pending_file.hpp"
@@ -333,18 +334,18 @@ class ProfileTable {
         has_bodies_(!result.header().bodies.empty()),
         unsearched_(result.findings().without_bodies) {
     out_ << "pose";
-    if (!labels.time.empty()) out_ << ",time";
-    if (!labels.name.empty()) out_ << ",name";
-    if (!labels.station.empty()) out_ << ",station";
+    for_each_label([&](const auto& label) {
+      if (!label.of(labels).empty()) out_ << "," << label.key;
+    });
     out_ << ",chainage,distance,source,x,y,z" << (has_bodies_ ? ",searched\n" : "\n");
   }
 
   void write(const ProfileRows& rows) {
     for (std::size_t i = 0; i < rows.size(); ++i, ++pose_) {
       out_ << pose_;
-      if (!labels_.time.empty()) out_ << "," << labels_.time[pose_];
-      if (!labels_.name.empty()) out_ << "," << csv_cell(labels_.name[pose_]);
-      if (!labels_.station.empty()) out_ << "," << labels_.station[pose_];
+      for_each_label([&](const auto& label) {
+        if (!label.of(labels_).empty()) out_ << "," << label_cell(label.of(labels_)[pose_]);
+      });
       out_ << "," << chainage_start_ + rows.chainage[i] << ",";
       if (rows.source[i] == Profile::kNoPoint) {
         out_ << ",,,,";
@@ -386,11 +387,12 @@ void export_profile(const ResultReader& result, const PoseLabels& labels, double
   if (export_format_of(output) != ExportFormat::kCsv) {
     throw UsageError(output.string() + ": a profile is exported as .csv only");
   }
-  for (const std::size_t count : {labels.time.size(), labels.name.size(), labels.station.size()}) {
+  for_each_label([&](const auto& label) {
+    const std::size_t count = label.of(labels).size();
     if (count != 0 && count != result.profile_rows()) {
       throw std::logic_error("export_profile: labels of another number of poses");
     }
-  }
+  });
   refuse_overwriting(output, {result.name()});
   PendingFile pending(output, overwrite);
   {

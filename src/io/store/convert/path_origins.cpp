@@ -122,7 +122,7 @@ PathOrigins::PathOrigins(const ConvertOptions& options, const EnvironmentSource&
     log.add(remark);
   }
   table_.rest_on("a path and the GPS times of the points", given_path_hash(options));
-  path_.emplace(file.poses, std::move(file.times), lever_of(options, metres), name_);
+  path_.emplace(file.poses, std::move(file.labels.time), lever_of(options, metres), name_);
   const std::uint64_t most_bytes = options.memory_bytes / 8;
   if (path_->bytes() > most_bytes) {
     throw ResourceError(name_ + ": its " + format_count(file.poses.size()) + " poses take " +
