@@ -3,7 +3,9 @@
 #include <string>
 
 #include "clearway/search.hpp"
+#include "core/describe/seen.hpp"
 #include "python/arrays.hpp"
+#include "python/fields.hpp"
 #include "python/values.hpp"
 
 namespace clearway::python {
@@ -67,21 +69,9 @@ void add_answer(py::module_& module) {
                     "Metres on which all bodies have poses, so that all of them were searched.")
       .def_readonly("part", &SearchedLength::part,
                     "Metres on which some bodies were searched, and others have no pose.");
-  py::class_<SeenSummary>(module, "SeenSummary",
-                          "What is known of the space that the model sweeps, in cubes.")
-      .def_readonly("cube", &SeenSummary::cube, "The side of a cube along x, metres.")
-      .def_readonly("swept", &SeenSummary::swept, "How many cubes the model sweeps.")
-      .def_readonly("seen", &SeenSummary::seen, "How many of them a beam passed through.")
-      .def_readonly("unseen", &SeenSummary::unseen, "How many of them no beam passed through.")
-      .def_readonly("groups", &SeenSummary::groups,
-                    "How many groups of unseen cubes there are that touch each other.")
-      .def_readonly("listed_groups", &SeenSummary::listed_groups,
-                    "How many of the groups have at least seen_min cubes, which makes the verdict "
-                    "undecided.")
-      .def_readonly("listed_cubes", &SeenSummary::listed_cubes, "How many cubes these groups have.")
-      .def_readonly(
-          "not_scanned_length", &SeenSummary::not_scanned_length,
-          "Metres of the path on which the model first reaches a cube of a listed group.");
+  py::class_<SeenSummary> seen(module, "SeenSummary",
+                               "What is known of the space that the model sweeps, in cubes.");
+  add_properties(seen, kSeenColumns);
   py::class_<Answer>(
       module, "Answer",
       "The answer to a query in short: the verdict, and the places that matter most.")

@@ -14,6 +14,7 @@
 #include "core/describe/conflict.hpp"
 #include "core/describe/labels.hpp"
 #include "core/describe/query.hpp"
+#include "core/describe/seen.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/util/format.hpp"
 #include "findings/conflict_rank.hpp"
@@ -430,31 +431,21 @@ Json json_of(const SeenSummary& seen, const ReportFacts& facts) {
   }
   for (const UnseenGroup& group : unseen.listed) list.push_back(json_of(group, facts));
   for (const auto& [from, to] : unseen.stretches) stretches.push_back(Json::array({from, to}));
-  return {{"cube", seen.cube},
-          {"swept", seen.swept},
-          {"seen", seen.seen},
-          {"unseen", seen.unseen},
-          {"groups", seen.groups},
-          {"listed_groups", seen.listed_groups},
-          {"listed_cubes", seen.listed_cubes},
-          {"not_scanned_length", seen.not_scanned_length},
-          {"radius", answer.budget ? answer.budget->near_radius(answer.parameters.radius)
-                                   : answer.parameters.radius},
-          {"seen_min", answer.parameters.seen_min},
-          {"behind_conflicts", unseen.behind_conflicts},
-          {"origins", std::move(rest_on)},
-          {"points_without_origin", origins ? origins->points_without : answer.environment_points},
-          {"places", origins ? origins->quanta.size() : 0},
-          {"list", std::move(list)},
-          {"stretches", std::move(stretches)},
-          {"front",
-           {{"cell", front.cell},
-            {"columns", front.columns},
-            {"rows", front.rows},
-            {"left", front.left},
-            {"up", front.up},
-            {"swept", front.swept},
-            {"unseen", front.unseen}}}};
+  Json out;
+  for_each_field(kSeenColumns, [&](const auto& column) { out[column.key] = column.of(seen); });
+  out["radius"] = answer.budget ? answer.budget->near_radius(answer.parameters.radius)
+                                : answer.parameters.radius;
+  out["seen_min"] = answer.parameters.seen_min;
+  out["behind_conflicts"] = unseen.behind_conflicts;
+  out["origins"] = std::move(rest_on);
+  out["points_without_origin"] = origins ? origins->points_without : answer.environment_points;
+  out["places"] = origins ? origins->quanta.size() : 0;
+  out["list"] = std::move(list);
+  out["stretches"] = std::move(stretches);
+  out["front"] = {{"cell", front.cell},    {"columns", front.columns}, {"rows", front.rows},
+                  {"left", front.left},    {"up", front.up},           {"swept", front.swept},
+                  {"unseen", front.unseen}};
+  return out;
 }
 
 Json json_of_warnings(const std::vector<Message>& warnings) {

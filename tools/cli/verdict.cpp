@@ -9,6 +9,7 @@
 #include "cli/support/console.hpp"
 #include "cli/support/ignored_options.hpp"
 #include "cli/support/label_text.hpp"
+#include "core/describe/seen.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/query/spacing_text.hpp"
 #include "core/trajectory/pose_ranges.hpp"
@@ -258,14 +259,11 @@ ordered_json margins_json(const Answer& answer) {
 
 ordered_json seen_json(const Answer& answer) {
   if (!answer.seen) return nullptr;
-  const SeenSummary& seen = *answer.seen;
-  return {{"cube", seen.cube},
-          {"swept", seen.swept},
-          {"seen", seen.seen},
-          {"unseen", seen.unseen},
-          {"groups", seen.groups},
-          {"listed_groups", seen.listed_groups},
-          {"not_scanned_length", seen.not_scanned_length}};
+  ordered_json out;
+  for_each_field(kSeenColumns, [&](const auto& column) {
+    if (column.is_in_files) out[column.key] = column.of(*answer.seen);
+  });
+  return out;
 }
 
 ordered_json budget_json(const ErrorBudget& budget) {
