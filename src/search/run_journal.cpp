@@ -47,12 +47,9 @@ std::string value_of(const JournalIdentity& identity, const std::string& name) {
 
 JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header,
                             const std::string& engine, const std::string& device, bool replaces) {
-  const bool is_surface = header.model_triangles > 0;
   JournalIdentity identity{{"environment", hash_text(store.fingerprint())},
                            {"model", hash_text(header.model_hash)},
-                           {"model_as", header.model_solids > 0 ? "solid"
-                                        : is_surface            ? "surface"
-                                                                : "points"},
+                           {"model_as", model_as(header.model_solids, header.model_triangles)},
                            {"trajectory", hash_text(header.trajectory_hash)},
                            {"engine", engine},
                            {"device", device},

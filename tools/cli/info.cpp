@@ -18,6 +18,7 @@
 #include "io/files/json.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/answer.hpp"
+#include "io/result/conflicts/conflict_fields.hpp"
 #include "io/result/journal.hpp"
 #include "io/result/result.hpp"
 #include "io/section/section_file.hpp"
@@ -130,9 +131,7 @@ ordered_json describe(const ResultReader& result) {
                            {"colliding_points", result.collisions()},
                            {"environment_points", h.environment_points},
                            {"radius", h.radius},
-                           {"model_as", h.model_solids > 0      ? "solid"
-                                        : h.model_triangles > 0 ? "surface"
-                                                                : "points"},
+                           {"model_as", model_as(h.model_solids, h.model_triangles)},
                            {"model_points", h.model_points},
                            {"model_triangles", h.model_triangles},
                            {"model_solids", h.model_solids},
@@ -146,10 +145,8 @@ ordered_json describe(const ResultReader& result) {
                            {"between_poses", h.between_poses},
                            {"scale", h.quantisation.scale},
                            {"offset", h.quantisation.offset},
-                           {"crs_wkt", h.crs_wkt},
-                           {"environment_hash", hash_text(h.environment_hash)},
-                           {"model_hash", hash_text(h.model_hash)},
-                           {"trajectory_hash", hash_text(h.trajectory_hash)}};
+                           {"crs_wkt", h.crs_wkt}};
+  add_hashes(description, h);
   if (h.notes.model_spacing > 0) description["model_spacing"] = h.notes.model_spacing;
   if (const ModelAxes axes = h.notes.model_axes; axes.need_turn()) {
     description["model_axes"] = {{"forward", name_of(axes.forward)}, {"up", name_of(axes.up)}};
@@ -158,8 +155,7 @@ ordered_json describe(const ResultReader& result) {
   const Answer answer = h.model_solids > 0 ? answer_of(result) : counted_answer(result);
   description["verdict"] = name_of(answer.verdict());
   if (answer.budget) {
-    description["reasons"] = ordered_json::array();
-    for (const Reason reason : answer.reasons()) description["reasons"].push_back(name_of(reason));
+    description["reasons"] = names_of(answer.reasons());
     description["margins"] = margins_json(answer);
     description["budget"] = budget_json(*answer.budget);
     description["near_points"] = answer.near_points;
@@ -170,17 +166,8 @@ ordered_json describe(const ResultReader& result) {
   if (const auto doubts = answer.doubts(); !doubts.empty()) description["doubts"] = doubts;
   if (const auto codes = answer.warned_of(); !codes.empty()) description["warned_of"] = codes;
   description["warnings"] = answer.warnings;
-  if (h.model_solids > 0) {
-    const auto inside = answer.points_inside();
-    const auto depth = answer.greatest_depth();
-    description["points_inside"] = inside ? ordered_json(*inside) : ordered_json(nullptr);
-    description["greatest_depth"] = depth ? ordered_json(*depth) : ordered_json(nullptr);
-  }
-  if (answer.searched) {
-    description["path_length"] = answer.searched->path;
-    description["searched_length"] = answer.searched->whole;
-    description["partly_searched_length"] = answer.searched->part;
-  }
+  if (h.model_solids > 0) add_inside(answer, description);
+  if (answer.searched) add_searched(*answer.searched, description);
   if (h.ignores_points()) {
     description["ignored"] = ignored_json(answer);
     if (!h.ignore_classes.empty()) description["classes_hash"] = hash_text(h.classes_hash);

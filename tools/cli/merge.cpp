@@ -47,10 +47,6 @@ nlohmann::ordered_json json_of(const MergeCommand& options, const MergeReport& r
   out["was_finished"] = report.was_finished;
   out["environment_points"] = report.environment_points;
   out["model_points"] = report.model_points;
-  out["poses"] = report.poses;
-  out["colliding_points"] = report.colliding_points;
-  out["clearance_points"] = report.clearance_points;
-  out["profile_poses"] = report.profile_poses;
   add_answer(report, {}, out);
   out["warnings"] = warnings_of(report);
   out["seconds"] = seconds;

@@ -41,6 +41,7 @@
 #include "io/files/json.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/thread_limit.hpp"
+#include "io/result/result_header.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -179,16 +180,10 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["radius"] = options.query.radius;
   out["was_finished"] = report.was_finished;
   out["environment_points"] = report.environment_points;
-  out["model_as"] = report.model_solids > 0      ? "solid"
-                    : report.model_triangles > 0 ? "surface"
-                                                 : "points";
+  out["model_as"] = model_as(report.model_solids, report.model_triangles);
   out["model_points"] = report.model_points;
   out["model_triangles"] = report.model_triangles;
   out["model_solids"] = report.model_solids;
-  out["poses"] = report.poses;
-  out["colliding_points"] = report.colliding_points;
-  out["clearance_points"] = report.clearance_points;
-  out["profile_poses"] = report.profile_poses;
   add_answer(report, path, out);
   out["ignored"]["looked_at"] = known(searched, report.ignored_looked_at);
   out["shard_share"] = nullptr;

@@ -14,6 +14,7 @@
 #include "core/query/spacing_text.hpp"
 #include "core/trajectory/pose_ranges.hpp"
 #include "core/util/format.hpp"
+#include "io/files/json.hpp"
 #include "io/result/answer.hpp"
 
 namespace clearway::tool {
@@ -366,10 +367,24 @@ void repeat_warnings(const ResultReader& result, const std::string& prefix) {
       result.name(), fmt::join(doubts, ", "), everywhere ? "" : " on a part of the path");
 }
 
+void add_searched(const SearchedLength& searched, ordered_json& out) {
+  out["path_length"] = searched.path;
+  out["searched_length"] = searched.whole;
+  out["partly_searched_length"] = searched.part;
+}
+
+void add_inside(const Answer& answer, ordered_json& out) {
+  out["points_inside"] = or_null(answer.points_inside());
+  out["greatest_depth"] = or_null(answer.greatest_depth());
+}
+
 void add_answer(const Answer& answer, const PathWords& path, ordered_json& out) {
+  out["poses"] = answer.poses;
+  out["colliding_points"] = answer.colliding_points;
+  out["clearance_points"] = answer.clearance_points;
+  out["profile_poses"] = answer.profile_poses;
   out["verdict"] = name_of(answer.verdict());
-  out["reasons"] = ordered_json::array();
-  for (const Reason reason : answer.reasons()) out["reasons"].push_back(name_of(reason));
+  out["reasons"] = names_of(answer.reasons());
   out["margins"] = margins_json(answer);
   if (answer.budget) {
     out["near_points"] = answer.near_points;
@@ -380,16 +395,9 @@ void add_answer(const Answer& answer, const PathWords& path, ordered_json& out) 
   if (answer.model_spacing > 0) out["model_spacing"] = answer.model_spacing;
   out["ignored"] = ignored_json(answer);
   out["path_length"] = out["searched_length"] = out["partly_searched_length"] = nullptr;
-  if (answer.searched) {
-    out["path_length"] = answer.searched->path;
-    out["searched_length"] = answer.searched->whole;
-    out["partly_searched_length"] = answer.searched->part;
-  }
+  if (answer.searched) add_searched(*answer.searched, out);
   out["shard"] = answer.shard ? ordered_json(to_string(*answer.shard)) : ordered_json(nullptr);
-  const auto depth = answer.greatest_depth();
-  const auto inside = answer.points_inside();
-  out["points_inside"] = inside ? ordered_json(*inside) : ordered_json(nullptr);
-  out["greatest_depth"] = depth ? ordered_json(*depth) : ordered_json(nullptr);
+  add_inside(answer, out);
   out["least_clearance"] = place_json(answer, answer.least_clearance, path, true);
   out["least_profile"] = place_json(answer, answer.least_profile, path, true);
   out["first_place"] = place_json(answer, answer.first_place, path, false);

@@ -58,7 +58,14 @@ nlohmann::ordered_json seen_json(const Answer& answer);
 /// All numbers of an error budget, as they are named in ErrorBudget.
 nlohmann::ordered_json budget_json(const ErrorBudget& budget);
 
-/// Adds an answer to a report: the keys verdict, reasons, margins, seen, path_length and its parts,
+/// Adds the keys points_inside and greatest_depth.
+void add_inside(const Answer& answer, nlohmann::ordered_json& out);
+
+/// Adds the keys path_length, searched_length and partly_searched_length.
+void add_searched(const SearchedLength& searched, nlohmann::ordered_json& out);
+
+/// Adds an answer to a report: the keys poses, colliding_points, clearance_points, profile_poses,
+/// verdict, reasons, margins, seen, path_length and its parts,
 /// shard, ignored, points_inside, greatest_depth, least_clearance, least_profile and first_place.
 void add_answer(const Answer& answer, const PathWords& path, nlohmann::ordered_json& out);
 

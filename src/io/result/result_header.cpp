@@ -393,6 +393,10 @@ std::string environment_text(const ResultHeader& header) {
          hash_text(header.environment_hash);
 }
 
+const char* model_as(std::uint64_t solids, std::uint64_t triangles) {
+  return solids > 0 ? "solid" : triangles > 0 ? "surface" : "points";
+}
+
 void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   hdf5::write_attribute(file, "format",
                         std::string(header.part ? names::kPartFormat : names::kFormat));

@@ -94,6 +94,10 @@ inline bool same_answer(const ResultHeader& a, const ResultHeader& b) {
 /// The environment in words, by its number of points and its hash.
 std::string environment_text(const ResultHeader& header);
 
+/// What a model of so many solids and triangles was searched as, which outputs call model_as:
+/// "solid", "surface" or "points".
+const char* model_as(std::uint64_t solids, std::uint64_t triangles);
+
 /// What a search found besides its tables. It does not take part in the comparison of questions.
 // NOLINTNEXTLINE(bugprone-exception-escape): of messages that are moved
 struct ResultFindings {
