@@ -225,64 +225,59 @@ void read_value(const hdf5::Id& file, const char* attribute, const std::string& 
                    ", expected the axes that point ahead and up, for example +y,+z");
 }
 
-/// An attribute of the file: its name, and the member that it keeps.
-template <typename Struct, typename Value>
-struct Attribute {
-  const char* name;
-  Value Struct::*member;
-};
-
 using Q = ResultQuestion;
-constexpr std::tuple kQuestion{Attribute{"environment_points", &Q::environment_points},
-                               Attribute{"environment_hash", &Q::environment_hash},
-                               Attribute{"model_points", &Q::model_points},
-                               Attribute{"model_hash", &Q::model_hash},
-                               Attribute{"model_triangles", &Q::model_triangles},
-                               Attribute{"model_solids", &Q::model_solids},
-                               Attribute{"model_box", &Q::model_box},
-                               Attribute{"poses", &Q::poses},
-                               Attribute{"trajectory_hash", &Q::trajectory_hash},
-                               Attribute{"crs_wkt", &Q::crs_wkt}};
-constexpr std::tuple kQuantisation{Attribute{"scale", &Quantisation::scale},
-                                   Attribute{"offset", &Quantisation::offset}};
-constexpr std::tuple kNotes{Attribute{"model_spacing", &ResultNotes::model_spacing},
-                            Attribute{"model_axes", &ResultNotes::model_axes}};
-constexpr std::tuple kNotesOfPart{Attribute{"model_is_cut", &ResultNotes::model_is_cut}};
-constexpr std::tuple kPart{
-    Attribute{"shard", &ResultPart::shard}, Attribute{"division", &ResultPart::division},
-    Attribute{"store", &ResultPart::store}, Attribute{"length_unit", &ResultPart::length_unit}};
-/// What a budget has besides the parameters of the query.
-constexpr std::tuple kBudget{Attribute{"budget_step", &ErrorBudget::step},
-                             Attribute{"budget_lever", &ErrorBudget::lever},
-                             Attribute{"budget_motion", &ErrorBudget::motion},
-                             Attribute{"budget_chord", &ErrorBudget::chord},
-                             Attribute{"budget_spacing", &ErrorBudget::spacing}};
-constexpr std::tuple kWithheld{Attribute{"withheld_points", &ResultFindings::withheld_points}};
-constexpr std::tuple kIgnoredColliding{
-    Attribute{"ignored_colliding", &ResultFindings::ignored_colliding},
-    Attribute{"ignored_colliding_high", &ResultFindings::ignored_colliding_high}};
-constexpr std::tuple kSeen{Attribute{"unseen_cube_side", &SeenSummary::cube},
-                           Attribute{"swept_cubes", &SeenSummary::swept},
-                           Attribute{"unseen_cubes", &SeenSummary::unseen},
-                           Attribute{"unseen_groups", &SeenSummary::groups},
-                           Attribute{"unseen_listed_groups", &SeenSummary::listed_groups},
-                           Attribute{"unseen_listed_cubes", &SeenSummary::listed_cubes},
-                           Attribute{"not_scanned_length", &SeenSummary::not_scanned_length}};
-constexpr std::tuple kCertain{Attribute{"certain_points", &CertainPoints::points},
-                              Attribute{"certain_group", &CertainPoints::has_group}};
-constexpr std::tuple kSearched{Attribute{"path_length", &SearchedLength::path},
-                               Attribute{"searched_length", &SearchedLength::whole},
-                               Attribute{"partly_searched_length", &SearchedLength::part}};
 
-template <typename Struct, typename... Attributes>
-void write_all(const hdf5::Id& file, const std::tuple<Attributes...>& list, const Struct& from) {
-  for_each_field(list, [&](const auto& one) { write_value(file, one.name, from.*one.member); });
+/// The attributes of the file beside the values of the query: the members that they keep, and their
+/// names.
+constexpr std::tuple kQuestion{Field{&Q::environment_points, "environment_points"},
+                               Field{&Q::environment_hash, "environment_hash"},
+                               Field{&Q::model_points, "model_points"},
+                               Field{&Q::model_hash, "model_hash"},
+                               Field{&Q::model_triangles, "model_triangles"},
+                               Field{&Q::model_solids, "model_solids"},
+                               Field{&Q::model_box, "model_box"},
+                               Field{&Q::poses, "poses"},
+                               Field{&Q::trajectory_hash, "trajectory_hash"},
+                               Field{&Q::crs_wkt, "crs_wkt"}};
+constexpr std::tuple kQuantisation{Field{&Quantisation::scale, "scale"},
+                                   Field{&Quantisation::offset, "offset"}};
+constexpr std::tuple kNotes{Field{&ResultNotes::model_spacing, "model_spacing"},
+                            Field{&ResultNotes::model_axes, "model_axes"}};
+constexpr std::tuple kNotesOfPart{Field{&ResultNotes::model_is_cut, "model_is_cut"}};
+constexpr std::tuple kPart{
+    Field{&ResultPart::shard, "shard"}, Field{&ResultPart::division, "division"},
+    Field{&ResultPart::store, "store"}, Field{&ResultPart::length_unit, "length_unit"}};
+/// What a budget has besides the parameters of the query.
+constexpr std::tuple kBudget{
+    Field{&ErrorBudget::step, "budget_step"}, Field{&ErrorBudget::lever, "budget_lever"},
+    Field{&ErrorBudget::motion, "budget_motion"}, Field{&ErrorBudget::chord, "budget_chord"},
+    Field{&ErrorBudget::spacing, "budget_spacing"}};
+constexpr std::tuple kWithheld{Field{&ResultFindings::withheld_points, "withheld_points"}};
+constexpr std::tuple kIgnoredColliding{
+    Field{&ResultFindings::ignored_colliding, "ignored_colliding"},
+    Field{&ResultFindings::ignored_colliding_high, "ignored_colliding_high"}};
+constexpr std::tuple kSeen{Field{&SeenSummary::cube, "unseen_cube_side"},
+                           Field{&SeenSummary::swept, "swept_cubes"},
+                           Field{&SeenSummary::unseen, "unseen_cubes"},
+                           Field{&SeenSummary::groups, "unseen_groups"},
+                           Field{&SeenSummary::listed_groups, "unseen_listed_groups"},
+                           Field{&SeenSummary::listed_cubes, "unseen_listed_cubes"},
+                           Field{&SeenSummary::not_scanned_length, "not_scanned_length"}};
+constexpr std::tuple kCertain{Field{&CertainPoints::points, "certain_points"},
+                              Field{&CertainPoints::has_group, "certain_group"}};
+constexpr std::tuple kSearched{Field{&SearchedLength::path, "path_length"},
+                               Field{&SearchedLength::whole, "searched_length"},
+                               Field{&SearchedLength::part, "partly_searched_length"}};
+
+template <typename Struct, typename... Fields>
+void write_all(const hdf5::Id& file, const std::tuple<Fields...>& list, const Struct& from) {
+  for_each_field(list, [&](const auto& field) { write_value(file, field.key, field.of(from)); });
 }
 
-template <typename Struct, typename... Attributes>
-void read_all(const hdf5::Id& file, const std::string& name, const std::tuple<Attributes...>& list,
+template <typename Struct, typename... Fields>
+void read_all(const hdf5::Id& file, const std::string& name, const std::tuple<Fields...>& list,
               Struct& to) {
-  for_each_field(list, [&](const auto& one) { read_value(file, one.name, name, to.*one.member); });
+  for_each_field(list, [&](const auto& field) { read_value(file, field.key, name, field.of(to)); });
 }
 
 std::string lines_of(const std::vector<std::string>& texts) {
@@ -403,8 +398,7 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   hdf5::write_number(file, "version", names::kVersion);
   write_all(file, kQuestion, header.question());
   write_all(file, kQuantisation, header.quantisation);
-  for_each_field(kQueryValues,
-                 [&](const auto& field) { write_value(file, field.key, field.of(header)); });
+  write_all(file, kQueryValues, header);
   write_all(file, kNotes, header.notes);
   if (!header.bodies.empty()) {
     hdf5::write_attribute(file, names::kBodies, lines_of(header.bodies));
@@ -421,9 +415,7 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
   ResultHeader header;
   read_all(file, name, kQuestion, static_cast<ResultQuestion&>(header));
   read_all(file, name, kQuantisation, header.quantisation);
-  for_each_field(kQueryValues, [&](const auto& field) {
-    read_value(file, field.key, name, header.*field.member);
-  });
+  read_all(file, name, kQueryValues, header);
   read_all(file, name, kNotes, header.notes);
   if (hdf5::has_attribute(file, names::kBodies, name)) {
     header.bodies = read_lines(file, name, names::kBodies, "names", kMostBodies);
