@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source tools/setup.sh
-clearway_packages+=(clang-19 libclang-rt-19-dev libomp-19-dev)
+clearway_packages+=(clang-19 libclang-rt-19-dev libomp-19-dev llvm-19)
 install_missing_packages
 
 seconds=${1:-60}

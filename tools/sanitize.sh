@@ -34,6 +34,7 @@ test_under_thread_sanitizer() {
   cmake --build build/tsan --target planted_race "${thread_tests[@]}"
   export TSAN_OPTIONS="halt_on_error=1 ignore_noninstrumented_modules=1"
   TSAN_OPTIONS+=" suppressions=$PWD/tests/tsan.supp"
+  TSAN_OPTIONS+=" external_symbolizer_path=/usr/lib/llvm-19/bin/llvm-symbolizer"
   export OMP_TOOL_LIBRARIES=/usr/lib/llvm-19/lib/libarcher.so
   require_planted_races
   for program in "${thread_tests[@]}"; do

@@ -9,7 +9,7 @@ case "${1:-}" in
   "") ;;
   --sanitize)
     source tools/sanitize.sh
-    clearway_packages+=(clang-19 libclang-rt-19-dev libomp-19-dev)
+    clearway_packages+=(clang-19 libclang-rt-19-dev libomp-19-dev llvm-19)
     install_missing_packages
     test_under_address_sanitizer
     test_under_thread_sanitizer

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -506,11 +507,18 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
 
 }  // namespace message_table
 
+/// The place of a code in the table, or the number of its rows.
+constexpr std::size_t place_of_message_kind(std::string_view code) {
+  const auto& kinds = message_table::kMessageKinds;
+  const auto found = std::ranges::find(kinds, code, &MessageKind::code);
+  return static_cast<std::size_t>(found - kinds.begin());
+}
+
 /// The row with a code, or nullptr.
 constexpr const MessageKind* find_message_kind(std::string_view code) {
   const auto& kinds = message_table::kMessageKinds;
-  const auto* const found = std::ranges::find(kinds, code, &MessageKind::code);
-  return found == kinds.end() ? nullptr : found;
+  const std::size_t place = place_of_message_kind(code);
+  return place == kinds.size() ? nullptr : &kinds[place];
 }
 
 /// A code that the table has for messages of this severity. It is made of a literal, and another
@@ -519,9 +527,12 @@ template <Severities kNeeded>
 class MessageCode {
  public:
   consteval MessageCode(const char* code) : code_(code) {  // NOLINT(google-explicit-constructor)
-    const MessageKind* const kind = find_message_kind(code);
+    // By its place: with sanitizers, gcc compares no address while it compiles.
+    const auto& kinds = message_table::kMessageKinds;
+    const std::size_t place = place_of_message_kind(code);
     const auto needed = static_cast<unsigned>(kNeeded);
-    if (kind == nullptr || (static_cast<unsigned>(kind->severities) & needed) != needed) {
+    if (place == kinds.size() ||
+        (static_cast<unsigned>(kinds[place].severities) & needed) != needed) {
       throw "the table of messages has no such code of this severity";
     }
   }
