@@ -3,10 +3,12 @@
 #include <cmath>
 
 #include "core/geometry/predicate.hpp"
-#include "support/engines/engines.hpp"
+#include "support/compare.hpp"
+#include "support/engines/scene_checks.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -14,7 +16,7 @@ const Quantisation kTenthMillimetre{{1e-4, 1e-4, 1e-4}, {0, 0, 0}};
 const Box kRoomOfClearances{{-4, -3, -1}, {5, 4, 2}};
 const Box kPartOfClearances{{-0.6, -0.4, -0.3}, {0.7, 0.5, 0.2}};
 
-struct SceneOfClearances {
+struct SceneOfClearances : SceneChecks<SceneOfClearances> {
   Random random{17};
   Quantisation quantisation = kTenthMillimetre;
   std::vector<Quantum> points =
@@ -23,44 +25,31 @@ struct SceneOfClearances {
   std::vector<Pose> poses = smooth_path(random, kRoomOfClearances, 60);
   double radius = 0.1;
 
-  std::uint64_t check(double clearance) const {
-    std::uint64_t found = 0;
-    for (const bool first_pose : {false, true}) {
-      Query query{model, poses, {radius, first_pose}};
-      query.clearance = clearance;
-      found = check_clearances(points, quantisation, query);
-    }
-    return found;
-  }
+  Query query() const { return {model, poses, {radius}}; }
 };
-
-void move_far_away(SceneOfClearances& scene, const Vec3& offset) {
-  for (int k = 0; k < 3; ++k) scene.quantisation.offset[k] += offset[k];
-  for (Pose& pose : scene.poses) {
-    for (int k = 0; k < 3; ++k) pose.translation[k] += offset[k];
-  }
-}
 
 }  // namespace
 
 TEST_CASE("clearances of every size") {
   SceneOfClearances scene;
-  SECTION("smaller than every distance") { CHECK(scene.check(1e-7) == 0); }
-  SECTION("smaller than the radius") { CHECK(scene.check(0.07) > 0); }
-  SECTION("the radius") { CHECK(scene.check(0.1) > 0); }
-  SECTION("just above it") { CHECK(scene.check(std::nextafter(0.1, 1)) > 0); }
-  SECTION("far larger") { CHECK(scene.check(2) > 300); }
-  SECTION("larger than the scene") { CHECK(scene.check(1000) == scene.points.size()); }
-  SECTION("beyond any scene") { CHECK(scene.check(1e150) == scene.points.size()); }
-  SECTION("whose square is infinite") { CHECK(scene.check(1e200) == scene.points.size()); }
-  SECTION("whose square is zero") { CHECK(scene.check(1e-200) == 0); }
+  SECTION("smaller than every distance") { check_equal(scene.check_clearance(1e-7), 0); }
+  SECTION("smaller than the radius") { CHECK(scene.check_clearance(0.07) > 0); }
+  SECTION("the radius") { CHECK(scene.check_clearance(0.1) > 0); }
+  SECTION("just above it") { CHECK(scene.check_clearance(std::nextafter(0.1, 1)) > 0); }
+  SECTION("far larger") { CHECK(scene.check_clearance(2) > 300); }
+  SECTION("larger than the scene") { CHECK(scene.check_clearance(1000) == scene.points.size()); }
+  SECTION("beyond any scene") { CHECK(scene.check_clearance(1e150) == scene.points.size()); }
+  SECTION("whose square is infinite") {
+    CHECK(scene.check_clearance(1e200) == scene.points.size());
+  }
+  SECTION("whose square is zero") { check_equal(scene.check_clearance(1e-200), 0); }
   SECTION("with a radius far below the model's spacing") {
     scene.radius = 1e-4;
-    CHECK(scene.check(1.5) > 200);
+    CHECK(scene.check_clearance(1.5) > 200);
   }
   SECTION("with a radius larger than the scene") {
     scene.radius = 30;
-    CHECK(scene.check(0.5) > 0);
+    CHECK(scene.check_clearance(0.5) > 0);
   }
 }
 
@@ -74,7 +63,7 @@ TEST_CASE("clearances of few model points, poses and points") {
     scene.poses.resize(1);
     scene.points.resize(1);
   }
-  CHECK(scene.check(20) == scene.points.size());
+  CHECK(scene.check_clearance(20) == scene.points.size());
 }
 
 TEST_CASE("clearances along slow paths") {
@@ -84,39 +73,30 @@ TEST_CASE("clearances along slow paths") {
   const double bend = GENERATE(0.0, 1e-9, 1e-3, 0.5, 4.0);
   scene.poses = slow_path(500, bend);
   SECTION("as they are") {}
-  SECTION("with a stop") { scene.poses.insert(scene.poses.begin() + 200, 300, scene.poses[200]); }
-  SECTION("to and fro") {
-    const auto there = scene.poses;
-    scene.poses.insert(scene.poses.end(), there.rbegin(), there.rend());
-  }
+  SECTION("with a stop") { stop_at(scene.poses, 200, 300); }
+  SECTION("to and fro") { drive_back(scene.poses); }
   SECTION("with a jump") { scene.poses.insert(scene.poses.begin() + 77, scene.poses.back()); }
   SECTION("jittering") {
     for (Pose& pose : scene.poses) pose.translation[1] += 1e-3 * random_direction(scene.random).y;
   }
-  SECTION("stretched") {
-    for (Pose& pose : scene.poses) pose = stretched(pose, {1.2, 0.8, 1.00005});
-  }
-  SECTION("far away") { move_far_away(scene, {5e6, 2e6, 1e3}); }
-  CHECK(scene.check(0.4) > 10);
+  SECTION("stretched") { stretch(scene.poses, {1.2, 0.8, 1.00005}); }
+  SECTION("far away") { scene.move_far_away({5e6, 2e6, 1e3}); }
+  CHECK(scene.check_clearance(0.4) > 10);
 }
 
 TEST_CASE("clearances that several poses tie for") {
   SceneOfClearances scene;
-  SECTION("repeated poses") {
-    const auto once = scene.poses;
-    scene.poses.clear();
-    for (const Pose& pose : once) scene.poses.insert(scene.poses.end(), 4, pose);
-  }
+  SECTION("repeated poses") { repeat_each(scene.poses, 4); }
   SECTION("one pose all the time") { scene.poses.assign(50, scene.poses[7]); }
   SECTION("there and back and there again") {
     const auto there = scene.poses;
-    scene.poses.insert(scene.poses.end(), there.rbegin(), there.rend());
+    drive_back(scene.poses);
     scene.poses.insert(scene.poses.end(), there.begin(), there.end());
   }
   SECTION("later poses first in the tree's order") {
     scene.poses.insert(scene.poses.begin(), scene.poses.rbegin(), scene.poses.rend());
   }
-  CHECK(scene.check(3) > 300);
+  CHECK(scene.check_clearance(3) > 300);
 }
 
 TEST_CASE("clearances that mirror images tie for") {
@@ -132,9 +112,9 @@ TEST_CASE("clearances that mirror images tie for") {
   for (int i = -32; i <= 32; ++i) {
     if (i != 0) scene.poses.push_back(translation({(towards ? i : -i) * 0x1p-5, 0.5, 0.25}));
   }
-  CHECK(scene.check(4) == scene.points.size());
+  CHECK(scene.check_clearance(4) == scene.points.size());
   scene.model = {{0.5, 0, 0}, {-0.5, 0, 0}};  // ties between model points, too
-  CHECK(scene.check(4) == scene.points.size());
+  CHECK(scene.check_clearance(4) == scene.points.size());
 }
 
 TEST_CASE("clearances of duplicates") {
@@ -142,29 +122,21 @@ TEST_CASE("clearances of duplicates") {
   scene.points.resize(300);
   for (int i = 0; i < 300; ++i) scene.points.push_back(scene.points[i]);
   for (int i = 0; i < 60; ++i) scene.model.push_back(scene.model[i]);
-  CHECK(scene.check(1) % 2 == 0);
+  check_equal(scene.check_clearance(1) % 2, 0);
 }
 
 TEST_CASE("clearances far from the origin and of matrices that are not rigid") {
   SceneOfClearances scene;
-  SECTION("UTM") { move_far_away(scene, {5e6, 2e6, 1e3}); }
-  SECTION("six digits") {
-    for (Pose& pose : scene.poses) pose = printed_with_six_digits(pose);
-  }
-  SECTION("slightly stretched") {
-    for (Pose& pose : scene.poses) pose = stretched(pose, {1.00009, 0.99992, 1.00005});
-  }
-  SECTION("strongly stretched") {
-    for (Pose& pose : scene.poses) pose = stretched(pose, {2.5, 0.3, 1.7});
-  }
+  SECTION("UTM") { scene.move_far_away({5e6, 2e6, 1e3}); }
+  SECTION("six digits") { print_with_six_digits(scene.poses); }
+  SECTION("slightly stretched") { stretch(scene.poses, {1.00009, 0.99992, 1.00005}); }
+  SECTION("strongly stretched") { stretch(scene.poses, {2.5, 0.3, 1.7}); }
   SECTION("strongly stretched, far away") {
-    for (Pose& pose : scene.poses) pose = stretched(pose, {0.2, 1.4, 0.7});
-    move_far_away(scene, {5e6, 2e6, 1e3});
+    stretch(scene.poses, {0.2, 1.4, 0.7});
+    scene.move_far_away({5e6, 2e6, 1e3});
   }
-  SECTION("singular") {
-    for (Pose& pose : scene.poses) pose = stretched(pose, {3, 0, 1});
-  }
-  CHECK(scene.check(1.5) > 100);
+  SECTION("singular") { stretch(scene.poses, {3, 0, 1}); }
+  CHECK(scene.check_clearance(1.5) > 100);
 }
 
 TEST_CASE("clearances where roundings decide the pose and the model point") {
@@ -198,6 +170,6 @@ TEST_CASE("clearances where roundings decide the pose and the model point") {
       for (int k = 0; k < 3; ++k) q[k] = static_cast<std::int32_t>(below(random, 5)) - 2;
       scene.points.push_back(q);
     }
-    CHECK(scene.check(0.9) == 40);
+    check_equal(scene.check_clearance(0.9), 40);
   }
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "support/compare.hpp"
 #include "support/engines/engines.hpp"
 #include "support/solid_scene.hpp"
 
@@ -120,9 +121,9 @@ TEST_CASE("inside several solids the greatest depth counts") {
   }
   const Query query = bodies.query({translation({0, 0, 0})}, 0.05);
   const auto found = signed_distances({{0, 0, 0}, {0.75, 0, 0}, {0, 0, 1.5}}, {0, 0, 0}, query);
-  CHECK(found[0] == -1);
-  CHECK(found[1] == -0.25);
-  CHECK(found[2] == 0.5);
+  check_equal(found[0], -1);
+  check_equal(found[1], -0.25);
+  check_equal(found[2], 0.5);
 }
 
 TEST_CASE("what is far inside collides") {
@@ -130,5 +131,5 @@ TEST_CASE("what is far inside collides") {
   bodies.add(box_surface({{-100, -100, -100}, {100, 100, 100}}));
   Query query = bodies.query({translation({0, 0, 0}), translation({300, 0, 0})}, 1e-3);
   const std::vector<Quantum> points{{0, 0, 0}, {99, 99, 99}, {101, 0, 0}, {201, 0, 0}, {250, 1, 2}};
-  CHECK(check_engines(points, {{1, 1, 1}, {0, 0, 0}}, query) == 4);
+  check_equal(check_engines(points, {{1, 1, 1}, {0, 0, 0}}, query), 4);
 }

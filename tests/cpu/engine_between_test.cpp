@@ -5,10 +5,12 @@
 
 #include "core/geometry/predicate.hpp"
 #include "cpu/brute_force.hpp"
+#include "support/compare.hpp"
 #include "support/engines/engines.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -51,7 +53,7 @@ TEST_CASE("one pose and repeated poses have the discrete answer between poses") 
   const auto poses = GENERATE(as<std::size_t>(), 0, 1, 2, 50);
   Random random(2);
   const std::vector<Pose> still(poses, random_rotation(random, {0.5, 0.3, 0.2}));
-  CHECK(scene.check(still, 0.4) == 0);
+  check_equal(scene.check(still, 0.4), 0);
 }
 
 TEST_CASE("a point that only the inside of a segment touches") {
@@ -76,7 +78,7 @@ TEST_CASE("the first pose is that of the first way that touches the point, ends 
   // pose.
   const std::vector<Pose> corner{translation({0, 0, 0}), translation({1, 0, 0}),
                                  translation({0, 0.03125, 0})};
-  CHECK(first_poses({{1.0625, 0, 0}}, kOnePoint, corner, 0.125) == std::vector<std::uint32_t>{0});
+  check_equal(first_poses({{1.0625, 0, 0}}, kOnePoint, corner, 0.125), {0});
 }
 
 TEST_CASE("a segment at exactly the radius and one unit to either side") {
@@ -84,8 +86,8 @@ TEST_CASE("a segment at exactly the radius and one unit to either side") {
                                 translation({1, 8, 0})};
   const std::vector<Vec3> points{{0.5, 0.5, 0}, {0.25, 0, -0.5}, {-0.5, 0, 0}, {1.5, 0, 0},
                                  {0, 0.5, 0},   {1, 0, 0.5},     {1, 8.5, 0},  {1.5, 0.125, 0}};
-  CHECK(hits_of(first_poses(points, kOnePoint, poses, 0.5)) == 0);
-  CHECK(hits_of(first_poses(points, kOnePoint, poses, std::nextafter(0.5, 0))) == 0);
+  check_equal(hits_of(first_poses(points, kOnePoint, poses, 0.5)), 0);
+  check_equal(hits_of(first_poses(points, kOnePoint, poses, std::nextafter(0.5, 0))), 0);
   CHECK(first_poses(points, kOnePoint, poses, std::nextafter(0.5, 1)) ==
         std::vector<std::uint32_t>{0, 0, 0, 0, 0, 0, 1, 1});
 }
@@ -95,7 +97,7 @@ TEST_CASE("a stop counts from the way that leads to it") {
   poses.insert(poses.end(), 40, translation({1, 0, 0}));
   poses.push_back(translation({2, 0, 0}));
   const std::vector<Vec3> points{{-0.0625, 0, 0}, {0, 0.0625, 0}, {1, 0.0625, 0}, {2.0625, 0, 0}};
-  CHECK(first_poses(points, kOnePoint, poses, 0.125) == std::vector<std::uint32_t>{0, 0, 2, 42});
+  check_equal(first_poses(points, kOnePoint, poses, 0.125), {0, 0, 2, 42});
   CHECK(first_poses(points, kOnePoint, {translation({1, 0, 0})}, 0.125) ==
         std::vector<std::uint32_t>{kNever, kNever, 0, kNever});
 }

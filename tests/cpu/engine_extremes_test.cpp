@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "random_scene.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -16,7 +17,7 @@ TEST_CASE("matrices that make a model of any size as large as the scene") {
   for (Vec3& m : scene.model) {
     for (int k = 0; k < 3; ++k) m[k] *= size;
   }
-  for (Pose& pose : scene.poses) pose = stretched(pose, {1 / size, 1 / size, 1 / size});
+  stretch(scene.poses, {1 / size, 1 / size, 1 / size});
   CHECK(scene.check() > 0);
 }
 
@@ -43,7 +44,7 @@ TEST_CASE("radii") {
     scene.model = positions_of(scene.points, scene.quantisation);
     scene.poses = {translation({0, 0, 0})};
     scene.radius = 1e-170;
-    CHECK(scene.check() == 0);
+    check_equal(scene.check(), 0);
     scene.radius = 1e-155;  // here the computed distances are zero, so below the radius
     CHECK(scene.check() == scene.points.size());
   }

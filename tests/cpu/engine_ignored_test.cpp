@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "random_scene.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -67,7 +68,7 @@ TEST_CASE("everything is ignored") {
   IgnoringScene scene;
   SECTION("by class") { scene.ignore_classes = {0}; }
   SECTION("by box") { scene.ignore_boxes = {{{-9, -9, -9}, {9, 9, 9}}}; }
-  CHECK(scene.check_ignoring() == 0);
+  check_equal(scene.check_ignoring(), 0);
 }
 
 TEST_CASE("ignored boxes") {
@@ -117,7 +118,7 @@ TEST_CASE("a box holds the points on its sides") {
   for (std::size_t i = 0; i < 3; ++i) scene.points.push_back({q[0] + 1, q[1], q[2]});
   const Vec3 corner = positions_of(std::vector{q}, scene.quantisation)[0];
   scene.ignore_boxes = {{corner, corner}};
-  CHECK(scene.check_ignoring() == 3);
+  check_equal(scene.check_ignoring(), 3);
 }
 
 TEST_CASE("an ignored point is no pose's nearest one, however near it is") {

@@ -4,10 +4,12 @@
 #include <cmath>
 
 #include "core/geometry/predicate.hpp"
+#include "support/compare.hpp"
 #include "support/engines/engines.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 TEST_CASE("a point exactly at the radius and one unit to either side") {
   const Quantisation quantisation{{0x1p-20, 0x1p-20, 0x1p-20}, {0, 0, 0}};
@@ -15,9 +17,9 @@ TEST_CASE("a point exactly at the radius and one unit to either side") {
   const std::vector<Quantum> points{{half, 0, 0}, {0, -half, 0}, {0, 0, half}};
   const std::vector<Vec3> model{{0, 0, 0}};
   const std::vector<Pose> poses{translation({0, 0, 0})};
-  CHECK(check_engines(points, quantisation, {model, poses, {0.5}}) == 0);
-  CHECK(check_engines(points, quantisation, {model, poses, {std::nextafter(0.5, 1)}}) == 3);
-  CHECK(check_engines(points, quantisation, {model, poses, {std::nextafter(0.5, 0)}}) == 0);
+  check_equal(check_engines(points, quantisation, {model, poses, {0.5}}), 0);
+  check_equal(check_engines(points, quantisation, {model, poses, {std::nextafter(0.5, 1)}}), 3);
+  check_equal(check_engines(points, quantisation, {model, poses, {std::nextafter(0.5, 0)}}), 0);
 
   for (const double sign : {-1.0, 1.0}) {
     const std::vector<Pose> nudged{translation({sign * 0x1p-54, 0, 0})};
@@ -30,8 +32,8 @@ TEST_CASE("whole nodes exactly at the radius") {
   const std::vector<Quantum> points(500, Quantum{6, 8, 0});  // 5 m from the origin
   const std::vector<Vec3> model{{0, 0, 0}};
   const std::vector<Pose> poses{translation({0, 0, 0})};
-  CHECK(check_engines(points, quantisation, {model, poses, {5.0}}) == 0);
-  CHECK(check_engines(points, quantisation, {model, poses, {std::nextafter(5.0, 6)}}) == 500);
+  check_equal(check_engines(points, quantisation, {model, poses, {5.0}}), 0);
+  check_equal(check_engines(points, quantisation, {model, poses, {std::nextafter(5.0, 6)}}), 500);
 }
 
 namespace {

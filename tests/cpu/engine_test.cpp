@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "random_scene.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -23,7 +24,7 @@ TEST_CASE("an empty cloud, an empty model, an empty path") {
     scene.model.clear();
     scene.poses.clear();
   }
-  CHECK(scene.check() == 0);
+  check_equal(scene.check(), 0);
 }
 
 TEST_CASE("one point, one model point, one pose") {
@@ -31,11 +32,11 @@ TEST_CASE("one point, one model point, one pose") {
   SECTION("one environment point, touched") {
     const Vec3 at = transform(scene.poses[11], scene.model[5]);
     scene.points = quantise(std::vector{at}, scene.quantisation);
-    CHECK(scene.check() == 1);
+    check_equal(scene.check(), 1);
   }
   SECTION("one environment point, not touched") {
     scene.points = {{1'000'000, 0, 0}};
-    CHECK(scene.check() == 0);
+    check_equal(scene.check(), 0);
   }
   SECTION("one model point") {
     scene.model.resize(1);
@@ -50,7 +51,7 @@ TEST_CASE("one point, one model point, one pose") {
     scene.points = quantise(std::vector{at}, scene.quantisation);
     scene.model.resize(1);
     scene.poses.resize(1);
-    CHECK(scene.check() == 1);
+    check_equal(scene.check(), 1);
   }
 }
 
@@ -71,13 +72,13 @@ TEST_CASE("duplicates") {
     const auto touched = quantise(std::vector{at}, scene.quantisation);
     scene.points.assign(1500, touched[0]);
     scene.points.resize(2500, {900'000, 0, 0});
-    CHECK(scene.check() == 1500);
+    check_equal(scene.check(), 1500);
   }
   SECTION("every point three times") {
     const auto once = scene.points;
     scene.points.insert(scene.points.end(), once.begin(), once.end());
     scene.points.insert(scene.points.end(), once.begin(), once.end());
-    CHECK(scene.check() % 3 == 0);
+    check_equal(scene.check() % 3, 0);
   }
   SECTION("model points") {
     scene.model.resize(3);
@@ -111,14 +112,11 @@ TEST_CASE("collinear and coplanar points") {
 TEST_CASE("paths") {
   Scene scene;
   SECTION("repeated poses") {
-    const auto once = scene.poses;
-    scene.poses.clear();
-    for (const Pose& pose : once) scene.poses.insert(scene.poses.end(), 5, pose);
+    repeat_each(scene.poses, 5);
     CHECK(scene.check() > 0);
   }
   SECTION("there and back") {
-    const auto there = scene.poses;
-    scene.poses.insert(scene.poses.end(), there.rbegin(), there.rend());
+    drive_back(scene.poses);
     CHECK(scene.check() > 0);
   }
   SECTION("jumps") {
@@ -142,25 +140,17 @@ TEST_CASE("paths") {
     CHECK(scene.check() > 0);
   }
   SECTION("six printed digits") {
-    for (Pose& pose : scene.poses) pose = printed_with_six_digits(pose);
+    print_with_six_digits(scene.poses);
     CHECK(scene.check() > 0);
   }
 }
 
 TEST_CASE("matrices that are not rigid") {
   Scene scene;
-  SECTION("slightly") {
-    for (Pose& pose : scene.poses) pose = stretched(pose, {1.00009, 0.99992, 1.00005});
-  }
-  SECTION("strongly") {
-    for (Pose& pose : scene.poses) pose = stretched(pose, {2.5, 0.3, 1.7});
-  }
-  SECTION("mirrored") {
-    for (Pose& pose : scene.poses) pose = stretched(pose, {-1, 1, 1});
-  }
-  SECTION("singular") {
-    for (Pose& pose : scene.poses) pose = stretched(pose, {3, 0, 1});
-  }
+  SECTION("slightly") { stretch(scene.poses, {1.00009, 0.99992, 1.00005}); }
+  SECTION("strongly") { stretch(scene.poses, {2.5, 0.3, 1.7}); }
+  SECTION("mirrored") { stretch(scene.poses, {-1, 1, 1}); }
+  SECTION("singular") { stretch(scene.poses, {3, 0, 1}); }
   SECTION("sheared") {
     for (Pose& pose : scene.poses) {
       for (int row = 0; row < 3; ++row) pose.rotation[3 * row] += 1.5 * pose.rotation[3 * row + 1];
@@ -197,7 +187,7 @@ TEST_CASE("a cell far wider than the radius") {
     scene.poses.push_back(translation(position(scene.quantisation, q[0], q[1], q[2])));
   }
   scene.radius = 1e-4;
-  CHECK(scene.check() == 600);
+  check_equal(scene.check(), 600);
 }
 
 TEST_CASE("a model of a few points far apart") {

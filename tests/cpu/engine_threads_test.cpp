@@ -1,10 +1,12 @@
 // Every engine where threads get in each other's way.
 #include <catch2/catch.hpp>
 
+#include "support/compare.hpp"
 #include "support/engines/engines.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 TEST_CASE("points that are each touched by exactly one pose lose no hit") {
   // Points on a line. The model is a comb: pose i touches point i of every `teeth`, so that poses
@@ -51,7 +53,7 @@ TEST_CASE("the answer does not depend on the number of threads") {
         differing += hits.contains(slot) != expected.contains(slot);
         differing += hits.first_pose(slot) != expected.first_pose(slot);
       }
-      CHECK(differing == 0);
+      check_equal(differing, 0);
     }
   }
 }

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/geometry/predicate.hpp"
+#include "support/compare.hpp"
 #include "support/engines/engines.hpp"
 #include "support/exact_way.hpp"
 #include "support/scenes.hpp"
@@ -57,7 +58,7 @@ TEST_CASE("ways with and without their ends touch the same points, one pose apar
       }
     }
     CAPTURE(poses);
-    CHECK(wrong == 0);
+    check_equal(wrong, 0);
     CHECK(lower > 0);
     CHECK(equal > 10);
   }
@@ -176,7 +177,7 @@ TEST_CASE("first poses are those of whole numbers' arithmetic") {
       hits += exact != kNeverOnWay;
     }
   }
-  CHECK(wrong == 0);
+  check_equal(wrong, 0);
   CHECK(hits > 1000);
   CHECK(decided > 17'000);
 }

@@ -7,11 +7,13 @@
 #include "core/grid/grid_search.hpp"
 #include "core/grid/grid_size.hpp"
 #include "cpu/brute_force.hpp"
+#include "support/compare.hpp"
 #include "support/engines/grid_runs.hpp"
 #include "support/memory_cloud.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -57,7 +59,7 @@ TEST_CASE("grid cells from tiny to huge") {
   const SceneOfGrid scene;
   for (double size = 1e-9; size < 1e9; size *= 10) {
     CAPTURE(size);
-    CHECK(scene.wrong({.options = {.grid_cell = size}}, {1000, 0}) == 0);
+    check_equal(scene.wrong({.options = {.grid_cell = size}}, {1000, 0}), 0);
   }
 }
 
@@ -65,7 +67,7 @@ TEST_CASE("a work list of one pair, and of few") {
   const SceneOfGrid scene;
   for (const std::uint32_t work_list : {0, 1, 2, 31, 513}) {
     CAPTURE(work_list);
-    CHECK(scene.wrong({.work_list = work_list}, {1000, 0}) == 0);
+    check_equal(scene.wrong({.work_list = work_list}, {1000, 0}), 0);
   }
 }
 
@@ -73,7 +75,7 @@ TEST_CASE("pages of one cell and of all, one slot and many") {
   const SceneOfGrid scene;
   for (const std::uint32_t cells : {1, 2, 100}) {
     for (const std::uint32_t slots : {1, 5}) {
-      CHECK(scene.wrong({.slots = slots, .cells_a_page = cells}, {256, 700}) == 0);
+      check_equal(scene.wrong({.slots = slots, .cells_a_page = cells}, {256, 700}), 0);
     }
   }
 }
@@ -85,7 +87,7 @@ TEST_CASE("a model of several tasks") {
                               kTaskParts * kPartGroups * kGroupPoints + 5000);
   scene.poses.resize(3);
   GridStatistics statistics;
-  CHECK(scene.wrong({}, {128, 0}, &statistics) == 0);
+  check_equal(scene.wrong({}, {128, 0}, &statistics), 0);
   CHECK(statistics.searches > 0);
 }
 
@@ -99,7 +101,7 @@ TEST_CASE("a sparse cell takes no more memory, and its clusters are searched in 
     }
   }
   GridStatistics statistics;
-  CHECK(scene.wrong({}, {65536, 0}, &statistics) == 0);
+  check_equal(scene.wrong({}, {65536, 0}, &statistics), 0);
   CHECK(statistics.searches > 0);
   // Testing a third of the points would be 2,000 tests a search.
   CHECK(statistics.point_tests < 100 * statistics.searches);
@@ -161,5 +163,5 @@ TEST_CASE("the grid cell chosen follows radius and density") {
   const double density = surface_density(MemoryCloud(plane, kMillimetre));
   CHECK(density > 700);  // the true density is 1000 a square metre
   CHECK(density < 2000);
-  CHECK(surface_density(MemoryCloud({}, kMillimetre)) == 0);
+  check_equal(surface_density(MemoryCloud({}, kMillimetre)), 0);
 }

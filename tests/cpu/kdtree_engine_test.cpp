@@ -5,10 +5,12 @@
 #include <catch2/catch.hpp>
 
 #include "clearway/error.hpp"
+#include "support/compare.hpp"
 #include "support/memory_cloud.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -65,8 +67,8 @@ TEST_CASE("progress counts every pose once") {
   SECTION("no model") { scene.query.model = {}; }
   const std::uint64_t searches = scene.query.model.vertices.size() * scene.query.poses.size();
   run_kdtree(scene.cloud, scene.query, {3}, progress);
-  CHECK(progress.begun == 1);
-  CHECK(progress.ended == 1);
+  check_equal(progress.begun, 1);
+  check_equal(progress.ended, 1);
   CHECK(progress.total == scene.query.poses.size());
   CHECK(progress.done == (searches == 0 ? 0 : progress.total));
 }

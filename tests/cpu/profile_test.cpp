@@ -5,8 +5,10 @@
 #include "core/geometry/predicate.hpp"
 #include "cpu/brute_force.hpp"
 #include "random_scene.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 using clearway::test::kPart;
 using clearway::test::kRoom;
 
@@ -29,13 +31,6 @@ struct ProfileScene : clearway::test::Scene {
     return found;
   }
 
-  void move_far_away(const Vec3& offset) {
-    for (int k = 0; k < 3; ++k) quantisation.offset[k] += offset[k];
-    for (Pose& pose : poses) {
-      for (int k = 0; k < 3; ++k) pose.translation[k] += offset[k];
-    }
-  }
-
   /// The least d2 at a pose, by brute force.
   double least(std::size_t pose) const {
     Query query{model, {poses[pose]}, {radius}};
@@ -49,14 +44,14 @@ struct ProfileScene : clearway::test::Scene {
 TEST_CASE("profiles of every distance") {
   ProfileScene scene;
   const std::size_t all = scene.poses.size();
-  SECTION("smaller than every distance") { CHECK(scene.check_profile(1e-7) == 0); }
+  SECTION("smaller than every distance") { check_equal(scene.check_profile(1e-7), 0); }
   SECTION("smaller than the radius") { CHECK(scene.check_profile(0.05) > 0); }
   SECTION("the radius") { CHECK(scene.check_profile(0.1) > 0); }
   SECTION("larger") { CHECK(scene.check_profile(0.5) > 0); }
   SECTION("larger than the scene") { CHECK(scene.check_profile(1000) == all); }
   SECTION("beyond any scene") { CHECK(scene.check_profile(1e150) == all); }
   SECTION("whose square is infinite") { CHECK(scene.check_profile(1e200) == all); }
-  SECTION("whose square is zero") { CHECK(scene.check_profile(1e-200) == 0); }
+  SECTION("whose square is zero") { check_equal(scene.check_profile(1e-200), 0); }
   SECTION("with a radius far below the model's spacing") {
     scene.radius = 1e-4;
     CHECK(scene.check_profile(1.5) > 0);
@@ -79,11 +74,11 @@ TEST_CASE("a profile at the exact distance of a pose") {
       one.poses = {scene.poses[pose]};
       return one.check_profile(limit);
     };
-    CHECK(found(distance) == 0);  // the profile's distance itself is not below it
+    check_equal(found(distance), 0);  // the profile's distance itself is not below it
     while (rounded_product(distance, distance) <= scene.least(pose)) {
       distance = std::nextafter(distance, 1e9);
     }
-    CHECK(found(distance) == 1);
+    check_equal(found(distance), 1);
   }
 }
 
@@ -104,24 +99,15 @@ TEST_CASE("profiles where no point is in reach") {
   ProfileScene scene;
   scene.move_far_away({0, 0, 0});
   for (Pose& pose : scene.poses) pose.translation[0] += 100;
-  CHECK(scene.check_profile(2) == 0);
+  check_equal(scene.check_profile(2), 0);
 }
 
 TEST_CASE("profiles of stops, jumps and ways back") {
   ProfileScene scene;
-  SECTION("repeated poses") {
-    const auto once = scene.poses;
-    scene.poses.clear();
-    for (const Pose& pose : once) scene.poses.insert(scene.poses.end(), 5, pose);
-  }
+  SECTION("repeated poses") { repeat_each(scene.poses, 5); }
   SECTION("one pose all the time") { scene.poses.assign(300, scene.poses[7]); }
-  SECTION("a long stop on the way") {
-    scene.poses.insert(scene.poses.begin() + 20, 200, scene.poses[20]);
-  }
-  SECTION("there and back") {
-    const auto there = scene.poses;
-    scene.poses.insert(scene.poses.end(), there.rbegin(), there.rend());
-  }
+  SECTION("a long stop on the way") { stop_at(scene.poses, 20, 200); }
+  SECTION("there and back") { drive_back(scene.poses); }
   SECTION("steps that double: a tree deeper than its levels") {
     scene.poses.clear();
     for (int i = -40; i < 3; ++i) scene.poses.push_back(translation({std::ldexp(1, i), 0, 0}));
@@ -146,7 +132,7 @@ TEST_CASE("profiles for which many points tie") {
   scene.poses.clear();
   for (int i = 0; i < 40; ++i) scene.poses.push_back(translation({i * 0x1p-6, 0.5, 0}));
   CHECK(scene.check_profile(4) == scene.poses.size());
-  CHECK(scene.check_profile(0.25) == 0);
+  check_equal(scene.check_profile(0.25), 0);
   CHECK(scene.check_profile(std::nextafter(0.25, 1)) > 0);
 }
 
@@ -164,22 +150,14 @@ TEST_CASE("profiles of duplicates") {
 TEST_CASE("profiles far from the origin and of matrices that are not rigid") {
   ProfileScene scene;
   SECTION("UTM") { scene.move_far_away({5e6, 2e6, 1e3}); }
-  SECTION("six digits") {
-    for (Pose& pose : scene.poses) pose = printed_with_six_digits(pose);
-  }
-  SECTION("slightly stretched") {
-    for (Pose& pose : scene.poses) pose = stretched(pose, {1.00009, 0.99992, 1.00005});
-  }
-  SECTION("strongly stretched") {
-    for (Pose& pose : scene.poses) pose = stretched(pose, {2.5, 0.3, 1.7});
-  }
+  SECTION("six digits") { print_with_six_digits(scene.poses); }
+  SECTION("slightly stretched") { stretch(scene.poses, {1.00009, 0.99992, 1.00005}); }
+  SECTION("strongly stretched") { stretch(scene.poses, {2.5, 0.3, 1.7}); }
   SECTION("strongly stretched, far away") {
-    for (Pose& pose : scene.poses) pose = stretched(pose, {0.2, 1.4, 0.7});
+    stretch(scene.poses, {0.2, 1.4, 0.7});
     scene.move_far_away({5e6, 2e6, 1e3});
   }
-  SECTION("singular") {
-    for (Pose& pose : scene.poses) pose = stretched(pose, {3, 0, 1});
-  }
+  SECTION("singular") { stretch(scene.poses, {3, 0, 1}); }
   CHECK(scene.check_profile(1.5) > 0);
 }
 

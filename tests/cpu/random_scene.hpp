@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "support/engines/engines.hpp"
+#include "support/engines/scene_checks.hpp"
 #include "support/scenes.hpp"
 
 namespace clearway::test {
@@ -12,7 +12,7 @@ inline const Box kRoom{{-4, -3, -1}, {5, 4, 2}};
 inline const Box kPart{{-0.6, -0.4, -0.3}, {0.7, 0.5, 0.2}};
 
 /// A random cloud in kRoom, a random model and a random path through the room.
-struct Scene {
+struct Scene : SceneChecks<Scene> {
   Random random{7};
   Quantisation quantisation = kTenthMillimetre;
   std::vector<Quantum> points = quantise(random_points(random, kRoom, 3000), quantisation);
@@ -20,9 +20,7 @@ struct Scene {
   std::vector<Pose> poses = smooth_path(random, kRoom, 40);
   double radius = 0.3;
 
-  std::uint64_t check() const {
-    return check_engines(points, quantisation, {model, poses, {radius}});
-  }
+  Query query() const { return {model, poses, {radius}}; }
 };
 
 }  // namespace clearway::test

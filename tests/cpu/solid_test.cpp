@@ -58,18 +58,10 @@ TEST_CASE("solids of every kind") {
   }
   SECTION("all open") { scene.bodies.solid_of.assign(12, kNoSolid); }
   SECTION("in UTM coordinates") { scene.move_far_away({5e5, 5e6, 300}); }
-  SECTION("with printed poses") {
-    for (Pose& pose : scene.poses) pose = printed_with_six_digits(pose);
-  }
-  SECTION("stretched") {
-    for (Pose& pose : scene.poses) pose = stretched(pose, {1.3, 0.7, 1});
-  }
-  SECTION("mirrored") {
-    for (Pose& pose : scene.poses) pose = stretched(pose, {1, -1, 1});
-  }
-  SECTION("flattened") {
-    for (Pose& pose : scene.poses) pose = stretched(pose, {1, 1, 0});
-  }
+  SECTION("with printed poses") { print_with_six_digits(scene.poses); }
+  SECTION("stretched") { stretch(scene.poses, {1.3, 0.7, 1}); }
+  SECTION("mirrored") { stretch(scene.poses, {1, -1, 1}); }
+  SECTION("flattened") { stretch(scene.poses, {1, 1, 0}); }
   SECTION("one pose") { scene.poses.resize(1); }
   SECTION("one point") { scene.points.resize(1); }
   SECTION("a radius larger than the scene") { scene.radius = 30; }
@@ -150,11 +142,8 @@ TEST_CASE("depths along slow paths") {
   scene.poses = slow_path(300, bend);
   SECTION("as they are") {}
   SECTION("of two that overlap") { scene.bodies.add(moved_by(unit_sphere(1), {0.3, -0.5, 0.1})); }
-  SECTION("with a stop") { scene.poses.insert(scene.poses.begin() + 200, 100, scene.poses[200]); }
-  SECTION("to and fro") {
-    const auto there = scene.poses;
-    scene.poses.insert(scene.poses.end(), there.rbegin(), there.rend());
-  }
+  SECTION("with a stop") { stop_at(scene.poses, 200, 100); }
+  SECTION("to and fro") { drive_back(scene.poses); }
   SECTION("far away") { scene.move_far_away({5e6, 2e6, 1e3}); }
   CHECK(scene.check_clearance(0.6) > 10);
   CHECK(scene.check_profile(0.6) > 10);

@@ -61,15 +61,9 @@ TEST_CASE("surfaces of every kind") {
     }
   }
   SECTION("in UTM coordinates") { scene.move_far_away({5e5, 5e6, 300}); }
-  SECTION("with printed poses") {
-    for (Pose& pose : scene.poses) pose = printed_with_six_digits(pose);
-  }
-  SECTION("stretched") {
-    for (Pose& pose : scene.poses) pose = stretched(pose, {1.3, 0.7, 1});
-  }
-  SECTION("flattened") {
-    for (Pose& pose : scene.poses) pose = stretched(pose, {1, 1, 0});
-  }
+  SECTION("with printed poses") { print_with_six_digits(scene.poses); }
+  SECTION("stretched") { stretch(scene.poses, {1.3, 0.7, 1}); }
+  SECTION("flattened") { stretch(scene.poses, {1, 1, 0}); }
   SECTION("one pose") { scene.poses.resize(1); }
   SECTION("one point") { scene.points.resize(1); }
   SECTION("a radius larger than the scene") { scene.radius = 30; }
@@ -141,11 +135,8 @@ TEST_CASE("clearances of surfaces along slow paths") {
   scene.poses = slow_path(300, bend);
   SECTION("as they are") {}
   SECTION("of a box") { scene.surface = box_surface(kPartOfSurfaces); }
-  SECTION("with a stop") { scene.poses.insert(scene.poses.begin() + 200, 100, scene.poses[200]); }
-  SECTION("to and fro") {
-    const auto there = scene.poses;
-    scene.poses.insert(scene.poses.end(), there.rbegin(), there.rend());
-  }
+  SECTION("with a stop") { stop_at(scene.poses, 200, 100); }
+  SECTION("to and fro") { drive_back(scene.poses); }
   SECTION("far away") { scene.move_far_away({5e6, 2e6, 1e3}); }
   CHECK(scene.check_clearance(0.6) > 10);
   CHECK(scene.check_profile(0.6) > 10);
@@ -213,18 +204,13 @@ struct GrazingScene : SurfaceScene {
 TEST_CASE("surfaces that hundreds of poses graze") {
   GrazingScene scene(GENERATE(0.0, 1e-3, 0.05));
   SECTION("as they are") {}
-  SECTION("with a stop") { scene.poses.insert(scene.poses.begin() + 200, 100, scene.poses[200]); }
-  SECTION("to and fro") {
-    const auto there = scene.poses;
-    scene.poses.insert(scene.poses.end(), there.rbegin(), there.rend());
-  }
+  SECTION("with a stop") { stop_at(scene.poses, 200, 100); }
+  SECTION("to and fro") { drive_back(scene.poses); }
   SECTION("with a jump") {
     for (std::size_t i = 200; i < 400; ++i) scene.poses[i].translation[1] += 0.03;
   }
   SECTION("far away") { scene.move_far_away({5e6, 2e6, 1e3}); }
-  SECTION("with printed poses") {
-    for (Pose& pose : scene.poses) pose = printed_with_six_digits(pose);
-  }
+  SECTION("with printed poses") { print_with_six_digits(scene.poses); }
   CHECK(scene.check() > 0);
 }
 

@@ -2,10 +2,12 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/compare.hpp"
 #include "support/engines/tolerance_runs.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -219,10 +221,10 @@ TEST_CASE("a tolerance below every rounding changes nothing") {
     for (Pose& pose : poses) pose.translation[0] += far;
     const ToleratedResults answers = check_at_radius(random, model, poses, 0.2, 1e-19);
     CHECK(answers.colliding > 10);
-    CHECK(answers.differing == 0);
+    check_equal(answers.differing, 0);
   }
 }
 
 TEST_CASE("a tolerance without poses") {
-  CHECK(check({{0, 0, 0}, {1, 1, 1}}, {{0, 0, 0}}, {}, 0.5, 0.1).differing == 0);
+  check_equal(check({{0, 0, 0}, {1, 1, 1}}, {{0, 0, 0}}, {}, 0.5, 0.1).differing, 0);
 }

@@ -13,6 +13,7 @@
 #include "io/result/conflicts/markup_text.hpp"
 #include "io/result/conflicts/write_conflicts.hpp"
 #include "io/scans/scan_crs.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -72,7 +73,7 @@ std::string value_of(const std::filesystem::path& path, const std::string& sql) 
 }  // namespace
 
 TEST_CASE("text in pages and BCF is escaped for elements and attributes") {
-  CHECK(markup_text("a < b & \"c\" > d\n") == "a &lt; b &amp; &quot;c&quot; &gt; d ");
+  check_equal(markup_text("a < b & \"c\" > d\n"), "a &lt; b &amp; &quot;c&quot; &gt; d ");
   CHECK(markup_text("\xff") == "\xEF\xBF\xBD");
 }
 
@@ -82,29 +83,30 @@ TEST_CASE("GeoJSON names the coordinate reference system of the scans") {
     CHECK(all["features"][0]["geometry"]["coordinates"][1].get<double>() > 3'999'999);
     return all["crs"]["properties"]["name"].get<std::string>();
   };
-  CHECK(name(kUtm) == "urn:ogc:def:crs:EPSG::25832");
-  CHECK_THAT(name(kOwn), Catch::Contains("PROJCS[\"Site"));
-  CHECK(name("no \"text\" \\ that\nPROJ knows") == "no \"text\" \\ that\nPROJ knows");
+  check_equal(name(kUtm), "urn:ogc:def:crs:EPSG::25832");
+  check_says(name(kOwn), "PROJCS[\"Site");
+  check_equal(name("no \"text\" \\ that\nPROJ knows"), "no \"text\" \\ that\nPROJ knows");
   CHECK_THAT(name(""), Catch::StartsWith("LOCAL_CS"));
 }
 
 TEST_CASE("a GeoPackage has the scans' system, its layers and its marks") {
   Written written(kUtm);
   const std::string bytes = written.write(ConflictFormat::kGeoPackage);
-  CHECK(bytes.compare(0, 15, "SQLite format 3") == 0);
-  CHECK(bytes.compare(68, 4, "GPKG") == 0);
+  check_equal(bytes.compare(0, 15, "SQLite format 3"), 0);
+  check_equal(bytes.compare(68, 4, "GPKG"), 0);
   const auto path = written.folder / "out";
   const auto value = [&](const std::string& sql) { return value_of(path, sql); };
-  CHECK(value("PRAGMA integrity_check") == "ok");
-  CHECK(value("SELECT count(*) FROM pragma_foreign_key_check") == "0");
-  CHECK(value("SELECT organization || organization_coordsys_id FROM gpkg_spatial_ref_sys "
-              "WHERE srs_id = 25832") == "EPSG25832");
-  CHECK(value("SELECT count(*) FROM gpkg_contents WHERE srs_id = 25832") == "3");
-  CHECK(value("SELECT last_change FROM gpkg_contents") == "2000-01-01T00:00:00.000Z");
-  CHECK(value("SELECT min_x FROM gpkg_contents WHERE table_name = 'footprints'") == "500000.0");
-  CHECK(value("SELECT points FROM conflicts WHERE id = 2") == "3");
-  CHECK(value("SELECT least_distance FROM conflicts WHERE id = 2") == "null");
-  CHECK(value("SELECT typeof(source) FROM stretches") == "integer");
+  check_equal(value("PRAGMA integrity_check"), "ok");
+  check_equal(value("SELECT count(*) FROM pragma_foreign_key_check"), "0");
+  check_equal(value("SELECT organization || organization_coordsys_id FROM gpkg_spatial_ref_sys "
+                    "WHERE srs_id = 25832"),
+              "EPSG25832");
+  check_equal(value("SELECT count(*) FROM gpkg_contents WHERE srs_id = 25832"), "3");
+  check_equal(value("SELECT last_change FROM gpkg_contents"), "2000-01-01T00:00:00.000Z");
+  check_equal(value("SELECT min_x FROM gpkg_contents WHERE table_name = 'footprints'"), "500000.0");
+  check_equal(value("SELECT points FROM conflicts WHERE id = 2"), "3");
+  check_equal(value("SELECT least_distance FROM conflicts WHERE id = 2"), "null");
+  check_equal(value("SELECT typeof(source) FROM stretches"), "integer");
   // A point has 8 bytes of header, 5 of well-known binary and three numbers.
   CHECK(value("SELECT length(geom) FROM conflicts") == std::to_string(8 + 5 + 24));
   CHECK(value("SELECT length(geom) FROM footprints") == std::to_string(8 + 32 + 13 + 5 * 24));
@@ -115,7 +117,7 @@ TEST_CASE("a GeoPackage has the scans' system, its layers and its marks") {
 TEST_CASE("a GeoPackage keeps systems that have no number, and goes without any") {
   Written own(kOwn);
   own.write(ConflictFormat::kGeoPackage);
-  CHECK(value_of(own.folder / "out", "SELECT srs_id FROM gpkg_contents") == "100000");
+  check_equal(value_of(own.folder / "out", "SELECT srs_id FROM gpkg_contents"), "100000");
   CHECK_THAT(value_of(own.folder / "out",
                       "SELECT definition FROM gpkg_spatial_ref_sys WHERE srs_id = 100000"),
              Catch::StartsWith("PROJCS[\"Site"));
@@ -126,7 +128,7 @@ TEST_CASE("a GeoPackage keeps systems that have no number, and goes without any"
         "it's no WKT");
   Written none("");
   none.write(ConflictFormat::kGeoPackage);
-  CHECK(value_of(none.folder / "out", "SELECT srs_id FROM gpkg_contents") == "-1");
+  check_equal(value_of(none.folder / "out", "SELECT srs_id FROM gpkg_contents"), "-1");
 }
 
 TEST_CASE("files of conflicts have stations where the trajectory has them, and only there") {
@@ -138,8 +140,8 @@ TEST_CASE("files of conflicts have stations where the trajectory has them, and o
   };
   const auto without = [](ConflictFormat format) { return Written("").write(format); };
   const std::string csv = with(ConflictFormat::kCsv);
-  CHECK_THAT(csv, Catch::Contains(",chainage_to,station_from,station_to,least_distance,"));
-  CHECK_THAT(csv, Catch::Contains(",0,0,0,0,1234.5,1234.5,,"));
+  check_says(csv, ",chainage_to,station_from,station_to,least_distance,");
+  check_says(csv, ",0,0,0,0,1234.5,1234.5,,");
   const json listed = json::parse(with(ConflictFormat::kJson))["conflicts"];
   CHECK(listed[1]["station_from"] == 1234.5);
   CHECK(listed[1]["station_to"] == 1234.5);
@@ -147,7 +149,7 @@ TEST_CASE("files of conflicts have stations where the trajectory has them, and o
         1234.5);
   for (const auto format : {ConflictFormat::kCsv, ConflictFormat::kJson, ConflictFormat::kGeoJson,
                             ConflictFormat::kBcf}) {
-    CHECK_THAT(without(format), !Catch::Contains("station"));
+    check_lacks(without(format), "station");
   }
   Written written("");
   written.options.station = station;
@@ -162,16 +164,15 @@ TEST_CASE("files of conflicts have stations where the trajectory has them, and o
   const Result result(small.folder / "out.h5");
   const Conflicts found = find_conflicts(result, small.found.poses, small.options);
   REQUIRE(found.listed.empty());
-  CHECK(found.small.at(1).station_to == 1234.5);
+  check_equal(found.small.at(1).station_to, 1234.5);
   const Answer answer = counted_answer(result.reader());
   const ConflictFile file{found,  small.options,     result.reader().header(),
                           answer, small.found.poses, {}};
-  CHECK_THAT("{" + member_lines(summary_of(file)) + "}",
-             Catch::Contains("\"station_from\": 1234.5"));
+  check_says("{" + member_lines(summary_of(file)) + "}", "\"station_from\": 1234.5");
   const std::vector<double> two{1, 2};
   small.options.station = two;
-  CHECK_THROWS_WITH(find_conflicts(result, small.found.poses, small.options),
-                    Catch::Contains("2 stations for 1 pose"));
+  check_refused([&] { return find_conflicts(result, small.found.poses, small.options); },
+                "2 stations for 1 pose");
 }
 
 TEST_CASE("a topic of BCF names the stations of its conflict") {
@@ -188,21 +189,21 @@ TEST_CASE("a topic of BCF names the stations of its conflict") {
   const ConflictOptions options;
   const Answer answer = answer_of(header);
   const ConflictFile file{conflicts, options, header, answer, found.poses, {}};
-  CHECK_THAT(bcf_markup(file, conflicts.listed[0]),
-             Catch::Contains("Conflict 1 at 0 m to 12.5 m, station 1250 to 1237.5 m"));
+  check_says(bcf_markup(file, conflicts.listed[0]),
+             "Conflict 1 at 0 m to 12.5 m, station 1250 to 1237.5 m");
 }
 
 TEST_CASE("strings of JSON are escaped, and bytes that are not UTF-8 replaced") {
-  CHECK(json_string("a\"b\\c\n\x01") == "\"a\\\"b\\\\c\\u000a\\u0001\"");
+  check_equal(json_string("a\"b\\c\n\x01"), "\"a\\\"b\\\\c\\u000a\\u0001\"");
   CHECK(json_string("\xc3\xa4 \xe2\x82\xac \xf0\x9f\x9a\x82") ==
         "\"\xc3\xa4 \xe2\x82\xac \xf0\x9f\x9a\x82\"");
   for (const char* bad : {"\xc3", "\x80", "\xc0\x80", "\xed\xa0\x80", "\xf5\x80\x80\x80",
                           "\xe2\x82", "\xf0\x80\x80\x80"}) {
     INFO(json_string(bad));
-    CHECK(json::parse(json_string(bad)).get<std::string>().find("\xef\xbf\xbd") == 0);
+    check_equal(json::parse(json_string(bad)).get<std::string>().find("\xef\xbf\xbd"), 0);
   }
-  CHECK(json_number(0.1) == "0.1");
-  CHECK(json_number(std::nan("")) == "null");
+  check_equal(json_number(0.1), "0.1");
+  check_equal(json_number(std::nan("")), "null");
 }
 
 TEST_CASE("every file of conflicts is JSON, CSV or binary as its name says") {

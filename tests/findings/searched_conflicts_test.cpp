@@ -6,39 +6,24 @@
 #include "core/geometry/quantisation.hpp"
 #include "core/query/search_result.hpp"
 #include "cpu/brute_force.hpp"
+#include "findings/searched_scene.hpp"
+#include "support/compare.hpp"
 #include "support/scenes.hpp"
 #include "support/solid_scene.hpp"
-#include "support/store_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 
 namespace {
 
-constexpr Quantisation kSteps{{0.001, 0.001, 0.001}, {0, 0, 0}};
-
-/// Points and a query, and the conflicts that a search finds.
-struct Scene {
-  Scene(const std::vector<Vec3>& places, Query asked) : query(std::move(asked)) {
-    std::vector<Quantum> quanta;
-    for (const Vec3& p : places) {
-      quanta.push_back({static_cast<std::int32_t>(std::lround(p.x * 1000)),
-                        static_cast<std::int32_t>(std::lround(p.y * 1000)),
-                        static_cast<std::int32_t>(std::lround(p.z * 1000))});
-      points.push_back(position(kSteps, quanta.back()[0], quanta.back()[1], quanta.back()[2]));
-    }
-    write_las(folder / "scan.las", quanta, kSteps);
-    convert({folder / "scan.las"}, folder / "scan.h5", {.cell_points = 64, .threads = 2});
-    query.first_pose = true;
-    search(Store(folder / "scan.h5"), query, folder / "out.h5",
-           {.device = Device::kCpu, .threads = 2});
-    shape = query.model;
-  }
+/// A search and the conflicts that it finds.
+struct Scene : SearchedScene {
+  using SearchedScene::SearchedScene;
 
   Conflicts conflicts(std::vector<std::uint32_t>* conflict_of = nullptr) const {
     ConflictOptions options;
     options.min_points = 1;
-    options.model = &shape;
+    options.model = &query.model;
     options.threads = 2;
     return find_conflicts(Result(folder / "out.h5"), query.poses, options, conflict_of);
   }
@@ -59,20 +44,7 @@ struct Scene {
     }
     return false;
   }
-
-  Query query;
-  std::vector<Vec3> points;
-  Model shape;
-  ScratchFolder folder;
 };
-
-/// A straight path along x with a pose each half metre.
-std::vector<Pose> straight(double length) {
-  std::vector<Pose> poses;
-  for (int i = 0; i <= static_cast<int>(2 * length); ++i)
-    poses.push_back(translation({0.5 * i, 0, 0}));
-  return poses;
-}
 
 std::vector<Vec3> pole(double x, double y) {
   std::vector<Vec3> out;
@@ -169,7 +141,7 @@ TEST_CASE("what the front of a vehicle meets is in front, whatever it is made of
     for (int k = 0; k < 20; ++k) wall.push_back({12.1, -0.9 + 0.045 * i, 0.3 + 0.06 * k});
   }
   for (const bool solid : {true, false}) {
-    Query query = solid_box({{-2, -1, 0}, {2, 1, 1.5}}, straight(20), 0.1);
+    Query query = solid_box({{-2, -1, 0}, {2, 1, 1.5}}, straight_path(20), 0.1);
     if (!solid) query.model.solid_of.clear();
     query.clearance = 0.2;
     const Conflicts found = Scene(wall, query).conflicts();
@@ -178,37 +150,37 @@ TEST_CASE("what the front of a vehicle meets is in front, whatever it is made of
     CHECK(*found.listed[0].obstacle_chainage == Approx(12.1).margin(1e-9));
     // The conflict reaches from the pose at 10 m, whose front is at 12 m, to where the rear at -2 m
     // has passed.
-    CHECK(found.listed[0].chainage_from == 10);
-    CHECK(found.listed[0].chainage_to == 14);
+    check_equal(found.listed[0].chainage_from, 10);
+    check_equal(found.listed[0].chainage_to, 14);
   }
 }
 
 TEST_CASE("between poses the range ends with the pose after the last way that touches") {
-  Query query({{0, 0, 0.5}}, straight(10), {.radius = 0.1, .between_poses = true});
+  Query query({{0, 0, 0.5}}, straight_path(10), {.radius = 0.1, .between_poses = true});
   const Scene scene({{4.25, 0.05, 0.5}}, query);
   const Conflicts found = scene.conflicts();
   REQUIRE(found.listed.size() == 1);
   const Conflict& c = found.listed[0];
-  CHECK(c.first_pose == 8);
-  CHECK(c.last_pose == 8);
-  CHECK(c.chainage_from == 4);
-  CHECK(c.chainage_to == 4.5);
+  check_equal(c.first_pose, 8);
+  check_equal(c.last_pose, 8);
+  check_equal(c.chainage_from, 4);
+  check_equal(c.chainage_to, 4.5);
   CHECK(*c.obstacle_chainage == Approx(4.25));
 }
 
 TEST_CASE("groups that are too small to be listed are told one by one") {
-  Query query({{0, 0, 0.5}}, straight(10), {.radius = 0.1});
+  Query query({{0, 0, 0.5}}, straight_path(10), {.radius = 0.1});
   const Scene scene({{4, 0, 0.5}, {4, 0.05, 0.5}, {8, 0, 0.5}}, query);
   ConflictOptions options;
   const Conflicts found =
       find_conflicts(Result(scene.folder / "out.h5"), scene.query.poses, options);
   CHECK(found.listed.empty());
   REQUIRE(found.small.size() == 2);
-  CHECK(found.small_points == 3);
-  CHECK(found.small[0].points == 2);
-  CHECK(found.small[0].chainage_from == 4);
-  CHECK(found.small[1].source == 2);
-  CHECK(found.small[1].chainage_from == 8);
+  check_equal(found.small_points, 3);
+  check_equal(found.small[0].points, 2);
+  check_equal(found.small[0].chainage_from, 4);
+  check_equal(found.small[1].source, 2);
+  check_equal(found.small[1].chainage_from, 8);
 }
 
 TEST_CASE("between poses, shifts free the ways too") {
@@ -236,7 +208,7 @@ TEST_CASE("left and right of a shift are those of the side, whichever axis point
   const Scene scene({{0.05, 0.5, 0}}, query);
   ConflictOptions options;
   options.min_points = 1;
-  options.model = &scene.shape;
+  options.model = &scene.query.model;
   options.forward = Axis::kPlusY;
   const Conflicts found = find_conflicts(Result(scene.folder / "out.h5"), query.poses, options);
   REQUIRE(found.listed.size() == 1);

@@ -11,36 +11,19 @@
 #include "clearway/clearway.hpp"
 #include "cpu/brute_force.hpp"
 #include "findings/conflict_fixture.hpp"
+#include "findings/searched_scene.hpp"
 #include "findings/station_oracle.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/conflicts/station_file.hpp"
-#include "support/store_fixture.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
-constexpr Quantisation kTableSteps{{0.001, 0.001, 0.001}, {0, 0, 0}};
-
-/// Points, a query, and the result of its search.
-struct Searched {
-  Searched(const std::vector<Vec3>& places, Query asked) : query(std::move(asked)) {
-    std::vector<Quantum> quanta;
-    for (const Vec3& p : places) {
-      quanta.push_back({static_cast<std::int32_t>(std::lround(p.x * 1000)),
-                        static_cast<std::int32_t>(std::lround(p.y * 1000)),
-                        static_cast<std::int32_t>(std::lround(p.z * 1000))});
-      const Quantum& q = quanta.back();
-      points.push_back(position(kTableSteps, q[0], q[1], q[2]));
-    }
-    write_las(folder / "scan.las", quanta, kTableSteps);
-    convert({folder / "scan.las"}, folder / "scan.h5", {.cell_points = 64, .threads = 2});
-    query.first_pose = true;
-    search(Store(folder / "scan.h5"), query, folder / "out.h5",
-           {.device = Device::kCpu, .threads = 2});
-  }
+struct Searched : SearchedScene {
+  using SearchedScene::SearchedScene;
 
   StationTable table(double every, StationOptions options = {}) const {
     options.every = every;
@@ -48,11 +31,6 @@ struct Searched {
     options.threads = 2;
     return station_table(result(), query.poses, options);
   }
-  Result result() const { return Result(folder / "out.h5"); }
-
-  Query query;
-  std::vector<Vec3> points;
-  ScratchFolder folder;
 };
 
 /// Whether any point collides at a pose of the row, by trying all; or on a way that meets the row.
@@ -115,12 +93,6 @@ void check_scene(const Searched& scene, double every) {
   CHECK((worst_of(table) == Verdict::kConflict) == any);
 }
 
-std::vector<Pose> straight_path(double length, double step = 0.5) {
-  std::vector<Pose> poses;
-  for (int i = 0; i * step <= length; ++i) poses.push_back(translation({i * step, 0, 0}));
-  return poses;
-}
-
 const std::vector<Vec3> kCar{{-1, -0.5, 0}, {-1, 0.5, 0}, {1, -0.5, 0}, {1, 0.5, 0}, {0, 0, 1}};
 
 }  // namespace
@@ -159,7 +131,7 @@ TEST_CASE("rows of a vehicle are seen from its bodies, and are not clear where o
     const Searched scene(random_points(random, room, 25), query);
     for (const double every : {0.7, 2.0}) check_scene(scene, every);
     const StationTable table = scene.table(1);
-    CHECK(table.bodies == std::vector<std::string>{"front", "rear"});
+    check_equal(table.bodies, {"front", "rear"});
     for (const StationRow& row : table.rows) {
       // The rear has poses from chainage 3 on, the front up to 1 m before the end.
       const bool searched =
@@ -179,8 +151,8 @@ TEST_CASE("rows of a vehicle are seen from its bodies, and are not clear where o
       CHECK_FALSE(row.overthrow.at(1).end);
     }
     REQUIRE(blind.warnings.size() == 2);
-    CHECK(blind.warnings[0].code == "sides-unknown");
-    CHECK(blind.warnings[1].code == "searched-unknown");
+    check_equal(blind.warnings[0].code, "sides-unknown");
+    check_equal(blind.warnings[1].code, "searched-unknown");
   }
   CHECK(clear > 20);
   CHECK(missing > 20);
@@ -191,9 +163,9 @@ TEST_CASE("a pose on a border belongs to the later row, and the last pose to the
                        Query(kCar, straight_path(10), {.radius = 0.1, .clearance = 9}));
   const StationTable table = scene.table(2);
   REQUIRE(table.rows.size() == 5);
-  CHECK(table.rows[0].chainage_from == 0);
-  CHECK(table.rows[4].chainage_from == 8);
-  CHECK(table.rows[4].chainage_to == 10);
+  check_equal(table.rows[0].chainage_from, 0);
+  check_equal(table.rows[4].chainage_from, 8);
+  check_equal(table.rows[4].chainage_to, 10);
   for (const double x : {2.0, 1.9, 10.0, 8.0, 7.9}) {
     CAPTURE(x);
     // The point above is nearest where the model's top stands below it.
@@ -205,17 +177,17 @@ TEST_CASE("a pose on a border belongs to the later row, and the last pose to the
     CHECK(rows[own].above);
     CHECK_FALSE(rows[own].left);
   }
-  CHECK(scene.table(2.5).rows.size() == 4);
-  CHECK(scene.table(3).rows.size() == 4);
-  CHECK(scene.table(3).rows[3].chainage_to == 10);
-  CHECK(scene.table(10).rows.size() == 1);
+  check_equal(scene.table(2.5).rows.size(), 4);
+  check_equal(scene.table(3).rows.size(), 4);
+  check_equal(scene.table(3).rows[3].chainage_to, 10);
+  check_equal(scene.table(10).rows.size(), 1);
 }
 
 TEST_CASE("sums of steps make no row of their own") {
   const std::vector<Pose> path = straight_path(10, 0.1);  // as long as 9.99999999999998 m
   const Searched scene({{50, 50, 0}}, Query(kCar, path, {.radius = 0.1}));
-  CHECK(scene.table(chainages(path).back() / 2 * (1 - 1e-12)).rows.size() == 2);
-  CHECK(scene.table(5).rows.size() == 2);
+  check_equal(scene.table(chainages(path).back() / 2 * (1 - 1e-12)).rows.size(), 2);
+  check_equal(scene.table(5).rows.size(), 2);
 }
 
 TEST_CASE("chainages begin where asked, and stations lie between those of the poses") {
@@ -228,15 +200,15 @@ TEST_CASE("chainages begin where asked, and stations lie between those of the po
   options.station = station;
   const StationTable table = scene.table(3, options);
   REQUIRE(table.rows.size() == 4);
-  CHECK(table.rows[1].chainage_from == 133.25);
-  CHECK(table.rows[3].chainage_to == 140.25);
-  CHECK(table.rows[1].station_from == 994.0);
-  CHECK(table.rows[1].station_to == 988.0);
-  CHECK(table.rows[3].station_to == 980.0);
+  check_equal(table.rows[1].chainage_from, 133.25);
+  check_equal(table.rows[3].chainage_to, 140.25);
+  check_equal(table.rows[1].station_from, 994.0);
+  check_equal(table.rows[1].station_to, 988.0);
+  check_equal(table.rows[3].station_to, 980.0);
   CHECK(table.rows[1].left.has_value());  // at 3 m, where a corner is beside the point
   CHECK(scene.table(0.7, options).rows[1].station_from.value() == Approx(998.6));
   options.station = std::span<const double>(station).first(3);
-  CHECK_THROWS_WITH(scene.table(3, options), Contains("3 stations for 21 poses"));
+  check_refused([&] { return scene.table(3, options); }, "3 stations for 21 poses");
 }
 
 TEST_CASE("lengths of stretches that make no sense are refused") {
@@ -246,16 +218,16 @@ TEST_CASE("lengths of stretches that make no sense are refused") {
     CAPTURE(every);
     CHECK_THROWS_AS(scene.table(every), UsageError);
   }
-  CHECK_THROWS_WITH(scene.table(1e-5), Contains("more than 100,000; expected at least 0.0001 m"));
-  CHECK(scene.table(1e-4).rows.size() == 100'000);
-  CHECK(scene.table(1e300).rows.size() == 1);
+  check_refused([&] { return scene.table(1e-5); }, "more than 100,000; expected at least 0.0001 m");
+  check_equal(scene.table(1e-4).rows.size(), 100'000);
+  check_equal(scene.table(1e300).rows.size(), 1);
 }
 
 TEST_CASE("without clearances the distances are empty and a warning says so") {
   const Searched scene({{4, 0.55, 0}}, Query(kCar, straight_path(10), {.radius = 0.1}));
   const StationTable table = scene.table(2);
   REQUIRE(table.warnings.size() == 1);
-  CHECK(table.warnings[0].code == "no-clearances");
+  check_equal(table.warnings[0].code, "no-clearances");
   for (const StationRow& row : table.rows) CHECK_FALSE((row.least || row.left || row.above));
   CHECK(table.rows[1].verdict == Verdict::kConflict);
   CHECK(table.rows[4].verdict == Verdict::kClear);
@@ -266,7 +238,7 @@ TEST_CASE("a path of one pose has one row without overthrow, and one without pos
                        Query(kCar, straight_path(0), {.radius = 0.1, .clearance = 1}));
   const StationTable table = scene.table(5);
   REQUIRE(table.rows.size() == 1);
-  CHECK(table.rows[0].chainage_to == 0);
+  check_equal(table.rows[0].chainage_to, 0);
   CHECK(table.rows[0].verdict == Verdict::kConflict);
   CHECK(table.rows[0].left);
   CHECK_FALSE(table.rows[0].overthrow.at(0).end);
@@ -280,7 +252,7 @@ TEST_CASE("rows without a pose are not clear unless ways are searched") {
   const Searched ways({{50, 50, 0}}, Query(kCar, path, {.radius = 0.1, .between_poses = true}));
   std::size_t searched = 0;
   for (const StationRow& row : poses.table(1).rows) searched += row.is_searched ? 1 : 0;
-  CHECK(searched == 5);
+  check_equal(searched, 5);
   for (const StationRow& row : ways.table(1).rows) CHECK(row.is_searched);
 }
 
@@ -366,8 +338,8 @@ TEST_CASE("the overthrow on a circle is that of the closed form") {
         const double end = std::sqrt(inner * inner + length * length / 4) - radius;
         for (const Overthrow& row : overthrows(path, body)) {
           if (!row.end || !row.middle) continue;
-          CHECK(std::abs(*row.end - end) < 1e-6);
-          CHECK(std::abs(*row.middle - middle) < 1e-6);
+          check_near(*row.end, end, 1e-6);
+          check_near(*row.middle, middle, 1e-6);
           ++checked;
         }
       }
@@ -389,8 +361,8 @@ TEST_CASE("the overthrow is the same on pivots that follow, in reverse, and with
     std::size_t rows = 0;
     for (const Overthrow& row : overthrows(on, body, options)) {
       if (!row.end || !row.middle) continue;
-      CHECK(std::abs(*row.end - end) < 1e-6);
-      CHECK(std::abs(*row.middle - middle) < 1e-6);
+      check_near(*row.end, end, 1e-6);
+      check_near(*row.middle, middle, 1e-6);
       ++rows;
     }
     CHECK(rows > 10);
@@ -507,7 +479,7 @@ TEST_CASE("the verdicts of the rows together are that of the result, with a budg
     ++met[verdict];
     for (const double every : {0.5, 3.0, 50.0}) CHECK(worst_of(scene.table(every)) == verdict);
   }
-  CHECK(met.size() == 3);
+  check_equal(met.size(), 3);
 }
 
 TEST_CASE("a row on which the model meets an unseen cube is not clear") {
@@ -521,7 +493,7 @@ TEST_CASE("a row on which the model meets an unseen cube is not clear") {
     }
   }
   const ScratchFolder folder;
-  write_las(folder / "scan.las", quanta, kTableSteps);
+  write_las(folder / "scan.las", quanta, SearchedScene::kSteps);
   put_bytes(folder / "origins.csv", "first,x,y,z\n0,0,0,0\n");
   ConvertOptions how;
   how.origins = folder / "origins.csv";
@@ -589,7 +561,7 @@ TEST_CASE("a CSV and a JSON of the table have the fixed columns") {
             "2.5,4,,,,,,,,,,,clear,0,0,0,0,\n");
   const auto parsed = nlohmann::json::parse(bytes_of(scene.folder / "s.json"));
   CHECK(parsed["kind"] == "stations");
-  CHECK(parsed["stations"].size() == 2);
+  check_equal(parsed["stations"].size(), 2);
   CHECK(parsed["stations"][0]["left_source"] == 0);
   CHECK(parsed["stations"][1]["left"].is_null());
   CHECK(parsed["stations"][1]["a,b_overthrow_end"] == 0);

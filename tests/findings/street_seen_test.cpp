@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "clearway/clearway.hpp"
+#include "support/compare.hpp"
 #include "support/store_fixture.hpp"
 #include "support/test_data.hpp"
 
@@ -127,13 +128,13 @@ TEST_CASE("the cubes that a car sweeps in the street are those of an independent
   for (int k = 0; k < 3; ++k) origin << "," << q[k] * scale[k] + offset[k];
   const ThinnedStreet one(1, 1, origin.str() + "\n");
   const UnseenCubes cubes = one.seen().unseen();
-  CHECK(cubes.size() == 151'369);
+  check_equal(cubes.size(), 151'369);
   Fnv fnv;
   for (std::size_t i = 0; i < cubes.size(); ++i) {
     for (const std::int32_t index : cubes.cube[i]) fnv.add(index);
     fnv.add(cubes.first_pose[i]);
   }
-  CHECK(fnv.hash() == 0x8c24e48ecaca8481U);
+  check_equal(fnv.hash(), 0x8c24e48ecaca8481U);
 }
 
 TEST_CASE("with a quarter of the street's beams the unseen cubes are those of another program") {
@@ -141,11 +142,11 @@ TEST_CASE("with a quarter of the street's beams the unseen cubes are those of an
   const Result result = quarter.seen();
   const UnseenCubes cubes = result.unseen();
   const SeenSummary seen = *result.answer().seen;
-  CHECK(seen.swept == 151'369);
-  CHECK(cubes.size() == 269);
-  CHECK(seen.groups == 185);
-  CHECK(seen.listed_groups == 0);
-  CHECK(seen.not_scanned_length == 0);
+  check_equal(seen.swept, 151'369);
+  check_equal(cubes.size(), 269);
+  check_equal(seen.groups, 185);
+  check_equal(seen.listed_groups, 0);
+  check_equal(seen.not_scanned_length, 0);
   struct Group {
     std::int64_t size = 0, first_pose = 0;
     std::array<std::int32_t, 3> least{};
@@ -159,18 +160,18 @@ TEST_CASE("with a quarter of the street's beams the unseen cubes are those of an
     group.first_pose = group.size == 0 ? pose : std::min(group.first_pose, pose);
     if (group.size++ == 0) group.least = cubes.cube[i];
   }
-  CHECK(of_cubes.hash() == 0x996a07796a9f6230U);
+  check_equal(of_cubes.hash(), 0x996a07796a9f6230U);
   for (const Group& group : groups) {
     of_groups.add(group.size);
     of_groups.add(group.first_pose);
     for (const std::int32_t index : group.least) of_groups.add(index);
   }
-  CHECK(of_groups.hash() == 0x5bcaa6be3b3ec5f9U);
+  check_equal(of_groups.hash(), 0x5bcaa6be3b3ec5f9U);
 }
 
 TEST_CASE("all of the street's beams see all that the car sweeps") {
   const ThinnedStreet whole(1, ~std::uint64_t{0}, "");
   const Result result = whole.seen();
-  CHECK(result.answer().seen->swept == 151'369);
-  CHECK(result.unseen().size() == 0);
+  check_equal(result.answer().seen->swept, 151'369);
+  check_equal(result.unseen().size(), 0);
 }

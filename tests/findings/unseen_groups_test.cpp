@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "clearway/clearway.hpp"
+#include "support/compare.hpp"
 #include "support/scenes.hpp"
 #include "support/store_fixture.hpp"
 
@@ -203,9 +204,9 @@ TEST_CASE("a hidden wedge is one group on its side, with its stretch of the path
   const UnseenCubes cubes = road.cubes();
   REQUIRE(found.listed.size() == 1);
   const UnseenGroup& group = found.listed[0];
-  CHECK(group.id == 1);
+  check_equal(group.id, 1);
   CHECK(group.cubes == cubes.size());
-  CHECK(found.middles.size() == cubes.size());
+  check_equal(found.middles.size(), cubes.size());
   CHECK(group.first_pose == *std::ranges::min_element(cubes.first_pose));
   CHECK(group.last_pose == *std::ranges::max_element(cubes.first_pose));
   CHECK(group.chainage_from == Approx(100 + 0.1 * group.first_pose));
@@ -217,7 +218,7 @@ TEST_CASE("a hidden wedge is one group on its side, with its stretch of the path
   CHECK_FALSE(group.is_ground);  // it goes along the path, but is too narrow
   CHECK_FALSE(group.behind_conflict);
   REQUIRE(found.middles.size() == cubes.size());
-  CHECK(std::ranges::count(found.middles, group.middle) == 1);
+  check_equal(std::ranges::count(found.middles, group.middle), 1);
   for (std::size_t i = 0; i < cubes.size(); ++i) {
     CHECK(group.box.contains(UnseenRoad::middle(cubes.cube[i], 0.2)));
   }
@@ -234,7 +235,7 @@ TEST_CASE("a hidden wedge is one group on its side, with its stretch of the path
   const UnseenGroups small = road.groups();
   CHECK(small.listed.empty());
   CHECK(small.stretches.empty());
-  CHECK(small.small_groups == 1);
+  check_equal(small.small_groups, 1);
   CHECK(small.small_cubes == cubes.size());
   CHECK(small.front.unseen == found.front.unseen);
 }

@@ -4,7 +4,7 @@
 #include "io/scans/threedtk/threedtk_frame.hpp"
 #include "io/scans/threedtk/threedtk_reader.hpp"
 #include "read_points.hpp"
-#include "support/reader_fixture.hpp"
+#include "support/scratch_folder.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -17,7 +17,7 @@ void read_and_tell(PointReader& reader) {
 }
 
 void read_as(unsigned what, InputBuffer input) {
-  static const ReaderScratch empty;  // a folder in which a scan is alone, so that it needs no pose
+  static const ScratchFolder empty;  // a folder in which a scan is alone, so that it needs no pose
   switch (what) {
     case 0:
       return read_and_tell(*read_ptx(std::move(input)));

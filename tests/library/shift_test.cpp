@@ -10,6 +10,7 @@
 #include "core/query/search_result.hpp"
 #include "cpu/brute_force.hpp"
 #include "io/result/conflicts/shift_file.hpp"
+#include "support/result_fixture.hpp"
 #include "support/scenes.hpp"
 #include "support/solid_scene.hpp"
 #include "support/store_fixture.hpp"

@@ -2,11 +2,14 @@
 #include "search/devices.hpp"
 
 #include <catch2/catch.hpp>
+#include <vector>
 
 #include "clearway/error.hpp"
+#include "search/choose_engine.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
-using Catch::Contains;
+using namespace clearway::test;
 
 namespace {
 
@@ -40,7 +43,7 @@ MessageLog silent() {
 
 TEST_CASE("the first GPU with all the memory that is wanted is taken, and no further one opened") {
   Machine machine{{100 * kMiB, 2 * kWanted, 3 * kWanted}};
-  CHECK(one_with_room(machine.count(), machine.open(), kWanted, silent()).index == 1);
+  check_equal(one_with_room(machine.count(), machine.open(), kWanted, silent()).index, 1);
   CHECK(machine.opened == std::vector{0, 1});
 }
 
@@ -49,16 +52,16 @@ TEST_CASE("where no GPU has all that is wanted, the one with the most is the las
   Machine machine{{300 * kMiB, 500 * kMiB, kWanted, 400 * kMiB}};
   const DeviceChoice choice =
       choice_of({one_with_room(machine.count(), machine.open(), kWanted, silent())}, kWanted);
-  CHECK(machine.opened.back() == 2);
+  check_equal(machine.opened.back(), 2);
   CHECK(choice.gpus == std::vector{2});
   CHECK(choice.memory_bytes < kWanted);
   CHECK(choice.memory_bytes > kWanted / 10 * 9);
-  CHECK_THAT(choice.short_device, Contains("GPU 2") && Contains("free"));
+  check_says(choice.short_device, "GPU 2 ... free");
 }
 
 TEST_CASE("a GPU that cannot be used does not hide the others") {
   Machine machine{{kUnusable, 500 * kMiB, kUnusable}};
-  CHECK(one_with_room(machine.count(), machine.open(), kWanted, silent()).index == 1);
+  check_equal(one_with_room(machine.count(), machine.open(), kWanted, silent()).index, 1);
   CHECK(automatic_choice(machine.count(), machine.open(), kWanted, silent()).gpus ==
         std::vector{1});
 
@@ -79,7 +82,7 @@ TEST_CASE("of several GPUs the one with the least free bounds what is taken of e
   const DeviceChoice tight =
       choice_of({gpu(0, 600 * kMiB), gpu(1, 200 * kMiB), gpu(2, 4 * kWanted)}, kWanted);
   CHECK(tight.memory_bytes == 190 * kMiB);
-  CHECK_THAT(tight.short_device, Contains("GPU 1") && Contains("200"));
+  check_says(tight.short_device, "GPU 1 ... 200");
 }
 
 TEST_CASE("the CPU is taken where there is no GPU, or none with room") {
@@ -88,4 +91,64 @@ TEST_CASE("the CPU is taken where there is no GPU, or none with room") {
   CHECK_FALSE(automatic_choice(full.count(), full.open(), kWanted, silent()).is_cuda());
   const DeviceChoice choice = automatic_choice(room.count(), room.open(), kWanted, silent());
   CHECK(choice.gpus == std::vector{1});
+}
+
+// The choice between CPU and GPU by estimate.
+namespace {
+
+Workload work_of(double reached_points) {
+  Workload work;
+  work.reached_points = reached_points;
+  work.model_points = 50'000;
+  work.poses = 10'000;
+  return work;
+}
+
+bool pays(const Workload& work, const QueryParameters& query, int threads) {
+  const DeviceEstimate estimate = estimate_devices({&work, 1}, query, threads);
+  return estimate.cuda < estimate.cpu;
+}
+
+}  // namespace
+
+TEST_CASE("a GPU pays for many points and not for few") {
+  const QueryParameters set{.radius = 0.1};
+  CHECK_FALSE(pays(work_of(1000), set, 16));
+  CHECK(pays(work_of(1e9), set, 16));
+}
+
+TEST_CASE("a GPU pays earlier with fewer threads and with clearances") {
+  QueryParameters query{.radius = 0.1};
+  Workload work = work_of(1000);
+  while (!pays(work, query, 2)) work.reached_points *= 1.1;
+  CHECK_FALSE(pays(work, query, 64));
+  work.reached_points /= 1.2;
+  CHECK_FALSE(pays(work, query, 2));
+  query.clearance = 0.1;
+  CHECK(pays(work, query, 2));
+}
+
+TEST_CASE("bodies take as long as one after the other, and the GPU starts once") {
+  const std::vector<Workload> bodies(3, work_of(1e7));
+  const QueryParameters query{.radius = 0.1, .clearance = 0.5};
+  const DeviceEstimate one = estimate_devices({bodies.data(), 1}, query, 4);
+  const DeviceEstimate all = estimate_devices(bodies, query, 4);
+  CHECK(all.cpu == Approx(3 * one.cpu));
+  CHECK(all.cuda > one.cuda);
+  CHECK(all.cuda < 3 * one.cuda);
+}
+
+TEST_CASE("a GPU pays for few points with many beams, which are followed once for all bodies") {
+  const QueryParameters query{.radius = 0.1, .seen = true};
+  std::vector<Workload> bodies(3, work_of(1000));
+  CHECK_FALSE(pays(bodies[0], query, 16));
+  for (Workload& work : bodies) work.beams = 1e9;
+  CHECK(pays(bodies[0], query, 16));
+  const double one = estimate_devices({bodies.data(), 1}, query, 16).cpu;
+  CHECK(estimate_devices(bodies, query, 16).cpu < 1.1 * one);
+}
+
+TEST_CASE("more threads need more points before a GPU is started ahead") {
+  CHECK(surely_many_points(16) > surely_many_points(2));
+  CHECK(surely_many_points(0) > 0);
 }

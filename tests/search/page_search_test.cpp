@@ -7,6 +7,7 @@
 
 #include "clearway/error.hpp"
 #include "search/kinds/sweep_kind.hpp"
+#include "support/compare.hpp"
 #include "support/result_fixture.hpp"
 #include "support/store_fixture.hpp"
 
@@ -88,7 +89,7 @@ class Line {
     kind->changed_needs().threads = threads;
     kind->changed_needs().devices = devices;
     kind->is_never_made = true;
-    CHECK(std::string(refusal().value().what()) == "not made");
+    check_equal(std::string(refusal().value().what()), "not made");
     return report.needed_host_bytes;
   }
 
@@ -120,9 +121,9 @@ class Line {
 TEST_CASE("a run asks for its journal once, after its engine was made") {
   Line line;
   CHECK(line.run() > 0);
-  CHECK(line.journals_opened == 1);
+  check_equal(line.journals_opened, 1);
   line.needed(1, 1);
-  CHECK(line.journals_opened == 1);
+  check_equal(line.journals_opened, 1);
 }
 
 TEST_CASE("an engine has no more slots than the plan has pages") {
@@ -133,7 +134,7 @@ TEST_CASE("an engine has no more slots than the plan has pages") {
   CHECK(line.report.slots == line.report.pages);
   line.kind->changed_needs().most_slots = 4;
   CHECK(line.run() > 0);
-  CHECK(line.report.slots == 4);
+  check_equal(line.report.slots, 4);
 }
 
 TEST_CASE("layouts that fit either memory but not both are refused with a budget that works") {
@@ -144,12 +145,12 @@ TEST_CASE("layouts that fit either memory but not both are refused with a budget
   const ResourceError refusal = line.refusal().value();
   REQUIRE_THAT(refusal.what(), Contains("200.0 MiB of memory is too little"));
   REQUIRE(refusal.remedy() == Remedy::kMoreMemory);
-  CHECK(line.journals_opened == 1);
+  check_equal(line.journals_opened, 1);
   line.options.memory_bytes = static_cast<std::uint64_t>(refusal.amount());
   CHECK(line.options.memory_bytes > 400 * kMebibyte);
   CHECK(line.run() == hits);
   --line.options.memory_bytes;
-  CHECK_THAT(line.refusal().value().what(), Contains("too little"));
+  check_says(line.refusal().value().what(), "too little");
 }
 
 TEST_CASE("device memory that fits no layout is refused with the least, or with the GPU") {
@@ -160,7 +161,7 @@ TEST_CASE("device memory that fits no layout is refused with the least, or with 
   CHECK(refusal.amount() == 100 * kMebibyte);
   line.kind->changed_needs().short_device = "GPU 1 (Some GPU, 53 MiB free)";
   const ResourceError short_of_room = line.refusal().value();
-  CHECK_THAT(short_of_room.what(), Contains("GPU 1 (Some GPU, 53 MiB free)"));
+  check_says(short_of_room.what(), "GPU 1 (Some GPU, 53 MiB free)");
   CHECK(short_of_room.remedy() == Remedy::kOtherGpu);
   line.kind->changed_needs().most_device_bytes = 100 * kMebibyte;
   CHECK(line.run() > 0);

@@ -7,9 +7,11 @@
 #include <tuple>
 
 #include "search/block_cells.hpp"
+#include "support/compare.hpp"
 #include "support/section_scene.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -72,7 +74,7 @@ TEST_CASE("a bin is a stretch of the chainage, and bins without a pose are left 
   const std::vector<std::uint32_t> all{0, 1, 2};
   const auto bins = section_bins(chainage_of(scene.path), all, 5);
   CHECK(bins == std::vector<SectionBin>{{0, 0, 2}, {200, 2, 1}});
-  CHECK_THROWS_WITH(section_bins(chainage_of(scene.path), all, 1e-7), Catch::Contains("too short"));
+  check_refused([&] { return section_bins(chainage_of(scene.path), all, 1e-7); }, "too short");
 }
 
 TEST_CASE("what has no section is refused") {
@@ -80,7 +82,7 @@ TEST_CASE("what has no section is refused") {
       .rear = -1, .front = 1, .window = SectionWindow{-1, 1, 0, 1}, .cell = 0.5, .bin = 5};
   CHECK_NOTHROW(section_lattice(asked, 0));
   const auto refused = [](SectionParameters changed, const std::string& why) {
-    CHECK_THROWS_WITH(section_lattice(changed, 0), Catch::Contains(why));
+    check_refused([&] { return section_lattice(changed, 0); }, why);
   };
   SectionParameters changed = asked;
   changed.rear = 1.5;

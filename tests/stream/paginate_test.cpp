@@ -1,12 +1,18 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstdint>
+#include <set>
 
 #include "clearway/error.hpp"
+#include "core/page/page_pool.hpp"
+#include "core/query/search_result.hpp"
+#include "cpu/brute_force.hpp"
 #include "planned_scene.hpp"
 #include "stream/plan.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
@@ -71,8 +77,8 @@ TEST_CASE("the smallest page holds the largest cell and no less") {
   const std::uint64_t least = smallest_page_bytes(scene.cloud, scene.cells);
   CHECK(least == largest);
   CHECK_NOTHROW(paginate(scene.cloud, scene.cells, least, 1));
-  CHECK_THROWS_WITH(paginate(scene.cloud, scene.cells, least - 1, 1),
-                    Contains("at least " + std::to_string(least)));
+  check_refused([&] { return paginate(scene.cloud, scene.cells, least - 1, 1); },
+                "at least " + std::to_string(least));
 }
 
 TEST_CASE("the motion nodes of a cell count in the size of its page") {
@@ -89,5 +95,96 @@ TEST_CASE("the motion nodes of a cell count in the size of its page") {
 TEST_CASE("no cells make no pages") {
   const PlannedScene scene;
   CHECK(paginate(scene.cloud, {}, 0, 1).empty());
-  CHECK(smallest_page_bytes(scene.cloud, {}) == 0);
+  check_equal(smallest_page_bytes(scene.cloud, {}), 0);
+}
+
+TEST_CASE("slots are disjoint, aligned and as large as they say") {
+  const PlannedScene scene;
+  for (const bool first_pose : {false, true}) {
+    for (const double clearance : {0.0, 0.5}) {
+      Query query = scene.query;
+      query.first_pose = first_pose;
+      query.clearance = clearance;
+      const SlotLayout layout{3, 1001, 5};
+      PagePool pool(scene.cloud, query, layout);
+      std::uint64_t bytes = 0;
+      const std::byte* last = nullptr;
+      for (std::uint32_t slot = 0; slot < 3; ++slot) {
+        const auto page = pool.page(slot);
+        CHECK(page.size() >= 1001);
+        check_equal(reinterpret_cast<std::uintptr_t>(page.data()) % kPageAlignment, 0);
+        CHECK((last == nullptr || page.data() >= last));
+        last = page.data() + page.size();
+        check_equal(pool.hits(slot).size(), 5 * scene.cloud.blocks_per_cell());
+        check_equal(pool.first_poses(slot).size(),
+                    (first_pose ? 5 * scene.cloud.cell_entries() : 0));
+        check_equal(pool.clearances(slot).size(),
+                    (clearance > 0 ? 5 * scene.cloud.cell_entries() : 0));
+        std::uint64_t found = 0;
+        for (const std::uint64_t size :
+             {pool.hits(slot).size_bytes(), pool.clearances(slot).size_bytes(),
+              pool.first_poses(slot).size_bytes()}) {
+          if (size > 0)
+            found = divide_up(found, ArrayRun::kAlignment) * ArrayRun::kAlignment + size;
+        }
+        bytes += page.size() + found;
+      }
+      CHECK(bytes == 3 * PagePool::slot_bytes(scene.cloud, query, layout));
+    }
+  }
+}
+
+TEST_CASE("a plan names every cell once, in the order of the first poses") {
+  const PlannedScene scene;
+  std::set<std::uint32_t> seen;
+  std::uint32_t last = 0;
+  for (const PlannedCell& cell : scene.cells) {
+    CHECK(seen.insert(cell.cell).second);
+    REQUIRE_FALSE(cell.nodes.empty());
+    const std::uint32_t first = scene.motion.nodes()[cell.nodes.front()].first;
+    CHECK(first >= last);
+    last = first;
+  }
+  CHECK(seen.size() > 5);
+  CHECK(seen.size() < scene.cloud.cells().size());
+}
+
+TEST_CASE("the nodes of a planned cell are disjoint, in the order of their poses") {
+  const PlannedScene scene;
+  for (const PlannedCell& cell : scene.cells) {
+    std::uint32_t end = 0;
+    for (const std::uint32_t index : cell.nodes) {
+      const MotionNode& node = scene.motion.nodes()[index];
+      CHECK(node.first >= end);
+      end = node.first + node.count;
+    }
+    CHECK(end <= scene.poses.size());
+  }
+}
+
+TEST_CASE("every cell with a colliding point is planned, with the point's first pose") {
+  const PlannedScene scene;
+  const auto first_poses =
+      brute_force_first_poses(positions_of(scene.cloud_points, kTenths), scene.query);
+  std::uint64_t colliding = 0;
+  for (std::uint64_t slot = 0; slot < scene.cloud.entry_count(); ++slot) {
+    if (!scene.cloud.is_used(slot)) continue;
+    const std::uint32_t pose = first_poses[scene.cloud.source(slot)];
+    if (pose == HitSet::kNever) continue;
+    ++colliding;
+    const auto cell = std::find_if(
+        scene.cells.begin(), scene.cells.end(),
+        [&](const PlannedCell& c) { return c.cell == slot / scene.cloud.cell_entries(); });
+    REQUIRE(cell != scene.cells.end());
+    CHECK(std::any_of(cell->nodes.begin(), cell->nodes.end(), [&](std::uint32_t index) {
+      const MotionNode& node = scene.motion.nodes()[index];
+      return node.first <= pose && pose < node.first + node.count;
+    }));
+  }
+  CHECK(colliding > 20);
+}
+
+TEST_CASE("nothing is planned without points or without poses") {
+  CHECK(PlannedScene({256, 0}, 0).cells.empty());
+  CHECK(PlannedScene({256, 0}, 1000, 0).cells.empty());
 }

@@ -6,6 +6,7 @@
 #include "planned_scene.hpp"
 #include "stream/plan.hpp"
 #include "stream/run_pages.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -51,7 +52,7 @@ void check_page(const PackedCloud& cloud, std::span<const PlannedCell> cells, co
       }
     }
   }
-  CHECK(wrong == 0);
+  check_equal(wrong, 0);
 }
 
 /// A cloud whose coordinates need 0 to 32 bits.
@@ -95,7 +96,7 @@ TEST_CASE("pages of several cells hold each of them, whatever the memory held be
       CHECK(shape.bytes() == planned.shape.bytes());
       check_page(scene.cloud, cells, {a.bytes.data(), shape});
       stage_page(scene.cloud, cells, b.bytes);
-      CHECK(std::memcmp(a.bytes.data(), b.bytes.data(), shape.bytes()) == 0);
+      check_equal(std::memcmp(a.bytes.data(), b.bytes.data(), shape.bytes()), 0);
       for (std::size_t i = shape.bytes(); i < b.bytes.size(); ++i) {
         if (b.bytes[i] != std::byte{0x5a}) FAIL("written past the page");
       }
@@ -109,4 +110,38 @@ TEST_CASE("a damaged cell is not staged") {
   scene.cloud.damage(damaged.cell);
   PageMemory memory(smallest_page_bytes(scene.cloud, scene.cells), 0);
   CHECK_THROWS_AS(stage_page(scene.cloud, std::span(&damaged, 1), memory.bytes), InputError);
+}
+
+namespace {
+
+Interval interval(int begin_ms, int end_ms) {
+  const Clock::time_point start{std::chrono::hours(5)};
+  return {start + std::chrono::milliseconds(begin_ms), start + std::chrono::milliseconds(end_ms)};
+}
+
+}  // namespace
+
+TEST_CASE("busy time is the length of the union of the intervals") {
+  check_equal(busy_seconds({}), 0);
+  CHECK(busy_seconds({interval(10, 30)}) == Approx(0.020));
+  CHECK(busy_seconds({interval(10, 30), interval(40, 50)}) == Approx(0.030));
+  CHECK(busy_seconds({interval(40, 50), interval(10, 30), interval(20, 45)}) == Approx(0.040));
+  CHECK(busy_seconds({interval(10, 100), interval(20, 30), interval(40, 50)}) == Approx(0.090));
+  CHECK(busy_seconds({interval(10, 30), interval(30, 40)}) == Approx(0.030));
+  CHECK(busy_seconds({interval(10, 30), interval(10, 30)}) == Approx(0.020));
+}
+
+TEST_CASE("intervals that were never set, and ends before begins, are no time") {
+  CHECK(busy_seconds({Interval{}, interval(10, 20), Interval{}}) == Approx(0.010));
+  check_equal(busy_seconds({interval(20, 10)}), 0);
+  CHECK(busy_seconds({interval(0, 30), interval(20, 10), interval(25, 40)}) == Approx(0.040));
+}
+
+TEST_CASE("each stage's time is its own") {
+  const StageTimes times = stage_times({{interval(0, 10), interval(5, 15), {}, interval(30, 31)},
+                                        {interval(5, 20), interval(40, 50), {}, interval(40, 41)}});
+  CHECK(times.read == Approx(0.020));
+  CHECK(times.upload == Approx(0.020));
+  check_equal(times.compute, 0);
+  CHECK(times.collect == Approx(0.002));
 }

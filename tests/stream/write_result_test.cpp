@@ -6,6 +6,8 @@
 
 #include "io/result/check_results.hpp"
 #include "support/clouds.hpp"
+#include "support/compare.hpp"
+#include "support/result_fixture.hpp"
 #include "support/store_fixture.hpp"
 
 using namespace clearway;
@@ -109,7 +111,7 @@ TEST_CASE("collisions and clearances written in several passes give the bytes of
                batch.distance[i] != std::sqrt(squared_of(source)) || batch.xyz[i] != places[source];
     }
   }
-  CHECK(wrong == 0);
+  check_equal(wrong, 0);
   CHECK(source == kPoints);
 }
 

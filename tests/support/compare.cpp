@@ -9,8 +9,12 @@ namespace {
 
 constexpr std::string_view kGap = " ... ";
 
-std::string place_of(const Caller& caller) {
-  return std::string(caller.file_name()) + ":" + std::to_string(caller.line()) + ":\n";
+/// What SUCCEED() and FAIL_CHECK() do, with the line of the caller.
+void report(bool holds, const std::string& text, const Caller& caller) {
+  const Catch::SourceLineInfo line(caller.file_name(), caller.line());
+  Catch::AssertionHandler handler("check", line, "", Catch::ResultDisposition::ContinueOnFailure);
+  handler.handleMessage(holds ? Catch::ResultWas::Ok : Catch::ResultWas::ExplicitFailure, text);
+  handler.complete();
 }
 
 /// Digits from which the number can be read again.
@@ -44,13 +48,20 @@ std::string shown_list(const List& list) {
   return text + (list.size() > kMost ? ", ...}" : "}");
 }
 
-void check(bool holds, const std::string& found, const std::string& expected,
-           const Caller& caller) {
+/// What was found and what was expected, as texts.
+struct Difference {
+  std::string found, expected;
+};
+
+/// `difference` makes the texts, where they are needed.
+template <typename MakeDifference>
+void check(bool holds, const Caller& caller, const MakeDifference& difference) {
   if (holds) {
-    SUCCEED();
-  } else {
-    fail_check("found:    " + found + "\nexpected: " + expected, caller);
+    report(true, {}, caller);
+    return;
   }
+  const Difference texts = difference();
+  fail_check("found:    " + texts.found + "\nexpected: " + texts.expected, caller);
 }
 
 template <typename List>
@@ -63,7 +74,7 @@ void check_equal_lists(const List& found, const List& expected, const Caller& ca
                  caller);
       return;
     }
-    SUCCEED();
+    report(true, {}, caller);
   } else {
     fail_check("found:    " + shown_list(found) + "\nexpected: " + shown_list(expected), caller);
   }
@@ -77,13 +88,11 @@ RowName::RowName(std::string_view name, const Caller& caller)
                                      Catch::ResultWas::Info)
                << "row " << shown(name)) {}
 
-void fail_check(const std::string& text, const Caller& caller) {
-  FAIL_CHECK(place_of(caller) + text);
-}
+void fail_check(const std::string& text, const Caller& caller) { report(false, text, caller); }
 
 void check_says(std::string_view text, std::string_view words, const Caller& caller) {
   if (words.empty()) {
-    check(text.empty(), shown(text), "an empty text", caller);
+    check(text.empty(), caller, [&] { return Difference{shown(text), "an empty text"}; });
     return;
   }
   std::size_t from = 0;
@@ -99,7 +108,7 @@ void check_says(std::string_view text, std::string_view words, const Caller& cal
     from = at + part.size();
     rest.remove_prefix(std::min(rest.size(), part.size() + kGap.size()));
   }
-  SUCCEED();
+  report(true, {}, caller);
 }
 
 std::string codes_of(const std::vector<Message>& messages) {
@@ -112,19 +121,24 @@ std::string codes_of(const std::vector<Message>& messages) {
 }
 
 void check_lacks(std::string_view text, std::string_view part, const Caller& caller) {
-  check(text.find(part) == text.npos, shown(text), "a text without " + shown(part), caller);
+  check(text.find(part) == text.npos, caller, [&] {
+    return Difference{shown(text), "a text without " + shown(part)};
+  });
 }
 
 void check_near(double found, double expected, double tolerance, const Caller& caller) {
-  check(std::abs(found - expected) <= tolerance, shown(found),
-        shown(expected) + " within " + shown(tolerance), caller);
+  check(std::abs(found - expected) <= tolerance, caller, [&] {
+    return Difference{shown(found), shown(expected) + " within " + shown(tolerance)};
+  });
 }
 
 void check_near(const Vec3& found, const Vec3& expected, double tolerance, const Caller& caller) {
   check(std::abs(found.x - expected.x) <= tolerance &&
             std::abs(found.y - expected.y) <= tolerance &&
             std::abs(found.z - expected.z) <= tolerance,
-        shown(found), shown(expected) + " within " + shown(tolerance), caller);
+        caller, [&] {
+          return Difference{shown(found), shown(expected) + " within " + shown(tolerance)};
+        });
 }
 
 void check_near(std::span<const double> found, const std::vector<double>& expected,
@@ -133,18 +147,22 @@ void check_near(std::span<const double> found, const std::vector<double>& expect
   for (std::size_t i = 0; holds && i < found.size(); ++i) {
     holds = std::abs(found[i] - expected[i]) <= tolerance;
   }
-  check(holds, shown_list(found), shown_list(expected) + " within " + shown(tolerance), caller);
+  check(holds, caller, [&] {
+    return Difference{shown_list(found), shown_list(expected) + " within " + shown(tolerance)};
+  });
 }
 
 void check_equal(double found, double expected, const Caller& caller) {
-  check(found == expected, shown(found), shown(expected), caller);
+  check(found == expected, caller, [&] { return Difference{shown(found), shown(expected)}; });
 }
 void check_equal(std::string_view found, std::string_view expected, const Caller& caller) {
-  check(found == expected, shown(found), shown(expected), caller);
+  check(found == expected, caller, [&] { return Difference{shown(found), shown(expected)}; });
 }
 void check_equal_whole(WholeNumber found, WholeNumber expected, const Caller& caller) {
-  check(found.magnitude == expected.magnitude && found.is_negative == expected.is_negative,
-        shown(found), shown(expected), caller);
+  check(found.magnitude == expected.magnitude && found.is_negative == expected.is_negative, caller,
+        [&] {
+          return Difference{shown(found), shown(expected)};
+        });
 }
 void check_equal(const std::vector<std::string>& found, const std::vector<std::string>& expected,
                  const Caller& caller) {
@@ -173,6 +191,18 @@ void check_equal(const std::vector<std::uint64_t>& found,
 void check_equal(const std::vector<Vec3>& found, const std::vector<Vec3>& expected,
                  const Caller& caller) {
   check_equal_lists(found, expected, caller);
+}
+
+void check_equal(const std::optional<double>& found, double expected, const Caller& caller) {
+  check(found == expected, caller, [&] {
+    return Difference{found ? shown(*found) : "nothing", shown(expected)};
+  });
+}
+void check_equal(const std::optional<std::uint64_t>& found, std::uint64_t expected,
+                 const Caller& caller) {
+  check(found == expected, caller, [&] {
+    return Difference{found ? shown(*found) : "nothing", shown(expected)};
+  });
 }
 
 }  // namespace clearway::test

@@ -4,6 +4,7 @@
 #include <concepts>
 #include <cstdint>
 #include <exception>
+#include <optional>
 #include <source_location>
 #include <span>
 #include <string>
@@ -69,6 +70,12 @@ void check_equal(const std::vector<std::uint64_t>& found,
                  const std::vector<std::uint64_t>& expected,
                  const Caller& caller = Caller::current());
 void check_equal(const std::vector<Vec3>& found, const std::vector<Vec3>& expected,
+                 const Caller& caller = Caller::current());
+
+/// A value that is missing fails.
+void check_equal(const std::optional<double>& found, double expected,
+                 const Caller& caller = Caller::current());
+void check_equal(const std::optional<std::uint64_t>& found, std::uint64_t expected,
                  const Caller& caller = Caller::current());
 
 /// The codes of messages in their order, with "note " before those of notes: "note a, b, c".

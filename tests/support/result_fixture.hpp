@@ -1,118 +1,21 @@
 #pragma once
 
-#include <stdlib.h>
-
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <limits>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
 #include "clearway/result.hpp"
 #include "io/result/result.hpp"
+#include "support/scratch_folder.hpp"
 
 namespace clearway::test {
 
-/// A temporary folder that is removed when its owner ends.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "clearway-XXXXXX").string();
-    if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    path_ = pattern;
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
-
-inline std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error("cannot read " + path.string());
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// Replaces the bytes of a file. An existing file is written in place, because a file that was cut
-/// to nothing goes to the disk as soon as it is closed, which takes hundreds of times as long.
-inline void put_bytes(const std::filesystem::path& path, const std::string& bytes) {
-  const bool in_place = std::filesystem::is_regular_file(path);
-  const auto mode = std::ios::binary | std::ios::out | (in_place ? std::ios::in : std::ios::out);
-  std::ofstream out(path, mode);
-  out << bytes;
-  if (!out.flush()) throw std::runtime_error("cannot write " + path.string());
-  if (in_place && std::filesystem::file_size(path) > bytes.size()) {
-    std::filesystem::resize_file(path, bytes.size());
-  }
-}
-
 /// A header of a large environment, far from the origin, with unlike axes.
-inline ResultHeader sample_header(bool first_pose) {
-  ResultHeader header;
-  header.environment_points = 5'000'000'000;
-  header.environment_hash = 0xfedcba9876543210;
-  header.model_points = 1234;
-  header.model_hash = 0x0123456789abcdef;
-  header.poses = 4'000'000'000;
-  header.trajectory_hash = 0xffffffffffffffff;
-  header.radius = 0.1;
-  header.first_pose = first_pose;
-  header.model_box = {{-1.5, -0.75, 0}, {2, 0.75, 3.25}};
-  header.quantisation = {{0.001, 0.0001, 0.01}, {5e6, -2e6 + 0.5, 1e3}};
-  return header;
-}
+ResultHeader sample_header(bool first_pose);
 
 /// Makes `count` rows with gaps, negative quanta and first poses above 2^31.
-inline Collisions sample_rows(const ResultHeader& header, std::size_t count) {
-  Collisions rows;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto q = static_cast<std::int32_t>(i * 2654435761u);
-    rows.source.push_back(3 * i + i % 3 + (i > count / 2 ? 4'000'000'000 : 0));
-    rows.xyz.push_back(position(header.quantisation, q, -(q / 2), q ^ 0x55555555));
-    if (header.first_pose)
-      rows.first_pose.push_back(static_cast<std::uint32_t>(i * 4050343 % header.poses));
-  }
-  rows.last_pose = rows.first_pose;
-  return rows;
-}
+Collisions sample_rows(const ResultHeader& header, std::size_t count);
 
-inline Clearances sample_clearances(const ResultHeader& header, std::size_t count) {
-  Clearances rows;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto q = static_cast<std::int32_t>(i * 40503u);
-    rows.source.push_back(2 * i + 1);
-    rows.xyz.push_back(position(header.quantisation, -q, q / 3, 7 - q));
-    rows.distance.push_back(header.clearance / static_cast<double>(1 + i % 7));
-    rows.pose.push_back(static_cast<std::uint32_t>(i * 4050343 % header.poses));
-  }
-  return rows;
-}
+Clearances sample_clearances(const ResultHeader& header, std::size_t count);
 
 /// A profile of header.poses poses, of which every fifth has no point.
-inline ProfileRows sample_profile(const ResultHeader& header) {
-  ProfileRows rows;
-  for (std::size_t i = 0; i < header.poses; ++i) {
-    const auto q = static_cast<std::int32_t>(i * 40503u);
-    const double none = std::numeric_limits<double>::quiet_NaN();
-    const bool found = i % 5 != 4;
-    rows.distance.push_back(found ? header.profile / static_cast<double>(1 + i % 7)
-                                  : std::numeric_limits<double>::infinity());
-    rows.source.push_back(found ? i * 4050343 % header.environment_points : Profile::kNoPoint);
-    rows.xyz.push_back(found ? position(header.quantisation, q, -q, q / 2)
-                             : Vec3{none, none, none});
-    rows.chainage.push_back(0.25 * static_cast<double>(i / 2));
-  }
-  return rows;
-}
+ProfileRows sample_profile(const ResultHeader& header);
 
 /// The rows `from` to `from + count - 1`.
 template <typename Rows>
@@ -126,29 +29,10 @@ Rows part_of(const Rows& rows, std::size_t from, std::size_t count) {
   return out;
 }
 
-template <typename Rows>
-void append_in_steps(ResultWriter& writer, const ResultHeader& header, const Rows& rows,
-                     std::size_t step) {
-  for (std::size_t from = 0; from < rows.size(); from += step) {
-    Rows part = part_of(rows, from, std::min(step, rows.size() - from));
-    if constexpr (std::is_same_v<Rows, Collisions>) {
-      if (!header.first_pose) part.first_pose.clear();
-      if (part.last_pose.size() != part.first_pose.size()) part.last_pose = part.first_pose;
-    }
-    writer.append(part);
-  }
-}
-
 /// Writes a result, with append() calls of `step` rows each.
-inline void write_result(const std::filesystem::path& path, const ResultHeader& header,
-                         const Collisions& rows, std::size_t step = 1000,
-                         const Clearances& clearances = {}, const ProfileRows& profile = {}) {
-  ResultWriter writer(path, header, rows.size(), clearances.size());
-  append_in_steps(writer, header, rows, step);
-  append_in_steps(writer, header, clearances, step);
-  append_in_steps(writer, header, profile, step);
-  writer.finish();
-}
+void write_result(const std::filesystem::path& path, const ResultHeader& header,
+                  const Collisions& rows, std::size_t step = 1000,
+                  const Clearances& clearances = {}, const ProfileRows& profile = {});
 
 /// Reads a table from front to back.
 template <typename Rows = Collisions>
@@ -158,8 +42,6 @@ Rows read_rows(const ResultReader& reader) {
   return all;
 }
 
-inline bool same_rows(const Collisions& a, const Collisions& b) {
-  return a.source == b.source && a.xyz == b.xyz && a.first_pose == b.first_pose;
-}
+bool same_rows(const Collisions& a, const Collisions& b);
 
 }  // namespace clearway::test

@@ -1,6 +1,7 @@
 #include "support/scenes.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace clearway {
 
@@ -60,6 +61,29 @@ Pose stretched(Pose pose, const Vec3& by) {
     for (int column = 0; column < 3; ++column) pose.rotation[3 * row + column] *= by[column];
   }
   return pose;
+}
+
+void print_with_six_digits(std::vector<Pose>& poses) {
+  for (Pose& pose : poses) pose = printed_with_six_digits(pose);
+}
+
+void stretch(std::vector<Pose>& poses, const Vec3& by) {
+  for (Pose& pose : poses) pose = stretched(pose, by);
+}
+
+void drive_back(std::vector<Pose>& poses) {
+  const std::vector<Pose> there = poses;
+  poses.insert(poses.end(), there.rbegin(), there.rend());
+}
+
+void stop_at(std::vector<Pose>& poses, std::ptrdiff_t pose, std::size_t times) {
+  const Pose copy = poses[static_cast<std::size_t>(pose)];
+  poses.insert(poses.begin() + pose, times, copy);
+}
+
+void repeat_each(std::vector<Pose>& poses, std::size_t times) {
+  const std::vector<Pose> once = std::exchange(poses, {});
+  for (const Pose& pose : once) poses.insert(poses.end(), times, pose);
 }
 
 std::vector<Pose> smooth_path(Random& random, const Box& box, std::size_t count) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -29,6 +30,15 @@ Pose printed_with_six_digits(Pose pose);
 
 /// The pose with the columns of its rotation scaled by `by`.
 Pose stretched(Pose pose, const Vec3& by);
+
+/// Changes of a whole path: what a text file with six decimals holds of it; columns of its
+/// rotations scaled; the way back behind it; one pose inserted `times` more; each pose `times`
+/// times.
+void print_with_six_digits(std::vector<Pose>& poses);
+void stretch(std::vector<Pose>& poses, const Vec3& by);
+void drive_back(std::vector<Pose>& poses);
+void stop_at(std::vector<Pose>& poses, std::ptrdiff_t pose, std::size_t times);
+void repeat_each(std::vector<Pose>& poses, std::size_t times);
 
 /// A smooth path through the box that turns as it goes.
 std::vector<Pose> smooth_path(Random& random, const Box& box, std::size_t count);

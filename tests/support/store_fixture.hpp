@@ -1,21 +1,15 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "io/scans/las/las_writer.hpp"
-#include "io/scans/ply/ply_writer.hpp"
 #include "io/store/convert/convert.hpp"
 #include "io/store/store_reader.hpp"
-#include "io/store/verify_store.hpp"
-#include "support/result_fixture.hpp"
+#include "support/scratch_folder.hpp"
 
 /// Scans made for a test, their conversion, and what the store then holds.
 namespace clearway::test {
@@ -24,41 +18,16 @@ using Quantum = std::array<std::int32_t, 3>;
 
 inline const Quantisation kMillimetres{{0.001, 0.001, 0.001}, {100, -200, 0}};
 
-inline void write_las(const std::filesystem::path& path, std::span<const Quantum> points,
-                      const Quantisation& quantisation = kMillimetres) {
-  constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
-  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
-  const File file = File::create(path);
-  LasWriter writer(file, {.quantisation = quantisation,
-                          .points = points.size(),
-                          .bounds = {{kLeast, kLeast, kLeast}, {kMost, kMost, kMost}}});
-  writer.write(points);
-  writer.finish();
-}
+void write_las(const std::filesystem::path& path, std::span<const Quantum> points,
+               const Quantisation& quantisation = kMillimetres);
 
-inline void write_ply(const std::filesystem::path& path, std::span<const Vec3> points) {
-  const File file = File::create(path);
-  PlyWriter writer(file, {.points = points.size()});
-  writer.write(points);
-  writer.finish();
-}
+void write_ply(const std::filesystem::path& path, std::span<const Vec3> points);
 
-inline ConversionOptions conversion_of(std::vector<std::filesystem::path> inputs,
-                                       const std::filesystem::path& output,
-                                       std::uint32_t cell_points = 64) {
-  ConversionOptions options;
-  options.inputs = std::move(inputs);
-  options.output = output;
-  options.cell_points = cell_points;
-  options.threads = 2;
-  options.overwrite = true;
-  return options;
-}
+ConversionOptions conversion_of(std::vector<std::filesystem::path> inputs,
+                                const std::filesystem::path& output,
+                                std::uint32_t cell_points = 64);
 
-inline ConversionReport convert_quietly(const ConversionOptions& options) {
-  NoProgress progress;
-  return convert_scans(options, progress);
-}
+ConversionReport convert_quietly(const ConversionOptions& options);
 
 /// The message with which the conversion is refused; empty where it succeeds.
 template <typename Refusal = Error>
@@ -72,15 +41,7 @@ std::string conversion_refusal(const ConversionOptions& options) {
 }
 
 /// The classes of a store's points, by source index.
-inline std::vector<std::uint8_t> classes_by_source(const StoreReader& store) {
-  std::vector<std::uint8_t> classes(store.metadata().input_points);
-  for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
-    const auto packed = store.classes(cell);
-    const auto sources = store.sources(cell);
-    for (std::uint32_t i = 0; i < store.cells()[cell].count; ++i) classes[sources[i]] = packed[i];
-  }
-  return classes;
-}
+std::vector<std::uint8_t> classes_by_source(const StoreReader& store);
 
 struct StoredPoint {
   std::uint64_t source;
@@ -89,48 +50,15 @@ struct StoredPoint {
 };
 
 /// The points of cells first .. first + count - 1 in the store's order.
-inline std::vector<StoredPoint> points_of_cells(const StoreReader& store, std::uint32_t first,
-                                                std::uint32_t count) {
-  std::vector<StoredPoint> points;
-  std::vector<std::int32_t> values(store.cell_points());
-  std::vector<std::uint64_t> sources(store.cell_points());
-  for (std::uint32_t cell = first; cell < first + count; ++cell) {
-    const std::size_t at = points.size();
-    const std::uint32_t used = store.cells()[cell].count;
-    points.resize(at + used);
-    const auto coordinates = store.coordinates(cell);
-    for (std::size_t k = 0; k < 3; ++k) {
-      coordinates[k].decode(0, values);
-      for (std::uint32_t i = 0; i < used; ++i) points[at + i].q[k] = values[i];
-    }
-    store.sources(cell).decode(0, sources);
-    for (std::uint32_t i = 0; i < used; ++i) points[at + i].source = sources[i];
-  }
-  return points;
-}
+std::vector<StoredPoint> points_of_cells(const StoreReader& store, std::uint32_t first,
+                                         std::uint32_t count);
 
-inline std::vector<StoredPoint> stored_points(const StoreReader& store) {
-  return points_of_cells(store, 0, static_cast<std::uint32_t>(store.cells().size()));
-}
+std::vector<StoredPoint> stored_points(const StoreReader& store);
 
 /// The store's points in source order. Throws where a source index is missing, out of range or
 /// there twice.
-inline std::vector<Quantum> points_by_source(const StoreReader& store) {
-  std::vector<Quantum> points(store.point_count());
-  std::vector<bool> seen(points.size());
-  for (const StoredPoint& point : stored_points(store)) {
-    if (point.source >= points.size() || seen[point.source]) {
-      throw std::runtime_error("sources are no permutation");
-    }
-    seen[point.source] = true;
-    points[point.source] = point.q;
-  }
-  return points;
-}
+std::vector<Quantum> points_by_source(const StoreReader& store);
 
-inline std::vector<std::string> faults_of(const StoreReader& store) {
-  NoProgress progress;
-  return verify_store(store, progress, 20);
-}
+std::vector<std::string> faults_of(const StoreReader& store);
 
 }  // namespace clearway::test

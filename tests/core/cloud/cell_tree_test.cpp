@@ -2,9 +2,11 @@
 
 #include "clearway/error.hpp"
 #include "core/cloud/packed_cloud.hpp"
+#include "support/compare.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -27,7 +29,7 @@ std::uint32_t check_subtree(const std::vector<TreeNode>& tree, std::uint32_t ind
   }
   CHECK(node.box == box);
   if (node.right == 0) {
-    CHECK(node.cell_count == 1);
+    check_equal(node.cell_count, 1);
     return index + 1;
   }
   const TreeNode& left = tree.at(index + 1);
@@ -116,7 +118,7 @@ TEST_CASE("random damage to a top tree is refused or harmless") {
                                   : field ^ (1u << below(random, 32));
     try {
       const auto tree = build_cell_tree(top, cells);
-      CHECK(tree.size() == 15);
+      check_equal(tree.size(), 15);
     } catch (const InputError&) {
     }
   }

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "core/cloud/packed_cloud.hpp"
+#include "support/compare.hpp"
 #include "support/packed_values.hpp"
 
 using namespace clearway;
@@ -168,7 +169,7 @@ TEST_CASE("chunks of a wrong size are refused") {
     }
     auto longer = bytes;
     longer.push_back(std::byte{0});
-    CHECK_THAT(refusal(longer, 3), Catch::Contains("expected " + std::to_string(bytes.size())));
+    check_says(refusal(longer, 3), "expected " + std::to_string(bytes.size()));
   }
   const auto bytes = packed(values_of_span<std::int32_t>(64, 1000, 1));
   CHECK_FALSE(refusal(bytes, 62).empty());
@@ -185,5 +186,5 @@ TEST_CASE("chunks with another header are refused") {
   }
   auto wide = packed(std::vector<std::int32_t>{-2147483647, 2147483647});
   wide[0] = std::byte{33};
-  CHECK_THAT(refusal(wide, 2), Catch::Contains("at most 32"));
+  check_says(refusal(wide, 2), "at most 32");
 }

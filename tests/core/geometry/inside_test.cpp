@@ -6,6 +6,7 @@
 #include "core/geometry/point_box.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/geometry/solid_parts.hpp"
+#include "support/compare.hpp"
 #include "support/solid_scene.hpp"
 
 using namespace clearway;
@@ -46,15 +47,16 @@ TEST_CASE("above edges and corners nothing is lost or counted twice") {
   const Surface body = box_surface({{0, 0, 0}, {2, 2, 2}});
   for (const double x : {0.5, 1.0, 1.5}) {
     for (const double y : {0.5, 1.0, 1.5}) {
-      CHECK(winding(body, {x, y, 1}) == 1);
+      check_equal(winding(body, {x, y, 1}), 1);
     }
   }
   const Surface octahedron = unit_sphere(0);
-  for (const double z : {-0.99, -0.5, 0.0, 0.5, 0.99}) CHECK(winding(octahedron, {0, 0, z}) == 1);
+  for (const double z : {-0.99, -0.5, 0.0, 0.5, 0.99})
+    check_equal(winding(octahedron, {0, 0, z}), 1);
   for (const double x : {-0.5, 0.25}) {
-    CHECK(winding(octahedron, {x, 0, 0}) == 1);
-    CHECK(winding(octahedron, {x, 0, 0.9}) == 0);
-    CHECK(winding(octahedron, {0, x, -0.9}) == 0);
+    check_equal(winding(octahedron, {x, 0, 0}), 1);
+    check_equal(winding(octahedron, {x, 0, 0.9}), 0);
+    check_equal(winding(octahedron, {0, x, -0.9}), 0);
   }
 }
 
@@ -68,7 +70,7 @@ TEST_CASE("in line with a turned wall nothing is inside") {
     });
     const double along = uniform(random, 0, 3), z = uniform(random, -1, 0);
     for (const double off : {0.0, 1e-17, -1e-17, 1e-16, -1e-16}) {
-      CHECK(winding(body, {-s * along + off, c * along, z - 1e-6}) == 0);
+      check_equal(winding(body, {-s * along + off, c * along, z - 1e-6}), 0);
     }
   }
 }

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <random>
 
+#include "support/compare.hpp"
+
 using namespace clearway;
+using namespace clearway::test;
 
 TEST_CASE("the predicate is strict at the radius") {
   const Vec3 m{0, 0, 0};
@@ -19,10 +22,10 @@ TEST_CASE("no multiplication of the predicate is fused with an addition") {
   const double rounded = x * x;
   REQUIRE(std::fma(x, x, -rounded) != 0);
   volatile double a = x;
-  CHECK(rounded_sum(rounded_product(a, a), -rounded) == 0);
+  check_equal(rounded_sum(rounded_product(a, a), -rounded), 0);
   const Pose pose{{x, x, 0, 0, 1, 0, 0, 0, 1}, {-rounded, 0, 0}};
   const Vec3 moved = transform(pose, {x, 0, 0});
-  CHECK(moved.x == 0);
+  check_equal(moved.x, 0);
 }
 
 TEST_CASE("the inside of a segment is strict at the radius and at both ends") {

@@ -5,9 +5,11 @@
 #include <cmath>
 
 #include "core/geometry/predicate.hpp"
+#include "support/compare.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -101,7 +103,7 @@ TEST_CASE("stretches bound what a matrix does to any direction") {
       wrong += factor > bound || factor > stretch.greatest || factor < stretch.least;
     }
   }
-  CHECK(wrong == 0);
+  check_equal(wrong, 0);
 }
 
 TEST_CASE("the stretch bound of extreme matrices is never too small") {
@@ -139,7 +141,7 @@ TEST_CASE("the rounding of a transform is bounded") {
       nearest = std::max(nearest, error / bound);
     }
   }
-  CHECK(wrong == 0);
+  check_equal(wrong, 0);
   CHECK(nearest > 0.15L);
   CHECK(nearest < 1.0L);
 }
@@ -165,7 +167,7 @@ TEST_CASE("no model point moves more than the displacement bound") {
       tight += moved > 0.9L * bound;
     }
   }
-  CHECK(wrong == 0);
+  check_equal(wrong, 0);
   CHECK(tight > 50'000);
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/geometry/triangle_box.hpp"
+#include "support/compare.hpp"
 #include "support/random_triangles.hpp"
 
 using namespace clearway;
@@ -88,16 +89,16 @@ TEST_CASE("a wide tree of points at few places") {
   std::vector<Vec3> points(500, {1, 2, 3});
   points.resize(900, {1, 2.5, 3});
   check(points, {1, 2, 3}, 2);
-  CHECK(visited_from(WideTree{ModelTree(points)}, {{1, 2, 3}, {1, 2, 3}}, 0).size() == 500);
+  check_equal(visited_from(WideTree{ModelTree(points)}, {{1, 2, 3}, {1, 2, 3}}, 0).size(), 500);
 }
 
 TEST_CASE("a wide tree without points visits none and one without bounds visits all") {
   CHECK(visited_from(WideTree{}, {{0, 0, 0}, {1, 1, 1}}, 1).empty());
   const WideTree tree{ModelTree(random_points(100, {0, 0, 0}, 1))};
   const double infinity = std::numeric_limits<double>::infinity();
-  CHECK(visited_from(tree, {{9, 9, 9}, {9, 9, 9}}, infinity).size() == 100);
-  CHECK(visited_from(tree, {{9, 9, 9}, {9, 9, 9}}, std::nan("")).size() == 100);
-  CHECK(visited_from(tree, {{1e30, 0, 0}, {1e30, 0, 0}}, 2e60).size() == 100);
+  check_equal(visited_from(tree, {{9, 9, 9}, {9, 9, 9}}, infinity).size(), 100);
+  check_equal(visited_from(tree, {{9, 9, 9}, {9, 9, 9}}, std::nan("")).size(), 100);
+  check_equal(visited_from(tree, {{1e30, 0, 0}, {1e30, 0, 0}}, 2e60).size(), 100);
 }
 
 TEST_CASE("a wide tree of triangles leaves out none within reach of a hull") {
@@ -166,7 +167,7 @@ TEST_CASE("a wide tree of triangles leaves out none within reach of a hull") {
       }
     }
   }
-  CHECK(missed == 0);
+  check_equal(missed, 0);
   CHECK(in_reach > 10000);
   // Most triangles are left out, though their boxes overlap those of the hulls.
   CHECK(visited < 60ULL * 40 * 392 / 3);

@@ -5,11 +5,13 @@
 
 #include "core/grid/float_predicate.hpp"
 #include "cpu/brute_force.hpp"
+#include "support/compare.hpp"
 #include "support/engines/grid_runs.hpp"
 #include "support/memory_cloud.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -45,7 +47,7 @@ Counts check_float(const Vec3& origin, double radius) {
     counts.hits += expected;
     counts.differing += expected != (exact[cloud.source(slot)] != HitSet::kNever);
   }
-  CHECK(wrong == 0);
+  check_equal(wrong, 0);
   return counts;
 }
 

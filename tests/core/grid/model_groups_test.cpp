@@ -6,9 +6,11 @@
 #include <tuple>
 
 #include "core/geometry/predicate.hpp"
+#include "support/compare.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -32,7 +34,7 @@ void check_spheres(const ModelGroups& model, std::span<const GridSphere> spheres
       outside += sphere.centre[k] < model.box().lo[k] || sphere.centre[k] > model.box().hi[k];
     }
   }
-  CHECK(outside == 0);
+  check_equal(outside, 0);
 }
 
 }  // namespace

@@ -3,8 +3,10 @@
 #include <catch2/catch.hpp>
 
 #include "clearway/error.hpp"
+#include "support/compare.hpp"
 
 namespace clearway {
+using namespace test;
 TEST_CASE("a strict call refuses warnings and names their codes") {
   CHECK_NOTHROW(refuse_warnings({}));
   CHECK_THROWS_AS(refuse_warnings({warning("feet", "text")}), InputError);
@@ -23,7 +25,7 @@ TEST_CASE("a log tells notes and warnings, and keeps warnings") {
   log.warn("feet", "a warning", {{"points", 3}});
   REQUIRE(told.size() == 2);
   REQUIRE(kept.size() == 1);
-  CHECK(kept[0].code == "feet");
+  check_equal(kept[0].code, "feet");
   CHECK(kept[0].numbers == std::vector<std::pair<std::string, double>>{{"points", 3}});
 }
 

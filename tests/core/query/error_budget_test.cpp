@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "clearway/answer.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -47,7 +49,7 @@ TEST_CASE("the parts of a budget, worked out by hand") {
   CHECK(budget.hard() == Approx(0.0115));
   CHECK(budget.lever == Approx(5));
   CHECK(budget.motion == Approx(0.2));
-  CHECK(budget.chord == 0);
+  check_equal(budget.chord, 0);
   CHECK(budget.way() == Approx(0.2));
   // 3^2 + 4^2 + 12^2 + 84^2 = 85^2 (in mm), and without the scan 7216 = 84.947^2.
   CHECK(budget.clear() == Approx(0.0115 + 0.2 + 3 * 0.085));
@@ -58,7 +60,7 @@ TEST_CASE("the parts of a budget, worked out by hand") {
   query.sigmas = 4;
   CHECK(error_budget_of(query, kSteps)->clear() == Approx(0.0115 + 0.2 + 4 * 0.085));
   query.between_poses = true;
-  CHECK(error_budget_of(query, kSteps)->way() == 0);
+  check_equal(error_budget_of(query, kSteps)->way(), 0);
   query.model.spacing = 0.02;
   CHECK(error_budget_of(query, kSteps)->way() == Approx(0.02));
 }
@@ -69,7 +71,7 @@ TEST_CASE("a gap in the poses of a body is no motion") {
   query.bodies.push_back({"a", query.model, query.poses, {0, 2}});
   query.model = {};
   query.poses.resize(3);
-  CHECK(error_budget_of(query, kSteps)->motion == 0);
+  check_equal(error_budget_of(query, kSteps)->motion, 0);
   query.bodies[0].path_pose = {0, 1};
   CHECK(error_budget_of(query, kSteps)->motion == Approx(0.2));
 }
@@ -87,11 +89,11 @@ TEST_CASE("a warning about a stretch puts the verdict in doubt, and one about th
   Answer answer;
   answer.warnings = {whole, side};
   CHECK(answer.verdict() == Verdict::kClear);
-  CHECK(answer.warned_of() == std::vector<std::string>{"floats", "one-side"});
+  check_equal(answer.warned_of(), {"floats", "one-side"});
   answer.warnings.push_back(stretch);
   CHECK(answer.verdict() == Verdict::kUndecided);
   CHECK(answer.reasons() == std::vector{Reason::kQuestionInDoubt});
-  CHECK(answer.doubts() == std::vector<std::string>{"leaves-scan"});
+  check_equal(answer.doubts(), {"leaves-scan"});
   // Beams that passed through all of it show that it is free.
   answer.seen = SeenSummary{.swept = 9, .unseen = 0};
   CHECK(answer.verdict() == Verdict::kClear);

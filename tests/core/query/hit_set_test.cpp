@@ -3,18 +3,20 @@
 #include <thread>
 
 #include "core/query/search_result.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 TEST_CASE("marks are kept one by one and by word") {
   HitSet hits(200, false);
-  CHECK(hits.count() == 0);
+  check_equal(hits.count(), 0);
   hits.mark(0);
   hits.mark(63);
   hits.mark(64);
   hits.mark(199);
   hits.mark(199);
-  CHECK(hits.count() == 4);
+  check_equal(hits.count(), 4);
   CHECK(hits.contains(63));
   CHECK_FALSE(hits.contains(62));
   CHECK(hits.word(0) == (1ull | 1ull << 63));
@@ -22,13 +24,13 @@ TEST_CASE("marks are kept one by one and by word") {
   CHECK(hits.contains(129));
   CHECK(hits.contains(131));
   CHECK_FALSE(hits.contains(130));
-  CHECK(hits.count() == 6);
+  check_equal(hits.count(), 6);
   CHECK_FALSE(hits.has_first_pose());
 }
 
 TEST_CASE("an empty set") {
   const HitSet hits(0, true);
-  CHECK(hits.count() == 0);
+  check_equal(hits.count(), 0);
 }
 
 TEST_CASE("a first pose only falls") {
@@ -36,15 +38,15 @@ TEST_CASE("a first pose only falls") {
   CHECK(hits.first_pose(64) == HitSet::kNever);
   hits.mark(64, 7);
   hits.mark(64, 9);
-  CHECK(hits.first_pose(64) == 7);
+  check_equal(hits.first_pose(64), 7);
   hits.mark(64, 2);
-  CHECK(hits.first_pose(64) == 2);
+  check_equal(hits.first_pose(64), 2);
   CHECK(hits.contains(64));
-  CHECK(hits.count() == 1);
+  check_equal(hits.count(), 1);
 }
 
 TEST_CASE("a set costs a bit a slot, first poses four bytes more") {
-  CHECK(HitSet(6400, false).allocated_bytes() == 800);
+  check_equal(HitSet(6400, false).allocated_bytes(), 800);
   CHECK(HitSet(6400, true).allocated_bytes() == 800 + 4 * 6400);
 }
 
@@ -71,7 +73,7 @@ TEST_CASE("the least first pose of many threads wins") {
     wrong += kSlots - hits.count();
     for (std::uint64_t slot = 0; slot < kSlots; ++slot) wrong += hits.first_pose(slot) != 0;
   }
-  CHECK(wrong == 0);
+  check_equal(wrong, 0);
 }
 
 TEST_CASE("marks of many threads in the same words are all there") {

@@ -4,9 +4,11 @@
 #include <limits>
 #include <random>
 
+#include "support/compare.hpp"
 #include "support/memory_cloud.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -67,7 +69,7 @@ TEST_CASE("a mask has a bit for each point to be searched, and none behind the l
       expected += out;
       wrong += searched == out;
     }
-    CHECK(wrong == 0);
+    check_equal(wrong, 0);
     CHECK(left_out == expected);
   }
 }
@@ -80,7 +82,7 @@ TEST_CASE("the order of what is ignored does not matter, nor does saying it twic
   b.ignore_boxes = {{{0, 2, 3}, {4, 5, 6}}, {{1, 2, 3}, {4, 5, 6}}};
   sort_ignored(a);
   CHECK(a == b);
-  CHECK(ignored_text(a) == "classes 2, 7 and 2 boxes");
-  CHECK(ignored_text(a, {.points = 1234}) == "1,234 points ignored (classes 2, 7 and 2 boxes)");
-  CHECK(boxes_text(a.ignore_boxes) == "0 2 3 to 4 5 6; 1 2 3 to 4 5 6");
+  check_equal(ignored_text(a), "classes 2, 7 and 2 boxes");
+  check_equal(ignored_text(a, {.points = 1234}), "1,234 points ignored (classes 2, 7 and 2 boxes)");
+  check_equal(boxes_text(a.ignore_boxes), "0 2 3 to 4 5 6; 1 2 3 to 4 5 6");
 }

@@ -1,6 +1,7 @@
 // Tables of widths against a program that knows only their definition.
 #include "core/section/section_tables.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -11,10 +12,12 @@
 
 #include "clearway/error.hpp"
 #include "clearway/section.hpp"
+#include "core/section/section_map.hpp"
+#include "support/compare.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;
-using Catch::Contains;
+using namespace clearway::test;
 
 namespace {
 
@@ -96,8 +99,8 @@ void check_band(const TableTrial& trial, const SectionBand& band, double z_from,
                 std::optional<int> bin) {
   const Widths expected(trial, z_from, z_to, bin);
   INFO("z " << z_from << " to " << z_to << ", cells of " << trial.cell);
-  CHECK(std::abs(band.z_from - z_from) < 1e-9);
-  CHECK(std::abs(band.z_to - z_to) < 1e-9);
+  check_near(band.z_from, z_from, 1e-9);
+  check_near(band.z_to, z_to, 1e-9);
   const auto same = [](const std::optional<HalfWidth>& half, const std::optional<double>& width) {
     return half.has_value() == width.has_value() &&
            (!half || std::abs(half->width - *width) < 1e-9);
@@ -118,10 +121,10 @@ TEST_CASE("tables of widths are those of their cells, whatever window, base and 
     const double band = trial.heights.band == 0 ? 0.1 : trial.heights.band;
     INFO("trial " << i << ", window z " << bottom << " to " << top << ", band " << band);
     if (trial.heights.base && *trial.heights.base < bottom - 1e-6 * trial.cell) {
-      CHECK_THROWS_WITH(section_bands(section, trial.heights), Contains("below the window"));
-      CHECK_THROWS_WITH(section_boxes(section, trial.heights), Contains("below the window"));
-      CHECK_THROWS_WITH(section_stations(section, trial.heights), Contains("below the window"));
-      CHECK_THROWS_WITH(largest_outline(section, trial.heights), Contains("below the window"));
+      check_refused([&] { return section_bands(section, trial.heights); }, "below the window");
+      check_refused([&] { return section_boxes(section, trial.heights); }, "below the window");
+      check_refused([&] { return section_stations(section, trial.heights); }, "below the window");
+      check_refused([&] { return largest_outline(section, trial.heights); }, "below the window");
       ++refused;
       continue;
     }
@@ -131,7 +134,7 @@ TEST_CASE("tables of widths are those of their cells, whatever window, base and 
       expected.push_back({base + n * band, base + (n + 1) * band});
     }
     if (expected.empty()) {
-      CHECK_THROWS_WITH(section_bands(section, trial.heights), Contains("no band"));
+      check_refused([&] { return section_bands(section, trial.heights); }, "no band");
       continue;
     }
     above_ground += bottom > 0 && !trial.heights.base ? 1 : 0;
@@ -159,7 +162,7 @@ TEST_CASE("tables of widths are those of their cells, whatever window, base and 
       // An open side ends at the border of the window.
       const double least = std::min(widths.left.value_or(trial.j_to * trial.cell),
                                     widths.right.value_or(-trial.j_from * trial.cell));
-      CHECK(std::abs(*symmetric - std::max(0.0, 2 * least - 2e-9)) < 1e-9);
+      check_near(*symmetric, std::max(0.0, 2 * least - 2e-9), 1e-9);
     }
   }
   CAPTURE(refused, rows, open, above_ground);
@@ -177,9 +180,58 @@ TEST_CASE("a section in doubt has no widths") {
     SectionData data = trial.section().data();
     data.warnings.push_back({Message::Severity::kWarning, code, "text"});
     const Section section(std::move(data));
-    CHECK_THROWS_WITH(section_bands(section, {}), Contains(code));
-    CHECK_THROWS_WITH(section_boxes(section, {}), Contains(code));
-    CHECK_THROWS_WITH(section_stations(section, {}), Contains(code));
-    CHECK_THROWS_WITH(largest_outline(section, {}), Contains(code));
+    check_refused([&] { return section_bands(section, {}); }, code);
+    check_refused([&] { return section_boxes(section, {}); }, code);
+    check_refused([&] { return section_stations(section, {}); }, code);
+    check_refused([&] { return largest_outline(section, {}); }, code);
   }
+}
+
+// The map of first poses and its pyramid against all cells of a rectangle.
+
+TEST_CASE("a pyramid over first poses says whether all cells of a rectangle are blocked early") {
+  Random random(7);
+  const auto number = [&](std::uint32_t most) {
+    return static_cast<std::uint32_t>(below(random, most));
+  };
+  std::size_t yes = 0, no = 0;
+  for (int i = 0; i < 60; ++i) {
+    const double columns = 1 + number(90), rows = 1 + number(90);
+    const SectionLattice lattice = section_lattice(
+        {.rear = 0, .front = 1, .window = SectionWindow{0, columns, 0, rows}, .cell = 1, .bin = 1},
+        0);
+    SectionMaps maps(lattice, 2);
+    const SectionMapRef map = maps[1];
+    std::vector<std::uint32_t> firsts(lattice.cells(), kNotBlocked);
+    const std::uint32_t poses = 1 + number(6);
+    const std::uint32_t updates = number(3 * static_cast<std::uint32_t>(lattice.cells()));
+    for (std::uint32_t update = 0; update < updates; ++update) {
+      const std::uint32_t column = number(lattice.columns), row = number(lattice.rows);
+      const std::uint32_t pose = number(poses);
+      map.block(column, row, pose);
+      std::uint32_t& first = firsts[row * lattice.columns + column];
+      first = std::min(first, pose);
+    }
+    CHECK(std::equal(firsts.begin(), firsts.end(), maps.firsts(1)));
+    CHECK(std::all_of(maps.firsts(0), maps.firsts(0) + maps.shape().entries,
+                      [](std::uint32_t entry) { return entry == kNotBlocked; }));
+    for (int question = 0; question < 300; ++question) {
+      const std::uint32_t side = 1 + number(question % 3 == 0 ? 90 : 5);
+      SectionRect rect{number(lattice.columns), 0, number(lattice.rows), 0};
+      rect.column_to = std::min(rect.column_from + number(side), lattice.columns - 1);
+      rect.row_to = std::min(rect.row_from + number(side), lattice.rows - 1);
+      const std::uint32_t pose = number(poses);
+      bool expected = true;
+      for (std::uint32_t row = rect.row_from; row <= rect.row_to; ++row) {
+        for (std::uint32_t column = rect.column_from; column <= rect.column_to; ++column) {
+          expected = expected && firsts[row * lattice.columns + column] <= pose;
+        }
+      }
+      CHECK(map.is_blocked_by(rect, pose) == expected);
+      CHECK(map.is_blocked_inside(rect, pose) == expected);
+      ++(expected ? yes : no);
+    }
+  }
+  CHECK(yes > 2000);
+  CHECK(no > 2000);
 }

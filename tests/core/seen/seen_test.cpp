@@ -8,8 +8,10 @@
 #include "core/seen/brick_map.hpp"
 #include "core/seen/cubes.hpp"
 #include "support/beam_scenes.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 TEST_CASE("what beams see in random scenes is what the definition says") {
   std::uint64_t seen = 0, unseen = 0;
@@ -156,9 +158,9 @@ TEST_CASE("cubes are numbered within their bricks, also below 0") {
     REQUIRE(Brick::of(cube) == brick);
   }
   const CubeLattice lattice{{10, 10, 10}, {2, 2, 2}};
-  CHECK(lattice.cube_of(0, 9) == 0);
-  CHECK(lattice.cube_of(0, 10) == 1);
-  CHECK(lattice.cube_of(0, -1) == -1);
-  CHECK(lattice.cube_of(0, -10) == -1);
-  CHECK(lattice.cube_of(0, -11) == -2);
+  check_equal(lattice.cube_of(0, 9), 0);
+  check_equal(lattice.cube_of(0, 10), 1);
+  check_equal(lattice.cube_of(0, -1), -1);
+  check_equal(lattice.cube_of(0, -10), -1);
+  check_equal(lattice.cube_of(0, -11), -2);
 }

@@ -10,6 +10,7 @@
 #include "core/geometry/predicate.hpp"
 #include "core/sweep/triangle_curve.hpp"
 #include "core/trajectory/motion_curves.hpp"
+#include "support/compare.hpp"
 #include "support/random_triangles.hpp"
 
 using namespace clearway;
@@ -243,8 +244,8 @@ TEST_CASE("a triangle's bound from a curve is below its distance from every plac
       }
     }
   }
-  CHECK(above == 0);
-  CHECK(off_pose == 0);
+  check_equal(above, 0);
+  check_equal(off_pose, 0);
   CHECK(clear > 1000);
   CHECK(close > clear / 2);
 }
@@ -289,6 +290,6 @@ TEST_CASE("bounds from curves hold for triangles and paths of every size") {
       positive += of_run[0] > 0 && of_parts[k / 4] > 0 && of_places[k % 16] > 0;
     }
   }
-  CHECK(above == 0);
+  check_equal(above, 0);
   CHECK(positive > 50'000);
 }

@@ -5,9 +5,11 @@
 #include <cmath>
 
 #include "core/geometry/point_box.hpp"
+#include "support/compare.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -86,9 +88,9 @@ TEST_CASE("equal model points are one at any cover") {
   Random random(2);
   std::vector<Vec3> model = random_points(random, kBox, 20);
   for (int i = 0; i < 200; ++i) model.push_back(model[below(random, 20)]);
-  for (const double cover : {-1.0, 0.0, 1e-200}) CHECK(kept_points(model, cover).size() == 20);
-  CHECK(kept_points(std::vector<Vec3>(50, Vec3{1, 2, 3}), 0).size() == 1);
-  CHECK(kept_points(model, 1e100).size() == 1);
+  for (const double cover : {-1.0, 0.0, 1e-200}) check_equal(kept_points(model, cover).size(), 20);
+  check_equal(kept_points(std::vector<Vec3>(50, Vec3{1, 2, 3}), 0).size(), 1);
+  check_equal(kept_points(model, 1e100).size(), 1);
 }
 
 TEST_CASE("kept poses stand for the others") {
@@ -116,7 +118,7 @@ TEST_CASE("a smooth path keeps a pose for both sides") {
   std::vector<Pose> poses;
   for (int i = 0; i <= 1000; ++i) poses.push_back(translation({0.001 * i, 0, 0}));
   // Every kept pose stands for 10 before and 10 behind it.
-  CHECK(kept_poses(poses, kBox, 0.0105).size() == 48);
+  check_equal(kept_poses(poses, kBox, 0.0105).size(), 48);
 }
 
 TEST_CASE("equal poses in a row are one at any motion") {
@@ -126,7 +128,7 @@ TEST_CASE("equal poses in a row are one at any motion") {
     const Pose pose = random_rotation(random, {5e6, 5e6, 0});
     poses.insert(poses.end(), 1 + below(random, 9), pose);
   }
-  for (const double most : {-1.0, 0.0, 1e-9}) CHECK(kept_poses(poses, kBox, most).size() == 30);
+  for (const double most : {-1.0, 0.0, 1e-9}) check_equal(kept_poses(poses, kBox, most).size(), 30);
 }
 
 TEST_CASE("thinning makes distances no larger than the tolerance allows") {
@@ -178,7 +180,7 @@ TEST_CASE("a thinned query spends at most its tolerance") {
     for (const double tolerance : {1e-12, 1e-3, 0.05, 0.4}) {
       const ThinnedQuery thinned({model, poses, {.radius = 0.5}}, tolerance);
       const Query& query = thinned.query();
-      CHECK(query.radius == 0.5);
+      check_equal(query.radius, 0.5);
       CHECK(search_radius(query.radius, tolerance) <= 0.5 + tolerance);
       CHECK(search_radius(query.radius, tolerance) >= 0.5);
       // Every moved point has a kept one at a kept pose near it.

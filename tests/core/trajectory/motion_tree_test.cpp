@@ -5,8 +5,10 @@
 #include <random>
 
 #include "core/geometry/predicate.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -81,7 +83,7 @@ TEST_CASE("a jump separates the motion tree's halves") {
   for (int i = 0; i < 10; ++i) poses.push_back(turned(0, {i * 0.1, 0, 0}));
   for (int i = 0; i < 90; ++i) poses.push_back(turned(0, {1000 + i * 0.1, 0, 0}));
   const MotionTree tree(poses, kBodyOfTree);
-  CHECK(tree.nodes()[1].count == 10);
+  check_equal(tree.nodes()[1].count, 10);
   CHECK(tree.nodes()[1].delta < 1);
   CHECK(tree.nodes()[tree.nodes()[0].later].delta < 10);
 }

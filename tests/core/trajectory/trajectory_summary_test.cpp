@@ -4,7 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/trajectory/chainage.hpp"
 #include "support/attitudes.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -20,13 +22,13 @@ Pose turned_pose_at(const Rotation& rotation, double x, double y, double z) {
 }  // namespace
 
 TEST_CASE("a summary of no pose and of one") {
-  CHECK(summarize_trajectory({}).poses == 0);
+  check_equal(summarize_trajectory({}).poses, 0);
   const std::vector<Pose> one{turned_pose_at(about_z(1), 1, 2, 3)};
   const TrajectorySummary summary = summarize_trajectory(one);
-  CHECK(summary.poses == 1);
-  CHECK(summary.length == 0);
+  check_equal(summary.poses, 1);
+  check_equal(summary.length, 0);
   CHECK(summary.box.lo == Vec3{1, 2, 3});
-  CHECK(summary.forward.cosine == 0);
+  check_equal(summary.forward.cosine, 0);
   CHECK(summary.up.cosine == Approx(1));
 }
 
@@ -39,10 +41,10 @@ TEST_CASE("a summary counts steps, turns and the box") {
   CHECK(summary.length == Approx(5 + std::sqrt(5) + 12));
   CHECK(summary.median_step == Approx(5));
   CHECK(summary.largest_step == Approx(12));
-  CHECK(summary.largest_step_pose == 3);
-  CHECK(summary.still_steps == 1);
+  check_equal(summary.largest_step_pose, 3);
+  check_equal(summary.still_steps, 1);
   CHECK(summary.largest_turn == Approx(0.5));
-  CHECK(summary.largest_turn_pose == 0);
+  check_equal(summary.largest_turn_pose, 0);
   CHECK(summary.total_turn == Approx(1));
   CHECK(summary.box.lo == Vec3{0, 0, -2});
   CHECK(summary.box.hi == Vec3{3, 5, 10});
@@ -69,15 +71,15 @@ TEST_CASE("a summary names the axes that point up and ahead") {
     camera.push_back(turned_pose_at(about_z(a) * optical, x, y, 0));
   }
   const TrajectorySummary of_car = summarize_trajectory(car);
-  CHECK(of_car.up.axis == 2);
+  check_equal(of_car.up.axis, 2);
   CHECK_FALSE(of_car.up.negative);
-  CHECK(of_car.forward.axis == 0);
+  check_equal(of_car.forward.axis, 0);
   CHECK_FALSE(of_car.forward.negative);
   CHECK(of_car.forward.cosine > 0.999);
   const TrajectorySummary of_camera = summarize_trajectory(camera);
-  CHECK(of_camera.up.axis == 1);
+  check_equal(of_camera.up.axis, 1);
   CHECK(of_camera.up.negative);
-  CHECK(of_camera.forward.axis == 2);
+  check_equal(of_camera.forward.axis, 2);
   for (Pose& pose : car) {
     pose.rotation[0] *= -1;
     pose.rotation[3] *= -1;
@@ -88,4 +90,22 @@ TEST_CASE("a summary names the axes that point up and ahead") {
 TEST_CASE("skew is the distance from a rotation") {
   const std::vector<Pose> poses{{{1, 0, 0, 0, 1.01, 0, 0, 0, 1}, {0, 0, 0}}};
   CHECK(summarize_trajectory(poses).skew == Approx(1.01 * 1.01 - 1));
+}
+
+namespace {
+
+Pose at(double x, double y, double z) { return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {x, y, z}}; }
+
+}  // namespace
+
+TEST_CASE("chainage is the length of the path so far") {
+  const std::vector<Pose> poses{at(5e5, 4e6, 100), at(5e5 + 3, 4e6 + 4, 100),
+                                at(5e5 + 3, 4e6 + 4, 100), at(5e5 + 3, 4e6, 97), at(5e5, 4e6, 97)};
+  check_equal(chainage_of(poses), {0, 5, 5, 10, 13});
+}
+
+TEST_CASE("chainage of no pose and of one") {
+  CHECK(chainage_of({}).empty());
+  const std::vector<Pose> one{at(1, 2, 3)};
+  check_equal(chainage_of(one), {0});
 }

@@ -1,13 +1,19 @@
 #include "clearway/unsearched.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "clearway/follow.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
+#include "core/trajectory/pose_ranges.hpp"
+#include "support/compare.hpp"
+#include "support/scenes.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -35,19 +41,19 @@ TEST_CASE("a body without a pose leaves a stretch up to the poses that it has") 
   const auto path = straight(11);
   const auto stretches = unsearched_stretches(path, std::vector<Body>{there(2, 8)});
   REQUIRE(stretches.size() == 2);
-  CHECK(stretches[0].first_pose == 0);
-  CHECK(stretches[0].last_pose == 1);
-  CHECK(stretches[0].chainage_from == 0);
-  CHECK(stretches[0].chainage_to == 1);
+  check_equal(stretches[0].first_pose, 0);
+  check_equal(stretches[0].last_pose, 1);
+  check_equal(stretches[0].chainage_from, 0);
+  check_equal(stretches[0].chainage_to, 1);
   CHECK_FALSE(stretches[0].has_answer);
   CHECK(stretches[0].bodies == Numbers{0});
-  CHECK(stretches[1].first_pose == 8);
-  CHECK(stretches[1].last_pose == 10);
-  CHECK(stretches[1].chainage_from == 3.5);
+  check_equal(stretches[1].first_pose, 8);
+  check_equal(stretches[1].last_pose, 10);
+  check_equal(stretches[1].chainage_from, 3.5);
   const SearchedLength length = searched_length(path, std::vector<Body>{there(2, 8)});
-  CHECK(length.path == 5);
-  CHECK(length.whole == 2.5);
-  CHECK(length.part == 0);
+  check_equal(length.path, 5);
+  check_equal(length.whole, 2.5);
+  check_equal(length.part, 0);
 }
 
 TEST_CASE("where other bodies are searched there is an answer of a part") {
@@ -61,22 +67,22 @@ TEST_CASE("where other bodies are searched there is an answer of a part") {
   CHECK(stretches[0].bodies == Numbers{0, 1});
   CHECK(stretches[0].has_answer);
   CHECK(stretches[1].bodies == Numbers{1});
-  CHECK(stretches[1].first_pose == 2);
-  CHECK(stretches[1].last_pose == 2);
+  check_equal(stretches[1].first_pose, 2);
+  check_equal(stretches[1].last_pose, 2);
   CHECK(stretches[2].bodies == Numbers{2});
-  CHECK(stretches[2].first_pose == 5);
-  CHECK(stretches[2].last_pose == 5);
+  check_equal(stretches[2].first_pose, 5);
+  check_equal(stretches[2].last_pose, 5);
   const SearchedLength length = searched_length(path, bodies);
-  CHECK(length.whole == 2.5);
-  CHECK(length.part == 2.5);
+  check_equal(length.whole, 2.5);
+  check_equal(length.part, 2.5);
 }
 
 TEST_CASE("nothing is unsearched of a model, nor of bodies with all poses") {
   const auto path = straight(5);
   CHECK(unsearched_stretches(path, {}).empty());
   CHECK(unsearched_stretches(path, std::vector<Body>{there(0, 5)}).empty());
-  CHECK(searched_length(path, {}).whole == 2);
-  CHECK(searched_length({}, {}).path == 0);
+  check_equal(searched_length(path, {}).whole, 2);
+  check_equal(searched_length({}, {}).path, 0);
   CHECK(unsearched_stretches({}, {}).empty());
 }
 
@@ -87,7 +93,7 @@ TEST_CASE("a body that leaves the path at its ends is a note, one that lacks pos
   FollowedPath followed = follow_path(path, mount, 1);
   auto doubts = doubts_about(followed, path, mount, "wagon");
   REQUIRE(doubts.size() == 1);
-  CHECK(doubts[0].code == "body-off-path");
+  check_equal(doubts[0].code, "body-off-path");
   CHECK(doubts[0].severity == Message::Severity::kNote);
   followed.off_path.insert(followed.off_path.begin() + 2, 10);
   doubts = doubts_about(followed, path, mount, "wagon");
@@ -110,4 +116,43 @@ TEST_CASE("the lengths of a path that three bodies share stay within it, whateve
       }
     }
   }
+}
+
+namespace {
+
+std::vector<PoseRange> random_ranges(Random& random) {
+  std::vector<PoseRange> out(random() % 6);
+  for (PoseRange& range : out) {
+    range.first = static_cast<std::uint32_t>(random() % 21);
+    range.last = range.first + static_cast<std::uint32_t>(random() % 7);
+  }
+  return out;
+}
+
+std::set<std::uint32_t> poses_of(const std::vector<PoseRange>& ranges) {
+  std::set<std::uint32_t> out;
+  for (const PoseRange& range : ranges) {
+    for (std::uint32_t pose = range.first; pose <= range.last; ++pose) out.insert(pose);
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("stretches of poses are united and taken away as sets of poses are") {
+  Random random(1);
+  bool united_well = true, taken_well = true;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const std::vector<PoseRange> a = random_ranges(random), b = random_ranges(random);
+    const std::vector<PoseRange> one = united_ranges(a);
+    const bool apart = std::ranges::adjacent_find(one, [](const auto& x, const auto& y) {
+                         return y.first <= x.last;
+                       }) == one.end();
+    united_well &= apart && poses_of(one) == poses_of(a);
+    std::set<std::uint32_t> rest = poses_of(a);
+    for (const std::uint32_t pose : poses_of(b)) rest.erase(pose);
+    taken_well &= poses_of(without(a, b)) == rest;
+  }
+  CHECK(united_well);
+  CHECK(taken_well);
 }

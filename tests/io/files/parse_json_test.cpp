@@ -4,8 +4,10 @@
 #include "clearway/error.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/files/json.hpp"
+#include "support/compare.hpp"
 
 namespace clearway {
+using namespace test;
 namespace {
 
 using nlohmann::ordered_json;
@@ -69,7 +71,7 @@ TEST_CASE("JSON is read as the library reads it", "[json]") {
         {"[1", "the text ends too early"},
         {"{a: 1}", "texts and names stand in double quotes"}}) {
     CAPTURE(text);
-    CHECK_THAT(complaint_about(text), Catch::Contains(words));
+    check_says(complaint_about(text), words);
   }
   CHECK(complaint_about("[\n1, x]").find("line 2, column 4") != std::string::npos);
   CHECK(complaint_about("\"" + std::string(100'000, 'x')).size() < 400);
@@ -89,7 +91,7 @@ TEST_CASE("JSON that is nested too deep is refused with its place", "[json]") {
 }
 
 TEST_CASE("a key that stands twice in JSON is refused by its place", "[json]") {
-  CHECK(complaint_about(R"({"a": 1, "a": 1})") == "a: stands twice");
+  check_equal(complaint_about(R"({"a": 1, "a": 1})"), "a: stands twice");
   CHECK(complaint_about(R"({"b": [0, {"c": {"x": 1, "y": 2, "x": 3}}]})") ==
         "b[1].c.x: stands twice");
   CHECK(complaint_about(R"([{"a": 1}, {"a": 1}])").empty());
@@ -102,8 +104,8 @@ TEST_CASE("long lists and large objects of JSON are read in linear time", "[json
     object += ",\"k" + std::to_string(i) + "\":" + std::to_string(i);
   }
   const Stopwatch time;
-  CHECK(parse_json(list + "]").size() == 300'001);
-  CHECK(parse_json(object + "}").size() == 300'001);
+  check_equal(parse_json(list + "]").size(), 300'001);
+  check_equal(parse_json(object + "}").size(), 300'001);
   CHECK(time.seconds() < 20);  // it takes a minute where each element looks at all before it
 }
 
@@ -114,8 +116,8 @@ TEST_CASE("a reader of keys keeps its file's text alive, and counts before it re
         .elements(2)[1]
         .at("name");
   }();
-  CHECK(inner.text() == "b");
-  CHECK(inner.key() == "bodies[1].name");
+  check_equal(inner.text(), "b");
+  check_equal(inner.key(), "bodies[1].name");
   const KeyReader file = KeyReader::parse("vehicle.json", R"({"bodies": [1, 2, 3]})");
   CHECK_THROWS_WITH(file.at("bodies").elements(2),
                     "vehicle.json: bodies: has 3 entries, expected at most 2");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/files/hdf5.hpp"
+#include "support/compare.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;
@@ -41,7 +42,7 @@ TEST_CASE("a chunk's checksum is that of HDF5") {
   const auto rows = hdf5::Rows<std::uint32_t>::open(file, "values", 0, "a.h5");
   std::vector<std::vector<std::byte>> chunks;
   REQUIRE(rows.read_chunks(0, count, chunks));
-  CHECK(chunks.size() == (count + 65'535) / 65'536);
+  check_equal(chunks.size(), (count + 65'535) / 65'536);
   for (std::vector<std::byte>& chunk : chunks) {
     CHECK(hdf5::is_sealed(chunk));
     const std::vector<std::byte> whole = chunk;
@@ -56,9 +57,9 @@ TEST_CASE("ranges of 2^16 rows end with a chunk, whatever a row takes") {
   for (const std::uint64_t row_bytes : {1, 2, 4, 8, 12, 24, 36}) {
     CAPTURE(row_bytes);
     const std::uint64_t rows = hdf5::rows_of_chunk(1'000'000, row_bytes);
-    CHECK((1 << 16) % rows == 0);
+    check_equal((1 << 16) % rows, 0);
     CHECK(rows * row_bytes <= 1 << 18);
-    CHECK(hdf5::rows_of_chunk(5, row_bytes) == 5);
+    check_equal(hdf5::rows_of_chunk(5, row_bytes), 5);
   }
 }
 

@@ -3,7 +3,9 @@
 
 #include "io/files/input_error.hpp"
 #include "io/models/mesh_facts.hpp"
+#include "io/models/sample_mesh.hpp"
 #include "support/bytes/mesh_bytes.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -43,12 +45,12 @@ TEST_CASE("a closed part is a solid beside an open one") {
   add_cube(mesh, {3, 0, 0});
   mesh.triangles.pop_back();
   const MeshParts parts = find_parts(mesh);
-  CHECK(parts.solids == 1);
-  CHECK(parts.surface_parts == 1);
-  CHECK(parts.surface_triangles == 11);
-  for (std::size_t i = 0; i < 12; ++i) CHECK(parts.solid_of[i] == 0);
+  check_equal(parts.solids, 1);
+  check_equal(parts.surface_parts, 1);
+  check_equal(parts.surface_triangles, 11);
+  for (std::size_t i = 0; i < 12; ++i) check_equal(parts.solid_of[i], 0);
   for (std::size_t i = 12; i < 23; ++i) CHECK(parts.solid_of[i] == kNoSolid);
-  CHECK(faults(parts, EdgeFault::kOpen) == 3);
+  check_equal(faults(parts, EdgeFault::kOpen), 3);
   CHECK(summary_of(parts) ==
         "1 closed parts of 12 triangles are solid; 11 other triangles are surface, in 1 open "
         "parts");
@@ -68,8 +70,8 @@ TEST_CASE("vertices are merged by value and both zeros are one") {
     soup.triangles.push_back({first, first + 1, first + 2});
   }
   const MeshParts parts = find_parts(soup);
-  CHECK(parts.solids == 1);
-  CHECK(parts.mesh.vertices.size() == 8);
+  check_equal(parts.solids, 1);
+  check_equal(parts.mesh.vertices.size(), 8);
 }
 
 TEST_CASE("parts that touch in a corner are two and those that share an edge are one") {
@@ -77,14 +79,14 @@ TEST_CASE("parts that touch in a corner are two and those that share an edge are
   add_cube(mesh, {0, 0, 0});
   SECTION("a corner") {
     add_cube(mesh, {1, 1, 1});
-    CHECK(find_parts(mesh).solids == 2);
+    check_equal(find_parts(mesh).solids, 2);
   }
   SECTION("an edge") {
     add_cube(mesh, {1, 1, 0});
     const MeshParts parts = find_parts(mesh);
-    CHECK(parts.solids == 0);
-    CHECK(parts.surface_parts == 1);
-    CHECK(faults(parts, EdgeFault::kCrowded) == 1);
+    check_equal(parts.solids, 0);
+    check_equal(parts.surface_parts, 1);
+    check_equal(faults(parts, EdgeFault::kCrowded), 1);
   }
 }
 
@@ -95,12 +97,12 @@ TEST_CASE("triangles that occur twice are left out and flat ones are surface") {
   mesh.triangles.insert(mesh.triangles.begin(), {b, c, a});
   mesh.triangles.push_back({a, a, b});
   const MeshParts parts = find_parts(mesh);
-  CHECK(parts.duplicates == 1);
-  CHECK(parts.flat == 1);
-  CHECK(parts.solids == 1);
-  CHECK(parts.mesh.triangles.size() == 13);
-  CHECK(parts.surface_triangles == 1);
-  CHECK(parts.surface_parts == 0);
+  check_equal(parts.duplicates, 1);
+  check_equal(parts.flat, 1);
+  check_equal(parts.solids, 1);
+  check_equal(parts.mesh.triangles.size(), 13);
+  check_equal(parts.surface_triangles, 1);
+  check_equal(parts.surface_parts, 0);
 }
 
 TEST_CASE("two-sided sheets have no inside") {
@@ -110,8 +112,8 @@ TEST_CASE("two-sided sheets have no inside") {
   const auto once = mesh.triangles;
   for (const auto& [a, b, c] : once) mesh.triangles.push_back({a, c, b});
   const MeshParts parts = find_parts(mesh);
-  CHECK(parts.solids == 0);
-  CHECK(parts.duplicates == 0);
+  check_equal(parts.solids, 0);
+  check_equal(parts.duplicates, 0);
   CHECK(parts.surface_triangles == mesh.triangles.size());
 }
 
@@ -123,7 +125,7 @@ TEST_CASE("a part turned inwards and a cavity are solids") {
     for (int k = 0; k < 3; ++k) mesh.vertices[v][k] = 0.25 + 0.5 * mesh.vertices[v][k];
   }
   for (std::size_t t = 12; t < 24; ++t) std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
-  CHECK(find_parts(mesh).solids == 2);
+  check_equal(find_parts(mesh).solids, 2);
 }
 
 TEST_CASE("a mesh without a solid is refused with the edges that break it") {
@@ -132,7 +134,7 @@ TEST_CASE("a mesh without a solid is refused with the edges that break it") {
   SECTION("open") {
     mesh.triangles.pop_back();
     const std::string text = refusal_of(mesh);
-    CHECK(text.find("car.stl: none of its 1 parts is closed") == 0);
+    check_equal(text.find("car.stl: none of its 1 parts is closed"), 0);
     CHECK(text.find("3 edges are each of one triangle only (an open border), the first from (") !=
           std::string::npos);
   }
@@ -150,4 +152,53 @@ TEST_CASE("a mesh without a solid is refused with the edges that break it") {
     mesh.triangles.clear();
     CHECK(refusal_of(mesh).find("none of its 0 parts is closed") != std::string::npos);
   }
+}
+
+TEST_CASE("a cube is watertight, without a triangle, or with one turned or repeated, it is not") {
+  TriangleMesh mesh = unit_cube();
+  MeshFacts facts = facts_of(mesh);
+  check_equal(facts.area, 6);
+  CHECK(facts.watertight());
+  check_equal(facts.edges, 18);
+  check_equal(facts.parts, 1);
+  SECTION("open") {
+    mesh.triangles.pop_back();
+    facts = facts_of(mesh);
+    check_equal(facts.open_edges, 3);
+  }
+  SECTION("turned") {
+    std::swap(mesh.triangles[0][0], mesh.triangles[0][1]);
+    facts = facts_of(mesh);
+    check_equal(facts.flipped_edges, 3);
+  }
+  SECTION("repeated") {
+    mesh.triangles.push_back(mesh.triangles[0]);
+    facts = facts_of(mesh);
+    check_equal(facts.crowded_edges, 3);
+  }
+  CHECK_FALSE(facts.watertight());
+}
+
+TEST_CASE("parts share no vertex, vertices at one place are one") {
+  TriangleMesh mesh = unit_cube();
+  const TriangleMesh other = unit_cube();
+  for (const Vec3& v : other.vertices) mesh.vertices.push_back({v.x + 1, v.y + 1, v.z + 1});
+  for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + 8, b + 8, c + 8});
+  check_equal(facts_of(mesh).parts, 1);  // the triangles touch in a corner
+  for (std::size_t i = 8; i < 16; ++i) mesh.vertices[i].x += 0.5;
+  check_equal(facts_of(mesh).parts, 2);
+  CHECK(facts_of(mesh).watertight());
+  mesh.triangles.push_back({0, 0, 1});
+  check_equal(facts_of(mesh).flat_triangles, 1);
+  CHECK(facts_of(mesh).watertight());
+}
+
+TEST_CASE("gaps of points leave repeated ones out") {
+  const Vec3 points[] = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 2, 0}, {100, 0, 0}, {1, 0, 0.5}};
+  const PointGaps gaps = gaps_of(points);
+  check_equal(gaps.repeated, 1);
+  check_equal(gaps.median, 1);  // 0.5, 0.5, 1, 2, 99
+  check_equal(gaps.largest, 99);
+  check_equal(gaps_of(std::span(points, 1)).largest, 0);
+  check_equal(gaps_of(std::span(points + 1, 2)).repeated, 1);
 }

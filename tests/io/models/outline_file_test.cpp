@@ -4,13 +4,14 @@
 #include "clearway/error.hpp"
 #include "clearway/outline.hpp"
 #include "clearway/query.hpp"
+#include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 
 TEST_CASE("an outline is read as y and z, or as one half of a symmetric one") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   const std::vector<OutlinePoint> triangle{{-1, 0}, {1, 0}, {0, 2}};
   CHECK(read_outline(scratch.write("a.csv", "y,z\n-1,0\n1,0\n0,2\n")) == triangle);
   CHECK(read_outline(scratch.write("b.txt", "-1 0\n\n1 0\n0 2\n-1 0\n")) == triangle);
@@ -26,7 +27,7 @@ TEST_CASE("one half of an outline that is not mirrored is warned of") {
     const char* text;
     bool mirror, warned;
   };
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   for (const Row& row :
        {Row{"0,0\n1.5,0\n1.5,3\n0,4\n", false, true},
         Row{"y,z\n-1.5,0\n0,0\n0,4\n-1.5,3\n", false, true},
@@ -43,11 +44,11 @@ TEST_CASE("one half of an outline that is not mirrored is warned of") {
 }
 
 TEST_CASE("an outline that is malformed is refused with its line") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   const auto refused = [&](const std::string& text, bool mirror, const std::string& words) {
     CAPTURE(text);
-    CHECK_THROWS_WITH(read_outline(scratch.write("a.csv", text), {.mirror = mirror}),
-                      Catch::Contains(words));
+    check_refused([&] { return read_outline(scratch.write("a.csv", text), {.mirror = mirror}); },
+                  words);
   };
   refused("", false, "holds no corner");
   refused("y,z\n", false, "holds no corner");
@@ -68,9 +69,9 @@ TEST_CASE("an outline that is malformed is refused with its line") {
 
 TEST_CASE("a box is a model without a file, in metres or in named units") {
   const Model box = read_model("box:30,5,4.3", {.as = ModelAs::kSolid});
-  CHECK(box.vertices.size() == 8);
-  CHECK(box.triangles.size() == 12);
-  CHECK(box.solid_count() == 1);
+  check_equal(box.vertices.size(), 8);
+  check_equal(box.triangles.size(), 12);
+  check_equal(box.solid_count(), 1);
   CHECK(box.vertices[0] == Vec3{-15, -2.5, 0});
   CHECK(read_model("box:3000cm,5 m,4.3", {.as = ModelAs::kSolid}) == box);
   const Model feet = read_model("box:30,5,4.3", {.environment_unit = kMetresPerFoot});
@@ -78,7 +79,6 @@ TEST_CASE("a box is a model without a file, in metres or in named units") {
   for (const char* text : {"box:", "box:1,2", "box:1,2,3,4", "box:1,2,0", "box:1,2,-3", "box:a,b,c",
                            "box:1,,2", "box:1,2,3,", "box:1,2,inf"}) {
     CAPTURE(text);
-    CHECK_THROWS_WITH(read_model(text),
-                      Catch::Contains("expected a box as box:LENGTH,WIDTH,HEIGHT"));
+    check_refused([&] { return read_model(text); }, "expected a box as box:LENGTH,WIDTH,HEIGHT");
   }
 }

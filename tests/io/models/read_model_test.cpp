@@ -7,11 +7,11 @@
 #include "clearway/query.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/bytes/mesh_bytes.hpp"
+#include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Matchers::Contains;
 
 namespace {
 
@@ -27,22 +27,22 @@ std::string refusal_of_model(const std::filesystem::path& path) {
 }  // namespace
 
 TEST_CASE("a model of integers is placed by scale and offset") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   const auto points = read_model_points(scratch.write("a.las", LasBytes().build()));
   REQUIRE(points.size() == 3);
   CHECK(points[0] == Vec3{1 * 0.001 + 100, 2 * 0.01 - 200, 3 * 0.1});
-  CHECK(read_model_points(scratch.write("a.xyz", "1 2 3\n")) == std::vector<Vec3>{{1, 2, 3}});
+  check_equal(read_model_points(scratch.write("a.xyz", "1 2 3\n")), {{1, 2, 3}});
 }
 
 TEST_CASE("a model without points or with a point that is not finite is refused") {
-  ReaderScratch scratch;
-  CHECK_THAT(refusal_of_model(scratch.write("a.xyz", "# none\n")), Contains("no points"));
-  CHECK_THAT(refusal_of_model(scratch.write("a.xyz", "1 2 3\n1 nan 3\n")),
-             Contains("model point 1") && Contains("finite"));
+  ScratchFolder scratch;
+  check_says(refusal_of_model(scratch.write("a.xyz", "# none\n")), "no points");
+  check_says(refusal_of_model(scratch.write("a.xyz", "1 2 3\n1 nan 3\n")),
+             "model point 1 ... finite");
 }
 
 TEST_CASE("a unit that the file or the caller names is converted into the environment's") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   LasBytes las;
   las.vlrs = {{"LASF_Projection", 2112, "LOCAL_CS[\"feet\",UNIT[\"foot\",0.3048]]"}};
   const auto feet = scratch.write("a.las", las.build());
@@ -51,13 +51,13 @@ TEST_CASE("a unit that the file or the caller names is converted into the enviro
   CHECK(read_model_points(feet, &messages)[0].x == x * 0.3048);
   REQUIRE(messages.size() == 1);
   CHECK(messages[0].severity == Message::Severity::kNote);
-  CHECK_THAT(messages[0].text, Contains("its unit is 0.3048 m"));
+  check_says(messages[0].text, "its unit is 0.3048 m");
   CHECK(read_model_points(feet, {.environment_unit = 0.3048})[0].x == x);
   CHECK(read_model_points(feet, {.unit = 1})[0].x == x);
 
   const auto unknown = scratch.write("a.xyz", "914.4 2 3\n");
-  CHECK(read_model_points(unknown, {.environment_unit = 0.3048})[0].x == 914.4);
-  CHECK(read_model_points(unknown, {.unit = 0.001})[0].x == 0.9144);
+  check_equal(read_model_points(unknown, {.environment_unit = 0.3048})[0].x, 914.4);
+  check_equal(read_model_points(unknown, {.unit = 0.001})[0].x, 0.9144);
   CHECK(read_model_points(unknown, {.unit = 0.001, .environment_unit = 0.3048})[0].x == Approx(3));
   CHECK_THROWS_AS(read_model_points(unknown, {.unit = -1}), UsageError);
   CHECK_THROWS_AS(read_model_points(unknown, {.environment_unit = 0}), UsageError);
@@ -70,19 +70,19 @@ constexpr const char* kPlate = "OFF\n4 2 0\n0 0 0\n4 0 0\n4 3 0\n0 3 0\n3 0 1 2\
 }  // namespace
 
 TEST_CASE("a mesh is its surface unless points are asked for, and then has a spacing") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   const auto plate = scratch.write("plate.off", kPlate);
-  CHECK(read_model(plate).triangles.size() == 2);
-  CHECK(read_model(plate, {.radius = 0.1}).triangles.size() == 2);
-  CHECK(read_model(plate).spacing == 0);
+  check_equal(read_model(plate).triangles.size(), 2);
+  check_equal(read_model(plate, {.radius = 0.1}).triangles.size(), 2);
+  check_equal(read_model(plate).spacing, 0);
   const auto spacing_of = [&](const ModelOptions& options) {
     const Model shape = read_model(plate, options);
     CHECK(shape.triangles.empty());
     return shape.spacing;
   };
-  CHECK(spacing_of({.as = ModelAs::kPoints, .radius = 0.1}) == 0.025);
-  CHECK(spacing_of({.as = ModelAs::kPoints, .spacing = 0.5, .radius = 0.1}) == 0.5);
-  CHECK(spacing_of({.spacing = 0.5}) == 0.5);
+  check_equal(spacing_of({.as = ModelAs::kPoints, .radius = 0.1}), 0.025);
+  check_equal(spacing_of({.as = ModelAs::kPoints, .spacing = 0.5, .radius = 0.1}), 0.5);
+  check_equal(spacing_of({.spacing = 0.5}), 0.5);
   CHECK(spacing_of({.vertices_only = true}) == Approx(2.5));  // the middle of the diagonal
   CHECK_THROWS_AS(read_model(plate, {.as = ModelAs::kPoints}), InputError);
   for (const ModelAs as : {ModelAs::kSurface, ModelAs::kSolid}) {
@@ -90,17 +90,17 @@ TEST_CASE("a mesh is its surface unless points are asked for, and then has a spa
     CHECK_THROWS_AS(read_model(plate, {.as = as, .vertices_only = true}), UsageError);
   }
   const auto cloud = scratch.write("a.xyz", "1 2 3\n");
-  CHECK(read_model(cloud, {.spacing = 0.5}).spacing == 0);
+  check_equal(read_model(cloud, {.spacing = 0.5}).spacing, 0);
   Query query;
   query.model = read_model(plate, {.spacing = 0.5});
-  CHECK(query.model.spacing == 0.5);
+  check_equal(query.model.spacing, 0.5);
   query.bodies.resize(1);
   query.bodies[0].model = read_model(plate, {.spacing = 0.75});
-  CHECK(model_spacing(query) == 0.75);
+  check_equal(model_spacing(query), 0.75);
 }
 
 TEST_CASE("samples above a height cover the surface up to its cut") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   const auto wall =
       scratch.write("wall.off", "OFF\n4 2 0\n0 0 0\n4 0 0\n4 0 3\n0 0 3\n3 0 1 2\n3 0 2 3\n");
   const Model shape = read_model(wall, {.spacing = 0.5, .above = 1.0});
@@ -110,30 +110,30 @@ TEST_CASE("samples above a height cover the surface up to its cut") {
     if (nearest > 0.5) FAIL(x << " is " << nearest << " from a sample");
   }
   for (const Vec3& p : shape.vertices) CHECK(p.z >= 1);
-  CHECK(read_model(wall, {.vertices_only = true, .above = 1.0}).spacing == 5);
+  check_equal(read_model(wall, {.vertices_only = true, .above = 1.0}).spacing, 5);
 }
 
 TEST_CASE("samples of a mesh keep their spacing, and are not cut") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   const auto file = scratch.write("samples.ply",
                                   "ply\nformat ascii 1.0\ncomment clearway model spacing 0.5\n"
                                   "element vertex 1\nproperty double x\nproperty double y\n"
                                   "property double z\nend_header\n1 2 3\n");
-  CHECK(read_model(file).spacing == 0.5);
+  check_equal(read_model(file).spacing, 0.5);
   CHECK(read_model(file, {.unit = 0.001}).spacing == Approx(0.0005));
   CHECK_THROWS_AS(read_model(file, {.above = 0.0}), UsageError);
 }
 
 TEST_CASE("lines and single points of a mesh are part of every kind of model") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   const std::string mast = "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 1 1 0\nv 1 1 5\nv 2 2 2\n";
   const auto file = scratch.write("mast.obj", mast + "f 1 2 3\nl 4 5\np 6\n");
   std::vector<Message> told;
   const Model surface = read_model(file, {}, &told);
-  CHECK(surface.triangles.size() == 3);
-  CHECK(surface.vertices.size() == 6);
+  check_equal(surface.triangles.size(), 3);
+  check_equal(surface.vertices.size(), 6);
   REQUIRE(told.size() == 1);
-  CHECK_THAT(told[0].text, Contains("1 triangle, 1 line segment and 1 single point"));
+  check_says(told[0].text, "1 triangle, 1 line segment and 1 single point");
   const auto reaches = [](const Model& shape, const Vec3& place, double within) {
     return std::ranges::any_of(shape.vertices, [&](const Vec3& p) {
       return std::hypot(p.x - place.x, p.y - place.y, p.z - place.z) <= within;
@@ -143,33 +143,33 @@ TEST_CASE("lines and single points of a mesh are part of every kind of model") {
   for (const Vec3& place : {Vec3{1, 1, 5}, Vec3{1, 1, 3.3}, Vec3{2, 2, 2}}) {
     CHECK(reaches(points, place, 0.25));
   }
-  CHECK(read_model(file, {.vertices_only = true}).vertices.size() == 6);
+  check_equal(read_model(file, {.vertices_only = true}).vertices.size(), 6);
   CHECK(read_model(file, {.vertices_only = true}).spacing == Approx(2.5));
   const Model above = read_model(file, {.above = 2.0});
-  CHECK(above.triangles.size() == 2);  // the upper part of the mast, and the point
+  check_equal(above.triangles.size(), 2);  // the upper part of the mast, and the point
   CHECK(reaches(above, {1, 1, 2}, 0));
   const auto lines = scratch.write("lines.obj", mast + "l 4 5 6\n");
   told.clear();
-  CHECK(read_model(lines, {}, &told).triangles.size() == 2);
+  check_equal(read_model(lines, {}, &told).triangles.size(), 2);
   REQUIRE(told.size() == 2);
-  CHECK(told[1].code == "loose-vertices");
+  check_equal(told[1].code, "loose-vertices");
   CHECK(told[1].severity == Message::Severity::kWarning);
-  CHECK_THAT(told[1].text, Contains("3 vertices belong to no face, line or point"));
-  CHECK(told[1].numbers.at(0).second == 3);
+  check_says(told[1].text, "3 vertices belong to no face, line or point");
+  check_equal(told[1].numbers.at(0).second, 3);
   const auto dots = scratch.write("dots.obj", mast + "p 1 2 6\n");
   told.clear();
-  CHECK(read_model(dots, {}, &told).vertices == std::vector<Vec3>{{0, 0, 0}, {4, 0, 0}, {2, 2, 2}});
-  CHECK(told.at(0).code == "loose-vertices");
-  CHECK(read_model(dots, {.vertices_only = true}).vertices.size() == 6);
+  check_equal(read_model(dots, {}, &told).vertices, {{0, 0, 0}, {4, 0, 0}, {2, 2, 2}});
+  check_equal(told.at(0).code, "loose-vertices");
+  check_equal(read_model(dots, {.vertices_only = true}).vertices.size(), 6);
 }
 
 TEST_CASE("a mast beside a closed part leaves it solid") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   const TriangleMesh cube = unit_cube();
   const auto file = scratch.write("cube.obj", obj_text(cube) + "v 1 1 4\nl 7 9\np 9\n");
   const Model solid = read_model(file, {.as = ModelAs::kSolid});
   REQUIRE(solid.solid_of.size() == 14);
-  for (std::size_t i = 0; i < 12; ++i) CHECK(solid.solid_of[i] == 0);
+  for (std::size_t i = 0; i < 12; ++i) check_equal(solid.solid_of[i], 0);
   CHECK(solid.solid_of[12] == kNoSolid);
   CHECK(solid.solid_of[13] == kNoSolid);
 }

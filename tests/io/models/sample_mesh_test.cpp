@@ -8,13 +8,15 @@
 
 #include "clearway/error.hpp"
 #include "core/geometry/model_tree.hpp"
+#include "core/geometry/predicate.hpp"
+#include "core/geometry/rigid.hpp"
 #include "support/bytes/mesh_bytes.hpp"
+#include "support/compare.hpp"
 #include "support/surface_places.hpp"
 #include "support/triangle_distance.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Matchers::Contains;
 
 namespace {
 
@@ -63,7 +65,7 @@ TEST_CASE("a cube is covered at any spacing, with few points") {
     // No cover of a plane has fewer points than the optimum; the sides of 12 triangles cost more.
     CHECK(static_cast<double>(points.size()) <= 1.02 * optimum + 12 / spacing + 12);
   }
-  CHECK(sample_mesh(unit_cube(), 1.5, "mesh").size() == 8);
+  check_equal(sample_mesh(unit_cube(), 1.5, "mesh").size(), 8);
 }
 
 TEST_CASE("triangles of every shape are covered") {
@@ -82,7 +84,7 @@ TEST_CASE("triangles of every shape are covered") {
 }
 
 TEST_CASE("triangles without area are covered as segments or points") {
-  CHECK(sample_mesh(triangle({1, 2, 3}, {1, 2, 3}, {1, 2, 3}), 0.1, "mesh").size() == 1);
+  check_equal(sample_mesh(triangle({1, 2, 3}, {1, 2, 3}, {1, 2, 3}), 0.1, "mesh").size(), 1);
   const auto line = checked_samples(triangle({0, 0, 0}, {1, 1, 1}, {3, 3, 3}), 0.1);
   CHECK(line.size() <= 30);
   CHECK(checked_samples(triangle({0, 0, 0}, {10, 0, 0}, {0, 0, 0}), 1).size() <= 7);
@@ -106,7 +108,7 @@ TEST_CASE("a grid of small triangles takes no more than its vertices") {
       mesh.triangles.push_back({at, at + 22, at + 21});
     }
   }
-  CHECK(checked_samples(mesh, 0.0708).size() == 441);  // half a diagonal is 0.0707
+  check_equal(checked_samples(mesh, 0.0708).size(), 441);  // half a diagonal is 0.0707
   CHECK(checked_samples(mesh, 0.0706).size() > 441);
 }
 
@@ -121,7 +123,7 @@ TEST_CASE("vertices of no triangle are no samples, and equal ones are one") {
   mesh.vertices.push_back({9, 9, 9});
   mesh.vertices.push_back({0, 0, -0.0});
   mesh.triangles.push_back({9, 1, 2});
-  CHECK(sample_mesh(mesh, 2, "mesh").size() == 8);
+  check_equal(sample_mesh(mesh, 2, "mesh").size(), 8);
 }
 
 TEST_CASE("the same mesh gives the same samples") {
@@ -140,14 +142,14 @@ TEST_CASE("a spacing that asks for too many points is refused with one that does
     }
     return {};
   };
-  CHECK_THAT(refusal(unit_cube(), 1e-6), Contains("1 x 1 x 1 m") && Contains("50,000,000") &&
-                                             Contains("spacing of 0.0005 m is possible"));
+  check_says(refusal(unit_cube(), 1e-6),
+             "1 x 1 x 1 m ... 50,000,000 ... spacing of 0.0005 m is possible");
   TriangleMesh millimetres = unit_cube();
   for (Vec3& v : millimetres.vertices) v = {v.x * 4000, v.y * 4000, v.z * 4000};
-  CHECK_THAT(refusal(millimetres, 0.025), Contains("4000 x 4000 x 4000 m"));
+  check_says(refusal(millimetres, 0.025), "4000 x 4000 x 4000 m");
   for (Vec3& v : millimetres.vertices) v.x += 1e9;
-  CHECK_THAT(refusal(millimetres, 0.5), Contains("too large for a spacing"));
-  CHECK_THAT(refusal(unit_cube(), 1e-10), Contains("expected one from"));
+  check_says(refusal(millimetres, 0.5), "too large for a spacing");
+  check_says(refusal(unit_cube(), 1e-10), "expected one from");
 }
 
 TEST_CASE("lines alone have a spacing for about so many samples") {
@@ -156,4 +158,73 @@ TEST_CASE("lines alone have a spacing for about so many samples") {
   const std::size_t samples = sample_mesh(line, spacing, "mesh").size();
   CHECK(samples > 100);
   CHECK(samples <= 32'000);
+}
+
+// A point that collides with the samples touches the surface; one that does not, but lies within
+// the radius of the surface, is farther than radius - spacing.
+namespace {
+
+/// A bent, closed body of triangles of very different size: a ball of few triangles, stretched,
+/// with a spike.
+TriangleMesh body() {
+  TriangleMesh mesh;
+  constexpr std::uint32_t kRings = 5, kSectors = 7;
+  for (std::uint32_t r = 0; r <= kRings; ++r) {
+    for (std::uint32_t s = 0; s < kSectors; ++s) {
+      const double u = 3.14159 * r / kRings, v = 6.28318 * s / kSectors;
+      mesh.vertices.push_back(
+          {2 * std::sin(u) * std::cos(v), std::sin(u) * std::sin(v), 0.5 * std::cos(u)});
+    }
+  }
+  for (std::uint32_t r = 0; r < kRings; ++r) {
+    for (std::uint32_t s = 0; s < kSectors; ++s) {
+      const std::uint32_t a = r * kSectors + s, b = r * kSectors + (s + 1) % kSectors;
+      mesh.triangles.push_back({a, b, a + kSectors});
+      mesh.triangles.push_back({b, b + kSectors, a + kSectors});
+    }
+  }
+  mesh.vertices.push_back({5, 0.1, 0});
+  mesh.triangles.push_back({14, 15, static_cast<std::uint32_t>(mesh.vertices.size() - 1)});
+  return mesh;
+}
+
+Pose turned(double angle, const Vec3& way) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {{c, -s, 0, s, c, 0, 0, 0, 1}, {way.x, way.y, way.z}};
+}
+
+TriangleMesh moved(const TriangleMesh& mesh, const Pose& pose) {
+  TriangleMesh out = mesh;
+  for (Vec3& v : out.vertices) v = transform(pose, v);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("samples find what touches the surface, but for a shell of one spacing") {
+  const double radius = 0.3;
+  const double spacing = GENERATE(0.3, 0.075, 0.02);
+  const TriangleMesh mesh = body();
+  const std::vector<Vec3> samples = sample_mesh(mesh, spacing, "mesh");
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> x(-4, 6), y(-3, 3), z(-1.5, 1.5);
+  int hits = 0, missed = 0;
+  for (const double angle : {0.0, 0.7, 2.9}) {
+    const Pose pose = turned(angle, {angle, 1, -0.2});
+    const TriangleMesh surface = moved(mesh, pose);
+    std::vector<Vec3> placed;
+    for (const Vec3& sample : samples) placed.push_back(transform(pose, sample));
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3 e{x(random), y(random), z(random)};
+      bool hit = false;
+      for (const Vec3& m : placed) hit = hit || collides(e, m, radius);
+      const double distance = surface_distance(e, surface);
+      if (hit && !(distance < radius + 1e-13)) FAIL("a false hit at " << distance);
+      if (!hit && distance <= radius - spacing) FAIL("a miss at " << distance);
+      hits += hit ? 1 : 0;
+      missed += !hit && distance < radius ? 1 : 0;
+    }
+  }
+  CHECK(hits > 300);
+  CHECK((spacing < 0.1 || missed > 0));  // at such a spacing some points are missed
 }

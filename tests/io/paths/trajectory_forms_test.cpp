@@ -5,17 +5,17 @@
 
 #include "clearway/error.hpp"
 #include "clearway/trajectory.hpp"
+#include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Matchers::Contains;
 
 namespace {
 
 std::vector<Pose> poses_of(const std::string& text, const TrajectoryOptions& options = {},
                            const std::string& name = "path.txt") {
-  const ReaderScratch scratch;
+  const ScratchFolder scratch;
   return read_trajectory(scratch.write(name, text), options);
 }
 
@@ -35,43 +35,41 @@ const std::string kTurn = "0 -1 0 7 1 0 0 8 0 0 1 9\n";  // a quarter turn about
 }  // namespace
 
 TEST_CASE("lines that start with // are comments") {
-  CHECK(poses_of("// made by hand\n" + kTurn + "  // again\n" + kTurn).size() == 2);
+  check_equal(poses_of("// made by hand\n" + kTurn + "  // again\n" + kTurn).size(), 2);
 }
 
 TEST_CASE("a position and a quaternion without time: the order is to be named") {
   const std::string row = "7 8 9 0.8 0 0 0.6\n";
-  CHECK_THAT(refusal(row), Contains("pose-xyzw") && Contains("pose-wxyz"));
+  check_says(refusal(row), "pose-xyzw ... pose-wxyz");
   const Pose xyzw = poses_of(row, {.format = TrajectoryFormat::kPoseXyzw}).at(0);
   CHECK(xyzw.rotation[8] == Approx(1 - 2 * 0.64));  // a turn about x
   CHECK(xyzw.rotation[0] == Approx(1));
   const Pose wxyz = poses_of(row, {.format = TrajectoryFormat::kPoseWxyz}).at(0);
   CHECK(wxyz.rotation[8] == Approx(1));  // a turn about z
   CHECK(wxyz.rotation[0] == Approx(1 - 2 * 0.36));
-  CHECK(wxyz.translation[2] == 9);
-  CHECK_THAT(refusal("1 2 3\n", {.format = TrajectoryFormat::kPoseXyzw}),
-             Contains("7: x y z qx qy qz qw"));
-  CHECK_THAT(refusal("1 2 3 0 0 0\n"), Contains("6 numbers") && Contains("heading_deg"));
+  check_equal(wxyz.translation[2], 9);
+  check_says(refusal("1 2 3\n", {.format = TrajectoryFormat::kPoseXyzw}), "7: x y z qx qy qz qw");
+  check_says(refusal("1 2 3 0 0 0\n"), "6 numbers ... heading_deg");
 }
 
 TEST_CASE("a unit scales positions alone") {
   const Pose pose =
       poses_of("0 -1 0 7000 1 0 0 8000 0 0 1 9000\n", {.metres_per_unit = 0.001}).at(0);
-  CHECK(pose.translation[0] == 7);
-  CHECK(pose.translation[2] == 9);
-  CHECK(pose.rotation[1] == -1);
+  check_equal(pose.translation[0], 7);
+  check_equal(pose.translation[2], 9);
+  check_equal(pose.rotation[1], -1);
   const std::string quaternion = ",qx,qy,qz,qw\n7000,8000,9000,0,0,0,1\n";
-  CHECK(poses_of("x[mm],y[mm],z[mm]" + quaternion).at(0).translation[1] == 8);
-  CHECK(poses_of("x_cm,y_cm,z_cm" + quaternion).at(0).translation[1] == 80);
+  check_equal(poses_of("x[mm],y[mm],z[mm]" + quaternion).at(0).translation[1], 8);
+  check_equal(poses_of("x_cm,y_cm,z_cm" + quaternion).at(0).translation[1], 80);
   CHECK(poses_of("x (ft),y (ft),z (ft)" + quaternion).at(0).translation[0] == 7000 * 0.3048);
-  CHECK_THAT(refusal("x[mm],y[m],z[mm]" + quaternion), Contains("several units"));
-  CHECK_THAT(refusal("x[px],y[px],z[px]" + quaternion), Contains("px"));
-  CHECK_THAT(refusal("x[mm],y[mm],z[mm]" + quaternion, {.metres_per_unit = 1}),
-             Contains("was declared"));
+  check_says(refusal("x[mm],y[m],z[mm]" + quaternion), "several units");
+  check_says(refusal("x[px],y[px],z[px]" + quaternion), "px");
+  check_says(refusal("x[mm],y[mm],z[mm]" + quaternion, {.metres_per_unit = 1}), "was declared");
 }
 
 TEST_CASE("positions of a known unit are converted into the environment's") {
   const std::string row = "1 0 0 9 0 1 0 3.048 0 0 1 0\n";
-  CHECK(poses_of(row, {.environment_unit = 0.3048}).at(0).translation[1] == 3.048);
+  check_equal(poses_of(row, {.environment_unit = 0.3048}).at(0).translation[1], 3.048);
   const TrajectoryOptions metres{.metres_per_unit = 1, .environment_unit = 0.3048};
   CHECK(poses_of(row, metres).at(0).translation[1] == Approx(10));
   const std::string named = "x_ft,y_ft,z_ft,qx,qy,qz,qw\n10,20,30,0,0,0,1\n";
@@ -79,13 +77,12 @@ TEST_CASE("positions of a known unit are converted into the environment's") {
   const TrajectoryOptions arm{.environment_unit = 0.3048, .lever_arm = {0, 4, 0}};
   CHECK(poses_of(named, arm).at(0).translation[1] == Approx(16));
   // 9 mm become the double nearest to 0.009, as for models.
-  CHECK(poses_of(row, {.metres_per_unit = 0.001}).at(0).translation[0] == 0.009);
-  CHECK_THAT(refusal("x_ft,y_ft,z,qx,qy,qz,qw\n10,20,30,0,0,0,1\n"),
-             Contains("some of the positions"));
+  check_equal(poses_of(row, {.metres_per_unit = 0.001}).at(0).translation[0], 0.009);
+  check_says(refusal("x_ft,y_ft,z,qx,qy,qz,qw\n10,20,30,0,0,0,1\n"), "some of the positions");
 }
 
 TEST_CASE("a last number that ends with its point is warned of") {
-  const ReaderScratch scratch;
+  const ScratchFolder scratch;
   const std::string row = "1 0 0 9 0 1 0 3 0 0 1 3";
   std::vector<Message> remarks;
   read_trajectory(scratch.write("a.txt", row + "\n" + row), {}, &remarks);
@@ -101,9 +98,9 @@ TEST_CASE("a last number that ends with its point is warned of") {
 TEST_CASE("a lever arm leads from the trajectory's point back to the model's origin") {
   // The antenna is 2 m ahead of the origin and 1 m above; the model looks along y.
   const Pose pose = poses_of(kTurn, {.lever_arm = {2, 0, 1}}).at(0);
-  CHECK(pose.translation[0] == 7);
-  CHECK(pose.translation[1] == 6);
-  CHECK(pose.translation[2] == 8);
+  check_equal(pose.translation[0], 7);
+  check_equal(pose.translation[1], 6);
+  check_equal(pose.translation[2], 8);
   const Vec3 arm{0.3, -1.2, 0.7};
   const Pose moved = poses_of(kTurn, {.lever_arm = arm}).at(0);
   for (int row = 0; row < 3; ++row) {  // the antenna is at the file's position
@@ -122,7 +119,7 @@ TEST_CASE("3DTK: a .pose is one pose, in our frame") {
   // The turn about up is left-handed, so the front turns to the right, which is -y.
   CHECK(pose.rotation[3] == Approx(-1));
   CHECK(pose.rotation[8] == Approx(1));
-  CHECK_THAT(refusal("1 2 3\n", {}, "scan000.pose"), Contains("expected six"));
+  check_says(refusal("1 2 3\n", {}, "scan000.pose"), "expected six");
   CHECK_THROWS_AS(poses_of("1 2 3 0 0 0\n", {.metres_per_unit = 0.01}, "a.pose"), UsageError);
 }
 
@@ -131,12 +128,12 @@ TEST_CASE("3DTK: the last line of a .frames counts") {
   const std::string last = "1 0 0 0 0 1 0 0 0 0 1 0 100 200 300 1 2\n";
   const auto poses = poses_of(first + last, {}, "scan000.frames");
   REQUIRE(poses.size() == 1);
-  CHECK(poses[0].translation[0] == 3);
-  CHECK(poses[0].translation[1] == -1);
+  check_equal(poses[0].translation[0], 3);
+  check_equal(poses[0].translation[1], -1);
 }
 
 TEST_CASE("3DTK: a folder is a trajectory in the order of its numbers") {
-  const ReaderScratch scratch;
+  const ScratchFolder scratch;
   scratch.write("scan002.pose", "0 0 200\n0 0 0\n");
   scratch.write("scan010.pose", "0 0 1000\n0 0 0\n");
   scratch.write("scan000.pose", "0 0 0\n0 0 0\n");
@@ -145,25 +142,26 @@ TEST_CASE("3DTK: a folder is a trajectory in the order of its numbers") {
   std::vector<Message> remarks;
   const auto poses = read_trajectory(scratch.folder(), {}, &remarks);
   REQUIRE(poses.size() == 3);
-  CHECK(poses[1].translation[0] == 2);
-  CHECK(poses[2].translation[0] == 10);
-  CHECK(remarks.at(0).code == "model-frame");
+  check_equal(poses[1].translation[0], 2);
+  check_equal(poses[2].translation[0], 10);
+  check_equal(remarks.at(0).code, "model-frame");
 
   const std::string frame = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 500 1 2\n";
   scratch.write("scan000.frames", frame);
-  CHECK_THROWS_WITH(read_trajectory(scratch.folder()), Contains("scan002.pose has no .frames"));
-  CHECK(read_trajectory(scratch.folder(), {.format = TrajectoryFormat::kThreedtkPose}).size() == 3);
+  check_refused([&] { return read_trajectory(scratch.folder()); }, "scan002.pose has no .frames");
+  check_equal(read_trajectory(scratch.folder(), {.format = TrajectoryFormat::kThreedtkPose}).size(),
+              3);
   scratch.write("scan002.frames", frame);
   scratch.write("scan010.frames", frame);
-  CHECK(read_trajectory(scratch.folder()).at(0).translation[0] == 5);
+  check_equal(read_trajectory(scratch.folder()).at(0).translation[0], 5);
   scratch.write("scan10.pose", "0 0 0\n0 0 0\n");
-  CHECK_THROWS_WITH(read_trajectory(scratch.folder()), Contains("the same number"));
-  const ReaderScratch empty;
-  CHECK_THROWS_WITH(read_trajectory(empty.folder()), Contains("scan000.pose"));
+  check_refused([&] { return read_trajectory(scratch.folder()); }, "the same number");
+  const ScratchFolder empty;
+  check_refused([&] { return read_trajectory(empty.folder()); }, "scan000.pose");
 }
 
 TEST_CASE("doubts reach the remarks") {
-  const ReaderScratch scratch;
+  const ScratchFolder scratch;
   std::string text;
   for (int i = 0; i < 100; ++i) {
     const double a = 0.01 * i;
@@ -173,5 +171,5 @@ TEST_CASE("doubts reach the remarks") {
   std::vector<Message> remarks;
   read_trajectory(scratch.write("path.txt", text), {}, &remarks);
   REQUIRE(remarks.size() == 1);
-  CHECK(remarks[0].code == "rotation-missing");
+  check_equal(remarks[0].code, "rotation-missing");
 }

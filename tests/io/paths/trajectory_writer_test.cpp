@@ -2,6 +2,7 @@
 
 #include "clearway/trajectory.hpp"
 #include "io/paths/trajectory_file.hpp"
+#include "support/compare.hpp"
 #include "support/result_fixture.hpp"
 #include "support/scenes.hpp"
 
@@ -35,5 +36,5 @@ TEST_CASE("a pose is written as a row-major 4 x 4 matrix") {
   NoProgress progress;
   write_trajectory(std::vector<Pose>{{{1, 2, 3, 4, 5, 6, 7, 8, 9}, {0.1, 11, 12}}},
                    File::create(folder / "path.txt"), progress);
-  CHECK(bytes_of(folder / "path.txt") == "1 2 3 0.1 4 5 6 11 7 8 9 12 0 0 0 1\n");
+  check_equal(bytes_of(folder / "path.txt"), "1 2 3 0.1 4 5 6 11 7 8 9 12 0 0 0 1\n");
 }

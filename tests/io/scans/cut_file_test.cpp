@@ -5,6 +5,7 @@
 #include "support/bytes/e57_bytes.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/bytes/pcd_bytes.hpp"
+#include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
@@ -16,7 +17,7 @@ namespace {
 /// its last `spare` bytes, without which it has the same number of points.
 void check_every_cut(const std::string& name, const std::string& bytes, bool as_stream,
                      std::size_t spare = 0) {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   const auto path = scratch.write(name, bytes);
   const auto refusal = [&] { return as_stream ? stream_refusal_of(path) : refusal_of(path); };
   REQUIRE(refusal().empty());
@@ -127,26 +128,26 @@ TEST_CASE("a cut PTS file is refused at every byte before its last number") {
 }
 
 TEST_CASE("a text that ends within a number is refused, one without a line break is read") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   const std::string ply = "ply\nformat ascii 1.0\nelement vertex 1\n" + kXyz + "end_header\n";
   CHECK(refusal_of(scratch.write("a.ply", ply + "1 2 3.")) != "");
   CHECK(refusal_of(scratch.write("a.pts", "1\n1 2 3.")) != "");
   for (const auto& path :
        {scratch.write("b.ply", ply + "1 2 3.5"), scratch.write("b.pts", "1\n1 2 3.5")}) {
     const ReadCloud cloud = read_all(path);
-    CHECK(cloud.positions == std::vector<Vec3>{{1, 2, 3.5}});
+    check_equal(cloud.positions, {{1, 2, 3.5}});
     CHECK(cloud.info.remarks.empty());
   }
 }
 
 TEST_CASE("a text without a count whose last line lacks values may be cut") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   CHECK(read_all(scratch.write("a.xyz", "1 2 3 4\n1 2 3 4")).info.remarks.empty());
   const ReadCloud cloud = read_all(scratch.write("b.xyz", "1 2 3 4\n1 2 3"));
-  CHECK(cloud.positions.size() == 2);
+  check_equal(cloud.positions.size(), 2);
   REQUIRE(cloud.info.remarks.size() == 1);
   CHECK(cloud.info.remarks[0].severity == Message::Severity::kWarning);
-  CHECK(cloud.info.remarks[0].code == "cut-text");
+  check_equal(cloud.info.remarks[0].code, "cut-text");
 }
 
 TEST_CASE("a cut PTX file is refused at every byte before its last number") {

@@ -96,7 +96,7 @@ TEST_CASE("flipped bytes and shuffled ends never do worse than a refusal") {
       {"a.pose", "1 2 3\n10 20 30\n"},
       {"a.frames", "1 0 0 0 0 1 0 0 0 0 1 0 1 2 3 1 2\n"},
       {"a.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n"}};
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   std::mt19937 random(1);
   for (const auto& [name, sample] : samples) {
     for (int round = 0; round < 600; ++round) {

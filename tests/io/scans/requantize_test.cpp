@@ -5,7 +5,10 @@
 #include <limits>
 #include <random>
 
+#include "support/compare.hpp"
+
 using namespace clearway;
+using namespace clearway::test;
 
 TEST_CASE("every stored integer is recovered from its coordinate") {
   const double scale = GENERATE(1e-6, 0.0001, 0.001, 0.01, 0.3048, 1.0, 1.0 / 3.0);

@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "io/scans/map_scale.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
-using Catch::Contains;
+using namespace clearway::test;
 
 namespace {
 
@@ -172,9 +173,9 @@ TEST_CASE("units that cannot be taken as they are make trouble") {
   const auto trouble = [](const std::string& text) { return scan_crs_of(text).units.trouble; };
   CHECK(trouble(with_unit(R"(UNIT["metre",1])")).empty());
   CHECK(trouble(with_unit(R"(UNIT["US survey foot",0.304801])")).empty());
-  CHECK(trouble(with_unit(R"(UNIT["kilometre",1000])")) == "its unit is 1000 m");
-  CHECK(trouble(with_unit(R"(UNIT["yard",0.9144])")) == "its unit is 0.9144 m");
-  CHECK(trouble(with_unit(R"(UNIT["foot",1])")) == "its unit is named \"foot\" and has 1 m");
+  check_equal(trouble(with_unit(R"(UNIT["kilometre",1000])")), "its unit is 1000 m");
+  check_equal(trouble(with_unit(R"(UNIT["yard",0.9144])")), "its unit is 0.9144 m");
+  check_equal(trouble(with_unit(R"(UNIT["foot",1])")), "its unit is named \"foot\" and has 1 m");
   CHECK(trouble(kPlane + "]," + heights(R"(UNIT["metre",1])", "DOWN")) ==
         "its heights count downwards");
   const std::string both = "COMPD_CS[\"c\"," + kPlane + "]," + heights(R"(UNIT["metre",1])") + "],";

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 #include "support/test_data.hpp"
 
@@ -29,18 +30,12 @@ double largest_difference(const ReadCloud& a, const ReadCloud& b) {
   return largest;
 }
 
-void check_near(const Vec3& found, const Vec3& expected, double margin) {
-  for (int axis = 0; axis < 3; ++axis) {
-    CHECK(found[axis] == Approx(expected[axis]).margin(margin));
-  }
-}
-
 }  // namespace
 
 TEST_CASE("a PCD and a PTX are their LAS twins") {
   const auto pcd = read_scan("autzen-utm.pcd");
   REQUIRE(pcd.size() == 1065);
-  CHECK(largest_difference(pcd, read_scan("autzen-utm.las")) == 0);
+  check_equal(largest_difference(pcd, read_scan("autzen-utm.las")), 0);
   const auto ptx = read_scan("1.2-with-color.ptx");
   REQUIRE(ptx.size() == 1065);
   CHECK(largest_difference(ptx, read_scan("1.2-with-color.las")) < 1e-9);
@@ -58,10 +53,10 @@ TEST_CASE("a PTX of a turned scanner is placed by its matrix, beams without a re
   PointBatch batch;
   REQUIRE(reader->read(batch));
   REQUIRE(batch.size() == 12);
-  CHECK(batch.absent.size() == 8);
+  check_equal(batch.absent.size(), 8);
   std::size_t placed = 0;
   for (const Vec3& p : batch.positions) placed += std::isfinite(p.x);
-  CHECK(placed == 4);
+  check_equal(placed, 4);
 }
 
 TEST_CASE("a scan of 3DTK becomes right-handed metres") {

@@ -5,8 +5,12 @@
 
 #include "clearway/error.hpp"
 #include "io/files/hdf5.hpp"
+#include "support/classed_scans.hpp"
 #include "support/clouds.hpp"
+#include "support/compare.hpp"
 #include "support/leaks_of_hdf5.hpp"
+#include "support/origins.hpp"
+#include "support/result_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -56,14 +60,14 @@ TEST_CASE(
   const hsize_t rows = GENERATE(hsize_t{1} << 20, hsize_t{1} << 40, (hsize_t{1} << 62) + 1);
   put_empty_dataset(store.open_to_change(), "cells/count", H5T_STD_U32LE, rows, 1024, true);
   CHECK_THAT(store.refusal(), Contains("cells") || Contains("count"));
-  CHECK_THAT(store.refusal(), Contains("room") && Contains(store.path.string()));
+  check_says(store.refusal(), store.path.string() + " ... room");
 }
 
 TEST_CASE("storage that Clearway does not write is refused") {
   const SmallStore store;
   SECTION("no checksum") {
     put_empty_dataset(store.open_to_change(), "cells/count", H5T_STD_U32LE, 5, 5, false);
-    CHECK_THAT(store.refusal(), Contains("fletcher32"));
+    check_says(store.refusal(), "fletcher32");
   }
   SECTION("a chunk far larger than the dataset") {
     const hdf5::Id file = store.open_to_change();
@@ -86,7 +90,7 @@ TEST_CASE("storage that Clearway does not write is refused") {
     H5Dclose(H5Dcreate2(file.get(), "sources/bytes", H5T_STD_U64LE, space.get(), H5P_DEFAULT,
                         list.get(), H5P_DEFAULT));
   }
-  CHECK_THAT(store.refusal(), Contains(store.path.string()));
+  check_says(store.refusal(), store.path.string());
 }
 
 TEST_CASE("links lead nowhere") {
@@ -105,7 +109,7 @@ TEST_CASE("links lead nowhere") {
                   "link");
     }
   }
-  CHECK_THAT(store.refusal(), Contains("found a link"));
+  check_says(store.refusal(), "found a link");
 }
 
 TEST_CASE("HDF5 does not see a superblock that is not Clearway's") {
@@ -114,20 +118,20 @@ TEST_CASE("HDF5 does not see a superblock that is not Clearway's") {
   SECTION("another version") {
     bytes[8] = 0;
     put_bytes(store.path, bytes);
-    CHECK_THAT(store.refusal(), Contains("superblock of version 0"));
+    check_says(store.refusal(), "superblock of version 0");
   }
   SECTION("open when its writer was killed") {
     bytes[11] = 1;
     put_bytes(store.path, bytes);
-    CHECK_THAT(store.refusal(), Contains("not closed"));
+    check_says(store.refusal(), "not closed");
   }
   SECTION("bytes behind the end") {
     put_bytes(store.path, bytes + "x");
-    CHECK_THAT(store.refusal(), Contains("expected " + std::to_string(bytes.size())));
+    check_says(store.refusal(), "expected " + std::to_string(bytes.size()));
   }
   SECTION("a block of another program before it") {
     put_bytes(store.path, std::string(512, 'x') + bytes);
-    CHECK_THAT(store.refusal(), Contains("not an HDF5 file"));
+    check_says(store.refusal(), "not an HDF5 file");
   }
 }
 
@@ -187,4 +191,66 @@ TEST_CASE("rows of a result that turn to zeros, checksum and all, are noticed") 
     }
   }
   CHECK(noticed > 100);
+}
+
+// Stores with classes, damaged byte by byte.
+
+TEST_CASE("damaged classes are refused, by who asks for them and by verify") {
+  const ScratchFolder folder;
+  const auto points = cube_cloud(300, -4000, 4000, 3);
+  write_classed(folder / "a.las", points, random_classes(points.size(), 9));
+  convert_quietly(conversion_of({folder / "a.las"}, folder / "a.h5"));
+  const std::string bytes = bytes_of(folder / "a.h5");
+  const LeaksOfHdf5 of_damaged_files;
+  std::uint64_t unseen = 0;
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    std::string changed = bytes;
+    changed[at] = static_cast<char>(changed[at] ^ 0x10);
+    put_bytes(folder / "b.h5", changed);
+    try {
+      const StoreReader store(folder / "b.h5");
+      if (!faults_of(store).empty()) continue;
+      // A change that is not noticed must not change what is read.
+      unseen += !store.has_classes() ||
+                classes_by_source(store) != classes_by_source(StoreReader(folder / "a.h5"));
+    } catch (const InputError&) {
+    }
+  }
+  check_equal(unseen, 0);
+}
+
+// Stores with origins, damaged byte by byte.
+
+TEST_CASE("damaged origins are refused, by who asks for them and by verify") {
+  const ScratchFolder folder;
+  const auto points = cube_cloud(300, -4000, 4000, 3);
+  write_las(folder / "a.las", points, {{0.001, 0.001, 0.001}, {0, 0, 0}});
+  put_bytes(folder / "o.csv", "first,x,y,z\n0,1,2,3\n100,4,5,6\n200,-1,0,9\n");
+  ConversionOptions options = conversion_of({folder / "a.las"}, folder / "a.h5");
+  options.origins = folder / "o.csv";
+  convert_quietly(options);
+  const StoreReader sound(folder / "a.h5");
+  const auto expected = origins_by_source(sound);
+  const std::string bytes = bytes_of(folder / "a.h5");
+  const LeaksOfHdf5 of_damaged_files;
+  std::uint64_t unseen = 0, refused = 0;
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    std::string changed = bytes;
+    changed[at] = static_cast<char>(changed[at] ^ 0x10);
+    put_bytes(folder / "b.h5", changed);
+    try {
+      const StoreReader store(folder / "b.h5");
+      if (!faults_of(store).empty()) {
+        ++refused;
+        continue;
+      }
+      // A change that is not noticed must not change what is read.
+      unseen += !store.has_origins() || origins_by_source(store) != expected ||
+                store.metadata().origins != sound.metadata().origins;
+    } catch (const InputError&) {
+      ++refused;
+    }
+  }
+  check_equal(unseen, 0);
+  CHECK(refused > 0);
 }

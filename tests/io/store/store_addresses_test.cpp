@@ -23,7 +23,7 @@ PackedCell one_point() {
 }  // namespace
 
 TEST_CASE("chunks are found whatever the length of the metadata before them") {
-  const test::ReaderScratch scratch;
+  const test::ScratchFolder scratch;
   const auto path = scratch.folder() / "s.h5";
   const std::uint64_t cells = GENERATE(1, 2, 300);
   for (std::size_t length = 0; length < 2200; length += 7) {

@@ -9,11 +9,13 @@
 #include "io/store/store_reader.hpp"
 #include "io/store/store_writer.hpp"
 #include "support/clouds.hpp"
+#include "support/compare.hpp"
 #include "support/leaks_of_hdf5.hpp"
+#include "support/result_fixture.hpp"
+#include "support/store_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
@@ -112,7 +114,7 @@ TEST_CASE("a flipped byte of a store is refused or changes nothing") {
     patch.restore(at);
   }
   INFO(patch.size() << " bytes, " << refused << " refused, " << harmless << " harmless");
-  CHECK(wrong == 0);
+  check_equal(wrong, 0);
   CHECK(refused > patch.size() / 3);
   CHECK(Content(store.path) == original);
 }
@@ -141,11 +143,10 @@ TEST_CASE("a damaged chunk is named when its cell is read") {
   Patch(small.path).flip(at, 4);
   const StoreReader store(small.path);
   CHECK_NOTHROW(store.coordinates(1));
-  CHECK_THROWS_WITH(store.coordinates(2), Contains(small.path.string()) && Contains("cell 2") &&
-                                              Contains("'y'") && Contains("damaged"));
-  CHECK_THROWS_AS(store.coordinates(2), InputError);
+  check_refused<InputError>([&] { return store.coordinates(2); },
+                            std::string(small.path.string()) + " ... cell 2 ... 'y' ... damaged");
   CHECK_NOTHROW(store.sources(2));
-  CHECK(faults_of(store).size() == 1);
+  check_equal(faults_of(store).size(), 1);
 }
 
 TEST_CASE("a store that another tool copied is refused with advice") {
@@ -174,26 +175,26 @@ TEST_CASE("a store that another tool copied is refused with advice") {
                             const_cast<hdf5::Id*>(&to)),
                 "attributes");
   }
-  CHECK_THAT(refusal(copy), Contains("Another tool") && Contains("convert the scans again"));
+  check_says(refusal(copy), "Another tool ... convert the scans again");
   const std::string repack =
       "h5repack '" + store.path.string() + "' '" + (store.folder / "packed.h5").string() + "'";
   if (std::system("command -v h5repack >/dev/null") == 0) {
     REQUIRE(std::system(repack.c_str()) == 0);
-    CHECK_THAT(refusal(store.folder / "packed.h5"), Contains("Another tool"));
+    check_says(refusal(store.folder / "packed.h5"), "Another tool");
   }
 }
 
 TEST_CASE("a file that is no store is refused") {
   const ScratchFolder folder;
   put_bytes(folder / "text.h5", "no HDF5 file");
-  CHECK_THAT(refusal(folder / "text.h5"), Contains("text.h5") && Contains("not an HDF5 file"));
+  check_says(refusal(folder / "text.h5"), "text.h5 ... not an HDF5 file");
   put_bytes(folder / "empty.h5", "");
-  CHECK_THAT(refusal(folder / "empty.h5"), Contains("not an HDF5 file"));
+  check_says(refusal(folder / "empty.h5"), "not an HDF5 file");
   const ResultHeader header = sample_header(false);
   write_result(folder / "result.h5", header, sample_rows(header, 10));
-  CHECK_THAT(refusal(folder / "result.h5"), Contains("not a store"));
+  check_says(refusal(folder / "result.h5"), "not a store");
   hdf5::create_file(folder / "other.h5");
-  CHECK_THAT(refusal(folder / "other.h5"), Contains("not a store"));
+  check_says(refusal(folder / "other.h5"), "not a store");
 }
 
 TEST_CASE("an unfinished store is refused") {
@@ -206,7 +207,7 @@ TEST_CASE("an unfinished store is refused") {
                                .crs_wkt = {},
                                .sources = {}};
   { StoreWriter(folder / "a.h5", metadata, 2); }
-  CHECK_THAT(refusal(folder / "a.h5"), Contains("unfinished"));
+  check_says(refusal(folder / "a.h5"), "unfinished");
 }
 
 TEST_CASE("a missing store is no malformed one") {
@@ -222,12 +223,68 @@ TEST_CASE("the fingerprint tells stores apart, not names") {
 TEST_CASE("a store knows which cells were touched") {
   const ReadStore small;
   const StoreReader store(small.path);
-  CHECK(store.touched().cells == 0);
+  check_equal(store.touched().cells, 0);
   store.coordinates(3);
   store.coordinates(3);
   store.coordinates(0);
-  CHECK(store.touched().cells == 2);
+  check_equal(store.touched().cells, 2);
   const auto& bytes = store.index().bytes;
   CHECK(store.touched().bytes ==
         bytes[0] + bytes[1] + bytes[2] + bytes[12] + bytes[13] + bytes[14]);
+}
+
+namespace {
+
+using Counts = std::vector<std::uint64_t>;
+
+/// Two scans, of 100 and of 250 points.
+struct TwoScans {
+  TwoScans() {
+    write_las(folder / "a.las", cube_cloud(100, -4000, 4000, 3));
+    write_las(folder / "b.las", cube_cloud(250, -4000, 4000, 4));
+    convert_quietly(conversion_of({folder / "a.las", folder / "b.las"}, folder / "site.h5"));
+  }
+  ScratchFolder folder;
+};
+
+}  // namespace
+
+TEST_CASE("a store of several scans knows how many points each has") {
+  const TwoScans scans;
+  const StoreReader store(scans.folder / "site.h5");
+  CHECK(store.metadata().source_points == Counts{100, 250});
+  check_equal(store.metadata().points_of_source(1), 250u);
+  CHECK(faults_of(store).empty());
+}
+
+TEST_CASE("a store of one scan has no such dataset, but the answer") {
+  const ScratchFolder folder;
+  write_las(folder / "a.las", cube_cloud(100, -4000, 4000, 3));
+  convert_quietly(conversion_of({folder / "a.las"}, folder / "site.h5"));
+  const StoreReader store(folder / "site.h5");
+  CHECK(store.metadata().source_points.empty());
+  check_equal(store.metadata().points_of_source(0), 100u);
+}
+
+TEST_CASE("a store of several scans without the dataset, as 0.1.0 made it, is read") {
+  const TwoScans scans;
+  const auto path = scans.folder / "site.h5";
+  {
+    const hdf5::Id file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, "open");
+    REQUIRE(H5Ldelete(file.get(), "/sources/points", H5P_DEFAULT) >= 0);
+  }
+  const StoreReader store(path);
+  CHECK_FALSE(store.metadata().points_of_source(0));
+}
+
+TEST_CASE("counts of points that do not add up are refused") {
+  const TwoScans scans;
+  const auto path = scans.folder / "site.h5";
+  const auto counts = GENERATE(Counts{100, 251}, Counts{350}, Counts{0, 0}, Counts{351, ~0ull});
+  {
+    const hdf5::Id file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, "open");
+    REQUIRE(H5Ldelete(file.get(), "/sources/points", H5P_DEFAULT) >= 0);
+    hdf5::write_dataset<std::uint64_t>(file, "/sources/points", counts);
+  }
+  check_refused([&] { return StoreReader(path); }, "points'");
 }

@@ -2,8 +2,10 @@
 #include <catch2/catch.hpp>
 
 #include "search/checks/query_warnings.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -30,19 +32,19 @@ std::vector<std::string> codes(const std::vector<Message>& messages) {
 TEST_CASE("a warning of one body names it") {
   const auto found = told({{"a", {}}, {"b", {warned("model-size", "large")}}});
   REQUIRE(found.size() == 1);
-  CHECK(found[0].code == "model-size");
-  CHECK(found[0].text == "body b: large");
+  check_equal(found[0].code, "model-size");
+  check_equal(found[0].text, "body b: large");
 }
 
 TEST_CASE("what several bodies are told alike is told once") {
   const Message same = warned("radius-size", "odd");
   auto found = told({{"a", {same}}, {"b", {same}}, {"c", {same}}});
   REQUIRE(found.size() == 1);
-  CHECK(found[0].text == "each body: odd");
+  check_equal(found[0].text, "each body: odd");
   found = told({{"a", {same}}, {"b", {}}, {"c", {same, warned("radius-size", "other")}}});
   REQUIRE(found.size() == 2);
-  CHECK(found[0].text == "bodies a, c: odd");
-  CHECK(found[1].text == "body c: other");
+  check_equal(found[0].text, "bodies a, c: odd");
+  check_equal(found[1].text, "body c: other");
 }
 
 TEST_CASE("the vehicle floats where all of its bodies do") {
@@ -61,9 +63,9 @@ TEST_CASE("a body that is nowhere near the scan does not hide what others lack")
   const auto found = told({{"far", {warned("out-of-reach", "far away")}},
                            {"near", {warned("nothing-below", "no ground")}},
                            {"still", {warned("no-poses")}}});
-  CHECK(codes(found) == std::vector<std::string>{"out-of-reach", "nothing-below", "no-poses"});
-  CHECK(found[0].text == "body far: far away");
-  CHECK(found[1].text == "the vehicle, as its body near: no ground");
+  check_equal(codes(found), {"out-of-reach", "nothing-below", "no-poses"});
+  check_equal(found[0].text, "body far: far away");
+  check_equal(found[1].text, "the vehicle, as its body near: no ground");
 }
 
 namespace {
@@ -84,13 +86,13 @@ TEST_CASE("a stretch without ground below one body is told, once, as the body wi
                              {"roof", {}}});
     REQUIRE(found.size() == 1);
     CHECK(found[0].code == code);
-    CHECK(found[0].text == "the vehicle, as its body rear: from 11");
+    check_equal(found[0].text, "the vehicle, as its body rear: from 11");
   }
   // That a roof is above the ground everywhere does not hide what its bogie meets.
   const auto found =
       told({{"roof", {warned("floats", "everywhere")}}, {"bogie", {of_stretch("floats", 10, 16)}}});
   REQUIRE(found.size() == 1);
-  CHECK(found[0].text == "the vehicle, as its body bogie: from 10");
+  check_equal(found[0].text, "the vehicle, as its body bogie: from 10");
 }
 
 TEST_CASE("a warning of the vehicle has the stretches of all of its bodies") {
@@ -123,5 +125,5 @@ TEST_CASE("notes of bodies stay notes") {
   const auto found = told({{"a", {{Message::Severity::kNote, {}, "small"}}}});
   REQUIRE(found.size() == 1);
   CHECK(found[0].severity == Message::Severity::kNote);
-  CHECK(found[0].text == "body a: small");
+  check_equal(found[0].text, "body a: small");
 }

@@ -3,8 +3,10 @@
 #include <catch2/catch.hpp>
 
 #include "core/geometry/point_box.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -34,7 +36,7 @@ TEST_CASE("a closed cube is closed from all sides and encloses its middle") {
   for (int axis = 0; axis < 3; ++axis) {
     CAPTURE(axis);
     const ModelView view = view_of(points, axis);
-    CHECK(view.open_share() == 0);
+    check_equal(view.open_share(), 0);
     CHECK(view.encloses({1, 1, 1}, 0.1));
     CHECK_FALSE(view.encloses({1, 1, 1}, 1.01));
     Vec3 near{1, 1, 1};
@@ -62,17 +64,17 @@ TEST_CASE("a cube without two opposite sides is open along that axis alone") {
 TEST_CASE("what is open to a side is no hole") {
   // The model is a gantry: two legs and a roof, seen from the front.
   const auto gantry = cube([](int, int j, int k) { return j % 20 == 0 || k == 20; });
-  CHECK(view_of(gantry, 0).open_share() == 0);
+  check_equal(view_of(gantry, 0).open_share(), 0);
   CHECK_FALSE(view_of(gantry, 2).encloses({1, 1, 1}, 0.1));
 }
 
 TEST_CASE("a view of few cells, of a line or of a point tells nothing") {
   const auto tube = cube([](int, int j, int k) { return j % 20 == 0 || k % 20 == 0; });
-  CHECK(ModelView(tube, box_of(tube), 0, 0.5).open_share() == 0);
+  check_equal(ModelView(tube, box_of(tube), 0, 0.5).open_share(), 0);
   for (const std::vector<Vec3>& points :
        {std::vector<Vec3>{{1, 2, 3}}, std::vector<Vec3>{{0, 0, 0}, {5, 0, 0}}}) {
     for (int axis = 0; axis < 3; ++axis) {
-      CHECK(view_of(points, axis).open_share() == 0);
+      check_equal(view_of(points, axis).open_share(), 0);
       CHECK_FALSE(view_of(points, axis).encloses(points[0], 0.1));
     }
   }

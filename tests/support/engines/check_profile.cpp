@@ -4,9 +4,11 @@
 #include <limits>
 
 #include "core/geometry/predicate.hpp"
+#include "support/compare.hpp"
 #include "support/engines/engines.hpp"
 
 namespace clearway {
+using namespace test;
 namespace {
 
 /// Checks the nearest point of every pose that one engine finds. Returns how many poses have a
@@ -27,7 +29,7 @@ std::uint64_t check_profile(const Engine& engine, const MemoryCloud& cloud,
     ++found;
     wrong += !cloud.is_used(point.entry) || cloud.source(point.entry) != point.source;
   }
-  CHECK(wrong == 0);
+  check_equal(wrong, 0);
   CHECK(answer.profile.count() == found);
   return found;
 }

@@ -8,11 +8,13 @@
 #include "cpu/brute_force.hpp"
 #include "cpu/kdtree_engine.hpp"
 #include "cpu/sweep_engine.hpp"
+#include "support/compare.hpp"
 #include "support/engines/check_profile.hpp"
 #include "support/engines/grid_runs.hpp"
 #include "support/engines/host_sweep.hpp"
 
 namespace clearway {
+using namespace test;
 namespace {
 
 SearchResult kdtree(const PackedCloud& cloud, const Query& query, int threads) {
@@ -98,7 +100,7 @@ std::uint64_t check_results(const MemoryCloud& cloud, const std::vector<std::uin
         wrong += hits.contains(slot) != (pose != HitSet::kNever);
         if (first_pose) wrong += hits.first_pose(slot) != pose;
       }
-      CHECK(wrong == 0);
+      check_equal(wrong, 0);
       CHECK(hits.count() == colliding);
     }
   }
@@ -129,8 +131,8 @@ std::uint64_t check_clearances(const Engine& engine, const MemoryCloud& cloud, c
     wrong_hits += answer.hits.contains(slot) != (pose != HitSet::kNever);
     if (query.first_pose) wrong_hits += answer.hits.first_pose(slot) != pose;
   }
-  CHECK(wrong == 0);
-  CHECK(wrong_hits == 0);
+  check_equal(wrong, 0);
+  check_equal(wrong_hits, 0);
   return found;
 }
 

@@ -7,6 +7,7 @@
 #include "clearway/trajectory.hpp"
 #include "cpu/brute_force.hpp"
 #include "io/result/result.hpp"
+#include "support/result_fixture.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/hall.hpp"
 

@@ -8,6 +8,7 @@
 #include "cpu/brute_force.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/clouds.hpp"
+#include "support/result_fixture.hpp"
 #include "tools/cli/support/hall.hpp"
 #include "tools/cli/support/spawned.hpp"
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/store/store_reader.hpp"
+#include "support/result_fixture.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/program.hpp"
 

@@ -9,6 +9,7 @@
 #include "clearway/trajectory.hpp"
 #include "core/query/search_result.hpp"
 #include "cpu/brute_force.hpp"
+#include "support/result_fixture.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/hall.hpp"
 

@@ -11,6 +11,7 @@
 #include "core/query/search_result.hpp"
 #include "cpu/brute_force.hpp"
 #include "io/scans/point_reader.hpp"
+#include "support/result_fixture.hpp"
 #include "support/store_fixture.hpp"
 #include "support/test_data.hpp"
 #include "tools/cli/support/program.hpp"

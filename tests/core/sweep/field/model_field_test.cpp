@@ -11,9 +11,11 @@
 #include "core/geometry/predicate.hpp"
 #include "core/sweep/field/brick_nearest.hpp"
 #include "core/sweep/field/brick_triangles.hpp"
+#include "support/compare.hpp"
 #include "support/surface_scene.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -52,7 +54,7 @@ double check_field(const std::vector<Vec3>& model, double radius, double voxel) 
       worst = std::max(worst, std::sqrt(squared) - std::sqrt(bounds.squared_lower));
     }
   }
-  CHECK(wrong == 0);
+  check_equal(wrong, 0);
   CHECK(near > 100);
   return worst;
 }
@@ -135,7 +137,7 @@ TEST_CASE("a field made by need is the whole one") {
     }
     return differing;
   };
-  CHECK(differences(0) == 0);
+  check_equal(differences(0), 0);
   CHECK(coarser > 1000);
   std::uint64_t differing[4];
   std::vector<std::thread> threads;
@@ -143,7 +145,7 @@ TEST_CASE("a field made by need is the whole one") {
     threads.emplace_back([&, i] { differing[i] = differences(1 + i); });
   }
   for (std::thread& thread : threads) thread.join();
-  for (const std::uint64_t of_thread : differing) CHECK(of_thread == 0);
+  for (const std::uint64_t of_thread : differing) check_equal(of_thread, 0);
 }
 
 TEST_CASE("the nodes of a brick have the model points that the tree finds") {
@@ -170,7 +172,7 @@ TEST_CASE("the nodes of a brick have the model points that the tree finds") {
       differing += squared[i] != rounded_down(least) ||
                    squared_distance(tree.element(point[i]), node) != least;
     }
-    CHECK(differing == 0);
+    check_equal(differing, 0);
   }
 }
 
@@ -211,9 +213,9 @@ TEST_CASE("the nodes of a brick are as far from triangles as the tree says") {
       too_near += of_node < least * (1 - 1e-6) - error;
       others += !(std::sqrt(squared_distance(node, tree.element(nearest[i]))) <= least + error);
     }
-    CHECK(too_far == 0);
-    CHECK(too_near == 0);
-    CHECK(others == 0);
+    check_equal(too_far, 0);
+    check_equal(too_near, 0);
+    check_equal(others, 0);
   }
 }
 

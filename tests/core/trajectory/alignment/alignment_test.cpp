@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "core/geometry/rigid.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -30,15 +32,15 @@ TEST_CASE("a parabola of a profile joins both slopes") {
       {{.station = 0, .height = 100},
        {.station = 300, .height = 103, .curve = Curve::kParabola, .before = 60, .after = 60},
        {.station = 700, .height = 95}});
-  CHECK(profile.at(0).value == 100);
+  check_equal(profile.at(0).value, 100);
   CHECK(profile.at(200).value == Approx(102).epsilon(1e-15));
   CHECK(profile.at(200).slope == Approx(0.01));
   const auto parabola = [](double x) { return 102.4 + 0.01 * x - 0.03 * x * x / 240; };
   for (const double x : {0.0, 13.0, 60.0, 61.5, 119.0}) {
-    CHECK(std::abs(profile.at(240 + x).value - parabola(x)) < 1e-12);
-    CHECK(std::abs(profile.at(240 + x).slope - (0.01 - 0.03 * x / 120)) < 1e-15);
+    check_near(profile.at(240 + x).value, parabola(x), 1e-12);
+    check_near(profile.at(240 + x).slope, 0.01 - 0.03 * x / 120, 1e-15);
   }
-  CHECK(std::abs(profile.at(360).value - 101.8) < 1e-12);
+  check_near(profile.at(360).value, 101.8, 1e-12);
   CHECK(profile.at(700).value == Approx(95).epsilon(1e-15));
   CHECK(profile.overlap_before(1) == Approx(-240));
   CHECK(profile.overlap_before(2) == Approx(-340));
@@ -51,14 +53,14 @@ TEST_CASE("an unsymmetric parabola has its own length on either side") {
        {.station = 200, .height = 1}});
   // e = l1 l2 (g2 - g1) / 2 (l1 + l2) above the point.
   const double e = 40.0 * 25 * 0.05 / (2 * 65);
-  CHECK(std::abs(profile.at(100).value - (-2 + e)) < 1e-14);
-  CHECK(std::abs(profile.at(80).value - (-1.6 + e / 4)) < 1e-14);
-  CHECK(std::abs(profile.at(60).value - -1.2) < 1e-14);
-  CHECK(std::abs(profile.at(112.5).value - (-2 + 0.03 * 12.5 + e / 4)) < 1e-14);
-  CHECK(std::abs(profile.at(125).value - (-2 + 0.03 * 25)) < 1e-14);
+  check_near(profile.at(100).value, -2 + e, 1e-14);
+  check_near(profile.at(80).value, -1.6 + e / 4, 1e-14);
+  check_near(profile.at(60).value, -1.2, 1e-14);
+  check_near(profile.at(112.5).value, -2 + 0.03 * 12.5 + e / 4, 1e-14);
+  check_near(profile.at(125).value, -2 + 0.03 * 25, 1e-14);
   const auto at = [&](double s) { return profile.at(s); };
   for (const double s : {70.0, 100.0, 110.0, 120.0}) {
-    CHECK(std::abs(profile.at(s).slope - difference(at, s)) < 1e-6);
+    check_near(profile.at(s).slope, difference(at, s), 1e-6);
   }
 }
 
@@ -73,11 +75,11 @@ TEST_CASE("a circle of a profile touches both slopes") {
                              {300, 102.4375527234354622381833, -0.004999437608958322470277381},
                              {333.25, 102.1607561295727822694357, -0.01165016566803550217280979}};
   for (const auto& [station, height, slope] : known) {
-    CHECK(std::abs(profile.at(station).value - height) < 1e-12);
-    CHECK(std::abs(profile.at(station).slope - slope) < 1e-14);
+    check_near(profile.at(station).value, height, 1e-12);
+    check_near(profile.at(station).slope, slope, 1e-14);
   }
-  CHECK(std::abs(profile.overlap_before(1) - -225.005624156431592650834) < 1e-11);
-  CHECK(std::abs(profile.overlap_before(2) - (374.9831303419166687659908 - 700)) < 1e-11);
+  check_near(profile.overlap_before(1), -225.005624156431592650834, 1e-11);
+  check_near(profile.overlap_before(2), 374.9831303419166687659908 - 700, 1e-11);
   CHECK(profile.at(225).slope == Approx(0.01));
   CHECK(profile.at(375).slope == Approx(-0.02));
 }
@@ -102,25 +104,25 @@ TEST_CASE("where curves overlap by rounding the later one counts") {
        {.station = 200, .height = 0, .curve = Curve::kParabola, .before = 50, .after = 50},
        {.station = 300, .height = 0}});
   CHECK(profile.overlap_before(2) == Approx(1e-9).epsilon(1e-3));
-  CHECK(std::abs(profile.at(150).value - 0.5) < 1e-10);
-  CHECK(std::abs(profile.at(150).slope - -0.01) < 1e-10);
+  check_near(profile.at(150).value, 0.5, 1e-10);
+  check_near(profile.at(150).slope, -0.01, 1e-10);
   // A station on a border, here between two slopes without a curve, belongs to the later one.
   const AlignmentProfile bare(
       {{.station = 0, .height = 0}, {.station = 10, .height = 1}, {.station = 20, .height = 1}});
-  CHECK(bare.at(10).slope == 0);
-  CHECK(bare.at(10).value == 1);
+  check_equal(bare.at(10).slope, 0);
+  check_equal(bare.at(10).value, 1);
 }
 
 TEST_CASE("cant changes evenly between its stations and is kept beyond them") {
   const AlignmentCant cant({{100, 0}, {150, 0.1}, {250, 0.1}, {300, -0.05}});
-  CHECK(cant.at(0).value == 0);
+  check_equal(cant.at(0).value, 0);
   CHECK(cant.at(125).value == Approx(0.05));
   CHECK(cant.at(125).slope == Approx(0.002));
-  CHECK(cant.at(150).slope == 0);
+  check_equal(cant.at(150).slope, 0);
   CHECK(cant.at(275).value == Approx(0.025));
-  CHECK(cant.at(300).value == -0.05);
-  CHECK(cant.at(400).value == -0.05);
-  CHECK(cant.at(400).slope == 0);
+  check_equal(cant.at(300).value, -0.05);
+  check_equal(cant.at(400).value, -0.05);
+  check_equal(cant.at(400).slope, 0);
 }
 
 TEST_CASE("ramps of cant join their ends, and their slopes are the derivatives of their heights") {
@@ -128,12 +130,12 @@ TEST_CASE("ramps of cant join their ends, and their slopes are the derivatives o
        {CantRamp::kLinear, CantRamp::kBloss, CantRamp::kSinusoid, CantRamp::kCosine}) {
     const AlignmentCant cant({{100, 0.05, ramp}, {150, -0.1}});
     INFO(static_cast<int>(ramp));
-    CHECK(cant.at(100).value == 0.05);
+    check_equal(cant.at(100).value, 0.05);
     CHECK(cant.at(125).value == Approx(-0.025));
     CHECK(cant.at(std::nextafter(150.0, 0.0)).value == Approx(-0.1));
     for (double station = 100.5; station < 150; station += 0.5) {
       const double rise = cant.at(station + 1e-4).value - cant.at(station - 1e-4).value;
-      CHECK(std::abs(rise / 2e-4 - cant.at(station).slope) < 1e-8);
+      check_near(rise / 2e-4, cant.at(station).slope, 1e-8);
     }
   }
 }
@@ -144,14 +146,14 @@ TEST_CASE("a track without cant stands upright on its slope") {
   const Pose level = track.pose_at(12.5);
   const double upright[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   for (int k = 0; k < 9; ++k) CHECK(level.rotation[k] == upright[k]);
-  CHECK(level.translation[0] == 12.5);
-  CHECK(level.translation[2] == 7);
+  check_equal(level.translation[0], 12.5);
+  check_equal(level.translation[2], 7);
   track.profile.emplace(
       std::vector<ProfilePoint>{{.station = 0, .height = 0}, {.station = 1000, .height = 750}});
   const Pose climbing = track.pose_at(400);
   CHECK(climbing.translation[2] == Approx(300));
   const double climb[9] = {0.8, 0, -0.6, 0, 1, 0, 0.6, 0, 0.8};
-  for (int k = 0; k < 9; ++k) CHECK(std::abs(climbing.rotation[k] - climb[k]) < 1e-15);
+  for (int k = 0; k < 9; ++k) check_near(climbing.rotation[k], climb[k], 1e-15);
 }
 
 TEST_CASE("cant lifts the rails that the line of rotation leaves free") {
@@ -173,11 +175,11 @@ TEST_CASE("cant lifts the rails that the line of rotation leaves free") {
       track.rail_distance = 1.5;
       const Pose pose = track.pose_at(500);
       const double raise = 0.15 * (cant > 0 ? kind.left_high : kind.right_high);
-      CHECK(std::abs(pose.translation[2] - raise) < 1e-15);
+      check_near(pose.translation[2], raise, 1e-15);
       // The left rail is above the right one by the cant, on rails 1.5 m apart.
-      CHECK(std::abs(1.5 * pose.rotation[7] - cant) < 1e-15);
-      CHECK(std::abs(pose.rotation[8] - std::sqrt(1 - 0.01)) < 1e-15);
-      CHECK(std::abs(pose.rotation[5] - -pose.rotation[7]) < 1e-15);
+      check_near(1.5 * pose.rotation[7], cant, 1e-15);
+      check_near(pose.rotation[8], std::sqrt(1 - 0.01), 1e-15);
+      check_near(pose.rotation[5], -pose.rotation[7], 1e-15);
       CHECK(is_rigid(stretch_of(pose)));
     }
   }
@@ -191,10 +193,10 @@ TEST_CASE("a ramp of cant tilts the way by the raise of the middle") {
     const Pose pose = track.pose_at(s);
     return pose.rotation[6] / std::hypot(pose.rotation[0], pose.rotation[3]);
   };
-  CHECK(std::abs(climb(20) - -0.001) < 1e-15);
-  CHECK(std::abs(climb(80) - 0.001) < 1e-15);
-  CHECK(std::abs(climb(50) - 0.001) < 1e-15);  // on the border, the later side
-  CHECK(climb(150) == 0);
+  check_near(climb(20), -0.001, 1e-15);
+  check_near(climb(80), 0.001, 1e-15);
+  check_near(climb(50), 0.001, 1e-15);  // on the border, the later side
+  check_equal(climb(150), 0);
   for (const double s : {20.0, 80.0}) {
     const double rise =
         track.pose_at(s + 0.5).translation[2] - track.pose_at(s - 0.5).translation[2];

@@ -5,7 +5,10 @@
 #include <complex>
 #include <numbers>
 
+#include "support/compare.hpp"
+
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -83,7 +86,7 @@ TEST_CASE("elements meet the places of the file though lengths and gaps do not q
   CHECK(std::abs(plan.at(160).at - Place(150, 0)) < 1e-12);
   CHECK(plan.misfit_of(0) == Approx(0.0009).epsilon(1e-3));
   CHECK(plan.gap_after(0) == Approx(0.0005));
-  CHECK(plan.gap_after(1) == 0);
+  check_equal(plan.gap_after(1), 0);
   // Stations beyond the ends are those of the ends.
   CHECK(plan.at(9).at == plan.at(10).at);
   CHECK(std::abs(plan.at(161).at - Place(150, 0)) < 1e-12);
@@ -92,9 +95,9 @@ TEST_CASE("elements meet the places of the file though lengths and gaps do not q
 TEST_CASE("a station on a border belongs to the later element") {
   const AlignmentPlan plan({{10, 0, 0, {0, 0}, {10, 0}}, {10, 0, 0, {10, 0}, {10, 10}}}, 0);
   CHECK(plan.at(10).heading == Approx(kPi / 2));
-  CHECK(plan.at(10 - 1e-9).heading == 0);
+  check_equal(plan.at(10 - 1e-9).heading, 0);
   CHECK(plan.kink_after(0) == Approx(kPi / 2));
-  CHECK(plan.station_of(1) == 10);
+  check_equal(plan.station_of(1), 10);
 }
 
 TEST_CASE("a kink is counted across the half turn") {

@@ -4,10 +4,11 @@
 #include <cmath>
 
 #include "clearway/error.hpp"
+#include "support/compare.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;
-using Catch::Contains;
+using namespace clearway::test;
 
 namespace {
 
@@ -98,12 +99,12 @@ TEST_CASE("the origin divides the chord as 0 divides the pivots") {
     const Vec3 expected = {rear.x + share * (front.x - rear.x), rear.y + share * (front.y - rear.y),
                            5};
     for (int axis = 0; axis < 3; ++axis) {
-      CHECK(std::abs(body.poses[k].translation[axis] - expected[axis]) < 1e-9);
+      check_near(body.poses[k].translation[axis], expected[axis], 1e-9);
     }
     const double length = std::hypot(front.x - rear.x, front.y - rear.y);
     const Vec3 x = column(body.poses[k], 0);
-    CHECK(std::abs(x.x - (front.x - rear.x) / length) < 1e-9);
-    CHECK(std::abs(x.y - (front.y - rear.y) / length) < 1e-9);
+    check_near(x.x, (front.x - rear.x) / length, 1e-9);
+    check_near(x.y, (front.y - rear.y) / length, 1e-9);
     CHECK(column(body.poses[k], 2).z == Approx(1).epsilon(1e-12));
   }
 }
@@ -122,8 +123,8 @@ TEST_CASE("a followed frame is a rotation whose up is the mean made perpendicula
   for (std::size_t k = 0; k < body.poses.size(); ++k) {
     const Vec3 x = column(body.poses[k], 0), y = column(body.poses[k], 1),
                z = column(body.poses[k], 2);
-    for (const double one : {dot(x, x), dot(y, y), dot(z, z)}) CHECK(std::abs(one - 1) < 1e-14);
-    for (const double none : {dot(x, y), dot(y, z), dot(z, x)}) CHECK(std::abs(none) < 1e-14);
+    for (const double one : {dot(x, x), dot(y, y), dot(z, z)}) check_near(one, 1, 1e-14);
+    for (const double none : {dot(x, y), dot(y, z), dot(z, x)}) check_near(none, 0, 1e-14);
     CHECK(x.x * (y.y * z.z - y.z * z.y) + x.y * (y.z * z.x - y.x * z.z) > 0);
     const std::size_t i = body.of[k];
     Vec3 up{0, 0, 0};
@@ -134,7 +135,7 @@ TEST_CASE("a followed frame is a rotation whose up is the mean made perpendicula
     }
     // Up, without its part along the chord, is along z and not along y.
     CHECK(dot(up, z) > 0);
-    CHECK(std::abs(dot(up, y)) < 1e-12);
+    check_near(dot(up, y), 0, 1e-12);
   }
 }
 
@@ -143,16 +144,16 @@ TEST_CASE("a body at a station has the poses of the curve, and at 0 those of the
   CHECK(follow(poses, BodyStation{0}).poses == poses);
   const auto ahead = follow(poses, BodyStation{2.3});
   REQUIRE(ahead.of.size() == 36);
-  CHECK(ahead.off_path == std::vector<std::uint64_t>{36, 37, 38, 39, 40});
+  check_equal(ahead.off_path, {36, 37, 38, 39, 40});
   for (std::size_t k = 4; k < 30; ++k) {
     const double angle = (0.5 * static_cast<double>(ahead.of[k]) + 2.3) / 50;
-    CHECK(std::abs(ahead.poses[k].translation[0] - 5e5 - 50 * std::cos(angle)) < 1e-7);
+    check_near(ahead.poses[k].translation[0] - 5e5, 50 * std::cos(angle), 1e-7);
     CHECK(std::abs(column(ahead.poses[k], 0).x + std::sin(angle)) < 1e-7);
   }
   const auto behind = follow(poses, BodyStation{-2});
-  CHECK(behind.of.front() == 4);
+  check_equal(behind.of.front(), 4);
   for (std::size_t k = 0; k < 30; ++k) {
-    CHECK(std::abs(behind.poses[k].translation[1] - poses[k].translation[1]) < 1e-4);
+    check_near(behind.poses[k].translation[1], poses[k].translation[1], 1e-4);
   }
 }
 
@@ -162,10 +163,10 @@ TEST_CASE("warnings say where a body has no pose") {
   const BodyMount mount = BodyPivots{2.5, -1};
   const auto doubts = doubts_about(follow_path(path, mount, 1), path, mount, "wagon");
   REQUIRE(doubts.size() == 1);
-  CHECK(doubts[0].code == "body-off-path");
-  CHECK_THAT(doubts[0].text, Contains("wagon: 4 of 11 poses of the path (poses 0, 8-10, from 0)"));
-  CHECK(doubts[0].numbers[0].second == 4);
-  CHECK(codes(poses, BodyStation{3}) == std::vector<std::string>{"body-off-path"});
+  check_equal(doubts[0].code, "body-off-path");
+  check_says(doubts[0].text, "wagon: 4 of 11 poses of the path (poses 0, 8-10, from 0)");
+  check_equal(doubts[0].numbers[0].second, 4);
+  check_equal(codes(poses, BodyStation{3}), {"body-off-path"});
   CHECK(codes(poses, BodyStation{0}).empty());
   CHECK(follow_path(path, BodyPivots{20, -1}, 1).poses.empty());
 }
@@ -175,11 +176,11 @@ TEST_CASE("a path that turns back folds the body, and has no chord where the piv
   for (int x = 19; x >= 0; --x) poses.push_back(translation({double(x), 0, 0}));
   const auto body = follow(poses, BodyPivots{4, -4});
   // At the turning point both pivots are at x = 16.
-  CHECK(body.undefined == std::vector<std::uint64_t>{20});
-  CHECK(body.folded == std::vector<std::uint64_t>{19, 21});
+  check_equal(body.undefined, {20});
+  check_equal(body.folded, {19, 21});
   // Where the path goes back with the x axis ahead, the body points the other way.
-  CHECK(body.turned.front() == 21);
-  CHECK(body.turned.back() == 36);
+  check_equal(body.turned.front(), 21);
+  check_equal(body.turned.back(), 36);
   for (std::size_t k = 0; k < body.of.size(); ++k) {
     CHECK(column(body.poses[k], 0).x == (body.of[k] < 20 ? 1 : -1));
   }
@@ -191,7 +192,7 @@ TEST_CASE("a path driven backwards takes its pivots the other way round") {
   const auto backwards = circle(60, 0.1, 601, {0, 0, 0}, kPi);
   CHECK(codes(backwards, BodyPivots{5, -5}) ==
         std::vector<std::string>{"body-off-path", "body-turned"});
-  CHECK(codes(backwards, BodyPivots{-5, 5}) == std::vector<std::string>{"body-off-path"});
+  check_equal(codes(backwards, BodyPivots{-5, 5}), {"body-off-path"});
   CHECK(codes(backwards, BodyStation{5}) ==
         std::vector<std::string>{"body-off-path", "body-turned"});
   CHECK(codes(backwards, BodyStation{0}).empty());
@@ -207,7 +208,7 @@ TEST_CASE("the poses of a camera are warned of") {
     camera.push_back({{0, 0, 1, -1, 0, 0, 0, -1, 0}, {double(i), 0.001 * i * i, 0}});
   }
   const auto body = follow(camera, BodyPivots{2, -2});
-  CHECK(body.turned.size() == body.of.size());
+  check_equal(body.turned.size(), body.of.size());
   // With x forward, z is taken as up even where it points sideways.
   for (Pose& pose : camera) {
     const double other[9] = {1, 0, 0, 0, 0, 1, 0, -1, 0};
@@ -228,20 +229,20 @@ TEST_CASE("a body stands where the path stands") {
 
 TEST_CASE("a body on two pivots of one pose or of a path that goes straight up has no pose") {
   const std::vector<Pose> one{translation({1, 2, 3})};
-  CHECK(follow(one, BodyPivots{1, -1}).off_path.size() == 1);
+  check_equal(follow(one, BodyPivots{1, -1}).off_path.size(), 1);
   CHECK(follow(one, BodyStation{0}).poses == one);
   CHECK(follow({}, BodyPivots{1, -1}).poses.empty());
   std::vector<Pose> up;
   up.reserve(9);
   for (int z = 0; z < 9; ++z) up.push_back(translation({0, 0, double(z)}));
-  CHECK(follow(up, BodyPivots{1, -1}).undefined.size() == 7);
+  check_equal(follow(up, BodyPivots{1, -1}).undefined.size(), 7);
 }
 
 TEST_CASE("a body on two pivots refuses a path that mirrors the model") {
   auto poses = straight(5, 1);
   for (Pose& pose : poses) pose.rotation[4] = -1;
   CHECK_THROWS_AS(follow(poses, BodyPivots{1, -1}), InputError);
-  CHECK(follow(poses, BodyStation{1}).poses.size() == 4);
+  check_equal(follow(poses, BodyStation{1}).poses.size(), 4);
 }
 
 TEST_CASE("followed poses do not depend on the number of threads") {

@@ -11,9 +11,11 @@
 
 #include "clearway/error.hpp"
 #include "core/trajectory/line/line_path.hpp"
+#include "support/compare.hpp"
 #include "support/memory_cloud.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -129,7 +131,7 @@ GroundSide found_in(const std::vector<Vec3>& points, const std::vector<GroundPla
   CHECK(side.risen == expected.risen);
   REQUIRE(side.heights.size() == expected.heights.size());
   for (std::size_t i = 0; i < side.heights.size(); ++i) {
-    CHECK(std::abs(side.heights[i] - expected.heights[i]) < 1e-12);
+    check_near(side.heights[i], expected.heights[i], 1e-12);
   }
   return side;
 }
@@ -153,13 +155,13 @@ TEST_CASE("the ground among heights is the median of the lowest full window") {
   const auto ground = [](std::vector<double> heights) { return ground_among(heights); };
   CHECK_FALSE(ground({}));
   CHECK_FALSE(ground(std::vector<double>(11, 3.0)));
-  CHECK(ground(std::vector<double>(12, 3.0)) == 3.0);
+  check_equal(ground(std::vector<double>(12, 3.0)), 3.0);
   // Twelve points below are ground, unless the fullest window has more than five times as many.
   std::vector<double> heights(12, 1.0);
   heights.insert(heights.end(), 60, 2.0);
-  CHECK(ground(heights) == 1.0);
+  check_equal(ground(heights), 1.0);
   heights.push_back(2.0);
-  CHECK(ground(heights) == 2.0);
+  check_equal(ground(heights), 2.0);
   // Stray points less than 0.1 m below the ground are in its window, and hardly pull its median
   // down.
   heights.assign(12, 4.95);
@@ -178,7 +180,7 @@ TEST_CASE("flat and sloping ground is found at every place on both sides") {
   for (const Height& ground : grounds) {
     for (const double left : {0.9, -0.9}) {
       const GroundSide side = found_in(surface(ground), places, left);
-      CHECK(side.places.size() == places.size());
+      check_equal(side.places.size(), places.size());
       CHECK(worst_of(side, places, left, ground) < 0.02);
     }
   }
@@ -197,7 +199,7 @@ TEST_CASE("a line that turns has its strips beside it") {
     for (std::size_t i = 0; i < places.size(); ++i) {
       const PlanPoint at =
           places[i].plan.at + PlanPoint(0, left) * std::polar(1.0, places[i].plan.heading);
-      CHECK(std::abs(side.heights[i] - ground(at.real(), at.imag())) < 0.02);
+      check_near(side.heights[i], ground(at.real(), at.imag()), 0.02);
     }
   }
 }
@@ -206,15 +208,15 @@ TEST_CASE("a kerb is climbed and left on the side that meets it") {
   const std::vector<GroundPlace> places = places_along_x();
   const Height kerb = [](double x, double y) { return y < 0 && x > 10 && x < 18 ? 5.12 : 5.0; };
   const GroundSide right = found_in(surface(kerb), places, -0.9);
-  CHECK(right.places.size() == places.size());
-  CHECK(right.risen == 0);
+  check_equal(right.places.size(), places.size());
+  check_equal(right.risen, 0);
   CHECK(right.heights[28] == Approx(5.12).margin(0.01));
   CHECK(right.heights.back() == Approx(5).margin(0.01));
   CHECK(worst_of(found_in(surface(kerb), places, 0.9), places, 0.9, kerb) < 0.01);
   // One that is too high to be climbed is dropped, until it is as low as a slope would be.
   const Height wall = [](double x, double) { return x > 10 ? 5.5 : 5.0; };
   const GroundSide stopped = found_in(surface(wall), places, 0.9);
-  CHECK(stopped.risen == 5);
+  check_equal(stopped.risen, 5);
 }
 
 TEST_CASE("a parked car is passed over where its roof and bonnet are seen, not where its sill is") {
@@ -229,7 +231,7 @@ TEST_CASE("a parked car is passed over where its roof and bonnet are seen, not w
     CHECK(side.risen == (height < 6 ? 7 : 0));
     const std::vector<double> all = side.bridged(places, 0, places.size() - 1);
     REQUIRE(all.size() == places.size());
-    for (const double ground : all) CHECK(std::abs(ground - 5) < 0.01);
+    for (const double ground : all) check_near(ground, 5, 0.01);
   }
   // Below a car that stands 0.3 m above the ground the path fails by that much.
   const GroundSide low = found_in(surface(car(5.3)), places, 0.9);
@@ -254,7 +256,7 @@ TEST_CASE("places without points are left out and bridged evenly") {
     const std::vector<double> all = side.bridged(places, 2, places.size() - 1);
     REQUIRE(all.size() == places.size() - 2);
     for (std::size_t i = 0; i < all.size(); ++i) {
-      CHECK(std::abs(all[i] - (5 + 0.1 * places[i + 2].plan.at.real())) < 0.02);
+      check_near(all[i], 5 + 0.1 * places[i + 2].plan.at.real(), 0.02);
     }
   }
 }
@@ -288,7 +290,7 @@ TEST_CASE("a cloud in feet has the same ground in metres") {
   CHECK(a.places == b.places);
   REQUIRE(a.heights.size() == b.heights.size());
   for (std::size_t i = 0; i < a.heights.size(); ++i) {
-    CHECK(std::abs(a.heights[i] - b.heights[i]) < 1e-4);
+    check_near(a.heights[i], b.heights[i], 1e-4);
   }
 }
 

@@ -6,7 +6,10 @@
 #include <random>
 #include <vector>
 
+#include "support/compare.hpp"
+
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -55,7 +58,7 @@ TEST_CASE("a straight line is straight, with any number of vertices") {
        {Vertices{{1, 2}, {4, 6}}, Vertices{{1, 2}, {1.6, 2.8}, {2.2, 3.6}, {4, 6}}}) {
     for (const LinePlan& plan : {LinePlan::through(vertices), LinePlan::rounded(vertices, 3)}) {
       CHECK(plan.length() == Approx(5).epsilon(1e-14));
-      CHECK(plan.station_of(0) == 0);
+      check_equal(plan.station_of(0), 0);
       CHECK(plan.station_of(vertices.size() - 1) == Approx(5).epsilon(1e-14));
       for (const double s : {0.0, 0.3, 1.0, 2.5, 4.9, 5.0}) {
         const PlanPlace place = plan.at(s);
@@ -71,7 +74,7 @@ TEST_CASE("an arc at a right angle has the places, headings and length of a quar
     const Vertices vertices{{0, 0}, {10, 0}, {10, 10 * side}};
     const LinePlan plan = LinePlan::rounded(vertices, 2);
     CHECK(plan.length() == Approx(16 + kPi).epsilon(1e-15));
-    CHECK(plan.arc_at(0) == 0);
+    check_equal(plan.arc_at(0), 0);
     CHECK(plan.arc_at(1) == Approx(kPi).epsilon(1e-15));
     CHECK(plan.station_of(1) == Approx(8 + kPi / 2).epsilon(1e-15));
     CHECK(plan.station_of(2) == plan.length());
@@ -138,13 +141,13 @@ TEST_CASE("legs that are too short for arcs are found with what they need") {
   CHECK(short_legs(vertices, 2.5).empty());
   const std::vector<ShortLeg> found = short_legs(vertices, 6);
   REQUIRE(found.size() == 2);
-  CHECK(found[0].from == 1);
-  CHECK(found[0].length == 5);
+  check_equal(found[0].from, 1);
+  check_equal(found[0].length, 5);
   CHECK(found[0].needed == Approx(12));
-  CHECK(found[1].from == 2);
-  CHECK(short_legs(vertices, 11).size() == 3);
+  check_equal(found[1].from, 2);
+  check_equal(short_legs(vertices, 11).size(), 3);
   // No arc rounds a line that turns back.
-  CHECK(short_legs(Vertices{{0, 0}, {10, 0}, {0, 0}}, 0.001).size() == 2);
+  check_equal(short_legs(Vertices{{0, 0}, {10, 0}, {0, 0}}, 0.001).size(), 2);
 }
 
 TEST_CASE("a curve through the places of a circle is nearly that circle") {
@@ -206,7 +209,7 @@ TEST_CASE("a plan and its heights survive being moved") {
   CHECK(other.at(100).at == before.at);
   HeightCurve heights({0, 1, 2}, std::vector<double>{4, 5, 7});
   const HeightCurve moved = std::move(heights);
-  CHECK(moved.at(1).value == 5);
+  check_equal(moved.at(1).value, 5);
 }
 
 TEST_CASE("heights on a slope or a parabola stay on it") {
@@ -225,8 +228,8 @@ TEST_CASE("heights on a slope or a parabola stay on it") {
     CHECK(std::abs(even.at(s).slope + 0.04) < 1e-14);
     CHECK(std::abs(bent.at(s).value - parabola(s)) < 1e-12);
     CHECK(std::abs(bent.at(s).slope - 0.004 * (s + 20)) < 1e-12);
-    CHECK(flat.at(s).value == 5.25);
-    CHECK(flat.at(s).slope == 0);
+    check_equal(flat.at(s).value, 5.25);
+    check_equal(flat.at(s).slope, 0);
   }
 }
 
@@ -237,7 +240,7 @@ TEST_CASE("slopes of a line with corners are joined by parabolas as long as the 
   const AlignmentProfile profile = rounded_profile(plan, heights, 10);
   const double middle = plan.station_of(1), half = 5 * kPi / 2;
   const double g1 = 2 / middle, g2 = -1 / (plan.length() - middle);
-  CHECK(profile.at(0).value == 1);
+  check_equal(profile.at(0).value, 1);
   CHECK(profile.at(10).value == Approx(1 + 10 * g1).epsilon(1e-14));
   CHECK(profile.at(middle - half).slope == Approx(g1));
   CHECK(profile.at(middle + half).slope == Approx(g2));
@@ -248,10 +251,10 @@ TEST_CASE("slopes of a line with corners are joined by parabolas as long as the 
 TEST_CASE("slopes that meet without a corner are joined by a curve of the radius, if it fits") {
   const Vertices vertices{{0, 0}, {50, 0}, {52, 0}, {100, 0}};
   const LinePlan plan = LinePlan::rounded(vertices, 30);
-  CHECK(plan.arc_at(1) == 0);
+  check_equal(plan.arc_at(1), 0);
   const AlignmentProfile profile = rounded_profile(plan, std::vector<double>{0, 0, 0.2, 0.2}, 30);
   // The radius asks for 30 tan(5.7 / 2 degrees) = 1.496 m, and half of the leg is 1 m.
-  CHECK(profile.at(49).slope == 0);
+  check_equal(profile.at(49).slope, 0);
   CHECK(profile.at(51).slope == Approx(0.1));
   CHECK(profile.at(53).slope == Approx(0));
   CHECK(profile.at(50).value == Approx(0.1 / 4));
@@ -266,7 +269,7 @@ TEST_CASE("a pose stands on the line, with its heading, climb and roll") {
   Pose pose = path.pose_at(10);
   CHECK(std::abs(pose.translation[0] - 6) < 1e-13);
   CHECK(std::abs(pose.translation[1] - 8) < 1e-13);
-  CHECK(pose.translation[2] == 2.5);
+  check_equal(pose.translation[2], 2.5);
   const double level[9] = {0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1};
   for (int k = 0; k < 9; ++k) CHECK(std::abs(pose.rotation[k] - level[k]) < 1e-14);
   path.height.emplace<HeightCurve>(std::vector<double>{0, 50}, std::vector<double>{0, 5});

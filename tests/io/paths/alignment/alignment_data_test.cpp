@@ -10,11 +10,11 @@
 #include "clearway/alignment.hpp"
 #include "clearway/error.hpp"
 #include "clearway/file_unit.hpp"
+#include "support/compare.hpp"
 #include "support/test_data.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
@@ -68,7 +68,7 @@ TEST_CASE("a real alignment in US survey feet has the poses that are known") {
         read_alignment(alignment_named("PR_Twin_Branch_section_alignment.xml"), options);
     REQUIRE(poses.size() == 1);
     for (int k = 0; k < 3; ++k) {
-      CHECK(std::abs(poses[0].translation[k] - pose.numbers[k]) < 2e-9);
+      check_near(poses[0].translation[k], pose.numbers[k], 2e-9);
       for (int column = 0; column < 3; ++column) {
         CHECK(std::abs(poses[0].rotation[3 * k + column] - pose.numbers[3 + 3 * column + k]) <
               1e-9);
@@ -95,8 +95,8 @@ TEST_CASE("places on real clothoids, arcs and lines are those of 30 digits") {
                                       {.station_from = row[0], .station_to = row[0]});
     REQUIRE(poses.size() == 1);
     for (int k = 0; k < 3; ++k) {
-      CHECK(std::abs(poses[0].translation[k] - row[1 + k]) < 1e-9);
-      CHECK(std::abs(poses[0].rotation[3 * k] - row[4 + k]) < 1e-10);
+      check_near(poses[0].translation[k], row[1 + k], 1e-9);
+      check_near(poses[0].rotation[3 * k], row[4 + k], 1e-10);
     }
   }
 }
@@ -105,41 +105,41 @@ TEST_CASE("public alignments are read, or refused with the reason") {
   std::vector<Message> remarks;
   const auto twin =
       read_alignment(alignment_named("PR_Twin_Branch_section_alignment.xml"), {}, &remarks);
-  CHECK(twin.size() == 8526);
-  CHECK(codes_of(remarks) == std::vector<std::string>{"alignment-feet"});
+  check_equal(twin.size(), 8526);
+  check_equal(codes_of(remarks), {"alignment-feet"});
 
   const auto first = alignment_named("UT-Alignment-Aplitop-1.xml");
   remarks.clear();
   const auto clothoids = read_alignment(first, {}, &remarks);
-  CHECK(clothoids.size() == 5072);
+  check_equal(clothoids.size(), 5072);
   CHECK(codes_of(remarks).empty());
   // It ends where the file says that the last line does.
-  CHECK(std::abs(clothoids.back().translation[0] - 335420.420696) < 1e-9);
-  CHECK(std::abs(clothoids.back().translation[1] - 4084689.855782) < 1e-9);
-  CHECK(std::abs(clothoids.back().translation[2] - 350.7) < 1e-4);
-  CHECK_THROWS_WITH(read_alignment(first, {.order = AxisOrder::kEastingNorthing}),
-                    Contains("Center lies on the other side") && Contains("--order ne"));
+  check_near(clothoids.back().translation[0], 335420.420696, 1e-9);
+  check_near(clothoids.back().translation[1], 4084689.855782, 1e-9);
+  check_near(clothoids.back().translation[2], 350.7, 1e-4);
+  check_refused([&] { return read_alignment(first, {.order = AxisOrder::kEastingNorthing}); },
+                "Center lies on the other side ... --order ne");
 
   const auto second = alignment_named("Alignment-Aplitop-2.XML");
-  CHECK_THROWS_WITH(read_alignment(second, {.max_gap = 0.01}), Contains("no profile"));
+  check_refused([&] { return read_alignment(second, {.max_gap = 0.01}); }, "no profile");
   // The radius of its second curve is 1.3 mm off its centre, which places nothing, and makes the
   // curve 0.5 mm shorter than its chord.
-  CHECK(read_alignment(second, {.height = 0}).size() == 56512);
-  CHECK_THROWS_WITH(read_alignment(second, {.max_gap = 0.0001, .height = 0}),
-                    Contains("line 43") && Contains("0.000475 m") && Contains("--max-gap 0.0005"));
+  check_equal(read_alignment(second, {.height = 0}).size(), 56512);
+  check_refused([&] { return read_alignment(second, {.max_gap = 0.0001, .height = 0}); },
+                "line 43 ... 0.000475 m ... --max-gap 0.0005");
 
   const auto late = alignment_named("TOI-M14334-0000A.XML");
   remarks.clear();
   const auto road = read_alignment(late, {.step = 1}, &remarks);
-  CHECK(codes_of(remarks) == std::vector<std::string>{"profile-shorter"});
-  CHECK(std::abs(road.front().translation[2] - 125.687614) < 1e-9);
-  CHECK(std::abs(road.back().translation[2] - 125.806) < 1e-8);
+  check_equal(codes_of(remarks), {"profile-shorter"});
+  check_near(road.front().translation[2], 125.687614, 1e-9);
+  check_near(road.back().translation[2], 125.806, 1e-8);
 
   remarks.clear();
   const auto crossing = read_alignment(alignment_named("TOI-Y3-0000A.XML"), {.step = 1}, &remarks);
-  CHECK(codes_of(remarks) == std::vector<std::string>{"profile-shorter"});
-  CHECK(crossing.size() == 37);
-  CHECK(std::abs(crossing.back().translation[2] - 126.005283) < 1e-9);
+  check_equal(codes_of(remarks), {"profile-shorter"});
+  check_equal(crossing.size(), 37);
+  check_near(crossing.back().translation[2], 126.005283, 1e-9);
 }
 
 TEST_CASE("a ramp by a Bloss curve is 14.4 mm from an even one at a fifth of its length") {
@@ -148,8 +148,8 @@ TEST_CASE("a ramp by a Bloss curve is 14.4 mm from an even one at a fifth of its
         read_alignment(data_folder() / "cases" / name, {.station_from = 20, .station_to = 20});
     return 1.5 * poses.at(0).rotation[7];
   };
-  CHECK(std::abs(cant("cant_linear.xml") - 0.030) < 1e-12);
-  CHECK(std::abs(cant("cant_bloss.xml") - 0.0156) < 1e-12);
+  check_near(cant("cant_linear.xml"), 0.030, 1e-12);
+  check_near(cant("cant_bloss.xml"), 0.0156, 1e-12);
 }
 
 TEST_CASE("a Czech alignment with a PVI and a curve at one place is read") {
@@ -159,5 +159,5 @@ TEST_CASE("a Czech alignment with a PVI and a curve at one place is read") {
       read_alignment(data_folder() / "cases" / "cz_pvi_and_paracurve.xml",
                      {.station_from = 100, .station_to = 100, .cant = CantLine::kNone}, &remarks);
   CHECK(codes_of(remarks).empty());
-  CHECK(std::abs(poses.at(0).translation[2] - 300.95) < 1e-9);
+  check_near(poses.at(0).translation[2], 300.95, 1e-9);
 }

@@ -10,34 +10,17 @@
 #include "clearway/error.hpp"
 #include "clearway/file_unit.hpp"
 #include "support/land_xml.hpp"
+#include "support/made_path.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
-struct Made {
-  std::vector<Pose> poses;
-  std::vector<Message> remarks;
-  PoseLabels labels;
-
-  std::vector<std::string> codes() const {
-    std::vector<std::string> codes;
-    for (const Message& remark : remarks) {
-      const bool warns = remark.severity == Message::Severity::kWarning;
-      codes.push_back((warns ? "" : "note ") + remark.code);
-    }
-    return codes;
-  }
-};
-
-using Codes = std::vector<std::string>;
-
-Made made_of(const LandFile& file, const AlignmentOptions& options = {}) {
-  const ReaderScratch scratch;
-  Made made;
+MadePath made_of(const LandFile& file, const AlignmentOptions& options = {}) {
+  const ScratchFolder scratch;
+  MadePath made;
   made.poses =
       read_alignment(scratch.write("a.xml", file.text()), options, &made.remarks, &made.labels);
   return made;
@@ -89,49 +72,50 @@ const std::string kArc = R"(<Start>0 100</Start><Center>50 100</Center><End>50 1
 }  // namespace
 
 TEST_CASE("an alignment becomes poses at even stations and at its end") {
-  const Made made = made_of({});
-  CHECK(made.codes().empty());
+  const MadePath made = made_of({});
+  check_equal(made.codes(), "");
   REQUIRE(made.poses.size() == 1787);
-  CHECK(made.labels.station[0] == 1000);
-  CHECK(made.labels.station[1] == 1000.1);
+  check_equal(made.labels.station[0], 1000);
+  check_equal(made.labels.station[1], 1000.1);
   CHECK(made.labels.station.back() == Approx(1178.539816339745).epsilon(1e-15));
   CHECK(made.labels.name.empty());
   // Easting is x, northing is y.
   const Pose& middle = made.poses[500];
-  CHECK(std::abs(middle.translation[0] - 50) < 1e-12);
-  CHECK(std::abs(middle.translation[1]) < 1e-12);
-  CHECK(std::abs(middle.translation[2] - 10.5) < 1e-12);
+  check_near(middle.translation[0], 50, 1e-12);
+  check_near(middle.translation[1], 0, 1e-12);
+  check_near(middle.translation[2], 10.5, 1e-12);
   const Pose& end = made.poses.back();
-  CHECK(std::abs(end.translation[0] - 150) < 1e-11);
-  CHECK(std::abs(end.translation[1] - 50) < 1e-11);
-  CHECK(std::abs(end.rotation[3] - 1 / std::hypot(1, 0.01)) < 1e-11);
+  check_near(end.translation[0], 150, 1e-11);
+  check_near(end.translation[1], 50, 1e-11);
+  check_near(end.rotation[3], 1 / std::hypot(1, 0.01), 1e-11);
 }
 
 TEST_CASE("a part of an alignment, and one station alone") {
-  const Made part = made_of({}, {.station_from = 1020.05, .station_to = 1021, .step = 0.5});
+  const MadePath part = made_of({}, {.station_from = 1020.05, .station_to = 1021, .step = 0.5});
   REQUIRE(part.labels.station == std::vector<double>{1020.05, 1020.55, 1021});
-  const Made one = made_of({}, {.station_from = 1021, .station_to = 1021});
+  const MadePath one = made_of({}, {.station_from = 1021, .station_to = 1021});
   REQUIRE(one.poses.size() == 1);
   for (int k = 0; k < 3; ++k) {
     CHECK(one.poses[0].translation[k] == part.poses[2].translation[k]);
   }
   // A station that the step reaches but for rounding does not stand twice.
-  CHECK(made_of({}, {.station_from = 1000, .station_to = 1000.3}).poses.size() == 4);
+  check_equal(made_of({}, {.station_from = 1000, .station_to = 1000.3}).poses.size(), 4);
   // A station just beyond the end counts as the end.
-  CHECK(made_of({}, {.station_from = 1178.5398163, .station_to = 1178.53981733}).poses.size() == 1);
-  CHECK_THAT(misuse_of({}, {.station_to = 1179}),
-             Contains("--to 1179 is off the alignment; expected a station from 1000 to 1178.5"));
-  CHECK_THAT(misuse_of({}, {.station_from = 999}), Contains("--from 999"));
-  CHECK_THAT(misuse_of({}, {.station_from = 1100, .station_to = 1050}), Contains("--reverse"));
-  CHECK_THAT(misuse_of({}, {.station_from = NAN}), Contains("finite station"));
-  CHECK_THAT(misuse_of({}, {.step = 0}), Contains("--step"));
-  CHECK_THAT(misuse_of({}, {.step = 1e-6}), Contains("at most 10,000,000") && Contains("--step"));
-  CHECK_THAT(misuse_of({}, {.max_gap = -1}), Contains("--max-gap"));
-  CHECK_THAT(misuse_of({}, {.rail_distance = 0}), Contains("--rail-distance"));
+  check_equal(made_of({}, {.station_from = 1178.5398163, .station_to = 1178.53981733}).poses.size(),
+              1);
+  check_says(misuse_of({}, {.station_to = 1179}),
+             "--to 1179 is off the alignment; expected a station from 1000 to 1178.5");
+  check_says(misuse_of({}, {.station_from = 999}), "--from 999");
+  check_says(misuse_of({}, {.station_from = 1100, .station_to = 1050}), "--reverse");
+  check_says(misuse_of({}, {.station_from = NAN}), "finite station");
+  check_says(misuse_of({}, {.step = 0}), "--step");
+  check_says(misuse_of({}, {.step = 1e-6}), "at most 10,000,000 ... --step");
+  check_says(misuse_of({}, {.max_gap = -1}), "--max-gap");
+  check_says(misuse_of({}, {.rail_distance = 0}), "--rail-distance");
 }
 
 TEST_CASE("reverse turns x and y round, and the order") {
-  const Made ahead = made_of({}, {.step = 1}), back = made_of({}, {.step = 1, .reverse = true});
+  const MadePath ahead = made_of({}, {.step = 1}), back = made_of({}, {.step = 1, .reverse = true});
   REQUIRE(ahead.poses.size() == back.poses.size());
   for (std::size_t i = 0; i < ahead.poses.size(); ++i) {
     const Pose &a = ahead.poses[i], &b = back.poses[back.poses.size() - 1 - i];
@@ -144,20 +128,20 @@ TEST_CASE("reverse turns x and y round, and the order") {
 TEST_CASE("feet of either kind become metres, and doubtful ones are warned of") {
   LandFile file;
   file.units = R"(<Imperial linearUnit="USSurveyFoot"/>)";
-  const Made survey = made_of(file, {.step = 1});
-  CHECK(survey.codes().empty());
-  CHECK(std::abs(survey.poses.back().translation[0] - 150 * kMetresPerUsSurveyFoot) < 1e-11);
-  CHECK(std::abs(survey.labels.station[0] - 1000 * kMetresPerUsSurveyFoot) < 1e-12);
+  const MadePath survey = made_of(file, {.step = 1});
+  check_equal(survey.codes(), "");
+  check_near(survey.poses.back().translation[0], 150 * kMetresPerUsSurveyFoot, 1e-11);
+  check_near(survey.labels.station[0], 1000 * kMetresPerUsSurveyFoot, 1e-12);
   file.units = R"(<Imperial linearUnit="foot"/>)";
-  CHECK(std::abs(made_of(file, {.step = 1}).poses.back().translation[0] - 150 * 0.3048) < 1e-11);
+  check_near(made_of(file, {.step = 1}).poses.back().translation[0], 150 * 0.3048, 1e-11);
   file.line = R"(<Line length="100"><Start>0 2000000</Start><End>0 2000100</End></Line>)";
   file.curve = "";
-  const Made far = made_of(file, {.step = 1});
-  CHECK(far.codes() == Codes{"alignment-length", "alignment-feet"});
-  CHECK_THAT(far.remarks[1].text, Contains("international feet") && Contains("1.219 m elsewhere"));
+  const MadePath far = made_of(file, {.step = 1});
+  check_equal(far.codes(), "alignment-length, alignment-feet");
+  check_says(far.remarks[1].text, "international feet ... 1.219 m elsewhere");
   file = {};
   file.units = R"(<Metric linearUnit="millimeter"/>)";
-  CHECK(std::abs(made_of(file, {.max_gap = 1e-9}).poses.back().translation[0] - 0.15) < 1e-14);
+  check_near(made_of(file, {.max_gap = 1e-9}).poses.back().translation[0], 0.15, 1e-14);
 }
 
 TEST_CASE("lengths that the file leaves out follow from its places") {
@@ -167,18 +151,18 @@ TEST_CASE("lengths that the file leaves out follow from its places") {
     without.curve = "<Curve rot=\"ccw\">" + kArc;
     return without;
   }();
-  const Made given = made_of({}), found = made_of(file);
-  CHECK(found.codes().empty());
+  const MadePath given = made_of({}), found = made_of(file);
+  check_equal(found.codes(), "");
   REQUIRE(found.poses.size() == given.poses.size());
   for (int k = 0; k < 3; ++k) {
-    CHECK(std::abs(found.poses[1500].translation[k] - given.poses[1500].translation[k]) < 1e-9);
+    check_near(found.poses[1500].translation[k], given.poses[1500].translation[k], 1e-9);
   }
-  CHECK_THAT(refusal_of(with_curve(
+  check_says(refusal_of(with_curve(
                  R"(<Curve rot="cw" radius="50"><Start>0 100</Start><End>50 150</End></Curve>)")),
-             Contains("neither length nor Center"));
-  CHECK_THAT(refusal_of(with_curve(
+             "neither length nor Center");
+  check_says(refusal_of(with_curve(
                  R"(<Curve rot="cw" length="5"><Start>0 100</Start><End>50 150</End></Curve>)")),
-             Contains("neither radius nor Center"));
+             "neither radius nor Center");
 }
 
 TEST_CASE("elements without a length are left out") {
@@ -186,66 +170,63 @@ TEST_CASE("elements without a length are left out") {
   file.line += R"(<Line length="1e-7"><Start>0 100</Start><End>0 100</End></Line>)"
                R"(<Curve rot="cw" radius="5" length="0"><Start>0 100</Start><Center>0 0</Center>)"
                R"(<End>0 100</End></Curve>)";
-  CHECK(made_of(file).poses.size() == 1787);
-  CHECK_THAT(
+  check_equal(made_of(file).poses.size(), 1787);
+  check_says(
       refusal_of(with_line(R"(<Line length="-5"><Start>0 0</Start><End>0 100</End></Line>)")),
-      Contains("line 7: XML element \"Line\": has the length -5 m"));
+      "line 7: XML element \"Line\": has the length -5 m");
   file.line = R"(<Line length="0"><Start>0 100</Start><End>0 100</End></Line>)";
   file.curve = "";
-  CHECK_THAT(refusal_of(file), Contains("no element with a length"));
+  check_says(refusal_of(file), "no element with a length");
 }
 
 TEST_CASE("gaps and elements that miss their ends are refused, unless they are allowed") {
   const LandFile gap =
       with_line(R"(<Line length="100"><Start>0 0</Start><End>0.0021 100</End></Line>)");
-  CHECK_THAT(refusal_of(gap), Contains("line 7") && Contains("ends 0.0021 m from where the next") &&
-                                  Contains("--max-gap 0.0021"));
-  CHECK(made_of(gap, {.max_gap = 0.0022}).codes().empty());
+  check_says(refusal_of(gap), "line 7 ... ends 0.0021 m from where the next ... --max-gap 0.0021");
+  check_equal(made_of(gap, {.max_gap = 0.0022}).codes(), "");
   const LandFile hole = with_line(R"(<Line length="95"><Start>0 0</Start><End>0 95</End></Line>)");
-  CHECK_THAT(refusal_of(hole), Contains("ends 5 m from where") && !Contains("--max-gap"));
+  check_says(refusal_of(hole), "ends 5 m from where");
+  check_lacks(refusal_of(hole), "--max-gap");
   const LandFile misfit =
       with_line(R"(<Line length="100.003"><Start>0 0</Start><End>0 100</End></Line>)");
-  CHECK_THAT(refusal_of(misfit), Contains("does not fit its ends") && Contains("0.003 m") &&
-                                     Contains("--max-gap 0.003"));
-  CHECK(made_of(misfit, {.max_gap = 0.004}).codes() == Codes{"alignment-length"});
+  check_says(refusal_of(misfit), "does not fit its ends ... 0.003 m ... --max-gap 0.003");
+  check_equal(made_of(misfit, {.max_gap = 0.004}).codes(), "alignment-length");
   const LandFile bent =
       with_curve("<Curve rot=\"ccw\" radius=\"50.01\" length=\"78.539816339745\">" + kArc);
-  CHECK_THAT(refusal_of(bent), Contains("XML element \"Curve\": does not fit its ends"));
+  check_says(refusal_of(bent), "XML element \"Curve\": does not fit its ends");
 }
 
 TEST_CASE("what is no line, arc or clothoid is refused by name") {
   for (const char* name : {"IrregularLine", "Chain", "Parabola"}) {
-    CHECK_THAT(refusal_of(with_line("<" + std::string(name) + "/>")),
-               Contains("XML element \"" + std::string(name) + "\"") &&
-                   Contains("expected Line, Curve or Spiral"));
+    check_says(refusal_of(with_line("<" + std::string(name) + "/>")),
+               std::string("XML element \"") + std::string(name) +
+                   "\" ... expected Line, Curve or Spiral");
   }
   const auto spiral = [](const std::string& attributes) {
     return with_curve("<Spiral length=\"20\" " + attributes +
                       "><Start>0 100</Start><End>0 120</End></Spiral>");
   };
-  CHECK_THAT(refusal_of(spiral(R"(rot="cw" radiusStart="INF" radiusEnd="90" spiType="bloss")")),
-             Contains("type \"bloss\"") && Contains("expected clothoid"));
-  CHECK_THAT(refusal_of(spiral(R"(rot="cw" radiusStart="INF" radiusEnd="90")")),
-             Contains("spiType"));
-  CHECK_THAT(refusal_of(spiral(R"(rot="cw" radiusEnd="90" spiType="clothoid")")),
-             Contains("radiusStart"));
-  CHECK_THAT(refusal_of(spiral(R"(rot="cw" radiusStart="-4" radiusEnd="90" spiType="clothoid")")),
-             Contains("radiusStart=\"-4\""));
-  CHECK_THAT(refusal_of(spiral(R"(radiusStart="0" radiusEnd="90" spiType="clothoid")")),
-             Contains("no attribute rot"));
-  CHECK_THAT(refusal_of(spiral(R"(rot="left" radiusStart="0" radiusEnd="90" spiType="clothoid")")),
-             Contains("rot=\"left\""));
-  CHECK_THAT(
+  check_says(refusal_of(spiral(R"(rot="cw" radiusStart="INF" radiusEnd="90" spiType="bloss")")),
+             "type \"bloss\" ... expected clothoid");
+  check_says(refusal_of(spiral(R"(rot="cw" radiusStart="INF" radiusEnd="90")")), "spiType");
+  check_says(refusal_of(spiral(R"(rot="cw" radiusEnd="90" spiType="clothoid")")), "radiusStart");
+  check_says(refusal_of(spiral(R"(rot="cw" radiusStart="-4" radiusEnd="90" spiType="clothoid")")),
+             "radiusStart=\"-4\"");
+  check_says(refusal_of(spiral(R"(radiusStart="0" radiusEnd="90" spiType="clothoid")")),
+             "no attribute rot");
+  check_says(refusal_of(spiral(R"(rot="left" radiusStart="0" radiusEnd="90" spiType="clothoid")")),
+             "rot=\"left\"");
+  check_says(
       refusal_of(with_line(R"(<Line length="100"><Start pntRef="P1"/><End>0 100</End></Line>)")),
-      Contains("pntRef"));
-  CHECK_THAT(refusal_of(with_curve(
+      "pntRef");
+  check_says(refusal_of(with_curve(
                  R"(<Curve rot="ccw" radius="50" length="314.159265">)"
                  R"(<Start>0 100</Start><Center>50 100</Center><End>0 100</End></Curve>)")),
-             Contains("closed curves"));
-  CHECK_THAT(refusal_of(with_curve(
+             "closed curves");
+  check_says(refusal_of(with_curve(
                  R"(<Curve rot="ccw" radius="50" length="315">)"
                  R"(<Start>0 100</Start><Center>50 100</Center><End>0 101</End></Curve>)")),
-             Contains("360.") && Contains("closed curves"));
+             "360. ... closed curves");
 }
 
 TEST_CASE("a clothoid between two radii meets its ends") {
@@ -255,68 +236,65 @@ TEST_CASE("a clothoid between two radii meets its ends") {
   file.curve =
       R"(<Spiral length="70" radiusStart="200" radiusEnd="60" rot="cw" spiType="clothoid">)"
       R"(<Start>0 100</Start><PI>0 150</PI><End>-20.86563797700566 165.03843825359175</End></Spiral>)";
-  const Made made = made_of(file, {.station_from = 1135, .station_to = 1135, .max_gap = 1e-9});
-  CHECK(made.codes().empty());
-  CHECK(std::abs(made.poses[0].translation[0] - 134.62992084212285501) < 1e-10);
-  CHECK(std::abs(made.poses[0].translation[1] - -4.228570671938813254) < 1e-10);
+  const MadePath made = made_of(file, {.station_from = 1135, .station_to = 1135, .max_gap = 1e-9});
+  check_equal(made.codes(), "");
+  check_near(made.poses[0].translation[0], 134.62992084212285501, 1e-10);
+  check_near(made.poses[0].translation[1], -4.228570671938813254, 1e-10);
 }
 
 TEST_CASE("swapped coordinates are noticed by the centre, and by the kinks that they make") {
-  CHECK_THAT(refusal_of({}, {.order = AxisOrder::kEastingNorthing}),
-             Contains("rot=ccw, but its Center lies on the other side") && Contains("--order ne"));
+  check_says(refusal_of({}, {.order = AxisOrder::kEastingNorthing}),
+             "rot=ccw, but its Center lies on the other side ... --order ne");
   // An arc of more than a half circle has its centre on the other side of its chord.
   LandFile wide;
   wide.line = "";
   wide.attributes = R"(name="a" staStart="1000")";
   wide.curve = R"(<Curve rot="cw" radius="50" length="235.619449">)"
                R"(<Start>0 100</Start><Center>-50 100</Center><End>-50 50</End></Curve>)";
-  CHECK(made_of(wide, {.station_to = 1200}).codes().empty());
-  CHECK_THAT(refusal_of(wide, {.order = AxisOrder::kEastingNorthing}), Contains("other side"));
+  check_equal(made_of(wide, {.station_to = 1200}).codes(), "");
+  check_says(refusal_of(wide, {.order = AxisOrder::kEastingNorthing}), "other side");
   // An arc without a length would take the rest of its circle.
   LandFile bare;
   bare.curve = "<Curve rot=\"ccw\">" + kArc;
-  CHECK_THAT(refusal_of(bare, {.order = AxisOrder::kEastingNorthing}),
-             Contains("turned the other way"));
+  check_says(refusal_of(bare, {.order = AxisOrder::kEastingNorthing}), "turned the other way");
   // Clothoids have no centre, but swapped they leave the line beside them at an angle.
   LandFile spiral;
   spiral.attributes = R"(name="a" staStart="1000" length="160")";
   spiral.curve =
       R"(<Spiral length="60" radiusStart="INF" radiusEnd="80" rot="ccw" spiType="clothoid">)"
       R"(<Start>0 100</Start><End>7.425001432715223 159.16172537187745</End></Spiral>)";
-  CHECK(made_of(spiral).codes().empty());
-  CHECK_THAT(refusal_of(spiral, {.order = AxisOrder::kEastingNorthing}),
-             Contains("turned the other way") && Contains("--order ne"));
+  check_equal(made_of(spiral).codes(), "");
+  check_says(refusal_of(spiral, {.order = AxisOrder::kEastingNorthing}),
+             "turned the other way ... --order ne");
   LandFile easting = spiral;
   easting.line = R"(<Line length="100"><Start>0 0</Start><End>100 0</End></Line>)";
   easting.curve =
       R"(<Spiral length="60" radiusStart="INF" radiusEnd="80" rot="ccw" spiType="clothoid">)"
       R"(<Start>100 0</Start><End>159.16172537187745 7.425001432715223</End></Spiral>)";
-  const Made a = made_of(spiral), b = made_of(easting, {.order = AxisOrder::kEastingNorthing});
-  CHECK(std::abs(a.poses.back().translation[0] - b.poses.back().translation[0]) < 1e-12);
-  CHECK_THAT(refusal_of(easting), Contains("--order en"));
+  const MadePath a = made_of(spiral), b = made_of(easting, {.order = AxisOrder::kEastingNorthing});
+  check_near(a.poses.back().translation[0], b.poses.back().translation[0], 1e-12);
+  check_says(refusal_of(easting), "--order en");
 }
 
 TEST_CASE("kinks, other lengths and other stations are warned of with numbers") {
   LandFile kink;
   kink.line = R"(<Line length="100"><Start>-0.5 0.00125</Start><End>0 100</End></Line>)";
-  const Made bent = made_of(kink, {.step = 1});
-  CHECK(bent.codes() == Codes{"alignment-kink"});
-  CHECK_THAT(bent.remarks[0].text,
-             Contains("1 place") && Contains("0.2865 degrees at station 1100"));
+  const MadePath bent = made_of(kink, {.step = 1});
+  check_equal(bent.codes(), "alignment-kink");
+  check_says(bent.remarks[0].text, "1 place ... 0.2865 degrees at station 1100");
   CHECK(bent.remarks[0].numbers[2].second == Approx(1100));
 
   LandFile longer;
   longer.attributes = R"(name="a" staStart="1000" length="178.5415")";
-  CHECK(made_of(longer, {.step = 1}).codes() == Codes{"alignment-length"});
+  check_equal(made_of(longer, {.step = 1}).codes(), "alignment-length");
   longer.attributes = R"(name="a" staStart="1000" length="178.5405")";
-  CHECK(made_of(longer, {.step = 1}).codes().empty());
+  check_equal(made_of(longer, {.step = 1}).codes(), "");
 
   LandFile off;
   off.curve = R"(<Curve staStart="1100.25" rot="ccw" radius="50" length="78.539816339745">)" + kArc;
-  const Made moved = made_of(off, {.step = 1});
-  CHECK(moved.codes() == Codes{"alignment-stations"});
-  CHECK_THAT(moved.remarks[0].text,
-             Contains("1 element") && Contains("by up to 0.25 m at station 1100"));
+  const MadePath moved = made_of(off, {.step = 1});
+  check_equal(moved.codes(), "alignment-stations");
+  check_says(moved.remarks[0].text, "1 element ... by up to 0.25 m at station 1100");
 }
 
 TEST_CASE("several alignments and profiles are chosen by name") {
@@ -328,21 +306,19 @@ TEST_CASE("several alignments and profiles are chosen by name") {
       R"(<ProfSurf name="terrain"/></Profile>)"
       R"(<Profile><ProfAlign name="track"><PVI>0 2</PVI><PVI>10 2</PVI></ProfAlign></Profile>)";
   file.more = second;
-  CHECK_THAT(refusal_of(file),
-             Contains("has 2 alignments: \"a\", \"second & last\"") && Contains("--alignment"));
-  CHECK_THAT(refusal_of(file, {.alignment = "b"}),
-             Contains("no alignment of the name \"b\"") && Contains("\"a\", \"second & last\""));
-  CHECK(made_of(file, {.alignment = "a"}).poses.size() == 1787);
-  CHECK_THAT(refusal_of(file, {.alignment = "second & last"}),
-             Contains("has 2 profiles: \"ground\", \"track\"") && Contains("--profile"));
-  const Made made = made_of(file, {.alignment = "second & last", .profile = "track"});
-  CHECK(made.poses[0].translation[1] == 7);
-  CHECK(made.poses[0].translation[2] == 2);
-  CHECK_THAT(refusal_of(file, {.alignment = "second & last", .profile = "terrain"}),
-             Contains("no profile of the name"));
+  check_says(refusal_of(file), "has 2 alignments: \"a\", \"second & last\" ... --alignment");
+  check_says(refusal_of(file, {.alignment = "b"}),
+             "no alignment of the name \"b\" ... \"a\", \"second & last\"");
+  check_equal(made_of(file, {.alignment = "a"}).poses.size(), 1787);
+  check_says(refusal_of(file, {.alignment = "second & last"}),
+             "has 2 profiles: \"ground\", \"track\" ... --profile");
+  const MadePath made = made_of(file, {.alignment = "second & last", .profile = "track"});
+  check_equal(made.poses[0].translation[1], 7);
+  check_equal(made.poses[0].translation[2], 2);
+  check_says(refusal_of(file, {.alignment = "second & last", .profile = "terrain"}),
+             "no profile of the name");
   file.attributes = R"(name="second &amp; last" staStart="1000")";
-  CHECK_THAT(refusal_of(file, {.alignment = "second & last"}),
-             Contains("2 alignments of the name"));
+  check_says(refusal_of(file, {.alignment = "second & last"}), "2 alignments of the name");
 }
 
 TEST_CASE("a name in another encoding is found") {
@@ -351,64 +327,66 @@ TEST_CASE("a name in another encoding is found") {
       "name=\"S\xFC"
       "d\" staStart=\"1000\"";
   file.more = R"(</Alignment><Alignment name="N" staStart="0">)";
-  CHECK(made_of(file, {.alignment = "S\xC3\xBC"
-                                    "d"})
-            .poses.size() == 1787);
+  check_equal(made_of(file, {.alignment = "S\xC3\xBC"
+                                          "d"})
+                  .poses.size(),
+              1787);
   file.attributes =
       "name=\"S\xC3\xBC"
       "d\" staStart=\"1000\"";
-  CHECK(made_of(file, {.alignment = "S\xC3\xBC"
-                                    "d"})
-            .poses.size() == 1787);
+  check_equal(made_of(file, {.alignment = "S\xC3\xBC"
+                                          "d"})
+                  .poses.size(),
+              1787);
 }
 
 TEST_CASE("without a profile a height is needed, and with one it is refused") {
   LandFile file;
   file.profile = "";
-  CHECK_THAT(refusal_of(file), Contains("no profile") && Contains("--height"));
-  CHECK(made_of(file, {.height = -3.5}).poses[77].translation[2] == -3.5);
-  CHECK_THAT(misuse_of({}, {.height = 0}), Contains("has a profile"));
-  CHECK_THAT(refusal_of(file, {.profile = "p", .height = 0}),
-             Contains("no profile of the name \"p\""));
+  check_says(refusal_of(file), "no profile ... --height");
+  check_equal(made_of(file, {.height = -3.5}).poses[77].translation[2], -3.5);
+  check_says(misuse_of({}, {.height = 0}), "has a profile");
+  check_says(refusal_of(file, {.profile = "p", .height = 0}), "no profile of the name \"p\"");
 }
 
 TEST_CASE("poses are made only where the profile reaches") {
-  const Made late = made_of(with_profile("<PVI>1040.25 1</PVI><PVI>1100 2</PVI>"));
-  CHECK(late.codes() == Codes{"profile-shorter"});
-  CHECK_THAT(late.remarks[0].text, Contains("begin 40.25 m later and end 78.54 m earlier"));
-  CHECK(late.labels.station.front() == 1040.25);
-  CHECK(late.labels.station.back() == 1100);
-  CHECK(late.poses.size() == 599);
+  const MadePath late = made_of(with_profile("<PVI>1040.25 1</PVI><PVI>1100 2</PVI>"));
+  check_equal(late.codes(), "profile-shorter");
+  check_says(late.remarks[0].text, "begin 40.25 m later and end 78.54 m earlier");
+  check_equal(late.labels.station.front(), 1040.25);
+  check_equal(late.labels.station.back(), 1100);
+  check_equal(late.poses.size(), 599);
   // What lies outside was not asked for.
-  CHECK(made_of(with_profile("<PVI>1040.25 1</PVI><PVI>1100 2</PVI>"),
-                {.station_from = 1050, .station_to = 1100})
-            .codes()
-            .empty());
-  CHECK_THAT(refusal_of(with_profile("<PVI>1040.25 1</PVI><PVI>1100 2</PVI>"),
+  check_equal(made_of(with_profile("<PVI>1040.25 1</PVI><PVI>1100 2</PVI>"),
+                      {.station_from = 1050, .station_to = 1100})
+                  .codes(),
+              "");
+  check_says(refusal_of(with_profile("<PVI>1040.25 1</PVI><PVI>1100 2</PVI>"),
                         {.station_from = 1000, .station_to = 1000}),
-             Contains("from station 1040.25 to 1100 only, where no pose is wanted"));
-  CHECK_THAT(refusal_of(with_profile("<PVI>0 1</PVI><PVI>900 2</PVI>")),
-             Contains("no pose is wanted"));
+             "from station 1040.25 to 1100 only, where no pose is wanted");
+  check_says(refusal_of(with_profile("<PVI>0 1</PVI><PVI>900 2</PVI>")), "no pose is wanted");
 }
 
 TEST_CASE("curves of a profile are read") {
   const auto height = [](const std::string& curve, double station) {
-    const Made made = made_of(with_profile("<PVI>1000 100</PVI>" + curve + "<PVI>1200 100</PVI>"),
-                              {.station_from = station, .station_to = station});
+    const MadePath made =
+        made_of(with_profile("<PVI>1000 100</PVI>" + curve + "<PVI>1200 100</PVI>"),
+                {.station_from = station, .station_to = station});
     return made.poses.at(0).translation[2];
   };
   // From +2 % to -2 %.
-  CHECK(std::abs(height(R"(<ParaCurve length="40">1100 102</ParaCurve>)", 1100) - 101.8) < 1e-12);
-  CHECK(std::abs(height(R"(<ParaCurve length="0">1100 102</ParaCurve>)", 1100) - 102) < 1e-12);
-  CHECK(std::abs(height(R"(<UnsymParaCurve lengthIn="20" lengthOut="60">1100 102</UnsymParaCurve>)",
-                        1100) -
-                 (102 - 20 * 60 * 0.04 / 160)) < 1e-12);
+  check_near(height(R"(<ParaCurve length="40">1100 102</ParaCurve>)", 1100), 101.8, 1e-12);
+  check_near(height(R"(<ParaCurve length="0">1100 102</ParaCurve>)", 1100), 102, 1e-12);
+  check_near(
+      height(R"(<UnsymParaCurve lengthIn="20" lengthOut="60">1100 102</UnsymParaCurve>)", 1100) -
+          (102 - 20 * 60 * 0.04 / 160),
+      0, 1e-12);
   const double radius = 2000, angle = std::atan(0.02);
   for (const char* sign : {"", "-"}) {
     const std::string curve =
         "<CircCurve length=\"7\" radius=\"" + std::string(sign) + "2000\">1100 102</CircCurve>";
     // The crown of the circle lies below the point by R / cos(angle) - R.
-    CHECK(std::abs(height(curve, 1100) - (102 - radius / std::cos(angle) + radius)) < 1e-11);
+    check_near(height(curve, 1100), 102 - radius / std::cos(angle) + radius, 1e-11);
   }
 }
 
@@ -416,33 +394,30 @@ TEST_CASE("profiles that make no sense are refused with their line") {
   const auto refused = [](const std::string& elements) {
     return refusal_of(with_profile(elements));
   };
-  CHECK_THAT(refused(""), Contains("has 0 points; expected at least two"));
-  CHECK_THAT(refused("<PVI>1000 1</PVI>"), Contains("has 1 point"));
-  CHECK_THAT(refused("<PVI>1000 1</PVI><PVI>1000 2</PVI>"), Contains("ascending stations"));
-  CHECK_THAT(refused("<PVI>1000 1</PVI><PVI>1200</PVI>"), Contains("holds 1 number"));
-  CHECK_THAT(refused("<PVI>1000 1</PVI><PVI>1200 1 2</PVI>"), Contains("more than 2 numbers"));
-  CHECK_THAT(refused("<PVI>1000 1</PVI><PVI>1200 1,5</PVI>"),
-             Contains("\"1,5\"") && Contains("decimal points"));
-  CHECK_THAT(refused("<PVI>1000 1</PVI><PVI>1200 nan</PVI>"), Contains("finite numbers"));
-  CHECK_THAT(refused("<PVI>1000 1</PVI><PVI>1200 1e999</PVI>"), Contains("\"1e999\""));
-  CHECK_THAT(refused("<PVI>1000 1</PVI><Bump>1100 2</Bump><PVI>1200 1</PVI>"),
-             Contains("\"Bump\""));
-  CHECK_THAT(refused("<ParaCurve length=\"9\">1000 1</ParaCurve><PVI>1200 1</PVI>"),
-             Contains("end of the profile"));
-  CHECK_THAT(refused("<PVI>1000 1</PVI><CircCurve radius=\"9\">1200 1</CircCurve>"),
-             Contains("end of the profile"));
+  check_says(refused(""), "has 0 points; expected at least two");
+  check_says(refused("<PVI>1000 1</PVI>"), "has 1 point");
+  check_says(refused("<PVI>1000 1</PVI><PVI>1000 2</PVI>"), "ascending stations");
+  check_says(refused("<PVI>1000 1</PVI><PVI>1200</PVI>"), "holds 1 number");
+  check_says(refused("<PVI>1000 1</PVI><PVI>1200 1 2</PVI>"), "more than 2 numbers");
+  check_says(refused("<PVI>1000 1</PVI><PVI>1200 1,5</PVI>"), "\"1,5\" ... decimal points");
+  check_says(refused("<PVI>1000 1</PVI><PVI>1200 nan</PVI>"), "finite numbers");
+  check_says(refused("<PVI>1000 1</PVI><PVI>1200 1e999</PVI>"), "\"1e999\"");
+  check_says(refused("<PVI>1000 1</PVI><Bump>1100 2</Bump><PVI>1200 1</PVI>"), "\"Bump\"");
+  check_says(refused("<ParaCurve length=\"9\">1000 1</ParaCurve><PVI>1200 1</PVI>"),
+             "end of the profile");
+  check_says(refused("<PVI>1000 1</PVI><CircCurve radius=\"9\">1200 1</CircCurve>"),
+             "end of the profile");
   const auto middle = [&](const std::string& curve) {
     return refused("<PVI>1000 1</PVI>" + curve + "<PVI>1200 1</PVI>");
   };
-  CHECK_THAT(middle("<ParaCurve>1100 2</ParaCurve>"), Contains("no attribute length"));
-  CHECK_THAT(middle("<ParaCurve length=\"-1\">1100 2</ParaCurve>"), Contains("length=\"-1\""));
-  CHECK_THAT(middle("<ParaCurve length=\"210\">1100 2</ParaCurve>"), Contains("begins 5 m before"));
-  CHECK_THAT(middle("<CircCurve length=\"9\">1100 2</CircCurve>"), Contains("no attribute radius"));
-  CHECK_THAT(middle("<CircCurve radius=\"0\">1100 2</CircCurve>"), Contains("radius 0"));
-  CHECK_THAT(middle("<UnsymParaCurve lengthIn=\"5\" lengthOut=\"0\">1100 2</UnsymParaCurve>"),
-             Contains("one side"));
-  CHECK_THAT(middle("<UnsymParaCurve lengthIn=\"5\">1100 2</UnsymParaCurve>"),
-             Contains("lengthOut"));
+  check_says(middle("<ParaCurve>1100 2</ParaCurve>"), "no attribute length");
+  check_says(middle("<ParaCurve length=\"-1\">1100 2</ParaCurve>"), "length=\"-1\"");
+  check_says(middle("<ParaCurve length=\"210\">1100 2</ParaCurve>"), "begins 5 m before");
+  check_says(middle("<CircCurve length=\"9\">1100 2</CircCurve>"), "no attribute radius");
+  check_says(middle("<CircCurve radius=\"0\">1100 2</CircCurve>"), "radius 0");
+  check_says(middle("<UnsymParaCurve lengthIn=\"5\" lengthOut=\"0\">1100 2</UnsymParaCurve>"),
+             "one side");
+  check_says(middle("<UnsymParaCurve lengthIn=\"5\">1100 2</UnsymParaCurve>"), "lengthOut");
 }
 
 TEST_CASE("a PVI and the curve at it are one point, in either order") {
@@ -469,7 +444,7 @@ TEST_CASE("a PVI and the curve at it are one point, in either order") {
     for (const std::string& both : {pvi + row.curve, row.curve + pvi}) {
       INFO(both);
       if (row.answer != "same") {
-        CHECK_THAT(refusal_of(file_of(both)), Contains(row.answer));
+        check_says(refusal_of(file_of(both)), row.answer);
         continue;
       }
       CHECK(made_of(file_of(both)).poses == made_of(file_of(row.curve)).poses);
@@ -500,25 +475,24 @@ TEST_CASE("a ramp of cant has the form that the station before it names") {
   };
   for (const Row& row : rows) {
     INFO(row.type);
-    const Made made =
+    const MadePath made =
         made_of(file_of(row.type, row.type), {.station_from = 1020, .station_to = 1020});
-    CHECK(made.codes().empty());
+    check_equal(made.codes(), "");
     const double cant = made.poses.at(0).rotation[7] * std::hypot(1, 0.01) * 1.5;
-    CHECK(std::abs(cant - 0.15 * row.share) < 1e-12);
+    check_near(cant, 0.15 * row.share, 1e-12);
   }
   for (const std::string type : {"biquadratic", "revBloss", "weinerBogen", "Bloss", ""}) {
     INFO(type);
     const std::string named = "transitionType=\"" + type + "\"";
     LandFile file = file_of("", "");
     file.more.insert(file.more.find("curvature"), named + " ");
-    CHECK_THAT(refusal_of(file),
-               Contains(named) && Contains("sinusoid") && Contains("--cant none"));
-    CHECK(refusal_of(file, {.cant = CantLine::kNone}) == "read");
+    check_says(refusal_of(file), std::string(named) + " ... sinusoid ... --cant none");
+    check_equal(refusal_of(file, {.cant = CantLine::kNone}), "read");
   }
   // The type at the end of the ramp may be meant for this ramp.
-  const Made doubtful = made_of(file_of("", "bloss"));
+  const MadePath doubtful = made_of(file_of("", "bloss"));
   // Its curves turn the other way, too.
-  REQUIRE(doubtful.codes() == Codes{"cant-transition", "cant-side"});
+  REQUIRE(doubtful.codes() == "cant-transition, cant-side");
   CHECK(doubtful.remarks[0].numbers.at(1).second == Approx(0.01443).epsilon(1e-3));
 }
 
@@ -532,23 +506,23 @@ TEST_CASE("cant turns the track about the line that the file or the caller names
   };
   const double level = 10.5;
   // In a left curve the right rail is high, so the inner rail is the left one.
-  const Made file = made(R"(gauge="1.435" rotationPoint="insideRail")");
-  CHECK(file.codes().empty());
-  CHECK(std::abs(file.poses[0].translation[2] - (level + 0.075)) < 1e-12);
-  CHECK(std::abs(file.poses[0].rotation[7] * std::hypot(1, 0.01) - -0.1) < 1e-3);
+  const MadePath file = made(R"(gauge="1.435" rotationPoint="insideRail")");
+  check_equal(file.codes(), "");
+  check_near(file.poses[0].translation[2], level + 0.075, 1e-12);
+  check_near(file.poses[0].rotation[7] * std::hypot(1, 0.01), -0.1, 1e-3);
   const auto raise = [&](CantLine line) {
     return made(R"(gauge="1.5")", {.cant = line}).poses[0].translation[2] - level;
   };
-  CHECK(std::abs(raise(CantLine::kCenter)) < 1e-12);
-  CHECK(std::abs(raise(CantLine::kInsideRail) - 0.075) < 1e-12);
-  CHECK(std::abs(raise(CantLine::kOutsideRail) - -0.075) < 1e-12);
-  CHECK(std::abs(raise(CantLine::kLeftRail) - 0.075) < 1e-12);
-  CHECK(std::abs(raise(CantLine::kRightRail) - -0.075) < 1e-12);
-  const Made none = made(R"(gauge="bad")", {.cant = CantLine::kNone});
-  CHECK(none.poses[0].rotation[7] == 0);
-  CHECK(none.codes().empty());
-  const Made unsaid = made(R"(gauge="1.435")");
-  CHECK(unsaid.codes() == Codes{"cant-rotation"});
+  check_near(raise(CantLine::kCenter), 0, 1e-12);
+  check_near(raise(CantLine::kInsideRail), 0.075, 1e-12);
+  check_near(raise(CantLine::kOutsideRail), -0.075, 1e-12);
+  check_near(raise(CantLine::kLeftRail), 0.075, 1e-12);
+  check_near(raise(CantLine::kRightRail), -0.075, 1e-12);
+  const MadePath none = made(R"(gauge="bad")", {.cant = CantLine::kNone});
+  check_equal(none.poses[0].rotation[7], 0);
+  check_equal(none.codes(), "");
+  const MadePath unsaid = made(R"(gauge="1.435")");
+  check_equal(unsaid.codes(), "cant-rotation");
   CHECK(unsaid.poses[0].translation[2] == file.poses[0].translation[2]);
 }
 
@@ -564,11 +538,11 @@ TEST_CASE("the side and the unit of cant follow the file") {
            1.5;
   };
   // The slope of 1 % takes part of the cant, of which 1 mm is left here.
-  CHECK(std::abs(roll("curvature=\"cw\"") - 0.03) < 1e-5);
-  CHECK(std::abs(roll("curvature=\"ccw\"") - -0.03) < 1e-5);
-  CHECK(std::abs(roll("curvature=\"cw\" adverse=\"true\"") - -0.03) < 1e-5);
-  CHECK(std::abs(roll("curvature=\"ccw\" adverse=\"1\"") - 0.03) < 1e-5);
-  CHECK(std::abs(roll("curvature=\"cw\" adverse=\"false\"") - 0.03) < 1e-5);
+  check_near(roll("curvature=\"cw\""), 0.03, 1e-5);
+  check_near(roll("curvature=\"ccw\""), -0.03, 1e-5);
+  check_near(roll("curvature=\"cw\" adverse=\"true\""), -0.03, 1e-5);
+  check_near(roll("curvature=\"ccw\" adverse=\"1\""), 0.03, 1e-5);
+  check_near(roll("curvature=\"cw\" adverse=\"false\""), 0.03, 1e-5);
   CHECK(std::abs(roll("curvature=\"cw\"", R"(<Imperial linearUnit="foot"/>)") - 30 * 0.0254) <
         1e-3);
 }
@@ -577,22 +551,22 @@ TEST_CASE("cant to the wrong side or in another unit is warned of") {
   struct Row {
     double cant;
     const char* side;
-    Codes codes;
+    std::string codes;
   };
   // The curve of the file turns to the left, so its right rail is the outer one.
-  for (const Row& row : {Row{100, "ccw", {}}, Row{40, "cw", {}}, Row{100, "cw", {"cant-side"}},
-                         Row{0.1, "ccw", {"cant-unit"}}, Row{2, "ccw", {}},
-                         Row{310, "ccw", {"cant-unit"}}, Row{180, "ccw", {}}}) {
+  for (const Row& row : {Row{100, "ccw", ""}, Row{40, "cw", ""}, Row{100, "cw", "cant-side"},
+                         Row{0.1, "ccw", "cant-unit"}, Row{2, "ccw", ""},
+                         Row{310, "ccw", "cant-unit"}, Row{180, "ccw", ""}}) {
     CAPTURE(row.cant, row.side);
     const std::string more = "curvature=\"" + std::string(row.side) + "\"";
     const LandFile file = with_more(
         cant_of(R"(gauge="1.435" rotationPoint="center")",
                 cant_station(1000, row.cant, more) + cant_station(1178.6, row.cant, more)));
-    const Made ahead = made_of(file, {.step = 1});
-    CHECK(ahead.codes() == row.codes);
-    CHECK(made_of(file, {.step = 1, .reverse = true}).codes() == row.codes);
-    if (row.codes == Codes{"cant-side"}) {
-      CHECK_THAT(ahead.remarks[0].text, Contains("on 100 % of the length") && Contains("100 mm"));
+    const MadePath ahead = made_of(file, {.step = 1});
+    check_equal(ahead.codes(), row.codes);
+    check_equal(made_of(file, {.step = 1, .reverse = true}).codes(), row.codes);
+    if (row.codes == "cant-side") {
+      check_says(ahead.remarks[0].text, "on 100 % of the length ... 100 mm");
     }
   }
 }
@@ -604,12 +578,13 @@ TEST_CASE("cant beyond its stations is told, and warned of where it is kept") {
         .codes();
   };
   const std::string left = "curvature=\"ccw\"";
-  CHECK(codes(cant_station(1000, 0, "") + cant_station(1150, 50, left)) == Codes{"cant-ends"});
-  CHECK(codes(cant_station(1020, 50, left) + cant_station(1190, 0, "")) == Codes{"cant-ends"});
-  CHECK(codes(cant_station(1020, 0, "") + cant_station(1050, 50, left) +
-              cant_station(1150, 0, "")) == Codes{"note cant-ends"});
-  CHECK(codes(cant_station(1000, 50, left) + cant_station(1190, 50, left)).empty());
-  CHECK(codes(cant_station(1050, 0, "")).empty());  // no cant at all
+  check_equal(codes(cant_station(1000, 0, "") + cant_station(1150, 50, left)), "cant-ends");
+  check_equal(codes(cant_station(1020, 50, left) + cant_station(1190, 0, "")), "cant-ends");
+  check_equal(
+      codes(cant_station(1020, 0, "") + cant_station(1050, 50, left) + cant_station(1150, 0, "")),
+      "note cant-ends");
+  check_equal(codes(cant_station(1000, 50, left) + cant_station(1190, 50, left)), "");
+  check_equal(codes(cant_station(1050, 0, "")), "");  // no cant at all
 }
 
 TEST_CASE("cants that make no sense are refused with their line") {
@@ -619,52 +594,48 @@ TEST_CASE("cants that make no sense are refused with their line") {
     return refusal_of(with_more("\n" + cant_of(attributes, stations)), options);
   };
   const std::string gauge = R"(gauge="1.435" rotationPoint="center")";
-  CHECK_THAT(refused(R"(gauge="1435" rotationPoint="center")", good),
-             Contains("gauge=\"1435\"") && Contains("up to 10"));
-  CHECK_THAT(refused(R"(gauge="1435")", cant_station(1000, 0, "")), Contains("up to 10"));
-  CHECK_THAT(refused(R"(gauge="0" rotationPoint="center")", good), Contains("gauge=\"0\""));
-  CHECK_THAT(refused(R"(gauge="1.0" rotationPoint="center")", good),
-             Contains("a gauge of 1 m") && Contains("--rail-distance"));
-  CHECK(refused(R"(gauge="1.0" rotationPoint="center")", good, {.rail_distance = 1.07}) == "read");
-  CHECK_THAT(refused(R"(rotationPoint="center")", good),
-             Contains("no attribute gauge") && Contains("--rail-distance"));
-  CHECK_THAT(refused(R"(gauge="1.435" rotationPoint="axle")", good),
-             Contains("\"axle\"") && Contains("insideRail"));
-  CHECK_THAT(refused(gauge, ""), Contains("no CantStation") && Contains("--cant none"));
-  CHECK_THAT(refused(gauge, cant_station(1000, 1600, left)),
-             Contains("raises a rail by up to 1.6 m") && Contains("millimetres"));
-  CHECK_THAT(refused(gauge, cant_station(1000, 50, "")), Contains("no attribute curvature"));
-  CHECK_THAT(refused(gauge, cant_station(1000, 50, "curvature=\"up\"")),
-             Contains("curvature=\"up\""));
-  CHECK_THAT(refused(gauge, cant_station(1000, 50, left + " adverse=\"yes\"")),
-             Contains("adverse=\"yes\""));
-  CHECK_THAT(refused(gauge, good + good), Contains("ascending stations"));
-  CHECK_THAT(refused(gauge, "<CantStation station=\"1\"/>"), Contains("no attribute appliedCant"));
-  CHECK_THAT(refused(gauge, "<CantStation appliedCant=\"1\"/>"), Contains("no attribute station"));
-  CHECK_THAT(refusal_of(with_more(cant_of(gauge, good) + cant_of(gauge, good))),
-             Contains("stands twice"));
+  check_says(refused(R"(gauge="1435" rotationPoint="center")", good),
+             "gauge=\"1435\" ... up to 10");
+  check_says(refused(R"(gauge="1435")", cant_station(1000, 0, "")), "up to 10");
+  check_says(refused(R"(gauge="0" rotationPoint="center")", good), "gauge=\"0\"");
+  check_says(refused(R"(gauge="1.0" rotationPoint="center")", good),
+             "a gauge of 1 m ... --rail-distance");
+  check_equal(refused(R"(gauge="1.0" rotationPoint="center")", good, {.rail_distance = 1.07}),
+              "read");
+  check_says(refused(R"(rotationPoint="center")", good), "no attribute gauge ... --rail-distance");
+  check_says(refused(R"(gauge="1.435" rotationPoint="axle")", good), "\"axle\" ... insideRail");
+  check_says(refused(gauge, ""), "no CantStation ... --cant none");
+  check_says(refused(gauge, cant_station(1000, 1600, left)),
+             "raises a rail by up to 1.6 m ... millimetres");
+  check_says(refused(gauge, cant_station(1000, 50, "")), "no attribute curvature");
+  check_says(refused(gauge, cant_station(1000, 50, "curvature=\"up\"")), "curvature=\"up\"");
+  check_says(refused(gauge, cant_station(1000, 50, left + " adverse=\"yes\"")), "adverse=\"yes\"");
+  check_says(refused(gauge, good + good), "ascending stations");
+  check_says(refused(gauge, "<CantStation station=\"1\"/>"), "no attribute appliedCant");
+  check_says(refused(gauge, "<CantStation appliedCant=\"1\"/>"), "no attribute station");
+  check_says(refusal_of(with_more(cant_of(gauge, good) + cant_of(gauge, good))), "stands twice");
 }
 
 TEST_CASE("options of cant change nothing without cant, which a note says") {
-  CHECK(made_of({}, {.step = 1, .cant = CantLine::kCenter}).codes() == Codes{"note no-cant"});
-  CHECK(made_of({}, {.step = 1, .cant = CantLine::kNone}).codes() == Codes{"note no-cant"});
-  CHECK(made_of({}, {.step = 1, .rail_distance = 1.5}).codes() == Codes{"note no-cant"});
+  check_equal(made_of({}, {.step = 1, .cant = CantLine::kCenter}).codes(), "note no-cant");
+  check_equal(made_of({}, {.step = 1, .cant = CantLine::kNone}).codes(), "note no-cant");
+  check_equal(made_of({}, {.step = 1, .rail_distance = 1.5}).codes(), "note no-cant");
 }
 
 TEST_CASE("station equations are warned of") {
-  const Made made =
+  const MadePath made =
       made_of(with_more(R"(<StaEquation staAhead="5000" staInternal="1050" staBack="1050"/>)"
                         R"(<StaEquation staAhead="9000" staInternal="1100"/>)"),
               {.step = 1});
-  CHECK(made.codes() == Codes{"station-equations"});
-  CHECK_THAT(made.remarks[0].text,
-             Contains("2 equations") && Contains("the internal station 1050 5000"));
-  CHECK(made.labels.station[60] == 1060);
+  check_equal(made.codes(), "station-equations");
+  check_says(made.remarks[0].text, "2 equations ... the internal station 1050 5000");
+  check_equal(made.labels.station[60], 1060);
 }
 
 TEST_CASE("the superelevation of a road is warned of, as it is left out") {
-  CHECK(made_of(with_more("<Superelevation staStart=\"1000\" staEnd=\"1100\"/>"), {.step = 1})
-            .codes() == Codes{"superelevation"});
+  check_equal(made_of(with_more("<Superelevation staStart=\"1000\" staEnd=\"1100\"/>"), {.step = 1})
+                  .codes(),
+              "superelevation");
 }
 
 TEST_CASE("another coordinate system than the environment's is warned of") {
@@ -677,10 +648,10 @@ TEST_CASE("another coordinate system than the environment's is warned of") {
       R"(AUTHORITY["EPSG","25832"]])";
   LandFile file;
   file.other = R"(<CoordinateSystem epsgCode="3878"/>)";
-  const Made other = made_of(file, {.step = 1, .environment_crs = utm});
-  CHECK(other.codes() == Codes{"alignment-crs"});
-  CHECK_THAT(other.remarks[0].text, Contains("EPSG:3878") && Contains("EPSG:25832"));
+  const MadePath other = made_of(file, {.step = 1, .environment_crs = utm});
+  check_equal(other.codes(), "alignment-crs");
+  check_says(other.remarks[0].text, "EPSG:3878 ... EPSG:25832");
   file.other = R"(<CoordinateSystem horizontalDatum="EPSG:25832"/>)";
-  CHECK(made_of(file, {.step = 1, .environment_crs = utm}).codes().empty());
-  CHECK(made_of({}, {.step = 1, .environment_crs = utm}).codes().empty());
+  check_equal(made_of(file, {.step = 1, .environment_crs = utm}).codes(), "");
+  check_equal(made_of({}, {.step = 1, .environment_crs = utm}).codes(), "");
 }

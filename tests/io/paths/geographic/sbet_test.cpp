@@ -7,11 +7,11 @@
 #include "clearway/trajectory.hpp"
 #include "support/attitudes.hpp"
 #include "support/bytes/sbet_bytes.hpp"
+#include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Matchers::Contains;
 
 namespace {
 
@@ -31,7 +31,7 @@ struct Read {
 
 Read read(const std::string& bytes, const TrajectoryOptions& options,
           const std::string& name = "path.sbet") {
-  const ReaderScratch scratch;
+  const ScratchFolder scratch;
   Read result;
   result.poses = read_trajectory(scratch.write(name, bytes), options, &result.remarks);
   return result;
@@ -43,7 +43,7 @@ std::string refusal_of_sbet(const std::string& bytes, const TrajectoryOptions& o
   try {
     read(bytes, options, name);
   } catch (const InputError& error) {
-    CHECK_THAT(error.what(), Contains(name));
+    check_says(error.what(), name);
     return error.what();
   }
   FAIL("read");
@@ -96,12 +96,12 @@ TEST_CASE("SBET: positions in UTM, as Krueger's series has them") {
   for (int i = 0; i < 2; ++i) {
     const SbetRecord& record = i == 0 ? a : b;
     const Utm expected = utm(record.latitude, record.longitude, 32);
-    CHECK(std::abs(found.poses[i].translation[0] - expected.easting) < 1e-5);
-    CHECK(std::abs(found.poses[i].translation[1] - expected.northing) < 1e-5);
+    check_near(found.poses[i].translation[0], expected.easting, 1e-5);
+    check_near(found.poses[i].translation[1], expected.northing, 1e-5);
     CHECK(found.poses[i].translation[2] == record.altitude);
   }
   REQUIRE(found.find("map-projection"));
-  CHECK_THAT(found.find("map-projection")->text, Contains("UTM zone 32N"));
+  check_says(found.find("map-projection")->text, "UTM zone 32N");
   REQUIRE(found.find("ellipsoidal-heights"));
   CHECK(found.find("ellipsoidal-heights")->severity == Message::Severity::kWarning);
   CHECK(found.find("datum-accuracy") == nullptr);
@@ -129,8 +129,7 @@ TEST_CASE("SBET: attitude by wander angle and meridian convergence") {
 
 TEST_CASE("SBET: the CRS of the environment serves where none is named") {
   const std::string bytes = SbetRecord().bytes();
-  CHECK_THAT(refusal_of_sbet(bytes, {}),
-             Contains("expected the projected coordinate reference system"));
+  check_says(refusal_of_sbet(bytes, {}), "expected the projected coordinate reference system");
   const std::string wkt =
       "PROJCS[\"local\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS "
       "84\",6378137,298.257223563]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]],"
@@ -139,15 +138,15 @@ TEST_CASE("SBET: the CRS of the environment serves where none is named") {
       "PARAMETER[\"false_northing\",0],UNIT[\"metre\",1]";
   const Read found = read(bytes, {.default_crs = wkt + "]"});
   const Utm expected = utm(0.9, 0.15, 32);
-  CHECK(std::abs(found.poses.at(0).translation[0] - expected.easting) < 1e-5);
-  CHECK(std::abs(found.poses.at(0).translation[1] - expected.northing) < 1e-5);
-  CHECK_THAT(found.find("map-projection")->text, Contains("as the environment"));
+  check_near(found.poses.at(0).translation[0], expected.easting, 1e-5);
+  check_near(found.poses.at(0).translation[1], expected.northing, 1e-5);
+  check_says(found.find("map-projection")->text, "as the environment");
   const std::string files = wkt + ",EXTENSION[\"PROJ4\",\"+proj=utm +nadgrids=/etc/passwd\"]]";
-  CHECK_THAT(refusal_of_sbet(bytes, {.default_crs = files}), Contains("not opened"));
+  check_says(refusal_of_sbet(bytes, {.default_crs = files}), "not opened");
   CHECK(read(bytes, {.default_crs = "+proj=utm +zone=32 +datum=WGS84"}).poses ==
         read(bytes, {.crs = "EPSG:32632"}).poses);
-  CHECK_THAT(refusal_of_sbet(bytes, {.default_crs = "hello"}), Contains("does not know"));
-  CHECK_THAT(refusal_of_sbet(bytes, {.default_crs = "GEOGCS[\"a\"]"}), Contains("environment"));
+  check_says(refusal_of_sbet(bytes, {.default_crs = "hello"}), "does not know");
+  check_says(refusal_of_sbet(bytes, {.default_crs = "GEOGCS[\"a\"]"}), "environment");
 }
 
 TEST_CASE("a CRS that cannot be used is refused with what was expected") {
@@ -195,44 +194,42 @@ TEST_CASE("SBET: degrees, cut files and numbers that are none are refused") {
   const TrajectoryOptions utm32{.crs = "EPSG:32632"};
   SbetRecord record;
   record.latitude = 51.5;
-  CHECK_THAT(refusal_of_sbet(SbetRecord().bytes() + record.bytes(), utm32),
-             Contains("byte 136") && Contains("record 1") && Contains("radians, not degrees"));
+  check_says(refusal_of_sbet(SbetRecord().bytes() + record.bytes(), utm32),
+             "byte 136 ... record 1 ... radians, not degrees");
   record = {};
   record.heading = 174.5;
-  CHECK_THAT(refusal_of_sbet(record.bytes(), utm32),
-             Contains("heading") && Contains("not degrees"));
+  check_says(refusal_of_sbet(record.bytes(), utm32), "heading ... not degrees");
   record = {};
   record.pitch = std::numeric_limits<double>::quiet_NaN();
-  CHECK_THAT(refusal_of_sbet(record.bytes(), utm32), Contains("pitch nan"));
+  check_says(refusal_of_sbet(record.bytes(), utm32), "pitch nan");
   record = {};
   record.altitude = std::numeric_limits<double>::infinity();
-  CHECK_THAT(refusal_of_sbet(record.bytes(), utm32), Contains("altitude inf"));
+  check_says(refusal_of_sbet(record.bytes(), utm32), "altitude inf");
   record = {};
   record.latitude = record.longitude = 0;
-  CHECK_THAT(refusal_of_sbet(record.bytes(), utm32), Contains("are 0"));
+  check_says(refusal_of_sbet(record.bytes(), utm32), "are 0");
   record = {};
   record.time = std::numeric_limits<double>::quiet_NaN();
-  CHECK_THAT(refusal_of_sbet(record.bytes(), utm32), Contains("time"));
+  check_says(refusal_of_sbet(record.bytes(), utm32), "time");
   const std::string two = SbetRecord().bytes() + SbetRecord().bytes();
   CHECK(read("", utm32).poses.empty());
   for (std::size_t size = 1; size < two.size(); ++size) {
     INFO(size);
     if (size == 136) continue;
-    CHECK_THAT(refusal_of_sbet(two.substr(0, size), utm32),
-               Contains("behind the last whole record of 136"));
+    check_says(refusal_of_sbet(two.substr(0, size), utm32), "behind the last whole record of 136");
   }
 }
 
 TEST_CASE("SBET is known by its ending, or by .out and its bytes") {
   const std::string bytes = SbetRecord().bytes();
   const TrajectoryOptions utm32{.crs = "EPSG:32632"};
-  CHECK(read(bytes, utm32, "path.out").poses.size() == 1);
-  CHECK(read(bytes, utm32, "path.SBET").poses.size() == 1);
-  CHECK(read("1 0 0 0 0 1 0 0 0 0 1 0\n", {}, "path.out").poses.size() == 1);
-  CHECK_THAT(refusal_of_sbet(bytes, utm32, "path.bin"), Contains("may be an SBET"));
+  check_equal(read(bytes, utm32, "path.out").poses.size(), 1);
+  check_equal(read(bytes, utm32, "path.SBET").poses.size(), 1);
+  check_equal(read("1 0 0 0 0 1 0 0 0 0 1 0\n", {}, "path.out").poses.size(), 1);
+  check_says(refusal_of_sbet(bytes, utm32, "path.bin"), "may be an SBET");
   TrajectoryOptions named = utm32;
   named.format = TrajectoryFormat::kSbet;
-  CHECK(read(bytes, named, "path.bin").poses.size() == 1);
+  check_equal(read(bytes, named, "path.bin").poses.size(), 1);
   const SbetRecord early{.time = 10};
   const SbetRecord late{.time = 20};
   CHECK(read(early.bytes() + late.bytes(), utm32).find("time-order") == nullptr);

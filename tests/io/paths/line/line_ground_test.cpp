@@ -9,11 +9,11 @@
 #include "clearway/error.hpp"
 #include "clearway/line.hpp"
 #include "clearway/store.hpp"
+#include "support/compare.hpp"
 #include "support/store_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
@@ -55,18 +55,12 @@ struct Site {
     return "read";
   }
 
-  std::vector<std::string> codes() const {
-    std::vector<std::string> codes;
-    for (const Message& remark : remarks) codes.push_back(remark.code);
-    return codes;
-  }
+  std::string codes() const { return codes_of(remarks); }
 
   ScratchFolder folder;
   std::vector<Message> remarks;
   PoseLabels labels;
 };
-
-using Codes = std::vector<std::string>;
 
 const std::string kLine = "x,y,station\n0,1000,50\n15,1000,65\n30,1000,80\n";
 constexpr double kHole = std::numeric_limits<double>::quiet_NaN();
@@ -77,17 +71,16 @@ TEST_CASE("a path on sloping ground has its height, climb and roll") {
   // 5 % up along the line, and 10 % up to the left of it.
   Site site([](double x, double y) { return 7 + 0.05 * x + 0.1 * y; });
   const auto poses = site.poses(kLine);
-  CHECK(site.codes() == Codes{"on-ground"});
-  CHECK_THAT(site.remarks[0].text, Contains("at 61 of 61 places on the left") &&
-                                       Contains("61 of 61 on the right") &&
-                                       Contains("0.3 m too high"));
+  check_equal(site.codes(), "note on-ground");
+  check_says(site.remarks[0].text,
+             "at 61 of 61 places on the left ... 61 of 61 on the right ... 0.3 m too high");
   REQUIRE(poses.size() == 301);
-  CHECK(site.labels.station.front() == 50);
-  CHECK(site.labels.station.back() == 80);
+  check_equal(site.labels.station.front(), 50);
+  check_equal(site.labels.station.back(), 80);
   double climb = 0;
   for (const Pose& pose : poses) {
-    CHECK(std::abs(pose.translation[2] - (7 + 0.05 * pose.translation[0])) < 0.01);
-    CHECK(std::abs(pose.rotation[7] - 0.1) < 0.01);
+    check_near(pose.translation[2], 7 + 0.05 * pose.translation[0], 0.01);
+    check_near(pose.rotation[7], 0.1, 0.01);
     climb += pose.rotation[6] / static_cast<double>(poses.size());
     CHECK(pose.rotation[0] > 0.99);
     CHECK(pose.rotation[8] > 0.99);
@@ -104,7 +97,7 @@ TEST_CASE("roll that the ground gives is not judged as cant") {
     CAPTURE(slope);
     Site site([&](double, double y) { return 7 + slope * y; });
     site.poses("x,y\n0,1001\n7.5,999.9\n15,999.5\n22.5,999.9\n30,1001\n");
-    for (const std::string& code : site.codes()) CHECK(!code.starts_with("cant-"));
+    check_lacks(site.codes(), "cant-");
   }
 }
 
@@ -113,12 +106,12 @@ TEST_CASE("a store in feet has its ground in metres, and its unit counts") {
   Site metres(ground), feet(ground, 0.3048);
   const auto a = metres.poses("x,y\n0,1000\n30,1000\n");
   const auto b = feet.poses("x,y\n0,3280.839895013123\n98.42519685039370,3280.839895013123\n");
-  CHECK(feet.codes() == Codes{"trajectory-unit", "on-ground"});
+  check_equal(feet.codes(), "note trajectory-unit, note on-ground");
   REQUIRE(a.size() == b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
-    for (int k = 0; k < 3; ++k) CHECK(std::abs(a[i].translation[k] - b[i].translation[k]) < 0.003);
+    for (int k = 0; k < 3; ++k) check_near(a[i].translation[k], b[i].translation[k], 0.003);
   }
-  CHECK(feet.poses("x [m],y [m]\n0,1000\n30,1000\n").size() == a.size());
+  check_equal(feet.poses("x [m],y [m]\n0,1000\n30,1000\n").size(), a.size());
 }
 
 TEST_CASE("gaps of up to 5 m are bridged, and longer ones refused with their place") {
@@ -129,30 +122,30 @@ TEST_CASE("gaps of up to 5 m are bridged, and longer ones refused with their pla
   };
   Site narrow(with_hole(4));
   const auto poses = narrow.poses(kLine);
-  CHECK(narrow.codes() == Codes{"on-ground"});
-  CHECK_THAT(narrow.remarks[0].text,
-             Contains("that was bridged is 4 m") && Contains("at 54 of 61 places on the left"));
+  check_equal(narrow.codes(), "note on-ground");
+  check_says(narrow.remarks[0].text, "at 54 of 61 places on the left ... that was bridged is 4 m");
   for (const Pose& pose : poses) {
-    CHECK(std::abs(pose.translation[2] - (5 + 0.04 * pose.translation[0])) < 0.02);
-    CHECK(std::abs(pose.rotation[7]) < 0.02);
+    check_near(pose.translation[2], 5 + 0.04 * pose.translation[0], 0.02);
+    check_near(pose.rotation[7], 0, 0.02);
   }
   Site wide(with_hole(6));
-  CHECK_THAT(wide.refusal(kLine), Contains("under the left wheels for 6 m, from 10 m along") &&
-                                      Contains("(at 10 1000) to 16 m") && Contains("at most 5 m"));
+  check_says(
+      wide.refusal(kLine),
+      "under the left wheels for 6 m, from 10 m along ... (at 10 1000) to 16 m ... at most 5 m");
 }
 
 TEST_CASE("poses begin and end where the ground does") {
   Site site([](double x, double) { return x < 2.02 || x > 28.6 ? kHole : 5; });
   const auto poses = site.poses(kLine);
-  CHECK(site.codes() == Codes{"on-ground", "ground-ends"});
-  CHECK_THAT(site.remarks[1].text, Contains("begin 2 m later and end 1.5 m earlier"));
+  check_equal(site.codes(), "note on-ground, ground-ends");
+  check_says(site.remarks[1].text, "begin 2 m later and end 1.5 m earlier");
   CHECK(poses.front().translation[0] == Approx(2));
   CHECK(poses.back().translation[0] == Approx(28.5));
-  CHECK(site.labels.station.front() == 52);
-  CHECK(site.labels.station.back() == 78.5);
+  check_equal(site.labels.station.front(), 52);
+  check_equal(site.labels.station.back(), 78.5);
   Site far([](double x, double) { return x < 6.1 ? kHole : 5; });
-  CHECK_THAT(far.refusal(kLine), Contains("for 6 m, from 0 m"));
-  CHECK_THAT(far.refusal("x,y\n0,2000\n30,2000\n"), Contains("for 30 m, from 0 m"));
+  check_says(far.refusal(kLine), "for 6 m, from 0 m");
+  check_says(far.refusal("x,y\n0,2000\n30,2000\n"), "for 30 m, from 0 m");
 }
 
 TEST_CASE("a parked car rises too steeply, which is said where it is too long") {
@@ -161,8 +154,8 @@ TEST_CASE("a parked car rises too steeply, which is said where it is too long") 
   };
   Site site(car(4.5));
   for (const Pose& pose : site.poses(kLine)) {
-    CHECK(std::abs(pose.translation[2] - 5) < 0.01);
-    CHECK(std::abs(pose.rotation[7]) < 0.01);
+    check_near(pose.translation[2], 5, 0.01);
+    check_near(pose.rotation[7], 0, 0.01);
   }
   // Its sill of 0.3 m is low enough to be taken for the ground, so the path leans.
   Site sill([](double x, double y) { return y < 0 && x > 10 && x < 14.5 ? 5.3 : 5.0; });
@@ -170,13 +163,10 @@ TEST_CASE("a parked car rises too steeply, which is said where it is too long") 
   for (const Pose& pose : sill.poses(kLine)) worst = std::max(worst, pose.translation[2] - 5);
   CHECK(worst > 0.14);
   CHECK(worst < 0.17);
-  CHECK(sill.codes() == Codes{"ground-leans", "on-ground"});
-  CHECK_THAT(sill.remarks[0].text, Contains("leans by up to 9.") &&
-                                       Contains("its right wheels is 0.3") &&
-                                       Contains("parked car"));
+  check_equal(sill.codes(), "ground-leans, note on-ground");
+  check_says(sill.remarks[0].text, "leans by up to 9. ... its right wheels is 0.3 ... parked car");
   Site truck(car(9));
-  CHECK_THAT(truck.refusal(kLine),
-             Contains("under the right wheels") && Contains("rises too steeply to be ground"));
+  check_says(truck.refusal(kLine), "under the right wheels ... rises too steeply to be ground");
 }
 
 TEST_CASE("the line's heights choose the floor, or a height at its begin") {
@@ -188,32 +178,32 @@ TEST_CASE("the line's heights choose the floor, or a height at its begin") {
   CHECK(height(flat, {}) == Approx(2).margin(0.01));
   CHECK(height(flat, {.height = 4.6}) == Approx(5).margin(0.01));
   CHECK(height("x,y,z\n0,1000,4.6\n30,1000,5.4\n", {}) == Approx(5).margin(0.01));
-  CHECK_THAT(site.refusal("x,y,z\n0,1000,3.5\n30,1000,3.5\n"), Contains("more than 1 m off"));
-  CHECK_THAT(site.refusal("x,y,z\n0,1000,5\n30,1000,5\n", {.height = 5}), Contains("have heights"));
+  check_says(site.refusal("x,y,z\n0,1000,3.5\n30,1000,3.5\n"), "more than 1 m off");
+  check_says(site.refusal("x,y,z\n0,1000,5\n30,1000,5\n", {.height = 5}), "have heights");
 }
 
 TEST_CASE("the ground needs a track, and takes no cant beside it") {
   Site site([](double, double) { return 5; });
   put_bytes(site.folder / "line.csv", kLine);
   const Store store(site.folder / "a.h5");
-  CHECK_THROWS_WITH(read_line(site.folder / "line.csv", {.ground = &store}), Contains("track"));
-  CHECK_THROWS_WITH(read_line(site.folder / "line.csv", {.height = 1, .track = 2}),
-                    Contains("both or neither"));
-  CHECK_THAT(site.refusal(kLine, {.track = -1}), Contains("track: -1"));
+  check_refused([&] { return read_line(site.folder / "line.csv", {.ground = &store}); }, "track");
+  check_refused([&] { return read_line(site.folder / "line.csv", {.height = 1, .track = 2}); },
+                "both or neither");
+  check_says(site.refusal(kLine, {.track = -1}), "track: -1");
   const std::string canted = "x,y,cant [mm]\n0,1000,0\n30,1000,50\n";
-  CHECK_THAT(site.refusal(canted), Contains("the ground gives the roll too"));
-  CHECK(site.poses(canted, {.cant = CantLine::kNone}).size() == 301);
+  check_says(site.refusal(canted), "the ground gives the roll too");
+  check_equal(site.poses(canted, {.cant = CantLine::kNone}).size(), 301);
   Site cliff([](double, double y) { return y > 0 ? 6.0 : 5.0; });
-  CHECK_THAT(cliff.refusal(kLine, {.height = 5.4}), Contains("less than half of the track"));
+  check_says(cliff.refusal(kLine, {.height = 5.4}), "less than half of the track");
 }
 
 TEST_CASE("corners are rounded on the ground too") {
   Site site([](double x, double y) { return 7 + 0.05 * x + 0.1 * y; });
   const auto poses =
       site.poses("x,y\n0,999\n20,999\n20,1002\n", {.corner_radius = 2, .track = 0.8});
-  CHECK(site.codes() == Codes{"line-rounded", "on-ground"});
+  check_equal(site.codes(), "note line-rounded, note on-ground");
   for (const Pose& pose : poses) {
     const double x = pose.translation[0], y = pose.translation[1] - 1000;
-    CHECK(std::abs(pose.translation[2] - (7 + 0.05 * x + 0.1 * y)) < 0.02);
+    check_near(pose.translation[2], 7 + 0.05 * x + 0.1 * y, 0.02);
   }
 }

@@ -5,11 +5,11 @@
 #include "clearway/error.hpp"
 #include "clearway/trajectory.hpp"
 #include "support/attitudes.hpp"
+#include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Matchers::Contains;
 
 namespace {
 
@@ -17,7 +17,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 std::vector<Pose> poses_of_table(const std::string& text, const TrajectoryOptions& options = {},
                                  std::vector<Message>* remarks = nullptr) {
-  const ReaderScratch scratch;
+  const ScratchFolder scratch;
   return read_trajectory(scratch.write("path.csv", text), options, remarks);
 }
 
@@ -37,9 +37,9 @@ void check_navigation(const std::vector<Pose>& poses) {
   REQUIRE(poses.size() == 1);
   const Rotation expected = navigation_rotation(3 * kDegree, -4 * kDegree, 100 * kDegree);
   CHECK(greatest_difference(expected, poses[0].rotation) < 1e-15);
-  CHECK(poses[0].translation[0] == 1);
-  CHECK(poses[0].translation[1] == 2);
-  CHECK(poses[0].translation[2] == 3);
+  check_equal(poses[0].translation[0], 1);
+  check_equal(poses[0].translation[1], 2);
+  check_equal(poses[0].translation[2], 3);
 }
 
 }  // namespace
@@ -84,49 +84,45 @@ TEST_CASE("each angle turns the way that its convention says") {
 
 TEST_CASE("angles whose unit or frame is not sure are refused") {
   const std::string head = "x,y,z,roll,pitch,heading\n";
-  CHECK_THAT(refusal_of_table(head + "1,2,3,0,0,1.5\n", {}, Remedy::kDeclareAngles),
-             Contains("degrees or radians"));
-  CHECK_THAT(refusal_of_table(head + "1,2,3,0,0,60\n", {}, Remedy::kDeclareAngles),
-             Contains("up to 60"));
+  check_says(refusal_of_table(head + "1,2,3,0,0,1.5\n", {}, Remedy::kDeclareAngles),
+             "degrees or radians");
+  check_says(refusal_of_table(head + "1,2,3,0,0,60\n", {}, Remedy::kDeclareAngles), "up to 60");
   std::vector<Message> remarks;
   CHECK(poses_of_table(head + "1,2,3,0,0,359\n", {}, &remarks).at(0).rotation[3] > 0.99);
   CHECK(
       std::ranges::any_of(remarks, [](const Message& m) { return m.code == "angles-in-degrees"; }));
   CHECK(poses_of_table(head + "1,2,3,7,0,3\n").at(0).rotation[7] >
         0.1);  // a roll of 7 is no radians
-  CHECK_THAT(refusal_of_table(head + "1,2,3,0,0,359\n", {.angle_unit = AngleUnit::kRadians}),
-             Contains("look like degrees"));
-  CHECK_THAT(refusal_of_table("x,y,z,roll_rad,pitch_rad,heading_rad\n1,2,3,20,0,0\n"),
-             Contains("look like degrees"));
-  CHECK_THAT(refusal_of_table("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,0,0\n",
+  check_says(refusal_of_table(head + "1,2,3,0,0,359\n", {.angle_unit = AngleUnit::kRadians}),
+             "look like degrees");
+  check_says(refusal_of_table("x,y,z,roll_rad,pitch_rad,heading_rad\n1,2,3,20,0,0\n"),
+             "look like degrees");
+  check_says(refusal_of_table("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,0,0\n",
                               {.angle_unit = AngleUnit::kRadians}),
-             Contains("declared to be radians"));
-  CHECK_THAT(refusal_of_table("x,y,z,roll_deg,pitch_rad,heading_deg\n1,2,3,0,0,0\n"),
-             Contains("degrees and in radians"));
-  CHECK_THAT(refusal_of_table("x,y,z,roll_deg,pitch,heading\n1,2,3,0,0,0\n"),
-             Contains("all or none"));
-  CHECK_THAT(refusal_of_table("x,y,z,roll[gon],pitch[gon],heading[gon]\n1,2,3,0,0,0\n"),
-             Contains("gon"));
-  CHECK_THAT(refusal_of_table("x,y,z,roll_deg,pitch_deg,yaw_deg\n1,2,3,0,0,0\n", {},
+             "declared to be radians");
+  check_says(refusal_of_table("x,y,z,roll_deg,pitch_rad,heading_deg\n1,2,3,0,0,0\n"),
+             "degrees and in radians");
+  check_says(refusal_of_table("x,y,z,roll_deg,pitch,heading\n1,2,3,0,0,0\n"), "all or none");
+  check_says(refusal_of_table("x,y,z,roll[gon],pitch[gon],heading[gon]\n1,2,3,0,0,0\n"), "gon");
+  check_says(refusal_of_table("x,y,z,roll_deg,pitch_deg,yaw_deg\n1,2,3,0,0,0\n", {},
                               Remedy::kDeclareAngles),
-             Contains("ned") && Contains("enu"));
-  CHECK_THAT(refusal_of_table("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,0,0\n",
+             "ned ... enu");
+  check_says(refusal_of_table("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,0,0\n",
                               {.angle_frame = AngleFrame::kEnu}),
-             Contains("column called yaw"));
-  CHECK_THAT(refusal_of_table("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,nan,0\n"),
-             Contains("line 2") && Contains("finite"));
+             "column called yaw");
+  check_says(refusal_of_table("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,nan,0\n"),
+             "line 2 ... finite");
   CHECK_THROWS_AS(poses_of_table("1 0 0 0 0 1 0 0 0 0 1 0\n", {.angle_unit = AngleUnit::kDegrees}),
                   UsageError);
 }
 
 TEST_CASE("headers that make no pose say why") {
-  CHECK_THAT(refusal_of_table("x,y,z,omega,phi,kappa\n1,2,3,0,0,0\n"), Contains("omega"));
-  CHECK_THAT(refusal_of_table("x,y,z,roll,pitch,yaw,heading\n"), Contains("both heading and yaw"));
-  CHECK_THAT(refusal_of_table("lat,lon,easting,northing,height,roll,pitch,heading\n"),
-             Contains("both"));
-  CHECK_THAT(refusal_of_table("lat,lon,height\n"), Contains("without angles"));
-  CHECK_THAT(refusal_of_table("x,y,z,roll,pitch\n"), Contains("no rotation"));
-  CHECK_THAT(refusal_of_table("lat,lon,height,qx,qy,qz,qw\n"), Contains("roll, pitch and heading"));
+  check_says(refusal_of_table("x,y,z,omega,phi,kappa\n1,2,3,0,0,0\n"), "omega");
+  check_says(refusal_of_table("x,y,z,roll,pitch,yaw,heading\n"), "both heading and yaw");
+  check_says(refusal_of_table("lat,lon,easting,northing,height,roll,pitch,heading\n"), "both");
+  check_says(refusal_of_table("lat,lon,height\n"), "without angles");
+  check_says(refusal_of_table("x,y,z,roll,pitch\n"), "no rotation");
+  check_says(refusal_of_table("lat,lon,height,qx,qy,qz,qw\n"), "roll, pitch and heading");
 }
 
 TEST_CASE("latitude and longitude in a table") {
@@ -135,9 +131,9 @@ TEST_CASE("latitude and longitude in a table") {
   // On the central meridian the map's north is true north; values from Krueger's series.
   const auto check = [](const std::vector<Pose>& poses) {
     REQUIRE(poses.size() == 1);
-    CHECK(std::abs(poses[0].translation[0] - 500000) < 1e-6);
+    check_near(poses[0].translation[0], 500000, 1e-6);
     CHECK(poses[0].translation[1] == Approx(5316300.2245).margin(1e-3));
-    CHECK(poses[0].translation[2] == 12.5);
+    check_equal(poses[0].translation[2], 12.5);
     CHECK(poses[0].rotation[0] == Approx(1));
   };
   check(poses_of_table(head + "48,9,12.5,0,0,90\n", utm32));
@@ -153,14 +149,14 @@ TEST_CASE("latitude and longitude in a table") {
   const Pose b = poses_of_table(head + "48,11,0,2,3,70\n", utm32).at(0);
   for (int k = 0; k < 9; ++k) CHECK(a.rotation[k] == Approx(b.rotation[k]).margin(1e-12));
 
-  CHECK_THAT(refusal_of_table(head + "48,9,12.5,0,0,90\n", {}, Remedy::kNameCrs),
-             Contains("coordinate reference system"));
-  CHECK_THAT(refusal_of_table(head + "1,0.5,12.5,0,0,90\n", utm32, Remedy::kDeclareAngles),
-             Contains("lat_deg"));
-  CHECK_THAT(refusal_of_table(head + "98,9,12.5,0,0,90\n", utm32), Contains("within 90 degrees"));
-  CHECK_THAT(refusal_of_table(
+  check_says(refusal_of_table(head + "48,9,12.5,0,0,90\n", {}, Remedy::kNameCrs),
+             "coordinate reference system");
+  check_says(refusal_of_table(head + "1,0.5,12.5,0,0,90\n", utm32, Remedy::kDeclareAngles),
+             "lat_deg");
+  check_says(refusal_of_table(head + "98,9,12.5,0,0,90\n", utm32), "within 90 degrees");
+  check_says(refusal_of_table(
                  "lat_rad,lon_rad,z,roll_deg,pitch_deg,heading_deg\n48,9,12.5,0,0,90\n", utm32),
-             Contains("look like degrees"));
+             "look like degrees");
   CHECK_THROWS_AS(poses_of_table("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,0,0\n", utm32),
                   UsageError);
 }

@@ -6,8 +6,10 @@
 #include <string>
 
 #include "io/result/export/position_text.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -27,16 +29,16 @@ double number_of(const std::string& text) {
 }  // namespace
 
 TEST_CASE("coordinates are printed as the decimals they stand for") {
-  CHECK(text_of(0.01, 0, 1478) == "14.78");
-  CHECK(text_of(0.001, 0, 14780) == "14.78");
-  CHECK(text_of(0.001, 0, 0) == "0");
-  CHECK(text_of(0.001, 0, -1) == "-0.001");
-  CHECK(text_of(0.001, 0, 100'000) == "100");
-  CHECK(text_of(0.001, 0.5, -500) == "0");
-  CHECK(text_of(1, 100, -30) == "70");
-  CHECK(text_of(10, 0, 12) == "120");
-  CHECK(text_of(0.0025, 636'102.84, 3) == "636102.8475");
-  CHECK(text_of(1e-7, 5e6, std::numeric_limits<std::int32_t>::max()) == "5000214.7483647");
+  check_equal(text_of(0.01, 0, 1478), "14.78");
+  check_equal(text_of(0.001, 0, 14780), "14.78");
+  check_equal(text_of(0.001, 0, 0), "0");
+  check_equal(text_of(0.001, 0, -1), "-0.001");
+  check_equal(text_of(0.001, 0, 100'000), "100");
+  check_equal(text_of(0.001, 0.5, -500), "0");
+  check_equal(text_of(1, 100, -30), "70");
+  check_equal(text_of(10, 0, 12), "120");
+  check_equal(text_of(0.0025, 636'102.84, 3), "636102.8475");
+  check_equal(text_of(1e-7, 5e6, std::numeric_limits<std::int32_t>::max()), "5000214.7483647");
 }
 
 TEST_CASE("where the step is no decimal the double's own digits are printed") {

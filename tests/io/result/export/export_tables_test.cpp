@@ -4,11 +4,11 @@
 #include "clearway/error.hpp"
 #include "io/result/export/export_result.hpp"
 #include "io/scans/point_reader.hpp"
+#include "support/compare.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
@@ -55,19 +55,18 @@ TEST_CASE("clearances are exported with their places") {
   const Tables tables;
   CHECK(tables.clearances("a.csv") ==
         "source,x,y,z,distance,pose\n3,14.78,-0.002,0.003,0.5,2\n9,0.005,0.006,-0.007,0.1,0\n");
-  CHECK(tables.clearances("a.xyz") == "14.78 -0.002 0.003 0.5 2\n0.005 0.006 -0.007 0.1 0\n");
-  CHECK_THAT(
-      tables.clearances("a.ply"),
-      Contains("property double z\nproperty double distance\nproperty uint pose\nend_header"));
+  check_equal(tables.clearances("a.xyz"), "14.78 -0.002 0.003 0.5 2\n0.005 0.006 -0.007 0.1 0\n");
+  check_says(tables.clearances("a.ply"),
+             "property double z\nproperty double distance\nproperty uint pose\nend_header");
   const std::string las = tables.clearances("a.las");
-  CHECK_THAT(las, Contains("distance") && Contains("pose that has the distance"));
+  check_says(las, "distance ... pose that has the distance");
   const auto reader = open_point_file(tables.folder / "a.las");
   PointBatch batch;
   REQUIRE(reader->read(batch));
   CHECK(batch.quanta[0] == std::array<std::int32_t, 3>{14780, -2, 3});
   double distance = 0;
   std::memcpy(&distance, las.data() + las.size() - 12, sizeof distance);
-  CHECK(distance == 0.1);
+  check_equal(distance, 0.1);
 }
 
 TEST_CASE("a result without clearances or profile is refused with the remedy") {
@@ -76,8 +75,8 @@ TEST_CASE("a result without clearances or profile is refused with the remedy") {
   const ResultReader result(folder / "b.h5");
   NoProgress progress;
   CHECK_THROWS_AS(export_clearances(result, folder / "b.csv", false, progress), UsageError);
-  CHECK_THROWS_WITH(export_profile(result, {}, 0, folder / "b.csv", false, progress),
-                    Contains("has no profile"));
+  check_refused([&] { return export_profile(result, {}, 0, folder / "b.csv", false, progress); },
+                "has no profile");
 }
 
 TEST_CASE("a profile is exported as CSV, without values where there is no point") {

@@ -3,8 +3,11 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 
+#include "io/scans/e57/e57_file.hpp"
 #include "support/bytes/e57_bytes.hpp"
+#include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
@@ -42,14 +45,14 @@ std::vector<std::vector<std::size_t>> odd_packets(std::size_t fields, unsigned s
   return packets;
 }
 
-ReadCloud read(const ReaderScratch& scratch, const E57Bytes& file) {
+ReadCloud read(const ScratchFolder& scratch, const E57Bytes& file) {
   return read_all(scratch.write("a.e57", file.build()));
 }
 
 }  // namespace
 
 TEST_CASE("an E57 integer of any width from 0 to 64 bits is read, whatever its minimum") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   constexpr std::size_t kCount = 70;
   for (unsigned width = 0; width <= 64; ++width) {
     Integers minima{kLeast};
@@ -80,7 +83,7 @@ TEST_CASE("an E57 integer of any width from 0 to 64 bits is read, whatever its m
 }
 
 TEST_CASE("an integer without limits takes 64 bits, one of a single value takes none") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   E57Bytes file;
   file.scans.emplace_back();
   E57Bytes::Field wide{"<cartesianX type=\"Integer\"/>", 64, {1, std::uint64_t{1} << 63}};
@@ -90,12 +93,12 @@ TEST_CASE("an integer without limits takes 64 bits, one of a single value takes 
   REQUIRE(cloud.positions.size() == 2);
   CHECK(cloud.positions[0] == Vec3{static_cast<double>(kLeast + 1), -3.5, 1.5});
   CHECK(cloud.positions[1] == Vec3{0, -3.5, static_cast<double>(-0.1F)});
-  CHECK(cloud.info.declared_points == 2);
+  check_equal(cloud.info.declared_points, 2);
   CHECK(cloud.info.remarks.empty());
 }
 
 TEST_CASE("fields run ahead of each other across packets as far as they like") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   constexpr std::size_t kCount = 5000;
   const Integers x = values_of(13, -9, kCount), z = values_of(33, kLeast / 2, kCount);
   std::vector<float> y(kCount);
@@ -123,7 +126,7 @@ TEST_CASE("fields run ahead of each other across packets as far as they like") {
 }
 
 TEST_CASE("fields that tell no place are stepped over: extensions, texts, structures, indices") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   E57Bytes file;
   file.scans.push_back(e57_scan({1, 2}, {3, 4}, {5, 6}));
   auto& fields = file.scans[0].fields;
@@ -143,7 +146,7 @@ TEST_CASE("fields that tell no place are stepped over: extensions, texts, struct
 }
 
 TEST_CASE("numbers that are not finite come as they are, and are not absent") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   E57Bytes file;
   const double infinity = std::numeric_limits<double>::infinity();
   file.scans.push_back(e57_scan({std::nan(""), 1}, {2, -infinity}, {0, 0}));
@@ -157,16 +160,49 @@ TEST_CASE("numbers that are not finite come as they are, and are not absent") {
 }
 
 TEST_CASE("zeros up to the next word of 64 bits behind the last record are padding") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   E57Bytes file;
   file.scans.emplace_back();
   file.scans[0].fields = {E57Bytes::integer("cartesianX", 0, 3, {1, 2, 3}),
                           E57Bytes::float64("cartesianY", {0, 0, 0}),
                           E57Bytes::float64("cartesianZ", {0, 0, 0})};
   file.scans[0].padding = std::string(7, '\0');
-  CHECK(read(scratch, file).positions.size() == 3);
+  check_equal(read(scratch, file).positions.size(), 3);
   file.scans[0].padding = std::string("\0\0\0\0\0\0\x40", 7);
   CHECK_THROWS_AS(read(scratch, file), InputError);
   file.scans[0].padding = std::string(8, '\0');
   CHECK_THROWS_AS(read(scratch, file), InputError);
+}
+
+TEST_CASE("CRC-32C gives the values of RFC 3720, by table and by instruction") {
+  std::string ascending, descending;
+  for (char c = 0; c < 32; ++c) {
+    ascending += c;
+    descending = c + descending;
+  }
+  const std::pair<std::string, std::uint32_t> known[] = {{"123456789", 0xE3069283},
+                                                         {std::string(32, '\0'), 0x8A9136AA},
+                                                         {std::string(32, '\xFF'), 0x62A8AB43},
+                                                         {ascending, 0x46DD794E},
+                                                         {descending, 0x113FDB5C},
+                                                         {"", 0}};
+  for (const auto& [text, sum] : known) {
+    CHECK(crc32c(std::as_bytes(std::span(text))) == sum);
+    CHECK(crc32c_by_table(std::as_bytes(std::span(text))) == sum);
+    CHECK(E57Bytes::checksum(text.data(), text.size()) == sum);
+  }
+}
+
+TEST_CASE(
+    "CRC-32C is the same byte by byte, by table and by instruction at every length and place") {
+  std::string text;
+  for (std::uint32_t i = 0; i < 80; ++i) text += static_cast<char>(i * 0x9E3779B1U >> 24);
+  for (std::size_t start = 0; start < 8; ++start) {
+    for (std::size_t count = 0; start + count <= text.size(); ++count) {
+      const auto bytes = std::as_bytes(std::span(text)).subspan(start, count);
+      const std::uint32_t sum = E57Bytes::checksum(text.data() + start, count);
+      REQUIRE(crc32c(bytes) == sum);
+      REQUIRE(crc32c_by_table(bytes) == sum);
+    }
+  }
 }

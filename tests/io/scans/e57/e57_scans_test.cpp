@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "support/bytes/e57_bytes.hpp"
+#include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Matchers::Contains;
 
 namespace {
 
@@ -28,7 +28,7 @@ ReadScans collect(PointReader& reader) {
 }
 
 ReadScans read_scans(const E57Bytes& file) {
-  const ReaderScratch scratch;
+  const ScratchFolder scratch;
   return collect(*open_point_file(scratch.write("a.e57", file.build())));
 }
 
@@ -59,8 +59,8 @@ TEST_CASE("each scan's pose turns and then shifts its points, in the order of th
   check_near(all.positions[1], {400000, 5000000, -0.5});
   check_near(all.positions[2], {1, -3, 2});
   CHECK(all.positions[3] == Vec3{1, 2, 3});
-  CHECK(all.info.declared_points == 4);
-  CHECK_THAT(all_texts(all.info), Contains("3 scans; 2 poses are applied"));
+  check_equal(all.info.declared_points, 4);
+  check_says(all_texts(all.info), "3 scans; 2 poses are applied");
 }
 
 TEST_CASE("half of a pose is a pose, a quaternion is normalised") {
@@ -94,7 +94,7 @@ TEST_CASE("spherical coordinates are range, azimuth from x to y, elevation from 
   check_near(all.positions[2], {0, 0, 2});
   CHECK(std::isnan(all.positions[3].x));
   check_near(all.positions[4], {1, 1, -std::sqrt(2.0)});
-  CHECK(all.absent == std::vector<std::uint64_t>{3});
+  check_equal(all.absent, {3});
 }
 
 TEST_CASE("the Cartesian coordinates count where they are valid, then the spherical ones") {
@@ -109,18 +109,18 @@ TEST_CASE("the Cartesian coordinates count where they are valid, then the spheri
     fields.push_back(E57Bytes::float32("cartesianInvalidState", {0, 1, 2, 2}));
     fields.push_back(E57Bytes::integer("sphericalInvalidState", -1, 2, {2, 0, 0, 1}));
     const ReadScans all = read_scans(file);
-    CHECK(all.positions[0].x == 1);
-    CHECK(all.positions[1].x == 9);
-    CHECK(all.positions[2].x == 9);
+    check_equal(all.positions[0].x, 1);
+    check_equal(all.positions[1].x, 9);
+    check_equal(all.positions[2].x, 9);
     CHECK(std::isnan(all.positions[3].x));
-    CHECK(all.absent == std::vector<std::uint64_t>{3});
+    check_equal(all.absent, {3});
     REQUIRE(all.info.remarks.size() == 1);
-    CHECK_THAT(all.info.remarks[0].text, Contains("1 of 4 records have no valid point"));
+    check_says(all.info.remarks[0].text, "1 of 4 records have no valid point");
     CHECK(all.info.remarks[0].severity == Message::Severity::kNote);
   }
   SECTION("without states all are valid") {
     const ReadScans all = read_scans(file);
-    CHECK(all.positions[3].x == 4);
+    check_equal(all.positions[3].x, 4);
     CHECK(all.absent.empty());
   }
 }
@@ -141,17 +141,16 @@ TEST_CASE("absent records keep their numbers over batches and scans, reading aga
                                 E57Bytes::integer("cartesianInvalidState", 0, 2, state)};
     file.scans.back().packets.assign(20, {8000, 0, 9000, 700});
   }
-  const ReaderScratch scratch;
+  const ScratchFolder scratch;
   const auto reader = open_point_file(scratch.write("a.e57", file.build()));
   for (int pass = 0; pass < 3; ++pass) {
     const ReadScans all = collect(*reader);
     REQUIRE(all.positions.size() == 2 * kCount);
     REQUIRE(all.absent.size() == 140);
     for (std::size_t i = 0; i < 140; ++i) REQUIRE(all.absent[i] == i * 1000 + 7);
-    CHECK(all.positions[kCount + 5].x == 5);
+    check_equal(all.positions[kCount + 5].x, 5);
     REQUIRE(all.info.remarks.size() == 2);
-    CHECK_THAT(all_texts(all.info),
-               Contains("2 scans; none has a pose") && Contains("140 of 140,000 records"));
+    check_says(all_texts(all.info), "2 scans; none has a pose ... 140 of 140,000 records");
     reader->rewind();
     PointBatch batch;
     if (pass == 1) REQUIRE(reader->read(batch));  // then it is rewound from the middle
@@ -165,23 +164,23 @@ TEST_CASE("scans without points or coordinates are stepped over, and said") {
   file.scans.emplace_back();
   file.scans[2].fields = {E57Bytes::integer("colorRed", 0, 255, {1, 2, 3})};
   const ReadScans all = read_scans(file);
-  CHECK(all.positions.size() == 1);
-  CHECK(all.info.declared_points == 1);
-  CHECK_THAT(all_texts(all.info), Contains("3 scans; none has a pose") &&
-                                      Contains("1 scan without points, of 3") &&
-                                      Contains("1 scan without coordinates, of 3"));
+  check_equal(all.positions.size(), 1);
+  check_equal(all.info.declared_points, 1);
+  check_says(all_texts(all.info),
+             "3 scans; none has a pose ... 1 scan without points, of 3 ... 1 scan without "
+             "coordinates, of 3");
 }
 
 TEST_CASE("a file without scans, and a scan without a binary section, hold no points") {
   E57Bytes file;
   CHECK(read_scans(file).positions.empty());
-  CHECK(read_scans(file).info.declared_points == 0);
+  check_equal(read_scans(file).info.declared_points, 0);
   file.scans = {e57_scan({}, {}, {})};
   E57Bytes::Content content = file.content();
   const std::string offset = "fileOffset=\"48\"";
   content.bytes.replace(content.bytes.find(offset), offset.size(), "fileOffset=\"00\"");
-  const ReaderScratch scratch;
-  CHECK(read_all(scratch.write("a.e57", E57Bytes::paged(content.bytes))).size() == 0);
+  const ScratchFolder scratch;
+  check_equal(read_all(scratch.write("a.e57", E57Bytes::paged(content.bytes))).size(), 0);
 }
 
 TEST_CASE("the coordinate reference system is kept, and its unit, E57's own is the metre") {
@@ -195,18 +194,18 @@ TEST_CASE("the coordinate reference system is kept, and its unit, E57's own is t
   CHECK(read_scans(file).info.unit == LengthUnit::kUsSurveyFoot);
   CHECK(read_scans(file).info.crs_wkt == wkt);
   REQUIRE(read_scans(file).info.remarks.size() == 1);
-  CHECK(read_scans(file).info.remarks[0].code == "e57-unit");
+  check_equal(read_scans(file).info.remarks[0].code, "e57-unit");
   file.root_xml =
       "<coordinateMetadata type=\"String\"><![CDATA[LOCAL_CS[\"l\",UNIT[\"metre\",1]],"
       "VERT_CS[\"v\",VERT_DATUM[\"d\",2005],UNIT[\"foot\",0.3048]] ]]></coordinateMetadata>";
   CHECK(read_scans(file).info.unit == LengthUnit::kMetre);
-  CHECK(read_scans(file).info.height_unit == 0.3048);
+  check_equal(read_scans(file).info.height_unit, 0.3048);
   file.root_xml = "<coordinateMetadata type=\"String\">EPSG:25832</coordinateMetadata>";
-  CHECK(read_scans(file).info.crs == "EPSG:25832");
+  check_equal(read_scans(file).info.crs, "EPSG:25832");
   file.root_xml = "<coordinateMetadata type=\"String\">a &lt; b</coordinateMetadata>";
   CHECK_FALSE(read_scans(file).info.crs_unread.empty());
   CHECK(read_scans(file).info.unit == LengthUnit::kMetre);
-  CHECK(read_scans(file).info.crs_wkt == "a < b");
+  check_equal(read_scans(file).info.crs_wkt, "a < b");
 }
 
 TEST_CASE("points far beyond the declared bounds are warned of, in either frame") {
@@ -224,8 +223,8 @@ TEST_CASE("points far beyond the declared bounds are warned of, in either frame"
   file.scans[0].xml = bounds("0", "5");  // the points are in millimetres
   REQUIRE(remarks().size() == 1);
   CHECK(remarks()[0].severity == Message::Severity::kWarning);
-  CHECK(remarks()[0].code == "declared-bounds");
-  CHECK_THAT(remarks()[0].text, Contains("scan 1") && Contains("(5000, 0, 2000)"));
+  check_equal(remarks()[0].code, "declared-bounds");
+  check_says(remarks()[0].text, "scan 1 ... (5000, 0, 2000)");
   for (const auto& [least, greatest] : {std::pair{"0", "5000"},
                                         {"0", "4999.9"},
                                         {"0", "0"},
@@ -238,9 +237,9 @@ TEST_CASE("points far beyond the declared bounds are warned of, in either frame"
   // Some writers declare the bounds behind the pose.
   file.scans[0].xml =
       bounds("-6000", "-2000") + E57Bytes::pose({"1", "0", "0", "0"}, {"-7000", "-4000", "-4000"});
-  CHECK(remarks().size() == 1);
+  check_equal(remarks().size(), 1);
   CHECK(remarks()[0].severity == Message::Severity::kNote);
   file.scans[0].xml =
       bounds("0", "5000") + E57Bytes::pose({"1", "0", "0", "0"}, {"-1e6", "-4000", "-4000"});
-  CHECK(remarks().size() == 1);
+  check_equal(remarks().size(), 1);
 }

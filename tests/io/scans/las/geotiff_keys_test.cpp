@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "io/scans/map_scale.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
-using Catch::Contains;
+using namespace clearway::test;
 
 namespace {
 
@@ -171,14 +172,14 @@ TEST_CASE("GeoTIFF keys name units and maps") {
     INFO(one.name);
     const GeotiffCrs crs = keys_of(one.keys).crs();
     CHECK(crs.units.plane == one.plane);
-    CHECK(std::abs(crs.units.heights - one.heights) < 1e-12);
-    CHECK(crs.units.trouble + crs.units.doubt == "");
+    check_near(crs.units.heights, one.heights, 1e-12);
+    check_equal(crs.units.trouble + crs.units.doubt, "");
     const auto map = ScanMap::of(crs.crs);
     REQUIRE(map.has_value() == (one.scale > 0));
     if (!map) continue;
     const auto scale = map->at(one.place[0], one.place[1]);
     REQUIRE(scale);
-    CHECK(std::abs(scale->error() - std::abs(one.scale - 1)) < 2e-8);
+    check_near(scale->error(), std::abs(one.scale - 1), 2e-8);
   }
 }
 
@@ -187,26 +188,27 @@ TEST_CASE("GeoTIFF keys that are not understood are named") {
     const GeotiffCrs crs = keys_of(keys).crs();
     return crs.unread + crs.unread_heights;
   };
-  CHECK_THAT(unread({{1024, 1}, {3076, 32632}}), Contains("key 3076 is 32632"));
-  CHECK_THAT(unread({{1024, 1}, {3076, 32767}}), Contains("key 3076 is 32767 (user-defined)"));
-  CHECK_THAT(unread({{1024, 1}, {3076, 32767}, {3077, -1.0}}), Contains("key 3076"));
-  CHECK_THAT(unread({{1024, 1}, {3072, 1}}), Contains("key 3072 is 1,"));
-  CHECK_THAT(unread({{1024, 1}, {3072, 4326}}), Contains("key 3072 is 4326"));
-  CHECK_THAT(unread({{1024, 7}}), Contains("key 1024 is 7"));
-  CHECK_THAT(unread({{1024, 1}, {3072, 25832}, {4096, 5030}}), Contains("key 4096 is 5030"));
-  CHECK_THAT(unread({{1024, 1}, {3072, 25832}, {4096, 32767}}), Contains("key 4096 is 32767"));
-  CHECK_THAT(unread({{1024, 1}, {3072, 25832}, {4099, 9102}}), Contains("key 4099 is 9102"));
-  CHECK_THAT(unread({{1024, 1}, {3072, 32767}, {3075, 27}, {3076, 9001}}),
-             Contains("projection of their own"));
+  check_says(unread({{1024, 1}, {3076, 32632}}), "key 3076 is 32632");
+  check_says(unread({{1024, 1}, {3076, 32767}}), "key 3076 is 32767 (user-defined)");
+  check_says(unread({{1024, 1}, {3076, 32767}, {3077, -1.0}}), "key 3076");
+  check_says(unread({{1024, 1}, {3072, 1}}), "key 3072 is 1,");
+  check_says(unread({{1024, 1}, {3072, 4326}}), "key 3072 is 4326");
+  check_says(unread({{1024, 7}}), "key 1024 is 7");
+  check_says(unread({{1024, 1}, {3072, 25832}, {4096, 5030}}), "key 4096 is 5030");
+  check_says(unread({{1024, 1}, {3072, 25832}, {4096, 32767}}), "key 4096 is 32767");
+  check_says(unread({{1024, 1}, {3072, 25832}, {4099, 9102}}), "key 4099 is 9102");
+  check_says(unread({{1024, 1}, {3072, 32767}, {3075, 27}, {3076, 9001}}),
+             "projection of their own");
   CHECK(unread({{1024, 1}, {3072, 25832}, {4096, 5030}, {4099, 9001}}).empty());
 }
 
 TEST_CASE("GeoTIFF keys that contradict each other or cannot be used as they are") {
   const auto units = [](const std::vector<Key>& keys) { return keys_of(keys).crs().units; };
-  CHECK(units({{1024, 1}, {3076, 9036}}).trouble == "its unit is 1000 m");
-  CHECK(units({{1024, 1}, {3072, 25832}, {4096, 5715}}).trouble == "its heights count downwards");
-  CHECK_THAT(units({{1024, 1}, {3072, 2230}, {3076, 9001}}).doubt,
-             Contains("they name the unit metre") && Contains("EPSG:2230"));
-  CHECK_THAT(units({{1024, 1}, {3072, 26917}, {4096, 6360}, {4099, 9001}}).doubt,
-             Contains("they name metre for heights"));
+  check_equal(units({{1024, 1}, {3076, 9036}}).trouble, "its unit is 1000 m");
+  check_equal(units({{1024, 1}, {3072, 25832}, {4096, 5715}}).trouble,
+              "its heights count downwards");
+  check_says(units({{1024, 1}, {3072, 2230}, {3076, 9001}}).doubt,
+             "they name the unit metre ... EPSG:2230");
+  check_says(units({{1024, 1}, {3072, 26917}, {4096, 6360}, {4099, 9001}}).doubt,
+             "they name metre for heights");
 }

@@ -6,8 +6,10 @@
 
 #include "clearway/error.hpp"
 #include "support/bytes/written_bytes.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 using Quanta = std::vector<std::array<std::int32_t, 3>>;
 
 namespace {
@@ -52,23 +54,23 @@ std::uint64_t declared_bytes(const test::WrittenBytes& bytes) {
 
 TEST_CASE("LAS 1.2 header, field by field") {
   const auto bytes = written(header_of(3), kPoints);
-  CHECK(bytes.text(0, 4) == "LASF");
+  check_equal(bytes.text(0, 4), "LASF");
   CHECK(bytes.zero(4, 20));
-  CHECK(bytes.at<std::uint8_t>(24) == 1);
-  CHECK(bytes.at<std::uint8_t>(25) == 2);
-  CHECK(bytes.text(26, 32) == "OTHER");
-  CHECK(bytes.text(58, 32) == "Clearway");
+  check_equal(bytes.at<std::uint8_t>(24), 1);
+  check_equal(bytes.at<std::uint8_t>(25), 2);
+  check_equal(bytes.text(26, 32), "OTHER");
+  check_equal(bytes.text(58, 32), "Clearway");
   CHECK(bytes.zero(90, 4));
-  CHECK(bytes.at<std::uint16_t>(94) == 227);
-  CHECK(bytes.at<std::uint32_t>(96) == 227);
-  CHECK(bytes.at<std::uint32_t>(100) == 0);
-  CHECK(bytes.at<std::uint8_t>(104) == 0);
-  CHECK(bytes.at<std::uint16_t>(105) == 20);
-  CHECK(bytes.at<std::uint32_t>(107) == 3);
-  CHECK(bytes.at<std::uint32_t>(111) == 3);
+  check_equal(bytes.at<std::uint16_t>(94), 227);
+  check_equal(bytes.at<std::uint32_t>(96), 227);
+  check_equal(bytes.at<std::uint32_t>(100), 0);
+  check_equal(bytes.at<std::uint8_t>(104), 0);
+  check_equal(bytes.at<std::uint16_t>(105), 20);
+  check_equal(bytes.at<std::uint32_t>(107), 3);
+  check_equal(bytes.at<std::uint32_t>(111), 3);
   CHECK(bytes.zero(115, 16));
   check_geometry(bytes);
-  CHECK(bytes.size() == declared_bytes(bytes));
+  check_equal(bytes.size(), declared_bytes(bytes));
 }
 
 TEST_CASE("LAS point format 0, field by field") {
@@ -76,7 +78,7 @@ TEST_CASE("LAS point format 0, field by field") {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t at = 227 + 20 * i;
     for (std::size_t k = 0; k < 3; ++k) CHECK(bytes.at<std::int32_t>(at + 4 * k) == kPoints[i][k]);
-    CHECK(bytes.at<std::uint16_t>(at + 12) == 0);
+    check_equal(bytes.at<std::uint16_t>(at + 12), 0);
     CHECK(bytes.at<std::uint8_t>(at + 14) == 0b001001);
     CHECK(bytes.zero(at + 15, 5));
   }
@@ -87,25 +89,25 @@ TEST_CASE("LAS 1.4 with a CRS, field by field") {
   header.crs_wkt = kWkt;
   const auto bytes = written(header, kPoints);
   const auto wkt_bytes = static_cast<std::uint32_t>(kWkt.size() + 1);
-  CHECK(bytes.at<std::uint16_t>(6) == 16);
-  CHECK(bytes.at<std::uint8_t>(25) == 4);
-  CHECK(bytes.at<std::uint16_t>(94) == 375);
+  check_equal(bytes.at<std::uint16_t>(6), 16);
+  check_equal(bytes.at<std::uint8_t>(25), 4);
+  check_equal(bytes.at<std::uint16_t>(94), 375);
   CHECK(bytes.at<std::uint32_t>(96) == 375 + 54 + wkt_bytes);
-  CHECK(bytes.at<std::uint32_t>(100) == 1);
-  CHECK(bytes.at<std::uint8_t>(104) == 6);
-  CHECK(bytes.at<std::uint16_t>(105) == 30);
+  check_equal(bytes.at<std::uint32_t>(100), 1);
+  check_equal(bytes.at<std::uint8_t>(104), 6);
+  check_equal(bytes.at<std::uint16_t>(105), 30);
   CHECK(bytes.zero(107, 24));
   check_geometry(bytes);
   CHECK(bytes.zero(227, 20));
-  CHECK(bytes.at<std::uint64_t>(247) == 3);
-  CHECK(bytes.at<std::uint64_t>(255) == 3);
+  check_equal(bytes.at<std::uint64_t>(247), 3);
+  check_equal(bytes.at<std::uint64_t>(255), 3);
   CHECK(bytes.zero(263, 112));
-  CHECK(bytes.text(377, 16) == "LASF_Projection");
-  CHECK(bytes.at<std::uint16_t>(393) == 2112);
+  check_equal(bytes.text(377, 16), "LASF_Projection");
+  check_equal(bytes.at<std::uint16_t>(393), 2112);
   CHECK(bytes.at<std::uint16_t>(395) == wkt_bytes);
   CHECK(bytes.text(429, wkt_bytes) == kWkt);
   CHECK(bytes.zero(429 + kWkt.size(), 1));
-  CHECK(bytes.size() == declared_bytes(bytes));
+  check_equal(bytes.size(), declared_bytes(bytes));
 }
 
 TEST_CASE("LAS point format 6 with first poses, field by field") {
@@ -114,25 +116,25 @@ TEST_CASE("LAS point format 6 with first poses, field by field") {
   const std::vector<std::uint32_t> poses{0, 4000000000u, 17};
   const auto bytes = written(header, kPoints, poses);
   REQUIRE(bytes.at<std::uint32_t>(96) == 375 + 54 + 192);
-  CHECK(bytes.at<std::uint32_t>(100) == 1);
-  CHECK(bytes.at<std::uint16_t>(105) == 34);
-  CHECK(bytes.text(377, 16) == "LASF_Spec");
-  CHECK(bytes.at<std::uint16_t>(393) == 4);
-  CHECK(bytes.at<std::uint16_t>(395) == 192);
+  check_equal(bytes.at<std::uint32_t>(100), 1);
+  check_equal(bytes.at<std::uint16_t>(105), 34);
+  check_equal(bytes.text(377, 16), "LASF_Spec");
+  check_equal(bytes.at<std::uint16_t>(393), 4);
+  check_equal(bytes.at<std::uint16_t>(395), 192);
   CHECK(bytes.zero(429, 2));
-  CHECK(bytes.at<std::uint8_t>(431) == 5);
-  CHECK(bytes.at<std::uint8_t>(432) == 0);
-  CHECK(bytes.text(433, 32) == "first_pose");
+  check_equal(bytes.at<std::uint8_t>(431), 5);
+  check_equal(bytes.at<std::uint8_t>(432), 0);
+  check_equal(bytes.text(433, 32), "first_pose");
   CHECK(bytes.zero(465, 124));
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t at = 621 + 34 * i;
     for (std::size_t k = 0; k < 3; ++k) CHECK(bytes.at<std::int32_t>(at + 4 * k) == kPoints[i][k]);
-    CHECK(bytes.at<std::uint16_t>(at + 12) == 0);
-    CHECK(bytes.at<std::uint8_t>(at + 14) == 0x11);
+    check_equal(bytes.at<std::uint16_t>(at + 12), 0);
+    check_equal(bytes.at<std::uint8_t>(at + 14), 0x11);
     CHECK(bytes.zero(at + 15, 15));
     CHECK(bytes.at<std::uint32_t>(at + 30) == poses[i]);
   }
-  CHECK(bytes.size() == declared_bytes(bytes));
+  check_equal(bytes.size(), declared_bytes(bytes));
 }
 
 TEST_CASE("a CRS and first poses together declare both records") {
@@ -140,27 +142,27 @@ TEST_CASE("a CRS and first poses together declare both records") {
   header.fields = {{"first_pose"}};
   header.crs_wkt = kWkt;
   const auto bytes = written(header, {kPoints[1]}, {9});
-  CHECK(bytes.at<std::uint32_t>(100) == 2);
+  check_equal(bytes.at<std::uint32_t>(100), 2);
   const std::size_t second = 375 + 54 + kWkt.size() + 1;
-  CHECK(bytes.text(second + 2, 16) == "LASF_Spec");
-  CHECK(bytes.size() == declared_bytes(bytes));
+  check_equal(bytes.text(second + 2, 16), "LASF_Spec");
+  check_equal(bytes.size(), declared_bytes(bytes));
 }
 
 TEST_CASE("a CRS too long for a variable length record goes behind the points") {
   LasHeader header = header_of(3);
   header.crs_wkt = std::string(65535, 'w');
   const auto bytes = written(header, kPoints);
-  CHECK(bytes.at<std::uint32_t>(100) == 0);
-  CHECK(bytes.at<std::uint32_t>(243) == 1);
+  check_equal(bytes.at<std::uint32_t>(100), 0);
+  check_equal(bytes.at<std::uint32_t>(243), 1);
   const auto start = bytes.at<std::uint64_t>(235);
   REQUIRE(start == declared_bytes(bytes));
-  CHECK(bytes.text(start + 2, 16) == "LASF_Projection");
-  CHECK(bytes.at<std::uint16_t>(start + 18) == 2112);
-  CHECK(bytes.at<std::uint64_t>(start + 20) == 65536);
+  check_equal(bytes.text(start + 2, 16), "LASF_Projection");
+  check_equal(bytes.at<std::uint16_t>(start + 18), 2112);
+  check_equal(bytes.at<std::uint64_t>(start + 20), 65536);
   CHECK(bytes.text(start + 60, 65536) == header.crs_wkt);
-  CHECK(bytes.size() == start + 60 + 65536);
+  check_equal(bytes.size(), start + 60 + 65536);
   header.crs_wkt.pop_back();
-  CHECK(written(header, kPoints).at<std::uint32_t>(100) == 1);
+  check_equal(written(header, kPoints).at<std::uint32_t>(100), 1);
 }
 
 TEST_CASE("a count beyond 32 bits is declared by LAS 1.4") {
@@ -169,10 +171,10 @@ TEST_CASE("a count beyond 32 bits is declared by LAS 1.4") {
   LasWriter writer(file, header);
   writer.write(Quanta(60000, {1, 2, 3}));  // more than the buffer: the header is written
   const test::WrittenBytes bytes(file);
-  CHECK(bytes.at<std::uint8_t>(25) == 4);
-  CHECK(bytes.at<std::uint32_t>(107) == 0);
-  CHECK(bytes.at<std::uint64_t>(247) == 0x100000000);
-  CHECK(written(header_of(0), {}).at<std::uint8_t>(25) == 2);
+  check_equal(bytes.at<std::uint8_t>(25), 4);
+  check_equal(bytes.at<std::uint32_t>(107), 0);
+  check_equal(bytes.at<std::uint64_t>(247), 0x100000000);
+  check_equal(written(header_of(0), {}).at<std::uint8_t>(25), 2);
 }
 
 TEST_CASE("many points through the buffer arrive in order") {
@@ -189,7 +191,7 @@ TEST_CASE("many points through the buffer arrive in order") {
 
 TEST_CASE("LAS without points has zero bounds") {
   const auto bytes = written(header_of(0), {});
-  CHECK(bytes.size() == 227);
+  check_equal(bytes.size(), 227);
   CHECK(bytes.zero(179, 48));
 }
 

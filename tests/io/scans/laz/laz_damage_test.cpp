@@ -17,7 +17,7 @@ struct Outcomes {
 Outcomes flip_every_byte(const LazBytes& laz) {
   const std::string sound = laz.build();
   const auto expected = positions_of(laz.points);
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   Outcomes outcomes;
   for (std::size_t at = 0; at < sound.size(); ++at) {
     std::string bytes = sound;
@@ -69,7 +69,7 @@ TEST_CASE("a LAZ file cut at any byte is refused, or has all its points") {
     spare = laz.build().size() - whole + 30;
   }
   const std::string bytes = laz.build();
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   const auto expected = positions_of(laz.points);
   for (std::size_t size = bytes.size(); size-- > 0;) {
     const auto path = scratch.write("a.laz", std::string_view(bytes).substr(0, size));

@@ -6,11 +6,11 @@
 #include <cstring>
 #include <limits>
 
+#include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Matchers::Contains;
 
 namespace {
 
@@ -27,10 +27,10 @@ std::string header(const std::string& format, const std::string& body) {
 }
 
 std::string refusal_of_bytes(const std::string& bytes) {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   const auto path = scratch.write("a.ply", bytes);
   const std::string refusal = refusal_of(path);
-  CHECK_THAT(refusal, Contains(path.string()));
+  check_says(refusal, path.string());
   return refusal;
 }
 
@@ -39,7 +39,7 @@ const std::string kXyz = "property float x\nproperty float y\nproperty float z\n
 /// A file of one vertex (1, 2, -3) whose coordinates have the type.
 template <typename Number>
 void check_type(const std::vector<std::string>& spellings) {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   const Number z = std::is_signed_v<Number> ? static_cast<Number>(-3) : static_cast<Number>(200);
   for (const std::string& type : spellings) {
     for (const bool big : {false, true}) {
@@ -70,7 +70,7 @@ TEST_CASE("coordinates of every type and spelling, in either byte order") {
 }
 
 TEST_CASE("lists and other elements around the vertices are skipped") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   const bool big = GENERATE(false, true);
   const bool list_in_vertex = GENERATE(false, true);
   const std::string body =
@@ -90,7 +90,7 @@ TEST_CASE("lists and other elements around the vertices are skipped") {
   data += '\1' + bytes_of(std::int32_t{0}, big);
   const std::string head = header(big ? "binary_big_endian" : "binary_little_endian", body);
   const auto reader = open_point_file(scratch.write("a.ply", head + data));
-  CHECK(reader->info().declared_points == 2u);
+  check_equal(reader->info().declared_points, 2u);
   for (int pass = 0; pass < 2; ++pass) {
     const auto cloud = read_all(*reader);
     REQUIRE(cloud.positions.size() == 2);
@@ -101,7 +101,7 @@ TEST_CASE("lists and other elements around the vertices are skipped") {
 }
 
 TEST_CASE("many vertices with extra properties arrive in order") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   std::string bytes =
       header("binary_little_endian", "element vertex 100001\nproperty uchar a\n" + kXyz);
   for (int i = 0; i < 100'001; ++i) {
@@ -117,7 +117,7 @@ TEST_CASE("many vertices with extra properties arrive in order") {
 }
 
 TEST_CASE("an ASCII PLY with line ends of either kind") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   std::string text =
       header("ascii",
              "element camera 1\nproperty list int float a\nproperty uchar b\n"
@@ -140,56 +140,54 @@ TEST_CASE("an ASCII PLY with line ends of either kind") {
     CHECK(cloud.positions[1] == Vec3{4, 5, 6});
     CHECK(std::isnan(cloud.positions[2].x));
     CHECK(cloud.positions[2].y == -std::numeric_limits<double>::infinity());
-    CHECK(cloud.positions[2].z == 0);
+    check_equal(cloud.positions[2].z, 0);
     reader->rewind();
   }
 }
 
 TEST_CASE("a PLY without vertices is valid and empty") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   const std::string format = GENERATE("ascii", "binary_little_endian");
   const auto path = scratch.write("a.ply", header(format, "element vertex 0\n" + kXyz));
-  CHECK(read_all(path).size() == 0);
+  check_equal(read_all(path).size(), 0);
 }
 
 TEST_CASE("a malformed PLY header is refused with its line") {
-  CHECK_THAT(refusal_of_bytes(""), Contains("`ply`"));
-  CHECK_THAT(refusal_of_bytes("ply\nformat ascii 2.0\n"), Contains("line 2") && Contains("format"));
-  CHECK_THAT(refusal_of_bytes("ply\nformat binary 1.0\n"), Contains("line 2"));
+  check_says(refusal_of_bytes(""), "`ply`");
+  check_says(refusal_of_bytes("ply\nformat ascii 2.0\n"), "line 2 ... format");
+  check_says(refusal_of_bytes("ply\nformat binary 1.0\n"), "line 2");
   const auto refusal = [](const std::string& body) {
     return refusal_of_bytes(header("ascii", body) + "1 2 3\n");
   };
-  CHECK_THAT(refusal(""), Contains("line 3") && Contains("vertex"));
-  CHECK_THAT(refusal("element vertex\n"), Contains("line 3") && Contains("element NAME COUNT"));
-  CHECK_THAT(refusal("element vertex -1\n"), Contains("line 3"));
-  CHECK_THAT(refusal("element vertex 99999999999999999999\n"), Contains("line 3"));
-  CHECK_THAT(refusal("element vertex 9999999999999999999\n" + kXyz), Contains("can hold"));
-  CHECK_THAT(refusal("property float x\n"), Contains("line 3") && Contains("before"));
-  CHECK_THAT(refusal("element vertex 1\nproperty half x\n"),
-             Contains("line 4") && Contains("type"));
-  CHECK_THAT(refusal("element vertex 1\nproperty list float int x\n"), Contains("integer"));
-  CHECK_THAT(refusal("element vertex 1\nproperty float\n"), Contains("line 4"));
-  CHECK_THAT(refusal("element vertex 1\nfoo\n"), Contains("line 4") && Contains("foo"));
-  CHECK_THAT(refusal("element vertex 1\nproperty float x\nproperty float y\n"),
-             Contains("no property z"));
-  CHECK_THAT(refusal("element vertex 1\nproperty float x\n" + kXyz), Contains("one property x"));
-  CHECK_THAT(refusal("element vertex 1\nproperty list uchar float x\nproperty float y\n"
+  check_says(refusal(""), "line 3 ... vertex");
+  check_says(refusal("element vertex\n"), "line 3 ... element NAME COUNT");
+  check_says(refusal("element vertex -1\n"), "line 3");
+  check_says(refusal("element vertex 99999999999999999999\n"), "line 3");
+  check_says(refusal("element vertex 9999999999999999999\n" + kXyz), "can hold");
+  check_says(refusal("property float x\n"), "line 3 ... before");
+  check_says(refusal("element vertex 1\nproperty half x\n"), "line 4 ... type");
+  check_says(refusal("element vertex 1\nproperty list float int x\n"), "integer");
+  check_says(refusal("element vertex 1\nproperty float\n"), "line 4");
+  check_says(refusal("element vertex 1\nfoo\n"), "line 4 ... foo");
+  check_says(refusal("element vertex 1\nproperty float x\nproperty float y\n"), "no property z");
+  check_says(refusal("element vertex 1\nproperty float x\n" + kXyz), "one property x");
+  check_says(refusal("element vertex 1\nproperty list uchar float x\nproperty float y\n"
                      "property float z\n"),
-             Contains("list"));
-  CHECK_THAT(refusal("element vertex 1\n" + kXyz + "element vertex 1\n" + kXyz), Contains("two"));
-  CHECK_THAT(refusal("element none 1\nelement vertex 1\n" + kXyz), Contains("no property"));
+             "list");
+  check_says(refusal("element vertex 1\n" + kXyz + "element vertex 1\n" + kXyz), "two");
+  check_says(refusal("element none 1\nelement vertex 1\n" + kXyz), "no property");
 }
 
 TEST_CASE("malformed ASCII vertices are refused with their line") {
   const auto refusal = [](const std::string& rows) {
     return refusal_of_bytes(header("ascii", "element vertex 2\n" + kXyz) + rows);
   };
-  CHECK_THAT(refusal("1 2 3\n4 5\n"), Contains("line 9") && Contains("\"z\""));
-  CHECK_THAT(refusal("1 2 3\n4 5 x\n"), Contains("line 9") && Contains("number"));
-  CHECK_THAT(refusal("1 2 3\n4 5 6 7\n"), Contains("line 9") && Contains("end of the line"));
-  CHECK_THAT(refusal("1,2,3\n4 5 6\n"), Contains("line 8"));
-  CHECK_THAT(refusal("1 2 3\n"), Contains("1 of element") && Contains("expected 2"));
-  CHECK_THAT(refusal("1 2 1e999\n4 5 6\n"), Contains("line 8"));
+  check_says(refusal("1 2 3\n4 5\n"), "line 9 ... \"z\"");
+  check_says(refusal("1 2 3\n4 5 x\n"), "line 9 ... number");
+  check_says(refusal("1 2 3\n4 5 6 7\n"), "line 9 ... end of the line");
+  check_says(refusal("1,2,3\n4 5 6\n"), "line 8");
+  check_says(refusal("1 2 3\n"), "1 of element ... expected 2");
+  check_says(refusal("1 2 1e999\n4 5 6\n"), "line 8");
 }
 
 TEST_CASE("a list that counts nonsense is refused") {
@@ -197,15 +195,15 @@ TEST_CASE("a list that counts nonsense is refused") {
   const std::string rest(100, 'x');
   for (const bool big : {false, true}) {
     const std::string head = header(big ? "binary_big_endian" : "binary_little_endian", body);
-    CHECK_THAT(refusal_of_bytes(head + bytes_of(std::int32_t{-1}, big) + rest),
-               Contains("-1 items") && Contains("byte"));
-    CHECK_THAT(refusal_of_bytes(head + bytes_of(std::int32_t{0x7FFFFFFF}, big) + rest),
-               Contains("ends at byte"));
+    check_says(refusal_of_bytes(head + bytes_of(std::int32_t{-1}, big) + rest),
+               "byte ... -1 items");
+    check_says(refusal_of_bytes(head + bytes_of(std::int32_t{0x7FFFFFFF}, big) + rest),
+               "ends at byte");
   }
   const std::string ascii = header("ascii", body);
-  CHECK_THAT(refusal_of_bytes(ascii + "-1\n1 2 3\n"), Contains("line 10"));
-  CHECK_THAT(refusal_of_bytes(ascii + "1.5 1\n1 2 3\n"), Contains("whole number"));
-  CHECK_THAT(refusal_of_bytes(ascii + "4000000000 1\n1 2 3\n"), Contains("line 10"));
+  check_says(refusal_of_bytes(ascii + "-1\n1 2 3\n"), "line 10");
+  check_says(refusal_of_bytes(ascii + "1.5 1\n1 2 3\n"), "whole number");
+  check_says(refusal_of_bytes(ascii + "4000000000 1\n1 2 3\n"), "line 10");
 }
 
 TEST_CASE("more data than declared is refused where the vertices end the file") {
@@ -213,45 +211,45 @@ TEST_CASE("more data than declared is refused where the vertices end the file") 
   const std::string face = "element face 0\nproperty list uchar int n\n";
   for (const std::string& behind : {std::string(), face}) {
     const std::string ascii = header("ascii", vertices + behind) + "1 2 3\n";
-    CHECK_THAT(refusal_of_bytes(ascii + "4 5 6\n"), Contains("line") && Contains("more than"));
-    CHECK_THAT(refusal_of_bytes(ascii + "\n \n7"), Contains("more than"));
+    check_says(refusal_of_bytes(ascii + "4 5 6\n"), "line ... more than");
+    check_says(refusal_of_bytes(ascii + "\n \n7"), "more than");
     const std::string binary =
         header("binary_little_endian", vertices + behind) + std::string(12, '\0');
-    CHECK_THAT(refusal_of_bytes(binary + "x"), Contains("1 bytes more"));
-    CHECK_THAT(refusal_of_bytes(binary + std::string(12, '\0')), Contains("12 bytes more"));
-    ReaderScratch scratch;
-    CHECK(read_all(scratch.write("a.ply", ascii + " \n\n")).size() == 1);
-    CHECK(read_all(scratch.write("b.ply", binary + "\r\n")).size() == 1);
+    check_says(refusal_of_bytes(binary + "x"), "1 bytes more");
+    check_says(refusal_of_bytes(binary + std::string(12, '\0')), "12 bytes more");
+    ScratchFolder scratch;
+    check_equal(read_all(scratch.write("a.ply", ascii + " \n\n")).size(), 1);
+    check_equal(read_all(scratch.write("b.ply", binary + "\r\n")).size(), 1);
   }
 }
 
 TEST_CASE("elements behind the vertices are not looked at") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   const std::string body = "element vertex 1\n" + kXyz +
                            "element face 3\nproperty list uchar int n\nelement edge 1\n"
                            "property int a\n";
   for (const std::string tail :
        {"", "3 0 1\n", "no face\n", "3 0 1 2\n3 0 1 2\n3 1 2 3\n1\n9 9\n"}) {
     const auto cloud = read_all(scratch.write("a.ply", header("ascii", body) + "1 2 3\n" + tail));
-    CHECK(cloud.positions == std::vector<Vec3>{{1, 2, 3}});
-    CHECK(cloud.info.faces == 3);
+    check_equal(cloud.positions, {{1, 2, 3}});
+    check_equal(cloud.info.faces, 3);
   }
   for (const std::size_t bytes : {0, 1, 1000}) {
     const auto cloud =
         read_all(scratch.write("b.ply", header("binary_big_endian", body) + std::string(12, '\0') +
                                             std::string(bytes, '\xFF')));
-    CHECK(cloud.positions == std::vector<Vec3>{{0, 0, 0}});
+    check_equal(cloud.positions, {{0, 0, 0}});
   }
 }
 
 TEST_CASE("the lines of vertices are told") {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   const auto path = scratch.write(
       "a.ply", header("ascii", "element vertex 3\n" + kXyz) + "1 2 3\n\n4 5 6\n7 8 9\n");
   const auto reader = open_point_file(path);
   CHECK(reader->lines_of(std::vector<std::uint64_t>{0, 1, 2}) ==
         std::vector<std::uint64_t>{8, 10, 11});
-  CHECK(reader->lines_of(std::vector<std::uint64_t>{2}) == std::vector<std::uint64_t>{11});
+  check_equal(reader->lines_of(std::vector<std::uint64_t>{2}), {11});
   reader->rewind();
-  CHECK(read_all(*reader).size() == 3);
+  check_equal(read_all(*reader).size(), 3);
 }

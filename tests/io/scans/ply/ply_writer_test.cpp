@@ -4,8 +4,10 @@
 #include <stdexcept>
 
 #include "support/bytes/written_bytes.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 TEST_CASE("a double PLY holds header and coordinates bit for bit") {
   const File file = test::nameless_file();
@@ -19,11 +21,11 @@ TEST_CASE("a double PLY holds header and coordinates bit for bit") {
   const test::WrittenBytes bytes(file);
   CHECK(bytes.text(0, header.size()) == header);
   REQUIRE(bytes.size() == header.size() + 2 * 24);
-  CHECK(bytes.at<double>(header.size()) == 0.1);
-  CHECK(bytes.at<double>(header.size() + 8) == -2);
-  CHECK(bytes.at<double>(header.size() + 16) == 1e300);
-  CHECK(bytes.at<double>(header.size() + 24) == 5);
-  CHECK(bytes.at<double>(header.size() + 40) == 7);
+  check_equal(bytes.at<double>(header.size()), 0.1);
+  check_equal(bytes.at<double>(header.size() + 8), -2);
+  check_equal(bytes.at<double>(header.size() + 16), 1e300);
+  check_equal(bytes.at<double>(header.size() + 24), 5);
+  check_equal(bytes.at<double>(header.size() + 40), 7);
 }
 
 TEST_CASE("a float PLY with first poses") {
@@ -41,9 +43,9 @@ TEST_CASE("a float PLY with first poses") {
   CHECK(bytes.text(0, header.size()) == header);
   REQUIRE(bytes.size() == header.size() + 16);
   CHECK(bytes.at<float>(header.size()) == 0.1F);
-  CHECK(bytes.at<float>(header.size() + 4) == -2);
-  CHECK(bytes.at<float>(header.size() + 8) == 3);
-  CHECK(bytes.at<std::uint32_t>(header.size() + 12) == 4000000000u);
+  check_equal(bytes.at<float>(header.size() + 4), -2);
+  check_equal(bytes.at<float>(header.size() + 8), 3);
+  check_equal(bytes.at<std::uint32_t>(header.size() + 12), 4000000000u);
 }
 
 TEST_CASE("a PLY with another number of points than promised is refused") {

@@ -6,18 +6,18 @@
 #include <random>
 
 #include "clearway/model.hpp"
+#include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Matchers::Contains;
 
 namespace {
 
 using Columns = std::vector<std::string>;
 
 ReadCloud cloud_of(const std::string& text, const Columns& columns = {}) {
-  ReaderScratch scratch;
+  ScratchFolder scratch;
   return read_all(*open_point_file(scratch.write("a.csv", text), {columns, true}));
 }
 
@@ -96,7 +96,7 @@ TEST_CASE("a comment that names x, y and z but does not fit the lines is prose o
   CHECK(cloud.positions == kTwoColumns);
   REQUIRE(cloud.info.remarks.size() == 1);
   CHECK(cloud.info.remarks[0].severity == Message::Severity::kWarning);
-  CHECK(cloud.info.remarks[0].code == "column-names");
+  check_equal(cloud.info.remarks[0].code, "column-names");
 }
 
 TEST_CASE("easting, northing and heights are x, y and z in whatever order") {
@@ -113,9 +113,8 @@ TEST_CASE("easting, northing and heights are x, y and z in whatever order") {
   CHECK(points_of_columns("X [m] Y [m] Z [m]\n1 -2.5 3e2\n4 5 6\n") == kTwoColumns);
   CHECK(points_of_columns("x y z easting northing height\n1 -2.5 3e2 9 9 9\n4 5 6 9 9 9\n") ==
         kTwoColumns);
-  CHECK_THAT(refusal_of_columns("easting,y,z\n1,2,3\n").text, Contains("line 1"));
-  CHECK_THAT(refusal_of_columns("easting,northing,height,altitude\n1,2,3,4\n").text,
-             Contains("line 1"));
+  check_says(refusal_of_columns("easting,y,z\n1,2,3\n").text, "line 1");
+  check_says(refusal_of_columns("easting,northing,height,altitude\n1,2,3,4\n").text, "line 1");
 }
 
 TEST_CASE("units in brackets: feet are told, others than metres and feet refused") {
@@ -127,12 +126,12 @@ TEST_CASE("units in brackets: feet are told, others than metres and feet refused
   CHECK(cloud_of("X [local],Y [local],Z [local]\n1,2,3\n").info.unit == LengthUnit::kUnknown);
   for (const std::string unit : {"mm", "cm", "inch", "deg", "km"}) {
     const std::string header = "X [" + unit + "],Y [" + unit + "],Z [" + unit + "]\n";
-    CHECK_THAT(refusal_of_columns(header + "1,2,3\n").text,
-               Contains("in " + unit) && Contains("metres"));
+    check_says(refusal_of_columns(header + "1,2,3\n").text,
+               std::string("in ") + unit + " ... metres");
   }
-  CHECK_THAT(refusal_of_columns("x_mm,y_mm,z_mm\n1,2,3\n").text, Contains("in mm"));
-  CHECK_THAT(refusal_of_columns("X [m],Y [ft],Z [m]\n1,2,3\n").text, Contains("m and ft"));
-  CHECK_THAT(refusal_of_columns("X [m],Y [m],Z [deg]\n1,2,3\n").text, Contains("in deg"));
+  check_says(refusal_of_columns("x_mm,y_mm,z_mm\n1,2,3\n").text, "in mm");
+  check_says(refusal_of_columns("X [m],Y [ft],Z [m]\n1,2,3\n").text, "m and ft");
+  check_says(refusal_of_columns("X [m],Y [m],Z [deg]\n1,2,3\n").text, "in deg");
   for (const auto& [unit, metres] :
        {std::pair("m", 1.0), std::pair("ft", 0.3048), std::pair("mm", 0.001)}) {
     const auto info = cloud_of("X [m],Y [m],Z [" + std::string(unit) + "]\n1,2,3\n").info;
@@ -145,7 +144,7 @@ TEST_CASE("units in brackets: feet are told, others than metres and feet refused
 TEST_CASE("names of a trajectory and of angles are refused") {
   const auto check = [](const std::string& text, const std::string& what) {
     const Refusal refusal = refusal_of_columns(text);
-    CHECK_THAT(refusal.text, Contains("looks like") && Contains(what) && Contains("line"));
+    check_says(refusal.text, "line ... looks like ... " + what);
     CHECK(refusal.remedy == Remedy::kColumns);
   };
   for (const std::string mark : {"", "# ", "#"}) {
@@ -165,14 +164,14 @@ TEST_CASE("what looks like something else than points is refused with what it lo
   const auto check = [](const std::string& text, const std::string& what) {
     INFO(text.substr(0, 200));
     const Refusal refusal = refusal_of_columns(text);
-    CHECK_THAT(refusal.text, Contains("looks like") && Contains(what) && Contains("line"));
+    check_says(refusal.text, "line ... looks like ... " + what);
     CHECK(refusal.remedy == Remedy::kColumns);
-    ReaderScratch scratch;
+    ScratchFolder scratch;
     try {
       read_model_points(scratch.write("model.txt", text));
       FAIL("read as a model");
     } catch (const InputError& error) {
-      CHECK_THAT(error.what(), Contains("looks like") && Contains(what));
+      check_says(error.what(), std::string("looks like ... ") + what);
       CHECK(error.remedy() == Remedy::kNone);  // a model's columns cannot be chosen
     }
   };
@@ -244,13 +243,14 @@ TEST_CASE("times and grid indices before the coordinates are recognised") {
       const std::string text = table(lines, row.line);
       INFO(text.substr(0, 200));
       const Refusal refusal = refusal_of_columns(text);
-      CHECK_THAT(refusal.text, Contains(row.what) && Contains("line 1"));
+      check_says(refusal.text, std::string("line 1 ... ") + row.what);
       CHECK(refusal.remedy == Remedy::kColumns);
       CHECK(refusal.amount == row.first_column);
       const auto x = static_cast<int>(row.first_column);
-      CHECK(
+      check_equal(
           points_of_columns(text, {std::to_string(x), std::to_string(x + 1), std::to_string(x + 2)})
-              .size() == static_cast<std::size_t>(lines));
+              .size(),
+          static_cast<std::size_t>(lines));
     }
   }
 }
@@ -366,25 +366,25 @@ TEST_CASE("the caller chooses columns by numbers or by names") {
         kTwoColumns);
   CHECK(points_of_columns("2\nP1,1,-2.5,3e2\nP2,4,5,6\n", {"2", "3", "4"}) == kTwoColumns);
   // A table that would be refused is read where its columns are chosen.
-  CHECK(points_of_columns(table(5, tum_line), {"2", "3", "4"}).size() == 5);
-  CHECK(points_of_columns("1 1 -2.5 3e2\n2 4 5 6\n3 0 0 0\n", {"2", "3", "4"}).size() == 3);
+  check_equal(points_of_columns(table(5, tum_line), {"2", "3", "4"}).size(), 5);
+  check_equal(points_of_columns("1 1 -2.5 3e2\n2 4 5 6\n3 0 0 0\n", {"2", "3", "4"}).size(), 3);
   CHECK(points_of_columns("t,x,y,z,qx,qy,qz,qw\n1,1,-2.5,3e2,0,0,0,1\n2,4,5,6,0,0,0,1\n",
                           {"x", "y", "z"}) == kTwoColumns);
   const ReadCloud millimetres = cloud_of("X [mm],Y [mm],Z [mm]\n1,2,3\n", {"1", "2", "3"});
   REQUIRE(millimetres.info.remarks.size() == 1);
-  CHECK(millimetres.info.remarks[0].code == "other-unit");
+  check_equal(millimetres.info.remarks[0].code, "other-unit");
 }
 
 TEST_CASE("chosen columns that are not there are refused") {
-  CHECK_THAT(refusal_of_columns("1 2 3\n", {"2", "3", "4"}).text, Contains("line 1"));
-  CHECK_THAT(refusal_of_columns("1 2 3 4\n1 2 3\n", {"2", "3", "4"}).text,
-             Contains("line 2") && Contains("columns 2 3 4"));
-  CHECK_THAT(refusal_of_columns("a,b,c\n1,2,3\n", {"a", "b", "d"}).text, Contains("a, b, d"));
-  CHECK_THAT(refusal_of_columns("a,b,c,c\n1,2,3,4\n", {"a", "b", "c"}).text, Contains("once"));
-  CHECK_THAT(refusal_of_columns("1 2 3\n", {"a", "b", "c"}).text, Contains("a, b, c"));
-  CHECK_THAT(refusal_of_columns("9 1 x 3\n9 4 5 6\n", {"2", "3", "4"}).text, Contains("line 1"));
-  CHECK_THAT(refusal_of_columns("1 2 3\n", {"0", "1", "2"}).text, Contains("0, 1, 2"));
-  ReaderScratch scratch;
+  check_says(refusal_of_columns("1 2 3\n", {"2", "3", "4"}).text, "line 1");
+  check_says(refusal_of_columns("1 2 3 4\n1 2 3\n", {"2", "3", "4"}).text,
+             "line 2 ... columns 2 3 4");
+  check_says(refusal_of_columns("a,b,c\n1,2,3\n", {"a", "b", "d"}).text, "a, b, d");
+  check_says(refusal_of_columns("a,b,c,c\n1,2,3,4\n", {"a", "b", "c"}).text, "once");
+  check_says(refusal_of_columns("1 2 3\n", {"a", "b", "c"}).text, "a, b, c");
+  check_says(refusal_of_columns("9 1 x 3\n9 4 5 6\n", {"2", "3", "4"}).text, "line 1");
+  check_says(refusal_of_columns("1 2 3\n", {"0", "1", "2"}).text, "0, 1, 2");
+  ScratchFolder scratch;
   CHECK_THROWS_AS(open_point_file(scratch.write("a.xyz", "1 2 3\n"), {{"1", "2"}, true}),
                   UsageError);
 }

@@ -4,24 +4,26 @@
 #include "clearway/error.hpp"
 #include "io/files/text_number.hpp"
 #include "io/scans/length_unit.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 TEST_CASE("a length has the double nearest to what is written") {
-  CHECK(length_of("0.1")->value == 0.1);
+  check_equal(length_of("0.1")->value, 0.1);
   CHECK_FALSE(length_of("0.1")->has_unit);
-  CHECK(length_of("10cm")->value == 0.1);
-  CHECK(length_of("-2.5e3 mm")->value == -2.5);
-  CHECK(length_of("4 in")->value == 0.1016);
-  CHECK(length_of("0.2ft")->in_units_of(kMetresPerFoot) == 0.2);
-  CHECK(length_of(" 4 in ")->value == 0.1016);
+  check_equal(length_of("10cm")->value, 0.1);
+  check_equal(length_of("-2.5e3 mm")->value, -2.5);
+  check_equal(length_of("4 in")->value, 0.1016);
+  check_equal(length_of("0.2ft")->in_units_of(kMetresPerFoot), 0.2);
+  check_equal(length_of(" 4 in ")->value, 0.1016);
   for (const double foot : {kMetresPerFoot, kMetresPerUsSurveyFoot}) {
-    CHECK(length_of("0.33 ft")->in_units_of(foot) == 0.33);
+    check_equal(length_of("0.33 ft")->in_units_of(foot), 0.33);
   }
   CHECK(length_of("0.33us-ft")->in_units_of(kMetresPerUsSurveyFoot) == Approx(0.33).epsilon(1e-15));
   CHECK(length_of("1e6 ift")->in_units_of(kMetresPerUsSurveyFoot) == Approx(999'998).margin(1e-3));
-  CHECK(length_of("1m")->in_units_of(0.5) == 2);
-  CHECK(length_of("7")->in_units_of(0.5) == 7);
+  check_equal(length_of("1m")->in_units_of(0.5), 2);
+  check_equal(length_of("7")->in_units_of(0.5), 7);
 }
 
 TEST_CASE("what is no finite length is none") {
@@ -32,7 +34,7 @@ TEST_CASE("what is no finite length is none") {
 }
 
 TEST_CASE("units of files are known by their names") {
-  CHECK(file_unit_names() == std::vector<std::string>{"mm", "cm", "m", "in", "ft", "ift", "us-ft"});
+  check_equal(file_unit_names(), {"mm", "cm", "m", "in", "ft", "ift", "us-ft"});
   CHECK(file_unit_of("in") == FileUnit(0.0254));
   CHECK(file_unit_of("feet") == FileUnit(kMetresPerFoot));
   CHECK(file_unit_of("us survey foot")->metres() == kMetresPerUsSurveyFoot);

@@ -1,14 +1,16 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "io/scans/text/point_blocks.hpp"
+#include "support/bytes/pcd_bytes.hpp"
+#include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Matchers::Contains;
 
 namespace {
 
@@ -44,7 +46,7 @@ std::vector<std::string> lines_in_blocks(const std::filesystem::path& path) {
 }  // namespace
 
 TEST_CASE("blocks have the lines of their text, each once") {
-  const ReaderScratch scratch;
+  const ScratchFolder scratch;
   std::mt19937 random(7);
   constexpr std::size_t kBlock = LineBlocks::kBlockBytes, kLongest = InputBuffer::kLongestLine;
   const std::size_t most_of_line[] = {3, 100, kLongest};
@@ -71,7 +73,7 @@ TEST_CASE("blocks have the lines of their text, each once") {
 }
 
 TEST_CASE("a line that is too long is too long in its block") {
-  const ReaderScratch scratch;
+  const ScratchFolder scratch;
   constexpr std::size_t kBlock = LineBlocks::kBlockBytes, kLongest = InputBuffer::kLongestLine;
   for (const std::size_t before : {std::size_t{0}, kBlock - 4, kBlock}) {
     std::string text;
@@ -80,9 +82,117 @@ TEST_CASE("a line that is too long is too long in its block") {
       const std::string longer = text + std::string(length, 'x') + "\nend\n";
       const auto lines = lines_in_blocks(scratch.write("a.txt", longer));
       REQUIRE_FALSE(lines.empty());
-      CHECK(lines.back() == "too long");
+      check_equal(lines.back(), "too long");
     }
     const auto path = scratch.write("a.txt", text + std::string(kLongest, 'x') + "\nend\n");
     CHECK((lines_in_blocks(path) == lines_in_turn(path)));
   }
+}
+
+namespace {
+
+constexpr std::size_t kPoints = 90'000;  // some 8 blocks of lines, and more than a batch
+
+Vec3 point_of(std::size_t i) {
+  const auto number = static_cast<double>(i);
+  return {number / 8, -number, number * 1e3};
+}
+
+std::string row_of(std::size_t i) {
+  const Vec3 p = point_of(i);
+  return std::to_string(p.x) + " " + std::to_string(p.y) + "\t" + std::to_string(p.z);
+}
+
+std::string rows(std::size_t from, std::size_t to, const std::string& behind = "\n") {
+  std::string text;
+  for (std::size_t i = from; i < to; ++i) text += row_of(i) + behind;
+  return text;
+}
+
+void check_points(const std::filesystem::path& path) {
+  const auto reader = open_point_file(path);
+  for (int i = 0; i < 2; ++i) {
+    const auto points = read_all(*reader).positions;
+    REQUIRE(points.size() == kPoints);
+    std::size_t same = 0;
+    for (std::size_t k = 0; k < kPoints; ++k) same += points[k] == point_of(k) ? 1 : 0;
+    CHECK(same == kPoints);
+    reader->rewind();
+  }
+}
+
+std::string ply(const std::string& vertices, std::size_t count, const std::string& more = "") {
+  return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(count) +
+         "\nproperty double x\nproperty double y\nproperty double z\n" + more + "end_header\n" +
+         vertices;
+}
+
+}  // namespace
+
+TEST_CASE("a long text has its points in the order of its lines") {
+  const ScratchFolder scratch;
+  check_points(scratch.write("a.xyz", rows(0, kPoints)));
+  check_points(scratch.write("a.xyz", "# one\n" + rows(0, 9, " 7 8\r\n") + "\n// more\n" +
+                                          rows(9, 70'000, " 7 8\n") + "\n#\n" +
+                                          rows(70'000, kPoints, " 7 8\n")));
+  check_points(scratch.write("a.xyz", rows(0, kPoints - 1) + row_of(kPoints - 1)));
+  check_points(scratch.write("a.pts", std::to_string(kPoints) + "\n" + rows(0, kPoints)));
+  check_points(
+      scratch.write("a.pts", "40000\n" + rows(0, 40'000) + "\n50000\n" + rows(40'000, kPoints)));
+  check_points(scratch.write("a.ply", ply(rows(0, kPoints), kPoints)));
+  check_points(scratch.write(
+      "a.ply", ply(rows(0, 50'000, " \r\n") + "\n" + rows(50'000, kPoints) + "3 0 1 2\n3 2 1 0\n",
+                   kPoints, "element face 2\nproperty list uchar int n\n")));
+}
+
+TEST_CASE("a line in the middle of a long text is refused by its number") {
+  const ScratchFolder scratch;
+  const std::string damaged = "#\n" + rows(0, 70'000) + "1 2 x\n" + rows(0, 20'000);
+  check_says(refusal_of(scratch.write("a.xyz", damaged)), "line 70002: \"1 2 x\"");
+  check_says(
+      refusal_of(scratch.write("a.ply", ply(rows(0, 70'000) + "1 2\n" + rows(0, 9), 80'000))),
+      "line 70008: expected a number for property");
+  check_says(refusal_of(scratch.write("a.ply", ply(rows(0, 70'000), 70'001))),
+             "ends after line 70007 with 70000 of element");
+  check_says(refusal_of(scratch.write("a.ply", ply(rows(0, 70'001), 70'000))),
+             "is more than the header declares");
+  check_says(refusal_of(scratch.write("a.pts", "69999\n" + rows(0, 70'000))),
+             "line 70001: more than the 69999 points that line 1 declares");
+  check_says(refusal_of(scratch.write("a.pts", "70001\n" + rows(0, 70'000))),
+             "ends after line 70001 with 70000 points; expected 70001");
+  const std::string long_line = rows(0, 70'000) + "1 2 3 " + std::string(70'000, '4') + "\n";
+  check_says(refusal_of(scratch.write("a.xyz", long_line)),
+             "line 70001: is longer than 65536 bytes");
+}
+
+TEST_CASE("a long text that may be cut is warned of by the number of its last line") {
+  const ScratchFolder scratch;
+  const auto reader = open_point_file(scratch.write("a.xyz", rows(0, 70'000, " 5\n") + row_of(1)));
+  check_equal(read_all(*reader).positions.size(), 70'001);
+  REQUIRE(reader->info().remarks.size() == 1);
+  check_equal(reader->info().remarks[0].code, "cut-text");
+  check_equal(reader->info().remarks[0].numbers.at(0).second, 70'001);
+}
+
+// The lines that messages name for points, in every text format.
+
+TEST_CASE("the lines of points in a text are told") {
+  ScratchFolder scratch;
+  const auto lines = [&](const char* name, const std::string& text,
+                         std::vector<std::uint64_t> points) {
+    return open_point_file(scratch.write(name, text))->lines_of(points);
+  };
+  using Lines = std::vector<std::uint64_t>;
+  CHECK(lines("a.pts", "2\n1 2 3\n\n4 5 6\n1\n7 8 9\n", {0, 1, 2}) == Lines{2, 4, 6});
+  const std::string axes = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+  CHECK(lines("a.ptx", "1\n2\n" + axes + "1 2 3\n0 0 0\n1\n1\n" + axes + "7 8 9\n", {0, 2}) ==
+        Lines{11, 23});
+  CHECK(lines("a.3d", "3 points\n1 2 3\n4 5 6\n# any\n7 8 9\n", {1, 2}) == Lines{3, 5});
+  PcdHeaderText pcd;
+  CHECK(lines("a.pcd", pcd.build("ascii") + "1 2 3\n\n4 5 6\n", {1}) ==
+        Lines{static_cast<std::uint64_t>(std::ranges::count(pcd.build("ascii"), '\n')) + 3});
+  const auto reader =
+      open_point_file(scratch.write("a.csv", "# any\nx,y,z\n1,2,3\n\n4,5,6\n# any\n7,8,9\n"));
+  check_equal(reader->lines_of(std::vector<std::uint64_t>{0, 2}), {3, 7});
+  check_equal(reader->lines_of(std::vector<std::uint64_t>{1}), {5});
 }

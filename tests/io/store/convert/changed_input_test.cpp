@@ -7,10 +7,10 @@
 #include "io/store/convert/count.hpp"
 #include "io/store/convert/distribute.hpp"
 #include "support/clouds.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
@@ -87,7 +87,7 @@ TEST_CASE("an input that changes before its last pass is refused by name") {
       write_las(scans.second, scans.points, {{0.01, 0.01, 0.01}, {100, -200, 0}});
     };
   }
-  CHECK_THAT(scans.refusal_of_change(stage, change), Contains("b.las: changed"));
+  check_says(scans.refusal_of_change(stage, change), "b.las: changed");
   CHECK_FALSE(fs::exists(scans.options.output));
   CHECK_FALSE(fs::exists(scans.folder / "a.h5.partial"));
 }
@@ -110,7 +110,7 @@ TEST_CASE("points are distributed only where they are those that were counted") 
                progress);
     return distribution.take(0).count;
   };
-  CHECK(distribute_again() == 2000);
+  check_equal(distribute_again(), 2000);
   std::string classed = bytes_of(scans.second);
   std::uint32_t points_offset = 0;
   std::memcpy(&points_offset, classed.data() + 96, sizeof points_offset);
@@ -126,7 +126,8 @@ TEST_CASE("points are distributed only where they are those that were counted") 
 TEST_CASE("an input may change once its points are distributed") {
   Scans scans;
   const std::string before = bytes_of(scans.second);
-  CHECK(scans.refusal_of_change("partition", [&] { fs::rename(scans.other, scans.second); }) == "");
+  check_equal(scans.refusal_of_change("partition", [&] { fs::rename(scans.other, scans.second); }),
+              "");
   const StoreReader store(scans.options.output);
   CHECK(points_by_source(store).back() == scans.points.back());
   CHECK(store.metadata().sources[1].xxh64 == xxh64(std::as_bytes(std::span(before))));

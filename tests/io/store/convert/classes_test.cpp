@@ -1,9 +1,17 @@
 // Classes on their way from scans into a store.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
+#include <set>
 
 #include "io/store/convert/distribute.hpp"
+#include "io/store/convert/spooled_reader.hpp"
+#include "io/store/convert/withheld_cubes.hpp"
+#include "io/store/inspect_points.hpp"
 #include "support/classed_scans.hpp"
+#include "support/compare.hpp"
+#include "support/leaks_of_hdf5.hpp"
+#include "support/reader_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -106,4 +114,276 @@ TEST_CASE("a point on its way keeps class and source apart") {
       CHECK(point.point_class() == value);
     }
   }
+}
+
+// Points with the flag `withheld` on their way from scans into a store.
+namespace {
+
+/// A LAS file in which a third of the points is withheld, and some have other flags.
+struct FlaggedScan {
+  LasBytes las;
+  std::vector<std::uint64_t> kept;  ///< numbers of the points that are not withheld
+  FlagCounts flags;
+
+  FlaggedScan(unsigned format, std::size_t count) {
+    las.minor = format == 0 ? 1 : 4;
+    las.format = format;
+    las.scale = {0.001, 0.001, 0.001};
+    las.points = cube_cloud(count, -4000, 4000, 3);
+    for (std::size_t i = 0; i < count; ++i) {
+      const unsigned bits =
+          (i % 3 == 1 ? 4u : 0u) | (i % 5 == 0 ? 1u : 0u) | (i % 7 == 0 ? 2u : 0u);
+      const unsigned overlap = i % 11 == 0 ? 1 : 0;
+      const unsigned point_class = overlap && format < 6 ? 12 : static_cast<unsigned>(i % 9);
+      if (format < 6) {
+        las.bytes_of_class.push_back(static_cast<std::uint8_t>(bits << 5 | point_class));
+      } else {
+        las.bytes_of_class.push_back(static_cast<std::uint8_t>(point_class));
+        las.bytes_of_flags.push_back(static_cast<std::uint8_t>(0xD0 | overlap << 3 | bits));
+      }
+      if (i % 3 != 1) kept.push_back(i);
+      flags.withheld += i % 3 == 1;
+      flags.synthetic += i % 5 == 0;
+      flags.key_point += i % 7 == 0;
+      flags.overlap += overlap;
+    }
+  }
+
+  std::vector<std::uint8_t> kept_classes() const {
+    std::vector<std::uint8_t> classes;
+    for (const std::uint64_t i : kept) {
+      classes.push_back(las.bytes_of_class[i] & (las.format < 6 ? 0x1F : 0xFF));
+    }
+    return classes;
+  }
+
+  /// The cubes of the withheld points, whose edge is in the unit of the file.
+  std::vector<MetreCube> cubes(double edge = 1) const {
+    std::set<MetreCube> cubes;
+    for (std::size_t i = 1; i < las.points.size(); i += 3) {
+      MetreCube cube;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double at = las.points[i][k] * las.scale[k] + las.offset[k];
+        cube[k] = static_cast<std::int32_t>(std::floor(at / edge));
+      }
+      cubes.insert(cube);
+    }
+    return {cubes.begin(), cubes.end()};
+  }
+};
+
+/// The source indices of the store's points, ascending.
+std::vector<std::uint64_t> sources_of(const StoreReader& store) {
+  std::vector<std::uint64_t> sources;
+  for (const StoredPoint& point : stored_points(store)) sources.push_back(point.source);
+  std::ranges::sort(sources);
+  return sources;
+}
+
+}  // namespace
+
+TEST_CASE("withheld points of all formats are left out and counted, or kept") {
+  const ScratchFolder folder;
+  const unsigned format = GENERATE(range(0U, 11U));
+  CAPTURE(format);
+  const FlaggedScan scan(format, 500);
+  put_bytes(folder / "a.las", scan.las.build());
+  ConversionOptions options = conversion_of({folder / "a.las"}, folder / "a.h5", 100);
+  if (format % 3 == 1) options.regular_size = 4;
+  if (format % 3 == 2) options.scale = 0.01;  // the coordinates are rounded anew
+  const ConversionReport report = convert_quietly(options);
+  CHECK(report.withheld_points == scan.flags.withheld);
+  check_equal(report.kept_withheld_points, 0);
+  CHECK(report.points == scan.kept.size());
+  {
+    const StoreReader store(options.output);
+    CHECK(sources_of(store) == scan.kept);
+    check_equal(store.metadata().input_points, 500);
+    check_equal(store.metadata().points_without_place(), 0);
+    REQUIRE(store.metadata().withheld);
+    CHECK(*store.metadata().withheld == StoreWithheld{scan.flags.withheld, false, scan.cubes()});
+    const std::vector<std::uint8_t> classes = classes_by_source(store);
+    std::vector<std::uint8_t> kept;
+    for (const std::uint64_t i : scan.kept) kept.push_back(classes[i]);
+    CHECK(kept == scan.kept_classes());
+    CHECK(faults_of(store).empty());
+  }
+  const std::string bytes = bytes_of(options.output);
+  options.threads = 4;
+  convert_quietly(options);
+  CHECK(bytes_of(options.output) == bytes);
+
+  options.keep_withheld = true;
+  const ConversionReport all = convert_quietly(options);
+  check_equal(all.withheld_points, 0);
+  CHECK(all.kept_withheld_points == scan.flags.withheld);
+  const StoreReader store(options.output);
+  check_equal(store.point_count(), 500);
+  CHECK(*store.metadata().withheld == StoreWithheld{scan.flags.withheld, true, {}});
+
+  const auto flags = inspect_points(folder / "a.las").flags;
+  REQUIRE(flags);
+  CHECK(flags->synthetic == scan.flags.synthetic);
+  CHECK(flags->key_point == scan.flags.key_point);
+  CHECK(flags->withheld == scan.flags.withheld);
+  CHECK(flags->overlap == scan.flags.overlap);
+}
+
+TEST_CASE("the message on withheld points is a note up to one of a hundred, else a warning") {
+  const ScratchFolder folder;
+  FlaggedScan scan(6, 300);
+  const auto severity = [&](std::size_t withheld, bool keep) {
+    std::fill(scan.las.bytes_of_flags.begin(), scan.las.bytes_of_flags.end(), 0);
+    std::fill_n(scan.las.bytes_of_flags.begin(), withheld, 4);
+    put_bytes(folder / "a.las", scan.las.build());
+    ConversionOptions options = conversion_of({folder / "a.las"}, folder / "a.h5");
+    options.keep_withheld = keep;
+    std::string found = "none";
+    options.message = [&](const Message& message) {
+      if (message.code != "withheld-points") return;
+      found = message.severity == Message::Severity::kNote ? "note" : "warning";
+      CHECK(message.numbers[0].second == static_cast<double>(withheld));
+    };
+    convert_quietly(options);
+    return found;
+  };
+  check_equal(severity(0, false), "none");
+  check_equal(severity(3, false), "note");
+  check_equal(severity(4, false), "warning");
+  check_equal(severity(300, false), "warning");
+  check_equal(severity(4, true), "note");
+}
+
+TEST_CASE("LAS 1.0 has no flags, and other formats have none") {
+  const ScratchFolder folder;
+  FlaggedScan scan(0, 100);
+  scan.las.minor = 0;
+  put_bytes(folder / "a.las", scan.las.build());
+  put_bytes(folder / "b.xyz", "1 2 3\n");
+  check_equal(convert_quietly(conversion_of({folder / "a.las"}, folder / "a.h5")).points, 100);
+  CHECK_FALSE(StoreReader(folder / "a.h5").metadata().withheld);
+  CHECK_FALSE(inspect_points(folder / "a.las").flags);
+  CHECK_FALSE(inspect_points(folder / "b.xyz").flags);
+}
+
+TEST_CASE("cubes of withheld points have edges of a metre in feet too") {
+  const ScratchFolder folder;
+  FlaggedScan scan(6, 200);
+  scan.las.global_encoding = 16;
+  scan.las.vlrs = {
+      {"LASF_Projection", 2112, "LOCAL_CS[\"a\",LOCAL_DATUM[\"b\",0],UNIT[\"foot\",0.3048]]"}};
+  put_bytes(folder / "a.las", scan.las.build());
+  convert_quietly(conversion_of({folder / "a.las"}, folder / "a.h5"));
+  const StoreReader store(folder / "a.h5");
+  REQUIRE(store.metadata().unit == LengthUnit::kFoot);
+  CHECK(store.metadata().withheld->cubes == scan.cubes(1 / 0.3048));
+}
+
+TEST_CASE("source numbers count withheld points: of several scans, and in a file of origins") {
+  const ScratchFolder folder;
+  const FlaggedScan scan(7, 300);
+  put_bytes(folder / "a.las", scan.las.build());
+  put_bytes(folder / "c.las", scan.las.build());
+  write_ply(folder / "b.ply", std::vector<Vec3>{{101, -202, 3}, {NAN, 0, 0}, {104, -205, 2}});
+  put_bytes(folder / "origins.csv", "first,x,y,z\n0,1,2,3\n301,4,5,6\n");
+  ConversionOptions options =
+      conversion_of({folder / "a.las", folder / "b.ply", folder / "c.las"}, folder / "a.h5");
+  options.origins = folder / "origins.csv";
+  const ConversionReport report = convert_quietly(options);
+  std::vector<std::uint64_t> sources = scan.kept;
+  sources.insert(sources.end(), {300, 302});
+  for (const std::uint64_t i : scan.kept) sources.push_back(303 + i);
+  const StoreReader store(options.output);
+  CHECK(sources_of(store) == sources);
+  check_equal(report.non_finite_points, 1);
+  check_equal(store.metadata().points_without_place(), 1);
+  check_equal(store.metadata().source_points, {300, 3, 300});
+  CHECK(store.metadata().withheld->cubes == scan.cubes());
+  for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
+    const auto origins = store.origins(cell);
+    const auto from = store.sources(cell);
+    for (std::uint32_t i = 0; i < store.cells()[cell].count; ++i) {
+      REQUIRE(origins[i] == (from[i] < 301 ? 1 : 2));
+    }
+  }
+  CHECK(faults_of(store).empty());
+}
+
+TEST_CASE("a stream that is read twice has its flags both times") {
+  const ScratchFolder scratch;
+  const FlaggedScan scan(6, 300);
+  const auto path = scratch.write("a.las", scan.las.build());
+  const auto stream =
+      spool(open_las_stream(File::open_for_reading(path), scratch.folder()), scratch.folder());
+  const ReadCloud first = read_all(*stream);
+  stream->rewind();
+  check_equal(first.flags.size(), 300);
+  CHECK(read_all(*stream).flags == first.flags);
+}
+
+TEST_CASE("a store with withheld points left out is not that with them kept") {
+  const ScratchFolder folder;
+  put_bytes(folder / "a.las", FlaggedScan(6, 100).las.build());
+  ConversionOptions options = conversion_of({folder / "a.las"}, folder / "a.h5");
+  NoProgress progress;
+  for (const bool kept : {false, true}) {
+    options.keep_withheld = kept;
+    convert_quietly(options);
+    CHECK(is_converted(options, progress));
+    options.strict = true;
+    CHECK(is_converted(options, progress));
+    options.strict = false;
+    options.keep_withheld = !kept;
+    CHECK_FALSE(is_converted(options, progress));
+  }
+}
+
+TEST_CASE("cubes are collected in bounded memory") {
+  WithheldCubes cubes(std::uint64_t{1} << 20);
+  QuantaBatch batch;
+  const auto fill = [&](std::int32_t from) {
+    batch.withheld_cubes.clear();
+    for (std::int32_t i = 0; i < 10'000; ++i) batch.withheld_cubes.push_back({from + i, 0, -i});
+  };
+  for (int round = 0; round < 1000; ++round) {
+    fill(10'000 * (round % 3));
+    cubes.add(batch);
+  }
+  const std::vector<MetreCube> found = cubes.take();
+  check_equal(found.size(), 30'000);
+  CHECK(std::ranges::is_sorted(found));
+  WithheldCubes more(std::uint64_t{1} << 20);
+  CHECK_THROWS_AS(
+      [&] {
+        for (int round = 0; round < 100; ++round) {
+          fill(10'000 * round);
+          more.add(batch);
+        }
+      }(),
+      ResourceError);
+}
+
+TEST_CASE("damaged cubes of withheld points are refused") {
+  const ScratchFolder folder;
+  put_bytes(folder / "a.las", FlaggedScan(6, 60).las.build());
+  convert_quietly(conversion_of({folder / "a.las"}, folder / "a.h5"));
+  const std::string bytes = bytes_of(folder / "a.h5");
+  const StoreWithheld sound = *StoreReader(folder / "a.h5").metadata().withheld;
+  const std::string_view cubes(reinterpret_cast<const char*>(sound.cubes.data()),
+                               sound.cubes.size() * sizeof(MetreCube));
+  const std::size_t begin = bytes.find(cubes);
+  REQUIRE(begin != std::string::npos);
+  const LeaksOfHdf5 of_damaged_files;
+  std::uint64_t refused = 0;
+  for (std::size_t at = begin; at < begin + cubes.size(); ++at) {
+    std::string changed = bytes;
+    changed[at] = static_cast<char>(changed[at] ^ 0x10);
+    put_bytes(folder / "b.h5", changed);
+    try {
+      const StoreReader store(folder / "b.h5");
+    } catch (const InputError&) {
+      ++refused;
+    }
+  }
+  CHECK(refused == cubes.size());
 }

@@ -6,11 +6,11 @@
 #include "io/store/store_reader.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/clouds.hpp"
+#include "support/compare.hpp"
 #include "support/store_order.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
@@ -71,27 +71,27 @@ TEST_CASE("the store is the same whatever threads, memory and repetition") {
     scan.options.memory_bytes = std::uint64_t(mebibytes) << 20;
     CHECK(scan.converted_bytes() == bytes);
   }
-  CHECK(scan.files() == std::vector<std::string>{"a.h5", "a.las"});
+  check_equal(scan.files(), {"a.h5", "a.las"});
 }
 
 TEST_CASE("a store says what it holds") {
   const Scan scan(cube_cloud(777, -5000, 5000, 1), 100);
   const ConversionReport report = scan.convert();
-  CHECK(report.cells == 8);
-  CHECK(report.largest_change == 0);
-  CHECK(report.non_finite_points == 0);
-  CHECK(report.temporary_bytes == 0);  // the points fit in memory
+  check_equal(report.cells, 8);
+  check_equal(report.largest_change, 0);
+  check_equal(report.non_finite_points, 0);
+  check_equal(report.temporary_bytes, 0);  // the points fit in memory
   CHECK(report.output_bytes == std::filesystem::file_size(scan.options.output));
   CHECK(report.warnings.empty());
   const StoreReader store(scan.options.output);
   const StoreMetadata& metadata = store.metadata();
-  CHECK(metadata.point_count == 777);
-  CHECK(metadata.input_points == 777);
-  CHECK(metadata.cell_points == 100);
+  check_equal(metadata.point_count, 777);
+  check_equal(metadata.input_points, 777);
+  check_equal(metadata.cell_points, 100);
   CHECK(metadata.quantisation == kMillimetres);
-  CHECK(metadata.layout == "adaptive");
+  check_equal(metadata.layout, "adaptive");
   REQUIRE(metadata.sources.size() == 1);
-  CHECK(metadata.sources[0].name == "a.las");
+  check_equal(metadata.sources[0].name, "a.las");
   CHECK(metadata.sources[0].bytes == std::filesystem::file_size(scan.folder / "a.las"));
   CHECK(points_by_source(store) == scan.points);
 }
@@ -100,7 +100,7 @@ TEST_CASE("no points make an empty store") {
   const Scan scan({});
   scan.convert();
   const StoreReader store(scan.options.output);
-  CHECK(store.point_count() == 0);
+  check_equal(store.point_count(), 0);
   CHECK(store.cells().empty());
   CHECK(store.tree().empty());
   CHECK(faults_of(store).empty());
@@ -147,7 +147,7 @@ TEST_CASE("cubes too small for their cells are remarked on") {
   scan.options.regular_size = 1.0;
   const ConversionReport report = scan.convert();
   REQUIRE(report.warnings.size() == 1);
-  CHECK_THAT(report.warnings[0].text, Contains("fewer points a cell"));
+  check_says(report.warnings[0].text, "fewer points a cell");
 }
 
 TEST_CASE("a regular layout over the whole range of the integers") {
@@ -170,26 +170,25 @@ TEST_CASE("sizes of cubes that cannot be are refused") {
   for (const double size : {0.0, -1.0, 0.015, 1e300, std::nan("")}) {
     scan.options.regular_size = size;
     CAPTURE(size);
-    CHECK_THAT(conversion_refusal<UsageError>(scan.options),
-               Contains("a regular layout: expected cubes"));
+    check_says(conversion_refusal<UsageError>(scan.options), "a regular layout: expected cubes");
   }
   scan.options.regular_size = 1.0;
-  CHECK_THAT(conversion_refusal<UsageError>(scan.options), Contains("expected larger cubes"));
-  CHECK(scan.files() == std::vector<std::string>{"a.las"});
+  check_says(conversion_refusal<UsageError>(scan.options), "expected larger cubes");
+  check_equal(scan.files(), {"a.las"});
 }
 
 TEST_CASE("sizes of cells out of range are refused") {
   Scan scan(cube_cloud(100, -50, 50, 1));
   for (const std::uint32_t cell_points : {0u, 63u, (1u << 20) + 1}) {
     scan.options.cell_points = cell_points;
-    CHECK_THAT(conversion_refusal<UsageError>(scan.options), Contains("64 to 1048576"));
+    check_says(conversion_refusal<UsageError>(scan.options), "64 to 1048576");
   }
 }
 
 TEST_CASE("too little memory is refused with the least that will do") {
   Scan scan(cube_cloud(100, -50, 50, 1));
   scan.options.memory_bytes = kLeastConversionMemory - 1;
-  CHECK_THAT(conversion_refusal<ResourceError>(scan.options), Contains("at least 224.0 MiB"));
+  check_says(conversion_refusal<ResourceError>(scan.options), "at least 224.0 MiB");
   scan.options.memory_bytes = kLeastConversionMemory;
   CHECK(conversion_refusal(scan.options).empty());
 }
@@ -201,17 +200,16 @@ TEST_CASE("too little memory for the index of many cells is refused before they 
   scan.options.regular_size = 1;
   scan.options.cell_points = 64;
   scan.options.memory_bytes = kLeastConversionMemory;
-  CHECK_THAT(conversion_refusal<ResourceError>(scan.options),
-             Contains("120000 cells need at least 227 MiB"));
-  CHECK(scan.files() == std::vector<std::string>{"a.las"});
+  check_says(conversion_refusal<ResourceError>(scan.options), "120000 cells need at least 227 MiB");
+  check_equal(scan.files(), {"a.las"});
 }
 
 TEST_CASE("an existing output stays as it is unless it may be overwritten") {
   Scan scan(cube_cloud(100, -50, 50, 1));
   put_bytes(scan.options.output, "mine");
   scan.options.overwrite = false;
-  CHECK_THAT(conversion_refusal<UsageError>(scan.options), Contains("exists already"));
-  CHECK(bytes_of(scan.options.output) == "mine");
+  check_says(conversion_refusal<UsageError>(scan.options), "exists already");
+  check_equal(bytes_of(scan.options.output), "mine");
   scan.options.overwrite = true;
   scan.convert();
   CHECK(points_by_source(StoreReader(scan.options.output)) == scan.points);
@@ -223,7 +221,7 @@ TEST_CASE("an input is never overwritten by the output") {
   for (const auto& input : {scan.folder / "a.las", scan.folder / ""}) {
     scan.options.inputs = {input};
     scan.options.output = scan.folder / "a.las";
-    CHECK_THAT(conversion_refusal<UsageError>(scan.options), Contains("is an input too"));
+    check_says(conversion_refusal<UsageError>(scan.options), "is an input too");
     CHECK(bytes_of(scan.folder / "a.las") == before);
   }
 }
@@ -232,11 +230,11 @@ TEST_CASE("a failing conversion leaves nothing behind") {
   Scan scan(cube_cloud(1000, -50, 50, 1));
   const std::string las = bytes_of(scan.folder / "a.las");
   put_bytes(scan.folder / "a.las", las.substr(0, las.size() - 10));
-  CHECK_THAT(conversion_refusal<InputError>(scan.options), Contains("a.las"));
-  CHECK(scan.files() == std::vector<std::string>{"a.las"});
+  check_says(conversion_refusal<InputError>(scan.options), "a.las");
+  check_equal(scan.files(), {"a.las"});
   put_bytes(scan.options.output, "mine");
   CHECK_FALSE(conversion_refusal<InputError>(scan.options).empty());
-  CHECK(bytes_of(scan.options.output) == "mine");
+  check_equal(bytes_of(scan.options.output), "mine");
 }
 
 TEST_CASE("a store with points left out is converted until its inputs change, and warns of them") {
@@ -253,7 +251,7 @@ TEST_CASE("a store with points left out is converted until its inputs change, an
   {
     const StoreReader store(options.output);
     REQUIRE(store.metadata().warnings.size() == 1);
-    CHECK(store.metadata().warnings[0].code == "non-finite-points");
+    check_equal(store.metadata().warnings[0].code, "non-finite-points");
   }
   write_ply(folder / "a.ply", std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}});
   CHECK_FALSE(is_converted(options, progress));

@@ -5,10 +5,12 @@
 
 #include "core/messages/messages.hpp"
 #include "read_environment.hpp"
+#include "support/bytes/laz/laz_samples.hpp"
+#include "support/compare.hpp"
+#include "support/store_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
@@ -38,13 +40,12 @@ TEST_CASE("floating-point coordinates are rounded to the steps of the files with
   CHECK(environment.points[1] == StoredPoint{1, {1, 2, 3}});
   CHECK(environment.points[2] == StoredPoint{2, {1007, 8, 9}});
   CHECK(environment.points[3] == StoredPoint{4, {0, 0, 0}});
-  CHECK(environment.non_finite_points == 1);
+  check_equal(environment.non_finite_points, 1);
   CHECK(environment.largest_change == Approx(0.0005).epsilon(1e-6));
   const Message* note = find(environment.warnings, "floating-point-rounded");
   REQUIRE(note);
   CHECK(note->severity == Message::Severity::kWarning);
-  CHECK_THAT(note->text, Contains("2 of 4 files") && Contains("a.ply") && Contains("b.las") &&
-                             Contains("the model?"));
+  check_says(note->text, "2 of 4 files ... a.ply ... b.las ... the model?");
 }
 
 TEST_CASE("rounding to coarse steps of other files is warned of") {
@@ -53,7 +54,7 @@ TEST_CASE("rounding to coarse steps of other files is warned of") {
   write_ply(folder / "a.ply", std::vector<Vec3>{{0.004, 0, 0}});
   const Environment environment = read_environment({folder / "a.las", folder / "a.ply"});
   CHECK(environment.points[1].q == Quantum{0, 0, 0});
-  CHECK(environment.largest_change == 0.004);
+  check_equal(environment.largest_change, 0.004);
   const Message* warning = find(environment.warnings, "floating-point-rounded");
   REQUIRE(warning);
   CHECK(warning->severity == Message::Severity::kWarning);
@@ -68,7 +69,7 @@ TEST_CASE("files of one kind are not remarked on, nor those for which a scale wa
   const Environment environment =
       read_environment({folder / "a.ply", folder / "a.las"}, {.scale = 0.01});
   CHECK(environment.warnings.empty());
-  CHECK(environment.quantisation.scale[0] == 0.01);
+  check_equal(environment.quantisation.scale[0], 0.01);
   REQUIRE(environment.points.size() == 2);
   CHECK(environment.points[0].q == environment.points[1].q);
 }
@@ -80,11 +81,11 @@ TEST_CASE("a mixture that does not fit the integers, or has two scales, is refus
   write_ply(folder / "far.ply", std::vector<Vec3>{{3e6, 0, 0}});
   const auto far = refused({folder / "a.las", folder / "far.ply"});
   REQUIRE(far);
-  CHECK_THAT(far->what(), Contains("far.ply") && Contains("too far"));
+  check_says(far->what(), "far.ply ... too far");
   CHECK(far->remedy() == Remedy::kScale);
   const auto scales = refused({folder / "far.ply", folder / "a.las", folder / "b.las"});
   REQUIRE(scales);
-  CHECK_THAT(scales->what(), Contains("b.las") && Contains("a.las"));
+  check_says(scales->what(), "b.las ... a.las");
   CHECK(scales->remedy() == Remedy::kOneScale);
   CHECK(read_environment({folder / "a.las", folder / "far.ply"}, {.scale = 0.01}).points.size() ==
         2);
@@ -108,10 +109,10 @@ TEST_CASE("a folder of 3DTK scans converts with their poses, which are sources t
     const Vec3 p =
         position(store.metadata().quantisation, points[i][0], points[i][1], points[i][2]);
     CHECK(p.x == Approx(1.0 + static_cast<double>(i)));
-    CHECK(p.y == 0);
+    check_equal(p.y, 0);
   }
   REQUIRE(store.metadata().sources.size() == 10);
-  CHECK(store.metadata().sources[9].name == "scan004.pose");
+  check_equal(store.metadata().sources[9].name, "scan004.pose");
   NoProgress progress;
   CHECK(is_converted(options, progress));
   put_bytes(folder / "dat/scan003.pose", "0 0 301\n0 0 0\n");
@@ -121,7 +122,7 @@ TEST_CASE("a folder of 3DTK scans converts with their poses, which are sources t
   CHECK(find(remarks, "left-out"));
   std::size_t placed = 0;
   for (const Message& remark : remarks) placed += remark.code == "scan-placed";
-  CHECK(placed == 4);  // three places, and the number of the others
+  check_equal(placed, 4);  // three places, and the number of the others
 }
 
 TEST_CASE("a pose that changes during the conversion is noticed") {
@@ -132,7 +133,7 @@ TEST_CASE("a pose that changes during the conversion is noticed") {
   const EnvironmentSource source({folder / "scan000.3d"}, {}, progress);
   source.refuse_changed();
   put_bytes(folder / "scan000.pose", "0 0 100 0 0 0\n");
-  CHECK_THROWS_WITH(source.refuse_changed(), Contains("scan000.pose"));
+  check_refused([&] { return source.refuse_changed(); }, "scan000.pose");
 }
 
 TEST_CASE("many notes of one kind become three and a number, warnings stay") {
@@ -144,6 +145,48 @@ TEST_CASE("many notes of one kind become three and a number, warnings stay") {
   }
   shorten_notes(messages);
   REQUIRE(messages.size() == 3 + 5 + 3 + 1);
-  CHECK(messages.back().code == "a");
-  CHECK_THAT(messages.back().text, Contains("2 more notes"));
+  check_equal(messages.back().code, "a");
+  check_says(messages.back().text, "2 more notes");
+}
+
+// LAZ is read within a conversion's pipeline, whose threads it shares.
+
+TEST_CASE("the store of a LAZ file holds the points of the file in their order") {
+  const unsigned format = GENERATE(3u, 6u);
+  LazBytes laz = laz_bytes(format, 150000);
+  laz.chunks = {7001};
+  const ScratchFolder folder;
+  put_bytes(folder / "a.laz", laz.build());
+  for (const int threads : {1, 2, 4}) {
+    ConversionOptions options = conversion_of({folder / "a.laz"}, folder / "a.h5", 1000);
+    options.threads = threads;
+    CHECK(convert_quietly(options).warnings.empty());
+    std::vector<StoredPoint> points = stored_points(StoreReader(folder / "a.h5"));
+    std::sort(points.begin(), points.end(),
+              [](const StoredPoint& a, const StoredPoint& b) { return a.source < b.source; });
+    REQUIRE(points.size() == laz.points.size());
+    bool same = true;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      same = same && points[i] == StoredPoint{i, laz.points[i].position};
+    }
+    CHECK(same);
+  }
+}
+
+TEST_CASE("a damaged chunk ends a conversion with the chunk's number, by any number of threads") {
+  LazBytes laz = laz_bytes(6, 60000);
+  laz.chunks = {7001};
+  std::string bytes = laz.build();
+  for (std::size_t at = bytes.size() / 2; at < bytes.size() - 200; ++at) bytes[at] = 'x';
+  const ScratchFolder folder;
+  put_bytes(folder / "a.laz", bytes);
+  std::string first;
+  for (const int threads : {1, 2, 4}) {
+    ConversionOptions options = conversion_of({folder / "a.laz"}, folder / "a.h5");
+    options.threads = threads;
+    const std::string message = conversion_refusal<InputError>(options);
+    check_says(message, "a.laz: chunk ");
+    if (first.empty()) first = message;
+    CHECK(message == first);
+  }
 }

@@ -1,7 +1,13 @@
 // The store's order of points, against a plain rewriting of the rule.
 #include <catch2/catch.hpp>
 
+#include "io/files/xxh64.hpp"
+#include "io/scans/point_reader.hpp"
+#include "io/store/convert/distribute.hpp"
+#include "io/store/convert/split_tree.hpp"
+#include "support/bytes/laz/laz_samples.hpp"
 #include "support/clouds.hpp"
+#include "support/compare.hpp"
 #include "support/store_order.hpp"
 
 using namespace clearway;
@@ -27,7 +33,7 @@ void check_order(const std::vector<Quantum>& points, std::uint32_t cell_points,
   CHECK(stored_points(store) == plainly_ordered(points, cell_points, quantisation));
   CHECK(structure_faults(store).empty());
   CHECK(faults_of(store).empty());
-  CHECK(store.cells().size() == (points.size() + cell_points - 1) / cell_points);
+  check_equal(store.cells().size(), (points.size() + cell_points - 1) / cell_points);
 }
 
 }  // namespace
@@ -53,4 +59,141 @@ TEST_CASE("points stand in the order of the rule for every size of cell") {
 
 TEST_CASE("a large bucket, ordered by several threads, stands in the order of the rule") {
   check_order(cube_cloud(150000, -2000, 2000, 9), 1000, kMillimetres);
+}
+
+// Files that are read in pieces, several at a time, and the memory or files in which points wait.
+namespace {
+
+std::uint64_t hash_of(const std::string& bytes) { return xxh64(std::as_bytes(std::span(bytes))); }
+
+/// A folder with a LAS and a LAZ file of several pieces each, the LAS with bytes behind its points.
+struct Files {
+  Files() {
+    write_las(las, cube_cloud(150'000, -5000, 5000, 1));
+    put_bytes(las, bytes_of(las) + "behind");
+    LazBytes compressed = laz_bytes(3, 150'000);
+    compressed.chunks = {7001};
+    put_bytes(laz, compressed.build());
+  }
+
+  ScratchFolder folder;
+  std::filesystem::path las = folder / "a.las", laz = folder / "b.laz";
+};
+
+}  // namespace
+
+TEST_CASE("pieces of a file hold its points and bytes in their order") {
+  const Files files;
+  // An index, because a generator outlives the test case's variables.
+  const auto& path = GENERATE(0, 1) == 0 ? files.las : files.laz;
+  const auto reader = open_point_file(path);
+  REQUIRE(reader->pieces() > 2);
+  std::vector<Quantum> whole, parts;
+  PointBatch batch;
+  while (reader->read(batch)) whole.insert(whole.end(), batch.quanta.begin(), batch.quanta.end());
+  const std::string bytes = bytes_of(path);
+  std::uint64_t end = 0;
+  for (std::size_t piece = 0; piece < reader->pieces(); ++piece) {
+    PieceBytes from;
+    reader->read_piece(piece, batch, &from);
+    check_equal(batch.quanta.size(), reader->points_of_piece(piece));
+    CHECK(batch.positions.empty());
+    parts.insert(parts.end(), batch.quanta.begin(), batch.quanta.end());
+    CHECK((piece == 0 || from.first == end));
+    end = from.first + from.count;
+    check_equal(std::memcmp(from.bytes.get(), bytes.data() + from.first, from.count), 0);
+  }
+  CHECK(parts == whole);
+}
+
+TEST_CASE("a store tells sizes and hashes of files read in pieces and of others") {
+  const Files files;
+  write_las(files.folder / "c.las", {});
+  put_bytes(files.folder / "d.xyz", "1 2 3\n4 5 6\n");
+  const std::vector<std::filesystem::path> inputs{files.las, files.folder / "c.las",
+                                                  files.folder / "d.xyz", files.las};
+  const auto options = conversion_of(inputs, files.folder / "s.h5");
+  convert_quietly(options);
+  const StoreReader store(options.output);
+  const auto& sources = store.metadata().sources;
+  REQUIRE(sources.size() == inputs.size());
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const std::string bytes = bytes_of(inputs[i]);
+    CHECK(sources[i] == SourceFile{inputs[i].filename().string(), bytes.size(), hash_of(bytes)});
+  }
+}
+
+TEST_CASE("points wait in memory where they fit and else in files and the store is the same") {
+  constexpr std::size_t kPoints = 1'000'000;
+  const ScratchFolder folder;
+  write_las(folder / "a.las", cube_cloud(kPoints, -5000, 5000, 1));
+  auto options = conversion_of({folder / "a.las"}, folder / "s.h5", 1000);
+  options.memory_bytes = kLeastConversionMemory;
+  CHECK(convert_quietly(options).temporary_bytes == kPoints * sizeof(DistributedPoint));
+  const std::string bytes = bytes_of(options.output);
+  options.memory_bytes = std::uint64_t{1} << 30;
+  check_equal(convert_quietly(options).temporary_bytes, 0);
+  CHECK(bytes_of(options.output) == bytes);
+}
+
+// Clouds of several buckets, and bins that hold more than a bucket.
+namespace {
+
+/// A cloud with more than a bucket's points in one place, more than a bucket's in one bin of the
+/// counting grid, and sparse points over the whole range, which keep that grid coarse; all are
+/// shuffled together.
+std::vector<Quantum> lopsided_cloud() {
+  std::vector<Quantum> points = cube_cloud(150'000, -2147483648LL, 2147483647LL, 1);
+  const auto dense = cube_cloud(kBucketPoints + 100'000, 1'000'000, 1'200'000, 2);
+  points.insert(points.end(), dense.begin(), dense.end());
+  points.insert(points.end(), kBucketPoints + 50'000, Quantum{-5, 6, -7});
+  std::shuffle(points.begin(), points.end(), std::mt19937_64(3));
+  return points;
+}
+
+ConversionOptions with_budget(ConversionOptions options, int threads, std::uint64_t mebibytes) {
+  options.threads = threads;
+  options.memory_bytes = mebibytes << 20;
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("bins that hold more than a bucket are refined, whatever threads and memory") {
+  const auto points = lopsided_cloud();
+  const ScratchFolder folder;
+  write_las(folder / "a.las", points);
+  const auto options = conversion_of({folder / "a.las"}, folder / "a.h5", 65536);
+  convert_quietly(with_budget(options, 1, kLeastConversionMemory >> 20));
+  {
+    const StoreReader store(folder / "a.h5");
+    CHECK(store.top_tree().size() >= 5);
+    CHECK(points_by_source(store) == points);
+    CHECK(structure_faults(store).empty());
+    CHECK(faults_of(store).empty());
+  }
+  const std::string bytes = bytes_of(folder / "a.h5");
+  convert_quietly(with_budget(options, 2, 512));
+  CHECK(bytes_of(folder / "a.h5") == bytes);
+  convert_quietly(with_budget(options, 4, 4096));
+  CHECK(bytes_of(folder / "a.h5") == bytes);
+}
+
+TEST_CASE("cubes with more than a bucket's points are split further, none is shared") {
+  auto points = cube_cloud(kBucketPoints + 1000, -16, 15, 5);
+  const auto around = cube_cloud(300'000, -200, 200, 6);
+  points.insert(points.end(), around.begin(), around.end());
+  const ScratchFolder folder;
+  write_las(folder / "a.las", points);
+  auto options = conversion_of({folder / "a.las"}, folder / "a.h5", 1000);
+  options.regular_size = 0.050;
+  convert_quietly(options);
+  const StoreReader store(folder / "a.h5");
+  CHECK(points_by_source(store) == points);
+  CHECK(structure_faults(store).empty());
+  for (const Cell& cell : store.cells()) {
+    for (int k = 0; k < 3; ++k) {
+      CHECK(std::floor(cell.box.lo[k] / 50.0) == std::floor(cell.box.hi[k] / 50.0));
+    }
+  }
 }

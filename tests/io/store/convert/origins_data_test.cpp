@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "support/compare.hpp"
 #include "support/origins.hpp"
 #include "support/test_data.hpp"
 
@@ -27,7 +28,7 @@ TEST_CASE("the points of the street have the origins of the file beside it") {
   options.origins = data_folder() / "street" / "origins.csv";
   convert_quietly(options);
   const StoreReader store(options.output);
-  CHECK(store.metadata().origins->points_without == 0);
+  check_equal(store.metadata().origins->points_without, 0);
   const auto by_source = origins_by_source(store);
   std::ifstream file(options.origins);
   std::string header;
@@ -46,9 +47,9 @@ TEST_CASE("the points of the street have the origins of the file beside it") {
     ++rows;
   }
   check_before(by_source.size());
-  CHECK(rows == 154);
-  CHECK(source == 4629906);
-  CHECK(wrong == 0);
+  check_equal(rows, 154);
+  check_equal(source, 4629906);
+  check_equal(wrong, 0);
   CHECK(faults_of(store).empty());
 }
 

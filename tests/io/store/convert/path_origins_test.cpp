@@ -9,6 +9,7 @@
 #include "io/store/convert/origin_table.hpp"
 #include "support/bytes/laz/laz_samples.hpp"
 #include "support/clouds.hpp"
+#include "support/compare.hpp"
 #include "support/origins.hpp"
 
 using namespace clearway;
@@ -96,8 +97,8 @@ TEST_CASE("a point of a moving scanner has the place on the path at its GPS time
   }
   const StoreReader store(scan.options.output);
   const StoreOrigins& origins = *store.metadata().origins;
-  CHECK(origins.quanta.size() == 4);
-  CHECK(origins.points_without == 0);
+  check_equal(origins.quanta.size(), 4);
+  check_equal(origins.points_without, 0);
   CHECK(origins.rest_on == std::vector<OriginBasis>{{"a path and the GPS times of the points", 4}});
 }
 
@@ -156,20 +157,19 @@ TEST_CASE("points that the path does not reach have no origin and are warned of"
                   std::numeric_limits<double>::quiet_NaN()});
   scan.path_text("100 0 0 0 0 0 0 1\n101 1 0 0 0 0 0 1\n102.5 2 0 0 0 0 0 1\n103 3 0 0 0 0 0 1\n");
   const ConversionReport report = convert_quietly(scan.options);
-  CHECK(codes_told(report) == std::vector<std::string>{"gps-times-not-finite", "origins-path-gap",
-                                                       "points-without-origin"});
-  CHECK(report.points_without_origin == 5);
-  CHECK_THAT(report.warnings[1].text, Contains("4 of 10 points") && Contains("2 are from before") &&
-                                          Contains("1 from after") &&
-                                          Contains("1 from between poses more than 1 s apart") &&
-                                          Contains("1 such gap, the longest of 1.5 s"));
+  check_equal(codes_told(report),
+              {"gps-times-not-finite", "origins-path-gap", "points-without-origin"});
+  check_equal(report.points_without_origin, 5);
+  check_says(report.warnings[1].text,
+             "4 of 10 points ... 2 are from before ... 1 from after ... 1 from between poses more "
+             "than 1 s apart ... 1 such gap, the longest of 1.5 s");
   REQUIRE(report.origins_path);
-  CHECK(report.origins_path->before == 2);
-  CHECK(report.origins_path->after == 1);
-  CHECK(report.origins_path->in_gaps == 1);
-  CHECK(report.origins_path->without_time == 1);
-  CHECK(report.origins_path->first_point == 99);
-  CHECK(report.origins_path->last_point == 104);
+  check_equal(report.origins_path->before, 2);
+  check_equal(report.origins_path->after, 1);
+  check_equal(report.origins_path->in_gaps, 1);
+  check_equal(report.origins_path->without_time, 1);
+  check_equal(report.origins_path->first_point, 99);
+  check_equal(report.origins_path->last_point, 104);
   const auto origins = origins_by_source(StoreReader(scan.options.output));
   const std::vector<bool> expected{false, false, true, true,  true, false,
                                    true,  true,  true, false, false};
@@ -206,9 +206,9 @@ TEST_CASE("seconds of the week and adjusted standard GPS time are told apart and
   REQUIRE(report.origins_path);
   CHECK(report.origins_path->point_clock == clocks.point_clock);
   CHECK(report.origins_path->path_clock == clocks.path_clock);
-  CHECK(report.origins_path->shifts == std::vector<double>{clocks.shift});
-  CHECK_THAT(told, Contains("the GPS times of the points go from") &&
-                       Contains(clocks.shift == 0 ? "compared as they are" : " s are added"));
+  check_equal(report.origins_path->shifts, {clocks.shift});
+  check_says(told, "the GPS times of the points go from");
+  check_says(told, clocks.shift == 0 ? "compared as they are" : " s are added");
   const auto origins = origins_by_source(StoreReader(scan.options.output));
   CHECK(origins[0] == millimetres(0, 0, 0));
   CHECK(origins[1] == millimetres(0.5, 0, 0));
@@ -228,8 +228,8 @@ TEST_CASE("times that contradict the header are compared as they are, with a war
   }
   const ConversionReport report = convert_quietly(scan.options);
   REQUIRE(codes_told(report) == std::vector<std::string>{"gps-times-contradict"});
-  CHECK_THAT(report.warnings[0].text, Contains("2 points") && Contains("bit 0"));
-  CHECK(report.points_without_origin == 0);
+  check_says(report.warnings[0].text, "2 points ... bit 0");
+  check_equal(report.points_without_origin, 0);
 }
 
 TEST_CASE("a path that gives no point an origin is refused with both ranges and what would help") {
@@ -253,9 +253,9 @@ TEST_CASE("a path that gives no point an origin is refused with both ranges and 
   char first_point[40], first_pose[40];
   std::snprintf(first_point, sizeof first_point, "from %.3f to", refused.points);
   std::snprintf(first_pose, sizeof first_pose, "from %.3f to", refused.path);
-  CHECK_THAT(conversion_refusal<InputError>(scan.options),
-             Contains("gives no point an origin") && Contains(refused.message) &&
-                 Contains(first_point) && Contains(first_pose));
+  check_says(conversion_refusal<InputError>(scan.options),
+             std::string("gives no point an origin ... ") + first_point + " ... " + first_pose +
+                 " ... " + refused.message);
   CHECK_FALSE(std::filesystem::exists(scan.options.output));
 }
 
@@ -265,21 +265,21 @@ TEST_CASE("points of several weeks do not match a path in seconds of the week") 
   const double adjusted = 2286 * kWeek + 1000 - 1e9;
   scan.give({adjusted, adjusted + kWeek});
   scan.path(1000, 10);
-  CHECK_THAT(conversion_refusal<InputError>(scan.options), Contains("of 2 weeks"));
+  check_says(conversion_refusal<InputError>(scan.options), "of 2 weeks");
 }
 
 TEST_CASE("GPS times that cannot be those of a recording are refused with the file") {
   TimedScan scan;
   scan.path(0, 10);
   scan.give(std::vector<double>(300, 0.0));
-  CHECK_THAT(conversion_refusal<InputError>(scan.options),
-             Contains("a.las: all 300 points have the GPS time 0.000 s"));
+  check_says(conversion_refusal<InputError>(scan.options),
+             "a.las: all 300 points have the GPS time 0.000 s");
   scan.give(std::vector<double>(16, 1.5));
-  CHECK_THAT(conversion_refusal<InputError>(scan.options), Contains("16 points have the GPS time"));
+  check_says(conversion_refusal<InputError>(scan.options), "16 points have the GPS time");
   scan.give(std::vector<double>(15, 1.5));  // returns of one pulse
   CHECK(conversion_refusal(scan.options).empty());
   scan.give(std::vector<double>(3, std::numeric_limits<double>::infinity()));
-  CHECK_THAT(conversion_refusal<InputError>(scan.options), Contains("finite GPS time"));
+  check_says(conversion_refusal<InputError>(scan.options), "finite GPS time");
 }
 
 TEST_CASE("inputs without GPS times have no origins by a path") {
@@ -288,21 +288,19 @@ TEST_CASE("inputs without GPS times have no origins by a path") {
   scan.options.inputs = {scan.folder / "b.ply", scan.folder / "a.las"};
   const ConversionReport report = convert_quietly(scan.options);
   const auto codes = codes_told(report);
-  CHECK(std::count(codes.begin(), codes.end(), "no-gps-times") == 1);
-  CHECK(std::count(codes.begin(), codes.end(), "points-without-origin") == 1);
-  CHECK(report.points_without_origin == 2);
+  check_equal(std::count(codes.begin(), codes.end(), "no-gps-times"), 1);
+  check_equal(std::count(codes.begin(), codes.end(), "points-without-origin"), 1);
+  check_equal(report.points_without_origin, 2);
   const auto origins = origins_by_source(StoreReader(scan.options.output));
   CHECK_FALSE(origins[0].has_value());
   CHECK(origins[3].has_value());
   scan.options.inputs = {scan.folder / "b.ply"};
-  CHECK_THAT(conversion_refusal<InputError>(scan.options),
-             Contains("none of the inputs has GPS times"));
+  check_says(conversion_refusal<InputError>(scan.options), "none of the inputs has GPS times");
   scan.las.format = 2;
   scan.las.times.clear();
   put_bytes(scan.folder / "a.las", scan.las.build());
   scan.options.inputs = {scan.folder / "a.las"};
-  CHECK_THAT(conversion_refusal<InputError>(scan.options),
-             Contains("none of the inputs has GPS times"));
+  check_says(conversion_refusal<InputError>(scan.options), "none of the inputs has GPS times");
 }
 
 TEST_CASE("a path that is none, and options that contradict each other, are refused") {
@@ -310,37 +308,36 @@ TEST_CASE("a path that is none, and options that contradict each other, are refu
   SECTION("no times") {
     scan.path_text("0 0 0 0 0 0 1\n1 0 0 0 0 0 1\n");
     scan.options.origins_path_options.format = TrajectoryFormat::kPoseXyzw;
-    CHECK_THAT(conversion_refusal<InputError>(scan.options), Contains("have no times"));
+    check_says(conversion_refusal<InputError>(scan.options), "have no times");
   }
   SECTION("times that go back") {
     scan.path_text("100 0 0 0 0 0 0 1\n102 1 0 0 0 0 0 1\n101 2 0 0 0 0 0 1\n");
-    CHECK_THAT(conversion_refusal<InputError>(scan.options),
-               Contains("expected times that ascend"));
+    check_says(conversion_refusal<InputError>(scan.options), "expected times that ascend");
   }
   SECTION("a pose that is not a number") {
     scan.path_text("100 0 nan 0 0 0 0 1\n101 1 0 0 0 0 0 1\n");
-    CHECK_THAT(conversion_refusal<InputError>(scan.options), Contains("p.txt"));
+    check_says(conversion_refusal<InputError>(scan.options), "p.txt");
   }
   SECTION("too long for seconds of the week") {
     scan.path(100, 3, kWeek);
-    CHECK_THAT(conversion_refusal<InputError>(scan.options), Contains("more than a week"));
+    check_says(conversion_refusal<InputError>(scan.options), "more than a week");
   }
   SECTION("a missing file") {
     scan.options.origins_path = scan.folder / "none.txt";
-    CHECK_THAT(conversion_refusal(scan.options), Contains("none.txt"));
+    check_says(conversion_refusal(scan.options), "none.txt");
   }
   SECTION("a file of origins too") {
     scan.options.origins = scan.folder / "o.csv";
-    CHECK_THAT(conversion_refusal<UsageError>(scan.options), Contains("expected one of the two"));
+    check_says(conversion_refusal<UsageError>(scan.options), "expected one of the two");
   }
   SECTION("a lever arm alone") {
     scan.options.origins_path.clear();
     scan.options.lever_arm = {1, 0, 0};
-    CHECK_THAT(conversion_refusal<UsageError>(scan.options), Contains("lever arm"));
+    check_says(conversion_refusal<UsageError>(scan.options), "lever arm");
   }
   SECTION("a lever arm that is no length") {
     scan.options.lever_arm = {std::nan(""), 0, 0};
-    CHECK_THAT(conversion_refusal<UsageError>(scan.options), Contains("lever arm"));
+    check_says(conversion_refusal<UsageError>(scan.options), "lever arm");
   }
   SECTION("the path as output") {
     scan.options.output = scan.options.origins_path;
@@ -357,8 +354,8 @@ TEST_CASE("a path that takes more than an eighth of the memory is refused with a
   scan.path_text(text);
   scan.options.lever_arm = {1, 0, 0};
   scan.options.memory_bytes = kLeastConversionMemory;
-  CHECK_THAT(conversion_refusal<ResourceError>(scan.options),
-             Contains("480,000 poses take 29.3 MiB") && Contains("28.0 MiB, an eighth"));
+  check_says(conversion_refusal<ResourceError>(scan.options),
+             "480,000 poses take 29.3 MiB ... 28.0 MiB, an eighth");
   scan.options.memory_bytes = 8 * 64 * 480000;
   CHECK(conversion_refusal(scan.options).empty());
 }
@@ -382,7 +379,7 @@ TEST_CASE("a table of origins that are seen again and again takes memory for eac
   std::vector<DistributedPoint> points{DistributedPoint::of({}, 0, 0),
                                        DistributedPoint::of({}, 1, 0),
                                        DistributedPoint::of({}, 49999, 0)};
-  CHECK(table.numbers_of(points) == std::vector<std::uint32_t>{1, 20, 1 + 49999 * 7919 % 100});
+  check_equal(table.numbers_of(points), {1, 20, 1 + 49999 * 7919 % 100});
   CHECK_THROWS_WITH(
       [&] {
         OriginTable small(steps, std::uint64_t{1} << 20);

@@ -2,11 +2,11 @@
 #include <catch2/catch.hpp>
 
 #include "io/store/convert/convert.hpp"
+#include "support/compare.hpp"
 #include "support/store_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 namespace fs = std::filesystem;
 
 namespace {
@@ -35,7 +35,7 @@ TEST_CASE("one unreadable file is refused, and the remedy named") {
     convert_quietly(scans.options);
     FAIL("converted");
   } catch (const InputError& error) {
-    CHECK_THAT(error.what(), Contains("b.las"));
+    check_says(error.what(), "b.las");
     CHECK(error.remedy() == Remedy::kSkipUnreadable);
   }
   try {
@@ -58,18 +58,17 @@ TEST_CASE("unreadable files are left out where that is asked for, and listed") {
             "end_header\n1 2 3\n");
   scans.options.skip_unreadable = true;
   const ConversionReport report = convert_quietly(scans.options);
-  CHECK(report.points == 20);
+  check_equal(report.points, 20);
   REQUIRE(report.metadata.sources.size() == 2);
-  CHECK(report.metadata.sources[0].name == "a.las");
-  CHECK(report.metadata.sources[1].name == "d.las");
+  check_equal(report.metadata.sources[0].name, "a.las");
+  check_equal(report.metadata.sources[1].name, "d.las");
   REQUIRE(report.warnings.size() == 1);
-  CHECK(report.warnings[0].code == "skipped-files");
-  CHECK_THAT(report.warnings[0].text,
-             Contains("2 files are left out") && Contains("b.las") && Contains("c.las: ends"));
+  check_equal(report.warnings[0].code, "skipped-files");
+  check_says(report.warnings[0].text, "2 files are left out ... b.las ... c.las: ends");
   NoProgress progress;
   CHECK(is_converted(scans.options, progress));
   scans.options.strict = true;
-  CHECK_THAT(conversion_refusal<InputError>(scans.options), Contains("skipped-files"));
+  check_says(conversion_refusal<InputError>(scans.options), "skipped-files");
 }
 
 TEST_CASE("nothing is left out silently where all files can be read, or none") {
@@ -79,8 +78,7 @@ TEST_CASE("nothing is left out silently where all files can be read, or none") {
   for (const std::string name : {"a", "b", "c", "d"}) {
     put_bytes(scans.folder / ("scans/" + name + ".las"), "LASF");
   }
-  CHECK_THAT(conversion_refusal<InputError>(scans.options),
-             Contains("none of the 4 files") && Contains("a.las"));
+  check_says(conversion_refusal<InputError>(scans.options), "none of the 4 files ... a.las");
   scans.options.inputs = {scans.folder / "missing.las"};
   CHECK_FALSE(conversion_refusal<ResourceError>(scans.options).empty());
 }
@@ -93,7 +91,7 @@ TEST_CASE("the columns chosen apply to texts, and are refused where there is non
       conversion_of({folder / "a.csv", folder / "b.ply"}, folder / "out.h5");
   options.columns = {"right", "4", "up"};
   const ConversionReport report = convert_quietly(options);
-  CHECK(report.points == 3);
+  check_equal(report.points, 3);
   REQUIRE(report.box);
   CHECK(report.box->lo == Vec3{1, 2, 9});
   CHECK(report.box->hi == Vec3{7, 8, 60});
@@ -102,10 +100,10 @@ TEST_CASE("the columns chosen apply to texts, and are refused where there is non
   NoProgress progress;
   CHECK_FALSE(is_converted(options, progress));
   options.inputs = {folder / "b.ply"};
-  CHECK_THAT(conversion_refusal<UsageError>(options), Contains("no input is a text"));
+  check_says(conversion_refusal<UsageError>(options), "no input is a text");
   for (const std::vector<std::string>& wrong :
        {std::vector<std::string>{"1", "2"}, {"1", "2", "0"}, {"x", "y", "x"}, {"x", "", "z"}}) {
     options.columns = wrong;
-    CHECK_THAT(conversion_refusal<UsageError>(options), Contains("three different columns"));
+    check_says(conversion_refusal<UsageError>(options), "three different columns");
   }
 }

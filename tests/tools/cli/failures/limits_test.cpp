@@ -4,6 +4,7 @@
 
 #include "core/cloud/packed_cloud.hpp"
 #include "io/store/store_writer.hpp"
+#include "support/result_fixture.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/program.hpp"
 

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "clearway/clearway.hpp"
+#include "core/geometry/quantisation.hpp"
+#include "support/scenes.hpp"
+#include "support/store_fixture.hpp"
+
+namespace clearway::test {
+
+/// Points in steps of a millimetre, a query, and the result of its search with first poses.
+struct SearchedScene {
+  static constexpr Quantisation kSteps{{0.001, 0.001, 0.001}, {0, 0, 0}};
+
+  SearchedScene(const std::vector<Vec3>& places, Query asked) : query(std::move(asked)) {
+    std::vector<Quantum> quanta;
+    for (const Vec3& p : places) {
+      Quantum& q = quanta.emplace_back();
+      for (int k = 0; k < 3; ++k) q[k] = static_cast<std::int32_t>(std::lround(p[k] * 1000));
+      points.push_back(position(kSteps, q[0], q[1], q[2]));
+    }
+    write_las(folder / "scan.las", quanta, kSteps);
+    convert({folder / "scan.las"}, folder / "scan.h5", {.cell_points = 64, .threads = 2});
+    query.first_pose = true;
+    search(Store(folder / "scan.h5"), query, folder / "out.h5",
+           {.device = Device::kCpu, .threads = 2});
+  }
+
+  Result result() const { return Result(folder / "out.h5"); }
+
+  Query query;
+  std::vector<Vec3> points;
+  ScratchFolder folder;
+};
+
+/// A path along x, of at least one pose.
+inline std::vector<Pose> straight_path(double length, double step = 0.5) {
+  std::vector<Pose> poses;
+  for (int i = 0; i * step <= length; ++i) poses.push_back(translation({i * step, 0, 0}));
+  return poses;
+}
+
+}  // namespace clearway::test
