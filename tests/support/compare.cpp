@@ -1,5 +1,6 @@
 #include "support/compare.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -109,6 +110,17 @@ void check_says(std::string_view text, std::string_view words, const Caller& cal
     rest.remove_prefix(std::min(rest.size(), part.size() + kGap.size()));
   }
   report(true, {}, caller);
+}
+
+void check_same(const std::string& found, const std::string& expected, const Caller& caller) {
+  if (found == expected) {
+    SUCCEED();
+    return;
+  }
+  const auto differs = std::ranges::mismatch(found, expected).in1 - found.begin();
+  fail_check("of " + std::to_string(found.size()) + " and " + std::to_string(expected.size()) +
+                 " bytes the first " + std::to_string(differs) + " are the same",
+             caller);
 }
 
 std::string codes_of(const std::vector<Message>& messages) {

@@ -78,6 +78,10 @@ void check_equal(const std::optional<double>& found, double expected,
 void check_equal(const std::optional<std::uint64_t>& found, std::uint64_t expected,
                  const Caller& caller = Caller::current());
 
+/// Checks that two files have the same bytes, which are not printed.
+void check_same(const std::string& found, const std::string& expected,
+                const Caller& caller = Caller::current());
+
 /// The codes of messages in their order, with "note " before those of notes: "note a, b, c".
 std::string codes_of(const std::vector<Message>& messages);
 

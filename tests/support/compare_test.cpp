@@ -3,7 +3,10 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
+
+#include "support/compare_json.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -25,6 +28,16 @@ TEST_CASE("comparing functions accept what is equal, near or said") {
   check_equal(std::vector<Vec3>{{1, 2, 3}}, {{1, 2, 3}});
   check_refused<std::logic_error>([] { throw std::logic_error("a file of 3 bytes"); },
                                   "a file ... bytes");
+}
+
+TEST_CASE("JSON is compared by the members that are named") {
+  const nlohmann::json value{{"a", 1}, {"list", {{{"b", 0.5}}, nullptr}}, {"text", "words"}};
+  check_json(value, R"({"a": 1, "list": {"0": {"b": 0.5}, "1": null}})");
+  check_json(value, R"({"list": [{"b": 0.5}, null], "text": "words"})");
+  check_json_text("[1, 2]", "[1, 2]");
+  check_near(value, "/list/0/b", 0.500001);
+  check_near(value, "/list/0/b", 0.6, 0.11);
+  check_same("bytes", "bytes");
 }
 
 // Each of these fails, and that is expected.
@@ -60,3 +73,20 @@ TEST_CASE("rejected: an act that succeeds", "[!shouldfail]") {
 TEST_CASE("rejected: another message", "[!shouldfail]") {
   check_refused<std::logic_error>([] { throw std::logic_error("a"); }, "b");
 }
+TEST_CASE("rejected: another value in JSON", "[!shouldfail]") {
+  check_json(nlohmann::json{{"a", 1}}, R"({"a": 2})");
+}
+TEST_CASE("rejected: a member that JSON lacks", "[!shouldfail]") {
+  check_json(nlohmann::json{{"a", 1}}, R"({"b": null})");
+}
+TEST_CASE("rejected: a list of another length in JSON", "[!shouldfail]") {
+  check_json(nlohmann::json{1, 2}, "[1]");
+}
+TEST_CASE("rejected: a text that is no JSON", "[!shouldfail]") { check_json_text("{", "{}"); }
+TEST_CASE("rejected: a number in JSON that is too far", "[!shouldfail]") {
+  check_near(nlohmann::json{{"a", 1}}, "/a", 1.001);
+}
+TEST_CASE("rejected: no number in JSON", "[!shouldfail]") {
+  check_near(nlohmann::json{{"a", "1"}}, "/a", 1);
+}
+TEST_CASE("rejected: other bytes", "[!shouldfail]") { check_same("bytes", "byteS"); }

@@ -7,14 +7,12 @@
 #include "tools/bench/experiment.hpp"
 
 using namespace clearway::test;
-using Catch::Contains;
 
 TEST_CASE("table: every exact engine finds the same points") {
   const Experiment table("table");
-  const Outcome done = table.run();
-  REQUIRE(done.exit_code == 0);
+  require_success(table.run());
   const Json figures = table.figures();
-  CHECK(figures["experiment"] == "table");
+  check_json(figures, R"({"experiment": "table"})");
   CHECK(figures["machine"]["cores"] > 0);
   CHECK_FALSE(figures["clearway"]["commit"].get<std::string>().empty());
   std::set<std::string> scenes;
@@ -22,7 +20,7 @@ TEST_CASE("table: every exact engine finds the same points") {
     CAPTURE(one["key"]);
     scenes.insert(one["parameters"]["scene"]);
     CHECK(one["runs"].size() == 1);
-    CHECK(one["runs"][0]["environment_points"] == 20'000);
+    check_json(one, R"({"runs": {"0": {"environment_points": 20000}}})");
     CHECK(one["runs"][0]["wall_seconds"] > 0);
     if (one["parameters"]["exact"]) CHECK(one["findings"]["equal"]);
   }
@@ -31,7 +29,7 @@ TEST_CASE("table: every exact engine finds the same points") {
 
 TEST_CASE("grid: its regular layouts say how many points a chunk has") {
   const Experiment grid("grid", 1);
-  REQUIRE(grid.run().exit_code == 0);
+  require_success(grid.run());
   std::set<std::string> varied;
   const Json figures = grid.figures();
   for (const Json& one : figures["cases"]) {
@@ -46,14 +44,12 @@ TEST_CASE("grid: its regular layouts say how many points a chunk has") {
 
 TEST_CASE("surfaces: points on a surface miss what is beyond their spacing alone") {
   const Experiment surfaces("surfaces", 1);
-  const Outcome done = surfaces.run();
-  CAPTURE(done.err);
-  REQUIRE(done.exit_code == 0);
+  require_success(surfaces.run());
   std::set<std::string> spacings;
   const Json figures = surfaces.figures();
   for (const Json& one : figures["cases"]) {
     CAPTURE(one["key"]);
-    CHECK(one["findings"]["false_hits"] == 0);
+    check_json(one, R"({"findings": {"false_hits": 0}})");
     spacings.insert(one["parameters"]["value"]);
     if (one["parameters"]["method"] == "surface") CHECK(one["findings"]["misses"] == 0);
   }
@@ -62,9 +58,7 @@ TEST_CASE("surfaces: points on a surface miss what is beyond their spacing alone
 
 TEST_CASE("seen: what is swept grows with the path, and more beams see more of it") {
   const Experiment seen("seen", 1);
-  const Outcome done = seen.run("--scenes hall");
-  CAPTURE(done.err);
-  REQUIRE(done.exit_code == 0);
+  require_success(seen.run("--scenes hall"));
   std::set<std::string> varied;
   std::map<std::string, std::vector<std::uint64_t>> swept, unseen;
   const Json figures = seen.figures();
@@ -92,9 +86,7 @@ TEST_CASE("seen: what is swept grows with the path, and more beams see more of i
 
 TEST_CASE("section: a section for every outline, whatever bins, cells, load and threads") {
   const Experiment section("section", 1);
-  const Outcome done = section.run("--scenes hall");
-  CAPTURE(done.err);
-  REQUIRE(done.exit_code == 0);
+  require_success(section.run("--scenes hall"));
   std::map<std::string, std::vector<std::uint64_t>> blocked;
   const Json figures = section.figures();
   for (const Json& one : figures["cases"]) {
@@ -104,7 +96,7 @@ TEST_CASE("section: a section for every outline, whatever bins, cells, load and 
       CHECK(one["findings"]["pairs"] > 0);
       CHECK(one["findings"]["seconds"] > 0);
     } else if (vary == "width") {
-      CHECK(one["runs"][0]["model_solids"] == 1);
+      check_json(one, R"({"runs": {"0": {"model_solids": 1}}})");
     } else {
       blocked[vary].push_back(one["runs"][0]["blocked"]);
     }
@@ -118,9 +110,7 @@ TEST_CASE("section: a section for every outline, whatever bins, cells, load and 
 
 TEST_CASE("accuracy: exact engines err nowhere, the others say where") {
   const Experiment accuracy("accuracy");
-  const Outcome done = accuracy.run("--limit 4");
-  CAPTURE(done.err);
-  REQUIRE(done.exit_code == 0);
+  const Outcome done = require_success(accuracy.run("--limit 4"));
   std::set<std::string> methods;
   Json figures = accuracy.figures();
   for (const Json& one : figures["cases"]) {
@@ -128,9 +118,9 @@ TEST_CASE("accuracy: exact engines err nowhere, the others say where") {
     const std::string method = one["parameters"]["method"];
     methods.insert(method);
     if (one.contains("failed")) {
-      CHECK(one["failed"]["limit"] == 4);
+      check_json(one, R"({"failed": {"limit": 4}})");
       const std::string key = one["key"];
-      CHECK_THAT(done.err, Contains("warning: " + key + ": counted as failed: stopped after"));
+      check_says(done.err, "warning: " + key + ": counted as failed: stopped after");
       continue;
     }
     const Json& wrong = one["findings"];
@@ -138,55 +128,46 @@ TEST_CASE("accuracy: exact engines err nowhere, the others say where") {
     if (method == "tolerance") {
       const double tolerance = std::stod(one["parameters"]["value"].get<std::string>());
       CHECK(wrong["largest_distance"].get<double>() <= tolerance);
-      CHECK(wrong["beyond"] == 0);
+      check_json(wrong, R"({"beyond": 0})");
     }
   }
   CHECK(methods.size() == 8);
-  REQUIRE(figures["cases"][1]["key"] == "exact/sweep cpu/\"\"");
+  check_json(figures, R"({"cases": {"1": {"key": "exact/sweep cpu/\"\""}}})");
   figures["cases"][1]["findings"]["misses"] = 1;
   accuracy.write(figures);
   const Outcome wrong = accuracy.run("--limit 4 --resume");
   CHECK(wrong.exit_code != 0);
-  CHECK_THAT(wrong.err, Contains("engines that decide exactly are wrong: exact/sweep cpu/"));
+  check_says(wrong.err, "engines that decide exactly are wrong: exact/sweep cpu/");
 }
 
 TEST_CASE("equality: counts and writes what differs from the sweep on the CPU") {
   const Experiment equality("equality", 1);
-  const Outcome done = equality.run("--scenes hall");
-  CAPTURE(done.err);
-  REQUIRE(done.exit_code == 0);
-  CHECK_THAT(done.out, Contains("16 runs: 0 differ") && Contains("0 took more"));
+  check_says(require_success(equality.run("--scenes hall")).out,
+             "16 runs: 0 differ ... 0 took more");
   Json figures = equality.figures();
   CHECK(figures["cases"].size() == 17);
-  CHECK(figures["cases"][16]["key"] == "all");
-  CHECK(figures["cases"][16]["findings"]["runs"] == 16);
+  check_json(figures, R"({"cases": {"16": {"key": "all", "findings": {"runs": 16}}}})");
   figures["cases"][3]["findings"]["equal"] = false;
   equality.write(figures);
-  const Outcome differs = equality.run("--scenes hall --resume");
-  CHECK(differs.exit_code == 1);
-  CHECK_THAT(differs.out, Contains("16 runs: 1 differ"));
+  check_outcome(equality.run("--scenes hall --resume"), 1, kAnything, "16 runs: 1 differ");
   CHECK(equality.figures()["cases"][16]["findings"]["differing"] == 1);
 }
 
 TEST_CASE("equality: a query of the user's is compared too") {
   const Experiment scene("datasets", 1);
-  REQUIRE(scene.run("--scenes tunnel").exit_code == 0);
+  require_success(scene.run("--scenes tunnel"));
   const auto files = scene.work() / "tunnel-smoke";
   const Experiment equality("equality", 1);
   const std::string query = "--scenes hall --env " + quoted(scene.work() / "tunnel-smoke.h5");
-  CHECK(equality.run(query).exit_code == 2);
-  const Outcome done = equality.run(query + " --model " + quoted(files / "model.ply") +
-                                    " --trajectory " + quoted(files / "trajectory.txt"));
-  CAPTURE(done.err);
-  CHECK(done.exit_code == 0);
-  CHECK_THAT(done.out, Contains("22 runs: 0 differ"));
+  check_outcome(equality.run(query), 2);
+  check_outcome(equality.run(query + " --model " + quoted(files / "model.ply") + " --trajectory " +
+                             quoted(files / "trajectory.txt")),
+                0, kAnything, "22 runs: 0 differ");
 }
 
 TEST_CASE("hard: the sweep and the k-d tree give the same bytes") {
   const Experiment hard("hard", 1);
-  const Outcome done = hard.run();
-  CAPTURE(done.err);
-  REQUIRE(done.exit_code == 0);
+  require_success(hard.run());
   std::set<std::string> cases;
   const Json figures = hard.figures();
   for (const Json& one : figures["cases"]) {

@@ -45,7 +45,7 @@ struct Searches : Work {
                                    const std::string& store = "") const {
     const Outcome done = search(options, store);
     CAPTURE(options, done.err);
-    REQUIRE(done.exit_code == 0);
+    require_success(done);
     return read_rows(ResultReader(folder / "out.h5")).source;
   }
 };
@@ -55,16 +55,12 @@ struct Searches : Work {
 TEST_CASE("within a tolerance only points near the radius differ, whatever threads and cells") {
   const Searches work;
   const std::vector<double> distances = distances_in(work.hall);
-  REQUIRE(work.run("convert " + work.hall / "environment.las" + " --cell-points 500 -o " +
-                   work.path("other.h5"))
-              .exit_code == 0);
+  require_success(work.run("convert " + work.hall / "environment.las" + " --cell-points 500 -o " +
+                           work.path("other.h5")));
   for (const double tolerance : {1e-6, 0.01, 0.06}) {
     const std::string options = "--tolerance " + std::to_string(tolerance);
-    const Outcome done = work.search(options);
-    REQUIRE(done.exit_code == 0);
-    const json report = json::parse(done.out);
-    CHECK(report["model_points"] == 300);
-    CHECK(report["poses"] == 150);
+    const json report = json_of(require_success(work.search(options)));
+    check_json(report, R"({"model_points": 300, "poses": 150})");
     CHECK(report["model_points_searched"] <= 300);
     CHECK(report["poses_searched"] <= 150);
     const std::vector<std::uint64_t> sources = work.found(options + " --threads 1");
@@ -83,16 +79,15 @@ TEST_CASE("within a tolerance only points near the radius differ, whatever threa
 
 TEST_CASE("neither the field's voxel nor the grid's cell changes what is found") {
   const Searches work;
-  REQUIRE(work.run_hall(work.hall / "site.h5", "out.h5").exit_code == 0);
+  require_success(work.run_hall(work.hall / "site.h5", "out.h5"));
   const auto expected = read_rows(ResultReader(work.folder / "out.h5")).source;
   for (const char* options :
        {"--field-voxel 0.02", "--field-voxel 0.5", "--field-voxel 1e9", "--engine grid",
         "--engine grid --grid-cell 0.2", "--engine grid --grid-cell 3"}) {
     CHECK((work.found(options) == expected));
   }
-  const json report = json::parse(work.search("--engine grid --grid-cell 0.2").out);
-  CHECK(report["grid_cell"] == 0.2);
-  CHECK(work.search("--engine grid --precision float").exit_code == 0);
+  check_json(json_of(work.search("--engine grid --grid-cell 0.2")), R"({"grid_cell": 0.2})");
+  check_outcome(work.search("--engine grid --precision float"), 0);
 }
 
 TEST_CASE("settings that the engine does not have are refused") {
@@ -102,7 +97,7 @@ TEST_CASE("settings that the engine does not have are refused") {
         "--engine grid --field-voxel 0.1", "--grid-cell 0.1", "--precision float",
         "--engine grid --precision double", "--engine kdtree"}) {
     CAPTURE(options);
-    CHECK(work.search(options).exit_code == 2);
+    check_outcome(work.search(options), 2);
   }
   CHECK_FALSE(std::filesystem::exists(work.folder / "out.h5"));
 }

@@ -10,45 +10,40 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 using nlohmann::json;
 
 namespace {
 
 /// A folder with a file of each kind.
-struct Files {
+struct Files : Workplace {
   Files() {
     std::string points;
     for (int i = 0; i < 500; ++i) {
       points += std::to_string(i % 25) + " " + std::to_string(i / 25) + " 0.5\n";
     }
-    put_bytes(folder / "scan.xyz", points);
-    put_bytes(folder / "model.xyz", "1 1 0.5\n1 1.05 0.5\n");
-    put_bytes(folder / "path.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
-    put_bytes(folder / "tum.txt", "# a comment\n0.5 1 2 3 0 0 0 1\n1.5 2 2 3 0 0 0 1\n");
-    put_bytes(folder / "named.csv", "t,x,y,z,qx,qy,qz,qw\n1,2,3,4,0,0,0,1\n");
-    put_bytes(folder / "empty.txt", "");
-    put_bytes(folder / "car.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    put("scan.xyz", points);
+    put("model.xyz", "1 1 0.5\n1 1.05 0.5\n");
+    put("path.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+    put("tum.txt", "# a comment\n0.5 1 2 3 0 0 0 1\n1.5 2 2 3 0 0 0 1\n");
+    put("named.csv", "t,x,y,z,qx,qy,qz,qw\n1,2,3,4,0,0,0,1\n");
+    put("empty.txt", "");
+    put("car.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     write_las(folder / "scan.las", std::vector<Quantum>{{0, 0, 0}, {1000, 2000, 3000}});
-    REQUIRE(run("convert " + path("scan.xyz") + " -o " + path("site.h5")).exit_code == 0);
-    REQUIRE(search("site.h5", "model.xyz", "path.txt", "-o " + path("out.h5")).exit_code == 0);
+    require_success(run("convert scan.xyz -o site.h5"));
+    require_success(search("site.h5", "model.xyz", "path.txt", "-o out.h5"));
   }
 
-  Outcome run(const std::string& arguments) const { return run_program(folder, arguments); }
-  std::string path(const std::string& name) const { return quoted(folder / name); }
   Outcome search(const std::string& environment, const std::string& model,
                  const std::string& trajectory, const std::string& rest) const {
-    return run("run --radius 0.1 --env " + path(environment) + " --model " + path(model) +
-               " --trajectory " + path(trajectory) + " " + rest);
+    return run("run --radius 0.1 --env " + environment + " --model " + model + " --trajectory " +
+               trajectory + " " + rest);
   }
   json info(const std::string& name) const {
-    const Outcome outcome = run("info --json " + path(name));
+    const Outcome outcome = run("info --json " + name);
     CAPTURE(name, outcome.err);
-    REQUIRE(outcome.exit_code == 0);
-    return json::parse(outcome.out);
+    require_success(outcome);
+    return json_of(outcome);
   }
-
-  ScratchFolder folder;
 };
 
 struct Wrong {
@@ -59,17 +54,16 @@ struct Wrong {
 
 TEST_CASE("a file in the wrong place is refused with what it is and what to do") {
   const Files files;
-  const std::string output = "-o " + files.path("x.h5");
+  const std::string output = "-o x.h5";
   const auto check = [&](const Outcome& outcome, const Wrong& wrong) {
     CAPTURE(wrong.name, outcome.err);
-    CHECK(outcome.exit_code == 3);
-    CHECK_THAT(outcome.err, Contains(wrong.name) && Contains(wrong.words));
-    CHECK_FALSE(std::filesystem::exists(files.folder / "x.h5"));
+    check_outcome(outcome, 3, wrong.name + std::string(" ... ") + wrong.words);
+    CHECK_FALSE(files.has("x.h5"));
   };
   for (const Wrong& wrong :
-       {Wrong{"scan.las",
-              "is a scan (LAS), not a store: convert it first: "
-              "clearway convert scan.las -o scan.h5"},
+       {Wrong{
+            "scan.las",
+            "is a scan (LAS), not a store: convert it first: clearway convert scan.las -o scan.h5"},
         Wrong{"scan.xyz", "convert it first"},
         Wrong{"path.txt", "is a trajectory (12 numbers a line), not a store"},
         Wrong{"out.h5", "is a result, not a store"}, Wrong{"car.obj", "is a mesh, not a store"},
@@ -92,33 +86,26 @@ TEST_CASE("a file in the wrong place is refused with what it is and what to do")
 TEST_CASE("a refused scan comes with the command that reads it") {
   const Files files;
   const auto refusal = [&](const std::string& inputs) {
-    const Outcome outcome = files.run("convert " + inputs + " -o " + files.path("x.h5"));
-    CHECK(outcome.exit_code == 3);
+    const Outcome outcome = files.run("convert " + inputs + " -o x.h5");
+    check_outcome(outcome, 3);
     return outcome.err;
   };
-  CHECK_THAT(refusal(files.path("car.obj")),
-             Contains("expected points; clearway model samples its surface"));
-  CHECK_THAT(refusal(files.path("car.obj") + " " + files.path("scan.las")),
-             Contains("expected points; --skip-unreadable"));
-  CHECK_THAT(refusal("/dev/null"),
-             Contains("is a pipe or device") && Contains("clearway convert - < FILE"));
+  check_says(refusal("car.obj"), "expected points; clearway model samples its surface");
+  check_says(refusal("car.obj scan.las"), "expected points; --skip-unreadable");
+  check_says(refusal("/dev/null"), "is a pipe or device ... clearway convert - < FILE");
   std::filesystem::create_directory(files.folder / "tiles");
   std::filesystem::create_symlink("nowhere.las", files.folder / "tiles/lost.las");
-  CHECK_THAT(refusal(files.path("tiles")), Contains("lost.las: is a link that leads to no file"));
+  check_says(refusal("tiles"), "lost.las: is a link that leads to no file");
 }
 
 TEST_CASE("info describes every input") {
   const Files files;
-  const json las = files.info("scan.las");
-  CHECK(las["kind"] == "scan");
-  CHECK(las["format"] == "LAS");
-  CHECK(las["points"] == 2);
-  CHECK(las["scale"] == json::array({0.001, 0.001, 0.001}));
-  CHECK(las["bounds"]["hi"] == json::array({101.0, -198.0, 3.0}));
+  check_json(files.info("scan.las"), R"({
+    "kind": "scan", "format": "LAS", "points": 2, "scale": [0.001, 0.001, 0.001],
+    "bounds": {"hi": [101.0, -198.0, 3.0]}})");
   const json text = files.info("scan.xyz");
-  CHECK(text["format"] == "text");
-  CHECK(text["points"] == 500);
-  CHECK(text["spacing"].get<double>() == Approx(1).margin(0.5));
+  check_json(text, R"({"format": "text", "points": 500})");
+  check_near(text, "/spacing", 1, 0.5);
   for (const char* name : {"path.txt", "tum.txt", "named.csv"}) {
     CHECK(files.info(name)["kind"] == "trajectory");
   }
@@ -126,28 +113,25 @@ TEST_CASE("info describes every input") {
   CHECK(files.info("tum.txt")["bounds"]["hi"] == json::array({2.0, 2.0, 3.0}));
   CHECK(files.info("site.h5")["kind"] == "store");
   CHECK(files.info("out.h5")["kind"] == "result");
-  put_bytes(files.folder / "bad.las", "LASF and nothing more");
-  CHECK(files.run("info " + files.path("bad.las")).exit_code == 3);
-  CHECK(files.run("info " + files.path("missing")).exit_code == 4);
+  files.put("bad.las", "LASF and nothing more");
+  check_outcome(files.run("info bad.las"), 3);
+  check_outcome(files.run("info missing"), 4);
 }
 
 TEST_CASE("points that are not finite are counted by info") {
   const Files files;
-  put_bytes(files.folder / "nan.xyz", "1 2 3\nnan 0 0\n4 5 6\n");
-  const json description = files.info("nan.xyz");
-  CHECK(description["points"] == 2);
-  CHECK(description["non_finite_points"] == 1);
+  files.put("nan.xyz", "1 2 3\nnan 0 0\n4 5 6\n");
+  check_json(files.info("nan.xyz"), R"({"points": 2, "non_finite_points": 1})");
 }
 
 TEST_CASE("a length may have a unit, which is read exactly") {
   const Files files;
   const auto radius = [&](const std::string& text) {
     const Outcome outcome =
-        files.run("run --force --env " + files.path("site.h5") + " --model " +
-                  files.path("model.xyz") + " --trajectory " + files.path("path.txt") +
-                  " --radius " + text + " -o " + files.path("r.h5"));
+        files.run("run --force --env site.h5 --model model.xyz --trajectory path.txt --radius " +
+                  text + " -o r.h5");
     CAPTURE(text, outcome.err);
-    REQUIRE(outcome.exit_code == 0);
+    require_success(outcome);
     return ResultReader(files.folder / "r.h5").header().radius;
   };
   for (const char* text :
@@ -161,24 +145,20 @@ TEST_CASE("a length may have a unit, which is read exactly") {
     const Outcome outcome = files.search("site.h5", "model.xyz", "path.txt",
                                          "--clearance '" + std::string(text) + "' -o x.h5");
     CAPTURE(text);
-    CHECK(outcome.exit_code == 2);
-    CHECK_THAT(outcome.err, Contains("mm, cm, m, km, in, ft, ift or us-ft"));
+    check_outcome(outcome, 2, "mm, cm, m, km, in, ft, ift or us-ft");
   }
 }
 
 TEST_CASE("feet are feet in a scan in feet") {
   const Files files;
-  put_bytes(files.folder / "feet.xyz", "x[ft],y[ft],z[ft]\n0,0,0\n1,2,3\n4,5,6\n");
-  REQUIRE(
-      files.run("convert " + files.path("feet.xyz") + " -o " + files.path("feet.h5")).exit_code ==
-      0);
+  files.put("feet.xyz", "x[ft],y[ft],z[ft]\n0,0,0\n1,2,3\n4,5,6\n");
+  files.succeed("convert feet.xyz -o feet.h5");
   const auto radius = [&](const std::string& text) {
     const Outcome outcome =
-        files.run("run --force --env " + files.path("feet.h5") + " --model " +
-                  files.path("model.xyz") + " --trajectory " + files.path("path.txt") +
-                  " --radius " + text + " -o " + files.path("r.h5"));
+        files.run("run --force --env feet.h5 --model model.xyz --trajectory path.txt --radius " +
+                  text + " -o r.h5");
     CAPTURE(text, outcome.err);
-    REQUIRE(outcome.exit_code == 0);
+    require_success(outcome);
     return ResultReader(files.folder / "r.h5").header().radius;
   };
   for (const char* text : {"0.1", "0.2", "0.3", "0.7", "1.1", "2.3e-1"}) {
@@ -190,36 +170,32 @@ TEST_CASE("feet are feet in a scan in feet") {
 
 TEST_CASE("every option that is a length takes a unit") {
   const Files files;
-  const std::string info =
-      "trajectory info --json " + files.path("tum.txt") + " --model " + files.path("model.xyz");
-  const std::string run = "run --force --json --env " + files.path("site.h5") + " --model " +
-                          files.path("car.obj") + " --trajectory " + files.path("path.txt") +
-                          " --radius 0.1 -o " + files.path("r.h5");
+  const std::string info = "trajectory info --json tum.txt --model model.xyz";
+  const std::string run =
+      "run --force --json --env site.h5 --model car.obj --trajectory path.txt --radius 0.1 -o r.h5";
   const auto same = [&](const std::string& command, const std::string& plain,
                         const std::string& with_unit, const char* what) {
     const Outcome outcomes[] = {files.run(command + plain), files.run(command + with_unit)};
     CAPTURE(command, outcomes[0].err, outcomes[1].err);
-    REQUIRE(outcomes[0].exit_code == 0);
-    REQUIRE(outcomes[1].exit_code == 0);
+    require_success(outcomes[0]);
+    require_success(outcomes[1]);
     CHECK(json::parse(outcomes[0].out)[what] == json::parse(outcomes[1].out)[what]);
   };
-  const std::string model = "model --json " + files.path("car.obj");
+  const std::string model = "model --json car.obj";
   same(model, " --spacing 0.1", " --spacing 10cm", "points");
   same(run, " --model-spacing 0.05", " --model-spacing 50mm", "model_points");
   same(run, " --lever-arm 1,0,-1", " --lever-arm +100cm,0,-1m", "colliding_points");
   same(info, " --radius 0.5", " --radius 50cm", "motion");
   same(info, " --lever-arm 1,0,-1.016", " --lever-arm '1000 mm,0,-40in'", "first_pose");
-  const std::string convert =
-      "convert --force --json " + files.path("scan.xyz") + " -o " + files.path("c.h5");
+  const std::string convert = "convert --force --json scan.xyz -o c.h5";
   same(convert, " --layout regular:0.5", " --layout regular:50cm", "cells");
   same(convert, " --scale 0.01", " --scale 1cm", "scale");
-  const std::string resample = "trajectory resample --force --json " + files.path("tum.txt") +
-                               " --model " + files.path("model.xyz") + " -o " +
-                               files.path("dense.txt");
+  const std::string resample =
+      "trajectory resample --force --json tum.txt --model model.xyz -o dense.txt";
   same(resample, " --max-motion 0.1", " --max-motion 10cm", "poses_out");
   for (const char* lever : {"1,2", "1,2,3,4", "1,2,x", "1,2,3parsecs", "nan,0,0", ""}) {
     CAPTURE(lever);
-    CHECK(files.run(info + " --lever-arm '" + std::string(lever) + "'").exit_code == 2);
+    check_outcome(files.run(info + " --lever-arm '" + std::string(lever) + "'"), 2);
   }
 }
 
@@ -238,8 +214,8 @@ TEST_CASE("a mistyped word is named before what is then missing") {
            {"--vesion", "did you mean --version?"}}) {
     const Outcome outcome = files.run(arguments);
     CAPTURE(arguments);
-    CHECK(outcome.exit_code == 2);
-    CHECK_THAT(outcome.err, Contains(words) && !Contains("is required"));
+    check_outcome(outcome, 2, words);
+    check_lacks(outcome.err, "is required");
   }
-  CHECK(files.run("run --help").exit_code == 0);
+  check_outcome(files.run("run --help"), 0);
 }

@@ -12,7 +12,6 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
@@ -177,7 +176,7 @@ TEST_CASE("a hole in the scan is warned of, with its place") {
   const Outcome ground =
       ask_part([](const Relative& p) { return !is_in_hole(p) || p.height > 0.5; });
   CHECK(codes_of(ground) == "nothing-below");
-  CHECK_THAT(ground.err, Contains("m along the path) nothing was scanned below the model, though"));
+  check_says(ground.err, "m along the path) nothing was scanned below the model, though");
   const auto corridor = [](const Relative& p) { return !is_in_hole(p) || p.away > 2.5; };
   CHECK(codes_of_part(corridor) == "nothing-below");
   CHECK(codes_of_part([](const Relative& p) { return !is_in_hole(p) || p.away > 8; }) ==
@@ -195,8 +194,7 @@ TEST_CASE("several holes are told once, the longest with its place") {
     return !in_hole || p.height > 0.5;
   });
   CHECK(codes_of(holes) == "nothing-below");
-  CHECK_THAT(holes.err,
-             Contains("The same holds for 1 other stretch, ") && Contains("m long in all"));
+  check_says(holes.err, "The same holds for 1 other stretch,  ... m long in all");
 }
 
 TEST_CASE("a part of the scan at another height is warned of") {
@@ -207,7 +205,7 @@ TEST_CASE("a part of the scan at another height is warned of") {
   }
   const Outcome low = ask_raised(-1, is_in_second_half);
   CHECK(codes_of(low) == "floats");
-  CHECK_THAT(low.err, Contains("the model is 1.0") && Contains("m above the highest point below"));
+  check_says(low.err, "the model is 1.0 ... m above the highest point below");
   CHECK(codes_of(ask_raised(-1, is_in_hole)) == "floats");
 }
 
@@ -215,11 +213,11 @@ TEST_CASE("walls that are missing along a part of the path are warned of") {
   const Outcome both =
       ask_part([](const Relative& p) { return !is_in_second_half(p) || p.height < 0.1; });
   CHECK(codes_of(both) == "nothing-beside");
-  CHECK_THAT(both.err, Contains("though there is something on the rest of the path"));
+  check_says(both.err, "though there is something on the rest of the path");
   const Outcome left =
       ask_part([](const Relative& p) { return !is_in_second_half(p) || p.left < 0.5; });
   CHECK(codes_of(left) == "one-side");
-  CHECK_THAT(left.err, Contains("nothing was scanned on the left of the model"));
+  check_says(left.err, "nothing was scanned on the left of the model");
 }
 
 TEST_CASE("a path that leaves the ground on a part of its way is warned of") {
@@ -233,7 +231,7 @@ TEST_CASE("a path that leaves the ground on a part of its way is warned of") {
   });
   const Outcome outcome = asked.ask();
   CHECK(codes_of(outcome) == "floats");
-  CHECK_THAT(outcome.err, Contains("between pose 6") && Contains("the path leaves it"));
+  check_says(outcome.err, "between pose 6 ... the path leaves it");
 }
 
 TEST_CASE("stretches of which a warning tells are numbers in the JSON") {
@@ -247,16 +245,15 @@ TEST_CASE("stretches of which a warning tells are numbers in the JSON") {
       folder, "run --json --env " + store + " --model " + quoted(hall.folder / "model.ply") +
                   " --trajectory " + quoted(hall.folder / "trajectory.txt") + " --radius 0.1 -o " +
                   quoted(folder / "out.h5"));
-  const auto warnings = nlohmann::json::parse(outcome.out)["warnings"];
+  const auto warnings = json_of(outcome)["warnings"];
   REQUIRE(warnings.size() == 1);
   CHECK(warnings[0]["code"] == "nothing-below");
   const auto& numbers = warnings[0]["numbers"];
-  CHECK(numbers["chainage_from"].get<double>() == Approx(31.5).margin(1.5));
-  CHECK(numbers["chainage_to"].get<double>() == Approx(40.5).margin(1.5));
-  CHECK(numbers["first_pose"].get<double>() ==
-        Approx(numbers["chainage_from"].get<double>() * 25).margin(2));
-  CHECK(numbers["stretches"] == 1);
-  CHECK(numbers["share"].get<double>() == Approx(9.0 / 80).margin(0.03));
+  check_near(numbers, "/chainage_from", 31.5, 1.5);
+  check_near(numbers, "/chainage_to", 40.5, 1.5);
+  check_near(numbers, "/first_pose", numbers["chainage_from"].get<double>() * 25, 2);
+  check_json(numbers, R"({"stretches": 1})");
+  check_near(numbers, "/share", 9.0 / 80, 0.03);
 }
 
 TEST_CASE("short, long and wide vehicles in a sound scan are not warned of") {
@@ -288,12 +285,11 @@ TEST_CASE("a vehicle that stops for long is judged by its way") {
 TEST_CASE("where poses are far apart a note says what can stay unnoticed") {
   Asked asked;
   asked.options = "--between-poses";
-  CHECK_THAT(asked.ask().err, !Contains("is inspected every"));
+  check_lacks(asked.ask().err, "is inspected every");
   std::vector<Pose> few;
   for (std::size_t i = 0; i < asked.poses.size(); i += 150) few.push_back(asked.poses[i]);
   asked.poses = few;
-  CHECK_THAT(asked.ask().err,
-             Contains("is inspected every 5.99 m") && Contains("shorter than 12 m"));
+  check_says(asked.ask().err, "is inspected every 5.99 m ... shorter than 12 m");
 }
 
 TEST_CASE("a scan that was thinned is warned of, also for a wide model") {
@@ -308,9 +304,9 @@ TEST_CASE("a scan that was thinned is warned of, also for a wide model") {
   CHECK(codes_of(asked.ask(store)) == "coarse-scan");
   const double bottom = bottom_of(asked.model);
   asked.model = shell({-2.2, -1.3, bottom}, {2.2, 1.3, bottom + 1.5}, true);
-  CHECK_THAT(codes_of(asked.ask(store)), Contains("coarse-scan"));
+  check_says(codes_of(asked.ask(store)), "coarse-scan");
   asked.radius = "1";
-  CHECK_THAT(codes_of(asked.ask(store)), !Contains("coarse-scan"));
+  check_lacks(codes_of(asked.ask(store)), "coarse-scan");
 }
 
 TEST_CASE("a scan without heights is warned of") {
@@ -324,10 +320,8 @@ TEST_CASE("a scan without heights is warned of") {
             }(),
             {{0.001, 0.001, 0.001}, {0, 0, 0}});
   const std::string store = quoted(folder / "flat.h5");
-  REQUIRE(
-      run_program(folder, "convert " + quoted(folder / "flat.las") + " -o " + store).exit_code ==
-      0);
-  CHECK_THAT(codes_of(Asked().ask(store)), Contains("flat-scan"));
+  require_success(run_program(folder, "convert " + quoted(folder / "flat.las") + " -o " + store));
+  check_says(codes_of(Asked().ask(store)), "flat-scan");
 }
 
 TEST_CASE("a model that lets things through is warned of, a closed one is not") {
@@ -356,29 +350,30 @@ TEST_CASE("a model that stands on something at the first pose is warned of") {
   }
   write_ply(folder / "things.ply", things);
   const std::string store = quoted(folder / "both.h5");
-  REQUIRE(run_program(folder, "convert " + quoted(Scene::hall().folder / "environment.las") + " " +
-                                  quoted(folder / "things.ply") + " -o " + store)
-              .exit_code == 0);
+  require_success(run_program(folder, "convert " +
+                                          quoted(Scene::hall().folder / "environment.las") + " " +
+                                          quoted(folder / "things.ply") + " -o " + store));
   const Outcome outcome = asked.ask(store);
   CHECK(codes_of(outcome) == "inside-model");
-  CHECK_THAT(outcome.err, Contains("about 1,000 scanned points lie inside the model"));
+  check_says(outcome.err, "about 1,000 scanned points lie inside the model");
 }
 
 TEST_CASE("a model that is far too small, or that the poses scale, is warned of") {
   Asked inches;
   inches.move_model([](const Vec3& p) { return Vec3{p.x * 0.0254, p.y * 0.0254, p.z * 0.0254}; });
-  CHECK_THAT(codes_of(inches.ask()), Contains("model-size"));
+  check_says(codes_of(inches.ask()), "model-size");
   Asked point;
   point.model = {{0, 0, 1}};
-  CHECK_THAT(codes_of(point.ask()), Contains("model-size"));
+  check_says(codes_of(point.ask()), "model-size");
   Asked feet;
   feet.options = "--allow-non-rigid";
   feet.turn([](double* r) {
     for (int k = 0; k < 9; ++k) r[k] *= 0.3048;
   });
   const Outcome outcome = feet.ask();
-  CHECK_THAT(codes_of(outcome), Contains("scaled-poses") && !Contains("tilted"));
-  CHECK_THAT(outcome.err, Contains("scale the model by 0.305"));
+  check_says(codes_of(outcome), "scaled-poses");
+  check_lacks(codes_of(outcome), "tilted");
+  check_says(outcome.err, "scale the model by 0.305");
 }
 
 TEST_CASE("poses that mirror the model are warned of, and poses turned round are told") {
@@ -387,8 +382,9 @@ TEST_CASE("poses that mirror the model are warned of, and poses turned round are
   mirrored.turn([](double* r) {
     for (int k = 0; k < 3; ++k) r[3 * k + 1] = -r[3 * k + 1];
   });
-  CHECK_THAT(codes_of(mirrored.ask()), Contains("mirrored-poses") && !Contains("scaled-poses"));
-  CHECK_THAT(Asked().ask().err, !Contains("moves backwards"));
+  check_says(codes_of(mirrored.ask()), "mirrored-poses");
+  check_lacks(codes_of(mirrored.ask()), "scaled-poses");
+  check_lacks(Asked().ask().err, "moves backwards");
   Asked round;
   round.turn([](double* r) {
     for (int k = 0; k < 3; ++k) {
@@ -396,5 +392,5 @@ TEST_CASE("poses that mirror the model are warned of, and poses turned round are
       r[3 * k + 1] = -r[3 * k + 1];
     }
   });
-  CHECK_THAT(round.ask().err, Contains("the model moves backwards, against its x axis"));
+  check_says(round.ask().err, "the model moves backwards, against its x axis");
 }

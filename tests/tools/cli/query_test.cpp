@@ -15,7 +15,6 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
@@ -101,10 +100,9 @@ TEST_CASE("clearances are those of brute force, beside the same collisions") {
   const Work work{Hall::small()};
   const Inputs inputs;
   const bool first_pose = GENERATE(false, true);
-  const Outcome run =
-      work.run_hall(work.hall / "site.h5", "out.h5",
-                    std::string("--clearance 0.4 --json") + (first_pose ? " --first-pose" : ""));
-  REQUIRE(run.exit_code == 0);
+  const Outcome run = require_success(
+      work.run_hall("hall/site.h5", "out.h5",
+                    std::string("--clearance 0.4 --json") + (first_pose ? " --first-pose" : "")));
   const Clearances expected = brute_clearances(inputs);
   const Clearances rows = clearances_of(work.folder / "out.h5");
   CHECK(rows.source == expected.source);
@@ -116,23 +114,21 @@ TEST_CASE("clearances are those of brute force, beside the same collisions") {
   CHECK(collisions.size() > 100);
   CHECK(expected.size() > collisions.size() + 100);
   CHECK(same_rows(read_rows(ResultReader(work.folder / "out.h5")), collisions));
-  CHECK(nlohmann::json::parse(run.out)["clearance_points"] == expected.size());
-  CHECK_THAT(run.err, Contains("points are within the clearance of 0.4 m"));
-  CHECK(work.run("verify " + work.path("out.h5")).exit_code == 0);
+  CHECK(json_of(run)["clearance_points"] == expected.size());
+  check_says(run.err, "points are within the clearance of 0.4 m");
+  check_outcome(work.run("verify out.h5"), 0);
 
   // The set comes from kdtree; compare says that only one side has clearances.
-  REQUIRE(work.run_hall(work.hall / "site.h5", "set.h5",
-                        std::string("--engine kdtree") + (first_pose ? " --first-pose" : ""))
-              .exit_code == 0);
-  const Outcome compare = work.run("compare " + work.path("out.h5") + " " + work.path("set.h5"));
-  CHECK(compare.exit_code == 0);
-  CHECK_THAT(compare.out, Contains("clearance"));
+  require_success(
+      work.run_hall("hall/site.h5", "set.h5",
+                    std::string("--engine kdtree") + (first_pose ? " --first-pose" : "")));
+  check_outcome(work.run("compare out.h5 set.h5"), 0, kAnything, "clearance");
 }
 
 TEST_CASE("a profile is that of brute force, beside the same collisions") {
   const Work work{Hall::small()};
   const Inputs inputs;
-  REQUIRE(work.run_hall(work.hall / "site.h5", "out.h5", "--profile 0.4").exit_code == 0);
+  require_success(work.run_hall("hall/site.h5", "out.h5", "--profile 0.4"));
   Query query = inputs.query();
   query.profile = 0.4;
   query.first_pose = false;
@@ -152,14 +148,14 @@ TEST_CASE("a profile is that of brute force, beside the same collisions") {
   CHECK(wrong == 0);
   CHECK(found > expected.size() / 2);
   CHECK(same_rows(read_rows(result), brute_collisions(inputs, query)));
-  CHECK(work.run("verify " + work.path("out.h5")).exit_code == 0);
+  check_outcome(work.run("verify out.h5"), 0);
 }
 
 TEST_CASE("clearances below the radius leave the set as it is") {
   const Work work;
-  REQUIRE(work.run_hall(work.hall / "site.h5", "out.h5", "--clearance 0.05").exit_code == 0);
-  REQUIRE(work.run_hall(work.hall / "site.h5", "set.h5").exit_code == 0);
-  CHECK(work.run("compare " + work.path("out.h5") + " " + work.path("set.h5")).exit_code == 0);
+  require_success(work.run_hall("hall/site.h5", "out.h5", "--clearance 0.05"));
+  require_success(work.run_hall("hall/site.h5", "set.h5"));
+  check_outcome(work.run("compare out.h5 set.h5"), 0);
   const ResultReader result(work.folder / "out.h5");
   CHECK(result.clearances() > 0);
   CHECK(result.clearances() < result.collisions());
@@ -167,56 +163,50 @@ TEST_CASE("clearances below the radius leave the set as it is") {
 
 TEST_CASE("export --what chooses the table") {
   const Work work;
-  REQUIRE(work.run_hall(work.hall / "site.h5", "out.h5", "--clearance 0.4").exit_code == 0);
-  const std::string clearances = "export --what clearance " + work.path("out.h5") + " -o ";
-  const Outcome outcome = work.run(clearances + work.path("near.csv"));
-  CHECK(outcome.exit_code == 0);
-  CHECK(outcome.out.empty());
-  CHECK_THAT(outcome.err, Contains(" clearances"));
+  require_success(work.run_hall("hall/site.h5", "out.h5", "--clearance 0.4"));
+  const std::string clearances = "export --what clearance out.h5 -o ";
+  check_refused(work.run(clearances + "near.csv"), 0, " clearances");
   CHECK(without_places(work.bytes("near.csv")) == csv_of(clearances_of(work.folder / "out.h5")));
   CHECK_THAT(work.bytes("near.csv"), Catch::StartsWith("source,x,y,z,distance,pose\n"));
-  check_refused(work.run(clearances + work.path("near.csv")), 2, "--force");
-  CHECK(work.run(clearances + work.path("near.csv") + " --force").exit_code == 0);
+  check_refused(work.run(clearances + "near.csv"), 2, "--force");
+  check_outcome(work.run(clearances + "near.csv --force"), 0);
   for (const char* ending : {"las", "ply", "xyz"}) {
-    CHECK(work.run(clearances + work.path(std::string("near.") + ending)).exit_code == 0);
+    check_outcome(work.run(clearances + std::string("near.") + ending), 0);
   }
 
-  const std::string collisions = "export " + work.path("out.h5") + " -o ";
-  REQUIRE(work.run(collisions + work.path("a.csv")).exit_code == 0);
-  REQUIRE(work.run(collisions + work.path("b.csv") + " --what collisions").exit_code == 0);
-  CHECK(work.bytes("a.csv") == work.bytes("b.csv"));
+  const std::string collisions = "export out.h5 -o ";
+  work.succeed(collisions + "a.csv");
+  work.succeed(collisions + "b.csv --what collisions");
+  check_same(work.bytes("a.csv"), work.bytes("b.csv"));
   CHECK_THAT(work.bytes("a.csv"), Catch::StartsWith("source,x,y,z\n"));
-  check_refused(work.run(collisions + work.path("c.csv") + " --what distances"), 2, "--what");
+  check_refused(work.run(collisions + "c.csv --what distances"), 2, "--what");
 
-  REQUIRE(work.run_hall(work.hall / "site.h5", "set.h5").exit_code == 0);
-  check_refused(
-      work.run("export --what clearance " + work.path("set.h5") + " -o " + work.path("none.csv")),
-      2, "makes a result with clearances");
-  CHECK_FALSE(std::filesystem::exists(work.folder / "none.csv"));
+  require_success(work.run_hall("hall/site.h5", "set.h5"));
+  check_refused(work.run("export --what clearance set.h5 -o none.csv"), 2,
+                "makes a result with clearances");
+  CHECK_FALSE(work.has("none.csv"));
 }
 
 TEST_CASE("an export does not overwrite the result it is of") {
   const Work work;
-  REQUIRE(work.run_hall(work.hall / "site.h5", "out.csv", "--clearance 0.4").exit_code == 0);
+  require_success(work.run_hall("hall/site.h5", "out.csv", "--clearance 0.4"));
   const std::string result = work.bytes("out.csv");
-  for (const char* what : {"collisions", "clearance"}) {
-    check_refused(work.run("export " + work.path("out.csv") + " --force -o " +
-                           work.path("out.csv") + " --what " + what),
-                  2, "an input too");
-    CHECK((work.bytes("out.csv") == result));
+  for (const std::string what : {"collisions", "clearance"}) {
+    check_refused(work.run("export out.csv --force -o out.csv --what " + what), 2, "an input too");
+    check_same(work.bytes("out.csv"), result);
   }
 }
 
 TEST_CASE("between poses both engines find what brute force finds") {
   const Work work{Hall::small()};
-  const std::string site = work.hall / "site.h5";
-  const std::string sweep = work.path("sweep.h5"), kdtree = work.path("kdtree.h5");
+  const std::string site = "hall/site.h5";
+  const std::string sweep = "sweep.h5", kdtree = "kdtree.h5";
   for (const std::string& options :
        {std::string("--between-poses"), std::string("--between-poses --first-pose")}) {
-    REQUIRE(work.run_hall(site, "sweep.h5", "--force --engine sweep " + options).exit_code == 0);
-    REQUIRE(work.run_hall(site, "kdtree.h5", "--force --engine kdtree " + options).exit_code == 0);
-    CHECK(work.run("compare " + sweep + " " + kdtree).exit_code == 0);
-    CHECK((work.bytes("sweep.h5") == work.bytes("kdtree.h5")));
+    require_success(work.run_hall(site, "sweep.h5", "--force --engine sweep " + options));
+    require_success(work.run_hall(site, "kdtree.h5", "--force --engine kdtree " + options));
+    check_outcome(work.run("compare " + sweep + " " + kdtree), 0);
+    check_same(work.bytes("sweep.h5"), work.bytes("kdtree.h5"));
   }
   const Inputs inputs;
   Query query = inputs.query();
@@ -226,27 +216,23 @@ TEST_CASE("between poses both engines find what brute force finds") {
   CHECK(expected.size() > at_poses);
   CHECK(same_rows(read_rows(ResultReader(work.folder / "sweep.h5")), expected));
 
-  REQUIRE(work.run_hall(site, "set.h5", "--first-pose").exit_code == 0);
-  const Outcome compare = work.run("compare " + work.path("set.h5") + " " + sweep);
-  CHECK(compare.exit_code == 1);
-  CHECK_THAT(compare.out, Contains("between poses"));
+  require_success(work.run_hall(site, "set.h5", "--first-pose"));
+  check_outcome(work.run("compare set.h5 " + sweep), 1, kAnything, "between poses");
 }
 
 TEST_CASE("queries that no engine or not this engine answers are wrong usage") {
   const Work work;
-  const std::string site = work.hall / "site.h5";
-  for (const char* engine : {"", " --engine sweep", " --engine kdtree"}) {
+  const std::string site = "hall/site.h5";
+  for (const std::string engine : {"", " --engine sweep", " --engine kdtree"}) {
     check_refused(
         work.run_hall(site, "out.h5", std::string("--clearance 0.4 --between-poses") + engine), 2,
         "clearances and motion between poses cannot be combined");
   }
   check_refused(work.run_hall(site, "out.h5", "--clearance 0.4 --engine kdtree"), 2,
                 "--engine sweep");
-  for (const char* engine : {"grid", "kdtree"}) {
-    const Outcome refused =
-        work.run_hall(site, "out.h5", std::string("--profile 0.4 --engine ") + engine);
-    check_refused(refused, 2, "--engine sweep");
-    CHECK_THAT(refused.err, Contains(std::string("engine ") + engine + " has no profile"));
+  for (const std::string engine : {"grid", "kdtree"}) {
+    check_refused(work.run_hall(site, "out.h5", std::string("--profile 0.4 --engine ") + engine), 2,
+                  std::string("engine ") + engine + " has no profile ... --engine sweep");
   }
   check_refused(work.run_hall(site, "out.h5", "--profile 0.4 --between-poses"), 2,
                 "a profile and motion between poses cannot be combined");
@@ -256,6 +242,6 @@ TEST_CASE("queries that no engine or not this engine answers are wrong usage") {
                   "--clearance");
     check_refused(work.run_hall(site, "out.h5", std::string("--profile ") + value), 2, "--profile");
   }
-  CHECK_FALSE(std::filesystem::exists(work.folder / "out.h5"));
-  CHECK_FALSE(std::filesystem::exists(work.folder / "out.h5.partial"));
+  CHECK_FALSE(work.has("out.h5"));
+  CHECK_FALSE(work.has("out.h5.partial"));
 }

@@ -6,7 +6,6 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 using nlohmann::json;
 
 namespace {
@@ -35,12 +34,6 @@ class SmallHall {
   ScratchFolder folder_;
 };
 
-void check_refused(const Outcome& outcome, int exit_code, const std::string& message) {
-  CHECK(outcome.exit_code == exit_code);
-  CHECK(outcome.out.empty());
-  CHECK_THAT(outcome.err, Contains(message));
-}
-
 /// The smallest budget that a refusal names.
 std::uint64_t smallest_budget(const std::string& refusal) {
   const std::string before = "; --memory ";
@@ -57,40 +50,37 @@ TEST_CASE("the smallest memory that a refusal names works, and a byte less is re
        {"", "--first-pose", "--clearance 0.3 --first-pose", "--between-poses", "--threads 9",
         "--threads 1", "--engine kdtree --first-pose --threads 4"}) {
     CAPTURE(options);
-    REQUIRE(hall.search(options, "expected.h5").exit_code == 0);
+    require_success(hall.search(options, "expected.h5"));
     const Outcome refused = hall.search(options + " --memory 1K");
     check_refused(refused, 4, "too little");
     const std::uint64_t smallest = smallest_budget(refused.err);
     CHECK(smallest < (std::uint64_t{100} << 20));
     check_refused(hall.search(options + " --memory " + std::to_string(smallest - 1)), 4,
                   std::to_string(smallest));
-    const Outcome least = hall.search(options + " --json --memory " + std::to_string(smallest));
-    REQUIRE(least.exit_code == 0);
+    const Outcome least =
+        require_success(hall.search(options + " --json --memory " + std::to_string(smallest)));
 #ifndef CLEARWAY_SANITIZED  // sanitizers take memory of their own
-    CHECK(json::parse(least.out)["peak_host_bytes"] <= smallest);
+    CHECK(json_of(least)["peak_host_bytes"] <= smallest);
 #endif
-    CHECK(json::parse(least.out)["needed_host_bytes"] <= smallest);
-    CHECK((hall.bytes("out.h5") == hall.bytes("expected.h5")));
+    CHECK(json_of(least)["needed_host_bytes"] <= smallest);
+    check_same(hall.bytes("out.h5"), hall.bytes("expected.h5"));
   }
 }
 
 TEST_CASE("run --json tells of pages and stages") {
   const SmallHall hall;
-  const Outcome outcome = hall.search("--json --threads 3 --engine sweep");
-  REQUIRE(outcome.exit_code == 0);
-  const json report = json::parse(outcome.out);
-  CHECK(report["device"] == "cpu");
+  const json report = json_of(require_success(hall.search("--json --threads 3 --engine sweep")));
+  check_json(report, R"({"device": "cpu", "slots": 5})");
   CHECK(report["pages"] == report["cells_read"]);
   CHECK(report["cells_read"] <= report["cells_total"]);
   CHECK(report["page_bytes"].get<std::uint64_t>() > 1000);
-  CHECK(report["slots"] == 5);
   const json& seconds = report["seconds"];
   for (const char* stage : {"read", "compute"}) {
     CAPTURE(stage);
     CHECK(seconds[stage] > 0);
     CHECK(seconds[stage] <= seconds["search"]);
   }
-  CHECK(seconds["upload"] == 0);
+  check_json(seconds, R"({"upload": 0})");
   CHECK(seconds["search"] < seconds["total"]);
   CHECK(seconds["inputs"] > 0);
 }
@@ -104,18 +94,21 @@ TEST_CASE("CUDA where there is none exits with 4 and says what to do") {
     const bool has_gpus = outcome.err.find("that CUDA can use") != std::string::npos;
     check_refused(outcome, 4, has_gpus ? "error: GPU " : "--device cpu");
   }
-  CHECK(hall.search("--device auto").exit_code == 0);
-  CHECK(hall.search("--device cpu").exit_code == 0);
+  check_outcome(hall.search("--device auto"), 0);
+  check_outcome(hall.search("--device cpu"), 0);
 }
 
 TEST_CASE("options of devices and engines that do not fit are refused") {
   const SmallHall hall;
-  check_refused(hall.search("--gpus 0,x"), 2, "--gpus");
-  check_refused(hall.search("--gpus -1"), 2, "--gpus");
-  check_refused(hall.search("--gpus 1,0,1"), 2, "a GPU is named twice");
-  check_refused(hall.search("--device gpu"), 2, "--device");
-  check_refused(hall.search("--device-memory 2X"), 2, "--device-memory");
-  check_refused(hall.search("--device cpu --gpus 0"), 2, "--device cuda");
-  check_refused(hall.search("--device cpu --device-memory 2G"), 2, "--device cuda");
-  check_refused(hall.search("--engine kdtree --device cuda"), 2, "--engine sweep");
+  check_cases([&](const std::string& more) { return hall.search(more); },
+              {
+                  {"--gpus 0,x", 2, "--gpus"},
+                  {"--gpus -1", 2, "--gpus"},
+                  {"--gpus 1,0,1", 2, "a GPU is named twice"},
+                  {"--device gpu", 2, "--device"},
+                  {"--device-memory 2X", 2, "--device-memory"},
+                  {"--device cpu --gpus 0", 2, "--device cuda"},
+                  {"--device cpu --device-memory 2G", 2, "--device cuda"},
+                  {"--engine kdtree --device cuda", 2, "--engine sweep"},
+              });
 }

@@ -13,7 +13,6 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
@@ -23,7 +22,7 @@ struct Ray {
 
 /// A car of points that drives along x from 8 m to 15 m, towards a wall at 20 m that a scanner at
 /// the origin has scanned through the space where the car drives.
-struct Road {
+struct Road : Workplace {
   /// origin: where the road's coordinates have their origin.
   explicit Road(const std::array<double, 3>& origin = {}) : at(origin) {
     std::string car, path;
@@ -35,12 +34,11 @@ struct Road {
       }
     }
     for (int i = 0; i <= 70; ++i) {
-      path += "1 0 0 " + std::to_string(at[0] + 8 + 0.1 * i) + " 0 1 0 " + std::to_string(at[1]) +
-              " 0 0 1 " + std::to_string(at[2]) + "\n";
+      path += pose_at(at[0] + 8 + 0.1 * i, at[1], at[2]);
     }
-    put_bytes(folder / "car.xyz", car);
-    put_bytes(folder / "path.txt", path);
-    put_bytes(folder / "wagon.json", R"({"bodies": [{"name": "car", "model": "car.xyz"}]})");
+    put("car.xyz", car);
+    put("path.txt", path);
+    put("wagon.json", R"({"bodies": [{"name": "car", "model": "car.xyz"}]})");
   }
 
   static std::string line(double x, double y, double z) {
@@ -85,35 +83,26 @@ struct Road {
       for (std::size_t k = 0; k < 3; ++k) origins += "," + std::to_string(at[k] + ray.from[k]);
       origins += "\n";
     }
-    put_bytes(folder / "scan.xyz", points);
-    put_bytes(folder / "origins.csv", origins);
-    const Outcome outcome = run_program(folder, "convert " + quoted(folder / "scan.xyz") +
-                                                    " --origins " + quoted(folder / "origins.csv") +
-                                                    " -o " + quoted(folder / "site.h5") +
-                                                    " --scale 0.001 --cell-points 2000 --force");
-    INFO(outcome.err);
-    REQUIRE(outcome.exit_code == 0);
+    put("scan.xyz", points);
+    put("origins.csv", origins);
+    require_success(
+        Workplace::run("convert scan.xyz --origins origins.csv -o site.h5 --scale 0.001 "
+                       "--cell-points 2000 --force"));
   }
 
   Outcome run(const std::string& options, const std::string& out = "out.h5",
               const std::string& moves = "--model ") const {
     const std::string file = moves == "--model " ? "car.xyz" : "wagon.json";
-    return run_program(folder, "run --env " + quoted(folder / "site.h5") + " " + moves +
-                                   quoted(folder / file) + " --trajectory " +
-                                   quoted(folder / "path.txt") + " --radius 0.1 --force -o " +
-                                   quoted(folder / out) + " " + options);
+    return Workplace::run("run --env site.h5 " + moves + file +
+                          " --trajectory path.txt --radius 0.1 --force -o " + out + " " + options);
   }
 
   nlohmann::json answer(const std::string& options, const std::string& out = "out.h5",
                         const std::string& moves = "--model ") const {
-    const Outcome outcome = run(options + " --json", out, moves);
-    INFO(outcome.err);
-    REQUIRE(outcome.exit_code == 0);
-    return nlohmann::json::parse(outcome.out);
+    return json_of(require_success(run(options + " --json", out, moves)));
   }
 
   std::array<double, 3> at;
-  ScratchFolder folder;
 };
 
 std::vector<Ray> with(std::vector<Ray> rays, const std::vector<Ray>& more) {
@@ -127,37 +116,30 @@ TEST_CASE("a path through space that beams crossed is clear, and a hidden place 
   const Road road;
   road.scan(Road::beams(false));
   const auto open = road.answer("--seen");
-  CHECK(open["verdict"] == "clear");
+  check_json(open, R"({"verdict": "clear", "seen": {"unseen": 0}})");
   CHECK(open["seen"]["swept"] > 500);
-  CHECK(open["seen"]["unseen"] == 0);
   CHECK(road.answer("")["seen"].is_null());
 
   // Behind the board nobody knows what stands.
   road.scan(Road::beams(true));
   CHECK(road.answer("")["verdict"] == "clear");
-  const Outcome told = road.run("--seen --fail-on-collision");
-  CHECK(told.exit_code == 6);
-  CHECK_THAT(told.out, Contains("undecided (not-scanned)") && Contains("of 7.0 m"));
+  check_outcome(road.run("--seen --fail-on-collision"), 6, kAnything,
+                "undecided (not-scanned) ... of 7.0 m");
   const auto hidden = road.answer("--seen");
-  CHECK(hidden["verdict"] == "undecided");
+  check_json(hidden, R"({"verdict": "undecided", "seen": {"listed_groups": 1}})");
   CHECK(hidden["reasons"] == nlohmann::json::array({"not-scanned"}));
-  CHECK(hidden["seen"]["listed_groups"] == 1);
   CHECK(hidden["seen"]["not_scanned_length"].get<double>() > 3);
   CHECK(hidden["seen"]["swept"] == open["seen"]["swept"]);
   CHECK(hidden["seen"]["seen"].get<int>() + hidden["seen"]["unseen"].get<int>() ==
         hidden["seen"]["swept"].get<int>());
-  CHECK(run_program(road.folder, "verify " + quoted(road.folder / "out.h5")).exit_code == 0);
+  check_outcome(run_program(road.folder, "verify out.h5"), 0);
 }
 
 TEST_CASE("poses closer than a cube do not make the length that was not scanned shorter") {
   const Road road;
   road.scan(Road::beams(true));
   const double coarse = road.answer("--seen")["seen"]["not_scanned_length"];
-  std::string path;
-  for (int i = 0; i <= 700; ++i) {
-    path += "1 0 0 " + std::to_string(8 + 0.01 * i) + " 0 1 0 0 0 0 1 0\n";
-  }
-  put_bytes(road.folder / "path.txt", path);
+  road.put("path.txt", path_along_x(701, 0.01, 8));
   const double fine = road.answer("--seen")["seen"]["not_scanned_length"];
   CHECK(coarse > 6);
   CHECK(fine == Approx(coarse).margin(0.2));
@@ -180,13 +162,11 @@ TEST_CASE(
   CHECK(codes_of(road.answer("--seen --seen-cube 0.3")) == std::vector<std::string>{"large-cubes"});
   CHECK(codes_of(road.answer("--seen --seen-cube 0.3 --error-scan 0.02")).empty());
   const auto none = road.answer("--seen --seen-cube 40");
-  CHECK(none["seen"]["swept"] == 0);
-  CHECK(none["verdict"] == "undecided");
+  check_json(none, R"({"seen": {"swept": 0}, "verdict": "undecided"})");
   CHECK(none["reasons"] == nlohmann::json::array({"question-in-doubt"}));
   CHECK(codes_of(none) == std::vector<std::string>{"large-cubes", "nothing-swept"});
-  const Outcome info =
-      run_program(road.folder, "info " + quoted(road.folder / "out.h5") + " --json");
-  CHECK(nlohmann::json::parse(info.out)["verdict"] == "undecided");
+  check_json(json_of(run_program(road.folder, "info out.h5 --json")),
+             R"({"verdict": "undecided"})");
 }
 
 TEST_CASE("a second scan shows that a hidden place is free, or what stands in it") {
@@ -197,10 +177,9 @@ TEST_CASE("a second scan shows that a hidden place is free, or what stands in it
   for (int i = 0; i < 20; ++i) post.push_back({{11, -6, 0}, {11, 0.2, -0.2 + 0.02 * i}});
   road.scan(with(Road::beams(true), post));
   const auto found = road.answer("--seen");
-  CHECK(found["verdict"] == "conflict");
+  check_json(found, R"({"verdict": "conflict"})");
   CHECK(found["seen"]["listed_groups"] > 0);
-  CHECK_THAT(road.run("--seen").out,
-             Contains("1 of the places that were not scanned is behind a conflict"));
+  check_says(road.run("--seen").out, "1 of the places that were not scanned is behind a conflict");
 }
 
 TEST_CASE("fewer beams see less, and their order does not matter") {
@@ -247,8 +226,7 @@ TEST_CASE(
   auto here = road.answer("--seen --seen-cube 0.1")["seen"];
   auto there = far.answer("--seen --seen-cube 0.1")["seen"];
   CHECK(here["unseen"] == fewer.size());
-  CHECK(there["not_scanned_length"].get<double>() ==
-        Approx(here["not_scanned_length"].get<double>()));
+  check_near(there, "/not_scanned_length", here["not_scanned_length"].get<double>());
   here.erase("not_scanned_length");
   there.erase("not_scanned_length");
   CHECK(there == here);
@@ -258,31 +236,28 @@ TEST_CASE("seen space has the same bytes on every engine, with any threads, and 
   const Road road;
   road.scan(Road::beams(true));
   const auto same = [&](const std::string& name) {
-    return bytes_of(road.folder / name) == bytes_of(road.folder / "out.h5");
+    return road.bytes(name) == road.bytes("out.h5");
   };
   const std::string ask = "--seen --seen-cube 0.1 --first-pose";
   const auto whole = road.answer(ask);
   REQUIRE(whole["seen"]["unseen"] > 0);
-  REQUIRE(road.run(ask + " --engine kdtree", "kdtree.h5").exit_code == 0);
+  require_success(road.run(ask + " --engine kdtree", "kdtree.h5"));
   CHECK(same("kdtree.h5"));
-  REQUIRE(road.run(ask + " --engine grid --device cpu", "grid.h5").exit_code == 0);
+  require_success(road.run(ask + " --engine grid --device cpu", "grid.h5"));
   CHECK(same("grid.h5"));
-  REQUIRE(road.run(ask + " --threads 1", "alone.h5").exit_code == 0);
+  require_success(road.run(ask + " --threads 1", "alone.h5"));
   CHECK(same("alone.h5"));
   std::string parts;
   for (const std::string number : {"1", "2", "3"}) {
     const auto part = road.answer(ask + " --shard " + number + "/3", "part" + number + ".h5");
-    CHECK(part["verdict"] == "unknown");
-    parts += " " + quoted(road.folder / ("part" + number + ".h5"));
+    check_json(part, R"({"verdict": "unknown"})");
+    parts += " part" + number + ".h5";
   }
   const Outcome merged =
-      run_program(road.folder, "merge" + parts + " -o " + quoted(road.folder / "merged.h5"));
-  INFO(merged.err);
-  REQUIRE(merged.exit_code == 0);
+      require_success(run_program(road.folder, "merge" + parts + " -o merged.h5"));
   CHECK(same("merged.h5"));
   // The merge has no path, so it cannot say how long that is.
-  CHECK_THAT(merged.out, Contains("undecided (not-scanned)") &&
-                             Contains("; not scanned on 7.0 m of the path: no beam"));
+  check_says(merged.out, "undecided (not-scanned) ... ; not scanned on 7.0 m of the path: no beam");
 }
 
 TEST_CASE("a place that only the last pose reaches is not said to be 0 m long") {
@@ -291,19 +266,17 @@ TEST_CASE("a place that only the last pose reaches is not said to be 0 m long") 
   const auto drive = [&](const std::vector<double>& lateral) {
     std::string text;
     for (const double y : lateral) text += "1 0 0 16 0 1 0 " + std::to_string(y) + " 0 0 1 0\n";
-    put_bytes(road.folder / "path.txt", text);
+    road.put("path.txt", text);
   };
   drive({-1.2});
   REQUIRE(road.answer("--seen")["verdict"] == "clear");
   drive({-1.2, 0.3});  // into what the board hides
   const auto last = road.answer("--seen");
-  CHECK(last["verdict"] == "undecided");
+  check_json(last, R"({"verdict": "undecided", "seen": {"not_scanned_length": 0}})");
   CHECK(last["seen"]["listed_groups"] > 0);
-  CHECK(last["seen"]["not_scanned_length"] == 0);
-  CHECK_THAT(road.run("--seen").out, Contains("; not scanned on less than 0.1 of 1.5 m: no beam"));
+  check_says(road.run("--seen").out, "; not scanned on less than 0.1 of 1.5 m: no beam");
   drive({0.3});
-  CHECK_THAT(road.run("--seen").out,
-             Contains("undecided (not-scanned)") && Contains("; not scanned: no beam"));
+  check_says(road.run("--seen").out, "undecided (not-scanned) ... ; not scanned: no beam");
 }
 
 TEST_CASE("merging what was not scanned takes no more memory than it may") {
@@ -312,17 +285,15 @@ TEST_CASE("merging what was not scanned takes no more memory than it may") {
   std::string parts;
   for (const std::string number : {"1", "2"}) {
     const std::string part = "part" + number + ".h5";
-    REQUIRE(road.run("--seen --seen-cube 0.02 --shard " + number + "/2", part).exit_code == 0);
-    parts += " " + quoted(road.folder / part);
+    require_success(road.run("--seen --seen-cube 0.02 --shard " + number + "/2", part));
+    parts += " " + part;
   }
   const auto merge = [&](const std::string& memory) {
-    return run_program(road.folder, "merge" + parts + " --force --memory " + memory + " -o " +
-                                        quoted(road.folder / "merged.h5"));
+    return run_program(road.folder,
+                       "merge" + parts + " --force --memory " + memory + " -o merged.h5");
   };
-  const Outcome refused = merge("40M");
-  CHECK(refused.exit_code == 4);
-  CHECK_THAT(refused.err, Contains("to merge 2 parts needs"));
-  CHECK(merge("1G").exit_code == 0);
+  check_outcome(merge("40M"), 4, "to merge 2 parts needs");
+  check_outcome(merge("1G"), 0);
 }
 
 TEST_CASE("a vehicle of one body sweeps what its model sweeps") {
@@ -331,7 +302,7 @@ TEST_CASE("a vehicle of one body sweeps what its model sweeps") {
   const auto model = road.answer("--seen");
   const auto vehicle = road.answer("--seen", "vehicle.h5", "--vehicle ");
   CHECK(vehicle["seen"] == model["seen"]);
-  CHECK(vehicle["verdict"] == "undecided");
+  check_json(vehicle, R"({"verdict": "undecided"})");
 }
 
 TEST_CASE("with an error budget a cube counts as swept farther from the model") {
@@ -346,10 +317,8 @@ TEST_CASE("groups of few unseen cubes are counted, and do not make a verdict und
   const Road road;
   road.scan(Road::beams(true));
   const Outcome outcome = road.run("--seen --seen-min 100000 --json");
-  const auto json = nlohmann::json::parse(outcome.out);
-  CHECK(json["verdict"] == "clear");
-  CHECK(json["seen"]["groups"] == 1);
-  CHECK(json["seen"]["listed_groups"] == 0);
+  const auto json = json_of(outcome);
+  check_json(json, R"({"verdict": "clear", "seen": {"groups": 1, "listed_groups": 0}})");
   CHECK(json["warnings"].dump().find("small-unseen") != std::string::npos);
 }
 
@@ -358,15 +327,12 @@ TEST_CASE("what makes no sense of seen space is refused by name") {
   road.scan(Road::beams(true));
   const auto refusal = [&](const std::string& options) {
     const Outcome outcome = road.run(options);
-    CHECK(outcome.exit_code == 2);
+    check_outcome(outcome, 2);
     return outcome.err;
   };
-  CHECK_THAT(refusal("--seen-cube 0.1"), Contains("seen space"));
-  CHECK_THAT(refusal("--seen --seen-cube 0.003"), Contains("at least 0.004"));
-  CHECK_THAT(refusal("--seen --seen-cube 1e7"), Contains("2^29"));
-  const Outcome convert =
-      run_program(road.folder, "convert " + quoted(road.folder / "scan.xyz") + " -o " +
-                                   quoted(road.folder / "site.h5") + " --scale 0.001 --force");
-  REQUIRE(convert.exit_code == 0);
-  CHECK_THAT(refusal("--seen"), Contains("where its scanner stood"));
+  check_says(refusal("--seen-cube 0.1"), "seen space");
+  check_says(refusal("--seen --seen-cube 0.003"), "at least 0.004");
+  check_says(refusal("--seen --seen-cube 1e7"), "2^29");
+  require_success(run_program(road.folder, "convert scan.xyz -o site.h5 --scale 0.001 --force"));
+  check_says(refusal("--seen"), "where its scanner stood");
 }

@@ -28,7 +28,7 @@ std::ptrdiff_t count_of(const std::vector<std::string>& codes, const std::string
 }
 
 /// A wall beside a straight path, in metres; some lines of the scan are no finite points.
-struct Wall {
+struct Wall : Workplace {
   explicit Wall(int lost) {
     std::string points = "x[m],y[m],z[m]\n";
     for (int i = 0; i < 4000; ++i) {
@@ -37,59 +37,48 @@ struct Wall {
                 std::to_string(0.01 * (i % 7) + 0.000'127 * (i % 83)) + "\n";
     }
     for (int i = 0; i < lost; ++i) points += "nan,nan,nan\n";
-    put_bytes(folder / "scan.csv", points);
-    put_bytes(folder / "model.xyz", "0 0 0\n0.1 0 0\n");
-    put_bytes(folder / "path.txt", "1 0 0 1 0 1 0 0 0 0 1 0\n1 0 0 1.1 0 1 0 0 0 0 1 0\n");
+    put("scan.csv", points);
+    put("model.xyz", "0 0 0\n0.1 0 0\n");
+    put("path.txt", "1 0 0 1 0 1 0 0 0 0 1 0\n1 0 0 1.1 0 1 0 0 0 0 1 0\n");
   }
 
   Outcome convert(const std::string& rest = "--force") const {
-    return run_program(folder, "convert --json " + quoted(folder / "scan.csv") + " -o " +
-                                   quoted(folder / "site.h5") + " " + rest);
+    return Workplace::run("convert --json scan.csv -o site.h5 " + rest);
   }
   Outcome run(const std::string& rest, const std::string& output = "out.h5") const {
-    return run_program(
-        folder, "run --force --radius 0.2 --first-pose --env " + quoted(folder / "site.h5") +
-                    " --model " + quoted(folder / "model.xyz") + " --trajectory " +
-                    quoted(folder / "path.txt") + " -o " + quoted(folder / output) + " " + rest);
+    return Workplace::run(
+        "run --force --radius 0.2 --first-pose --env site.h5 --model model.xyz "
+        "--trajectory path.txt -o " +
+        output + " " + rest);
   }
-
-  ScratchFolder folder;
 };
 
 }  // namespace
 
 TEST_CASE("run, info, report and merge repeat what the conversion warned of") {
   const Wall wall(3);
-  REQUIRE(codes_of(json::parse(wall.convert().out)) ==
-          std::vector<std::string>{"non-finite-points"});
+  REQUIRE(codes_of(json_of(wall.convert())) == std::vector<std::string>{"non-finite-points"});
   const std::string code = "store-non-finite-points";
   const auto program = [&](const std::string& arguments) {
     return run_program(wall.folder, arguments);
   };
-  const Outcome run = wall.run("--json");
-  CAPTURE(run.err);
-  REQUIRE(run.exit_code == 0);
-  CHECK(count_of(codes_of(json::parse(run.out)), code) == 1);
-  CHECK_THAT(run.err, Contains("3 points"));
-  const Outcome info = program("info --json " + quoted(wall.folder / "site.h5"));
-  CHECK(count_of(codes_of(json::parse(info.out)), code) == 1);
-  CHECK_THAT(program("info " + quoted(wall.folder / "site.h5")).out, Contains(code));
-  CHECK(program("verify " + quoted(wall.folder / "site.h5")).exit_code == 0);
-  const Outcome report = program(
-      "report " + quoted(wall.folder / "out.h5") + " --env " + quoted(wall.folder / "site.h5") +
-      " --model " + quoted(wall.folder / "model.xyz") + " --trajectory " +
-      quoted(wall.folder / "path.txt") + " --json -o " + quoted(wall.folder / "page.html"));
-  CAPTURE(report.err);
-  REQUIRE(report.exit_code == 0);
-  CHECK_THAT(report.out, Contains(code));
+  const Outcome run = require_success(wall.run("--json"));
+  CHECK(count_of(codes_of(json_of(run)), code) == 1);
+  check_says(run.err, "3 points");
+  const Outcome info = program("info --json site.h5");
+  CHECK(count_of(codes_of(json_of(info)), code) == 1);
+  check_says(program("info site.h5").out, code);
+  check_outcome(program("verify site.h5"), 0);
+  check_says(require_success(program("report out.h5 --env site.h5 --model model.xyz --trajectory "
+                                     "path.txt --json -o page.html"))
+                 .out,
+             code);
 
-  REQUIRE(wall.run("--shard 1/2", "a.h5").exit_code == 0);
-  REQUIRE(wall.run("--shard 2/2", "b.h5").exit_code == 0);
-  const std::string parts = quoted(wall.folder / "a.h5") + " " + quoted(wall.folder / "b.h5");
-  const Outcome merged = program("merge --json " + parts + " -o " + quoted(wall.folder / "all.h5"));
-  CAPTURE(merged.err);
-  REQUIRE(merged.exit_code == 0);
-  CHECK(count_of(codes_of(json::parse(merged.out)), code) == 1);
+  require_success(wall.run("--shard 1/2", "a.h5"));
+  require_success(wall.run("--shard 2/2", "b.h5"));
+  const std::string parts = "a.h5 b.h5";
+  const Outcome merged = require_success(program("merge --json " + parts + " -o all.h5"));
+  CHECK(count_of(codes_of(json_of(merged)), code) == 1);
 }
 
 TEST_CASE("a strict run counts its own warnings, not those of the store") {
@@ -105,16 +94,14 @@ TEST_CASE("a strict run counts its own warnings, not those of the store") {
 TEST_CASE("a store that is there already tells its warnings again") {
   const Wall wall(3);
   wall.convert();
-  const Outcome again = wall.convert("--resume");
-  REQUIRE(again.exit_code == 0);
-  const json report = json::parse(again.out);
-  CHECK(report["was_finished"] == true);
+  const json report = json_of(require_success(wall.convert("--resume")));
+  check_json(report, R"({"was_finished": true})");
   CHECK(codes_of(report) == std::vector<std::string>{"non-finite-points"});
-  CHECK(wall.convert("--resume --strict").exit_code == 3);
+  check_outcome(wall.convert("--resume --strict"), 3);
   const Wall sound(0);
   sound.convert();
   CHECK(StoreReader(sound.folder / "site.h5").metadata().warnings.empty());
-  CHECK(sound.convert("--resume --strict").exit_code == 0);
+  check_outcome(sound.convert("--resume --strict"), 0);
 }
 
 TEST_CASE("a store keeps few and short warnings") {
@@ -129,7 +116,7 @@ TEST_CASE("a store keeps few and short warnings") {
 }
 
 TEST_CASE("zeros and points beyond the header's bounds are told of small files too") {
-  const ScratchFolder folder;
+  const Workplace place;
   LasBytes las;
   las.scale = {0.001, 0.001, 0.001};
   las.offset = {1000, 2000, 0};
@@ -140,13 +127,9 @@ TEST_CASE("zeros and points beyond the header's bounds are told of small files t
       LasBytes::put(bytes, 179 + 16 * k, las.offset[k] + 10);
       LasBytes::put(bytes, 187 + 16 * k, las.offset[k]);
     }
-    put_bytes(folder / "a.las", bytes);
-    const Outcome outcome =
-        run_program(folder, "convert --json --force " + quoted(folder / "a.las") + " -o " +
-                                quoted(folder / "a.h5"));
-    CAPTURE(outcome.err);
-    REQUIRE(outcome.exit_code == 0);
-    return codes_of(json::parse(outcome.out));
+    place.put("a.las", bytes);
+    const Outcome outcome = require_success(place.run("convert --json --force a.las -o a.h5"));
+    return codes_of(json_of(outcome));
   };
   std::vector<std::array<std::int32_t, 3>> points;
   for (std::int32_t i = 0; i < 20; ++i) points.push_back({487 * i + 3, 251 * i + 1, 97 * i});

@@ -18,7 +18,6 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
@@ -35,18 +34,16 @@ std::uint64_t fnv1a(const std::vector<std::uint64_t>& indices) {
 }
 
 void convert_street(const ScratchFolder& folder, const std::string& options) {
-  REQUIRE(run_program(folder, "convert --force " + quoted(street("street.las")) + " -o " +
-                                  quoted(folder / "street.h5") + " " + options)
-              .exit_code == 0);
+  require_success(run_program(
+      folder, "convert --force " + quoted(street("street.las")) + " -o street.h5 " + options));
 }
 
 void check_street(const ScratchFolder& folder, const std::string& radius, std::size_t count,
                   std::uint64_t hash) {
-  REQUIRE(run_program(folder, "run --force --env " + quoted(folder / "street.h5") + " --model " +
-                                  quoted(street("beetle.ply")) + " --trajectory " +
-                                  quoted(street("trajectory.txt")) + " --radius " + radius +
-                                  " -o " + quoted(folder / "out.h5"))
-              .exit_code == 0);
+  require_success(run_program(folder, "run --force --env street.h5 --model " +
+                                          quoted(street("beetle.ply")) + " --trajectory " +
+                                          quoted(street("trajectory.txt")) + " --radius " + radius +
+                                          " -o out.h5"));
   const auto rows = read_rows(ResultReader(folder / "out.h5"));
   CHECK(rows.size() == count);
   CHECK(fnv1a(rows.source) == hash);
@@ -116,14 +113,11 @@ void check_against_brute_force(const Crop& crop, double radius) {
   write_las(folder / "crop.las", crop.points, crop.quantisation);
   write_ply(folder / "model.ply", crop.model);
   write_trajectory_file(folder / "path.txt", crop.poses);
-  REQUIRE(run_program(folder, "convert " + quoted(folder / "crop.las") + " -o " +
-                                  quoted(folder / "crop.h5") + " --cell-points 1000")
-              .exit_code == 0);
-  REQUIRE(run_program(folder, "run --first-pose --profile 0.5 --env " + quoted(folder / "crop.h5") +
-                                  " --model " + quoted(folder / "model.ply") + " --trajectory " +
-                                  quoted(folder / "path.txt") + " --radius " +
-                                  std::to_string(radius) + " -o " + quoted(folder / "out.h5"))
-              .exit_code == 0);
+  require_success(run_program(folder, "convert crop.las -o crop.h5 --cell-points 1000"));
+  require_success(run_program(folder,
+                              "run --first-pose --profile 0.5 --env crop.h5 --model model.ply "
+                              "--trajectory path.txt --radius " +
+                                  std::to_string(radius) + " -o out.h5"));
   const auto positions = crop.positions();
   const auto first = brute_force_first_poses(positions, {crop.model, crop.poses, {radius, true}});
   Collisions expected;
@@ -150,8 +144,7 @@ void check_against_brute_force(const Crop& crop, double radius) {
 
 Outcome convert_file(const ScratchFolder& folder, const std::filesystem::path& file,
                      const std::string& options = "") {
-  return run_program(
-      folder, "convert --force " + quoted(file) + " -o " + quoted(folder / "a.h5") + " " + options);
+  return run_program(folder, "convert --force " + quoted(file) + " -o a.h5 " + options);
 }
 
 }  // namespace
@@ -163,7 +156,7 @@ TEST_CASE("the street gives the known answer") {
   check_street(folder, "0.5", 238'446, 0xb326e6aa58c9fb30);
   const std::string bytes = bytes_of(folder / "street.h5");
   convert_street(folder, "--memory 224M --threads 1");
-  CHECK((bytes_of(folder / "street.h5") == bytes));
+  check_same(bytes_of(folder / "street.h5"), bytes);
   convert_street(folder, "--cell-points 1000");
   check_street(folder, "0.1", 78'439, 0xd4d727161424e54f);
 }
@@ -171,15 +164,12 @@ TEST_CASE("the street gives the known answer") {
 TEST_CASE("the street is warned of its steps and of nothing else") {
   const ScratchFolder folder;
   convert_street(folder, "");
-  const std::string run = "run --strict --env " + quoted(folder / "street.h5") + " --model " +
-                          quoted(street("beetle.ply")) + " --trajectory " +
-                          quoted(street("trajectory.txt")) + " --radius 0.1 -o " +
-                          quoted(folder / "out.h5");
-  const Outcome outcome = run_program(folder, run);
-  CHECK(outcome.exit_code == 3);
-  CHECK_THAT(outcome.err, Contains("at 153 of 153 steps") && Contains("--between-poses") &&
-                              Contains("strict: 1 warning (large-steps)"));
-  CHECK(run_program(folder, run + " --between-poses").exit_code == 0);
+  const std::string run = "run --strict --env street.h5 --model " + quoted(street("beetle.ply")) +
+                          " --trajectory " + quoted(street("trajectory.txt")) +
+                          " --radius 0.1 -o out.h5";
+  check_outcome(run_program(folder, run), 3,
+                "at 153 of 153 steps ... --between-poses ... strict: 1 warning (large-steps)");
+  check_outcome(run_program(folder, run + " --between-poses"), 0);
 }
 
 TEST_CASE("a piece of the street gives what brute force gives, also far from the origin") {
@@ -193,17 +183,16 @@ TEST_CASE("a piece of the street gives what brute force gives, also far from the
 
 TEST_CASE("LAS and PLY files of many kinds become sound stores") {
   const ScratchFolder folder;
-  for (const char* name :
+  for (const std::string name :
        {"1.0_0.las", "1.1_1.las", "1.2-with-color.las", "1.2_3.las", "1_4_w_evlr.las",
         "autzen-utm.las", "autzen_trim_7.las", "extrabytes.las", "no-points-1.3.las", "rand1_6.las",
         "simple1_3.las", "test1_4.las", "simple_binary.ply", "simple_text.ply",
         "text_extradim.ply"}) {
     CAPTURE(name);
     const Outcome outcome = convert_file(folder, data_folder() / "formats" / name);
-    CAPTURE(outcome.err);
-    CHECK(outcome.exit_code == 0);
+    check_outcome(outcome, 0);
     CHECK(outcome.out.empty());
-    CHECK(run_program(folder, "verify " + quoted(folder / "a.h5")).exit_code == 0);
+    check_outcome(run_program(folder, "verify a.h5"), 0);
   }
 }
 
@@ -211,14 +200,12 @@ TEST_CASE("degrees are refused and feet reported in real files") {
   const ScratchFolder folder;
   for (const char* name : {"epsg_4326.las", "simple1_4.las"}) {
     CAPTURE(name);
-    const Outcome refused = convert_file(folder, data_folder() / "formats" / name);
-    CHECK(refused.exit_code == 3);
-    CHECK_THAT(refused.err, Contains(name) && Contains("degrees") && Contains("--ignore-crs"));
-    CHECK(convert_file(folder, data_folder() / "formats" / name, "--ignore-crs").exit_code == 0);
+    check_outcome(convert_file(folder, data_folder() / "formats" / name), 3,
+                  name + std::string(" ... degrees ... --ignore-crs"));
+    check_outcome(convert_file(folder, data_folder() / "formats" / name, "--ignore-crs"), 0);
   }
   const Outcome feet = convert_file(folder, data_folder() / "formats" / "test1_4.las");
-  CHECK(feet.exit_code == 0);
-  CHECK_THAT(feet.err, Contains("feet"));
+  check_outcome(feet, 0, "feet");
 }
 
 TEST_CASE("public cases of heights in feet and of web Mercator are no clear lorry") {
@@ -226,32 +213,25 @@ TEST_CASE("public cases of heights in feet and of web Mercator are no clear lorr
   const auto file = [](const std::string& name) { return data_folder() / "cases" / name; };
   const auto colliding = [&](const std::string& model, const std::string& path,
                              const std::string& radius) {
-    const Outcome run =
-        run_program(folder, "run --json --force --env " + quoted(folder / "a.h5") + " --model " +
-                                quoted(file(model)) + " --trajectory " + quoted(file(path)) +
-                                " --radius " + radius + " -o " + quoted(folder / "out.h5"));
-    CAPTURE(run.err);
-    REQUIRE(run.exit_code == 0);
-    return nlohmann::json::parse(run.out);
+    return json_of(require_success(run_program(
+        folder, "run --json --force --env a.h5 --model " + quoted(file(model)) + " --trajectory " +
+                    quoted(file(path)) + " --radius " + radius + " -o out.h5")));
   };
   for (const char* name : {"f1_esri_vertcs.las", "f1_geotiff_4096_6360.las"}) {
     CAPTURE(name);
-    const Outcome refused = convert_file(folder, file(name));
-    CHECK(refused.exit_code == 3);
-    CHECK_THAT(refused.err, Contains("its heights are in us-survey-foot") &&
-                                Contains("--unit-z us-ft converts the heights"));
-    REQUIRE(convert_file(folder, file(name), "--unit-z us-ft").exit_code == 0);
+    check_outcome(convert_file(folder, file(name)), 3,
+                  "its heights are in us-survey-foot ... --unit-z us-ft converts the heights");
+    require_success(convert_file(folder, file(name), "--unit-z us-ft"));
     CHECK(colliding("f1_lorry.off", "f1_road.txt", "0.1")["colliding_points"] > 0);
   }
-  const Outcome mercator = convert_file(folder, file("f2_web_mercator.las"));
-  CHECK(mercator.exit_code == 3);
-  CHECK_THAT(mercator.err, Contains("1.494 times by area") && Contains("--ignore-crs"));
-  REQUIRE(convert_file(folder, file("f2_web_mercator.las"), "--ignore-crs").exit_code == 0);
+  check_outcome(convert_file(folder, file("f2_web_mercator.las")), 3,
+                "1.494 times by area ... --ignore-crs");
+  require_success(convert_file(folder, file("f2_web_mercator.las"), "--ignore-crs"));
   const auto report = colliding("f2_lorry.off", "f2_path.txt", "0.3");
   CHECK(std::ranges::any_of(report["warnings"], [](const nlohmann::json& warning) {
     return warning["code"] == "store-map-scale";
   }));
-  REQUIRE(convert_file(folder, file("f5_geotiff_3077.las")).exit_code == 0);
+  require_success(convert_file(folder, file("f5_geotiff_3077.las")));
   CHECK(StoreReader(folder / "a.h5").metadata().unit == LengthUnit::kUsSurveyFoot);
 }
 
@@ -260,10 +240,7 @@ TEST_CASE("malformed scans are refused by name") {
   for (const char* name : {"1.2-no-points.las", "garbage_nVariableLength.las", "broken_size.laz",
                            "no_vertex.ply", "empty.ply", "bad-crc.e57", "missingheader.pcd"}) {
     CAPTURE(name);
-    const Outcome outcome = convert_file(folder, data_folder() / "malformed" / name);
-    CHECK(outcome.exit_code == 3);
-    CHECK(outcome.out.empty());
-    CHECK_THAT(outcome.err, Contains(name));
+    check_refused(convert_file(folder, data_folder() / "malformed" / name), 3, name);
     CHECK_FALSE(std::filesystem::exists(folder / "a.h5"));
   }
 }
@@ -284,39 +261,31 @@ TEST_CASE("a car along y is turned into the street, as the car that was turned b
   put_bytes(folder / "turned.obj", turned);
   const auto run = [&](const std::filesystem::path& model, const std::string& output,
                        const std::string& options) {
-    const Outcome done = run_program(
-        folder, "run --env " + quoted(folder / "street.h5") + " --model " + quoted(model) +
-                    " --trajectory " + quoted(street("trajectory.txt")) +
-                    " --radius 0.1 --model-above 0.3 --first-pose -o " + quoted(folder / output) +
-                    " " + options);
-    INFO(done.err);
-    REQUIRE(done.exit_code == 0);
+    const Outcome done = require_success(run_program(
+        folder, "run --env street.h5 --model " + quoted(model) + " --trajectory " +
+                    quoted(street("trajectory.txt")) +
+                    " --radius 0.1 --model-above 0.3 --first-pose -o " + output + " " + options));
     return done.err;
   };
   run(folder / "turned.obj", "hand.h5", "");
-  CHECK_THAT(run(street("prius.obj"), "turned.h5", "--forward +y"), !Contains("sideways"));
-  CHECK_THAT(run(street("prius.obj"), "across.h5", ""),
-             Contains("it drives sideways") && Contains("--forward and --up turn the model"));
-  CHECK(run_program(folder,
-                    "compare " + quoted(folder / "hand.h5") + " " + quoted(folder / "turned.h5"))
-            .exit_code == 0);
-  CHECK(run_program(folder,
-                    "compare " + quoted(folder / "hand.h5") + " " + quoted(folder / "across.h5"))
-            .exit_code == 1);
-  const Outcome page = run_program(
-      folder, "report " + quoted(folder / "turned.h5") + " --env " + quoted(folder / "street.h5") +
-                  " --model " + quoted(street("prius.obj")) + " --model-above 0.3 --trajectory " +
-                  quoted(street("trajectory.txt")) + " -o " + quoted(folder / "page.html"));
-  INFO(page.err);
-  CHECK(page.exit_code == 0);
+  check_lacks(run(street("prius.obj"), "turned.h5", "--forward +y"), "sideways");
+  check_says(run(street("prius.obj"), "across.h5", ""),
+             "it drives sideways ... --forward and --up turn the model");
+  check_outcome(run_program(folder, "compare hand.h5 turned.h5"), 0);
+  check_outcome(run_program(folder, "compare hand.h5 across.h5"), 1);
+  check_outcome(
+      run_program(folder, "report turned.h5 --env street.h5 --model " +
+                              quoted(street("prius.obj")) + " --model-above 0.3 --trajectory " +
+                              quoted(street("trajectory.txt")) + " -o page.html"),
+      0);
 }
 
 TEST_CASE("one command goes from the street's files to the known answer and its page") {
   const ScratchFolder folder;
   const std::string check = "check " + quoted(street("street.las")) + " --model " +
                             quoted(street("beetle.ply")) + " --trajectory " +
-                            quoted(street("trajectory.txt")) + " --radius 0.1 -o " +
-                            quoted(folder / "site") + " --fail-on-collision";
+                            quoted(street("trajectory.txt")) +
+                            " --radius 0.1 -o site --fail-on-collision";
   const Outcome first = run_program(folder, check);
   INFO(first.err);
   REQUIRE(first.exit_code == 1);
@@ -327,7 +296,7 @@ TEST_CASE("one command goes from the street's files to the known answer and its 
     CHECK(std::filesystem::file_size(folder / "site" / name) > 0);
   }
   const Outcome second = run_program(folder, check);
-  CHECK(second.exit_code == 1);
+  check_outcome(second, 1);
   CHECK(second.out == first.out);
-  CHECK_THAT(second.err, Contains("nothing was to be done"));
+  check_says(second.err, "nothing was to be done");
 }

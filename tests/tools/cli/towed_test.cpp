@@ -10,7 +10,6 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 using nlohmann::json;
 
 namespace {
@@ -25,7 +24,7 @@ std::string line_of(double heading, double x, double y) {
 
 /// A turn of 90 degrees to the left between two lines of 25 m, and posts at its inner side, which a
 /// vehicle of 2.5 m passes with 1.2 m to spare as long as it stays on the path.
-struct Turn {
+struct Turn : Workplace {
   Turn() {
     std::string scan, path, tractor, trailer;
     const double turn = kRadius * std::numbers::pi / 2;
@@ -54,84 +53,73 @@ struct Turn {
         if (x <= 8) tractor += at;
       }
     }
-    put_bytes(folder / "scan.xyz", scan);
-    put_bytes(folder / "path.txt", path);
-    put_bytes(folder / "tractor.xyz", tractor);
-    put_bytes(folder / "trailer.xyz", trailer);
+    put("scan.xyz", scan);
+    put("path.txt", path);
+    put("tractor.xyz", tractor);
+    put("trailer.xyz", trailer);
     put_vehicle(kTrailer);
-    REQUIRE(program("convert scan.xyz -o site.h5 --cell-points 256").exit_code == 0);
+    require_success(run("convert scan.xyz -o site.h5 --cell-points 256"));
   }
 
   /// Writes road.json: the trailer, in this motion, and then its tractor.
   void put_vehicle(const std::string& motion) const {
-    put_bytes(folder / "road.json",
-              R"({"bodies": [{"name": "trailer", "model": "trailer.xyz", )" + motion +
-                  R"(}, {"name": "tractor", "model": "tractor.xyz", "pivots": [3.8, 0]}]})");
+    put("road.json", R"({"bodies": [{"name": "trailer", "model": "trailer.xyz", )" + motion +
+                         R"(}, {"name": "tractor", "model": "tractor.xyz", "pivots": [3.8, 0]}]})");
   }
-  Outcome program(const std::string& arguments) const {
-    return run_program_at("env", folder,
-                          "-C " + quoted(folder / "") + " '" CLEARWAY_PROGRAM "' " + arguments);
-  }
-  Outcome run(const std::string& arguments) const {
-    return program(
+  Outcome search(const std::string& arguments) const {
+    return run(
         "run --env site.h5 --vehicle road.json --trajectory path.txt --radius 0.1 --threads 2 "
         "--first-pose --force " +
         arguments);
   }
   Outcome follow(const std::string& body, const std::string& more) const {
-    return program("trajectory follow path.txt --vehicle road.json --body " + body + " --force " +
-                   more);
+    return run("trajectory follow path.txt --vehicle road.json --body " + body + " --force " +
+               more);
   }
 
   static constexpr const char* kTrailer =
       R"("towed": {"by": "tractor", "at": -0.6, "pivots": [8, "0cm"]})";
-  ScratchFolder folder;
 };
 
 }  // namespace
 
 TEST_CASE("a towed trailer meets posts in a turn that one on the path passes") {
   const Turn turn;
-  REQUIRE(turn.run("--clearance 0.5 -o towed.h5").exit_code == 0);
+  require_success(turn.search("--clearance 0.5 -o towed.h5"));
   const Result towed(turn.folder / "towed.h5");
   CHECK(towed.size() > 30);
   for (const auto body : towed.first_body()) CHECK(body == 0);
   turn.put_vehicle(R"("pivots": [-0.6, -8.6])");
-  REQUIRE(turn.run("--clearance 0.5 -o pivots.h5").exit_code == 0);
+  require_success(turn.search("--clearance 0.5 -o pivots.h5"));
   CHECK(Result(turn.folder / "pivots.h5").size() == 0);
 }
 
 TEST_CASE("trajectory follow writes the poses that a towed body has in a run") {
   const Turn turn;
-  REQUIRE(turn.run("--clearance 0.5 -o towed.h5").exit_code == 0);
-  const Outcome followed = turn.follow("trailer", "-o trailer.csv --json");
-  REQUIRE(followed.exit_code == 0);
-  CHECK_THAT(followed.err, Contains("bodies[0] (trailer)") && Contains("poses 0-"));
-  const json report = json::parse(followed.out);
-  CHECK(report["vehicle"] == "road.json");
-  CHECK(report["body"] == "trailer");
+  require_success(turn.search("--clearance 0.5 -o towed.h5"));
+  const Outcome followed = require_success(turn.follow("trailer", "-o trailer.csv --json"));
+  check_says(followed.err, "bodies[0] (trailer) ... poses 0-");
+  const json report = json_of(followed);
+  check_json(report, R"({"vehicle": "road.json", "body": "trailer"})");
   // The front pivot is 3.8 m ahead, so tractor and trailer end before the path does.
-  CHECK(report["poses_in"] == 736);
-  CHECK(report["poses_out"] == 698);
-  CHECK(report["off_path"] == json::parse("[[698, 735]]"));
-  CHECK(report["transient"][0][0] == 0);
-  const std::string table = bytes_of(turn.folder / "trailer.csv");
+  check_json(report, R"({
+    "poses_in": 736, "poses_out": 698, "off_path": [[698, 735]], "transient": {"0": {"0": 0}}})");
+  const std::string table = turn.bytes("trailer.csv");
   CHECK_THAT(table, Catch::StartsWith("path_pose,x,y,z,r00,r01,r02,r10,r11,r12,r20,r21,r22\n0,"));
-  CHECK_THAT(table, Contains("\n697,"));
+  check_says(table, "\n697,");
   const std::vector<Pose> poses = read_trajectory(turn.folder / "trailer.csv");
-  REQUIRE(turn.follow("trailer", "-o trailer.txt").exit_code == 0);
+  require_success(turn.follow("trailer", "-o trailer.txt"));
   CHECK(read_trajectory(turn.folder / "trailer.txt") == poses);
   // A vehicle whose bodies have the written poses as their own finds the same.
-  REQUIRE(turn.follow("tractor", "-o tractor.txt").exit_code == 0);
-  std::string path = bytes_of(turn.folder / "path.txt");
+  require_success(turn.follow("tractor", "-o tractor.txt"));
+  std::string path = turn.bytes("path.txt");
   std::size_t end = 0;
   for (std::size_t line = 0; line < poses.size(); ++line) end = path.find('\n', end) + 1;
-  put_bytes(turn.folder / "path.txt", path.substr(0, end));
-  put_bytes(turn.folder / "road.json",
-            R"({"bodies": [
+  turn.put("path.txt", path.substr(0, end));
+  turn.put("road.json", R"({"bodies": [
                 {"name": "trailer", "model": "trailer.xyz", "trajectory": "trailer.txt"},
                 {"name": "tractor", "model": "tractor.xyz", "trajectory": "tractor.txt"}]})");
-  REQUIRE(turn.run("--clearance 0.5 -o own.h5").exit_code == 0);
+  require_success(turn.search("--clearance 0.5 -o own.h5"));
   const Result towed(turn.folder / "towed.h5"), own(turn.folder / "own.h5");
   CHECK(towed.source() == own.source());
   CHECK(towed.first_pose() == own.first_pose());
@@ -145,10 +133,9 @@ TEST_CASE("trajectory follow of a vehicle keeps stations and places bodies of ev
     path += std::to_string(1000 + i * 0.25) + "," + std::to_string(i * 0.25) +
             ",0,0,1,0,0,0,1,0,0,0,1\n";
   }
-  put_bytes(turn.folder / "path.txt", path);
-  put_bytes(turn.folder / "crane.txt", bytes_of(turn.folder / "path.txt"));
-  put_bytes(turn.folder / "road.json",
-            R"({"bodies": [
+  turn.put("path.txt", path);
+  turn.put("crane.txt", turn.bytes("path.txt"));
+  turn.put("road.json", R"({"bodies": [
       {"name": "a", "model": "no.xyz", "at": 2}, {"name": "b", "model": "no.xyz"},
       {"name": "c", "model": "no.xyz", "trajectory": "crane.txt"},
       {"name": "d", "model": "no.xyz", "towed": {"by": "c", "at": -1, "pivots": [5, 0]}},
@@ -156,7 +143,7 @@ TEST_CASE("trajectory follow of a vehicle keeps stations and places bodies of ev
   // Models are not read. The third pose is at station 1000.5.
   for (const auto& [name, x] :
        {std::pair{"a", 2.5}, {"b", 0.5}, {"c", 0.5}, {"d", -5.5}, {"e", -4.5}}) {
-    REQUIRE(turn.follow(name, "-o out.csv").exit_code == 0);
+    require_success(turn.follow(name, "-o out.csv"));
     PoseLabels labels;
     const auto poses = read_trajectory(turn.folder / "out.csv", {}, nullptr, &labels);
     CHECK(poses[2].translation[0] == Approx(x).margin(1e-12));
@@ -168,38 +155,33 @@ TEST_CASE("trajectory follow of a vehicle keeps stations and places bodies of ev
 
 TEST_CASE("shards of a towed vehicle merge to the bytes of its whole run") {
   const Turn turn;
-  REQUIRE(turn.run("--clearance 0.5 -o whole.h5").exit_code == 0);
+  require_success(turn.search("--clearance 0.5 -o whole.h5"));
   for (const std::string part : {"1", "2"}) {
-    REQUIRE(turn.run("--clearance 0.5 --shard " + part + "/2 -o part" + part + ".h5").exit_code ==
-            0);
+    require_success(turn.search("--clearance 0.5 --shard " + part + "/2 -o part" + part + ".h5"));
   }
-  REQUIRE(turn.program("merge part1.h5 part2.h5 -o merged.h5").exit_code == 0);
-  CHECK(bytes_of(turn.folder / "merged.h5") == bytes_of(turn.folder / "whole.h5"));
+  turn.succeed("merge part1.h5 part2.h5 -o merged.h5");
+  check_same(turn.bytes("merged.h5"), turn.bytes("whole.h5"));
 }
 
 TEST_CASE("a towed vehicle is searched between poses") {
   const Turn turn;
-  const Outcome found = turn.run("--between-poses -o between.h5");
-  INFO(found.err);
-  REQUIRE(found.exit_code == 0);
+  require_success(turn.search("--between-poses -o between.h5"));
   CHECK(Result(turn.folder / "between.h5").size() > 30);
 }
 
 TEST_CASE("conflicts, report and campaign know a towed trailer") {
   const Turn turn;
-  REQUIRE(turn.run("--clearance 0.5 -o out.h5").exit_code == 0);
+  require_success(turn.search("--clearance 0.5 -o out.h5"));
   const std::string vehicle = " --vehicle road.json --trajectory path.txt ";
-  REQUIRE(turn.program("conflicts out.h5" + vehicle + "--min-points 1 -o found.json").exit_code ==
-          0);
-  const json found = json::parse(bytes_of(turn.folder / "found.json"));
+  turn.succeed("conflicts out.h5" + vehicle + "--min-points 1 -o found.json");
+  const json found = json::parse(turn.bytes("found.json"));
   REQUIRE(found["conflicts"].size() > 0);
-  CHECK(found["conflicts"][0]["body_name"] == "trailer");
-  CHECK(found["conflicts"][0]["side"] == "left");
-  REQUIRE(turn.program("report out.h5 --env site.h5" + vehicle + "-o page.html").exit_code == 0);
-  CHECK_THAT(bytes_of(turn.folder / "page.html"), Contains("trailer"));
+  check_json(found, R"({"conflicts": {"0": {"body_name": "trailer", "side": "left"}}})");
+  turn.succeed("report out.h5 --env site.h5" + vehicle + "-o page.html");
+  check_says(turn.bytes("page.html"), "trailer");
   // Another hitch is another vehicle.
   turn.put_vehicle(R"("towed": {"by": "tractor", "at": -0.7, "pivots": [8, 0]})");
-  CHECK(turn.program("conflicts out.h5" + vehicle + "-o other.json").exit_code == 3);
+  check_outcome(turn.run("conflicts out.h5" + vehicle + "-o other.json"), 3);
   turn.put_vehicle(Turn::kTrailer);
   put_bytes(
       turn.folder / "campaign.json",
@@ -207,21 +189,18 @@ TEST_CASE("conflicts, report and campaign know a towed trailer") {
                 "routes": {"turn": "path.txt"}, "radii": [0.1],
                 "query": {"first_pose": true, "clearance": 0.5},
                 "outputs": {"conflicts": ["csv"]}})");
-  REQUIRE(turn.program("campaign plan campaign.json -o all").exit_code == 0);
-  const Outcome campaign = turn.program("campaign run all --all");
+  turn.succeed("campaign plan campaign.json -o all");
+  const Outcome campaign = turn.run("campaign run all --all");
   INFO(campaign.out + campaign.err);
-  CHECK(campaign.exit_code == 0);
-  CHECK(bytes_of(turn.folder / "all/runs/road/turn/0.1/out.h5") ==
-        bytes_of(turn.folder / "out.h5"));
+  check_outcome(campaign, 0);
+  check_same(turn.bytes("all/runs/road/turn/0.1/out.h5"), turn.bytes("out.h5"));
 }
 
 TEST_CASE("every complaint about a towed body names the key") {
   const Turn turn;
   const auto refused = [&](const std::string& motion, const std::string& words) {
     turn.put_vehicle(motion);
-    const Outcome outcome = turn.run("-o out.h5");
-    CHECK(outcome.exit_code == 3);
-    CHECK_THAT(outcome.err, Contains("road.json: bodies[0]" + words));
+    check_outcome(turn.search("-o out.h5"), 3, "road.json: bodies[0]" + words);
   };
   const auto tow = [](const std::string& by, const std::string& pivots) {
     return R"("towed": {"by": )" + by + R"(, "at": -0.6, "pivots": )" + pivots + "}";
@@ -242,19 +221,15 @@ TEST_CASE("every complaint about a towed body names the key") {
        {R"("at": 1, )", R"("pivots": [1, -1], )", R"("trajectory": "a.txt", )"}) {
     refused(more + std::string(Turn::kTrailer), ": a body moves in one way");
   }
-  put_bytes(turn.folder / "road.json",
-            R"({"bodies": [
+  turn.put("road.json", R"({"bodies": [
       {"name": "a", "model": "trailer.xyz", "towed": {"by": "b", "at": 0, "pivots": [1, 0]}},
       {"name": "b", "model": "trailer.xyz", "towed": {"by": "a", "at": 0, "pivots": [1, 0]}}]})");
-  const Outcome ring = turn.run("-o out.h5");
-  CHECK(ring.exit_code == 3);
-  CHECK_THAT(ring.err, Contains("bodies[0].towed.by: ") && Contains("in a ring"));
+  const Outcome ring = turn.search("-o out.h5");
+  check_outcome(ring, 3, "bodies[0].towed.by:  ... in a ring");
   turn.put_vehicle(Turn::kTrailer);
-  const Outcome nobody = turn.follow("lorry", "-o out.txt");
-  CHECK(nobody.exit_code == 2);
-  CHECK_THAT(nobody.err, Contains("expected one of trailer, tractor"));
-  CHECK(turn.program("trajectory follow path.txt --vehicle road.json -o out.txt").exit_code == 2);
-  CHECK(turn.follow("trailer", "--at 2 -o out.txt").exit_code == 2);
+  check_outcome(turn.follow("lorry", "-o out.txt"), 2, "expected one of trailer, tractor");
+  check_outcome(turn.run("trajectory follow path.txt --vehicle road.json -o out.txt"), 2);
+  check_outcome(turn.follow("trailer", "--at 2 -o out.txt"), 2);
 }
 
 TEST_CASE("a trailer that is pushed is refused with its key and the place") {
@@ -262,10 +237,9 @@ TEST_CASE("a trailer that is pushed is refused with its key and the place") {
   std::string path;
   for (int i = 0; i <= 300; ++i) path += line_of(0, 0.1 * i, 0);
   for (int i = 0; i <= 20; ++i) path += line_of(0, 30 - 0.1 * i, 0);
-  put_bytes(turn.folder / "path.txt", path);
+  turn.put("path.txt", path);
   turn.put_vehicle(R"("towed": {"at": -0.6, "pivots": [8, 0]})");
-  const Outcome outcome = turn.run("-o out.h5");
-  CHECK(outcome.exit_code == 3);
-  CHECK_THAT(outcome.err, Contains("road.json: bodies[0].towed: its hitch goes backwards") &&
-                              Contains("from pose 301 of the path") && Contains("30 m along it"));
+  check_outcome(turn.search("-o out.h5"), 3,
+                "road.json: bodies[0].towed: its hitch goes backwards ... from pose 301 of the "
+                "path ... 30 m along it");
 }

@@ -11,14 +11,13 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
 constexpr double kRadius = 150;
 
 /// A folder with path.txt, which goes along a circle with a pose every 0.1 m.
-struct Circle {
+struct Circle : Workplace {
   Circle() {
     std::vector<Pose> poses;
     for (int i = 0; i < 801; ++i) {
@@ -30,30 +29,23 @@ struct Circle {
     write_trajectory(poses, File::create(folder / "path.txt"), progress);
   }
 
-  std::string path(const std::string& name) const { return quoted(folder / name); }
   Outcome follow(const std::string& more, const std::string& in = "path.txt") const {
-    return run_program(folder,
-                       "trajectory follow " + path(in) + " -o " + path("out.txt") + " " + more);
+    return run("trajectory follow " + in + " -o out.txt " + more);
   }
   std::vector<Pose> out() const { return read_trajectory(folder / "out.txt"); }
-
-  ScratchFolder folder;
 };
 
 }  // namespace
 
 TEST_CASE("trajectory follow writes the chords of a circle") {
   const Circle circle;
-  const Outcome outcome = circle.follow("--pivots 10.05,-10.05 --json");
-  REQUIRE(outcome.exit_code == 0);
-  CHECK_THAT(outcome.err, Contains("202 of 801 poses of the path (poses 0-100, 700-800, from 0)"));
-  const auto json = nlohmann::json::parse(outcome.out);
-  CHECK(json["poses_in"] == 801);
-  CHECK(json["poses_out"] == 599);
-  CHECK(json["length"] == Approx(80));
+  const Outcome outcome = require_success(circle.follow("--pivots 10.05,-10.05 --json"));
+  check_says(outcome.err, "202 of 801 poses of the path (poses 0-100, 700-800, from 0)");
+  const auto json = json_of(outcome);
+  check_json(json, R"({"poses_in": 801, "poses_out": 599, "turned": []})");
+  check_near(json, "/length", 80);
   CHECK(json["pivots"] == nlohmann::json{10.05, -10.05});
   CHECK(json["off_path"] == nlohmann::json::parse("[[0, 100], [700, 800]]"));
-  CHECK(json["turned"].empty());
   const auto poses = circle.out();
   REQUIRE(poses.size() == 599);
   const double chord = 2 * kRadius * std::sin(10.05 / kRadius);
@@ -66,17 +58,15 @@ TEST_CASE("trajectory follow writes the chords of a circle") {
 
 TEST_CASE("trajectory follow takes stations ahead and behind with units") {
   const Circle circle;
-  REQUIRE(circle.follow("--at 2.5").exit_code == 0);
-  const std::string ahead = bytes_of(circle.folder / "out.txt");
+  require_success(circle.follow("--at 2.5"));
+  const std::string ahead = circle.bytes("out.txt");
   CHECK(circle.out().size() == 776);
-  REQUIRE(circle.follow("--at=250cm --force").exit_code == 0);
-  CHECK(bytes_of(circle.folder / "out.txt") == ahead);
-  REQUIRE(circle.follow("--at -2.5 --force --threads 1").exit_code == 0);
+  require_success(circle.follow("--at=250cm --force"));
+  check_same(circle.bytes("out.txt"), ahead);
+  require_success(circle.follow("--at -2.5 --force --threads 1"));
   CHECK(circle.out().size() == 776);
-  const Outcome there = circle.follow("--at 0 --force --json");
-  REQUIRE(there.exit_code == 0);
-  CHECK(nlohmann::json::parse(there.out)["at"] == 0);
-  CHECK(bytes_of(circle.folder / "out.txt") == bytes_of(circle.folder / "path.txt"));
+  check_json(json_of(require_success(circle.follow("--at 0 --force --json"))), R"({"at": 0})");
+  check_same(circle.bytes("out.txt"), circle.bytes("path.txt"));
 }
 
 TEST_CASE("trajectory follow refuses what it cannot use and leaves no output") {
@@ -85,9 +75,9 @@ TEST_CASE("trajectory follow refuses what it cannot use and leaves no output") {
                            const std::string& in = "path.txt") {
     const Outcome outcome = circle.follow(more, in);
     CHECK(outcome.exit_code == code);
-    CHECK_THAT(outcome.err, Contains(words));
-    CHECK_FALSE(std::filesystem::exists(circle.folder / "out.txt"));
-    CHECK_FALSE(std::filesystem::exists(circle.folder / "out.txt.partial"));
+    check_says(outcome.err, words);
+    CHECK_FALSE(circle.has("out.txt"));
+    CHECK_FALSE(circle.has("out.txt.partial"));
   };
   refused("", 2, "--at or --pivots");
   refused("--at 1 --pivots 1,-1", 2, "--pivots");
@@ -100,26 +90,23 @@ TEST_CASE("trajectory follow refuses what it cannot use and leaves no output") {
   refused("--at 81", 3, "80 m long");
   refused("--pivots 41,-41", 3, "80 m long");
   refused("--at 1", 4, "missing.txt", "missing.txt");
-  put_bytes(circle.folder / "empty.txt", "");
+  circle.put("empty.txt", "");
   refused("--at 1", 3, "no poses", "empty.txt");
-  put_bytes(circle.folder / "mirror.txt", "-1 0 0 0 0 1 0 0 0 0 1 0\n-1 0 0 9 0 1 0 0 0 0 1 0\n");
+  circle.put("mirror.txt", "-1 0 0 0 0 1 0 0 0 0 1 0\n-1 0 0 9 0 1 0 0 0 0 1 0\n");
   refused("--pivots 1,-1 --allow-non-rigid", 3, "mirror.txt: the poses mirror", "mirror.txt");
-  put_bytes(circle.folder / "turns.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n-1 0 0 9 0 1 0 0 0 0 1 0\n");
+  circle.put("turns.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n-1 0 0 9 0 1 0 0 0 0 1 0\n");
   refused("--at 1 --allow-non-rigid", 3, "turns.txt: poses 0 and 1", "turns.txt");
 }
 
 TEST_CASE("trajectory follow overwrites neither outputs nor inputs") {
   const Circle circle;
-  put_bytes(circle.folder / "out.txt", "mine");
-  CHECK(circle.follow("--at 1").exit_code == 2);
-  CHECK(bytes_of(circle.folder / "out.txt") == "mine");
-  CHECK(circle.follow("--at 1 --force").exit_code == 0);
-  const std::string before = bytes_of(circle.folder / "path.txt");
-  const Outcome outcome =
-      run_program(circle.folder, "trajectory follow " + circle.path("path.txt") + " -o " +
-                                     circle.path("path.txt") + " --at 1 --force");
-  CHECK(outcome.exit_code == 2);
-  CHECK(bytes_of(circle.folder / "path.txt") == before);
+  circle.put("out.txt", "mine");
+  check_outcome(circle.follow("--at 1"), 2);
+  check_same(circle.bytes("out.txt"), "mine");
+  check_outcome(circle.follow("--at 1 --force"), 0);
+  const std::string before = circle.bytes("path.txt");
+  check_outcome(circle.run("trajectory follow path.txt -o path.txt --at 1 --force"), 2);
+  check_same(circle.bytes("path.txt"), before);
 }
 
 TEST_CASE("trajectory follow keeps stations, those of the place that the body is at") {
@@ -132,9 +119,7 @@ TEST_CASE("trajectory follow keeps stations, those of the place that the body is
   write_trajectory_table(path, {.station = stations}, {.in_metres = true},
                          File::create(circle.folder / "line.csv"), progress);
   const auto check = [&](const std::string& how, double first, std::size_t count) {
-    const Outcome outcome = circle.follow(how, "line.csv");
-    INFO(outcome.err);
-    REQUIRE(outcome.exit_code == 0);
+    require_success(circle.follow(how, "line.csv"));
     PoseLabels labels;
     const auto poses = read_trajectory(circle.folder / "out.txt", {}, nullptr, &labels);
     CHECK(poses.size() == count);

@@ -12,16 +12,15 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
 const Box kModel{{-1, -2, 0}, {3, 2, 1}};
 
 /// A folder with model.xyz, whose box is kModel, and path.txt.
-struct PathFiles {
+struct PathFiles : Workplace {
   PathFiles() {
-    put_bytes(folder / "model.xyz", "-1 -2 0.5\n3 1 0\n0 2 1\n");
+    put("model.xyz", "-1 -2 0.5\n3 1 0\n0 2 1\n");
     Random random(51);
     for (int i = 0; i < 30; ++i) {
       poses.push_back(rotation(random_direction(random), uniform(random, 0, 1),
@@ -32,17 +31,15 @@ struct PathFiles {
     write_trajectory(poses, File::create(folder / "path.txt"), progress);
   }
 
-  std::string path(const std::string& name) const { return quoted(folder / name); }
   Outcome run(const std::string& what, const std::string& in, const std::string& out,
               const std::string& more) const {
-    return run_program(folder, "trajectory " + what + " " + path(in) + " -o " + path(out) +
-                                   " --model " + path("model.xyz") + " " + more);
+    return run_program(
+        folder, "trajectory " + what + " " + in + " -o " + out + " --model model.xyz " + more);
   }
   std::vector<Pose> read(const std::string& name) const {
     return read_trajectory(folder / name, {TrajectoryFormat::kMatrix, true});
   }
 
-  ScratchFolder folder;
   std::vector<Pose> poses;
 };
 
@@ -60,30 +57,30 @@ bool has_in_order(const std::vector<Pose>& all, const std::vector<Pose>& some) {
 
 TEST_CASE("trajectory resample bounds the motion of the poses as read back") {
   const PathFiles files;
-  const Outcome outcome = files.run("resample", "path.txt", "out.txt", "--max-motion 0.05 --json");
-  REQUIRE(outcome.exit_code == 0);
+  const Outcome outcome =
+      require_success(files.run("resample", "path.txt", "out.txt", "--max-motion 0.05 --json"));
   const auto out = files.read("out.txt");
   CHECK(largest_motion(kModel, out) <= 0.05);
   CHECK(has_in_order(out, files.poses));
-  const auto json = nlohmann::json::parse(outcome.out);
+  const auto json = json_of(outcome);
   CHECK(json["poses_in"] == files.poses.size());
   CHECK(json["poses_out"] == out.size());
-  CHECK(json["max_motion"] == 0.05);
+  check_json(json, R"({"max_motion": 0.05})");
   CHECK(json["largest_motion_before"] == largest_motion(kModel, files.poses));
   CHECK(json["largest_motion_after"] == largest_motion(kModel, out));
 }
 
 TEST_CASE("trajectory thin keeps some of the poses, and what it wrote can be resampled") {
   const PathFiles files;
-  const Outcome outcome = files.run("thin", "path.txt", "thin.txt", "--max-motion 3 --json");
-  REQUIRE(outcome.exit_code == 0);
+  const Outcome outcome =
+      require_success(files.run("thin", "path.txt", "thin.txt", "--max-motion 3 --json"));
   const auto kept = files.read("thin.txt");
   CHECK(kept.size() < files.poses.size());
   CHECK(kept.front() == files.poses.front());
   CHECK(has_in_order(files.poses, kept));
-  CHECK(nlohmann::json::parse(outcome.out)["poses_out"] == kept.size());
-  CHECK_THAT(outcome.err, Contains(std::to_string(kept.size()) + " poses, from 35"));
-  REQUIRE(files.run("resample", "thin.txt", "again.txt", "--max-motion 0.1").exit_code == 0);
+  CHECK(json_of(outcome)["poses_out"] == kept.size());
+  check_says(outcome.err, std::to_string(kept.size()) + " poses, from 35");
+  require_success(files.run("resample", "thin.txt", "again.txt", "--max-motion 0.1"));
   const auto again = files.read("again.txt");
   CHECK(has_in_order(again, kept));
   CHECK(largest_motion(kModel, again) <= 0.1);
@@ -91,123 +88,110 @@ TEST_CASE("trajectory thin keeps some of the poses, and what it wrote can be res
 
 TEST_CASE("trajectory reads the formats that run reads") {
   const PathFiles files;
-  put_bytes(files.folder / "tum.txt", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 1 0\n");
-  put_bytes(files.folder / "euroc.csv", "0,0,0,0,1,0,0,0\n1,1,0,0,0,0,0,1\n");
-  REQUIRE(files.run("resample", "tum.txt", "a.txt", "--max-motion 0.1").exit_code == 0);
-  REQUIRE(files.run("resample", "euroc.csv", "b.txt", "--max-motion 0.1 --trajectory-format euroc")
-              .exit_code == 0);
+  files.put("tum.txt", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 1 0\n");
+  files.put("euroc.csv", "0,0,0,0,1,0,0,0\n1,1,0,0,0,0,0,1\n");
+  require_success(files.run("resample", "tum.txt", "a.txt", "--max-motion 0.1"));
+  require_success(
+      files.run("resample", "euroc.csv", "b.txt", "--max-motion 0.1 --trajectory-format euroc"));
   CHECK(files.read("a.txt").size() > 30);
-  CHECK(bytes_of(files.folder / "a.txt") == bytes_of(files.folder / "b.txt"));
+  check_same(files.bytes("a.txt"), files.bytes("b.txt"));
 }
 
 TEST_CASE("trajectory overwrites neither outputs nor inputs") {
   const PathFiles files;
   const std::string what = GENERATE("resample", "thin");
-  put_bytes(files.folder / "out.txt", "mine");
-  const Outcome existing = files.run(what, "path.txt", "out.txt", "--max-motion 1");
-  CHECK(existing.exit_code == 2);
-  CHECK_THAT(existing.err, Contains("--force"));
-  CHECK(bytes_of(files.folder / "out.txt") == "mine");
-  CHECK(files.run(what, "path.txt", "out.txt", "--max-motion 1 --force").exit_code == 0);
-  CHECK(bytes_of(files.folder / "out.txt") != "mine");
+  files.put("out.txt", "mine");
+  check_outcome(files.run(what, "path.txt", "out.txt", "--max-motion 1"), 2, "--force");
+  check_same(files.bytes("out.txt"), "mine");
+  check_outcome(files.run(what, "path.txt", "out.txt", "--max-motion 1 --force"), 0);
+  CHECK(files.bytes("out.txt") != "mine");
   for (const std::string input : {"path.txt", "model.xyz"}) {
-    const std::string before = bytes_of(files.folder / input);
-    CHECK(files.run(what, "path.txt", input, "--max-motion 1 --force").exit_code == 2);
-    CHECK(bytes_of(files.folder / input) == before);
+    const std::string before = files.bytes(input);
+    check_outcome(files.run(what, "path.txt", input, "--max-motion 1 --force"), 2);
+    check_same(files.bytes(input), before);
   }
-  CHECK(files.run(what, "path.txt", "no/folder.txt", "--max-motion 1").exit_code == 4);
+  check_outcome(files.run(what, "path.txt", "no/folder.txt", "--max-motion 1"), 4);
 }
 
 TEST_CASE("trajectory refuses what it cannot use and leaves no output") {
   const PathFiles files;
   const std::string what = GENERATE("resample", "thin");
   for (const std::string bad : {"0", "-1", "nan", "inf", "far"}) {
-    CHECK(files.run(what, "path.txt", "out.txt", "--max-motion " + bad).exit_code == 2);
+    check_outcome(files.run(what, "path.txt", "out.txt", "--max-motion " + bad), 2);
   }
-  CHECK(files.run(what, "path.txt", "out.txt", "").exit_code == 2);
-  CHECK(files.run(what, "missing.txt", "out.txt", "--max-motion 1").exit_code == 4);
-  put_bytes(files.folder / "scaled.txt", "2 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 0\n");
+  check_outcome(files.run(what, "path.txt", "out.txt", ""), 2);
+  check_outcome(files.run(what, "missing.txt", "out.txt", "--max-motion 1"), 4);
+  files.put("scaled.txt", "2 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 0\n");
   const Outcome scaled = files.run(what, "scaled.txt", "out.txt", "--max-motion 1");
-  CHECK(scaled.exit_code == 3);
-  CHECK_THAT(scaled.err, Contains("line 1") && Contains("--allow-non-rigid"));
-  CHECK_FALSE(std::filesystem::exists(files.folder / "out.txt"));
-  CHECK_FALSE(std::filesystem::exists(files.folder / "out.txt.partial"));
-  CHECK(files.run(what, "scaled.txt", "out.txt", "--max-motion 1 --allow-non-rigid").exit_code ==
-        0);
+  check_outcome(scaled, 3, "line 1 ... --allow-non-rigid");
+  CHECK_FALSE(files.has("out.txt"));
+  CHECK_FALSE(files.has("out.txt.partial"));
+  check_outcome(files.run(what, "scaled.txt", "out.txt", "--max-motion 1 --allow-non-rigid"), 0);
 }
 
 TEST_CASE("trajectory resample refuses a jump that takes too many poses") {
   const PathFiles files;
-  put_bytes(files.folder / "jump.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 9e6 0 1 0 0 0 0 1 0\n");
-  const Outcome outcome = files.run("resample", "jump.txt", "out.txt", "--max-motion 0.01");
-  CHECK(outcome.exit_code == 2);
-  CHECK_THAT(outcome.err, Contains("poses 0 and 1") && Contains("expected 0.909 or more"));
-  CHECK_FALSE(std::filesystem::exists(files.folder / "out.txt"));
+  files.put("jump.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 9e6 0 1 0 0 0 0 1 0\n");
+  check_outcome(files.run("resample", "jump.txt", "out.txt", "--max-motion 0.01"), 2,
+                "poses 0 and 1 ... expected 0.909 or more");
+  CHECK_FALSE(files.has("out.txt"));
 }
 
 TEST_CASE("trajectory resample names poses that mirror the model by turns") {
   const PathFiles files;
-  put_bytes(files.folder / "mirror.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n-1 0 0 0 0 1 0 0 0 0 1 0\n");
-  const Outcome outcome =
-      files.run("resample", "mirror.txt", "out.txt", "--max-motion 0.1 --allow-non-rigid");
-  CHECK(outcome.exit_code == 3);
-  CHECK_THAT(outcome.err, Contains("mirror.txt: poses 0 and 1") && Contains("mirrors"));
+  files.put("mirror.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n-1 0 0 0 0 1 0 0 0 0 1 0\n");
+  check_outcome(
+      files.run("resample", "mirror.txt", "out.txt", "--max-motion 0.1 --allow-non-rigid"), 3,
+      "mirror.txt: poses 0 and 1 ... mirrors");
 }
 
 TEST_CASE("resample, thin and follow warn of poses that are missing, as their output hides it") {
   const PathFiles files;
   std::string gap, turn;
   for (int i = 0; i < 60; ++i) {
-    gap += "1 0 0 " + std::to_string(i < 30 ? i * 0.5 : 10 + i * 0.5) + " 0 1 0 0 0 0 1 0\n";
+    gap += pose_at(i < 30 ? i * 0.5 : 10 + i * 0.5);
     turn += (i < 30 ? "1 0 0 " : "0 -1 0 ") + std::to_string(i * 0.5) +
             (i < 30 ? " 0 1 0 0 0 0 1 0\n" : " 1 0 0 0 0 0 1 0\n");
   }
-  put_bytes(files.folder / "gap.txt", gap);
-  put_bytes(files.folder / "turn.txt", turn);
-  put_bytes(files.folder / "even.txt", gap.substr(0, gap.size() / 2));
+  files.put("gap.txt", gap);
+  files.put("turn.txt", turn);
+  files.put("even.txt", gap.substr(0, gap.size() / 2));
   for (const std::string what : {"resample", "thin"}) {
     for (const std::string in : {"gap.txt", "turn.txt"}) {
       const Outcome outcome = files.run(what, in, "out.txt", "--max-motion 0.6 --force");
-      CHECK(outcome.exit_code == 0);
-      CHECK_THAT(outcome.err, Contains("the step from pose 29 to 30 is"));
-      CHECK_THAT(outcome.err, Contains(what == "thin" ? "does not show it" : "are a guess"));
+      check_outcome(outcome, 0, "the step from pose 29 to 30 is");
+      check_says(outcome.err, what == "thin" ? "does not show it" : "are a guess");
     }
     const Outcome even = files.run(what, "even.txt", "out.txt", "--max-motion 0.6 --force");
     CHECK(even.err.find("the step from") == std::string::npos);
   }
   const auto follow = [&](const std::string& in) {
-    return run_program(files.folder, "trajectory follow " + files.path(in) + " --at 1 --force -o " +
-                                         files.path("out.txt"));
+    return run_program(files.folder, "trajectory follow " + in + " --at 1 --force -o out.txt");
   };
-  CHECK_THAT(follow("gap.txt").err, Contains("the step from pose 29 to 30 is 10.5 m long"));
+  check_says(follow("gap.txt").err, "the step from pose 29 to 30 is 10.5 m long");
   CHECK(follow("even.txt").err.find("the step from") == std::string::npos);
 }
 
 TEST_CASE("an empty trajectory stays one, with a warning") {
   const PathFiles files;
   const std::string what = GENERATE("resample", "thin");
-  put_bytes(files.folder / "empty.txt", "");
+  files.put("empty.txt", "");
   const Outcome outcome = files.run(what, "empty.txt", "out.txt", "--max-motion 1 --json");
-  CHECK(outcome.exit_code == 0);
-  CHECK_THAT(outcome.err, Contains("no poses"));
-  CHECK(bytes_of(files.folder / "out.txt").empty());
-  CHECK(nlohmann::json::parse(outcome.out)["poses_out"] == 0);
+  check_outcome(outcome, 0, "no poses");
+  CHECK(files.bytes("out.txt").empty());
+  check_json(json_of(outcome), R"({"poses_out": 0})");
 }
 
 TEST_CASE("resample takes the meaning of ft from the store") {
   const PathFiles files;
-  put_bytes(files.folder / "scan.xyz", "0 0 0\n100 100 0\n");
-  const auto at = [&](const char* name) { return quoted(files.folder / name); };
-  REQUIRE(run_program(files.folder, "convert --unit us-ft " + at("scan.xyz") + " -o " + at("s.h5"))
-              .exit_code == 0);
+  files.put("scan.xyz", "0 0 0\n100 100 0\n");
+  require_success(run_program(files.folder, "convert --unit us-ft scan.xyz -o s.h5"));
   const std::string feet = "--trajectory-unit ft --max-motion 0.5";
-  REQUIRE(files.run("resample", "path.txt", "feet.txt", feet + " --env " + at("s.h5")).exit_code ==
-          0);
+  require_success(files.run("resample", "path.txt", "feet.txt", feet + " --env s.h5"));
   // The file is in the store's own foot, so its positions stay as they are.
   CHECK(has_in_order(files.read("feet.txt"), files.poses));
-  const Outcome told =
-      run_program(files.folder, "convert --resume " + at("scan.xyz") + " -o " + at("s.h5"));
-  CHECK_THAT(told.err, Contains("is the store of these inputs already, with coordinates in "));
+  check_says(run_program(files.folder, "convert --resume scan.xyz -o s.h5").err,
+             "is the store of these inputs already, with coordinates in ");
 }
 
 TEST_CASE("resample and thin keep stations, and put those of new poses between them") {
@@ -228,9 +212,8 @@ TEST_CASE("resample and thin keep stations, and put those of new poses between t
     REQUIRE(found.size() == poses.size());
     return poses;
   };
-  const Outcome dense = files.run("resample", "line.csv", "dense.csv", given + "--max-motion 0.5");
-  INFO(dense.err);
-  REQUIRE(dense.exit_code == 0);
+  const Outcome dense =
+      require_success(files.run("resample", "line.csv", "dense.csv", given + "--max-motion 0.5"));
   std::vector<double> found;
   const std::vector<Pose> more = read("dense.csv", found);
   REQUIRE(more.size() > 2 * files.poses.size());
@@ -255,9 +238,8 @@ TEST_CASE("resample and thin keep stations, and put those of new poses between t
   }
   CHECK(next == files.poses.size());
 
-  const Outcome thin = files.run("thin", "line.csv", "thin.csv", given + "--max-motion 3");
-  INFO(thin.err);
-  REQUIRE(thin.exit_code == 0);
+  const Outcome thin =
+      require_success(files.run("thin", "line.csv", "thin.csv", given + "--max-motion 3"));
   const std::vector<Pose> fewer = read("thin.csv", found);
   REQUIRE(fewer.size() < files.poses.size());
   for (std::size_t i = 0; i < fewer.size(); ++i) {

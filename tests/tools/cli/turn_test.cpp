@@ -11,7 +11,6 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 using nlohmann::json;
 
 namespace {
@@ -43,7 +42,7 @@ struct Turned {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> x(-1.9, 2.1), y(-0.8, 0.9), z(0.3, 1.4);
     for (int i = 0; i < 12; ++i) corners.push_back({x(random), y(random), z(random)});
-    put_bytes(work.folder / "upright.obj", mesh_of(corners));
+    work.put("upright.obj", mesh_of(corners));
   }
 
   static std::string mesh_of(const std::vector<Row>& corners) {
@@ -64,23 +63,20 @@ struct Turned {
                     const std::string& up) const {
     std::vector<Row> turned;
     for (const Row& c : corners) turned.push_back(in_file(c, forward, up));
-    put_bytes(work.folder / name, mesh_of(turned));
+    work.put(name, mesh_of(turned));
   }
 
   Outcome run(const std::string& model, const std::string& output,
               const std::string& options) const {
-    return work.run("run --env " + (work.hall / "site.h5") + " --model " + work.path(model) +
-                    " --trajectory " + (work.hall / "trajectory.txt") +
-                    " --radius 0.3 --first-pose --clearance 0.6 --profile 1 --force -o " +
-                    work.path(output) + " " + options);
+    return work.run("run --env hall/site.h5 --model " + model +
+                    " --trajectory hall/trajectory.txt --radius 0.3 --first-pose --clearance 0.6 "
+                    "--profile 1 --force -o " +
+                    output + " " + options);
   }
   std::string conflicts(const std::string& result, const std::string& options,
                         const std::string& output) const {
-    const Outcome listed = work.run("conflicts " + work.path(result) + " --trajectory " +
-                                    (work.hall / "trajectory.txt") + " --force -o " +
-                                    work.path(output) + " " + options);
-    INFO(listed.err);
-    REQUIRE(listed.exit_code == 0);
+    work.succeed("conflicts " + result + " --trajectory hall/trajectory.txt --force -o " + output +
+                 " " + options);
     return work.bytes(output);
   }
 
@@ -92,7 +88,7 @@ struct Turned {
 
 TEST_CASE("each way to turn a model gives the result of the model turned by hand") {
   const Turned turned;
-  REQUIRE(turned.run("upright.obj", "upright.h5", "").exit_code == 0);
+  require_success(turned.run("upright.obj", "upright.h5", ""));
   const Result upright(turned.work.folder / "upright.h5");
   REQUIRE(upright.size() > 0);
   const std::string axes[] = {"+x", "-x", "+y", "-y", "+z", "-z"};
@@ -103,13 +99,9 @@ TEST_CASE("each way to turn a model gives the result of the model turned by hand
       CAPTURE(forward, up);
       ++ways;
       turned.write_turned("turned.obj", forward, up);
-      const Outcome run =
-          turned.run("turned.obj", "turned.h5", "--forward " + forward + " --up " + up);
-      INFO(run.err);
-      REQUIRE(run.exit_code == 0);
-      const Outcome same = turned.work.run("compare " + turned.work.path("upright.h5") + " " +
-                                           turned.work.path("turned.h5"));
-      CHECK(same.exit_code == 0);
+      const Outcome run = require_success(
+          turned.run("turned.obj", "turned.h5", "--forward " + forward + " --up " + up));
+      check_outcome(turned.work.run("compare upright.h5 turned.h5"), 0);
       const Result result(turned.work.folder / "turned.h5");
       CHECK(result.source() == upright.source());
       CHECK(result.first_pose() == upright.first_pose());
@@ -118,8 +110,7 @@ TEST_CASE("each way to turn a model gives the result of the model turned by hand
       const ModelAxes kept = result.model_axes();
       CHECK(name_of(kept.forward) == forward);
       CHECK(name_of(kept.up) == up);
-      const json info =
-          json::parse(turned.work.run("info " + turned.work.path("turned.h5") + " --json").out);
+      const json info = json_of(turned.work.run("info turned.h5 --json"));
       const bool turns = forward != "+x" || up != "+z";
       CHECK(info.contains("model_axes") == turns);
       if (turns) CHECK(info["model_axes"] == json{{"forward", forward}, {"up", up}});
@@ -134,44 +125,37 @@ TEST_CASE("what reads the result of a turned model turns its file, and takes no 
   const Turned turned;
   const Work& work = turned.work;
   turned.write_turned("turned.obj", "-y", "+x");
-  REQUIRE(turned.run("upright.obj", "upright.h5", "").exit_code == 0);
-  REQUIRE(turned.run("turned.obj", "turned.h5", "--forward=-y --up x").exit_code == 0);
-  const std::string expected =
-      turned.conflicts("upright.h5", "--model " + work.path("upright.obj"), "upright.csv");
-  CHECK(turned.conflicts("turned.h5", "--model " + work.path("turned.obj"), "turned.csv") ==
-        expected);
-  const std::string path = " --trajectory " + (work.hall / "trajectory.txt") + " ";
-  const std::string report = "report " + work.path("turned.h5") + " --env " +
-                             (work.hall / "site.h5") + path + "--force --json -o " +
-                             work.path("page.html") + " --model ";
-  const Outcome page = work.run(report + work.path("turned.obj"));
-  INFO(page.err);
-  REQUIRE(page.exit_code == 0);
-  CHECK(json::parse(page.out)["page"]["forward"] == 0);
-  CHECK(json::parse(page.out)["inputs"]["model"]["axes"] == json{"-y", "+x"});
-  const Outcome compared = work.run(
-      "compare " + work.path("upright.h5") + " " + work.path("turned.h5") + " --conflicts" + path +
-      "--model " + work.path("upright.obj") + " --model-b " + work.path("turned.obj"));
-  CHECK(compared.exit_code == 6);  // because both are about the same scan
-  CHECK_THAT(compared.out, Contains("the same in both: "));
+  require_success(turned.run("upright.obj", "upright.h5", ""));
+  require_success(turned.run("turned.obj", "turned.h5", "--forward=-y --up x"));
+  const std::string expected = turned.conflicts("upright.h5", "--model upright.obj", "upright.csv");
+  CHECK(turned.conflicts("turned.h5", "--model turned.obj", "turned.csv") == expected);
+  const std::string path = " --trajectory hall/trajectory.txt ";
+  const std::string report =
+      "report turned.h5 --env hall/site.h5" + path + "--force --json -o page.html --model ";
+  const Outcome page = work.succeed(report + "turned.obj");
+  check_json(json_of(page), R"({
+    "page": {"forward": 0}, "inputs": {"model": {"axes": ["-y", "+x"]}}})");
+  const Outcome compared = work.run("compare upright.h5 turned.h5 --conflicts" + path +
+                                    "--model upright.obj --model-b turned.obj");
+  check_outcome(compared, 6);  // because both are about the same scan
+  check_says(compared.out, "the same in both: ");
   for (const std::string axes : {"--forward +y", "--up z", "--forward x"}) {
     CAPTURE(axes);
-    check_refused(work.run(report + work.path("turned.obj") + " " + axes), 2,
-                  "turned the model by --forward -y --up +x");
-    check_refused(work.run("conflicts " + work.path("turned.h5") + path + axes), 2,
-                  "leave out its own --forward and --up");
-    check_refused(work.run("compare " + work.path("upright.h5") + " " + work.path("turned.h5") +
-                           " --conflicts" + path + axes),
-                  2, "leave out its own --forward and --up");
+    work.check({
+        {report + "turned.obj " + axes, 2, "turned the model by --forward -y --up +x"},
+        {"conflicts turned.h5" + path + axes, 2, "leave out its own --forward and --up"},
+        {"compare upright.h5 turned.h5 --conflicts" + path + axes, 2,
+         "leave out its own --forward and --up"},
+    });
   }
-  check_refused(work.run(report + work.path("upright.obj")), 3, "is the result of another model");
+  check_refused(work.run(report + "upright.obj"), 3, "is the result of another model");
 }
 
 TEST_CASE("axes along one line are refused before anything is read") {
   const Turned turned;
   const Outcome run = turned.run("none.obj", "out.h5", "--forward +z");
   check_refused(run, 2, "forward and up lie along the same axis");
-  CHECK(turned.run("upright.obj", "out.h5", "--forward w").exit_code == 2);
+  check_outcome(turned.run("upright.obj", "out.h5", "--forward w"), 2);
 }
 
 TEST_CASE("the height of --model-above and the points of clearway model are of the turned model") {
@@ -182,18 +166,13 @@ TEST_CASE("the height of --model-above and the points of clearway model are of t
        {std::string("--model-above 0.8"), std::string("--model-as points --model-above 0.8"),
         std::string("--model-vertices")}) {
     CAPTURE(options);
-    REQUIRE(turned.run("upright.obj", "upright.h5", options).exit_code == 0);
-    REQUIRE(turned.run("turned.obj", "turned.h5", options + " --forward z --up y").exit_code == 0);
-    CHECK(work.run("compare " + work.path("upright.h5") + " " + work.path("turned.h5")).exit_code ==
-          0);
+    require_success(turned.run("upright.obj", "upright.h5", options));
+    require_success(turned.run("turned.obj", "turned.h5", options + " --forward z --up y"));
+    check_outcome(work.run("compare upright.h5 turned.h5"), 0);
   }
-  REQUIRE(work.run("model " + work.path("upright.obj") + " --spacing 0.1 -o " +
-                   work.path("upright.ply"))
-              .exit_code == 0);
-  REQUIRE(work.run("model " + work.path("turned.obj") + " --forward z --up y --spacing 0.1 -o " +
-                   work.path("turned.ply"))
-              .exit_code == 0);
-  CHECK(work.bytes("upright.ply") == work.bytes("turned.ply"));
+  work.succeed("model upright.obj --spacing 0.1 -o upright.ply");
+  work.succeed("model turned.obj --forward z --up y --spacing 0.1 -o turned.ply");
+  check_same(work.bytes("upright.ply"), work.bytes("turned.ply"));
 }
 
 TEST_CASE("the steps of a path are those of the turned model") {
@@ -201,20 +180,15 @@ TEST_CASE("the steps of a path are those of the turned model") {
   const Work& work = turned.work;
   turned.write_turned("turned.obj", "+z", "+y");
   const auto resampled = [&](const std::string& model, const std::string& axes) {
-    const Outcome done = work.run("trajectory resample " + (work.hall / "trajectory.txt") +
-                                  " --max-motion 0.05 --force -o " + work.path("dense.txt") +
-                                  " --model " + work.path(model) + axes);
-    INFO(done.err);
-    REQUIRE(done.exit_code == 0);
+    work.succeed(
+        "trajectory resample hall/trajectory.txt --max-motion 0.05 --force -o dense.txt --model " +
+        model + axes);
     return work.bytes("dense.txt");
   };
   const std::string expected = resampled("upright.obj", "");
   CHECK(resampled("turned.obj", " --forward z --up y") == expected);
   const auto described = [&](const std::string& model, const std::string& axes) {
-    return work
-        .run("trajectory info " + (work.hall / "trajectory.txt") + " --json --model " +
-             work.path(model) + axes)
-        .out;
+    return work.run("trajectory info hall/trajectory.txt --json --model " + model + axes).out;
   };
   CHECK(described("turned.obj", " --forward z --up y") == described("upright.obj", ""));
 }
@@ -225,28 +199,22 @@ TEST_CASE("the axes hold for all bodies of a vehicle, and a merge keeps them") {
   turned.write_turned("turned.obj", "+y", "+z");
   const auto wagon = [&](const std::string& model) {
     const std::string name = model + ".json";
-    put_bytes(work.folder / name, R"({"bodies": [{"name": "front", "model": ")" + model +
-                                      R"("}, {"name": "rear", "model": ")" + model +
-                                      R"(", "at": -3}]})");
-    return "--vehicle " + work.path(name) + " ";
+    work.put(name, R"({"bodies": [{"name": "front", "model": ")" + model +
+                       R"("}, {"name": "rear", "model": ")" + model + R"(", "at": -3}]})");
+    return "--vehicle " + name + " ";
   };
-  const std::string run = "run --env " + (work.hall / "site.h5") + " --trajectory " +
-                          (work.hall / "trajectory.txt") + " --radius 0.3 --first-pose --force -o ";
-  REQUIRE(work.run(run + work.path("upright.h5") + " " + wagon("upright.obj")).exit_code == 0);
-  REQUIRE(
-      work.run(run + work.path("turned.h5") + " --forward y " + wagon("turned.obj")).exit_code ==
-      0);
-  CHECK(work.run("compare " + work.path("upright.h5") + " " + work.path("turned.h5")).exit_code ==
-        0);
+  const std::string run =
+      "run --env hall/site.h5 --trajectory hall/trajectory.txt --radius 0.3 --first-pose --force "
+      "-o ";
+  work.succeed(run + "upright.h5 " + wagon("upright.obj"));
+  work.succeed(run + "turned.h5 --forward y " + wagon("turned.obj"));
+  check_outcome(work.run("compare upright.h5 turned.h5"), 0);
   CHECK(turned.conflicts("turned.h5", wagon("turned.obj"), "turned.csv") ==
         turned.conflicts("upright.h5", wagon("upright.obj"), "upright.csv"));
   for (const std::string part : {"1", "2"}) {
-    REQUIRE(work.run(run + work.path("part" + part + ".h5") + " --forward y --shard " + part +
-                     "/2 " + wagon("turned.obj"))
-                .exit_code == 0);
+    work.succeed(run + "part" + part + ".h5 --forward y --shard " + part + "/2 " +
+                 wagon("turned.obj"));
   }
-  REQUIRE(work.run("merge " + work.path("part1.h5") + " " + work.path("part2.h5") + " -o " +
-                   work.path("merged.h5"))
-              .exit_code == 0);
-  CHECK(work.bytes("merged.h5") == work.bytes("turned.h5"));
+  work.succeed("merge part1.h5 part2.h5 -o merged.h5");
+  check_same(work.bytes("merged.h5"), work.bytes("turned.h5"));
 }

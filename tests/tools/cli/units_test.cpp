@@ -11,7 +11,6 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 using nlohmann::json;
 
 namespace {
@@ -24,14 +23,8 @@ std::string text_of(double number) {
 
 /// A path along x through state plane coordinates, with posts at growing distances beside it.
 /// Between feet of 1,200 / 3,937 m and feet of 0.3048 m it would move by 4 m.
-struct StatePlane {
+struct StatePlane : Workplace {
   static constexpr double kEast = 6'500'000, kNorth = 2'100'000, kHeight = 100;
-
-  ScratchFolder folder;
-
-  void write(const std::string& name, const std::string& text) const {
-    put_bytes(folder / name, text);
-  }
 
   /// Writes a scan. unit: the unit in the header. size: how many of that unit a foot of the scene
   /// is.
@@ -41,7 +34,7 @@ struct StatePlane {
       text += text_of((kEast + 0.1 * i) * size) + "," +
               text_of((kNorth + 0.055 + 0.015 * i) * size) + "," + text_of(kHeight * size) + "\n";
     }
-    write(name, text);
+    put(name, text);
   }
   /// Writes the path, with arguments as for write_scan. unit: "" for none.
   void write_path(const std::string& name, const std::string& unit, double size) const {
@@ -51,36 +44,27 @@ struct StatePlane {
       text += text_of((kEast + 0.5 * i) * size) + "," + text_of(kNorth * size) + "," +
               text_of(kHeight * size) + ",0,0,0,1\n";
     }
-    write(name, text);
+    put(name, text);
   }
   void write_model(const std::string& name, double size) const {
-    write(name, "0 0 0\n" + text_of(0.25 * size) + " 0 0\n" + text_of(-0.25 * size) + " 0 0\n");
+    put(name, "0 0 0\n" + text_of(0.25 * size) + " 0 0\n" + text_of(-0.25 * size) + " 0 0\n");
   }
 
   void convert(const std::string& scan, const std::string& options = "") const {
-    const Outcome outcome =
-        run_program(folder, "convert " + quoted(folder / scan) + " -o " +
-                                quoted(folder / "site.h5") + " --scale 1e-4 --force " + options);
-    CAPTURE(outcome.err);
-    REQUIRE(outcome.exit_code == 0);
+    require_success(
+        Workplace::run("convert " + scan + " -o site.h5 --scale 1e-4 --force " + options));
   }
 
   Outcome run(const std::string& path, const std::string& model, const std::string& rest) const {
-    const Outcome outcome =
-        run_program(folder, "run --json --force --env " + quoted(folder / "site.h5") +
-                                " --trajectory " + quoted(folder / path) + " " + model + " " +
-                                rest + " -o " + quoted(folder / "out.h5"));
-    CAPTURE(path, model, rest, outcome.err);
-    REQUIRE(outcome.exit_code == 0);
-    return outcome;
+    return require_success(Workplace::run("run --json --force --env site.h5 --trajectory " + path +
+                                          " " + model + " " + rest + " -o out.h5"));
   }
-  std::string model(const std::string& name) const { return "--model " + quoted(folder / name); }
-  static int found(const Outcome& outcome) { return json::parse(outcome.out)["colliding_points"]; }
+  static int found(const Outcome& outcome) { return json_of(outcome)["colliding_points"]; }
 };
 
 std::vector<std::string> codes_in(const Outcome& outcome) {
   std::vector<std::string> codes;
-  const json report = json::parse(outcome.out);
+  const json report = json_of(outcome);
   for (const auto& warning : report["warnings"]) codes.push_back(warning["code"]);
   return codes;
 }
@@ -107,8 +91,8 @@ TEST_CASE("a scene in feet has the conflict that it has in metres, whoever names
   scene.write_path("metres_path.csv", "m", metres);
   scene.write_model("metres.xyz", metres);
   scene.convert("metres.csv");
-  const Outcome in_metres = scene.run("metres_path.csv", scene.model("metres.xyz"),
-                                      "--radius " + text_of(1.004 * metres));
+  const Outcome in_metres =
+      scene.run("metres_path.csv", "--model metres.xyz", "--radius " + text_of(1.004 * metres));
   const int expected = StatePlane::found(in_metres);
   REQUIRE(expected > 20);
   REQUIRE(expected < 100);
@@ -119,14 +103,14 @@ TEST_CASE("a scene in feet has the conflict that it has in metres, whoever names
   scene.write_path("ft.csv", "ft", 1);
   scene.write_path("exact.csv", exact, 1);
   scene.write_model("feet.xyz", 1);
-  const std::string plain = scene.model("feet.xyz");
+  const std::string plain = "--model feet.xyz";
   CHECK(StatePlane::found(scene.run("plain.csv", plain, "--radius 1.004")) == expected);
   for (const std::string name : {"ft", exact.c_str()}) {
     CAPTURE(name);
     const Outcome header =
         scene.run(name == "ft" ? "ft.csv" : "exact.csv", plain, "--radius 1.004");
     CHECK(StatePlane::found(header) == expected);
-    CHECK_THAT(header.err, Contains("as the environment is, and are taken as they are"));
+    check_says(header.err, "as the environment is, and are taken as they are");
     CHECK(StatePlane::found(scene.run("plain.csv", plain,
                                       "--radius 1.004 --trajectory-unit " + name)) == expected);
     CHECK(StatePlane::found(scene.run("plain.csv", plain, "--radius 1.004 --model-unit " + name)) ==
@@ -134,13 +118,13 @@ TEST_CASE("a scene in feet has the conflict that it has in metres, whoever names
     CHECK(StatePlane::found(scene.run("plain.csv", plain, "--radius 1.004" + name)) == expected);
     CHECK(StatePlane::found(scene.run("plain.csv", plain, "--radius '1.004 " + name + "'")) ==
           expected);
-    scene.write("car.json", R"({"bodies": [{"name": "car", "model": "feet.xyz", "model_unit": ")" +
-                                name + R"(", "at": "0)" + name + R"("}]})");
-    CHECK(StatePlane::found(scene.run("ft.csv", "--vehicle " + quoted(scene.folder / "car.json"),
-                                      "--radius 1.004")) == expected);
+    scene.put("car.json", R"({"bodies": [{"name": "car", "model": "feet.xyz", "model_unit": ")" +
+                              name + R"(", "at": "0)" + name + R"("}]})");
+    CHECK(StatePlane::found(scene.run("ft.csv", "--vehicle car.json", "--radius 1.004")) ==
+          expected);
   }
   // Metres are still converted, and so is the other foot, which causes a warning.
-  CHECK(StatePlane::found(scene.run("metres_path.csv", scene.model("metres.xyz"),
+  CHECK(StatePlane::found(scene.run("metres_path.csv", "--model metres.xyz",
                                     "--model-unit m --radius " + text_of(1.004 * metres) + "m")) ==
         expected);
   const Outcome other =
@@ -157,13 +141,13 @@ TEST_CASE("feet are no warning where every input names its unit") {
   scene.write_path("named.csv", "us-ft", 1);
   scene.write_path("plain.csv", "", 1);
   scene.write_path("metres.csv", "m", kMetresPerUsSurveyFoot);
-  const std::string plain = scene.model("feet.xyz"), named = plain + " --model-unit ft";
+  const std::string plain = "--model feet.xyz", named = plain + " --model-unit ft";
   CHECK_FALSE(has(codes_in(scene.run("named.csv", named, "--radius 1ft")), "feet"));
   const Outcome converted = scene.run("metres.csv", named, "--radius 0.3m");
   CHECK_FALSE(has(codes_in(converted), "feet"));
-  CHECK_THAT(converted.err,
-             Contains("positions are in metres and were converted to US survey feet") &&
-                 !Contains("to give metres") && Contains("name their units"));
+  check_says(converted.err,
+             "positions are in metres and were converted to US survey feet ... name their units");
+  check_lacks(converted.err, "to give metres");
   CHECK(has(codes_in(scene.run("named.csv", named, "--radius 1")), "feet"));
   CHECK(has(codes_in(scene.run("named.csv", plain, "--radius 1ft")), "feet"));
   CHECK(has(codes_in(scene.run("plain.csv", named, "--radius 1ft")), "feet"));
@@ -173,26 +157,24 @@ TEST_CASE("a scan in ft is in the foot of the others") {
   const StatePlane scene;
   scene.write_scan("a.csv", "ft", 1);
   scene.write_scan("b.csv", "us-ft", 1);
-  scene.convert("a.csv", quoted(scene.folder / "b.csv"));
-  const Outcome info = run_program(scene.folder, "info --json " + quoted(scene.folder / "site.h5"));
-  CHECK(json::parse(info.out)["length_unit"] == "us-survey-foot");
+  scene.convert("a.csv", "b.csv");
+  check_json(json_of(run_program(scene.folder, "info --json site.h5")),
+             R"({"length_unit": "us-survey-foot"})");
 }
 
 TEST_CASE("another unit than the metre is warned of where the scan names none") {
   const StatePlane scene;
   scene.write_scan("scan.csv", "m", 1);
-  std::string bare = bytes_of(scene.folder / "scan.csv");
+  std::string bare = scene.bytes("scan.csv");
   bare = bare.substr(bare.find('\n') + 1);
-  scene.write("bare.xyz", bare);
-  const Outcome note = run_program(scene.folder, "convert " + quoted(scene.folder / "bare.xyz") +
-                                                     " -o " + quoted(scene.folder / "n.h5"));
-  CHECK_THAT(note.err, Contains("metres are assumed"));
+  scene.put("bare.xyz", bare);
+  check_says(run_program(scene.folder, "convert bare.xyz -o n.h5").err, "metres are assumed");
   scene.convert("bare.xyz");
   scene.write_path("plain.csv", "", 1);
   scene.write_path("ft.csv", "ft", 1);
   scene.write_path("m.csv", "m", 1);
   scene.write_model("car.xyz", 1);
-  const std::string car = scene.model("car.xyz");
+  const std::string car = "--model car.xyz";
   const auto warned = [&](const std::string& path, const std::string& rest) {
     return has(codes_in(scene.run(path, car, rest)), "unit-assumed");
   };
@@ -207,27 +189,20 @@ TEST_CASE("another unit than the metre is warned of where the scan names none") 
   CHECK_FALSE(warned("plain.csv", "--radius 1ft --model-unit mm"));
   scene.convert("bare.xyz", "--unit us-ft");
   CHECK_FALSE(warned("ft.csv", "--radius 1"));
-  const Outcome other =
-      run_program(scene.folder, "convert --unit ft " + quoted(scene.folder / "scan.csv") + " -o " +
-                                    quoted(scene.folder / "n.h5") + " --force");
-  CHECK(other.exit_code == 3);
-  CHECK_THAT(other.err, Contains("its unit of length is metre, but foot was given"));
+  check_outcome(run_program(scene.folder, "convert --unit ft scan.csv -o n.h5 --force"), 3,
+                "its unit of length is metre, but foot was given");
 }
 
 TEST_CASE("keys and texts that name two units are warned of") {
-  const ScratchFolder folder;
+  const Workplace place;
   LasBytes las;
   las.points = {{0, 0, 0}, {1000, 1000, 1000}};
   // The place is in the unit that the keys name, on the map that they name.
   const auto codes = [&](std::vector<LasBytes::Record> records, double east, double north) {
     las.vlrs = std::move(records);
     las.offset = {east, north, 0};
-    put_bytes(folder / "a.las", las.build());
-    const Outcome outcome =
-        run_program(folder, "convert --json --force " + quoted(folder / "a.las") + " -o " +
-                                quoted(folder / "a.h5"));
-    CAPTURE(outcome.err);
-    REQUIRE(outcome.exit_code == 0);
+    place.put("a.las", las.build());
+    const Outcome outcome = require_success(place.run("convert --json --force a.las -o a.h5"));
     return codes_in(outcome);
   };
   const auto keys = [](const std::vector<std::array<std::uint16_t, 2>>& all) {
@@ -249,7 +224,7 @@ TEST_CASE("keys and texts that name two units are warned of") {
 }
 
 TEST_CASE("scans whose GeoTIFF keys or texts name different systems are warned of by both names") {
-  ScratchFolder folder;
+  const Workplace place;
   const auto keys = [](std::uint16_t code) {
     return LasBytes::Record{"LASF_Projection", 34735, geo_keys({{1024, 1}, {3072, code}})};
   };
@@ -259,38 +234,36 @@ TEST_CASE("scans whose GeoTIFF keys or texts name different systems are warned o
         "LASF_Projection", 2112,
         "PROJCS[\"" + name +
             "\",GEOGCS[\"ETRS89\",DATUM[\"European_Terrestrial_Reference_System_1989\",SPHEROID["
-            "\"GRS 1980\",6378137,298.257222101]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0."
+            "\"GRS "
+            "1980\",6378137,298.257222101]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0."
             "0174532925199433]],PROJECTION[\"Transverse_Mercator\"],UNIT[\"metre\",1]" +
             authority + "]"};
   };
   const auto warning = [&](const LasBytes::Record& a, const LasBytes::Record& b) {
     LasBytes las;
     las.vlrs = {a};
-    put_bytes(folder / "a.las", las.build());
+    place.put("a.las", las.build());
     las.vlrs = {b};
-    put_bytes(folder / "b.las", las.build());
+    place.put("b.las", las.build());
     const Outcome outcome =
-        run_program(folder, "convert --json --force " + quoted(folder / "a.las") + " " +
-                                quoted(folder / "b.las") + " -o " + quoted(folder / "ab.h5"));
-    CAPTURE(outcome.err);
-    REQUIRE(outcome.exit_code == 0);
+        require_success(place.run("convert --json --force a.las b.las -o ab.h5"));
     std::string found;
-    const json report = json::parse(outcome.out);
+    const json report = json_of(outcome);
     for (const auto& one : report["warnings"]) {
       if (one["code"] == "other-crs") found += one["message"].get<std::string>();
     }
     return found;
   };
   CHECK(warning(keys(25832), keys(25832)).empty());
-  CHECK_THAT(warning(keys(25832), keys(25833)),
-             Contains("b.las: another coordinate reference system (") && Contains("EPSG:25833") &&
-                 Contains("a.las (") && Contains("EPSG:25832") && Contains("may not fit together"));
+  check_says(warning(keys(25832), keys(25833)),
+             "b.las: another coordinate reference system ( ... EPSG:25833 ... a.las ( ... "
+             "EPSG:25832 ... may not fit together");
   CHECK(warning(text("ETRS89 / UTM zone 32N", "25832"), keys(25832)).empty());
   CHECK(warning(keys(25832), text("ETRS89 / UTM zone 32N", "25832")).empty());
-  CHECK_THAT(warning(text("ETRS89 / UTM zone 32N", "25832"), keys(25833)),
-             Contains("EPSG:25833") && Contains("ETRS89 / UTM zone 32N, EPSG:25832"));
+  check_says(warning(text("ETRS89 / UTM zone 32N", "25832"), keys(25833)),
+             "EPSG:25833 ... ETRS89 / UTM zone 32N, EPSG:25832");
   CHECK(warning(text("one", "25832"), text("the same", "25832")).empty());
-  CHECK_THAT(warning(text("site grid", ""), keys(25833)),
-             Contains("site grid, without an EPSG code") && Contains("EPSG:25833"));
-  CHECK_THAT(warning(text("one", ""), text("two", "")), Contains("(two,") && Contains("(one,"));
+  check_says(warning(text("site grid", ""), keys(25833)),
+             "EPSG:25833 ... site grid, without an EPSG code");
+  check_says(warning(text("one", ""), text("two", "")), "(two, ... (one,");
 }

@@ -8,13 +8,12 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 using nlohmann::json;
 
 namespace {
 
 /// Ground, a wall on either side of a path along x, and a post beside it. Two bodies in a row.
-struct Yard {
+struct Yard : Workplace {
   Yard() {
     std::string scan;
     for (int i = 0; i < 300; ++i) {
@@ -22,25 +21,20 @@ struct Yard {
       for (int k = 0; k < 10; ++k) scan += at(i, -15, k) + at(i, 15, k);
     }
     for (int k = 0; k < 10; ++k) scan += at(150, 6, k);
-    put_bytes(folder / "scan.xyz", scan);
-    std::string box, path, far;
+    put("scan.xyz", scan);
+    std::string box;
     for (int i = -5; i <= 5; ++i) {
       for (int k = -5; k <= 5; ++k) {
-        for (const char* z : {"0.3", "1.1"}) {
+        for (const std::string z : {"0.3", "1.1"}) {
           box += std::to_string(i * 0.1) + " " + std::to_string(k * 0.1) + " " + z + "\n";
         }
       }
     }
-    put_bytes(folder / "box.xyz", box);
-    for (int i = 0; i <= 180; ++i) {
-      const std::string rest = " 0 1 0 0 0 0 1 0\n";
-      path += "1 0 0 " + std::to_string(2 + i * 0.1) + rest;
-      far += "1 0 0 " + std::to_string(1000 + i * 0.1) + rest;
-    }
-    put_bytes(folder / "path.txt", path);
-    put_bytes(folder / "far.txt", far);
+    put("box.xyz", box);
+    put("path.txt", path_along_x(181, 0.1, 2));
+    put("far.txt", path_along_x(181, 0.1, 1000));
     put_vehicle(R"({"name": "truck", "model": "box.xyz"})");
-    REQUIRE(program("convert scan.xyz -o site.h5 --cell-points 512").exit_code == 0);
+    require_success(run("convert scan.xyz -o site.h5 --cell-points 512"));
   }
 
   static std::string at(int i, int k, int j) {
@@ -48,21 +42,13 @@ struct Yard {
            "\n";
   }
   void put_vehicle(const std::string& truck) const {
-    put_bytes(folder / "wagon.json",
-              "{\"bodies\": [" + truck +
-                  R"(, {"name": "trailer", "model": "box.xyz", "pivots": [-1, -2]}]})");
+    put("wagon.json", "{\"bodies\": [" + truck +
+                          R"(, {"name": "trailer", "model": "box.xyz", "pivots": [-1, -2]}]})");
   }
-  Outcome program(const std::string& arguments) const {
-    return run_program_at("env", folder,
-                          "-C " + quoted(folder / "") + " '" CLEARWAY_PROGRAM "' " + arguments);
+  Outcome search(const std::string& arguments) const {
+    return run("run --env site.h5 --vehicle wagon.json --trajectory path.txt --threads 2 --force " +
+               arguments);
   }
-  Outcome run(const std::string& arguments) const {
-    return program(
-        "run --env site.h5 --vehicle wagon.json --trajectory path.txt --threads 2 --force " +
-        arguments);
-  }
-
-  ScratchFolder folder;
 };
 
 }  // namespace
@@ -70,62 +56,54 @@ struct Yard {
 TEST_CASE("a vehicle is searched on a GPU too, to the same bytes") {
   const Yard yard;
   const std::string query = "--radius 0.2 --first-pose --clearance 0.5 --profile 0.5 ";
-  REQUIRE(yard.run(query + "-o cpu.h5 --device cpu").exit_code == 0);
-  const Outcome cuda = yard.run(query + "-o cuda.h5 --device cuda --json");
+  require_success(yard.search(query + "-o cpu.h5 --device cpu"));
+  const Outcome cuda = yard.search(query + "-o cuda.h5 --device cuda --json");
   if (cuda.exit_code == 0) {
-    CHECK(json::parse(cuda.out)["device"] == "cuda");
-    CHECK(bytes_of(yard.folder / "cuda.h5") == bytes_of(yard.folder / "cpu.h5"));
+    check_json(json_of(cuda), R"({"device": "cuda"})");
+    check_same(yard.bytes("cuda.h5"), yard.bytes("cpu.h5"));
   } else {
-    CHECK_THAT(cuda.err, Contains("CUDA"));
+    check_says(cuda.err, "CUDA");
   }
-  CHECK_THAT(yard.run("--radius 0.2 -o out.h5 --engine grid").err, Contains("--vehicle: engine"));
+  check_says(yard.search("--radius 0.2 -o out.h5 --engine grid").err, "--vehicle: engine");
 }
 
 TEST_CASE("shards of a vehicle merge to the bytes of its whole run") {
   const Yard yard;
   const std::string query = "--radius 0.2 --first-pose --clearance 0.5 --profile 0.5 ";
-  REQUIRE(yard.run(query + "-o whole.h5").exit_code == 0);
+  require_success(yard.search(query + "-o whole.h5"));
   std::string parts;
   for (const std::string part : {"1", "2", "3"}) {
-    const Outcome done = yard.run(query + "--shard " + part + "/3 -o part" + part + ".h5");
-    INFO(done.err);
-    REQUIRE(done.exit_code == 0);
+    require_success(yard.search(query + "--shard " + part + "/3 -o part" + part + ".h5"));
     parts += " part" + part + ".h5";
   }
-  const Outcome merged = yard.program("merge" + parts + " -o merged.h5");
-  INFO(merged.err);
-  REQUIRE(merged.exit_code == 0);
-  CHECK_THAT(merged.out, Contains("body truck"));
-  CHECK(bytes_of(yard.folder / "merged.h5") == bytes_of(yard.folder / "whole.h5"));
+  const Outcome merged = yard.succeed("merge" + parts + " -o merged.h5");
+  check_says(merged.out, "body truck");
+  check_same(yard.bytes("merged.h5"), yard.bytes("whole.h5"));
   yard.put_vehicle(R"({"name": "lorry", "model": "box.xyz"})");
-  REQUIRE(yard.run(query + "--shard 2/3 -o part2.h5").exit_code == 0);
-  const Outcome other = yard.program("merge" + parts + " -o merged.h5 --force");
-  CHECK(other.exit_code == 3);
-  CHECK_THAT(other.err, Contains("part2.h5"));
+  require_success(yard.search(query + "--shard 2/3 -o part2.h5"));
+  check_outcome(yard.run("merge" + parts + " -o merged.h5 --force"), 3, "part2.h5");
 }
 
 TEST_CASE("a vehicle may touch what the search ignores") {
   const Yard yard;
-  REQUIRE(yard.run("--radius 0.2 --first-pose -o out.h5").exit_code == 0);
+  require_success(yard.search("--radius 0.2 --first-pose -o out.h5"));
   CHECK(Result(yard.folder / "out.h5").size() > 0);
-  const Outcome clear =
-      yard.run("--radius 0.2 --first-pose -o out.h5 --ignore-box 14,0.5,-1,16,0.7,3");
-  REQUIRE(clear.exit_code == 0);
+  require_success(
+      yard.search("--radius 0.2 --first-pose -o out.h5 --ignore-box 14,0.5,-1,16,0.7,3"));
   const Result result(yard.folder / "out.h5");
   CHECK(result.size() == 0);
   CHECK(result.ignored().points > 9);
-  const json info = json::parse(yard.program("info out.h5 --json").out);
-  CHECK(info["version"] == 6);
-  CHECK(info["bodies"] == json{"truck", "trailer"});
+  const json info = json_of(yard.run("info out.h5 --json"));
+  check_json(info, R"({"version": 6, "bodies": ["truck", "trailer"]})");
   CHECK(info["ignored"]["points"] == result.ignored().points);
-  CHECK(yard.program("verify out.h5").exit_code == 0);
+  check_outcome(yard.run("verify out.h5"), 0);
 }
 
 TEST_CASE("a body that is far from the scan is warned of by name") {
   const Yard yard;
   yard.put_vehicle(R"({"name": "truck", "model": "box.xyz", "trajectory": "far.txt"})");
-  const Outcome found = yard.run("--radius 0.05 -o out.h5 --json");
-  const json report = json::parse(found.out);
+  const Outcome found = yard.search("--radius 0.05 -o out.h5 --json");
+  const json report = json_of(found);
   bool told = false;
   for (const json& warning : report["warnings"]) {
     if (warning["code"] != "out-of-reach") continue;
@@ -133,68 +111,67 @@ TEST_CASE("a body that is far from the scan is warned of by name") {
   }
   INFO(found.err);
   CHECK(told);
-  CHECK(yard.run("--radius 0.05 -o out.h5 --strict").exit_code == 3);
+  check_outcome(yard.search("--radius 0.05 -o out.h5 --strict"), 3);
 }
 
 TEST_CASE("a vehicle above the ground is warned of and one on it is not") {
   const Yard yard;
   const auto codes = [](const Outcome& outcome) {
     std::set<std::string> out;
-    const json report = json::parse(outcome.out);
+    const json report = json_of(outcome);
     for (const json& warning : report["warnings"]) out.insert(warning["code"]);
     return out;
   };
-  CHECK(codes(yard.run("--radius 0.2 -o out.h5 --json")).count("floats") == 0);
+  CHECK(codes(yard.search("--radius 0.2 -o out.h5 --json")).count("floats") == 0);
   std::string high;
   for (int i = 0; i <= 180; ++i) {
     high += "1 0 0 " + std::to_string(2 + i * 0.1) + " 0 1 0 0 0 0 1 9\n";
   }
   // Only the trailer is on the ground; the truck is like a load on a crane.
-  put_bytes(yard.folder / "high.txt", high);
+  yard.put("high.txt", high);
   yard.put_vehicle(R"({"name": "truck", "model": "box.xyz", "trajectory": "high.txt"})");
-  CHECK(codes(yard.run("--radius 0.2 -o out.h5 --json")).count("floats") == 0);
-  put_bytes(yard.folder / "path.txt", high);
+  CHECK(codes(yard.search("--radius 0.2 -o out.h5 --json")).count("floats") == 0);
+  yard.put("path.txt", high);
   yard.put_vehicle(R"({"name": "truck", "model": "box.xyz"})");
-  CHECK(codes(yard.run("--radius 0.2 -o out.h5 --json")).count("floats") == 1);
+  CHECK(codes(yard.search("--radius 0.2 -o out.h5 --json")).count("floats") == 1);
 }
 
 TEST_CASE("poses that the path misses are warned of once, for the vehicle and all its shards") {
   const Yard yard;
   std::string path;
   for (int i = 0; i <= 180; ++i) {
-    if (i < 60 || i >= 120) path += "1 0 0 " + std::to_string(2 + i * 0.1) + " 0 1 0 0 0 0 1 0\n";
+    if (i < 60 || i >= 120) path += pose_at(2 + i * 0.1);
   }
-  put_bytes(yard.folder / "path.txt", path);
+  yard.put("path.txt", path);
   const auto jumps = [](const Outcome& outcome) {
     std::vector<std::string> texts;
-    const json all = json::parse(outcome.out);
+    const json all = json_of(outcome);
     for (const json& warning : all["warnings"]) {
       if (warning["code"] == "trajectory-jump") texts.push_back(warning["message"]);
     }
     return texts;
   };
-  const Outcome whole = yard.run("--radius 0.3 -o whole.h5 --json");
-  INFO(whole.err);
-  REQUIRE(whole.exit_code == 0);
+  const Outcome whole = require_success(yard.search("--radius 0.3 -o whole.h5 --json"));
   REQUIRE(jumps(whole).size() == 1);
-  CHECK_THAT(jumps(whole)[0], Contains("the path: the step from pose 59 to 60 is 6.1 m"));
+  check_says(jumps(whole)[0], "the path: the step from pose 59 to 60 is 6.1 m");
   CHECK(whole.err.find("the model moves farther") == std::string::npos);
   for (const std::string part : {"1", "2"}) {
-    const Outcome shard = yard.run("--radius 0.3 --json --shard " + part + "/2 -o " + part + ".h5");
+    const Outcome shard =
+        yard.search("--radius 0.3 --json --shard " + part + "/2 -o " + part + ".h5");
     CHECK(jumps(shard) == jumps(whole));
   }
-  CHECK(jumps(yard.program("merge 1.h5 2.h5 -o merged.h5 --json")) == jumps(whole));
+  CHECK(jumps(yard.run("merge 1.h5 2.h5 -o merged.h5 --json")) == jumps(whole));
 }
 
 TEST_CASE("poses that a body's own trajectory misses are its own") {
   const Yard yard;
   std::string own;
   for (int i = 0; i <= 180; ++i) {
-    own += "1 0 0 " + std::to_string(2 + i * 0.1 + (i > 90 ? 5 : 0)) + " 0 1 0 0 0 0 1 0\n";
+    own += pose_at(2 + i * 0.1 + (i > 90 ? 5 : 0));
   }
-  put_bytes(yard.folder / "own.txt", own);
+  yard.put("own.txt", own);
   yard.put_vehicle(R"({"name": "truck", "model": "box.xyz", "trajectory": "own.txt"})");
-  const Outcome outcome = yard.run("--radius 0.3 -o out.h5");
-  CHECK_THAT(outcome.err, Contains("body truck: the step from pose 90 to 91 is 5.1 m"));
+  const Outcome outcome = yard.search("--radius 0.3 -o out.h5");
+  check_says(outcome.err, "body truck: the step from pose 90 to 91 is 5.1 m");
   CHECK(outcome.err.find("the path: the step") == std::string::npos);
 }

@@ -12,7 +12,6 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
@@ -21,11 +20,9 @@ constexpr double kSide = 1.4, kGap = 0.12;
 
 /// The tunnel scene's path, and points on both sides of it. The wagon is a line across its middle,
 /// as wide as 2 kSide, and lines across its ends, 13 m ahead and behind.
-struct Tunnel {
+struct Tunnel : Workplace {
   Tunnel() {
-    const Outcome made = run_program(
-        folder, "scene tunnel -o " + quoted(folder / "") + " --points 2000 --model-points 100");
-    REQUIRE(made.exit_code == 0);
+    succeed("scene tunnel -o . --points 2000 --model-points 100");
     path = read_trajectory(folder / "trajectory.txt");
     std::vector<Quantum> points;
     for (const Pose& pose : path) {
@@ -41,24 +38,20 @@ struct Tunnel {
       }
     }
     write_las(folder / "gauge.las", points, {{0.001, 0.001, 0.001}, {0, 0, 0}});
-    REQUIRE(run("convert " + name("gauge.las") + " -o " + name("gauge.h5")).exit_code == 0);
-    put_bytes(folder / "middle.xyz", "0 -1.4 1\n0 0 1\n0 1.4 1\n");
-    put_bytes(folder / "end.xyz", "13 -1.4 1\n13 0 1\n13 1.4 1\n");
+    require_success(run("convert gauge.las -o gauge.h5"));
+    put("middle.xyz", "0 -1.4 1\n0 0 1\n0 1.4 1\n");
+    put("end.xyz", "13 -1.4 1\n13 0 1\n13 1.4 1\n");
   }
 
-  Outcome run(const std::string& arguments) const { return run_program(folder, arguments); }
   Outcome run_on(const std::string& more, const std::string& trajectory = "trajectory.txt") const {
-    return run("run --env " + name("gauge.h5") + " --trajectory " + name(trajectory) +
-               " --radius 0.05 --first-pose --clearance 0.3 --force -o " + name("out.h5") + " " +
-               more);
+    return run("run --env gauge.h5 --trajectory " + trajectory +
+               " --radius 0.05 --first-pose --clearance 0.3 --force -o out.h5 " + more);
   }
   Outcome run_vehicle(const std::string& bodies, const std::string& more = "--json") const {
-    put_bytes(folder / "wagon.json", "{\"bodies\": [" + bodies + "]}");
-    return run_on("--vehicle " + name("wagon.json") + " " + more);
+    put("wagon.json", "{\"bodies\": [" + bodies + "]}");
+    return run_on("--vehicle wagon.json " + more);
   }
-  std::string name(const std::string& file) const { return quoted(folder / file); }
 
-  ScratchFolder folder;
   std::vector<Pose> path;
 };
 
@@ -70,34 +63,30 @@ const Tunnel& tunnel() {
 }  // namespace
 
 TEST_CASE("the middle of a wagon leaves the gauge where a rigid one does not") {
-  const Outcome rigid = tunnel().run_on("--model " + tunnel().name("middle.xyz") + " --json");
-  REQUIRE(rigid.exit_code == 0);
-  const auto alone = nlohmann::json::parse(rigid.out);
-  CHECK(alone["colliding_points"] == 0);
-  CHECK(alone["least_clearance"]["distance"] == Approx(kGap).margin(0.01));
+  const Outcome rigid = require_success(tunnel().run_on("--model middle.xyz --json"));
+  const auto alone = json_of(rigid);
+  check_json(alone, R"({"colliding_points": 0})");
+  check_near(alone, "/least_clearance/distance", kGap, 0.01);
 
-  const Outcome wagon =
-      tunnel().run_vehicle(R"({"name": "middle", "model": "middle.xyz", "pivots": [10, "-10m"]})");
-  REQUIRE(wagon.exit_code == 0);
-  const auto report = nlohmann::json::parse(wagon.out);
+  const Outcome wagon = require_success(
+      tunnel().run_vehicle(R"({"name": "middle", "model": "middle.xyz", "pivots": [10, "-10m"]})"));
+  const auto report = json_of(wagon);
   CHECK(report["colliding_points"] > 100);
-  CHECK(report["first_place"]["body"] == "middle");
-  CHECK(report["least_clearance"]["body"] == "middle");
-  CHECK(report["files"]["vehicle"] == (tunnel().folder / "wagon.json").string());
-  CHECK_THAT(wagon.err, Contains("is off the path"));
+  check_json(report, R"({
+    "first_place": {"body": "middle"}, "least_clearance": {"body": "middle"},
+    "files": {"vehicle": "wagon.json"}})");
+  check_says(wagon.err, "is off the path");
   CHECK(report["warnings"].empty() == (wagon.err.find("warning: ") == std::string::npos));
-  CHECK(wagon.err.find("warning: " + (tunnel().folder / "wagon.json").string()) ==
-        std::string::npos);
+  check_lacks(wagon.err, "warning: wagon.json");
   // The verdict is about the part of the path on which the wagon has poses.
   CHECK(report["path_length"].get<double>() - report["searched_length"].get<double>() ==
         Approx(20).margin(1));
-  CHECK(report["partly_searched_length"] == 0);
-  const auto kept = nlohmann::json::parse(
-      run_program(tunnel().folder, "info --json " + tunnel().name("out.h5")).out);
+  check_json(report, R"({"partly_searched_length": 0})");
+  const auto kept = json_of(tunnel().run("info --json out.h5"));
   for (const char* key : {"path_length", "searched_length", "partly_searched_length"}) {
     CHECK(kept[key] == report[key]);
   }
-  CHECK_THAT(wagon.err, Contains("; the vehicle was searched on ") && Contains(" of the path"));
+  check_says(wagon.err, "; the vehicle was searched on  ...  of the path");
   CHECK(alone["searched_length"] == alone["path_length"]);
   CHECK(rigid.err.find("was searched on") == std::string::npos);
   // The chord's middle lies up to 0.156 m inside, so somewhere it meets the points at 0.12 m.
@@ -108,7 +97,7 @@ TEST_CASE("each body of a vehicle has its own motion and its own name in the res
   const std::string middle = R"({"name": "middle", "model": "middle.xyz", "pivots": [10, -10]})";
   const std::string end = R"({"name": "end", "model": "end.xyz", "pivots": [10, -10]})";
   const std::string bogie = R"({"name": "bogie", "model": "middle.xyz", "at": -10.5})";
-  REQUIRE(tunnel().run_vehicle(bogie + ", " + middle + ", " + end).exit_code == 0);
+  require_success(tunnel().run_vehicle(bogie + ", " + middle + ", " + end));
   const Result result(tunnel().folder / "out.h5");
   CHECK(result.bodies() == std::vector<std::string>{"bogie", "middle", "end"});
   const auto first = result.first_body();
@@ -117,44 +106,34 @@ TEST_CASE("each body of a vehicle has its own motion and its own name in the res
   CHECK(std::ranges::count(first, 0u) == 0);
   CHECK(std::ranges::count(first, 1u) > 0);
   CHECK(std::ranges::count(clearance.body, 0u) > 0);
-  const Outcome info = tunnel().run("info " + tunnel().name("out.h5"));
-  CHECK_THAT(info.out, Contains("bogie") && Contains("middle"));
-  CHECK(tunnel().run("verify " + tunnel().name("out.h5")).exit_code == 0);
-  const Outcome conflicts = tunnel().run("conflicts " + tunnel().name("out.h5") + " --trajectory " +
-                                         tunnel().name("trajectory.txt") + " -o " +
-                                         tunnel().name("found.json") + " --force");
-  REQUIRE(conflicts.exit_code == 0);
-  const auto found = nlohmann::json::parse(bytes_of(tunnel().folder / "found.json"));
+  check_says(tunnel().run("info out.h5").out, "bogie ... middle");
+  check_outcome(tunnel().run("verify out.h5"), 0);
+  const Outcome conflicts =
+      tunnel().succeed("conflicts out.h5 --trajectory trajectory.txt -o found.json --force");
+  const auto found = nlohmann::json::parse(tunnel().bytes("found.json"));
   CHECK(found["bodies"] == nlohmann::json{"bogie", "middle", "end"});
   REQUIRE(found["conflicts"].size() > 0);
   for (const auto& conflict : found["conflicts"]) {
     CHECK(conflict["body"] > 0);
     CHECK(conflict["body_name"] == found["bodies"][conflict["body"].get<std::size_t>()]);
-    CHECK(conflict["side"] == "unknown");
+    check_json(conflict, R"({"side": "unknown"})");
   }
   for (const std::string format : {"csv", "ply", "las"}) {
     const std::string file = "clearances." + format;
-    CHECK(tunnel()
-              .run("export " + tunnel().name("out.h5") + " -o " + tunnel().name(file) +
-                   " --what clearance --force")
-              .exit_code == 0);
-    CHECK_THAT(bytes_of(tunnel().folder / file), Contains("body"));
+    check_outcome(tunnel().run("export out.h5 -o " + file + " --what clearance --force"), 0);
+    check_says(tunnel().bytes(file), "body");
   }
 }
 
 TEST_CASE("a body with a trajectory of its own moves as a model on it") {
-  REQUIRE(tunnel()
-              .run("trajectory follow " + tunnel().name("trajectory.txt") + " -o " +
-                   tunnel().name("own.txt") + " --at 0 --force")
-              .exit_code == 0);
-  REQUIRE(tunnel().run_on("--model " + tunnel().name("end.xyz")).exit_code == 0);
+  tunnel().succeed("trajectory follow trajectory.txt -o own.txt --at 0 --force");
+  require_success(tunnel().run_on("--model end.xyz"));
   const Result alone(tunnel().folder / "out.h5");
   const auto source = alone.source();
   const auto pose = alone.first_pose();
-  REQUIRE(tunnel()
-              .run_vehicle(R"({"name": "e", "model": "end.xyz", "trajectory": "own.txt"},)"
-                           R"({"name": "p", "model": "end.xyz"})")
-              .exit_code == 0);
+  require_success(
+      tunnel().run_vehicle(R"({"name": "e", "model": "end.xyz", "trajectory": "own.txt"},)"
+                           R"({"name": "p", "model": "end.xyz"})"));
   const Result both(tunnel().folder / "out.h5");
   CHECK(both.source() == source);
   CHECK(both.first_pose() == pose);
@@ -163,10 +142,10 @@ TEST_CASE("a body with a trajectory of its own moves as a model on it") {
 
 TEST_CASE("every complaint about a vehicle's file names the key") {
   const auto refused = [](const std::string& text, const std::string& words, int code = 3) {
-    put_bytes(tunnel().folder / "wagon.json", text);
-    const Outcome outcome = tunnel().run_on("--vehicle " + tunnel().name("wagon.json"));
+    tunnel().put("wagon.json", text);
+    const Outcome outcome = tunnel().run_on("--vehicle wagon.json");
     CHECK(outcome.exit_code == code);
-    CHECK_THAT(outcome.err, Contains("wagon.json: " + words));
+    check_says(outcome.err, "wagon.json: " + words);
   };
   const auto body = [](const std::string& more) {
     return R"({"bodies": [{"name": "a", "model": "middle.xyz"}, {"name": "b", )" + more + "}]}";
@@ -193,7 +172,7 @@ TEST_CASE("every complaint about a vehicle's file names the key") {
   refused(body(model + R"("at": 1e6)"), "bodies[1]: the path is");
   refused(body(R"("model": "none.xyz")"), "bodies[1].model: ", 4);
   refused(body(model + R"("trajectory": "none.txt")"), "bodies[1].trajectory: ", 4);
-  put_bytes(tunnel().folder / "short.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+  tunnel().put("short.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
   refused(body(model + R"("trajectory": "short.txt")"), "bodies[1].trajectory: ");
   refused(R"({"bodies": [{"name": "a", "model": "middle.xyz"}, {"name": "a", "model": "x"}]})",
           "bodies[1].name: \"a\" names another body too");
@@ -201,18 +180,12 @@ TEST_CASE("every complaint about a vehicle's file names the key") {
 
 TEST_CASE("run --vehicle excludes what one model needs") {
   const std::string body = R"({"name": "a", "model": "middle.xyz", "at": 2})";
-  CHECK_THAT(tunnel().run_vehicle(body, "--engine kdtree").err,
-             Contains("--vehicle: engine kdtree"));
-  CHECK(tunnel().run_vehicle(body, "--model " + tunnel().name("middle.xyz")).exit_code == 2);
-  CHECK(tunnel().run_vehicle(body, "-o " + tunnel().name("middle.xyz")).exit_code == 2);
-  const Outcome neither = tunnel().run_on("");
-  CHECK(neither.exit_code == 2);
-  CHECK_THAT(neither.err, Contains("--model"));
-  REQUIRE(tunnel().run_vehicle(body).exit_code == 0);
-  const Outcome report =
-      tunnel().run("report " + tunnel().name("out.h5") + " --env " + tunnel().name("gauge.h5") +
-                   " --model " + tunnel().name("middle.xyz") + " --trajectory " +
-                   tunnel().name("trajectory.txt") + " -o " + tunnel().name("report.html"));
-  CHECK(report.exit_code == 3);
-  CHECK_THAT(report.err, Contains("several bodies"));
+  check_says(tunnel().run_vehicle(body, "--engine kdtree").err, "--vehicle: engine kdtree");
+  check_outcome(tunnel().run_vehicle(body, "--model middle.xyz"), 2);
+  check_outcome(tunnel().run_vehicle(body, "-o middle.xyz"), 2);
+  check_outcome(tunnel().run_on(""), 2, "--model");
+  require_success(tunnel().run_vehicle(body));
+  check_outcome(tunnel().run("report out.h5 --env gauge.h5 --model middle.xyz --trajectory "
+                             "trajectory.txt -o report.html"),
+                3, "several bodies");
 }

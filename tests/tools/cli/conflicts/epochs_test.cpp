@@ -1,16 +1,15 @@
 // Two scans of a road, each driven by the same car: what is new, gone, the same and not known.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "support/classed_scans.hpp"
-#include "tools/cli/support/hall.hpp"
+#include "tools/cli/support/program.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 using nlohmann::json;
 
 namespace {
@@ -31,33 +30,39 @@ struct Epoch {
   std::vector<double> hole = {0, 0};  ///< the ground is missing from here to there
   /// From here to there nothing is scanned to the left, or to the right.
   std::vector<double> no_left = {0, 0}, no_right = {0, 0};
-  double lower = 0;      ///< metres by which all is registered too low
-  int noise = 0;         ///< another number gives other noise of up to 5 mm
+  double lower = 0;  ///< metres by which all is registered too low
+  /// Another number gives other noise of up to 5 mm; that of scan b is 1 where none is given.
+  std::optional<int> noise = {};
   unsigned year = 0;     ///< year in the file's header; 0: none
   std::string run = {};  ///< options of the search
   std::string path = "path.txt";
 };
 
-/// A pair of epochs with what `compare --conflicts` says of it.
-struct Pair {
-  std::string name;
-  Epoch a, b;
-  int exit_code;
-  /// The lists of the comparison that are not empty, with their numbers of entries.
-  std::map<std::string, std::size_t> lists;
-  std::string words;  ///< part of the last line
-  /// Why a place was not searched, and why stretches of b's path are undecided
-  std::set<std::string> reasons = {}, doubts = {};
-};
-
 constexpr int kSurface = 2, kThing = 5;  // classes
 constexpr int kWithheld = 0x80;          // flag in the byte of the class, in format 1
 
-struct Road : Work {
+std::string joined(const std::set<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+/// The lists of a comparison that have entries, such as "gone 1, same 2".
+std::string lists_of(const json& comparison) {
+  std::set<std::string> lists;
+  for (const char* list :
+       {"new", "new_parts", "new_small", "worse", "not_searched", "too_small", "gone", "same"}) {
+    const std::size_t count = comparison[list].size();
+    if (count > 0) lists.insert(std::string(list) + " " + std::to_string(count));
+  }
+  return joined(lists);
+}
+
+struct Road : Workplace {
   Road() {
-    put_bytes(folder / "path.txt", path(3, 57, 0));
-    put_bytes(folder / "half.txt", path(3, 30, 0));
-    put_bytes(folder / "beside.txt", path(3, 57, -0.5));
+    put("path.txt", straight(3, 57, 0));
+    put("half.txt", straight(3, 30, 0));
+    put("beside.txt", straight(3, 57, -0.5));
     std::string car;
     for (const int x : {-2, 2}) {
       for (const int y : {-1, 1}) {
@@ -67,17 +72,16 @@ struct Road : Work {
         }
       }
     }
-    for (const char* face : {"1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"}) {
+    for (const std::string face :
+         {"1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"}) {
       car += std::string("f ") + face + "\n";
     }
-    put_bytes(folder / "car.obj", car);
+    put("car.obj", car);
   }
 
-  static std::string path(double from, double to, double y) {
+  static std::string straight(double from, double to, double y) {
     std::string text;
-    for (double x = from; x <= to; x += 0.5) {
-      text += "1 0 0 " + std::to_string(x) + " 0 1 0 " + std::to_string(y) + " 0 0 1 0\n";
-    }
+    for (double x = from; x <= to; x += 0.5) text += pose_at(x, y);
     return text;
   }
 
@@ -85,7 +89,7 @@ struct Road : Work {
   void search(const std::string& name, const Epoch& epoch) const {
     std::vector<Quantum> points;
     std::vector<std::uint8_t> classes;
-    unsigned seed = 1 + static_cast<unsigned>(epoch.noise) * 7919;
+    unsigned seed = 1 + static_cast<unsigned>(epoch.noise.value_or(name == "b")) * 7919;
     const auto noisy = [&](double metres) {
       seed = seed * 1103515245 + 12345;
       return static_cast<std::int32_t>(std::lround(1000 * metres) + (seed >> 16) % 11) - 5;
@@ -120,42 +124,49 @@ struct Road : Work {
       LasBytes::put(las, 92, static_cast<std::uint16_t>(epoch.year));
       put_bytes(folder / (name + ".las"), las);
     }
-    const Outcome converted = run("convert " + path_of(name, ".las") + " --force --unit m -o " +
-                                  path_of(name, "_site.h5"));
-    INFO(converted.err);
-    REQUIRE(converted.exit_code == 0);
-    const Outcome searched = run("run --env " + path_of(name, "_site.h5") + " --model " +
-                                 Work::path("car.obj") + " --trajectory " + Work::path(epoch.path) +
-                                 " --first-pose --force -o " + path_of(name, ".h5") + " " +
-                                 (epoch.run.empty() ? "--radius 0.1 --clearance 0.3" : epoch.run));
-    INFO(searched.err);
-    REQUIRE(searched.exit_code == 0);
+    succeed("convert " + name + ".las --force --unit m -o " + name + "_site.h5");
+    succeed("run --env " + name + "_site.h5 --model car.obj --trajectory " + epoch.path +
+            " --first-pose --force -o " + name + ".h5 " +
+            (epoch.run.empty() ? "--radius 0.1 --clearance 0.3" : epoch.run));
   }
 
-  std::string path_of(const std::string& name, const char* ending) const {
-    return Work::path(name + ending);
+  Outcome compare(const Epoch& a, const Epoch& b, const std::string& more) const {
+    const bool same_question = b.run == a.run && b.path == a.path;
+    return run("compare a.h5 b.h5 --conflicts --trajectory " + a.path + " --trajectory-b " +
+               b.path + " " + (same_question ? "" : "--allow-other-question ") + more);
   }
 
-  Outcome compare(const Pair& pair, const std::string& more) const {
-    const bool same_question = pair.b.run == pair.a.run && pair.b.path == pair.a.path;
-    return run("compare " + Work::path("a.h5") + " " + Work::path("b.h5") +
-               " --conflicts --trajectory " + Work::path(pair.a.path) + " --trajectory-b " +
-               Work::path(pair.b.path) + " " + (same_question ? "" : "--allow-other-question ") +
-               more);
+  /// Checks what `compare --conflicts` says of two epochs. lists: lists of the comparison that have
+  /// entries, with the numbers of these. reasons, doubts: why a place was not searched, and why
+  /// stretches of b's path are undecided.
+  void check_pair(const std::string& name, const Epoch& a, const Epoch& b, int exit_code,
+                  const std::string& lists, const std::string& words,
+                  const std::string& reasons = "", const std::string& doubts = "") const {
+    const RowName row(name);
+    search("a", a);
+    search("b", b);
+    check_outcome(compare(a, b, ""), exit_code, kAnything, words);
+    const json all = json_of(compare(a, b, "--json"));
+    check_equal(lists_of(all), lists);
+    std::set<std::string> found;
+    for (const json& place : all["not_searched"]) {
+      for (const json& reason : place["reasons"]) found.insert(reason.get<std::string>());
+    }
+    check_equal(joined(found), reasons);
+    CHECK(all["holds"] == (exit_code == 0));
+    check_equal(doubts_of_stations(b), doubts);
   }
 
   /// The codes for which stretches of a result are undecided.
-  std::set<std::string> doubts_of_stations(const Epoch& epoch) const {
-    REQUIRE(run("stations " + Work::path("b.h5") + " --trajectory " + Work::path(epoch.path) +
-                " --force -o " + Work::path("s.json"))
-                .exit_code == 0);
+  std::string doubts_of_stations(const Epoch& epoch) const {
+    succeed("stations b.h5 --trajectory " + epoch.path + " --force -o s.json");
     std::set<std::string> codes;
     const json table = json::parse(bytes("s.json"));
     for (const json& row : table["stations"]) {
       if (row["verdict"] != "undecided") continue;
       for (const json& code : row["doubts"]) codes.insert(code.get<std::string>());
     }
-    return codes;
+    return joined(codes);
   }
 };
 
@@ -163,275 +174,131 @@ const std::vector<Kerb> kPoles{pole(20), pole(45)};
 const Kerb kSmallPole{45, 45.05, 0.4, 1.0};
 const std::vector<Kerb> kBent{{20, 24, 0.35, 0.4}, {20, 20.05, 0.4, 1.4}};
 
-const std::vector<Pair>& pairs() {
-  static const std::vector<Pair> kPairs{
-      {"unchanged with other noise",
-       {.things = kPoles},
-       {.things = kPoles, .noise = 1},
-       0,
-       {{"same", 2}},
-       "no new conflicts"},
-      {"gone",
-       {.things = kPoles},
-       {.things = {pole(20)}, .noise = 1},
-       0,
-       {{"gone", 1}, {"same", 1}},
-       "1 conflict is gone if b was scanned there"},
-      {"one side is missing in a, the other in b",
-       {.things = kPoles, .no_right = {0, 61}},
-       {.things = {pole(20)}, .no_left = {0, 61}, .noise = 1},
-       6,
-       {{"not_searched", 1}, {"same", 1}},
-       "b has not searched 1 place",
-       {"one-side"}},
-      {"one side is missing in both",
-       {.things = kPoles, .no_left = {0, 61}},
-       {.things = {pole(20)}, .no_left = {0, 61}, .noise = 1},
-       0,
-       {{"gone", 1}, {"same", 1}},
-       "no new conflicts"},
-      {"a side is missing on stretches that overlap",
-       {.things = {pole(45)}, .no_left = {0, 28}},
-       {.things = {}, .no_left = {22, 61}, .noise = 1},
-       6,
-       {{"not_searched", 1}},
-       "b has not searched 1 place",
-       {"one-side"}},
-      {"a side is missing on one stretch",
-       {.things = {pole(45)}, .no_left = {0, 28}},
-       {.things = {}, .no_left = {0, 28}, .noise = 1},
-       0,
-       {{"gone", 1}},
-       "no new conflicts"},
-      {"lower scan",
-       {.things = kPoles},
-       {.things = kPoles, .lower = 3.5, .noise = 1},
-       6,
-       {{"not_searched", 2}},
-       "b has not searched 2 places",
-       {"floats"}},
-      {"withheld pole",
-       {.things = {kSmallPole}},
-       {.things = {{45, 45.05, 0.4, 1.0, 1.05, true}}, .noise = 1},
-       6,
-       {{"not_searched", 1}},
-       "b has not searched 1 place",
-       {"withheld"}},
-      {"pole that is gone between scans with withheld points",
-       {.things = {kSmallPole, {10, 10.05, 0.4, 1.0, 1.05, true}}},
-       {.things = {{10, 10.05, 0.4, 1.0, 1.05, true}}, .noise = 1},
-       0,
-       {{"gone", 1}},
-       "the dates of the files do not show that b is the later scan"},
-      {"shorter scan",
-       {.things = kPoles},
-       {.things = kPoles, .scanned_to = 33, .noise = 1},
-       6,
-       {{"not_searched", 1}, {"same", 1}},
-       "b has not searched 1 place",
-       {"leaves-scan"},
-       {"leaves-scan"}},
-      {"hole in the ground",
-       {.things = kPoles},
-       {.things = {pole(20)}, .hole = {38, 52}, .noise = 1},
-       6,
-       {{"not_searched", 1}, {"same", 1}},
-       "its run warned of nothing-below",
-       {"nothing-below"},
-       {"nothing-below"}},
-      {"moved pole",
-       {.things = kPoles},
-       {.things = {pole(20), pole(47)}, .noise = 1},
-       1,
-       {{"gone", 1}, {"new", 1}, {"same", 1}},
-       "1 new conflict"},
-      {"new pole in the box of a kerb that is gone",
-       {.things = kBent},
-       {.things = {{23, 23.1, 0.9, 1.4}}, .noise = 1},
-       1,
-       {{"gone", 1}, {"new", 1}},
-       "1 new conflict"},
-      {"new pole that hangs together with an old kerb",
-       {.things = {{20, 24, 0.35, 0.4}}},
-       {.things = {{20, 24, 0.35, 0.4}, {23, 23.1, 0.4, 1.4}}, .noise = 1},
-       1,
-       {{"new_parts", 1}, {"same", 1}},
-       "1 part of another conflict is new"},
-      {"one falls into two",
-       {.things = {{20, 24, 0.35, 0.4}}},
-       {.things = {{20, 21.5, 0.35, 0.4}, {22.5, 24, 0.35, 0.4}}, .noise = 1},
-       0,
-       {{"same", 2}},
-       "no new conflicts"},
-      {"two become one",
-       {.things = {{20, 21.5, 0.35, 0.4}, {22, 24, 0.35, 0.4}}},
-       {.things = {{20, 24, 0.35, 0.4}}, .noise = 1},
-       0,
-       {{"same", 2}},
-       "no new conflicts"},
-      {"the same scan twice",
-       {.things = kPoles},
-       {.things = kPoles},
-       6,
-       {{"same", 2}},
-       "the same scan"},
-      {"older scan",
-       {.things = kPoles, .year = 2024},
-       {.things = kPoles, .noise = 1, .year = 2022},
-       0,
-       {{"same", 2}},
-       "by the dates of the files b is older than a"},
-      {"newer scan",
-       {.things = kPoles, .year = 2022},
-       {.things = kPoles, .noise = 1, .year = 2024},
-       0,
-       {{"same", 2}},
-       "no new conflicts"},
-      {"smaller radius",
-       {.things = kPoles},
-       {.things = kPoles, .noise = 1, .run = "--radius 0.02"},
-       6,
-       {{"not_searched", 2}},
-       "b has not searched 2 places",
-       {"coarse-scan", "radius"}},
-      {"ignored class",
-       {.things = kPoles},
-       {.things = kPoles, .noise = 1, .run = "--radius 0.1 --clearance 0.3 --ignore-class 5"},
-       6,
-       {{"not_searched", 2}},
-       "b has not searched 2 places",
-       {"ignored"}},
-      {"another path",
-       {.things = kPoles},
-       {.things = kPoles, .noise = 1, .path = "beside.txt"},
-       6,
-       {{"not_searched", 2}},
-       "b has not searched 2 places",
-       {"path"}},
-      {"shorter path",
-       {.things = kPoles},
-       {.things = {}, .noise = 1, .path = "half.txt"},
-       6,
-       {{"gone", 1}, {"not_searched", 1}},
-       "b has not searched 1 place",
-       {"path"}},
-  };
-  return kPairs;
-}
-
-/// What differs from what is expected of a pair, in words; empty where nothing does.
-std::string faults_of(const Pair& pair, const Road& road) {
-  std::string faults;
-  const Outcome text = road.compare(pair, "");
-  if (text.exit_code != pair.exit_code) {
-    faults += "exit code " + std::to_string(text.exit_code) + "; ";
-  }
-  if (text.out.find(pair.words) == std::string::npos) faults += "without \"" + pair.words + "\"; ";
-  const json all = json::parse(road.compare(pair, "--json").out);
-  for (const char* list :
-       {"new", "new_parts", "new_small", "worse", "not_searched", "too_small", "gone", "same"}) {
-    const auto expected = pair.lists.find(list);
-    const std::size_t count = expected == pair.lists.end() ? 0 : expected->second;
-    if (all[list].size() != count) {
-      faults += std::string(list) + " has " + std::to_string(all[list].size()) + "; ";
-    }
-  }
-  std::set<std::string> reasons;
-  for (const json& place : all["not_searched"]) {
-    for (const json& reason : place["reasons"]) reasons.insert(reason.get<std::string>());
-  }
-  if (reasons != pair.reasons) faults += "reasons " + json(reasons).dump() + "; ";
-  if (all["holds"] != (pair.exit_code == 0)) faults += "holds; ";
-  const std::set<std::string> doubts = road.doubts_of_stations(pair.b);
-  if (doubts != pair.doubts) faults += "doubts " + json(doubts).dump() + "; ";
-  return faults.empty() ? "" : faults + "\n" + text.out + text.err;
-}
-
 }  // namespace
 
 TEST_CASE("two epochs are told apart as a person would") {
   const Road road;
-  for (const Pair& pair : pairs()) {
-    road.search("a", pair.a);
-    road.search("b", pair.b);
-    const std::string faults = faults_of(pair, road);
-    INFO(pair.name);
-    CHECK(faults == "");
-  }
+  road.check_pair("unchanged with other noise", {kPoles}, {kPoles}, 0, "same 2",
+                  "no new conflicts");
+  road.check_pair("gone", {kPoles}, {{pole(20)}}, 0, "gone 1, same 1",
+                  "1 conflict is gone if b was scanned there");
+  road.check_pair("one side is missing in a, the other in b",
+                  {.things = kPoles, .no_right = {0, 61}},
+                  {.things = {pole(20)}, .no_left = {0, 61}}, 6, "not_searched 1, same 1",
+                  "b has not searched 1 place", "one-side");
+  road.check_pair("one side is missing in both", {.things = kPoles, .no_left = {0, 61}},
+                  {.things = {pole(20)}, .no_left = {0, 61}}, 0, "gone 1, same 1",
+                  "no new conflicts");
+  road.check_pair("a side is missing on stretches that overlap",
+                  {.things = {pole(45)}, .no_left = {0, 28}}, {.things = {}, .no_left = {22, 61}},
+                  6, "not_searched 1", "b has not searched 1 place", "one-side");
+  road.check_pair("a side is missing on one stretch", {.things = {pole(45)}, .no_left = {0, 28}},
+                  {.things = {}, .no_left = {0, 28}}, 0, "gone 1", "no new conflicts");
+  road.check_pair("lower scan", {kPoles}, {.things = kPoles, .lower = 3.5}, 6, "not_searched 2",
+                  "b has not searched 2 places", "floats");
+  road.check_pair("withheld pole", {{kSmallPole}}, {.things = {{45, 45.05, 0.4, 1.0, 1.05, true}}},
+                  6, "not_searched 1", "b has not searched 1 place", "withheld");
+  road.check_pair("pole that is gone between scans with withheld points",
+                  {.things = {kSmallPole, {10, 10.05, 0.4, 1.0, 1.05, true}}},
+                  {.things = {{10, 10.05, 0.4, 1.0, 1.05, true}}}, 0, "gone 1",
+                  "the dates of the files do not show that b is the later scan");
+  road.check_pair("shorter scan", {kPoles}, {.things = kPoles, .scanned_to = 33}, 6,
+                  "not_searched 1, same 1", "b has not searched 1 place", "leaves-scan",
+                  "leaves-scan");
+  road.check_pair("hole in the ground", {kPoles}, {.things = {pole(20)}, .hole = {38, 52}}, 6,
+                  "not_searched 1, same 1", "its run warned of nothing-below", "nothing-below",
+                  "nothing-below");
+  road.check_pair("moved pole", {kPoles}, {{pole(20), pole(47)}}, 1, "gone 1, new 1, same 1",
+                  "1 new conflict");
+  road.check_pair("new pole in the box of a kerb that is gone", {kBent},
+                  {.things = {{23, 23.1, 0.9, 1.4}}}, 1, "gone 1, new 1", "1 new conflict");
+  road.check_pair("new pole that hangs together with an old kerb",
+                  {.things = {{20, 24, 0.35, 0.4}}},
+                  {.things = {{20, 24, 0.35, 0.4}, {23, 23.1, 0.4, 1.4}}}, 1, "new_parts 1, same 1",
+                  "1 part of another conflict is new");
+  road.check_pair("one falls into two", {.things = {{20, 24, 0.35, 0.4}}},
+                  {.things = {{20, 21.5, 0.35, 0.4}, {22.5, 24, 0.35, 0.4}}}, 0, "same 2",
+                  "no new conflicts");
+  road.check_pair("two become one", {.things = {{20, 21.5, 0.35, 0.4}, {22, 24, 0.35, 0.4}}},
+                  {.things = {{20, 24, 0.35, 0.4}}}, 0, "same 2", "no new conflicts");
+  road.check_pair("the same scan twice", {kPoles}, {.things = kPoles, .noise = 0}, 6, "same 2",
+                  "the same scan");
+  road.check_pair("older scan", {.things = kPoles, .year = 2024}, {.things = kPoles, .year = 2022},
+                  0, "same 2", "by the dates of the files b is older than a");
+  road.check_pair("newer scan", {.things = kPoles, .year = 2022}, {.things = kPoles, .year = 2024},
+                  0, "same 2", "no new conflicts");
+  road.check_pair("smaller radius", {kPoles}, {.things = kPoles, .run = "--radius 0.02"}, 6,
+                  "not_searched 2", "b has not searched 2 places", "coarse-scan, radius");
+  road.check_pair("ignored class", {kPoles},
+                  {.things = kPoles, .run = "--radius 0.1 --clearance 0.3 --ignore-class 5"}, 6,
+                  "not_searched 2", "b has not searched 2 places", "ignored");
+  road.check_pair("another path", {kPoles}, {.things = kPoles, .path = "beside.txt"}, 6,
+                  "not_searched 2", "b has not searched 2 places", "path");
+  road.check_pair("shorter path", {kPoles}, {.things = {}, .path = "half.txt"}, 6,
+                  "gone 1, not_searched 1", "b has not searched 1 place", "path");
 }
 
 TEST_CASE("what a search of a shorter scan warns of is in all that is made of its result") {
   const Road road;
-  const Pair pair{
-      "", {.things = kPoles}, {.things = {pole(20)}, .scanned_to = 33, .noise = 1}, 6, {}, ""};
-  road.search("a", pair.a);
-  road.search("b", pair.b);
-  const std::string trajectory = " --trajectory " + road.Work::path("path.txt");
-  const std::string result = road.Work::path("b.h5");
+  const Epoch a{kPoles}, b{.things = {pole(20)}, .scanned_to = 33};
+  road.search("a", a);
+  road.search("b", b);
+  const std::string trajectory = " --trajectory path.txt";
+  const std::string result = "b.h5";
   // The run collides, and still its result keeps the warning with its stretch.
-  const json info = json::parse(road.run("info --json " + result).out);
-  CHECK(info["verdict"] == "conflict");
-  CHECK(info["doubts"] == json{"leaves-scan"});
+  const json info = json_of(road.run("info --json " + result));
+  check_json(info, R"({"verdict": "conflict", "doubts": ["leaves-scan"]})");
   REQUIRE(info["warnings"].size() > 0);
   const json& leaves = info["warnings"][0];
-  CHECK(leaves["code"] == "leaves-scan");
   REQUIRE(leaves["stretches"].size() == 1);
   // From where the scan ends to the last pose, with the pole at 45 m
   CHECK(leaves["stretches"][0][0] > 60);
   CHECK(leaves["stretches"][0][0] < 70);
-  CHECK(leaves["stretches"][0][1] == 108);
-  const json listed = json::parse(road.run("conflicts --json " + result + trajectory).out);
+  check_json(leaves, R"({"code": "leaves-scan", "stretches": {"0": {"1": 108}}})");
+  const json listed = json_of(road.run("conflicts --json " + result + trajectory));
   CHECK(listed["warnings"] == info["warnings"]);
-  REQUIRE(
-      road.run("stations " + result + trajectory + " -o " + road.Work::path("s.csv")).exit_code ==
-      0);
-  CHECK_THAT(road.bytes("s.csv"), Contains(",doubts\n") && Contains(",leaves-scan\n"));
-  REQUIRE(road.run("report " + result + " --env " + road.Work::path("b_site.h5") + " --model " +
-                   road.Work::path("car.obj") + trajectory + " -o " + road.Work::path("page.html"))
-              .exit_code == 0);
-  CHECK_THAT(road.bytes("page.html"), Contains("leaves-scan"));
-  CHECK(road.compare(pair, "-o " + road.Work::path("c.html") + " -o " + road.Work::path("c.csv"))
-            .exit_code == 6);
-  CHECK_THAT(road.bytes("c.html"), Contains("not searched"));
-  CHECK_THAT(road.bytes("c.csv"), Contains("\nnot searched,2,,") && Contains("leaves-scan\n"));
+  road.succeed("stations " + result + trajectory + " -o s.csv");
+  check_says(road.bytes("s.csv"), ",doubts\n ... ,leaves-scan\n");
+  road.succeed("report " + result + " --env b_site.h5 --model car.obj" + trajectory +
+               " -o page.html");
+  check_says(road.bytes("page.html"), "leaves-scan");
+  check_outcome(road.compare(a, b, "-o c.html -o c.csv"), 6);
+  check_says(road.bytes("c.html"), "not searched");
+  check_says(road.bytes("c.csv"), "\nnot searched,2,, ... leaves-scan\n");
   // Where nothing collides, the verdict of the whole is undecided too.
-  road.search("b", {.things = {}, .scanned_to = 33});
-  CHECK(json::parse(road.run("info --json " + result).out)["verdict"] == "undecided");
+  road.search("b", {.things = {}, .scanned_to = 33, .noise = 0});
+  check_json(json_of(road.run("info --json " + result)), R"({"verdict": "undecided"})");
 }
 
 TEST_CASE("commands that read a result repeat what its run warned of") {
   const Road road;
   road.search("a", {.things = kPoles, .no_left = {0, 61}});
-  const std::string result = road.Work::path("a.h5");
-  const std::string path = result + " --trajectory " + road.Work::path("path.txt");
+  const std::string result = "a.h5";
+  const std::string path = result + " --trajectory path.txt";
   const std::string words = "nothing was scanned on the left of the model";
-  const std::string searched =
-      " --env " + road.Work::path("a_site.h5") + " --model " + road.Work::path("car.obj");
+  const std::string searched = " --env a_site.h5 --model car.obj";
   const std::string shift = "shift " + path + searched;
   for (const std::string& command :
-       {"conflicts " + path, "stations " + path + " -o " + road.Work::path("s.csv"),
-        "export " + result + " -o " + road.Work::path("out.csv"), shift,
-        "compare " + result + " " + result}) {
+       {"conflicts " + path, "stations " + path + " -o s.csv", "export " + result + " -o out.csv",
+        shift, "compare " + result + " " + result}) {
     CAPTURE(command);
-    CHECK_THAT(road.run(command).err, Contains(words));
+    check_says(road.run(command).err, words);
   }
-  const json table = json::parse(road.run(shift + " --json").out);
-  const json info = json::parse(road.run("info --json " + result).out);
+  const json table = json_of(road.run(shift + " --json"));
+  const json info = json_of(road.run("info --json " + result));
   CHECK(table["warnings"] == info["warnings"]);
   REQUIRE(info["warnings"].size() > 0);
-  CHECK(info["warnings"][0]["code"] == "one-side");
-  CHECK(info["warnings"][0]["numbers"]["side"] == 1);
+  check_json(info, R"({"warnings": {"0": {"code": "one-side", "numbers": {"side": 1}}}})");
 }
 
 TEST_CASE("a run notes few points that the store left out as withheld") {
   const Road road;
   road.search("a", {.things = {kSmallPole, {10, 10.05, 0.4, 1.0, 1.05, true}}});
-  CHECK_THAT(road.run("run --env " + road.Work::path("a_site.h5") + " --model " +
-                      road.Work::path("car.obj") + " --trajectory " + road.Work::path("path.txt") +
-                      " --radius 0.1 -o " + road.Work::path("again.h5"))
-                 .err,
-             Contains("points of the scans are not searched, because they have the flag"));
-  const json info = json::parse(road.run("info --json " + road.Work::path("a.h5")).out);
+  check_says(
+      road.run("run --env a_site.h5 --model car.obj --trajectory path.txt --radius 0.1 -o again.h5")
+          .err,
+      "points of the scans are not searched, because they have the flag");
+  const json info = json_of(road.run("info --json a.h5"));
   CHECK(info["withheld_points"] > 20);
 }
 
@@ -439,9 +306,8 @@ TEST_CASE("compare --conflicts reads a model as run did") {
   const Road road;
   const Epoch epoch{.things = kPoles, .run = "--radius 0.1 --model-above 0.5"};
   road.search("a", epoch);
-  road.search("b", {.things = kPoles, .noise = 1, .run = epoch.run});
-  const Pair pair{"", epoch, epoch, 0, {}, ""};
-  const std::string model = "--model " + road.Work::path("car.obj");
-  CHECK(road.compare(pair, model).exit_code == 3);
-  CHECK(road.compare(pair, model + " --model-above 0.5").exit_code == 0);
+  road.search("b", {.things = kPoles, .run = epoch.run});
+  const std::string model = "--model car.obj";
+  check_outcome(road.compare(epoch, epoch, model), 3);
+  check_outcome(road.compare(epoch, epoch, model + " --model-above 0.5"), 0);
 }

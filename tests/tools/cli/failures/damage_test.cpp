@@ -7,7 +7,6 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
@@ -27,36 +26,35 @@ std::string flipped(std::string bytes, std::size_t at) {
 
 TEST_CASE("a run on a damaged store is refused or has the same answer") {
   const Work work{Hall::small()};
-  const std::string store = bytes_of(work.hall.path("site.h5"));
+  const std::string store = work.bytes("hall/site.h5");
   const std::map<std::string, std::string> options{
       {"sweep", "--first-pose --force --engine sweep"},
       {"kdtree", "--first-pose --force --engine kdtree"}};
   std::map<std::string, std::string> expected;
   for (const auto& [engine, chosen] : options) {
-    REQUIRE(work.run_hall(work.hall / "site.h5", "expected.h5", chosen).exit_code == 0);
+    require_success(work.run_hall("hall/site.h5", "expected.h5", chosen));
     REQUIRE(ResultReader(work.folder / "expected.h5").collisions() > 50);
     expected[engine] = work.bytes("expected.h5");
   }
   std::map<std::string, std::size_t> refused;
   for (std::size_t i = 0; i < kTries; ++i) {
     const std::size_t at = i * (store.size() / kTries) + i % (store.size() / kTries);
-    put_bytes(work.folder / "bad.h5", flipped(store, at));
-    const Outcome found = work.run("verify " + work.path("bad.h5"));
+    work.put("bad.h5", flipped(store, at));
+    const Outcome found = work.run("verify bad.h5");
     if (found.exit_code != 0) {
       INFO("byte " << at);
-      CHECK(found.exit_code == 1);
-      CHECK_THAT(found.out, Contains("bad.h5: ") && Contains("damaged"));
+      check_outcome(found, 1, kAnything, "bad.h5:  ... damaged");
     }
     for (const auto& [engine, chosen] : options) {
       INFO(engine << ", byte " << at);
-      const Outcome run = work.run_hall(work.path("bad.h5"), "out.h5", chosen);
+      const Outcome run = work.run_hall("bad.h5", "out.h5", chosen);
       if (run.exit_code == 0) {
-        CHECK((work.bytes("out.h5") == expected[engine]));
+        check_same(work.bytes("out.h5"), expected[engine]);
       } else {
         ++refused[engine];
-        CHECK(run.exit_code == 3);
-        CHECK(found.exit_code == 1);
-        CHECK_THAT(run.err, Contains("bad.h5"));
+        check_outcome(run, 3);
+        check_outcome(found, 1);
+        check_says(run.err, "bad.h5");
       }
     }
   }
@@ -66,22 +64,20 @@ TEST_CASE("a run on a damaged store is refused or has the same answer") {
 
 TEST_CASE("a damaged result is not exported as another one") {
   const Work work{Hall::small()};
-  REQUIRE(work.run_hall(work.hall / "site.h5", "good.h5", "--first-pose").exit_code == 0);
-  REQUIRE(work.run("export " + work.path("good.h5") + " -o " + work.path("good.csv")).exit_code ==
-          0);
+  require_success(work.run_hall("hall/site.h5", "good.h5", "--first-pose"));
+  work.succeed("export good.h5 -o good.csv");
   const std::string result = work.bytes("good.h5"), expected = work.bytes("good.csv");
   for (std::size_t i = 0; i < kTries; ++i) {
     const std::size_t at = i * (result.size() / kTries) + i % (result.size() / kTries);
-    put_bytes(work.folder / "bad.h5", flipped(result, at));
+    work.put("bad.h5", flipped(result, at));
     INFO("byte " << at);
-    const Outcome found = work.run("verify " + work.path("bad.h5"));
-    const Outcome made =
-        work.run("export " + work.path("bad.h5") + " --force -o " + work.path("bad.csv"));
+    const Outcome found = work.run("verify bad.h5");
+    const Outcome made = work.run("export bad.h5 --force -o bad.csv");
     CHECK((made.exit_code == 0 || made.exit_code == 3));
     if (made.exit_code == 0) {
-      CHECK((work.bytes("bad.csv") == expected));
+      check_same(work.bytes("bad.csv"), expected);
     } else {
-      CHECK(found.exit_code == 1);
+      check_outcome(found, 1);
     }
   }
 }

@@ -8,7 +8,6 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
@@ -37,8 +36,7 @@ const Hall& hall_of_small_cells() {
   return hall;
 }
 
-struct Place {
-  Outcome run(const std::string& arguments) const { return run_program(folder, arguments); }
+struct Place : Workplace {
   /// The command line of a run in the hall in which every cell leaves some bytes in the journal.
   std::string search(const std::string& engine, const fs::path& output) const {
     return "run --env " + hall / "small_cells.h5" + " --model " + hall / "model.ply" +
@@ -48,14 +46,13 @@ struct Place {
   }
 
   const Hall& hall = hall_of_small_cells();
-  ScratchFolder folder;
 };
 
 void check_failed(const Outcome& outcome, const SmallDisk& disk) {
   INFO(outcome.err);
   REQUIRE(outcome.exit_code == 4);
   CHECK(outcome.out.empty());
-  CHECK_THAT(outcome.err, Contains(disk.path().string()));
+  check_says(outcome.err, disk.path().string());
 }
 
 }  // namespace
@@ -65,7 +62,7 @@ TEST_CASE("a run on a disk that is full goes on once there is room") {
   const Place place;
   const std::string engine = GENERATE("sweep", "grid", "kdtree");
   CAPTURE(engine);
-  REQUIRE(place.run(place.search(engine, place.folder / "expected.h5")).exit_code == 0);
+  require_success(place.run(place.search(engine, place.folder / "expected.h5")));
   const std::string expected = bytes_of(place.folder / "expected.h5");
   bool done = false;
   int with_journal = 0, without_room_for_the_result = 0;
@@ -87,10 +84,8 @@ TEST_CASE("a run on a disk that is full goes on once there is room") {
       check_failed(place.run(place.search(engine, output) + " --resume"), disk);  // still full
     }
     disk.resize(kRoom);
-    const Outcome resumed = place.run(place.search(engine, output) + " --resume");
-    INFO(resumed.err);
-    REQUIRE(resumed.exit_code == 0);
-    CHECK((bytes_of(output) == expected));
+    require_success(place.run(place.search(engine, output) + " --resume"));
+    check_same(bytes_of(output), expected);
     CHECK(disk.files() == Names{"out.h5"});
   }
   CHECK(with_journal > 0);
@@ -100,7 +95,7 @@ TEST_CASE("a run on a disk that is full goes on once there is room") {
 TEST_CASE("a conversion and an export on a disk that is full leave nothing, and work with room") {
   if (!disks_can_be_made()) return;
   const Place place;
-  REQUIRE(place.run(place.search("sweep", place.folder / "made.h5")).exit_code == 0);
+  require_success(place.run(place.search("sweep", place.folder / "made.h5")));
   const std::string made = quoted(place.folder / "made.h5");
   const std::vector<std::pair<std::string, std::string>> commands{
       {"convert " + place.hall / "environment.las", "out.h5"},
@@ -109,7 +104,7 @@ TEST_CASE("a conversion and an export on a disk that is full leave nothing, and 
       {"export " + made, "out.ply"}};
   for (const auto& [command, name] : commands) {
     const std::string to_expected = command + " -o " + quoted(place.folder / ("expected" + name));
-    REQUIRE(place.run(to_expected).exit_code == 0);
+    require_success(place.run(to_expected));
     const std::string expected = bytes_of(place.folder / ("expected" + name));
     int failed = 0;
     bool done = false;
@@ -124,8 +119,8 @@ TEST_CASE("a conversion and an export on a disk that is full leave nothing, and 
       check_failed(outcome, disk);
       CHECK(disk.files().empty());
       disk.resize(kRoom);
-      REQUIRE(place.run(to_disk).exit_code == 0);
-      CHECK((bytes_of(disk / name) == expected));
+      require_success(place.run(to_disk));
+      check_same(bytes_of(disk / name), expected);
     }
     CHECK(failed > 2);
   }
@@ -135,7 +130,7 @@ TEST_CASE("a read-only disk: inputs are read from it, outputs are refused at onc
   if (!disks_can_be_made()) return;
   const Place place;
   SmallDisk disk(kRoom);
-  REQUIRE(place.run(place.search("sweep", disk / "made.h5")).exit_code == 0);
+  require_success(place.run(place.search("sweep", disk / "made.h5")));
   for (const char* name : {"environment.las", "model.ply", "trajectory.txt", "site.h5"}) {
     fs::copy_file(place.hall.path(name), disk / name);
   }
@@ -153,15 +148,14 @@ TEST_CASE("a read-only disk: inputs are read from it, outputs are refused at onc
   disk.make_read_only(kRoom);
   const std::string search = "run --env " + path("site.h5") + " --model " + path("model.ply") +
                              " --trajectory " + path("trajectory.txt") + " --radius 0.1 -o ";
-  CHECK(place.run("convert " + path("environment.las") + " -o " + quoted(place.folder / "a.h5"))
-            .exit_code == 0);
-  CHECK(place.run(search + quoted(place.folder / "b.h5")).exit_code == 0);
-  CHECK(
-      place.run("export " + path("made.h5") + " -o " + quoted(place.folder / "c.csv")).exit_code ==
-      0);
+  place.check({
+      {"convert " + path("environment.las") + " -o " + quoted(place.folder / "a.h5"), 0},
+      {search + quoted(place.folder / "b.h5"), 0},
+      {"export " + path("made.h5") + " -o " + quoted(place.folder / "c.csv"), 0},
+  });
   for (const std::string command : {"verify ", "info "}) {
     for (const std::string name : {"site.h5", "made.h5", "out.h5.journal"}) {
-      CHECK(place.run(command + path(name)).exit_code == 0);
+      check_outcome(place.run(command + path(name)), 0);
     }
   }
   for (const std::string options : {"", " --resume", " --force"}) {
@@ -171,7 +165,7 @@ TEST_CASE("a read-only disk: inputs are read from it, outputs are refused at onc
   check_failed(place.run("convert " + path("environment.las") + " -o " + path("new.h5")), disk);
   check_failed(place.run("export " + path("made.h5") + " -o " + path("new.csv")), disk);
   CHECK(disk.files() == before);
-  CHECK((bytes_of(disk / "made.h5") == bytes));
+  check_same(bytes_of(disk / "made.h5"), bytes);
 }
 
 TEST_CASE("check names the folder as the place for another disk") {
@@ -183,5 +177,5 @@ TEST_CASE("check names the folder as the place for another disk") {
                 " --trajectory " + place.hall / "trajectory.txt" + " --radius 0.1 -o " +
                 quoted(disk / "site"));
   check_failed(full, disk);
-  CHECK_THAT(full.err, Contains("give -o a folder on a disk with more"));
+  check_says(full.err, "give -o a folder on a disk with more");
 }

@@ -9,7 +9,6 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
@@ -102,7 +101,7 @@ TEST_CASE("every call that fails in turn ends with exit code 4 and without an ou
   const Site site;
   write_text(site);
   for (const Command& command : commands(site)) {
-    REQUIRE(run_program(site.folder, command.arguments).exit_code == 0);
+    require_success(run_program(site.folder, command.arguments));
     const std::string expected = bytes_of(site.file(command.output));
     fs::remove(site.file(command.output));
     const std::size_t files = files_in(site.folder / "files");
@@ -111,17 +110,17 @@ TEST_CASE("every call that fails in turn ends with exit code 4 and without an ou
       bool went_wrong = false;
       const Outcome outcome = site.run(command.arguments, "fail", call, went_wrong);
       if (!went_wrong) {
-        CHECK(outcome.exit_code == 0);
+        check_outcome(outcome, 0);
         break;
       }
       INFO(command.name << ", call " << call << ": " << outcome.err);
       if (command.reads_again && outcome.exit_code == 0) {
-        CHECK((bytes_of(site.file(command.output)) == expected));
+        check_same(bytes_of(site.file(command.output)), expected);
         fs::remove(site.file(command.output));
         continue;
       }
       REQUIRE(outcome.exit_code == 4);
-      CHECK_THAT(outcome.err, Contains((site.folder / "files").string()));
+      check_says(outcome.err, (site.folder / "files").string());
       CHECK(outcome.out.empty());
       // A failed fsync of the folder is reported although the output already has its name.
       fs::remove(site.file(command.output));
@@ -135,10 +134,7 @@ TEST_CASE("every call that fails in turn ends with exit code 4 and without an ou
 TEST_CASE("a command that gets no threads says so, or does without them") {
   const Site site;
   write_text(site);
-  std::string poses;
-  for (int i = 0; i < 40'000; ++i) {
-    poses += "1 0 0 " + std::to_string(i * 0.01) + " 0 1 0 0 0 0 1 0\n";
-  }
+  std::string poses = path_along_x(40'000, 0.01);
   put_bytes(site.file("long.txt"), poses);
   put_bytes(site.file("vehicle.json"),
             R"({"bodies": [{"name": "a", "model": "model.ply", "pivots": [0.1, -0.1]}]})");
@@ -174,7 +170,7 @@ TEST_CASE("a command that gets no threads says so, or does without them") {
       REQUIRE((outcome.exit_code == 0 || outcome.exit_code == 4));
       if (outcome.exit_code == 0) continue;
       ++refused;
-      CHECK_THAT(outcome.err, Contains("threads cannot be started"));
+      check_says(outcome.err, "threads cannot be started");
     }
   }
   CHECK(refused > lines.size() / 2);
@@ -186,15 +182,15 @@ TEST_CASE("short and interrupted calls change nothing") {
   const std::string kind = GENERATE("short", "interrupt");
   for (const Command& command : commands(site)) {
     INFO(kind << ", " << command.name);
-    REQUIRE(run_program(site.folder, command.arguments).exit_code == 0);
+    require_success(run_program(site.folder, command.arguments));
     const std::string expected = bytes_of(site.file(command.output));
     fs::remove(site.file(command.output));
     bool went_wrong = false;
     const Outcome outcome = site.run(command.arguments, kind.c_str(), 0, went_wrong);
     INFO(outcome.err);
     CHECK(went_wrong);
-    REQUIRE(outcome.exit_code == 0);
-    CHECK((bytes_of(site.file(command.output)) == expected));
+    require_success(outcome);
+    check_same(bytes_of(site.file(command.output)), expected);
   }
 }
 
@@ -203,7 +199,7 @@ TEST_CASE("an input that shrinks while it is read is noticed") {
   write_text(site);
   const std::string made = bytes_of(site.file("made.h5"));
   for (const Command& command : commands(site)) {
-    REQUIRE(run_program(site.folder, command.arguments).exit_code == 0);
+    require_success(run_program(site.folder, command.arguments));
     const std::string expected = bytes_of(site.file(command.output));
     fs::remove(site.file(command.output));
     int call = 1;
@@ -214,12 +210,12 @@ TEST_CASE("an input that shrinks while it is read is noticed") {
       const bool finished = outcome.exit_code == 0;  // what was cut off was read before
       CHECK(fs::exists(site.file(command.output)) == finished);
       if (finished) {
-        CHECK((bytes_of(site.file(command.output)) == expected));
+        check_same(bytes_of(site.file(command.output)), expected);
         fs::remove(site.file(command.output));
       } else {
         // Exit code 3 occurs where HDF5 no longer finds its metadata.
         CHECK((outcome.exit_code == 4 || outcome.exit_code == 3));
-        CHECK_THAT(outcome.err, Contains((site.folder / "files").string()));
+        check_says(outcome.err, (site.folder / "files").string());
       }
       for (const char* name : {"environment.las", "model.ply", "trajectory.txt", "site.h5"}) {
         site.restore(name);

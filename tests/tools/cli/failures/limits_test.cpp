@@ -10,27 +10,19 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 using nlohmann::json;
 
 namespace {
 
-struct Place {
-  Outcome run(const std::string& arguments) const { return run_program(folder, arguments); }
-  std::string path(const std::string& name) const { return quoted(folder / name); }
+struct Place : Workplace {
   /// Runs a search with a model of one point at its origin and returns the report.
   json search(const std::string& environment, const std::string& trajectory,
               const std::string& options, const std::string& output) const {
-    put_bytes(folder / "model.xyz", "0 0 0\n");
-    const Outcome outcome =
-        run("run --env " + path(environment) + " --model " + path("model.xyz") + " --trajectory " +
-            path(trajectory) + " --json -o " + path(output) + " " + options);
-    INFO(outcome.err);
-    REQUIRE(outcome.exit_code == 0);
-    return json::parse(outcome.out);
+    put("model.xyz", "0 0 0\n");
+    return json_of(
+        require_success(run("run --env " + environment + " --model model.xyz --trajectory " +
+                            trajectory + " --json -o " + output + " " + options)));
   }
-
-  ScratchFolder folder;
 };
 
 const std::string kPose = "1 0 0 0 0 1 0 0 0 0 1 0\n";
@@ -40,40 +32,32 @@ const std::string kPose = "1 0 0 0 0 1 0 0 0 0 1 0\n";
 TEST_CASE("names with blanks, quotes and UTF-8 are names like others") {
   const Place place;
   const std::string scan = "Prüf strecke \xE2\x84\xA6 \"1\" $HOME;.xyz";
-  put_bytes(place.folder / scan, "0 0 0\n5 5 5\n");
-  put_bytes(place.folder / "der weg \xC3\xA4.txt", kPose);
-  REQUIRE(
-      place.run("convert " + place.path(scan) + " -o " + place.path("s \xC3\xBC.h5")).exit_code ==
-      0);
-  const json report =
-      place.search("s \xC3\xBC.h5", "der weg \xC3\xA4.txt", "--radius 1", "aus gabe \xC3\x9F.h5");
-  CHECK(report["colliding_points"] == 1);
-  REQUIRE(place
-              .run("export " + place.path("aus gabe \xC3\x9F.h5") + " -o " +
-                   place.path("-\xC3\x9F x.csv"))
-              .exit_code == 0);
-  CHECK(place.run("verify " + place.path("s \xC3\xBC.h5")).exit_code == 0);
-  CHECK_THAT(place.run("info " + place.path("s \xC3\xBC.h5")).out, Contains(scan));
+  place.put(scan, "0 0 0\n5 5 5\n");
+  place.put("der weg \xC3\xA4.txt", kPose);
+  place.succeed("convert " + scan + " -o " + place.path("s \xC3\xBC.h5"));
+  check_json(
+      place.search("s \xC3\xBC.h5", "der weg \xC3\xA4.txt", "--radius 1", "aus gabe \xC3\x9F.h5"),
+      R"({"colliding_points": 1})");
+  place.succeed("export " + place.path("aus gabe \xC3\x9F.h5") + " -o " +
+                place.path("-\xC3\x9F x.csv"));
+  check_outcome(place.run("verify " + place.path("s \xC3\xBC.h5")), 0);
+  check_says(place.run("info " + place.path("s \xC3\xBC.h5")).out, scan);
 }
 
 TEST_CASE("no points and no poses have an empty answer") {
   const Place place;
   write_las(place.folder / "none.las", {});
-  put_bytes(place.folder / "scan.xyz", "0 0 0\n");
-  put_bytes(place.folder / "none.txt", "");
-  put_bytes(place.folder / "path.txt", kPose);
-  REQUIRE(
-      place.run("convert " + place.path("none.las") + " -o " + place.path("none.h5")).exit_code ==
-      0);
-  REQUIRE(
-      place.run("convert " + place.path("scan.xyz") + " -o " + place.path("scan.h5")).exit_code ==
-      0);
+  place.put("scan.xyz", "0 0 0\n");
+  place.put("none.txt", "");
+  place.put("path.txt", kPose);
+  place.succeed("convert none.las -o none.h5");
+  place.succeed("convert scan.xyz -o scan.h5");
   const std::string engine = GENERATE("sweep", "grid", "kdtree");
   const std::string options = "--radius 1 --engine " + engine;
   CHECK(place.search("none.h5", "path.txt", options, "a.h5")["colliding_points"] == 0);
   CHECK(place.search("scan.h5", "none.txt", options, "b.h5")["colliding_points"] == 0);
-  CHECK(place.run("verify " + place.path("a.h5")).exit_code == 0);
-  CHECK(place.run("export " + place.path("b.h5") + " -o " + place.path("b.las")).exit_code == 0);
+  check_outcome(place.run("verify a.h5"), 0);
+  check_outcome(place.run("export b.h5 -o b.las"), 0);
 }
 
 TEST_CASE("more than 2^16 cells, and more than 10^6 poses") {
@@ -86,17 +70,15 @@ TEST_CASE("more than 2^16 cells, and more than 10^6 poses") {
                  static_cast<std::int32_t>(i / 2000) * 1000, 0};
   }
   write_las(place.folder / "a.las", points, {{0.001, 0.001, 0.001}, {0, 0, 0}});
-  REQUIRE(place.run("convert " + place.path("a.las") + " --cell-points 64 -o " + place.path("a.h5"))
-              .exit_code == 0);
+  place.succeed("convert a.las --cell-points 64 -o a.h5");
   // The path goes along the first row and back, millimetre by millimetre; its last pose is at the
   // last point.
   std::string path;
   for (std::size_t i = 0; i + 1 < kPoses; ++i) {
-    path += "1 0 0 " + std::to_string(static_cast<double>(i) * 0.001) + " 0 1 0 0 0 0 1 0\n";
+    path += pose_at(static_cast<double>(i) * 0.001);
   }
-  path += "1 0 0 " + std::to_string((kPoints - 1) % 2000) + " 0 1 0 " +
-          std::to_string((kPoints - 1) / 2000) + " 0 0 1 0\n";
-  put_bytes(place.folder / "path.txt", path);
+  path += pose_at((kPoints - 1) % 2000, (kPoints - 1) / 2000);
+  place.put("path.txt", path);
   const json report = place.search("a.h5", "path.txt", "--radius 0.0105 --first-pose", "out.h5");
   CHECK(report["cells_total"] > 65'536);
   CHECK(report["poses"] == kPoses);
@@ -118,15 +100,12 @@ TEST_CASE("sources above 2^32 come back from a result and its exports") {
   for (std::uint64_t& source : clearances.source) source += std::uint64_t{3} << 32;
   write_result(place.folder / "big.h5", header, rows, 1000, clearances);
   CHECK((read_rows(ResultReader(place.folder / "big.h5")).source == rows.source));
-  const std::string command = "export " + place.path("big.h5") + " -o ";
-  REQUIRE(place.run(command + place.path("big.csv")).exit_code == 0);
-  CHECK_THAT(bytes_of(place.folder / "big.csv"),
-             Contains("\n" + std::to_string(rows.source[3]) + ","));
-  REQUIRE(place.run(command + place.path("far.csv") + " --what clearance").exit_code == 0);
-  CHECK_THAT(bytes_of(place.folder / "far.csv"),
-             Contains("\n" + std::to_string(clearances.source[9]) + ","));
-  const Outcome same = place.run("compare " + place.path("big.h5") + " " + place.path("big.h5"));
-  CHECK(same.exit_code == 0);
+  const std::string command = "export big.h5 -o ";
+  place.succeed(command + "big.csv");
+  check_says(place.bytes("big.csv"), "\n" + std::to_string(rows.source[3]) + ",");
+  place.succeed(command + "far.csv --what clearance");
+  check_says(place.bytes("far.csv"), "\n" + std::to_string(clearances.source[9]) + ",");
+  check_outcome(place.run("compare big.h5 big.h5"), 0);
 }
 
 /// Writes a store of one cell: points along x, metre by metre, whose sources begin at
@@ -164,14 +143,14 @@ TEST_CASE("sources above 2^32 of a store come through a run, an export and a com
   constexpr std::uint64_t kFirst = (std::uint64_t{5} << 32) + 7;
   const Place place;
   write_line(place.folder / "line.h5", 50, kFirst);
-  put_bytes(place.folder / "path.txt", "1 0 0 20 0 1 0 0 0 0 1 0\n1 0 0 40 0 1 0 0 0 0 1 0\n");
-  CHECK(place.run("verify " + place.path("line.h5")).exit_code == 0);
-  const Outcome info = place.run("info --json " + place.path("line.h5"));
-  CHECK(json::parse(info.out)["non_finite_points"] == kFirst);
+  place.put("path.txt", "1 0 0 20 0 1 0 0 0 0 1 0\n1 0 0 40 0 1 0 0 0 0 1 0\n");
+  check_outcome(place.run("verify line.h5"), 0);
+  const Outcome info = place.run("info --json line.h5");
+  CHECK(json_of(info)["non_finite_points"] == kFirst);
   const std::string engine = GENERATE("sweep", "grid", "kdtree");
-  const json report =
-      place.search("line.h5", "path.txt", "--radius 1.5 --first-pose --engine " + engine, "out.h5");
-  CHECK(report["colliding_points"] == 6);
+  check_json(
+      place.search("line.h5", "path.txt", "--radius 1.5 --first-pose --engine " + engine, "out.h5"),
+      R"({"colliding_points": 6})");
   const ResultReader result(place.folder / "out.h5");
   CHECK(result.header().environment_points == kFirst + 50);
   const Collisions rows = read_rows(result);
@@ -179,11 +158,9 @@ TEST_CASE("sources above 2^32 of a store come through a run, an export and a com
   for (const std::uint64_t at : {19, 20, 21, 39, 40, 41}) expected.push_back(kFirst + at);
   CHECK(rows.source == expected);
   CHECK(rows.first_pose == std::vector<std::uint32_t>{0, 0, 0, 1, 1, 1});
-  CHECK(place.run("verify " + place.path("out.h5")).exit_code == 0);
-  REQUIRE(place.run("export " + place.path("out.h5") + " -o " + place.path("out.csv")).exit_code ==
-          0);
-  CHECK_THAT(bytes_of(place.folder / "out.csv"),
-             Contains("\n" + std::to_string(kFirst + 41) + ",41,0,0,1\n"));
+  check_outcome(place.run("verify out.h5"), 0);
+  place.succeed("export out.h5 -o out.csv");
+  check_says(place.bytes("out.csv"), "\n" + std::to_string(kFirst + 41) + ",41,0,0,1\n");
 }
 
 TEST_CASE("a model of 10^7 points is searched, or refused where memory does not do") {
@@ -199,23 +176,16 @@ TEST_CASE("a model of 10^7 points is searched, or refused where memory does not 
   std::vector<Quantum> above;
   for (std::int32_t i = 0; i < 20'000; ++i) above.push_back({i % 3001, i * 7 % 3001, i % 23});
   write_las(place.folder / "above.las", above, millimetres);
-  put_bytes(place.folder / "pose.txt", kPose);
-  REQUIRE(
-      place.run("convert " + place.path("above.las") + " -o " + place.path("above.h5")).exit_code ==
-      0);
-  const std::string search = "run --env " + place.path("above.h5") + " --model " +
-                             place.path("model.las") + " --trajectory " + place.path("pose.txt") +
-                             " --device cpu --radius 0.0105 -o ";
-  const Outcome outcome = place.run(search + place.path("out.h5"));
-  INFO(outcome.err);
-  REQUIRE(outcome.exit_code == 0);
+  place.put("pose.txt", kPose);
+  place.succeed("convert above.las -o above.h5");
+  const std::string search =
+      "run --env above.h5 --model model.las --trajectory pose.txt --device cpu --radius 0.0105 -o ";
+  place.succeed(search + "out.h5");
   const Collisions rows = read_rows(ResultReader(place.folder / "out.h5"));
   std::vector<std::uint64_t> expected;
   for (std::uint64_t i = 0; i < above.size(); ++i) {
     if (above[i][2] <= 10) expected.push_back(i);
   }
   CHECK((rows.source == expected));
-  const Outcome refused = place.run(search + place.path("small.h5") + " --memory 200M");
-  CHECK(refused.exit_code == 4);
-  CHECK_THAT(refused.err, Contains("this search needs") && Contains("--memory"));
+  check_outcome(place.run(search + "small.h5 --memory 200M"), 4, "this search needs ... --memory");
 }

@@ -9,17 +9,14 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
 struct Hall {
   Hall() {
-    REQUIRE(
-        run("scene hall --points 5000 --model-points 200 --poses 50 -o " + path("")).exit_code ==
-        0);
-    REQUIRE(run("convert " + path("environment.las") + " -o " + path("site.h5")).exit_code == 0);
-    REQUIRE(run(query() + "-o " + path("expected.h5")).exit_code == 0);
+    require_success(run("scene hall --points 5000 --model-points 200 --poses 50 -o " + path("")));
+    require_success(run("convert " + path("environment.las") + " -o " + path("site.h5")));
+    require_success(run(query() + "-o " + path("expected.h5")));
     expected = bytes_of(folder / "expected.h5");
   }
 
@@ -48,20 +45,20 @@ struct Hall {
 TEST_CASE("closed standard descriptors do not become an output's") {
   const Hall hall;
   const auto out = hall.folder / "out.h5";
-  for (const char* closed : {"<&- 2>&-", "<&- >&- 2>&-", ">&- 2>&-", "2>&-"}) {
+  for (const std::string closed : {"<&- 2>&-", "<&- >&- 2>&-", ">&- 2>&-", "2>&-"}) {
     CAPTURE(closed);
     const bool prints = std::string_view(closed).find(">&- ") == std::string_view::npos;
-    for (const char* engine : {"kdtree", "sweep"}) {
+    for (const std::string engine : {"kdtree", "sweep"}) {
       CHECK(hall.shell("{} " + hall.query() + "--device cpu --force --engine " + engine + " -o " +
                        quoted(out) + " " + closed) == (prints ? 0 : 4));
-      CHECK((bytes_of(out) == hall.expected));
+      check_same(bytes_of(out), hall.expected);
       std::filesystem::remove(out);
     }
     const std::string scene = quoted(hall.folder / "again");
     CHECK(hall.shell("{} scene hall --points 5000 --model-points 200 --poses 50 --force -o " +
                      scene + " " + closed) == 0);
     for (const char* file : {"model.ply", "trajectory.txt", "environment.las"}) {
-      CHECK((bytes_of(hall.folder / "again" / file) == bytes_of(hall.folder / file)));
+      check_same(bytes_of(hall.folder / "again" / file), bytes_of(hall.folder / file));
     }
   }
 }
@@ -69,18 +66,18 @@ TEST_CASE("closed standard descriptors do not become an output's") {
 TEST_CASE("what cannot be printed is an error, and the output is whole") {
   const Hall hall;
   const auto out = hall.folder / "out.h5";
-  for (const char* nowhere : {">&-", ">/dev/full", "| true"}) {
+  for (const std::string nowhere : {">&-", ">/dev/full", "| true"}) {
     CAPTURE(nowhere);
     hall.shell("({} " + hall.query() + "--force --json -o " + quoted(out) + "; echo $? >" +
                hall.path("code.txt") + ") " + nowhere);
-    CHECK(bytes_of(hall.folder / "code.txt") == "4\n");
-    CHECK_THAT(hall.messages(), Contains("standard output: cannot write"));
-    CHECK((bytes_of(out) == hall.expected));
+    check_same(bytes_of(hall.folder / "code.txt"), "4\n");
+    check_says(hall.messages(), "standard output: cannot write");
+    check_same(bytes_of(out), hall.expected);
   }
   put_bytes(hall.folder / "campaign.json",
             R"({"name": "a", "environments": {"h": "site.h5"}, "vehicles": {"m": "model.ply"},)"
             R"("routes": {"r": "trajectory.txt"}, "radii": [0.1]})");
-  REQUIRE(hall.run(hall.query() + "--first-pose -o " + hall.path("first.h5")).exit_code == 0);
+  require_success(hall.run(hall.query() + "--first-pose -o " + hall.path("first.h5")));
   const std::string made = hall.path("first.h5"), site = hall.path("site.h5");
   const std::string path = hall.path("trajectory.txt"), model = hall.path("model.ply");
   const std::string campaign = hall.path("campaign");
@@ -113,7 +110,7 @@ TEST_CASE("what cannot be printed is an error, and the output is whole") {
         "campaign plan " + hall.path("campaign.json") + " -o " + campaign}) {
     CAPTURE(line);
     CHECK(hall.shell("{} " + line + " >/dev/full") == 4);
-    CHECK_THAT(hall.messages(), Contains("standard output: cannot write"));
+    check_says(hall.messages(), "standard output: cannot write");
   }
   CHECK(hall.shell("{} scene hall --environment - --points 500 --model-points 20 --poses 5 -o " +
                    quoted(hall.folder / "piped") + " >&-") == 4);
@@ -129,9 +126,7 @@ TEST_CASE("a pipe instead of a store, a result or a journal is refused at once")
         "compare " + pipe + " " + hall.path("expected.h5"),
         hall.query("pipe") + "-o " + hall.path("x.h5")}) {
     CAPTURE(arguments);
-    const Outcome outcome = hall.run(arguments);
-    CHECK(outcome.exit_code == 4);
-    CHECK_THAT(outcome.err, Contains("pipe: is a directory, pipe or device"));
+    check_outcome(hall.run(arguments), 4, "pipe: is a directory, pipe or device");
   }
 }
 
@@ -141,10 +136,9 @@ TEST_CASE("a file with another name in the place of a temporary file or journal 
     CAPTURE(place);
     put_bytes(hall.folder / "kept.txt", "");
     std::filesystem::create_hard_link(hall.folder / "kept.txt", hall.folder / place);
-    for (const char* options : {"", "--force ", "--resume "}) {
-      const Outcome outcome = hall.run(hall.query() + options + "-o " + hall.path("out.h5"));
-      CHECK(outcome.exit_code == 2);
-      CHECK_THAT(outcome.err, Contains("move it away"));
+    for (const std::string options : {"", "--force ", "--resume "}) {
+      check_outcome(hall.run(hall.query() + options + "-o " + hall.path("out.h5")), 2,
+                    "move it away");
     }
     CHECK(std::filesystem::exists(hall.folder / place));
     CHECK(std::filesystem::is_empty(hall.folder / "kept.txt"));
@@ -155,13 +149,12 @@ TEST_CASE("a file with another name in the place of a temporary file or journal 
 #ifndef CLEARWAY_SANITIZED  // a sanitizer needs more address space
 TEST_CASE("more threads than there may be are refused") {
   const Hall hall;
-  for (const char* engine : {"kdtree", "sweep"}) {
+  for (const std::string engine : {"kdtree", "sweep"}) {
     CAPTURE(engine);
     CHECK(hall.shell("ulimit -v 3000000; {} " + hall.query() +
-                     "--device cpu --threads 1024 "
-                     "--memory 8G --engine " +
-                     engine + " -o " + hall.path("out.h5")) == 4);
-    CHECK_THAT(hall.messages(), Contains("1024 threads cannot be started"));
+                     "--device cpu --threads 1024 --memory 8G --engine " + engine + " -o " +
+                     hall.path("out.h5")) == 4);
+    check_says(hall.messages(), "1024 threads cannot be started");
     CHECK_FALSE(std::filesystem::exists(hall.folder / "out.h5.partial"));
   }
 }

@@ -21,7 +21,7 @@ TEST_CASE("what is no journal is left alone") {
   for (const char* options : {"", "--resume", "--force"}) {
     check_refused(work.run(options), 2, "move it away");
   }
-  CHECK(bytes_of(work.journal) == "a diary");
+  check_same(bytes_of(work.journal), "a diary");
   std::filesystem::remove(work.journal);
   std::filesystem::create_symlink(work.folder / "elsewhere", work.journal);
   for (const char* options : {"", "--resume", "--force"}) {
@@ -37,7 +37,7 @@ TEST_CASE("a flipped byte of a journal is detected or does no harm") {
   put_bytes(work.journal, whole);
   REQUIRE(run_program(work.folder, "verify " + quoted(work.journal)).exit_code <= 1);
   std::filesystem::remove(work.journal);
-  REQUIRE(work.run("").exit_code == 0);
+  require_success(work.run(""));
   const std::string expected = bytes_of(work.output);
   for (std::size_t at = 0; at < whole.size(); at += 7) {
     std::string bytes = whole;
@@ -52,7 +52,7 @@ TEST_CASE("a flipped byte of a journal is detected or does no harm") {
     const Outcome outcome = work.run("--resume");
     if (outcome.exit_code != 2) CHECK(outcome.exit_code == (verified.exit_code == 0 ? 0 : 3));
     if (outcome.exit_code == 0) {
-      CHECK((bytes_of(work.output) == expected));
+      check_same(bytes_of(work.output), expected);
     } else {
       CHECK((outcome.exit_code == 2 || outcome.exit_code == 3));
       CHECK_FALSE(std::filesystem::exists(work.output));
@@ -70,27 +70,20 @@ TEST_CASE("verify tells a torn tail, which resuming cuts off, from damage") {
     return run_program(work.folder, "verify " + quoted(work.journal));
   };
   const Outcome sound = verify(whole);
-  CHECK(sound.exit_code == 0);
+  check_outcome(sound, 0);
   CHECK(sound.out == work.journal.string() + ": sound\n");
-  const Outcome empty = verify(whole.substr(0, 5));
-  CHECK(empty.exit_code == 0);
-  CHECK_THAT(empty.out, Contains("it ends before its first record"));
-  CHECK(verify("").exit_code == 0);
+  check_outcome(verify(whole.substr(0, 5)), 0, kAnything, "it ends before its first record");
+  check_outcome(verify(""), 0);
 
   std::string bytes = whole;
   bytes[100] = static_cast<char>(bytes[100] ^ 1);
   const Outcome damaged = verify(bytes);
-  CHECK(damaged.exit_code == 1);
-  CHECK_THAT(damaged.out, Contains("record 0 at byte 16 is damaged") && Contains(": damaged\n"));
+  check_outcome(damaged, 1, kAnything, "record 0 at byte 16 is damaged ... : damaged\n");
   check_refused(work.run("--resume"), 3, "record 0 at byte 16 is damaged");
 
   const Outcome torn = verify(whole.substr(0, whole.size() - 3));
-  CHECK(torn.exit_code == 0);
-  CHECK_THAT(torn.out, Contains(" is torn, with ") && Contains("--resume cuts that off") &&
-                           Contains(": sound\n"));
-  const Outcome resumed = work.run("--resume");
-  CHECK(resumed.exit_code == 0);
-  CHECK_THAT(resumed.err, Contains(" is torn, with ") && Contains("resumes with"));
+  check_outcome(torn, 0, kAnything, " is torn, with  ... --resume cuts that off ... : sound\n");
+  check_outcome(work.run("--resume"), 0, " is torn, with  ... resumes with");
 }
 
 TEST_CASE("two runs of one output: the second is refused and leaves the first's journal alone") {
@@ -109,5 +102,5 @@ TEST_CASE("options of the journal that make no sense are refused") {
   for (const char* seconds : {"-1", "nan", "x", "4000"}) {
     check_refused(work.run(std::string("--journal-interval ") + seconds), 2, "--journal-interval");
   }
-  CHECK(work.run("--journal-interval 0").exit_code == 0);
+  check_outcome(work.run("--journal-interval 0"), 0);
 }

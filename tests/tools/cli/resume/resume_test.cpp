@@ -9,7 +9,6 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 using nlohmann::json;
 using std::chrono::steady_clock;
 
@@ -23,22 +22,21 @@ TEST_CASE("a run that is asked to stop says how to resume, and resumes") {
     process.send(signal);
     CHECK(process.wait() == 5);
     CHECK(steady_clock::now() - begin < std::chrono::seconds(5));
-    CHECK_THAT(process.log(), Contains("interrupted") && Contains("--resume"));
+    check_says(process.log(), "interrupted ... --resume");
     CHECK(work.files() == Names{"out.h5.journal"});
     CHECK(JournalReader(work.journal).torn().empty());
     std::filesystem::remove(work.journal);
   }
   work.start_and(SIGTERM);
-  const Outcome resumed = work.run("--resume --json");
-  REQUIRE(resumed.exit_code == 0);
-  CHECK_THAT(resumed.err, Contains("resumes with") && Contains("cells finished"));
-  const json report = json::parse(resumed.out);
+  const Outcome resumed = require_success(work.run("--resume --json"));
+  check_says(resumed.err, "resumes with ... cells finished");
+  const json report = json_of(resumed);
   CHECK(report["pages"].get<int>() + report["resumed_cells"].get<int>() > 0);
   CHECK(report["resumed_cells"].get<int>() >= 20);
   CHECK(work.files() == Names{"out.h5"});
   const std::string bytes = bytes_of(work.output);
-  REQUIRE(work.run("--force").exit_code == 0);
-  CHECK((bytes_of(work.output) == bytes));
+  require_success(work.run("--force"));
+  check_same(bytes_of(work.output), bytes);
 }
 
 TEST_CASE("a second signal ends a run at once") {
@@ -50,85 +48,79 @@ TEST_CASE("a second signal ends a run at once") {
   process.send(SIGINT);
   process.send(SIGCONT);
   CHECK(process.wait() == 5);
-  CHECK_THAT(process.log(), Contains("before the work in flight was finished"));
-  CHECK(work.run("--resume").exit_code == 0);
+  check_says(process.log(), "before the work in flight was finished");
+  check_outcome(work.run("--resume"), 0);
 }
 
 TEST_CASE("an unfinished journal is neither used nor dropped unasked") {
   const Work work;
   work.start_and(SIGKILL);
   const std::string found = bytes_of(work.journal);
-  check_refused(work.run(""), 2, "--resume continues it, --force starts again");
-  check_refused(work.run(""), 2, "an unfinished run with engine grid on cpu, radius 0.1");
-  check_refused(work.run("--resume --force"), 2, "--force");
+  check_cases([&](const std::string& more) { return work.run(more); },
+              {
+                  {"", 2, "--resume continues it, --force starts again"},
+                  {"", 2, "an unfinished run with engine grid on cpu, radius 0.1"},
+                  {"--resume --force", 2, "--force"},
+              });
   check_refused(work.run("--resume", "0.2"), 2, "its radius is 0.1, expected 0.2");
   check_refused(work.run("--resume", "0.1", "kdtree"), 2, "its engine is grid, expected kdtree");
   check_refused(work.run("--resume --between-poses", "0.1", "sweep"), 2, "between_poses is no");
   check_refused(work.run_with("model.ply", "1 2 3\n"), 2, "its model is ");
   check_refused(work.run_with("trajectory.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n"), 2,
                 "its trajectory is ");
-  CHECK((bytes_of(work.journal) == found));
+  check_same(bytes_of(work.journal), found);
 
-  const Outcome info = run_program(work.folder, "info --json " + quoted(work.journal));
-  REQUIRE(info.exit_code == 0);
-  CHECK(json::parse(info.out)["kind"] == "journal");
-  CHECK(json::parse(info.out)["finished_cells"] >= 19);
-  CHECK(json::parse(info.out)["radius"] == "0.1");
+  const Outcome info =
+      require_success(run_program(work.folder, "info --json " + quoted(work.journal)));
+  check_json(json_of(info), R"({"kind": "journal", "radius": "0.1"})");
+  CHECK(json_of(info)["finished_cells"] >= 19);
 
-  const Outcome forced = work.run("--force");
-  CHECK(forced.exit_code == 0);
-  CHECK_THAT(forced.err, Contains("journal of an unfinished run removed"));
+  check_outcome(work.run("--force"), 0, "journal of an unfinished run removed");
   CHECK(work.files() == Names{"out.h5"});
 }
 
 TEST_CASE("a run with other threads and memory resumes") {
   const Work work;
   work.start_and(SIGKILL, "--threads 1");
-  const Outcome resumed = work.run("--resume --threads 3 --memory 1G");
-  CHECK(resumed.exit_code == 0);
-  CHECK_THAT(resumed.err, Contains("resumes with"));
+  check_outcome(work.run("--resume --threads 3 --memory 1G"), 0, "resumes with");
 }
 
 TEST_CASE("resuming without a journal starts afresh and says so") {
   const Work work;
-  const Outcome outcome = work.run("--resume");
-  CHECK(outcome.exit_code == 0);
-  CHECK_THAT(outcome.err, Contains("no journal to resume, starts from the beginning"));
+  check_outcome(work.run("--resume"), 0, "no journal to resume, starts from the beginning");
   put_bytes(work.journal, "CLWYJ");
-  CHECK_THAT(work.run("--force").err, Contains("removed, starts from the beginning"));
+  check_says(work.run("--force").err, "removed, starts from the beginning");
   std::filesystem::remove(work.output);
   put_bytes(work.journal, "CLWYJ");
-  CHECK_THAT(work.run("").err, Contains("nothing in it yet"));
+  check_says(work.run("").err, "nothing in it yet");
   CHECK(work.files() == Names{"out.h5"});
 }
 
 TEST_CASE("a resumed run leaves a result alone that answers its query, and no other") {
   const Work work;
-  const Outcome first = work.run("--json");
-  REQUIRE(first.exit_code == 0);
+  const Outcome first = require_success(work.run("--json"));
   const std::string bytes = bytes_of(work.output);
   const Outcome again = work.run("--resume --json", "0.1", "sweep");
-  CHECK(again.exit_code == 0);
-  CHECK_THAT(again.err, Contains("is the finished result of this query already"));
-  const json found = json::parse(first.out), kept = json::parse(again.out);
+  check_outcome(again, 0, "is the finished result of this query already");
+  const json found = json_of(first), kept = json_of(again);
   for (const char* same : {"environment_points", "colliding_points", "cells_total"}) {
     CHECK(kept[same] == found[same]);
   }
-  CHECK(kept["engine"].is_null());
+  check_json(kept, R"({"engine": null})");
   put_bytes(work.journal, "CLWYJ");  // a journal with nothing in it yet
-  CHECK(work.run("--resume").exit_code == 0);
+  check_outcome(work.run("--resume"), 0);
   CHECK(work.files() == Names{"out.h5"});
-  CHECK(kept["cells_read"] == 0);
+  check_json(kept, R"({"cells_read": 0})");
   CHECK(kept["seconds"].size() == found["seconds"].size());
   const std::string radii =
-      "exists already, and answers another question than this run: radius: 0.1 m in the file, "
-      "0.2 m here; --force ";
+      "exists already, and answers another question than this run: radius: 0.1 m in the file, 0.2 "
+      "m here; --force ";
   check_refused(work.run("--resume", "0.2"), 2, radii + "instead of --resume overwrites it");
   check_refused(work.run("", "0.2"), 2, radii + "overwrites it, or give another name");
   check_refused(work.run("--shard 1/2"), 2, "part: the whole result in the file, part 1 of 2 here");
   check_refused(work.run(""), 2,
                 "exists already, and answers the same question; --resume repeats that answer");
-  CHECK((bytes_of(work.output) == bytes));
+  check_same(bytes_of(work.output), bytes);
 
   std::string damaged = bytes;
   damaged[damaged.size() / 2] ^= 1;
@@ -138,11 +130,11 @@ TEST_CASE("a resumed run leaves a result alone that answers its query, and no ot
 
 TEST_CASE("an existing result stays until a resumed run replaces it, and only where asked for") {
   const Work work;
-  REQUIRE(work.run("", "0.05").exit_code == 0);
+  require_success(work.run("", "0.05"));
   const std::string old = bytes_of(work.output);
   work.start_and(SIGKILL, "--force");
-  CHECK((bytes_of(work.output) == old));
-  CHECK(work.run("--resume").exit_code == 0);
+  check_same(bytes_of(work.output), old);
+  check_outcome(work.run("--resume"), 0);
   const std::string done = bytes_of(work.output);
   CHECK((done != old));
   CHECK(work.files() == Names{"out.h5"});
@@ -151,26 +143,24 @@ TEST_CASE("an existing result stays until a resumed run replaces it, and only wh
   work.start_and(SIGKILL);
   put_bytes(work.output, "of somebody else");
   check_refused(work.run("--resume"), 2, "exists already, and is no complete result");
-  CHECK(bytes_of(work.output) == "of somebody else");
+  check_same(bytes_of(work.output), "of somebody else");
   // As if killed after the result got its name and before its journal was removed.
   put_bytes(work.output, done);
-  const Outcome outcome = work.run("--resume");
-  CHECK(outcome.exit_code == 0);
-  CHECK_THAT(outcome.err, Contains("is the finished result of this query already"));
+  check_outcome(work.run("--resume"), 0, "is the finished result of this query already");
   CHECK(work.files() == Names{"out.h5"});
 }
 
 TEST_CASE("an unfinished run over an existing result is reported, and kept until one replaces it") {
   const Work work;
-  REQUIRE(work.run("", "0.05").exit_code == 0);
+  require_success(work.run("", "0.05"));
   work.start_and(SIGKILL, "--force");
   const std::string found = bytes_of(work.journal);
   check_refused(work.run(""), 2, "an unfinished run with engine grid on cpu");
   std::string mistyped = work.command("--force");
   mistyped.replace(mistyped.find("model.ply"), 9, "modle.ply");
   check_refused(run_program(work.folder, mistyped), 4, "modle.ply");
-  CHECK((bytes_of(work.journal) == found));
-  CHECK(work.run("--resume").exit_code == 0);
+  check_same(bytes_of(work.journal), found);
+  check_outcome(work.run("--resume"), 0);
 }
 
 TEST_CASE("a run does not remove the journal of the next one") {
@@ -182,7 +172,7 @@ TEST_CASE("a run does not remove the journal of the next one") {
   std::filesystem::remove(work.journal);
   put_bytes(work.journal, of_another);
   CHECK(finishing.wait() == 0);
-  CHECK(bytes_of(work.journal) == of_another);
+  check_same(bytes_of(work.journal), of_another);
 }
 
 TEST_CASE("an automatic choice of the device goes on where it was") {
@@ -190,9 +180,7 @@ TEST_CASE("an automatic choice of the device goes on where it was") {
   work.start_and(SIGKILL);
   std::string command = work.command("--resume --device-memory 1G");
   command.replace(command.find("--device cpu"), 12, "--device auto");
-  const Outcome resumed = run_program(work.folder, command);
-  CHECK(resumed.exit_code == 0);
-  CHECK_THAT(resumed.err, Contains("resumes with") && Contains("on the CPU"));
+  check_outcome(run_program(work.folder, command), 0, "resumes with ... on the CPU");
 }
 
 TEST_CASE("poses that were divided otherwise are counted once") {
@@ -204,7 +192,7 @@ TEST_CASE("poses that were divided otherwise are counted once") {
   for (const char* threads : {"3", "2"}) {
     const Outcome resumed =
         work.run(std::string("--resume --json --threads ") + threads, "0.1", "kdtree");
-    if (resumed.exit_code != 0 || !json::parse(resumed.out).contains("resumed_poses")) continue;
-    CHECK(json::parse(resumed.out)["resumed_poses"] <= 3000);
+    if (resumed.exit_code != 0 || !json_of(resumed).contains("resumed_poses")) continue;
+    CHECK(json_of(resumed)["resumed_poses"] <= 3000);
   }
 }

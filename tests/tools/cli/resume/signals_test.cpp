@@ -13,7 +13,6 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 using std::chrono::steady_clock;
 
 namespace {
@@ -49,7 +48,7 @@ void check_stopped(const Place& place, const std::string& command) {
     stopped = code == 5;
     REQUIRE((stopped || code == 0));
     if (stopped) {
-      CHECK_THAT(process.log(), Contains("interrupted") && Contains("again"));
+      check_says(process.log(), "interrupted ... again");
       CHECK(place.files().empty());
     }
     for (const std::string& file : place.files()) {
@@ -64,11 +63,11 @@ void check_stopped(const Place& place, const std::string& command) {
 TEST_CASE("a conversion that is asked to stop leaves nothing behind") {
   const Place place;
   const std::string hall = quoted(place.folder / "hall");
-  REQUIRE(run_program(place.folder, "scene hall --points 500000 -o " + hall).exit_code == 0);
+  require_success(run_program(place.folder, "scene hall --points 500000 -o " + hall));
   const std::string command = "convert " + quoted(place.folder / "hall/environment.las") +
                               " --cell-points 500 -o " + quoted(place.output) + " --resume";
   check_stopped(place, command);
-  CHECK(run_program(place.folder, command).exit_code == 0);
+  check_outcome(run_program(place.folder, command), 0);
 }
 
 TEST_CASE("a scene that is asked to stop leaves nothing behind") {
@@ -104,12 +103,12 @@ TEST_CASE("an export that is asked to stop, or killed, leaves nothing that looks
         REQUIRE(code == 5);
         stopped = true;
         CHECK(files.empty());
-        CHECK_THAT(process.log(), Contains("interrupted") && Contains("starts it again"));
+        check_says(process.log(), "interrupted ... starts it again");
       }
     }
     CHECK(stopped);
   }
-  CHECK(run_program(place.folder, command).exit_code == 0);
+  check_outcome(run_program(place.folder, command), 0);
   CHECK(place.files() == Names{"out.h5.csv"});
 }
 
@@ -127,7 +126,7 @@ TEST_CASE("what does not come to an end is given up within 5 seconds") {
   process.send(SIGTERM);
   CHECK(process.wait() == 5);
   CHECK(steady_clock::now() - begin < std::chrono::seconds(5));
-  CHECK_THAT(process.log(), Contains("interrupted before"));
+  check_says(process.log(), "interrupted before");
   CHECK(place.files() == Names{"out.h5.partial"});
   ::close(writer);
 }

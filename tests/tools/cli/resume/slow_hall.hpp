@@ -95,10 +95,4 @@ struct Work {
 
 using Names = std::vector<std::string>;
 
-inline void check_refused(const Outcome& outcome, int exit_code, const std::string& message) {
-  CHECK(outcome.exit_code == exit_code);
-  CHECK(outcome.out.empty());
-  CHECK_THAT(outcome.err, Catch::Contains(message));
-}
-
 }  // namespace clearway::test

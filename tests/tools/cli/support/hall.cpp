@@ -22,20 +22,15 @@ Hall::Hall(const std::string& size) {
   if (made.exit_code != 0 || converted.exit_code != 0) throw std::runtime_error("no hall");
 }
 
-Outcome Work::run(const std::string& arguments, const std::filesystem::path& pipe) const {
-  return run_program(folder, arguments, pipe);
+Work::Work(const Hall& of) : hall(of) {
+  std::filesystem::create_directory_symlink(hall.path(""), folder / "hall");
 }
 
 Outcome Work::run_hall(const std::string& environment, const std::string& output,
                        const std::string& options) const {
-  return run("run --env " + environment + " --model " + hall / "model.ply" + " --trajectory " +
-             hall / "trajectory.txt" + " --radius 0.1 -o " + path(output) + " " + options);
-}
-
-void check_refused(const Outcome& outcome, int exit_code, const std::string& message) {
-  CHECK(outcome.exit_code == exit_code);
-  CHECK(outcome.out.empty());
-  CHECK_THAT(outcome.err, Catch::Contains(message));
+  return run("run --env " + environment +
+             " --model hall/model.ply --trajectory hall/trajectory.txt --radius 0.1 -o " + output +
+             " " + options);
 }
 
 }  // namespace clearway::test

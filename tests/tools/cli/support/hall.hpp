@@ -25,19 +25,15 @@ class Hall {
   ScratchFolder folder_;
 };
 
-/// A folder for what a test writes.
-struct Work {
-  Outcome run(const std::string& arguments, const std::filesystem::path& pipe = {}) const;
+/// A folder for what a test writes. The files of the hall are in `hall` there.
+struct Work : Workplace {
+  explicit Work(const Hall& of = Hall::get());
+
   /// Runs a search in the hall, whose result is `output` in this folder.
   Outcome run_hall(const std::string& environment, const std::string& output,
                    const std::string& options = "") const;
-  std::string path(const std::string& name) const { return quoted(folder / name); }
-  std::string bytes(const std::string& name) const { return bytes_of(folder / name); }
 
-  const Hall& hall = Hall::get();
-  ScratchFolder folder = {};
+  const Hall& hall;
 };
-
-void check_refused(const Outcome& outcome, int exit_code, const std::string& message);
 
 }  // namespace clearway::test
