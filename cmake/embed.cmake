@@ -1,6 +1,6 @@
-# Writes OUTPUT, a source that holds the page's files: the HTML, and the styles and scripts put
-# together in the order given. HTML, SECTION_HTML; STYLES, SCRIPTS, SECTION_SCRIPTS: lists joined
-# by "|".
+# Writes OUTPUT, a source that holds the pages' files. FRAME, REPORT_PARTS, SECTION_PARTS and
+# CROSS_SECTION are HTML; STYLES, SCRIPTS and SECTION_SCRIPTS are lists joined by "|", whose files
+# are put together in this order.
 function(embed name files)
   set(bytes "")
   string(REPLACE "|" ";" files "${files}")
@@ -24,10 +24,12 @@ set(text "#include \"report/page.hpp\"
 
 namespace clearway {
 ")
-embed(Html "${HTML}")
+embed(Frame "${FRAME}")
+embed(ReportParts "${REPORT_PARTS}")
+embed(SectionParts "${SECTION_PARTS}")
+embed(CrossSection "${CROSS_SECTION}")
 embed(Style "${STYLES}")
 embed(Script "${SCRIPTS}")
-embed(SectionHtml "${SECTION_HTML}")
 embed(SectionScript "${SECTION_SCRIPTS}")
 file(WRITE ${OUTPUT} "${text}
 }  // namespace clearway

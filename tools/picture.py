@@ -21,7 +21,7 @@ from PIL import Image  # noqa: E402
 from picturing.canvas import Camera, Canvas, shade  # noqa: E402
 from picturing.files import read_las, read_ply, read_trajectory  # noqa: E402
 
-# Okabe and Ito's palette: told apart with every kind of colour vision.
+# Okabe and Ito's palette: distinguishable with every kind of colour vision.
 COLLIDING = "#d55e00"
 MODEL = "#0072b2"
 MODEL_ELSEWHERE = "#56b4e9"

@@ -1,6 +1,6 @@
 # Sourced by tools/test.sh: builds with the sanitizers and runs the fast tests under them.
 
-# OpenMP is seen through libomp's archer; src/core/util/tsan_annotations.hpp tells of oneTBB.
+# OpenMP is seen through libomp's archer; src/core/util/tsan_annotations.hpp describes oneTBB.
 thread_tests=(stream_tests cpu_tests grid_tests io_convert_tests library_tests)
 # Threads that wait in a loop take the processor from those that work.
 export OMP_WAIT_POLICY=passive
@@ -12,7 +12,7 @@ test_under_address_sanitizer() {
   ctest --test-dir build/asan --output-on-failure -j "$(nproc)" -LE data --timeout 1800
 }
 
-# What is told to the sanitizer, and what it is to leave out, hides no race of ours.
+# What the sanitizer is given, and what it is to leave out, hides no race of ours.
 require_planted_races() {
   local program=build/tsan/tests/tsan/planted_race planted
   for planted in none exception; do

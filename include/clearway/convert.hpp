@@ -55,9 +55,9 @@ struct ConvertOptions {
   /// Keeps points with the flag `withheld` of LAS and LAZ, which otherwise are left out as deleted.
   bool keep_withheld = false;
   bool skip_unreadable = false;  ///< leaves out files that cannot be read, with a warning
-  bool strict = false;           ///< refuses any warning: all are told, then no store is written
-  bool overwrite = false;        ///< replaces an existing store
-  bool resume = false;  ///< leaves a store of the same inputs and options as it is, and no other
+  bool strict = false;     ///< treats warnings as errors: reports all of them and writes no store
+  bool overwrite = false;  ///< replaces an existing store
+  bool resume = false;     ///< leaves a store of the same inputs and options as it is, and no other
   ProgressCallback progress = nullptr;
   MessageCallback message = nullptr;  ///< receives notes, and the warnings that the report holds
   StopFlag stop = nullptr;

@@ -15,7 +15,7 @@
 
 namespace clearway {
 
-/// What is asked of every environment point, whatever the model and the trajectory.
+/// The question about every environment point, whatever the model and the trajectory.
 struct QueryParameters {
   double radius = 0;  ///< metres, > 0: points strictly closer than this to the model collide
   /// Whether to find for each colliding point the smallest index of a pose that touches it. Between

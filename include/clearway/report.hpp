@@ -22,11 +22,14 @@
 
 namespace clearway {
 
-struct ReportOptions {
-  std::string title = {};  ///< if empty, made of the names below
-  /// Texts for the head of the page, shown as they are; empty ones are left out.
+/// The texts in the head of a page, which are shown as they are. Empty ones are left out.
+struct PageTexts {
+  std::string title = {};  ///< if empty, made of the names of the files
   std::string project = {}, client = {}, author = {};
-  std::string date = {};  ///< shown as it is; nothing else on the page depends on the time
+  std::string date = {};  ///< nothing else on the page depends on the time
+};
+
+struct ReportOptions : PageTexts {
   /// Names of the files for the reader; empty ones are left out.
   std::string result_name = {}, environment_name = {}, model_name = {}, trajectory_name = {};
   /// Height of ModelOptions::above, and how many points below it were left out of the model's file,
@@ -52,7 +55,7 @@ struct ReportOptions {
   std::vector<Message> warnings = {};
   bool overwrite = false;
   /// Shifts that free the path and its conflicts, by find_shifts() for conflicts that were found
-  /// with the options of `conflicts`; the page tells them.
+  /// with the options of `conflicts`; the page shows them.
   std::optional<ShiftTable> shifts = {};
   /// Bodies of the search, for the result of a vehicle; then the model is empty.
   std::vector<Body> bodies = {};
@@ -75,8 +78,8 @@ struct ReportSummary {
 
 /// Writes the report as one self-contained HTML file: verdict, profile, plan, conflicts, 3-D view.
 /// model and poses are those of the search. Throws InputError where model, poses or store are not
-/// those of the result, or one is damaged; UsageError for classes that the result cannot tell apart
-/// and for an existing output; ResourceError; Interrupted when asked to stop.
+/// those of the result, or one is damaged; UsageError for classes that the result cannot
+/// distinguish and for an existing output; ResourceError; Interrupted when asked to stop.
 ReportSummary write_report(const Result& result, const Store& store, const Model& model,
                            const std::vector<Pose>& poses, const std::filesystem::path& output,
                            const ReportOptions& options = {});
@@ -92,7 +95,7 @@ struct NamedObstacle {
 /// line.
 std::vector<NamedObstacle> read_obstacles(const std::filesystem::path& path);
 
-/// What is drawn and told of a section.
+/// What is drawn and said of a section.
 struct SectionPicture {
   /// The outline of a load, whose passing is judged and drawn, or empty.
   std::vector<OutlinePoint> outline = {};
@@ -107,11 +110,7 @@ struct SectionPicture {
   std::string section_name = {}, outline_name = {};  ///< names of the files for the reader
 };
 
-struct SectionPageOptions : SectionPicture {
-  std::string title = {};  ///< if empty, made of the names
-  /// Texts for the head of the page, shown as they are; empty ones are left out.
-  std::string project = {}, client = {}, author = {};
-  std::string date = {};               ///< shown as it is
+struct SectionPageOptions : SectionPicture, PageTexts {
   std::vector<Message> warnings = {};  ///< shown besides those of the section
   bool overwrite = false;
 };

@@ -120,7 +120,7 @@ SearchReport search(const Store& store, const Query& query, const std::filesyste
 std::shared_ptr<const DeviceStart> start_devices(const SearchOptions& options,
                                                  const Store* store = nullptr);
 
-/// Throws what search() would throw before it looks at store, model and trajectory, for callers
+/// Throws what search() would throw before it reads store, model and trajectory, for callers
 /// that read large inputs first. Whether an existing result answers the query is left to search().
 /// Like search(), this replaces a file OUTPUT.partial, so make sure that no input has that name.
 void check_search(const QueryParameters& query, const std::filesystem::path& output,

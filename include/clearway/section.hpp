@@ -29,7 +29,7 @@ struct SectionWindow {
   friend bool operator==(const SectionWindow&, const SectionWindow&) = default;
 };
 
-/// What is asked of a route. Lengths are in the environment's unit.
+/// The question about a route. Lengths are in the environment's unit.
 struct SectionParameters {
   /// The load occupies x from rear to front in its own frame.
   double rear = 0, front = 0;
@@ -47,8 +47,8 @@ struct SectionParameters {
   std::optional<BodyPivots> pivots = {};
   std::vector<std::uint8_t> ignore_classes = {};  ///< classes whose points are left out
   std::vector<Box> ignore_boxes = {};             ///< closed boxes whose points are left out
-  /// Whether cells that no beam of the scanner crossed are told apart as not known. The store has
-  /// to know where its scanner stood.
+  /// Whether cells that no beam of the scanner crossed are distinguished as not known. The store
+  /// has to know where its scanner stood.
   bool seen = false;
   /// Side of the cubes of space in which beams are followed; 0: 0.2 m.
   double seen_cube = 0;

@@ -24,7 +24,7 @@ struct ShiftOptions {
   double lateral_from = -2, lateral_to = 2;
   double step = 0.01;
   /// Axes of the path's poses that point ahead and up, as in ConflictOptions. A shift goes along
-  /// the axis to their left, which is +Y unless told otherwise.
+  /// the axis to their left, which is +Y by default.
   Axis forward = Axis::kPlusX, up = Axis::kPlusZ;
   double chainage_start = 0;  ///< chainage of the first pose, metres
   /// Station of each pose along its alignment, metres, as PoseLabels has it; or empty. It must

@@ -119,8 +119,7 @@ const OutcomeWords& words_of(Outcome outcome) {
         "conflict: a point is closer than the radius, or with an error budget certainly too close"},
        {"undecided", "?", "undecided",
         "undecided: a collision is neither certain nor excluded; reasons and warnings say why"},
-       {"doubtful", "△", "clear with warnings",
-        "clear, but something was warned of: read the warnings below"},
+       {"doubtful", "△", "clear with warnings", "clear, but with warnings: read them below"},
        {"clear", "○", "clear",
         "clear: no point is closer than the radius and the errors, and where seen space was asked "
         "for, all of it was scanned"},

@@ -72,7 +72,7 @@ void write_state(const std::filesystem::path& folder, const TaskState& state);
 nlohmann::ordered_json task_facts(const std::filesystem::path& run_json);
 
 /// What can be said about a task. kBegun: another process works on it, or it was interrupted; the
-/// file system has no locks that tell which. kOutdated: it finished, but a file that it read has
+/// file system has no locks that show which. kOutdated: it finished, but a file that it read has
 /// changed since, so its verdict is about an earlier file.
 enum class TaskStatus { kDone, kRunning, kBegun, kInterrupted, kOutdated, kFailed, kMissing };
 inline constexpr TaskStatus kStatuses[]{

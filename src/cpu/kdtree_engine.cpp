@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <span>
@@ -19,10 +20,34 @@
 #include "core/geometry/rigid.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/query/search_result.hpp"
-#include "cpu/first_failure.hpp"
 #include "cpu/range_search.hpp"
 
 namespace clearway {
+
+namespace {
+
+/// Keeps the first exception of a parallel region until the region is over.
+class FirstFailure {
+ public:
+  bool happened() const { return happened_.load(std::memory_order_relaxed); }
+
+  void keep_current() {
+    const std::lock_guard lock(mutex_);
+    if (!failure_) failure_ = std::current_exception();
+    happened_.store(true, std::memory_order_relaxed);
+  }
+
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::exception_ptr failure_;
+  std::atomic<bool> happened_ = false;
+};
+
+}  // namespace
 
 PoseTree::PoseTree(std::span<const Pose> poses, std::uint32_t first, std::uint32_t count,
                    const Box& model, bool between_poses) {

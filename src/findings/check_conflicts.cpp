@@ -19,18 +19,19 @@ constexpr double kLeastSplit = 1e-9;
 
 void check_options(const ConflictOptions& options) {
   if (!(options.gap > 0) || !std::isfinite(options.gap)) {
-    throw UsageError("a gap of " + shown(options.gap) + " m; expected a finite length above 0");
+    throw UsageError("a gap of " + format_number(options.gap) +
+                     " m; expected a finite length above 0");
   }
   if (!(options.split >= 0) || !std::isfinite(options.split)) {
-    throw UsageError("stretches of " + shown(options.split) +
+    throw UsageError("stretches of " + format_number(options.split) +
                      " m; expected a finite length, or 0 for none");
   }
   if (options.split > 0 && options.split < kLeastSplit) {
-    throw UsageError("stretches of " + shown(options.split) + " m; expected " + shown(kLeastSplit) +
-                     " m or more, or 0 for none");
+    throw UsageError("stretches of " + format_number(options.split) + " m; expected " +
+                     format_number(kLeastSplit) + " m or more, or 0 for none");
   }
   if (!std::isfinite(options.chainage_start)) {
-    throw UsageError("a chainage of " + shown(options.chainage_start) +
+    throw UsageError("a chainage of " + format_number(options.chainage_start) +
                      " m at the first pose; expected a finite one");
   }
   if (along_one_line(options.forward, options.up)) {

@@ -7,7 +7,7 @@
 
 namespace clearway {
 
-/// Distances below this, in metres, say only that the surfaces touch, because a scan can tell no
+/// Distances below this, in metres, say only that the surfaces touch, because a scan can show no
 /// more. Which of two such distances is smaller by a tenth of a millimetre does not matter for the
 /// rank.
 inline constexpr double kTouching = 0.001;

@@ -83,7 +83,7 @@ class GroupSearch {
   void find_model_box() {
     model_box_ = kNothing;
     if (!options_.bodies.empty()) {
-      // Bodies that turn against each other change the box a little; some poses tell enough.
+      // Bodies that turn against each other change the box a little; some poses are enough.
       constexpr std::size_t kSome = 100;
       const std::size_t stride = std::max<std::size_t>(1, poses_.size() / kSome);
       for (std::size_t i = 0; i < poses_.size(); i += stride) {

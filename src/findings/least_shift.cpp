@@ -208,7 +208,7 @@ SideShifts LeastShift::least(std::span<const Vec3> points, std::uint32_t first, 
   }
   const auto to_side = [&](double direction) -> std::optional<double> {
     double shift = 0;
-    // A point that was free may be blocked farther on, so all points are gone through again until
+    // A point that was free may be blocked farther on, so all points are tested again until
     // the shift no longer grows.
     for (bool moved = true; moved;) {
       moved = false;

@@ -9,7 +9,6 @@
 #include "clearway/stations.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
 
 namespace clearway {
 namespace {
@@ -23,12 +22,14 @@ constexpr double kRounding = 1e-6;
 
 std::size_t count_of(double length, double every) {
   if (!(every > 0) || !std::isfinite(every)) {
-    throw UsageError("stretches of " + shown(every) + " m; expected a finite length above 0");
+    throw UsageError("stretches of " + format_number(every) +
+                     " m; expected a finite length above 0");
   }
   const double count = std::max(1.0, std::ceil((length - kRest) / every));
   if (count <= static_cast<double>(kMostStationRows)) return static_cast<std::size_t>(count);
-  throw UsageError("stretches of " + shown(every) + " m cut a path of " + format_brief(length) +
-                   " m into more than " + format_count(kMostStationRows) + "; expected at least " +
+  throw UsageError("stretches of " + format_number(every) + " m cut a path of " +
+                   format_brief(length) + " m into more than " + format_count(kMostStationRows) +
+                   "; expected at least " +
                    format_brief(length / static_cast<double>(kMostStationRows)) + " m");
 }
 

@@ -62,7 +62,7 @@ class RowSet {
       next_;  ///< a later row for each row in the set, and else the row itself
 };
 
-/// Where along the path a body's box comes near to a place. This tells where the body itself may,
+/// Where along the path a body's box comes near to a place. This shows where the body itself may,
 /// which takes no search.
 class BoxReach {
  public:

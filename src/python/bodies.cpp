@@ -104,7 +104,7 @@ Body followed(Body body, const std::vector<Pose>& path, const Motion& motion,
   }
   std::vector<Message> all;
   body = std::move(follow(std::move(bodies), path, mounts, &all).front());
-  // What is odd about the towers was told when they were placed.
+  // What is odd about the towers was reported when they were placed.
   for (Message& doubt : all) {
     if (doubt.body == motion.name) doubts.push_back(std::move(doubt));
   }

@@ -155,7 +155,7 @@ order: the order of the coordinates in the file: 'ne' (northing, easting) or 'en
 max_gap: how many metres an element may miss the next one, or its own end, at the most.
 height: the height in metres of an alignment that has no profile.
 environment_crs: the coordinate system of the environment, for example store.crs_wkt(); a file in
-    another one is warned of.
+    another one causes a warning.
 messages: a list to which notes and warnings are appended.
 labels: a PoseLabels, which gets the station of each pose.)");
 }
@@ -222,7 +222,7 @@ unit: the unit of the coordinates: metres, or a name such as 'mm' or 'us-ft'; 0:
 environment_unit: the environment's unit: store.metres_per_unit(), store.length_unit(), or a name;
     None: the metre.
 environment_crs: the coordinate system of the environment, for example store.crs_wkt(); a file in
-    another one is warned of.
+    another one causes a warning.
 messages: a list to which notes and warnings are appended.
 labels: a PoseLabels, which gets the station of each pose if the file has stations.)");
 }
@@ -278,7 +278,7 @@ void add_convert_report(py::module_& module) {
       .def_readonly("kept_withheld_points", &Report::kept_withheld_points,
                     "How many points were stored although they have the flag withheld.")
       .def_readonly("origins", &Report::origins,
-                    "From how many distinct places the points were seen; 0 where no input tells.")
+                    "From how many distinct places the points were seen; 0 where no input says so.")
       .def_readonly("points_without_origin", &Report::points_without_origin,
                     "For how many points it is not known from where they were seen.")
       .def_readonly("origins_path", &Report::origins_path,

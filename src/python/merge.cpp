@@ -73,7 +73,7 @@ parts: the files that searches with shard=(1, n) to shard=(n, n) wrote.
 output: the file of the result to write.
 overwrite: replaces an existing result.
 resume: leaves a result of the same parts as it is.
-strict: raises InputError where a search of the parts warned of anything, and merges nothing.
+strict: raises InputError where a search of the parts gave a warning, and merges nothing.
 message: called with each of these warnings once, a Message, in this thread.
 threads, memory_bytes, progress, stop: as search() takes them.)");
 }

@@ -57,9 +57,9 @@ labels: the PoseLabels that read_trajectory() filled.
 every: metres; the length of a stretch in the table of stations. 0: 5, or so long that there are
     at most 200.
 shifts: the ShiftTable of find_shifts() for conflicts that were found in the same way: the page
-    tells what frees each of them.
-warnings: messages of reading the inputs, which the page shows. What the search warned of is in the
-    result and shown in any case; it may be among them.
+    shows what frees each of them.
+warnings: messages of reading the inputs, which the page shows. Warnings of the search are in the
+    result and shown in any case; they may be among these.
 bodies: the bodies of the search, where it was one of a vehicle; then model is () or None, and
     poses are those of the path.
 overwrite: replaces an existing page.
@@ -79,11 +79,8 @@ void add_write_report(py::module_& module) {
          double every, const ShiftTable* shifts, const py::object& warnings,
          const std::vector<PlacedBody>& bodies, bool overwrite, py::object progress,
          py::object stop) {
-        ReportOptions options{std::move(title),
-                              std::move(project),
-                              std::move(client),
-                              std::move(author),
-                              std::move(date),
+        ReportOptions options{{std::move(title), std::move(project), std::move(client),
+                               std::move(author), std::move(date)},
                               std::move(result_name),
                               std::move(environment_name),
                               std::move(model_name),

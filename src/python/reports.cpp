@@ -27,7 +27,7 @@ void add_seconds(py::module_& module) {
                     "Seconds of looking at the question before it was searched.")
       .def_readonly(
           "ignored", &Seconds::ignored,
-          "Seconds of searching the ignored points too, to tell how many of them would collide.")
+          "Seconds of searching the ignored points too, to count how many of them would collide.")
       .def_readonly(
           "field", &Seconds::field,
           "Seconds of making what the engine looks up, such as the field around the model.")
@@ -61,7 +61,7 @@ py::list reasons_of(const Answer& answer) {
   return list;
 }
 
-void add_answer(py::module_& module) {
+void add_searched_length(py::module_& module) {
   py::class_<SearchedLength>(module, "SearchedLength",
                              "How much of a path was searched, in metres along its positions.")
       .def_readonly("path", &SearchedLength::path, "Metres of the whole path.")
@@ -69,12 +69,16 @@ void add_answer(py::module_& module) {
                     "Metres on which all bodies have poses, so that all of them were searched.")
       .def_readonly("part", &SearchedLength::part,
                     "Metres on which some bodies were searched, and others have no pose.");
+}
+
+void add_seen_summary(py::module_& module) {
   py::class_<SeenSummary> seen(module, "SeenSummary",
                                "What is known of the space that the model sweeps, in cubes.");
   add_properties(seen, kSeenColumns);
-  py::class_<Answer>(
-      module, "Answer",
-      "The answer to a query in short: the verdict, and the places that matter most.")
+}
+
+void add_verdict_of(py::class_<Answer>& answer) {
+  answer
       .def_property_readonly(
           "verdict", [](const Answer& a) { return text(name_of(a.verdict())); },
           "The verdict: 'clear', 'conflict' or 'undecided'; 'unknown' of one part alone that has "
@@ -111,8 +115,11 @@ void add_answer(py::module_& module) {
                              "The codes of the warnings that put the question, or a stretch of its "
                              "path, in doubt: a list of str.")
       .def_property_readonly("warned_of", &Answer::warned_of,
-                             "The codes of the other warnings: a list of str.")
-      .def_readonly("parameters", &Answer::parameters, "What was asked: QueryParameters.")
+                             "The codes of the other warnings: a list of str.");
+}
+
+void add_counts_of(py::class_<Answer>& answer) {
+  answer.def_readonly("parameters", &Answer::parameters, "What was asked: QueryParameters.")
       .def_readonly("environment_points", &Answer::environment_points,
                     "How many points the environment has.")
       .def_readonly("model_points", &Answer::model_points,
@@ -140,7 +147,11 @@ void add_answer(py::module_& module) {
       .def_readonly(
           "ignored_colliding_high", &Answer::ignored_colliding_high,
           "How many ignored points the model would first touch more than half a metre above its "
-          "lowest point.")
+          "lowest point.");
+}
+
+void add_places_of(py::class_<Answer>& answer) {
+  answer
       .def_readonly("first_place", &Answer::first_place,
                     "The colliding point with the smallest first pose: a FoundPlace. None where "
                     "nothing collides or first poses were not asked for.")
@@ -167,12 +178,23 @@ void add_answer(py::module_& module) {
             if (!a.shard) return py::none();
             return py::make_tuple(a.shard->number, a.shard->count);
           },
-          "(i, n) where only the i-th of n parts was searched; otherwise None.")
-      .def("__repr__", [](const Answer& a) {
-        return text("<Answer: " + std::string(name_of(a.verdict())) + ", " +
-                    std::to_string(a.colliding_points) + " of " +
-                    std::to_string(a.environment_points) + " points collide>");
-      });
+          "(i, n) where only the i-th of n parts was searched; otherwise None.");
+}
+
+void add_answer(py::module_& module) {
+  add_searched_length(module);
+  add_seen_summary(module);
+  py::class_<Answer> answer(
+      module, "Answer",
+      "The answer to a query in short: the verdict, and the places that matter most.");
+  add_verdict_of(answer);
+  add_counts_of(answer);
+  add_places_of(answer);
+  answer.def("__repr__", [](const Answer& a) {
+    return text("<Answer: " + std::string(name_of(a.verdict())) + ", " +
+                std::to_string(a.colliding_points) + " of " + std::to_string(a.environment_points) +
+                " points collide>");
+  });
 }
 
 void add_findings_of(py::class_<Report, Answer>& report) {

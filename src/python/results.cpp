@@ -172,7 +172,7 @@ void add_results(py::module_& module) {
           "The verdict and the places that matter most, an Answer. Reads all tables.")
       .def(
           "warnings", [](const Result& r) { return to_list(r.warnings()); },
-          "What the search warned of: a list of Message, as Answer.warnings has it.")
+          "Warnings of the search: a list of Message, as Answer.warnings has it.")
       .def("collisions", collisions,
            "The colliding points with all of their columns: Collisions. The methods below read one "
            "column each.")

@@ -69,7 +69,7 @@ void add_store(py::module_& module) {
           "The metres of that unit; 1 where it is unknown.")
       .def(
           "warnings", [](const SharedStore& s) { return to_list(s.store.warnings()); },
-          "What the conversion warned of: a list of Message, with codes as 'store-same-place'.")
+          "Warnings of the conversion: a list of Message, with codes as 'store-same-place'.")
       .def_property_readonly(
           "path", [](const SharedStore& s) { return to_python(s.store.path()); },
           "The file: a pathlib.Path.")

@@ -52,7 +52,7 @@ void add_section_parameters(py::module_& module) {
   using Asked = SectionParameters;
   py::class_<Asked> parameters(
       module, "SectionParameters",
-      "What was asked of find_section(), with the defaults filled in. Lengths are in metres, or in "
+      "The question of find_section(), with the defaults filled in. Lengths are in metres, or in "
       "the unit of the scans where that is another one.");
   parameters.def_readonly("rear", &Asked::rear, "Where the load begins along x in its own frame.")
       .def_readonly("front", &Asked::front, "Where the load ends along x in its own frame.")
@@ -284,7 +284,7 @@ void add_section_facts(py::class_<Section>& section) {
   section
       .def(
           "parameters", [](const Section& s) { return s.data().parameters; },
-          "What was asked of the path: SectionParameters.")
+          "The question that the section answers: SectionParameters.")
       .def(
           "environment_points", [](const Section& s) { return s.data().environment_points; },
           "How many points the environment has.")
@@ -310,7 +310,7 @@ void add_section_facts(py::class_<Section>& section) {
           "where only poses count.")
       .def(
           "warnings", [](const Section& s) { return to_list(s.data().warnings); },
-          "What find_section() warned of: a list of Message.")
+          "Warnings of find_section(): a list of Message.")
       .def(
           "crs_wkt", [](const Section& s) { return text(s.data().crs_wkt); },
           "The coordinate reference system of the environment as WKT, or ''.")
@@ -330,17 +330,7 @@ void add_section_facts(py::class_<Section>& section) {
           "Which cells the window has: SectionGrid.");
 }
 
-void add_section_class(py::module_& module) {
-  py::class_<Section> section(
-      module, "Section",
-      "A section in a file of find_section(): which cells of the cross-section are blocked for a "
-      "load of one length, from which pose on.");
-  section.def(
-      py::init([](const py::object& path) {
-        return without_gil([file = path_of(path)] { return std::make_unique<Section>(file); });
-      }),
-      "path"_a, "__init__(self, path)\n--\n\nRead a section, and check all of it.");
-  add_section_facts(section);
+void add_section_cells(py::class_<Section>& section) {
   section
       .def(
           "cells", [](const Section& s) { return CellColumns{s.cells()}; },
@@ -363,7 +353,11 @@ void add_section_class(py::module_& module) {
             return py::cast(CellColumns{*s.data().unknown});
           },
           "The cells that are not known in each stretch: SectionCells, ascending by bin, k and j, "
-          "or None without seen space.")
+          "or None without seen space.");
+}
+
+void add_section_checks(py::class_<Section>& section) {
+  section
       .def(
           "check",
           [](const Section& s, const py::object& outline, std::optional<double> margin) {
@@ -388,7 +382,11 @@ Element [k - grid.k_from, j - grid.j_from] is about the cell (j, k). All are Fal
 is in doubt, or where the margin is above that of find_section(). Cells that are not known are not
 free.
 
-margin: the distance to keep on all sides; None: that of find_section().)")
+margin: the distance to keep on all sides; None: that of find_section().)");
+}
+
+void add_section_widths(py::class_<Section>& section) {
+  section
       .def(
           "bands",
           [](const Section& s, double band, std::optional<double> base) {
@@ -436,11 +434,27 @@ band, base: as bands() takes them.)")
 Say how wide a load may be that is as wide to the left as to the right: metres, or None where the
 window ends first on both sides. The rounding is taken off.
 
-band: a SectionBand of this section.)")
-      .def("__repr__", [](const Section& s) {
-        return text("<Section " + s.path().string() + ": " + std::to_string(s.cells().size()) +
-                    " blocked cells" + warning_words(s.data().warnings) + ">");
-      });
+band: a SectionBand of this section.)");
+}
+
+void add_section_class(py::module_& module) {
+  py::class_<Section> section(
+      module, "Section",
+      "A section in a file of find_section(): which cells of the cross-section are blocked for a "
+      "load of one length, from which pose on.");
+  section.def(
+      py::init([](const py::object& path) {
+        return without_gil([file = path_of(path)] { return std::make_unique<Section>(file); });
+      }),
+      "path"_a, "__init__(self, path)\n--\n\nRead a section, and check all of it.");
+  add_section_facts(section);
+  add_section_cells(section);
+  add_section_checks(section);
+  add_section_widths(section);
+  section.def("__repr__", [](const Section& s) {
+    return text("<Section " + s.path().string() + ": " + std::to_string(s.cells().size()) +
+                " blocked cells" + warning_words(s.data().warnings) + ">");
+  });
 }
 
 void add_find_section(py::module_& module) {

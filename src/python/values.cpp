@@ -42,7 +42,7 @@ void add_messages(py::module_& module) {
           "The cause of a warning in one word, such as 'no-poses'; '' for a note.")
       .def_property_readonly(
           "text", [](const Message& m) { return text(m.text); },
-          "What is told, in one or more sentences.")
+          "The text, in one or more sentences.")
       .def_property_readonly("numbers", numbers_of,
                              "The numbers that the text gives, for programs: a dict by name.")
       .def_property_readonly(

@@ -106,7 +106,7 @@ void Watch::run_thread(const std::function<void()>& work) {
   for (bool done = false; !done;) {
     const News news = next_news();
     done = news.done;
-    guarded([&] { tell(news); });
+    guarded([&] { pass_on(news); });
     guarded([&] { look(); });
   }
 }
@@ -119,7 +119,7 @@ Watch::News Watch::next_news() {
   });
 }
 
-void Watch::tell(const News& news) {
+void Watch::pass_on(const News& news) {
   if (raised_) return;
   if (!message_.is_none()) {
     for (const Message& message : news.messages) message_(message);

@@ -76,7 +76,7 @@ class Watch {
   void run_thread(const std::function<void()>& work);
   void finish();
   News next_news();
-  void tell(const News& news);
+  void pass_on(const News& news);
   void look();
   /// Calls a function that may raise. The first exception is kept and stops the work.
   template <typename Call>

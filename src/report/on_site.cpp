@@ -116,7 +116,7 @@ Bend tightest_bend(std::span<const Pose> poses, double arm) {
   return best;
 }
 
-/// The tightest bend; null where the path is straight or too short to tell.
+/// The tightest bend; null where the path is straight or too short.
 Json json_of_bend(const ReportFacts& facts, const ModelAxes& axes) {
   constexpr double kStraight = 5000;  // metres
   const double metre = 1 / facts.store.metres_per_unit();

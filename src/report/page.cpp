@@ -142,6 +142,11 @@ void append_columns(const std::string& name, const std::vector<PagePoint>& point
   });
 }
 
+Json page_head(const PageTexts& texts, const std::string& title) {
+  return {{"clearway", CLEARWAY_VERSION}, {"title", title},         {"project", texts.project},
+          {"client", texts.client},       {"author", texts.author}, {"date", texts.date}};
+}
+
 namespace {
 
 class PageFile {
@@ -159,39 +164,61 @@ class PageFile {
   std::uint64_t bytes_ = 0;
 };
 
-void write_place(PageFile& file, std::string_view name, PageKind kind, const PageContent& content) {
-  const bool is_report = kind == PageKind::kReport;
-  if (name == "TITLE") file.write(markup_text(content.title));
-  if (name == "STYLE") file.write(page_parts::kStyle);
-  if (name == "SCRIPT") {
-    file.write(is_report ? page_parts::kScript : page_parts::kSectionScript);
+/// Writes a page, part by part.
+class PageWriter {
+ public:
+  PageWriter(const std::filesystem::path& path, PageKind kind, const PageContent& content)
+      : file_(path), is_report_(kind == PageKind::kReport), content_(content) {}
+
+  /// Writes a text, and what its names in double braces stand for.
+  void write(std::string_view text) {
+    constexpr std::string_view kOpen = "{{", kClose = "}}";
+    while (true) {
+      const std::size_t open = text.find(kOpen), close = text.find(kClose);
+      if (open == std::string_view::npos) break;
+      file_.write(text.substr(0, open));
+      write_place(text.substr(open + 2, close - open - 2));
+      text.remove_prefix(close + kClose.size());
+    }
+    file_.write(text);
   }
-  if (name == "FACTS") file.write(content.facts);
-  if (name == "SECTION") file.write(content.section);
-  if (name != "COLUMNS") return;
-  for (const PageColumn& column : content.columns) {
-    file.write(R"(<script type="text/plain" data-column=")" + column.name + R"(">)");
-    file.write(column.base64);
-    file.write("</script>\n");
+
+  std::uint64_t bytes() const { return file_.bytes(); }
+
+ private:
+  void write_place(std::string_view name) {
+    using namespace page_parts;
+    if (name == "TITLE") file_.write(markup_text(content_.title));
+    if (name == "STYLE") file_.write(kStyle);
+    if (name == "ANSWER") file_.write(is_report_ ? "Verdict" : "Answer");
+    if (name == "PARTS") write(is_report_ ? kReportParts : kSectionParts);
+    if (name == "ROUTE") write(kCrossSection);
+    if (name == "SECTION") file_.write(content_.section);
+    if (name == "FACTS") file_.write(content_.facts);
+    if (name == "COLUMNS") write_columns();
+    if (name == "SCRIPT") file_.write(is_report_ ? kScript : kSectionScript);
   }
-}
+
+  void write_columns() {
+    for (const PageColumn& column : content_.columns) {
+      file_.write(R"(<script type="text/plain" data-column=")" + column.name + R"(">)");
+      file_.write(column.base64);
+      file_.write("</script>\n");
+    }
+  }
+
+  PageFile file_;
+  const bool is_report_;
+  const PageContent& content_;
+};
 
 }  // namespace
 
 std::uint64_t write_page(const std::filesystem::path& path, PageKind kind,
                          const PageContent& content) {
-  PageFile file(path);
-  std::string_view rest = kind == PageKind::kReport ? page_parts::kHtml : page_parts::kSectionHtml;
-  constexpr std::string_view kOpen = "{{", kClose = "}}";
-  while (true) {
-    const std::size_t open = rest.find(kOpen), close = rest.find(kClose);
-    if (open == std::string_view::npos) break;
-    file.write(rest.substr(0, open));
-    write_place(file, rest.substr(open + 2, close - open - 2), kind, content);
-    rest.remove_prefix(close + kClose.size());
-  }
-  file.write(rest);
-  return file.bytes();
+  PageWriter page(path, kind, content);
+  page.write(page_parts::kFrame);
+  return page.bytes();
 }
 
 }  // namespace clearway

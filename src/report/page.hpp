@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "clearway/box.hpp"
+#include "clearway/report.hpp"
 #include "clearway/vec3.hpp"
 #include "core/util/progress.hpp"
+#include "io/files/json.hpp"
 
 namespace clearway {
 
@@ -57,9 +59,13 @@ void append_columns(const std::string& name, const std::vector<PagePoint>& point
 /// The files of src/report/page, which the build puts into the program.
 namespace page_parts {
 
-extern const std::string_view kHtml, kStyle, kScript, kSectionHtml, kSectionScript;
+extern const std::string_view kFrame, kReportParts, kSectionParts, kCrossSection;
+extern const std::string_view kStyle, kScript, kSectionScript;
 
 }  // namespace page_parts
+
+/// What the facts of every page begin with: the version, and the texts of its head.
+Json page_head(const PageTexts& texts, const std::string& title);
 
 /// What a page is about, which decides on its parts.
 enum class PageKind { kReport, kSection };

@@ -477,15 +477,10 @@ std::uint64_t shown_cubes(const UnseenGroups& unseen, const UnseenGroup& group) 
 
 std::string json_of(const ReportFacts& facts) {
   const Answer& answer = facts.answer;
-  Json out{{"clearway", CLEARWAY_VERSION},
-           {"title", facts.title},
-           {"project", facts.options.project},
-           {"client", facts.options.client},
-           {"author", facts.options.author},
-           {"date", facts.options.date},
-           {"verdict", name_of(answer.verdict())},
-           {"reasons", names_of(answer.reasons())},
-           {"doubts", answer.doubts()}};
+  Json out = page_head(facts.options, facts.title);
+  out["verdict"] = name_of(answer.verdict());
+  out["reasons"] = names_of(answer.reasons());
+  out["doubts"] = answer.doubts();
   add_budget(out, answer);
   if (answer.seen) out["seen"] = json_of(*answer.seen, facts);
   out["colliding_points"] = facts.result.size();

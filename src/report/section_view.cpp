@@ -22,7 +22,7 @@ namespace {
 constexpr double kMostCellBits = 128e6;
 /// The most widths of bands in stretches that a page takes.
 constexpr double kMostWidths = 2e6;
-/// How many of a stretch's cells are looked at for names of obstacles, besides the deepest.
+/// How many of a stretch's cells are searched for names of obstacles, besides the deepest.
 constexpr std::size_t kLooksPerStretch = 24;
 
 void check_obstacles(const SectionPicture& picture) {
@@ -206,7 +206,7 @@ double size_across(std::span<const OutlinePoint> outline, Side side) {
   return most.*axis - least.*axis;
 }
 
-/// gives_way: whether a load that is smaller by the depth is told of, too.
+/// gives_way: whether a load that is smaller by the depth is named as a remedy too.
 std::string remedy_of(const SectionIntrusion& in, double cell, const std::string& unit,
                       bool gives_way) {
   const std::string to = outwards(cleared_to(in, cell)) + " " + unit;

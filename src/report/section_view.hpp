@@ -32,7 +32,7 @@ struct ShownStop {
   std::vector<std::string> obstacles = {};  ///< names of all that are known to stop the load here
 };
 
-/// All that is drawn and told of a section.
+/// All that is drawn and said of a section.
 class SectionView {
  public:
   /// section and picture outlive this object. Throws as Section::check(), section_bands() and
@@ -56,7 +56,7 @@ class SectionView {
 
   /// The answer in a sentence.
   std::string sentence() const;
-  /// What the picture does not tell, in a sentence.
+  /// What the picture does not show, in a sentence.
   std::string caution() const;
   /// What would let the load pass on a stretch, as a sentence.
   std::string remedy(const ShownStop& stop) const;
@@ -92,8 +92,8 @@ class SectionView {
 /// page, which has these beside it.
 std::string section_svg(const SectionView& view, bool whole);
 
-/// Colours of the cells, each for a part of the path, from dark to light, so that grey tells them
-/// apart, too.
+/// Colours of the cells, each for a part of the path, from dark to light, so that grey
+/// distinguishes them apart, too.
 inline constexpr std::array kSectionColours{"#0b2545", "#1f4e79", "#2f7f8c",
                                             "#62a87c", "#a9c46c", "#e0cf62"};
 

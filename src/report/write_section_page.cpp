@@ -34,15 +34,10 @@ SectionPageSummary write_section_page(const Section& section, const std::filesys
   PendingFile file(output, options.overwrite);
   const SectionView view(section, options);
   const std::string title = title_of(options);
-  const Json facts{{"clearway", CLEARWAY_VERSION},
-                   {"title", title},
-                   {"project", options.project},
-                   {"client", options.client},
-                   {"author", options.author},
-                   {"date", options.date},
-                   {"unit", section.data().length_unit},
-                   {"warnings", json_of_warnings(view, options)},
-                   {"section", view.facts()}};
+  Json facts = page_head(options, title);
+  facts["unit"] = section.data().length_unit;
+  facts["warnings"] = json_of_warnings(view, options);
+  facts["section"] = view.facts();
   SectionPageSummary summary{.check = view.check(), .sentence = view.sentence()};
   summary.facts = page_text(facts);
   PageContent content{

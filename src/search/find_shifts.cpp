@@ -31,7 +31,6 @@
 #include "core/util/stopwatch.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "findings/check_conflicts.hpp"
-#include "io/files/input_error.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/result/result.hpp"
 #include "search/checks/query_warnings.hpp"
@@ -47,18 +46,18 @@ class ShiftCandidates {
   explicit ShiftCandidates(const ShiftOptions& options) : step_(options.step) {
     const double from = options.lateral_from, to = options.lateral_to;
     if (!(step_ > 0) || !std::isfinite(step_)) {
-      throw UsageError("a step of " + shown(step_) +
+      throw UsageError("a step of " + format_number(step_) +
                        " m between shifts; expected a finite length " + "above 0");
     }
     if (!std::isfinite(from) || !std::isfinite(to) || !(from <= 0) || !(to >= 0)) {
-      throw UsageError("shifts from " + shown(from) + " to " + shown(to) +
+      throw UsageError("shifts from " + format_number(from) + " to " + format_number(to) +
                        " m; expected a range that contains 0, such as from -2 to 2");
     }
     const double left = steps_to(to), right = steps_to(-from);
     if (!(left + right < static_cast<double>(kMostShifts))) {
-      throw UsageError("shifts from " + shown(from) + " to " + shown(to) + " m by steps of " +
-                       shown(step_) + " m are more than " + format_count(kMostShifts) +
-                       "; expected a longer step or a shorter range");
+      throw UsageError("shifts from " + format_number(from) + " to " + format_number(to) +
+                       " m by steps of " + format_number(step_) + " m are more than " +
+                       format_count(kMostShifts) + "; expected a longer step or a shorter range");
     }
     left_ = static_cast<std::uint64_t>(left);
     right_ = static_cast<std::uint64_t>(right);
@@ -346,7 +345,7 @@ class ShiftedQuery {
   bool is_empty_ = false;
 };
 
-/// What is asked of each shifted stretch. With an error budget, a stretch is free where nothing is
+/// The question of each shifted stretch. With an error budget, a stretch is free where nothing is
 /// closer than what a clear passage keeps free.
 QueryParameters plain_parameters(const ResultHeader& header) {
   QueryParameters out;

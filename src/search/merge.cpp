@@ -113,11 +113,11 @@ MergedSpace space_of_all(const PartSet& set) {
 void tell_warnings(const std::vector<PartWarning>& warnings, std::uint32_t parts,
                    const MergeOptions& options) {
   for (const PartWarning& warning : warnings) {
-    Message told = warning;
-    told.text += warning.parts == parts ? " (in all parts)"
-                                        : " (in " + std::to_string(warning.parts) + " of " +
-                                              counted(parts, "part") + ")";
-    if (options.message) options.message(told);
+    Message merged = warning;
+    merged.text += warning.parts == parts ? " (in all parts)"
+                                          : " (in " + std::to_string(warning.parts) + " of " +
+                                                counted(parts, "part") + ")";
+    if (options.message) options.message(merged);
   }
   if (options.strict) refuse_warnings({warnings.begin(), warnings.end()});
 }

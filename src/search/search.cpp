@@ -192,8 +192,8 @@ class Search {
 
   /// Checks the query and warns before anything is searched, also where the result exists already.
   void check() {
-    for (const Message& told : options_.input_warnings) {
-      if (told.severity == Message::Severity::kWarning) report_.warnings.push_back(told);
+    for (const Message& message : options_.input_warnings) {
+      if (message.severity == Message::Severity::kWarning) report_.warnings.push_back(message);
     }
     check_sizes(query_);
     if (query_.seen) check_seen_space(store_, query_);
@@ -203,7 +203,7 @@ class Search {
       };
       warn_of_query(store_, query_, header_.ignored, looks_of, options_.input_warnings, log_);
     });
-    tell_of_large_errors();
+    note_large_errors();
     if (query_.seen) warn_of_large_cubes(store_, query_, swept_radius(), log_);
     if (options_.strict) refuse_warnings(report_.warnings);
   }
@@ -222,7 +222,7 @@ class Search {
   }
 
   /// Notes where the errors are so large that no surface could be a certain conflict.
-  void tell_of_large_errors() {
+  void note_large_errors() {
     if (!header_.budget || header_.model_solids > 0) return;
     const double errors = header_.budget->conflict();
     if (query_.radius > errors) return;

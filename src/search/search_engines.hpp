@@ -78,7 +78,7 @@ class SearchEngines {
                                          Progress& progress);
 
  private:
-  /// Thrown when no GPU is available; the user has already been told why.
+  /// Thrown when no GPU is available; the reason has already been reported.
   struct NoGpu {};
 
   bool gpu_pays();

@@ -136,8 +136,8 @@ class Finder {
  private:
   /// The poses of the load, and the poses of the path that they belong to.
   void place_load() {
-    for (const Message& told : options_.input_warnings) {
-      if (told.severity == Message::Severity::kWarning) data_.warnings.push_back(told);
+    for (const Message& message : options_.input_warnings) {
+      if (message.severity == Message::Severity::kWarning) data_.warnings.push_back(message);
     }
     std::vector<Message> doubts;
     load_ = load_of_section(path_, data_.parameters, &doubts);
@@ -174,7 +174,7 @@ class Finder {
     data_.trajectory_hash = hash_of_trajectory(path_);
   }
 
-  /// Throws UsageError where the store cannot tell seen space.
+  /// Throws UsageError where the store cannot have seen space.
   void check_cubes() const {
     QueryParameters seen;
     seen.seen = true;

@@ -293,15 +293,15 @@ CubeLattice cube_lattice(const StoreReader& store, double asked) {
     const double scale = store.quantisation().scale[k];
     const double quanta = side / scale;
     if (!(quanta < static_cast<double>(kMostSide))) {
-      throw UsageError("cubes of seen space of " + brief(side) +
-                       ": expected sides below 2^29 times " + brief(scale) +
+      throw UsageError("cubes of seen space of " + format_digits(side, 9) +
+                       ": expected sides below 2^29 times " + format_digits(scale, 9) +
                        ", the step of the stored coordinates");
     }
     lattice.side[k] = std::llround(quanta);
     lattice.inset[k] = lattice.side[k] / kInsets;
     if (lattice.inset[k] < 1) {
-      throw UsageError("cubes of seen space of " + brief(side) + ": expected sides of at least " +
-                       brief(kInsets * scale) +
+      throw UsageError("cubes of seen space of " + format_digits(side, 9) +
+                       ": expected sides of at least " + format_digits(kInsets * scale, 9) +
                        ", four steps of the stored coordinates, so that a cube has an inner part");
     }
   }
@@ -497,7 +497,7 @@ void warn_of_nothing_swept(const SeenSummary& found, std::uint64_t poses, Messag
   log.warn(
       kNothingSwept,
       "the vehicle sweeps the middle of no cube, so that nothing is known of what was scanned. "
-      "Smaller cubes tell more");
+      "Smaller cubes show more");
 }
 
 void warn_of_beams(const BeamCounts& left_out, MessageLog& log) {

@@ -36,7 +36,7 @@ struct SeenSpace {
 /// unit; 0: 0.2 m. Throws UsageError where it is too small or too large for the store's integers.
 CubeLattice cube_lattice(const StoreReader& store, double asked);
 
-/// Throws UsageError where the store cannot tell seen space: where it does not know where its
+/// Throws UsageError where the store cannot have seen space: where it does not know where its
 /// scanner stood, or the cubes do not suit its integers.
 void check_seen_space(const StoreReader& store, const QueryParameters& query);
 

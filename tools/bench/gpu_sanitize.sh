@@ -46,13 +46,13 @@ questions+=("$section" "$section --ignore-box 0,0,0,50,50,50 --between-poses")
 for tool in memcheck racecheck initcheck; do
   for question in "${questions[@]}"; do
     [[ "$question" == *"$only"* ]] || continue
-    told=${question//"$folder/"/}
+    shown=${question//"$folder/"/}
     # shellcheck disable=SC2086
     if log=$(compute-sanitizer --tool "$tool" --error-exitcode 9 "$program" $question "${ask[@]}" 2>&1); then
-      echo "$tool, $told: clean"
+      echo "$tool, $shown: clean"
     else
       failed=1
-      echo "$tool, $told: $(echo "$log" | grep -E '=====|error' | head -20)"
+      echo "$tool, $shown: $(echo "$log" | grep -E '=====|error' | head -20)"
     fi
   done
 done

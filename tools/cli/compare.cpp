@@ -11,7 +11,6 @@
 #include "cli/support/options.hpp"
 #include "cli/verdict.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
 #include "io/files/json.hpp"
 #include "io/result/check_results.hpp"
 
@@ -37,7 +36,7 @@ const char* kind_text(PointDifference::Kind kind) {
 std::string point_text(const PointDifference& point) {
   std::string text = "  ";
   text.append(kind_text(point.kind)).append("  ").append(std::to_string(point.source)).append(" ");
-  for (int k = 0; k < 3; ++k) text.append(" ").append(shown(point.xyz[k]));
+  for (int k = 0; k < 3; ++k) text.append(" ").append(format_number(point.xyz[k]));
   if (point.kind == PointDifference::Kind::kFirstPose) {
     text += "  pose " + std::to_string(*point.first_pose_a) + " / " +
             std::to_string(*point.first_pose_b);

@@ -124,7 +124,8 @@ ordered_json describe(const SectionData& section) {
   return description;
 }
 
-ordered_json describe(const ResultReader& result) {
+/// What a result was asked, and of which inputs.
+ordered_json question_json(const ResultReader& result) {
   const ResultHeader& h = result.header();
   ordered_json description{{"kind", "result"},
                            {"version", result_names::kVersion},
@@ -152,7 +153,11 @@ ordered_json describe(const ResultReader& result) {
     description["model_axes"] = {{"forward", name_of(axes.forward)}, {"up", name_of(axes.up)}};
   }
   if (!h.bodies.empty()) description["bodies"] = h.bodies;
-  const Answer answer = h.model_solids > 0 ? answer_of(result) : counted_answer(result);
+  return description;
+}
+
+/// Adds the verdict, what it rests on, and its warnings.
+void add_verdict(ordered_json& description, const ResultHeader& h, const Answer& answer) {
   description["verdict"] = name_of(answer.verdict());
   if (answer.budget) {
     description["reasons"] = names_of(answer.reasons());
@@ -168,6 +173,13 @@ ordered_json describe(const ResultReader& result) {
   description["warnings"] = answer.warnings;
   if (h.model_solids > 0) add_inside(answer, description);
   if (answer.searched) add_searched(*answer.searched, description);
+}
+
+ordered_json describe(const ResultReader& result) {
+  const ResultHeader& h = result.header();
+  ordered_json description = question_json(result);
+  const Answer answer = h.model_solids > 0 ? answer_of(result) : counted_answer(result);
+  add_verdict(description, h, answer);
   if (h.ignores_points()) {
     description["ignored"] = ignored_json(answer);
     if (!h.ignore_classes.empty()) description["classes_hash"] = hash_text(h.classes_hash);

@@ -4,10 +4,14 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "clearway/clearway.hpp"
 #include "clearway/error.hpp"
@@ -15,16 +19,19 @@
 #include "cli/conflicts/conflict_inputs.hpp"
 #include "cli/input_roles.hpp"
 #include "cli/run_again.hpp"
+#include "cli/section_inputs.hpp"
 #include "cli/steps.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
+#include "cli/support/program.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "core/util/format.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/models/vehicle_file.hpp"
 #include "io/result/conflicts/shift_file.hpp"
+#include "io/store/file_kind.hpp"
 
 namespace clearway::tool {
 
@@ -51,8 +58,8 @@ void name_files(ReportCommand& options) {
 /// Takes the number of points that --model-above left out from the note of the model's reader.
 void note_left_out(ReportCommand& options, const std::vector<Message>& messages) {
   options.report.model_above = options.model_options.above;
-  for (const Message& told : messages) {
-    for (const auto& [name, value] : told.numbers) {
+  for (const Message& message : messages) {
+    for (const auto& [name, value] : message.numbers) {
       if (name == "left_out") options.report.model_left_out = static_cast<std::uint64_t>(value);
     }
   }
@@ -83,11 +90,11 @@ Query read_query_again(ReportCommand& options, const Result& result, const Store
   const std::size_t of_path = warnings.size();
   read_model_again(options, result, query);
   note_left_out(options, warnings);
-  const std::span<const Message> told(warnings);
+  const std::span<const Message> read(warnings);
   const bool all_named =
       options.vehicle.empty() && options.lengths.all_have_units() &&
-      names_unit(options.trajectory_options.metres_per_unit, told.first(of_path)) &&
-      names_unit(options.model_options.unit, told.subspan(of_path));
+      names_unit(options.trajectory_options.metres_per_unit, read.first(of_path)) &&
+      names_unit(options.model_options.unit, read.subspan(of_path));
   std::erase_if(warnings, [](const Message& m) { return m.severity == Message::Severity::kNote; });
   if (auto note = all_named ? note_on_feet(store) : std::nullopt) {
     warnings.push_back(std::move(*note));
@@ -103,7 +110,7 @@ void log_summary(const ReportCommand& options, const ReportSummary& summary, con
     conflicts += (found.listed.empty() ? " that is listed, but " : " and ") +
                  counted(found.small_groups, "group") + " too small to be listed";
   }
-  spdlog::info("{}: {}, {}, {}, {}", options.output.string(), name_of(summary.verdict),
+  spdlog::info("{}: {}, {}, {}, {}", options.outputs.front().string(), name_of(summary.verdict),
                counted(result.size(), "colliding point"), conflicts, format_size(summary.bytes));
   if (!result.parameters().first_pose) {
     spdlog::info(
@@ -113,19 +120,77 @@ void log_summary(const ReportCommand& options, const ReportSummary& summary, con
   spdlog::info("open it in a browser: it is one file and needs no network");
 }
 
+/// The ending of a file's name in small letters, such as ".svg".
+std::string ending_of(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+/// Throws UsageError unless there is one output, which is a page.
+void check_one_page(const ReportCommand& options) {
+  for (const std::filesystem::path& output : options.outputs) {
+    if (ending_of(output) != ".svg") continue;
+    throw UsageError(output.string() +
+                     ": only a section has a picture; expected an output that "
+                     "ends in .html");
+  }
+  if (options.outputs.size() > 1) {
+    throw UsageError("--output: a result has one page; give the option once");
+  }
+}
+
 void check_model_or_vehicle(const ReportCommand& options) {
   if (options.model.empty() && options.vehicle.empty()) throw CLI::RequiredError("--model");
   std::vector<std::filesystem::path> inputs{options.result, options.environment, options.model,
                                             options.trajectory, options.shifts};
   if (!options.section.empty()) inputs.push_back(options.section);
   if (!options.vehicle.empty()) inputs = vehicle_inputs(options.vehicle, std::move(inputs));
-  refuse_overwriting(options.output, inputs);
+  refuse_overwriting(options.outputs.front(), inputs);
   if (options.vehicle.empty()) check_is_model(options.model);
 }
 
-void add_report_inputs(CLI::App& command, ReportCommand& options) {
-  add_searched_inputs(command, "Result of clearway run", options.result, options.environment,
-                      options.model, options.vehicle, options.trajectory);
+/// The options that a page of a result and one of a section share.
+void add_options_of_both(CLI::App& command, ReportCommand& options) {
+  command
+      .add_option("FILE", options.result,
+                  "Result of clearway run, or section of clearway section find")
+      ->type_name("FILE")
+      ->required();
+  CLI::Option* environment =
+      command
+          .add_option(
+              "--env", options.environment,
+              "The store that was searched; of a section, for the points that stop the load")
+          ->type_name("FILE");
+  CLI::Option* trajectory =
+      command.add_option("--trajectory", options.trajectory, kTrajectoryHelp)->type_name("FILE");
+  environment->needs(trajectory);
+  trajectory->needs(environment);
+  command
+      .add_option("-o,--output", options.outputs,
+                  "The page, an HTML file; of a section also the picture, an SVG file, in place of "
+                  "the page or besides it")
+      ->allow_extra_args(false)
+      ->type_name("FILE")
+      ->required();
+  add_trajectory_options(command, options.trajectory_options, options.lengths);
+  {
+    const GroupScope group(command, OptionGroup::kPage);
+    add_page_texts(command, options.report);
+  }
+  command.add_flag("--force", options.report.overwrite, "Overwrite existing outputs")
+      ->group(title_of(OptionGroup::kFiles));
+  command.add_flag("--json", options.json, "Print what the page says as one JSON object");
+}
+
+void add_inputs_of_result(CLI::App& command, ReportCommand& options) {
+  const GroupScope group(command, OptionGroup::kInputs);
+  CLI::Option* model =
+      command.add_option("--model", options.model, "The model that was moved")->type_name("FILE");
+  add_vehicle_option(command, options.vehicle,
+                     "Instead of --model: the vehicle of several bodies that was moved", model);
   command
       .add_option(
           "--section", options.section,
@@ -136,9 +201,6 @@ void add_report_inputs(CLI::App& command, ReportCommand& options) {
                   "Shifts that free the path and its conflicts, which the page then names: JSON of "
                   "clearway shift -o")
       ->type_name("FILE");
-  command.add_option("-o,--output", options.output, "The page, an HTML file")
-      ->type_name("FILE")
-      ->required();
   add_model_options(command, options.model_options, options.lengths);
 }
 
@@ -159,10 +221,8 @@ void add_classes(CLI::App& command, ReportCommand& options) {
       ->type_name("METRES,...");
 }
 
-void add_page_options(CLI::App& command, ReportOptions& options, LengthOptions& lengths) {
+void add_sizes(CLI::App& command, ReportOptions& options, LengthOptions& lengths) {
   const GroupScope group(command, OptionGroup::kPage);
-  add_page_texts(command, options.title, options.project, options.client, options.author,
-                 options.date);
   command
       .add_option("--max-points", options.max_points,
                   "Environment points on the page at most; they are thinned evenly")
@@ -172,8 +232,14 @@ void add_page_options(CLI::App& command, ReportOptions& options, LengthOptions& 
   lengths.add(command, "--every", options.every,
               "Length of a stretch in the table of stations (default: 5, or so long that there are "
               "at most 200)");
-  command.add_flag("--force", options.overwrite, "Overwrite an existing page")
-      ->group(title_of(OptionGroup::kFiles));
+}
+
+void add_options_of_result(CLI::App& command, ReportCommand& options) {
+  add_inputs_of_result(command, options);
+  add_classes(command, options);
+  add_sizes(command, options.report, options.lengths);
+  add_conflict_options(command, options);
+  add_axis_options(command, options);
 }
 
 }  // namespace
@@ -182,6 +248,7 @@ ReportSummary perform(ReportCommand& options) {
   ConsoleProgress progress;
   options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
   options.find.stop = &stop_flag();
+  check_one_page(options);
   check_model_or_vehicle(options);
   check_is_trajectory(options.trajectory);
   const Result result(options.result);
@@ -207,38 +274,188 @@ ReportSummary perform(ReportCommand& options) {
     options.report.section = &*section;
     options.report.section_name = file_name(options.section);
   }
-  ReportSummary summary =
-      write_report(result, store, query.model, query.poses, options.output, options.report);
+  ReportSummary summary = write_report(result, store, query.model, query.poses,
+                                       options.outputs.front(), options.report);
   log_summary(options, summary, result);
   return summary;
 }
 
 void add_options(CLI::App& command, ReportCommand& options) {
-  add_report_inputs(command, options);
-  add_classes(command, options);
-  add_page_options(command, options.report, options.lengths);
-  add_conflict_options(command, options);
-  add_axis_options(command, options);
-  command.add_flag("--json", options.json, "Print what the page says as one JSON object");
+  add_options_of_both(command, options);
+  add_options_of_result(command, options);
   options.command = &command;
 }
 
+namespace {
+
+/// What the page of a section takes besides the options of both pages.
+struct SectionPage {
+  LoadInput load;
+  SectionHeights heights;
+  std::filesystem::path conflicts;
+};
+
+void add_options_of_section(CLI::App& command, SectionPage& options, LengthOptions& lengths) {
+  const GroupScope group(command, OptionGroup::kSection);
+  CLI::Option* outline = add_load_options(command, options.load, lengths);
+  for (const char* name : {"--margin", "--mirror", "--unit"}) {
+    command.get_option(name)->needs(outline)->group(title_of(OptionGroup::kSection));
+  }
+  lengths.add(command, "--band", options.heights.band,
+              "Height of a band of the map of widths (default: 0.1 m)");
+  lengths.add(command, "--base", options.heights.base, kBaseHelp, FieldRange::kAny);
+  command
+      .add_option("--conflicts", options.conflicts,
+                  "Names for what stops the load: a CSV file of clearway conflicts on the same "
+                  "path, with a column `name` if you add one")
+      ->type_name("FILE")
+      ->needs(command.get_option("--env"))
+      ->needs(outline);
+}
+
+/// Throws UsageError where an output is neither a page nor a picture, or is an input.
+void check_outputs(const ReportCommand& both, const SectionPage& options) {
+  std::vector<std::filesystem::path> inputs{both.result};
+  for (const auto& input :
+       {options.load.outline, both.environment, both.trajectory, options.conflicts}) {
+    if (!input.empty()) inputs.push_back(input);
+  }
+  bool has_page = false;
+  for (const std::filesystem::path& output : both.outputs) {
+    const std::string ending = ending_of(output);
+    if (ending != ".html" && ending != ".htm" && ending != ".svg") {
+      throw UsageError(output.string() +
+                       ": unknown output format; the name must end in .html for a page, or in "
+                       ".svg for the picture");
+    }
+    has_page = has_page || ending != ".svg";
+    refuse_overwriting(output, inputs);
+  }
+  if (both.json && !has_page) {
+    throw UsageError("--json prints what a page says; expected an output that ends in .html");
+  }
+}
+
+/// The texts of a page of a section, and what the page is made of but store and path.
+SectionPageOptions page_of(ReportCommand& both, SectionPage& options, const Section& section) {
+  const double metres = convert_for(both.lengths, section, both.result);
+  SectionPageOptions page;
+  static_cast<PageTexts&>(page) = both.report;
+  if (page.date.empty()) page.date = now_in_utc();
+  page.overwrite = both.report.overwrite;
+  page.heights = options.heights;
+  page.section_name = file_name(both.result);
+  if (options.load.outline.empty()) return page;
+  page.outline = read_load(options.load, section, metres);
+  page.warnings = options.load.messages;
+  page.margin = options.load.margin;
+  page.outline_name = file_name(options.load.outline);
+  return page;
+}
+
+SectionPageSummary write_outputs(const std::vector<std::filesystem::path>& outputs,
+                                 const Section& section, const SectionPageOptions& page) {
+  SectionPageSummary summary;
+  for (const std::filesystem::path& output : outputs) {
+    if (ending_of(output) == ".svg") {
+      write_section_picture(section, output, page, page.overwrite);
+      spdlog::info("{}: the picture of the section", output.string());
+      continue;
+    }
+    summary = write_section_page(section, output, page);
+    spdlog::info("{}: {}; {}", output.string(), summary.sentence, format_size(summary.bytes));
+  }
+  return summary;
+}
+
+SectionPageSummary report_section(ReportCommand& both, SectionPage& options) {
+  check_outputs(both, options);
+  const Section section(both.result);
+  SectionPageOptions page = page_of(both, options, section);
+  SiteInput site{both.environment, both.trajectory, both.trajectory_options};
+  site.read();
+  if (site.is_given()) {
+    page.store = &*site.store;
+    page.path = &site.path;
+  }
+  if (!options.conflicts.empty()) page.obstacles = read_obstacles(options.conflicts);
+  for (const Message& warning : section.data().warnings) log_message(warning);
+  return write_outputs(both.outputs, section, page);
+}
+
+bool is_section(const std::filesystem::path& path) {
+  std::error_code unknown;
+  return std::filesystem::is_regular_file(path, unknown) &&
+         describe_file(path).kind == FileKind::kSection;
+}
+
+/// Some of the options of a command.
+using Options = std::vector<const CLI::Option*>;
+
+/// The options that a function adds to a command.
+template <typename Add>
+Options added(const CLI::App& command, Add&& add) {
+  const std::size_t before = command.get_options().size();
+  add();
+  Options options = command.get_options();
+  options.erase(options.begin(), options.begin() + static_cast<std::ptrdiff_t>(before));
+  return options;
+}
+
+/// Throws UsageError where the command was given any of these options. why: what the message says
+/// after the option's name.
+void refuse_options(const Options& options, const std::string& why) {
+  for (const CLI::Option* option : options) {
+    if (!option->empty()) throw UsageError("--" + option->get_lnames().front() + " " + why);
+  }
+}
+
+struct ReportOfAny {
+  ReportCommand both;
+  SectionPage section;
+  Options of_result, of_section;
+};
+
+std::string write_any(ReportOfAny& options) {
+  ReportCommand& both = options.both;
+  const std::string name = both.result.string();
+  if (is_section(both.result)) {
+    refuse_options(options.of_result, "is for the page of a result, but " + name + " is a section");
+    return report_section(both, options.section).facts;
+  }
+  refuse_options(options.of_section, "is for the page of a section, but " + name + " is none");
+  if (both.environment.empty()) throw CLI::RequiredError("--env");
+  std::string facts;
+  advising_to_run_again(*both.command, {{both.result, both.trajectory}},
+                        [&] { facts = perform(both).facts; });
+  return facts;
+}
+
+}  // namespace
+
 void add_report(CLI::App& program) {
-  const auto options = std::make_shared<ReportCommand>();
+  const auto options = std::make_shared<ReportOfAny>();
   CLI::App* command = program.add_subcommand(
-      "report", "Write a page that shows what a run found: one HTML file for any browser");
-  add_options(*command, *options);
+      "report", "Write a page that shows a result or a section: one HTML file for any browser");
+  ReportCommand& both = options->both;
+  both.command = command;
+  add_options_of_both(*command, both);
+  options->of_result = added(*command, [&] { add_options_of_result(*command, both); });
+  options->of_section =
+      added(*command, [&] { add_options_of_section(*command, options->section, both.lengths); });
   command->footer(
-      "Store, model and trajectory are those of the run: they are compared by their hashes.\n"
-      "Ask the run for --first-pose, --clearance and --profile: the page shows all of them.\n"
+      "A result needs --env, --trajectory, and --model or --vehicle, those of the run: they are\n"
+      "compared by their hashes. Ask the run for --first-pose, --clearance and --profile: the "
+      "page\n"
+      "shows all of them. The page of a section shows the widths, and with --outline whether the\n"
+      "load passes.\n"
       "Example: clearway report out.h5 --env site.h5 --model car.ply --trajectory path.txt -o "
-      "report.html");
+      "report.html\n"
+      "Example: clearway report section.h5 --outline load.csv --margin 0.1 -o section.html");
   command->callback([options] {
-    run_stoppable(options->output, kStartsAgain, [&] {
-      advising_to_run_again(*options->command, {{options->result, options->trajectory}}, [&] {
-        const ReportSummary summary = perform(*options);
-        if (options->json) print(summary.facts + "\n");
-      });
+    run_stoppable(options->both.outputs.front(), kStartsAgain, [&] {
+      const std::string facts = write_any(*options);
+      if (options->both.json) print(facts + "\n");
     });
   });
 }

@@ -55,7 +55,7 @@ class MemoryWatch {
   MemoryWatch(const MemoryWatch&) = delete;
   MemoryWatch& operator=(const MemoryWatch&) = delete;
 
-  /// The largest resident memory that was seen so far, bytes; 0 where the system does not tell.
+  /// The largest resident memory that was seen so far, bytes; 0 where the system does not say.
   std::uint64_t peak_bytes();
 
  private:
@@ -87,7 +87,7 @@ MemoryWatch::MemoryWatch() : page_bytes_(static_cast<std::uint64_t>(::sysconf(_S
       }
     });
   } catch (const Error&) {
-    // The system does not tell, so peak_bytes() is 0.
+    // The system does not say, so peak_bytes() is 0.
   } catch (const std::system_error&) {
     // No thread is available, so only peak_bytes() reads the memory.
   }
@@ -120,10 +120,10 @@ Query read_query(RunOptions& options, const Store& store, PoseLabels& labels) {
   const std::size_t of_model = warnings.size();
   options.trajectory_options.default_crs = store.crs_wkt();
   query.poses = read_trajectory(options.trajectory, options.trajectory_options, &warnings, &labels);
-  const std::span<const Message> told(warnings);
+  const std::span<const Message> read(warnings);
   if (options.vehicle.empty() && options.lengths.all_have_units() &&
-      names_unit(how.unit, told.first(of_model)) &&
-      names_unit(options.trajectory_options.metres_per_unit, told.subspan(of_model))) {
+      names_unit(how.unit, read.first(of_model)) &&
+      names_unit(options.trajectory_options.metres_per_unit, read.subspan(of_model))) {
     if (auto note = note_on_feet(store)) warnings.push_back(std::move(*note));
   }
   if (!options.vehicle.empty()) {
@@ -266,8 +266,8 @@ void prepare_device(const SearchOptions& options) {
 void refuse_judging_part(const RunOptions& options) {
   if (!options.search.shard || !options.fail_on_collision) return;
   throw UsageError(
-      "--fail-on-collision: one part does not tell whether a point collides; clearway merge "
-      "--fail-on-collision tells it of all parts");
+      "--fail-on-collision: one part does not show whether a point collides; clearway merge "
+      "--fail-on-collision decides it for all parts");
 }
 
 /// What can be said of the places that were not scanned, from the written result.

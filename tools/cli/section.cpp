@@ -99,16 +99,17 @@ SectionParameters parameters_of(const FindCommand& options) {
 }
 
 std::vector<Pose> read_path(FindCommand& options, const Store& store) {
-  std::vector<Message>& told = options.search.input_warnings;
+  std::vector<Message>& messages = options.search.input_warnings;
   options.trajectory_options.default_crs = store.crs_wkt();
-  const std::size_t before = told.size();
-  std::vector<Pose> path = read_trajectory(options.trajectory, options.trajectory_options, &told);
+  const std::size_t before = messages.size();
+  std::vector<Pose> path =
+      read_trajectory(options.trajectory, options.trajectory_options, &messages);
   if (options.lengths.all_have_units() &&
       names_unit(options.trajectory_options.metres_per_unit,
-                 std::span<const Message>(told).subspan(before))) {
-    if (auto note = note_on_feet(store)) told.push_back(std::move(*note));
+                 std::span<const Message>(messages).subspan(before))) {
+    if (auto note = note_on_feet(store)) messages.push_back(std::move(*note));
   }
-  for (const Message& message : told) log_message(message);
+  for (const Message& message : messages) log_message(message);
   return path;
 }
 
@@ -153,7 +154,7 @@ void run_find(FindCommand& options) {
 }
 
 void add_question(CLI::App& command, FindCommand& options) {
-  const GroupScope group(command, OptionGroup::kAsked);
+  const GroupScope group(command, OptionGroup::kQuestion);
   options.lengths
       .add(command, "--x-range", options.x_range,
            "Rear and front of the load along the vehicle, from its origin")
@@ -399,7 +400,6 @@ void add_section(CLI::App& program, int& exit_code) {
   add_find(*command);
   add_section_check(*command, exit_code);
   add_export_of_section(*command);
-  add_section_report(*command);
 }
 
 }  // namespace clearway::tool

@@ -58,7 +58,4 @@ struct SiteInput {
 /// Adds --env and --trajectory, which need each other, and how the trajectory is read.
 void add_site_options(CLI::App& command, SiteInput& site, LengthOptions& lengths);
 
-/// Adds the command `section report`.
-void add_section_report(CLI::App& section);
-
 }  // namespace clearway::tool

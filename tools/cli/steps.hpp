@@ -63,7 +63,7 @@ struct ConflictsCommand : ConflictCommand {
 struct ConflictsOutcome {
   std::string text;     ///< a table of the worst conflicts
   std::string json;     ///< the summary as one JSON object
-  std::string verdict;  ///< the verdict of the result, where the table alone does not tell it
+  std::string verdict;  ///< the verdict of the result, where the table alone does not show it
 };
 
 void add_options(CLI::App& command, ConflictsCommand& options);
@@ -89,9 +89,10 @@ struct StationsOutcome {
 void add_options(CLI::App& command, StationsCommand& options);
 StationsOutcome perform(StationsCommand& options);
 
-/// The options of `clearway report`.
+/// The options of `clearway report` for the page of a result.
 struct ReportCommand : ConflictCommand {
-  std::filesystem::path result, environment, model, vehicle, trajectory, section, shifts, output;
+  std::filesystem::path result, environment, model, vehicle, trajectory, section, shifts;
+  std::vector<std::filesystem::path> outputs;  ///< one: the page of a section may have a picture
   ModelOptions model_options;
   ReportOptions report;
   std::vector<ParsedLength> classes;

@@ -24,7 +24,7 @@ struct PathWords {
 std::string found_text(std::uint64_t colliding_points, std::uint64_t environment_points);
 
 /// A clause such as ", but see the 2 warnings above", so that no all-clear stands alone where
-/// something was warned of. Empty without warnings.
+/// there were warnings. Empty without warnings.
 std::string caveat_of(std::size_t warnings);
 
 /// The verdict in one sentence, with `caveat` before its end. unit: the symbol of lengths, "m".

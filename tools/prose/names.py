@@ -13,7 +13,7 @@ CALL = re.compile(r"((?:\w+(?:::|\.))*~?\w+)\((?:[^()]|\([^()]*\))*\)")
 WORD = re.compile(r"[A-Za-z_]\w*")
 PLACEHOLDER = re.compile(r"\bNAME(?=\b|_)|^DIR/")  # NAME_reader.hpp, DIR/index.html
 
-# Where a document tells where facts are from, it names files of other projects.
+# Where a document says where facts are from, it names files of other projects.
 FOREIGN = {"docs/design/laz.md": {"laszip.cpp", "lasreadpoint.cpp", "lasreaditemcompressed_v1.cpp",
                                   "_v4.cpp"}}
 

@@ -120,7 +120,7 @@ def rotations(vectors):
 
 
 class Places:
-    """Places whose true distance is the margin, as scan and path tell of them."""
+    """Places whose true distance is the margin, as scan and path have them."""
 
     def __init__(self, shape, errors, margin, count, random):
         true = shape.points(margin)
@@ -169,7 +169,7 @@ class Program:
         self.clearway = clearway
 
     def ask(self, places, errors, sigmas):
-        """Which places are called clear, which a conflict, and the margins that it tells."""
+        """Which places are called clear, which a conflict, and its margins."""
         count, each = places.points.shape[:2]
         columns = int(np.ceil(np.sqrt(count)))
         at = APART * np.stack([np.arange(count) % columns, np.arange(count) // columns,

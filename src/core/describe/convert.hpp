@@ -69,7 +69,7 @@ inline constexpr std::tuple kConvertFields{
                   "`first` on",
           .usual = "what the scans say",
           .doc = "A CSV file with the header first,x,y,z: from source index first on, the scanner "
-                 "stood at\n    x, y, z. None: the places are those that the inputs tell."},
+                 "stood at\n    x, y, z. None: the places are those that the inputs name."},
     Field{.member = &ConvertOptions::origins_path,
           .key = "origins_path",
           .option = "--origins-path",

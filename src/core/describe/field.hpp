@@ -11,7 +11,7 @@ namespace clearway {
 /// The groups of options in a help text, in the order in which it shows them.
 enum class OptionGroup {
   kInputs,
-  kAsked,
+  kQuestion,
   kCertainty,
   kIgnored,
   kStore,
@@ -20,6 +20,7 @@ enum class OptionGroup {
   kUnits,
   kConflicts,
   kPage,
+  kSection,
   kSpeed,
   kFiles,
   kOutput
@@ -41,10 +42,10 @@ struct Field {
 
   Type Struct::*member;
   const char* key;  ///< name in results, JSON and Python, and in campaigns unless below
-  const char* campaign_key = "";            ///< name in campaigns, if it is another one
-  const char* topic = "";                   ///< name in messages, as in "the radius"
-  const char* option = "";                  ///< option of the command line; empty: it has none
-  OptionGroup group = OptionGroup::kAsked;  ///< where the help shows the option
+  const char* campaign_key = "";               ///< name in campaigns, if it is another one
+  const char* topic = "";                      ///< name in messages, as in "the radius"
+  const char* option = "";                     ///< option of the command line; empty: it has none
+  OptionGroup group = OptionGroup::kQuestion;  ///< where the help shows the option
   const char* value_name = "";  ///< the help's name for its value, if the type does not say it
   const char* help = "";        ///< help text of the option, without its default
   const char* usual = "";  ///< what the help gives as the default; empty: it says nothing of it

@@ -20,7 +20,8 @@ inline constexpr std::array kChoices<Axis>{
     Choice<Axis>{"x", Axis::kPlusX},  Choice<Axis>{"y", Axis::kPlusY},
     Choice<Axis>{"z", Axis::kPlusZ}};
 
-/// What a model is searched as, which only a search has to be told: others know it from its result.
+/// What a model is searched as, which only a search has to be given: others know it from its
+/// result.
 inline constexpr std::tuple kKindOfModel{Field{
     .member = &ModelOptions::as,
     .key = "model_as",

@@ -24,7 +24,7 @@ inline constexpr std::tuple kQueryValues{
           .key = "first_pose",
           .topic = "first poses",
           .option = "--first-pose",
-          .group = OptionGroup::kAsked,
+          .group = OptionGroup::kQuestion,
           .help = "Also report the first pose that touches each colliding point, counted from 0",
           .doc = "Whether the first pose that touches each colliding point is asked for.",
           .is_always_listed = true},
@@ -32,7 +32,7 @@ inline constexpr std::tuple kQueryValues{
           .key = "clearance",
           .topic = "clearance",
           .option = "--clearance",
-          .group = OptionGroup::kAsked,
+          .group = OptionGroup::kQuestion,
           .help = "Also report the least distance, and its pose, of every point closer than this, "
                   "for example 0.5; engine sweep only",
           .doc =
@@ -43,7 +43,7 @@ inline constexpr std::tuple kQueryValues{
           .key = "profile",
           .topic = "profile",
           .option = "--profile",
-          .group = OptionGroup::kAsked,
+          .group = OptionGroup::kQuestion,
           .help = "Also report for every pose the least distance below this, and its point, for "
                   "example 0.5; engine sweep only",
           .doc =
@@ -54,7 +54,7 @@ inline constexpr std::tuple kQueryValues{
           .key = "between_poses",
           .topic = "motion",
           .option = "--between-poses",
-          .group = OptionGroup::kAsked,
+          .group = OptionGroup::kQuestion,
           .help = "Move every model point on a straight segment from each pose to the next",
           .doc =
               "Whether model points move on straight segments from pose to pose, so that nothing "

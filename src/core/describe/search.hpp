@@ -32,7 +32,7 @@ inline constexpr Field kModelIsCut{
     .key = "model_is_cut",
     .doc =
         "Says that the model lacks its lowest part, as with above= of read_model(), so that it\n"
-        "    does not stand on the ground: ignored points that collide are not warned of for "
+        "    does not stand on the ground: ignored points that collide cause no warning for "
         "their number\n    alone."};
 
 /// How a query is searched, and where.

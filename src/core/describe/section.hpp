@@ -30,14 +30,17 @@ inline constexpr std::tuple kSectionValues{
           .usual = "0",
           .doc = "The greatest margin that Section.check() may be asked for, and its default.",
           .range = FieldRange::kFromZero},
-    Field{.member = &SectionParameters::seen,
-          .key = "seen",
-          .option = "--seen",
-          .group = OptionGroup::kCertainty,
-          .help = "Tell cells that no beam of the scanner crossed from free ones; the store has to "
-                  "know where its scanner stood",
-          .doc = "Tells cells that no beam of the scanner crossed from free ones; needs a store "
-                 "with origins."},
+    Field{
+        .member = &SectionParameters::seen,
+        .key = "seen",
+        .option = "--seen",
+        .group = OptionGroup::kCertainty,
+        .help = "Distinguish cells that no beam of the scanner crossed from free ones; the store "
+                "has to "
+                "know where its scanner stood",
+        .doc =
+            "Distinguishes cells that no beam of the scanner crossed from free ones; needs a store "
+            "with origins."},
     kSeenCube<SectionParameters>,
     Field{.member = &SectionParameters::between_poses,
           .key = "between_poses",

@@ -15,7 +15,7 @@ constexpr double kFloatRoundoff = 0x1p-24;
 /// those are left to the predicate alone.
 constexpr double kLargest = 1e15;
 
-/// Least length that floats tell apart, because the squares of shorter ones would not fit a float.
+/// Least length that floats distinguish, because the squares of shorter ones would not fit a float.
 constexpr double kLeast = 1e-12;
 
 /// Bound on the reach in grid cells, which limits how many of them a search looks up on an axis.

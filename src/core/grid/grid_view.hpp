@@ -15,7 +15,7 @@ namespace clearway {
 /// Greatest number of poses of a run, the unit in which poses are searched.
 inline constexpr std::uint32_t kRunPoses = 16;
 
-/// Number of parts that one task looks at.
+/// Number of parts that one task handles.
 inline constexpr std::uint32_t kTaskParts = 128;
 
 /// Bounds of a pose: |R (m - c)| <= stretch |m - c|; `spread` bounds the rounding of both

@@ -49,9 +49,8 @@ using enum Subject;
 
 /// The messages, by subject and code. docs/guide/warnings.md is made from this table.
 inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
-    {"absent-points", kEither, kScans,
-     "Some records hold no point, such as beams without a return. It is a warning where they "
-     "are more than 99 %."},
+    {"absent-points", kWarning, kScans,
+     "More than 99 % of the records hold no point, such as beams without a return."},
     {"column-names", kWarning, kScans,
      "The columns that a comment names are not those that the lines have, so the first three "
      "are used."},
@@ -85,9 +84,6 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
     {"gps-times-not-finite", kWarning, kScans,
      "With `--origins-path`, points have a GPS time that is not a finite number, and so no "
      "origin."},
-    {"heights-converted", kNote, kScans,
-     "Heights of a scan were converted to the unit of the other coordinates, as `--unit-z` "
-     "says, or heights of a path to those of the map."},
     {"las-count", kWarning, kScans,
      "A LAS file on standard input holds more points than it declares, and all were read."},
     {"left-out", kEither, kScans,
@@ -139,9 +135,6 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
      "The header names another unit, but the numbers count as they are because `--columns` was "
      "given."},
     {"padded-cells", kWarning, kScans, "A regular layout leaves most of its cells empty."},
-    {"pcd-default-viewpoint", kNote, kScans,
-     "The VIEWPOINT of a PCD file is PCD's default, so it does not tell from where the points "
-     "were seen."},
     {"pcd-viewpoint", kWarning, kScans,
      "A PCD file has a VIEWPOINT, which is not applied. If the points are in the sensor's "
      "frame, apply it first."},
@@ -158,7 +151,6 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
     {"scan-placed", kNote, kScans, "The note says where the pose of a scan of 3DTK comes from."},
     {"scan-without-pose", kWarning, kScans,
      "A single 3DTK scan has no pose, so it stays at its own origin."},
-    {"scans-placed", kNote, kScans, "The note says where the poses of PTX scans come from."},
     {"skipped-files", kWarning, kScans, "`--skip-unreadable` left files out."},
     {"units-contradict", kWarning, kScans,
      "A file names two units of length, for example in its GeoTIFF keys and its well-known "
@@ -231,9 +223,9 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
      kTrajectories,
      "A body has no pose where its pivots are at the same place, or above each other.",
      {.doubt = Doubt::kStretch}},
-    {"cant-ends", kEither, kTrajectories,
-     "The cant of an alignment is given for a part of the poses only, and its last value was "
-     "kept beyond. It is a note where this value is 0."},
+    {"cant-ends", kWarning, kTrajectories,
+     "The cant of an alignment is given for a part of the poses only, and its last value, which "
+     "is not 0, was kept beyond."},
     {"cant-rails", kNote, kTrajectories,
      "A line has cant, and no distance between the rails was given, so that of standard gauge "
      "was taken, 1.5 m."},
@@ -263,7 +255,8 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
     {"ground-leans", kWarning, kTrajectories,
      "On the ground that was found, the vehicle would lean by more than 8.6 degrees, as where a "
      "parked car under one wheel hides the ground."},
-    {"line-closed", kNote, kTrajectories, "A line ends where it begins, and is driven round once."},
+    {"heights-converted", kNote, kTrajectories,
+     "Heights of a path were converted to those of the map."},
     {"line-crs", kWarning, kTrajectories,
      "The line and the environment are in different coordinate systems, by their EPSG codes. "
      "The coordinates were not converted."},

@@ -21,13 +21,13 @@ Message warning_or_note(bool warns, EitherCode code, std::string text, MessageNu
 /// A note without a code, which says what an input contains or how it was read.
 Message plain_note(std::string text, MessageNumbers numbers = {});
 
-/// Passes on what a long operation tells its caller: notes at once, warnings at once and in the
+/// Passes on the messages of a long operation: notes at once, warnings at once and in the
 /// report. For one thread.
 class MessageLog {
  public:
-  /// Tell and warnings must outlive this object.
-  MessageLog(const MessageCallback& tell, std::vector<Message>& warnings)
-      : callback_(tell), warnings_(warnings) {}
+  /// Callback and warnings must outlive this object.
+  MessageLog(const MessageCallback& callback, std::vector<Message>& warnings)
+      : callback_(callback), warnings_(warnings) {}
 
   void note(std::string text) const {
     if (callback_) callback_(plain_note(std::move(text)));
@@ -49,7 +49,7 @@ class MessageLog {
 /// Throws InputError for a strict call that has warnings, with their number and their codes, each
 /// code once, in the order of the warnings; does nothing if there are none. Warnings that a store
 /// repeats from its conversion ("store-...") do not count, because its strictness was decided
-/// there. To be called when all warnings have been told and nothing has been published.
+/// there. To be called when all warnings have been reported and nothing has been published.
 void refuse_warnings(const std::vector<Message>& warnings);
 
 /// Keeps the first three notes of each code, and appends how many more there were. Warnings stay.

@@ -37,7 +37,7 @@ class IgnoredPoints {
   /// Whether the query leaves anything out.
   bool any() const { return any_; }
 
-  /// Whether none of the cell's points is to be searched, as far as boxes alone can tell.
+  /// Whether none of the cell's points is to be searched, as far as boxes alone can show.
   bool skips(std::uint32_t cell) const {
     return search_ == Search::kOthers ? holds(cell) : !touches(cell);
   }

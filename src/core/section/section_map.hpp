@@ -35,7 +35,7 @@ struct SectionMapRef {
 
   /// Whether every cell of the rectangle is blocked at `pose` or before. May say no for cells that
   /// other threads are blocking. Surfaces are thin, so where a cell of the rectangle is free, a
-  /// corner mostly is, and four reads tell.
+  /// corner mostly is, and four reads show it.
   CLEARWAY_HD bool is_blocked_by(const SectionRect& rect, std::uint32_t pose) const {
     if (last_corner(rect) > pose) return false;
     return (rect.column_to - rect.column_from <= 1 && rect.row_to - rect.row_from <= 1) ||

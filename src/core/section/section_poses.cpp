@@ -134,7 +134,7 @@ std::size_t SectionPoses::open(std::uint32_t first, std::uint32_t count, std::ui
   return nodes_.size() - 1;
 }
 
-/// Where the load moves on by about as much from each pose to the next, a line tells when a point
+/// Where the load moves on by about as much from each pose to the next, a line shows when a point
 /// comes into the range of x'.
 void SectionPoses::add_pace(SectionPoseNode& node) const {
   if (node.count < 2) return;

@@ -29,7 +29,7 @@ struct SectionRef {
 
   /// Whether a pose of the node may block a cell, by a point of the box with this centre and these
   /// half sides, that no earlier pose has blocked. half: null for a point. For a node of many bins
-  /// only the places tell.
+  /// only the places decide.
   CLEARWAY_HD bool may_block(const SectionPoseNode& node, const Vec3& centre,
                              const Vec3* half) const {
     const PlaceBounds bounds = node.bounds(centre, half, lattice, slack);

@@ -96,7 +96,7 @@ bool SweepFilterOf<Element>::descend_in_order(std::span<const std::uint32_t> nod
 }
 
 /// Visits both halves of a node before the halves of either, then goes on with the nearer one.
-/// visit: also tells how near the model is. Returns true as soon as a visit ends the descent.
+/// visit: also returns how near the model is. Returns true as soon as a visit ends the descent.
 template <typename Element>
 template <typename Visit>
 bool SweepFilterOf<Element>::descend_nearer_first(std::uint32_t node, const Visit& visit) const {

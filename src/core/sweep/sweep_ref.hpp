@@ -85,7 +85,7 @@ struct SweepRefOf {
   bool first_pose;
   bool between_poses;
 
-  /// Whether the least d2 below the clearance tells by itself which points collide.
+  /// Whether the least d2 below the clearance decides by itself which points collide.
   CLEARWAY_HD bool hits_follow_from_clearance() const { return clearance >= radius && !first_pose; }
 
   CLEARWAY_HD bool moves_on(const MotionNode& node) const {

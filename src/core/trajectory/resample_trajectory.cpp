@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "clearway/error.hpp"
 #include "core/trajectory/pose_spline.hpp"
 #include "core/trajectory/trajectory_summary.hpp"
+#include "core/util/format.hpp"
 
 namespace clearway {
 
@@ -27,12 +27,6 @@ namespace {
 std::string named(std::size_t from) {
   return "poses " + std::to_string(from) + " and " + std::to_string(from + 1) +
          " (counting from 0)";
-}
-
-std::string shown(double metres) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", metres);
-  return text;
 }
 
 std::vector<double> motions_of(std::span<const Pose> poses, const Box& model) {
@@ -83,9 +77,10 @@ class Resampler {
     }
     if (total / max_motion_ <= static_cast<double>(most_added)) return;
     const double enough = total / static_cast<double>(most_added) * 1.01;
-    throw UsageError("a motion of " + shown(max_motion_) + " m at the most takes more than " +
-                     std::to_string(most_added) + " additional poses; the farthest apart, " +
-                     shown(longest) + " m, are " + named(at) + "; expected " + shown(enough) +
+    throw UsageError("a motion of " + format_digits(max_motion_, 3) +
+                     " m at the most takes more than " + std::to_string(most_added) +
+                     " additional poses; the farthest apart, " + format_digits(longest, 3) +
+                     " m, are " + named(at) + "; expected " + format_digits(enough, 3) +
                      " or more");
   }
 
@@ -113,7 +108,8 @@ class Resampler {
       if (add_steps(curve, sums, steps, poses_[i + 1])) return;
       out_.resize(start);
     }
-    throw UsageError("a motion of " + shown(max_motion_) + " m at the most: between " + named(i) +
+    throw UsageError("a motion of " + format_digits(max_motion_, 3) + " m at the most: between " +
+                     named(i) +
                      " rounding alone moves the model by about as much; expected a larger one");
   }
 

@@ -6,7 +6,6 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <optional>
 #include <utility>
 
@@ -137,8 +136,8 @@ std::vector<double> chord_deviations(std::span<const Pose> poses, double reach) 
     double curvature = 0;
     const std::size_t last = std::min(i + 1, steps.size() - 1);
     for (std::size_t j = i - std::min<std::size_t>(i, 1); j <= last; ++j) {
-      const bool tells = j == i || steps[j] >= kShareOfNeighbours * steps[i];
-      if (tells && steps[i] > 0 && steps[j] > 0) {
+      const bool counts = j == i || steps[j] >= kShareOfNeighbours * steps[i];
+      if (counts && steps[i] > 0 && steps[j] > 0) {
         curvature = std::max(curvature, turns[j] / steps[j]);
       }
     }
@@ -152,12 +151,6 @@ namespace {
 
 using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 using Vector = Eigen::Vector3d;
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
 
 /// Largest angle by which the path turns, in radians: that between its first long chord and any
 /// other. Going back on the same line is not a turn.
@@ -188,7 +181,7 @@ std::optional<Message> missing_rotation(std::span<const Pose> poses, double path
     from_first = std::max(from_first, turn_between(poses[0], pose));
   }
   const std::string path =
-      " although the path turns by " + number(path_turn / kDegree) + " degrees";
+      " although the path turns by " + format_brief(path_turn / kDegree) + " degrees";
   const std::vector<std::pair<std::string, double>> numbers{
       {"path_turn_degrees", path_turn / kDegree}, {"turn_degrees", from_first / kDegree}};
   if (from_identity <= kNoTurn && path_turn > kPathTurn) {
@@ -199,7 +192,7 @@ std::optional<Message> missing_rotation(std::span<const Pose> poses, double path
   if (source == RotationSource::kAngles && from_first < kRadiansAsDegrees &&
       path_turn > kClearPathTurn) {
     return warning("rotation-too-small",
-                   name + ": the poses turn the model by " + number(from_first / kDegree) +
+                   name + ": the poses turn the model by " + format_brief(from_first / kDegree) +
                        " degrees in all," + path + "; the angles may be radians",
                    numbers);
   }
@@ -346,9 +339,10 @@ std::optional<Message> quaternion_order(std::span<const Pose> poses, const std::
         poses, [w_came_first](const Pose& pose) { return reordered(pose, w_came_first); });
     if (kTimesLess * other > given) continue;
     return warning("quaternion-order",
-                   name + ": the model tilts by up to " + number(given / kDegree) +
-                       " degrees, but by " + number(other / kDegree) + " with its quaternions as " +
-                       (w_came_first ? "w x y z" : "x y z w") + "; their order may be another",
+                   name + ": the model tilts by up to " + format_brief(given / kDegree) +
+                       " degrees, but by " + format_brief(other / kDegree) +
+                       " with its quaternions as " + (w_came_first ? "w x y z" : "x y z w") +
+                       "; their order may be another",
                    {{"tilt_degrees", given / kDegree}, {"other_tilt_degrees", other / kDegree}});
   }
   return std::nullopt;
@@ -388,9 +382,9 @@ std::optional<Message> wrong_roll(std::span<const Pose> poses, const std::string
   if (lean.straight < kEnough * (lean.straight + lean.curved)) return std::nullopt;
   const double share = lean.outwards / lean.curved;
   return warning("cant-side",
-                 name + ": on " + number(100 * share) +
+                 name + ": on " + format_brief(100 * share) +
                      " % of the length of its curves the model leans outwards, by up to " +
-                     number(lean.greatest / kDegree) +
+                     format_brief(lean.greatest / kDegree) +
                      " degrees, and elsewhere it is level; roll or cant may have the wrong sign",
                  {{"share", share}, {"degrees", lean.greatest / kDegree}});
 }

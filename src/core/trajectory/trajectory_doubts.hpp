@@ -75,9 +75,9 @@ enum class RotationSource { kMatrices, kQuaternions, kAngles };
 
 /// Warnings of poses that are hardly meant so: rotations that are missing, in another unit or turn
 /// against the path; inverse poses; quaternions in another order; roll with the wrong sign. Silent
-/// if the path does not turn enough to tell. Steps between poses are judged by the functions above,
-/// once the radius is known. name: the file's name for the messages. docs/design/trajectory.md,
-/// "Doubts".
+/// if the path does not turn enough to show it. Steps between poses are judged by the functions
+/// above, once the radius is known. name: the file's name for the messages.
+/// docs/design/trajectory.md, "Doubts".
 std::vector<Message> doubts_about(std::span<const Pose> poses, RotationSource source,
                                   const std::string& name);
 

@@ -23,7 +23,7 @@ struct ArrayPlace {
 };
 
 /// Arrays one after another in one run of bytes, each aligned to kAlignment. It describes the run
-/// before there is memory: it tells how much memory the arrays take and where they lie.
+/// before there is memory: it says how much memory the arrays take and where they lie.
 class ArrayRun {
  public:
   /// Alignment of each array, that of CUDA's own allocations: warps read from it in whole lines.

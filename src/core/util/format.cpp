@@ -40,21 +40,30 @@ std::string format_number(double value) {
   return {text, end};
 }
 
-std::string format_brief(double value) {
-  constexpr double kNoise = 1e-9;  // rounding errors of coordinates, in any unit of length
+namespace {
+
+constexpr double kNoise = 1e-9;  // rounding errors of coordinates, in any unit of length
+
+}  // namespace
+
+std::string format_digits(double value, int digits) {
   const double size = std::abs(value);
+  if (size == 0) return "0";
   char text[40];
-  if (!std::isfinite(value) || size >= 1e16) {
-    std::snprintf(text, sizeof text, "%.4g", value);
+  if (!std::isfinite(value) || size < kNoise || size >= 1e16) {
+    std::snprintf(text, sizeof text, "%.*g", digits, value);
     return text;
   }
-  if (size < kNoise) return "0";
-  const int digits = std::max(0, 3 - static_cast<int>(std::floor(std::log10(size))));
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  const int decimals = std::max(0, digits - 1 - static_cast<int>(std::floor(std::log10(size))));
+  std::snprintf(text, sizeof text, "%.*f", decimals, value);
   std::string out = text;
-  if (digits > 0) out.erase(out.find_last_not_of('0') + 1);
+  if (decimals > 0) out.erase(out.find_last_not_of('0') + 1);
   if (out.ends_with('.')) out.pop_back();
   return out;
+}
+
+std::string format_brief(double value) {
+  return std::abs(value) < kNoise ? "0" : format_digits(value, 4);
 }
 
 }  // namespace clearway

@@ -20,7 +20,11 @@ std::string counted(std::uint64_t count, const std::string& one, const std::stri
 /// The shortest decimal that reads back as the same number; without an exponent from 1e-4 to 1e16.
 std::string format_number(double value);
 
-/// A number with four digits, for messages.
+/// A number with so many digits, without zeros at its end, for messages; without an exponent from
+/// 1e-9 to 1e16.
+std::string format_digits(double value, int digits);
+
+/// A number with four digits, for messages; 0 where it is no more than a rounding error.
 std::string format_brief(double value);
 
 /// The runs of ascending numbers as strings, such as "3" and "7-9".

@@ -36,12 +36,13 @@ class NoProgress final : public Progress {
   void end() override {}
 };
 
-/// Tells the caller of a long operation how far it is, and tells the operation whether the caller
+/// Reports to the caller of a long operation how far it is, and to the operation whether the caller
 /// wants it to stop.
 class CallbackProgress final : public Progress {
  public:
   /// Tell and stop must outlive this object.
-  CallbackProgress(const ProgressCallback& tell, StopFlag stop) : callback_(tell), stop_(stop) {}
+  CallbackProgress(const ProgressCallback& callback, StopFlag stop)
+      : callback_(callback), stop_(stop) {}
 
   void begin(std::string_view stage, std::uint64_t total, std::string_view unit) override {
     const std::lock_guard lock(mutex_);
@@ -49,23 +50,23 @@ class CallbackProgress final : public Progress {
     unit_ = unit;
     total_ = total;
     done_ = 0;
-    tell(false);
+    report(false);
   }
   void advance(std::uint64_t units) override {
     const std::lock_guard lock(mutex_);
     done_ += units;
-    tell(false);
+    report(false);
   }
   void end() override {
     const std::lock_guard lock(mutex_);
-    tell(true);
+    report(true);
   }
   bool stop_requested() const override {
     return stop_ != nullptr && stop_->load(std::memory_order_relaxed);
   }
 
  private:
-  void tell(bool finished) const {
+  void report(bool finished) const {
     if (callback_) callback_({stage_, done_, total_, unit_, finished});
   }
 

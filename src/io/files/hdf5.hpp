@@ -185,7 +185,7 @@ class Rows {
   void read(std::uint64_t first_row, std::span<Number> values) const;
   /// Reads the chunks of rows from `first_row`, which begins a chunk, in the form of
   /// stored_chunk.hpp and unchecked. Returns false where they are stored in another way or cannot
-  /// be read; read() then tells what is wrong.
+  /// be read; read() then says what is wrong.
   bool read_chunks(std::uint64_t first_row, std::uint64_t row_count,
                    std::vector<std::vector<std::byte>>& chunks) const;
   /// Number of rows in a chunk that read_chunks() returns.

@@ -2,8 +2,6 @@
 
 #include <unistd.h>
 
-#include <charconv>
-#include <cstdio>
 #include <span>
 #include <system_error>
 
@@ -32,17 +30,6 @@ std::string excerpt(std::string_view text) {
     result += c == '\t' ? ' ' : c >= ' ' && c <= '~' ? c : '?';
   }
   return result + (text.size() > kLongest ? "...\"" : "\"");
-}
-
-std::string shown(double value) {
-  char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
-}
-
-std::string brief(double value) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.9g", value);
-  return digits;
 }
 
 namespace fs = std::filesystem;

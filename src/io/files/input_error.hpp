@@ -24,12 +24,6 @@ namespace clearway {
 /// unprintable bytes as '?'.
 std::string excerpt(std::string_view text);
 
-/// A double for a message, with all the digits that tell it from its neighbours.
-std::string shown(double value);
-
-/// A double for a message, rounded to nine digits.
-std::string brief(double value);
-
 /// The whole contents of a small file. Throws ResourceError.
 std::string text_of_file(const std::filesystem::path& path);
 

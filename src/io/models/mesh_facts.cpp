@@ -135,7 +135,7 @@ void number_solids(DisjointSets& finder, const std::vector<bool>& faulty, MeshPa
 }
 
 std::string shown_place(const Vec3& p) {
-  return "(" + shown(p.x) + ", " + shown(p.y) + ", " + shown(p.z) + ")";
+  return "(" + format_number(p.x) + ", " + format_number(p.y) + ", " + format_number(p.z) + ")";
 }
 
 const char* words_for(EdgeFault fault) {

@@ -28,10 +28,10 @@ namespace clearway {
 namespace {
 
 constexpr std::string_view kBoxPrefix = "box:";
-constexpr double kBendToTell = 0.1;  // share of the spacing above which a bend is reported
+constexpr double kReportedBend = 0.1;  // share of the spacing above which a bend is reported
 
-void tell(std::vector<Message>& messages, const ModelInput& input, const std::string& text,
-          MessageNumbers numbers = {}) {
+void add_note(std::vector<Message>& messages, const ModelInput& input, const std::string& text,
+              MessageNumbers numbers = {}) {
   messages.push_back(plain_note(input.path.string() + ": " + text, std::move(numbers)));
 }
 
@@ -59,7 +59,7 @@ void append(const PointBatch& batch, const CloudInfo& info, std::uint64_t first,
     const Vec3& p = batch.positions[i];
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
       refuse(name, "model point " + std::to_string(first + i) + " (counted from 0) is (" +
-                       shown(p.x) + ", " + shown(p.y) + ", " + shown(p.z) +
+                       format_number(p.x) + ", " + format_number(p.y) + ", " + format_number(p.z) +
                        "); expected finite coordinates");
     }
     points.push_back(p);
@@ -90,8 +90,8 @@ void read_points(ModelInput& input) {
   const double metres = metres_of(info.unit);
   input.declared_unit = info.any_foot ? FileUnit(metres) : FileUnit::exactly(metres);
   if (reader->info().faces > 0) {
-    tell(input.messages, input,
-         "its " + format_count(reader->info().faces) + " faces are left out");
+    add_note(input.messages, input,
+             "its " + format_count(reader->info().faces) + " faces are left out");
   }
 }
 
@@ -145,10 +145,10 @@ void scale(ModelInput& input, const ModelOptions& options) {
   if (unit == 0) return;
   if (unit == options.environment_unit) {
     if (is_foot(unit)) {
-      tell(input.messages, input,
-           "its coordinates are in " + units_text(unit) +
-               ", as the environment is, and are taken as they are",
-           {{"metres", unit}});
+      add_note(input.messages, input,
+               "its coordinates are in " + units_text(unit) +
+                   ", as the environment is, and are taken as they are",
+               {{"metres", unit}});
     }
     return;
   }
@@ -157,7 +157,8 @@ void scale(ModelInput& input, const ModelOptions& options) {
   for (Vec3& p : input.mesh.vertices) {
     const Vec3 place{scaled(p.x), scaled(p.y), scaled(p.z)};
     if (!std::isfinite(place.x) || !std::isfinite(place.y) || !std::isfinite(place.z)) {
-      refuse(input.path.string(), "(" + shown(p.x) + ", " + shown(p.y) + ", " + shown(p.z) +
+      refuse(input.path.string(), "(" + format_number(p.x) + ", " + format_number(p.y) + ", " +
+                                      format_number(p.z) +
                                       ") is too large in the environment's unit; expected finite "
                                       "coordinates");
     }
@@ -172,10 +173,10 @@ void scale(ModelInput& input, const ModelOptions& options) {
          {{"metres", unit}});
   }
   if (options.unit.is_known()) return;
-  tell(input.messages, input,
-       "its unit is " + shown(unit) + " m, the environment's " + shown(options.environment_unit) +
-           " m: its coordinates are converted",
-       {{"metres", unit}});
+  add_note(input.messages, input,
+           "its unit is " + format_number(unit) + " m, the environment's " +
+               format_number(options.environment_unit) + " m: its coordinates are converted",
+           {{"metres", unit}});
 }
 
 /// Turns the model so that its x axis points ahead and its z axis up.
@@ -183,9 +184,9 @@ void turn(ModelInput& input, const ModelOptions& options) {
   const ModelAxes axes{options.forward, options.up};
   if (!axes.need_turn()) return;
   for (Vec3& p : input.mesh.vertices) p = turned(p, axes);
-  tell(input.messages, input,
-       std::string("its ") + name_of(axes.forward) + " axis points ahead and its " +
-           name_of(axes.up) + " axis up: it is turned so that these are x and z");
+  add_note(input.messages, input,
+           std::string("its ") + name_of(axes.forward) + " axis points ahead and its " +
+               name_of(axes.up) + " axis up: it is turned so that these are x and z");
 }
 
 void check_axes(const ModelOptions& options) {
@@ -197,8 +198,8 @@ void check_axes(const ModelOptions& options) {
 void tell_remarks(ModelInput& input) {
   const MeshRemarks& remarks = input.remarks;
   if (remarks.last_line_open) {
-    tell(input.messages, input,
-         "the last line has no line break; make sure that the file is whole");
+    add_note(input.messages, input,
+             "the last line has no line break; make sure that the file is whole");
   }
   if (remarks.crossing > 0) {
     warn(input.messages, input, "mesh-crossing-faces",
@@ -220,13 +221,14 @@ Model sampled(const ModelInput& input, const ModelOptions& options,
   Model shape = sample_mesh(surface, spacing, input.path.string());
   shape.spacing = spacing;
   tell_bend(input, spacing, "the spacing", messages);
-  tell(messages, input,
-       "a mesh of " + contents_of(input) + ", sampled to " + format_count(shape.vertices.size()) +
-           " points; no place of its surface is farther than " + format_number(spacing) +
-           " m from one",
-       {{"triangles", static_cast<double>(surface.triangles.size())},
-        {"points", static_cast<double>(shape.vertices.size())},
-        {"spacing", spacing}});
+  add_note(messages, input,
+           "a mesh of " + contents_of(input) + ", sampled to " +
+               format_count(shape.vertices.size()) +
+               " points; no place of its surface is farther than " + format_number(spacing) +
+               " m from one",
+           {{"triangles", static_cast<double>(surface.triangles.size())},
+            {"points", static_cast<double>(shape.vertices.size())},
+            {"spacing", spacing}});
   return shape;
 }
 
@@ -244,7 +246,7 @@ void leave_out_below(const ModelInput& input, double above, std::vector<Vec3>& p
                      std::vector<Message>& messages) {
   const std::size_t all = points.size();
   if (!std::isfinite(above)) {
-    throw UsageError(input.path.string() + ": " + shown(above) +
+    throw UsageError(input.path.string() + ": " + format_number(above) +
                      " m as the lowest height of the model; expected a finite number");
   }
   const double highest = std::ranges::max_element(points, {}, [](const Vec3& p) { return p.z; })->z;
@@ -275,19 +277,19 @@ Model vertices_of(const ModelInput& input, const ModelOptions& options,
                        ": samples of a mesh, whose spacing would not hold beside a cut; cut the "
                        "mesh at the height first, and sample it then");
     }
-    tell(messages, input,
-         "samples of a mesh; no place of its surface is farther than " +
-             format_number(shape.spacing) + " m from one",
-         {{"spacing", shape.spacing}});
+    add_note(messages, input,
+             "samples of a mesh; no place of its surface is farther than " +
+                 format_number(shape.spacing) + " m from one",
+             {{"spacing", shape.spacing}});
   }
   if (!input.between_vertices.empty()) {
     shape.spacing =
         distance_to_vertices({input.mesh.vertices, input.between_vertices}, options.above);
-    tell(messages, input,
-         "the model is the vertices of a mesh, " + format_count(input.mesh.vertices.size()) +
-             ", and its faces are left out; places of its surface are up to " +
-             format_brief(shape.spacing) + " m from the nearest vertex",
-         {{"spacing", shape.spacing}});
+    add_note(messages, input,
+             "the model is the vertices of a mesh, " + format_count(input.mesh.vertices.size()) +
+                 ", and its faces are left out; places of its surface are up to " +
+                 format_brief(shape.spacing) + " m from the nearest vertex",
+             {{"spacing", shape.spacing}});
   }
   if (options.above) leave_out_below(input, *options.above, shape.vertices, messages);
   return shape;
@@ -327,11 +329,11 @@ bool names_box(const std::filesystem::path& model) {
 void tell_bend(const ModelInput& input, double allowed, const std::string& of_what,
                std::vector<Message>& messages) {
   const double bend = input.remarks.largest_bend;
-  if (!(bend > kBendToTell * allowed)) return;
+  if (!(bend > kReportedBend * allowed)) return;
   const std::string text = "a face with more than three corners is bent by " + format_brief(bend) +
                            " m (" + input.remarks.largest_bend_at +
                            "); how it is cut into triangles changes the surface by about as much";
-  if (bend <= allowed) return tell(messages, input, text);
+  if (bend <= allowed) return add_note(messages, input, text);
   warn(messages, input, "mesh-bent-faces",
        text + ", which is more than " + of_what + ". Export the mesh as triangles",
        {{"bend", bend}, {"spacing", allowed}});
@@ -369,8 +371,9 @@ Message loose_vertices_warning(const ModelInput& input, std::uint64_t vertices) 
 
 ModelInput read_model_input(const std::filesystem::path& path, const ModelOptions& options) {
   if (!(options.unit.metres() >= 0) || !(options.environment_unit > 0)) {
-    throw UsageError(path.string() + ": units of " + shown(options.unit.metres()) + " m and " +
-                     shown(options.environment_unit) + " m; expected numbers above 0");
+    throw UsageError(path.string() + ": units of " + format_number(options.unit.metres()) +
+                     " m and " + format_number(options.environment_unit) +
+                     " m; expected numbers above 0");
   }
   check_axes(options);
   const bool with_faces = !options.vertices_only;
@@ -388,11 +391,11 @@ ModelInput read_model_input(const std::filesystem::path& path, const ModelOption
   turn(input, options);
   tell_remarks(input);
   if (mesh && !input.is_mesh() && input.between_vertices.empty()) {
-    tell(input.messages, input,
-         input.remarks.single_points > 0 ? "draws single points alone: the model is these, " +
-                                               format_count(input.mesh.vertices.size())
-                                         : "has no faces: the model is its vertices, " +
-                                               format_count(input.mesh.vertices.size()));
+    add_note(input.messages, input,
+             input.remarks.single_points > 0 ? "draws single points alone: the model is these, " +
+                                                   format_count(input.mesh.vertices.size())
+                                             : "has no faces: the model is its vertices, " +
+                                                   format_count(input.mesh.vertices.size()));
   }
   return input;
 }
@@ -421,19 +424,20 @@ Model points_of(const ModelInput& input, const ModelOptions& options,
 
 namespace {
 
-Model solids_of(const ModelInput& input, const ModelOptions& options, std::vector<Message>& told) {
+Model solids_of(const ModelInput& input, const ModelOptions& options,
+                std::vector<Message>& messages) {
   if (options.above) {
     throw UsageError(input.path.string() +
                      ": cut at a height, parts of the model are open and no longer solid; search "
                      "its surface, or take a file without what is to be left out");
   }
-  MeshParts parts = parts_with_solids(surface_of(input, options, told), input.path.string());
-  const auto tell = [&](const std::string& text) {
-    told.push_back(plain_note(input.path.string() + ": " + text));
+  MeshParts parts = parts_with_solids(surface_of(input, options, messages), input.path.string());
+  const auto add = [&](const std::string& text) {
+    messages.push_back(plain_note(input.path.string() + ": " + text));
   };
-  tell(summary_of(parts));
+  add(summary_of(parts));
   const std::string faults = faults_of(parts);
-  if (!faults.empty()) tell("what keeps parts from being solid: " + faults);
+  if (!faults.empty()) add("what keeps parts from being solid: " + faults);
   return {std::move(parts.mesh.vertices), std::move(parts.mesh.triangles),
           std::move(parts.solid_of)};
 }
@@ -451,22 +455,22 @@ Model read_model(const std::filesystem::path& path, const ModelOptions& options,
                  std::vector<Message>* messages) {
   check_model_options(options);
   const ModelInput input = read_model_input(path, options);
-  std::vector<Message> told;
+  std::vector<Message> remarks;
   Model shape;
   switch (resolved_kind(input, options)) {
     case ModelAs::kSolid:
-      shape = solids_of(input, options, told);
+      shape = solids_of(input, options, remarks);
       break;
     case ModelAs::kSurface: {
-      TriangleMesh surface = surface_of(input, options, told);
+      TriangleMesh surface = surface_of(input, options, remarks);
       shape = {std::move(surface.vertices), std::move(surface.triangles)};
       break;
     }
     default:
-      shape = points_of(input, options, told);
+      shape = points_of(input, options, remarks);
   }
   shape.file_axes = {options.forward, options.up};
-  if (messages) messages->insert(messages->end(), told.begin(), told.end());
+  if (messages) messages->insert(messages->end(), remarks.begin(), remarks.end());
   return shape;
 }
 

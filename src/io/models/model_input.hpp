@@ -23,7 +23,7 @@ struct ModelInput {
   /// 0.
   double sampled_spacing = 0;
   /// The triangles of a mesh of which only the vertices are wanted. They do not belong to the
-  /// model, but tell how far its surface is from the vertices.
+  /// model, but show how far its surface is from the vertices.
   std::vector<std::array<std::uint32_t, 3>> between_vertices;
 
   bool is_mesh() const { return !mesh.triangles.empty(); }

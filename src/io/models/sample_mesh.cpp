@@ -357,7 +357,7 @@ double rounder(double spacing) {
 
 void check_spacing(const std::vector<Vec3>& vertices, double spacing, const std::string& name) {
   if (!(spacing >= kLeastSpacing && spacing <= kLargestSpacing)) {
-    throw UsageError(name + ": a model spacing of " + shown(spacing) +
+    throw UsageError(name + ": a model spacing of " + format_number(spacing) +
                      " m; expected one from 1e-9 to 1e9");
   }
   double largest = 0;

@@ -71,7 +71,7 @@ void leave_out_below(const ModelInput& input, double above, TriangleMesh& mesh,
   const std::size_t all = mesh.triangles.size();
   const bool has_lines = input.remarks.segments + input.remarks.single_points > 0;
   if (!std::isfinite(above)) {
-    throw UsageError(input.path.string() + ": " + shown(above) +
+    throw UsageError(input.path.string() + ": " + format_number(above) +
                      " m as the lowest height of the model; expected a finite number");
   }
   const double bottom =

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/geometry/rigid.hpp"
-#include "io/files/input_error.hpp"
+#include "core/util/format.hpp"
 
 namespace clearway {
 
@@ -38,15 +38,15 @@ bool all_finite(std::span<const double> numbers) {
 }
 
 Objection objection_to(const Stretch& stretch, bool allow_non_rigid) {
-  const std::string found = "the rotation has singular values from " + shown(stretch.least) +
-                            " to " + shown(stretch.greatest) + " and determinant " +
-                            shown(stretch.determinant);
+  const std::string found =
+      "the rotation has singular values from " + format_number(stretch.least) + " to " +
+      format_number(stretch.greatest) + " and determinant " + format_number(stretch.determinant);
   if (!(stretch.least > 0) || !std::isfinite(stretch.greatest)) {
     return {found + "; expected an invertible matrix"};
   }
   if (allow_non_rigid || is_rigid(stretch)) return {};
-  return {found + "; expected a rigid motion: singular values within " + shown(kRigidTolerance) +
-              " of 1 and a positive determinant",
+  return {found + "; expected a rigid motion: singular values within " +
+              format_number(kRigidTolerance) + " of 1 and a positive determinant",
           Remedy::kAllowNonRigid};
 }
 
@@ -84,8 +84,8 @@ Objection pose_of_matrix(std::span<const double> numbers, bool allow_non_rigid, 
                   kRowByRow + " 0 0 0 1"};
         }
         return {"the last row of the 4x4 matrix is not 0 0 0 1, but its numbers 13 to 16 are " +
-                shown(numbers[12]) + " " + shown(numbers[13]) + " " + shown(numbers[14]) + " " +
-                shown(numbers[15])};
+                format_number(numbers[12]) + " " + format_number(numbers[13]) + " " +
+                format_number(numbers[14]) + " " + format_number(numbers[15])};
       }
     }
   }
@@ -105,7 +105,7 @@ Objection pose_of_quaternion(std::span<const double, 3> position,
   const double norm = std::sqrt(quaternion[0] * quaternion[0] + quaternion[1] * quaternion[1] +
                                 quaternion[2] * quaternion[2] + quaternion[3] * quaternion[3]);
   if (!(std::abs(norm - 1) <= kNormTolerance)) {
-    return {"the quaternion has norm " + shown(norm) + "; expected 1 within 0.01"};
+    return {"the quaternion has norm " + format_number(norm) + "; expected 1 within 0.01"};
   }
   const double x = quaternion[0] / norm;
   const double y = quaternion[1] / norm;

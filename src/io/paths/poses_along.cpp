@@ -10,16 +10,15 @@
 #include "clearway/file_unit.hpp"
 #include "core/trajectory/trajectory_doubts.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
 #include "io/scans/scan_crs.hpp"
 
 namespace clearway {
 
-std::vector<Pose> PosesAlong::hand_over(std::vector<Message>* told, PoseLabels* labels) {
+std::vector<Pose> PosesAlong::hand_over(std::vector<Message>* messages, PoseLabels* labels) {
   if (labels != nullptr) *labels = {.station = std::move(stations)};
-  if (told != nullptr) {
-    told->insert(told->end(), std::make_move_iterator(remarks.begin()),
-                 std::make_move_iterator(remarks.end()));
+  if (messages != nullptr) {
+    messages->insert(messages->end(), std::make_move_iterator(remarks.begin()),
+                     std::make_move_iterator(remarks.end()));
   }
   return std::move(poses);
 }
@@ -28,9 +27,9 @@ std::vector<double> even_stations(double from, double to, double step) {
   const double count = std::floor((to - from) / step) + 2;
   if (!(count <= kMostPosesAlong)) {
     throw UsageError(
-        "--step " + brief(step) + ": gives about " + brief(count) + " poses; expected at most " +
-        format_count(static_cast<std::uint64_t>(kMostPosesAlong)) + ", for example with --step " +
-        format_brief((to - from) / (kMostPosesAlong / 2)));
+        "--step " + format_digits(step, 9) + ": gives about " + format_digits(count, 9) +
+        " poses; expected at most " + format_count(static_cast<std::uint64_t>(kMostPosesAlong)) +
+        ", for example with --step " + format_brief((to - from) / (kMostPosesAlong / 2)));
   }
   std::vector<double> stations;
   stations.reserve(static_cast<std::size_t>(count));

@@ -19,9 +19,9 @@ struct PosesAlong : Remarks {
   std::vector<Pose> poses;       ///< in the order of travel, metres
   std::vector<double> stations;  ///< of each pose, metres; empty where the file has none
 
-  /// Moves the poses out, the remarks behind those of `told`, and the stations into `labels`; both
-  /// may be null.
-  std::vector<Pose> hand_over(std::vector<Message>* told, PoseLabels* labels);
+  /// Moves the poses out, the remarks behind those of `messages`, and the stations into `labels`;
+  /// both may be null.
+  std::vector<Pose> hand_over(std::vector<Message>* messages, PoseLabels* labels);
 };
 
 /// Stations, as lengths, count as equal up to this many metres.

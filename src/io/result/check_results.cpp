@@ -84,9 +84,9 @@ std::string content_text(std::uint64_t count, const char* unit, std::uint64_t ha
 
 std::string quantisation_text(const Quantisation& quantisation) {
   std::string text = "scale";
-  for (const double scale : quantisation.scale) text.append(" ").append(shown(scale));
+  for (const double scale : quantisation.scale) text.append(" ").append(format_number(scale));
   text += ", offset";
-  for (const double offset : quantisation.offset) text.append(" ").append(shown(offset));
+  for (const double offset : quantisation.offset) text.append(" ").append(format_number(offset));
   return text;
 }
 
@@ -104,9 +104,9 @@ std::string field_text(const Field<QueryParameters, Value>& field, const ResultH
     return std::to_string(value);
   } else if constexpr (std::is_same_v<Value, double>) {
     const bool is_set = value > 0 || field.unit == FieldUnit::kNone || field.is_required;
-    return is_set ? shown(value) + symbol_of(field.unit) : field.no;
+    return is_set ? format_number(value) + symbol_of(field.unit) : field.no;
   } else {
-    return value ? shown(*value) + symbol_of(field.unit) : field.no;
+    return value ? format_number(*value) + symbol_of(field.unit) : field.no;
   }
 }
 
@@ -151,8 +151,8 @@ std::string model_text(const ResultHeader& header) {
 
 std::string margins_text(const ResultHeader& header) {
   if (!header.budget) return "none";
-  return shown(header.budget->clear()) + " m for clear, " + shown(header.budget->conflict()) +
-         " m for conflict";
+  return format_number(header.budget->clear()) + " m for clear, " +
+         format_number(header.budget->conflict()) + " m for conflict";
 }
 
 class Differences {

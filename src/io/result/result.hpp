@@ -113,7 +113,7 @@ class ResultReader {
   std::unique_ptr<State> state_;
 };
 
-/// Number of rows that a stream reads at a time unless told otherwise, a multiple of kEncodedRows.
+/// Number of rows that a stream reads at a time by default, a multiple of kEncodedRows.
 inline constexpr std::size_t kBatchRows = kEncodedRows;
 
 /// Reads a table of a result front to back in constant memory, batch_rows at a time; batches of

@@ -15,6 +15,7 @@
 #include "core/geometry/axes.hpp"
 #include "core/query/error_budget.hpp"
 #include "core/query/ignored_points.hpp"
+#include "core/util/format.hpp"
 #include "io/files/hdf5.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/kept_warnings.hpp"
@@ -331,8 +332,8 @@ std::vector<std::array<std::uint32_t, 2>> read_runs(const hdf5::Id& file, const 
 /// A number that has to be finite and 0 or above.
 void check_length(double length, const char* what, const std::string& name) {
   if (length >= 0 && std::isfinite(length)) return;
-  refuse(name,
-         std::string(what) + " is " + shown(length) + ", expected a finite number, 0 or above");
+  refuse(name, std::string(what) + " is " + format_number(length) +
+                   ", expected a finite number, 0 or above");
 }
 
 void check_budget(const ErrorBudget& b, double gap, const std::string& name) {
@@ -341,7 +342,7 @@ void check_budget(const ErrorBudget& b, double gap, const std::string& name) {
     check_length(number, "a number of the error budget", name);
   }
   if (!(gap > 0) || !std::isfinite(gap)) {
-    refuse(name, "the error budget has the gap " + shown(gap) + ", expected one above 0");
+    refuse(name, "the error budget has the gap " + format_number(gap) + ", expected one above 0");
   }
 }
 
@@ -350,8 +351,9 @@ void check_searched(const SearchedLength& read, const std::string& name) {
                      read.part >= 0 && read.part <= read.path;
   if (sound) return;
   refuse(name, "attributes 'searched_length' and 'partly_searched_length' are " +
-                   shown(read.whole) + " and " + shown(read.part) +
-                   ", expected lengths up to that of the path, which is " + shown(read.path));
+                   format_number(read.whole) + " and " + format_number(read.part) +
+                   ", expected lengths up to that of the path, which is " +
+                   format_number(read.path));
 }
 
 void check_seen(const SeenSummary& seen, const std::string& name) {

@@ -113,7 +113,7 @@ struct ResultFindings {
   /// See Answer. A file has it where there are several bodies.
   std::optional<SearchedLength> searched = {};
   /// Runs of poses at which no body has a pose, as poses_without_bodies() gives them. Kept where
-  /// several bodies have a profile, which at these poses cannot tell what is near.
+  /// several bodies have a profile, which at these poses cannot show what is near.
   std::vector<std::array<std::uint32_t, 2>> without_bodies = {};
 };
 

@@ -32,7 +32,7 @@ namespace clearway {
 namespace {
 
 /// Reads rows of several columns together. The thread that calls HDF5 reads their chunks, and many
-/// threads then check, decode and hash these. run() tells only whether all is well; to find out
+/// threads then check, decode and hash these. run() returns only whether all is well; to find out
 /// what is wrong, the caller reads the rows again one after the other, so that messages are always
 /// the same.
 class ParallelRead {

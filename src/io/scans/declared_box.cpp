@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "io/files/input_error.hpp"
+#include "core/util/format.hpp"
 
 namespace clearway {
 
@@ -18,7 +18,8 @@ bool goes_far_beyond(const Box& declared, const std::optional<Box>& found) {
 
 std::string declared_box_text(const Box& box) {
   const auto corner = [](const Vec3& p) {
-    return "(" + brief(p.x) + ", " + brief(p.y) + ", " + brief(p.z) + ")";
+    return "(" + format_digits(p.x, 9) + ", " + format_digits(p.y, 9) + ", " +
+           format_digits(p.z, 9) + ")";
   };
   return corner(box.lo) + " to " + corner(box.hi);
 }

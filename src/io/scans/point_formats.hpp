@@ -11,10 +11,10 @@ namespace clearway {
 /// glTF.
 enum class PointFormat { kLas, kPly, kXyz, kE57, kPcd, kPtx, k3dtk, kMesh, kUnreadMesh };
 
-/// The format as recognised by a file's first bytes; nullopt where they do not tell.
+/// The format as recognised by a file's first bytes; nullopt where they do not decide.
 std::optional<PointFormat> format_of_content(std::span<const std::byte> first_bytes);
 
-/// The format as recognised by the ending of a name; nullopt where it does not tell.
+/// The format as recognised by the ending of a name; nullopt where it does not decide.
 std::optional<PointFormat> format_of_name(const std::filesystem::path& path);
 
 /// Whether a file of a folder counts as a point file: its ending belongs to a format of points and

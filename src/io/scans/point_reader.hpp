@@ -20,7 +20,7 @@
 namespace clearway {
 
 /// The place of the scanner that saw the records of a file from number `first` on; nullopt where
-/// the file does not tell it for them.
+/// the file does not give it for them.
 struct OriginRun {
   std::uint64_t first = 0;
   std::optional<Vec3> origin;
@@ -45,12 +45,12 @@ struct CloudInfo : StatedCrs {
   double model_spacing = 0;
   bool text_table = false;  ///< whether the file is a text table, whose columns can be chosen
   /// Where the scanners stood, the first run from record 0 on, in ascending order; complete once
-  /// read() has returned false. Empty where the file tells it for no record.
+  /// read() has returned false. Empty where the file gives it for no record.
   std::vector<OriginRun> origins;
   /// What `origins` rest on, such as "poses of E57".
   std::string origins_rest_on;
   GpsTimes gps_times = GpsTimes::kNone;
-  /// The day on which the file was made, such as "2024-05-31"; empty where it does not tell.
+  /// The day on which the file was made, such as "2024-05-31"; empty where it does not say.
   std::string date = {};
   /// Remarks on the whole file; complete once read() has returned false.
   std::vector<Message> remarks;
@@ -137,7 +137,7 @@ struct PointReadOptions {
 };
 
 /// Opens a file. Its content decides the format, or the ending of its name where the content does
-/// not tell: LAS 1.0-1.4, LAZ, E57, PLY, PCD, PTX, PTS, XYZ text and scans of 3DTK. A path that is
+/// not say: LAS 1.0-1.4, LAZ, E57, PLY, PCD, PTX, PTS, XYZ text and scans of 3DTK. A path that is
 /// not a regular file is read as by open_las_stream(), with the system's folder for temporary
 /// files. Unknown formats throw InputError with advice.
 std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path,

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 
 namespace clearway {
@@ -384,7 +385,7 @@ LengthUnit unit_of_length(double metres) {
 
 std::string name_of_length(double metres) {
   const LengthUnit unit = unit_of_length(metres);
-  return unit == LengthUnit::kUnknown ? shown(metres) + " m" : to_string(unit);
+  return unit == LengthUnit::kUnknown ? format_number(metres) + " m" : to_string(unit);
 }
 
 namespace {
@@ -446,7 +447,7 @@ void take_heights(const Axis& axis, CrsUnits& units) {
     // A length of 1 stands where a writer knew the name alone.
     metres = axis.named_unit;
     units.doubt = "the unit of its heights is named " + excerpt(axis.unit_name) + " and has " +
-                  shown(axis.unit) + " m. It is taken by its name";
+                  format_number(axis.unit) + " m. It is taken by its name";
   }
   if (units.heights != 0 && !are_alike(metres, units.heights)) {
     units.trouble = "it names two systems of heights, in " + name_of_length(units.heights) +
@@ -485,9 +486,9 @@ void take_single(PJ_CONTEXT* context, const PJ* crs, CrsUnits& units, std::strin
                     name_of_length(y.unit);
   } else if (x.contradicts()) {
     units.trouble =
-        "its unit is named " + excerpt(x.unit_name) + " and has " + shown(x.unit) + " m";
+        "its unit is named " + excerpt(x.unit_name) + " and has " + format_number(x.unit) + " m";
   } else if (units.plane == LengthUnit::kUnknown) {
-    units.trouble = "its unit is " + shown(x.unit) + " m";
+    units.trouble = "its unit is " + format_number(x.unit) + " m";
   }
 }
 

@@ -7,8 +7,8 @@
 
 namespace clearway {
 
-/// The days on which scans were made, as far as their files tell, in the form "2024-05-31", whose
-/// order is that of the days. Both are empty where no file tells.
+/// The days on which scans were made, as far as their files say, in the form "2024-05-31", whose
+/// order is that of the days. Both are empty where no file says.
 struct ScanDates {
   std::string first = {}, last = {};
 
@@ -22,7 +22,7 @@ struct ScanDates {
   friend bool operator==(const ScanDates&, const ScanDates&) = default;
 };
 
-/// Writes the dates as attributes of a store or a result; none where no file tells.
+/// Writes the dates as attributes of a store or a result; none where no file says.
 void write_scan_dates(const hdf5::Id& file, const ScanDates& dates);
 
 /// Reads the dates. name: the file's, for messages. Throws InputError where they are damaged.

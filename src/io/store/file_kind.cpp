@@ -51,7 +51,7 @@ std::string pose_words(std::span<const double> numbers) {
 }
 
 bool names_poses(std::string_view line) {
-  const std::vector<std::string> names = parse_column_names(line).names;
+  const std::vector<std::string> names = parse_table_header(line).written;
   return std::ranges::any_of(names, [](const std::string& name) {
     return name == "qw" || name.ends_with("q_w") || name.ends_with("orientation.w") ||
            name.starts_with("q_rs_w") || name == "roll" || name == "r00";

@@ -26,7 +26,7 @@ struct FileDescription {
 };
 
 /// Describes a file by its first bytes, or for text its first lines, and by the ending of its
-/// name. This tells what the file was meant to be, not whether it is intact. Throws ResourceError
+/// name. This says what the file was meant to be, not whether it is intact. Throws ResourceError
 /// where there is no file of that name.
 FileDescription describe_file(const std::filesystem::path& path);
 

@@ -20,7 +20,7 @@ function on(event, listener) {
   (page.listeners[event] ||= []).push(listener);
 }
 
-function tell(event) {
+function notify(event) {
   for (const listener of page.listeners[event] || []) listener();
 }
 
@@ -29,7 +29,7 @@ function selectPose(index) {
   const chosen = Math.min(last, Math.max(0, Math.round(index)));
   if (chosen === page.pose) return;
   page.pose = chosen;
-  tell("pose");
+  notify("pose");
 }
 
 /** conflict: one of the list, or null. */
@@ -37,16 +37,16 @@ function selectConflict(conflict) {
   page.conflict = conflict;
   if (conflict) {
     page.pose = shownPose(poseOf(conflict));
-    tell("pose");
+    notify("pose");
   }
-  tell("conflict");
+  notify("conflict");
 }
 
 function conflictList() {
   return page.facts.conflicts ? page.facts.conflicts.list : [];
 }
 
-/** Index of the pose of the trajectory at which a conflict is looked at. */
+/** Index of the pose of the trajectory at which a conflict is shown. */
 function poseOf(conflict) {
   return conflict.nearest_pose ?? conflict.first_pose;
 }

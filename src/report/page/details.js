@@ -53,8 +53,7 @@ function conflictFacts(conflict) {
   rows.push(["Points", `${count(conflict.points)} in ${sizeOf(conflict).map((s) => s.toFixed(2)).join(" × ")} ${unitSymbol}`],
             ["Poses", `${count(conflict.first_pose)} to ${count(conflict.last_pose)}` +
              nearestPoseWords(conflict)]);
-  return make("table", { class: "facts" }, make("tbody", {},
-              rows.map(([name, value]) => factRow(name, value))));
+  return factsTable(...rows.map(([name, value]) => factRow(name, value)));
 }
 
 /** The three pictures, drawn at once. width: of each in pixels. */

@@ -123,7 +123,7 @@ function sizeOfVehicle() {
   return Math.max(0.1, ...some.map((i) => diagonal(jointBox(i, poseAt(i)))));
 }
 
-/** Where a conflict is looked at: the nearest point, or else the middle of its points. */
+/** Where a conflict is shown: the nearest point, or else the middle of its points. */
 function placeOf(conflict) {
   return inPage(conflict.nearest_point ?? conflict.centroid);
 }

@@ -66,20 +66,17 @@ function directionOnSite({ first, last }) {
                    `${bearingWords(left)} at the beginning`));
 }
 
-/** A box of numbers to compare, because nothing in the files shows whether they are right. */
-function onSiteBox() {
+/** The numbers of the vehicle and its path. */
+function vehicleBox() {
   const { bodies, first, last, bend } = page.facts.on_site;
   if (!first) return "";
   const path = page.facts.inputs.trajectory;
-  return make("div", { class: "basis", id: "on-site" }, make("h3", {}, "Check these on site"),
-      make("p", { class: "note" }, "No file shows whether these are right. Compare them with the vehicle, its " +
-           "load and the place."),
-      make("table", { class: "facts" }, make("tbody", {},
-          factRow(bodies.length > 1 ? "Bodies" : "Vehicle", vehicleOnSite(bodies)),
-          factRow("Begins at", placeOnSite(first)),
-          factRow("Ends at", placeOnSite(last)),
-          factRow("Drives", directionOnSite(page.facts.on_site)),
-          factRow("Tightest bend", bend ? `radius of about ${bend.radius < 100 ? station(bend.radius) : shortLength(+bend.radius.toPrecision(3))} ` +
-                                          `at chainage ${placeWords(bend.chainage)}`
-                                        : `none on ${station(path.length)} of path`))));
+  return compareOnSite("the vehicle, its load and the place",
+      factRow(bodies.length > 1 ? "Bodies" : "Vehicle", vehicleOnSite(bodies)),
+      factRow("Begins at", placeOnSite(first)),
+      factRow("Ends at", placeOnSite(last)),
+      factRow("Drives", directionOnSite(page.facts.on_site)),
+      factRow("Tightest bend", bend ? `radius of about ${bend.radius < 100 ? station(bend.radius) : shortLength(+bend.radius.toPrecision(3))} ` +
+                                      `at chainage ${placeWords(bend.chainage)}`
+                                    : `none on ${station(path.length)} of path`));
 }

@@ -1,5 +1,5 @@
 // Pictures of a conflict at the pose where it is nearest: from the front, from above, and a
-// cross-section. All three are drawn on canvases, when they are looked at or printed.
+// cross-section. All three are drawn on canvases, when they are shown or printed.
 
 const kBackground = "#f6f7f9";
 
@@ -68,7 +68,7 @@ function movedModel(shown) {
   return out;
 }
 
-/** What a picture of that kind looks at: {camera, lo, hi (depths of the environment)}. */
+/** What a picture of that kind shows: {camera, lo, hi (depths of the environment)}. */
 function viewOf(kind, conflict, vehicle, place, aspect) {
   const { forward, left, up, middle } = vehicle;
   const across = Math.max(vehicle.width, 0.6 * vehicle.height, 0.5);
@@ -113,7 +113,7 @@ function drawConflict(canvas, conflict, kind) {
   const square = stampOf("square", kind === "section" ? Math.max(2, size - 1) : size);
   let drawn = paintEnvironment(painter, { lo: view.lo, hi: view.hi, stamp: square });
   while (kind === "section" && drawn < 60 && thickness < 0.2) {
-    thickness *= 2;  // where points are thin, more of them tell where the surface is
+    thickness *= 2;  // where points are thin, more of them show where the surface is
     drawn = paintEnvironment(painter, { lo: -thickness, hi: thickness, stamp: square });
   }
   if (kind !== "section") painter.shade();

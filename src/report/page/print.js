@@ -64,7 +64,6 @@ function endPrint() {
 }
 
 function buildPrint() {
-  byId("print-page").addEventListener("click", () => window.print());
   window.addEventListener("beforeprint", preparePrint);
   window.addEventListener("afterprint", endPrint);
 }

@@ -54,7 +54,7 @@ function goToNearest() {
   selectPose(shownPose(page.facts.least_distance.pose));
   if (profile.to - profile.from > 0.99 * profileLength()) zoomProfile(0.2);
   showProfileValue(page.pose);
-  tell("overview");
+  notify("overview");
 }
 
 function buildProfile() {

@@ -125,7 +125,7 @@ function pictureTitle(index) {
 function chooseStretch(index) {
   section.chosen = index;
   drawStretch(index);
-  tell("stretch");
+  notify("stretch");
 }
 
 /** Widths in a band: {left, right, width} in lengths or null where open, and the poses that block. */
@@ -195,16 +195,14 @@ function readPicture(event) {
   const what = blocked ? `blocked${shown === null ? ` first by ${poseWords(firstPoseAt(i))}` : ""}`
       : unknown ? "not known" : "no point";
   byId("section-readout").textContent += ` Here y = ${signed(y)}, z = ${signed(z)}: ${what}.`;
-  tell("stretch");
+  notify("stretch");
 }
 
 function buildSection() {
   if (!section.facts) {
-    byId("section")?.remove();
-    document.querySelector('nav a[href="#section"]')?.remove();
+    removePart("section");
     return;
   }
-  if (byId("section-sentence")) byId("section-sentence").textContent = `${capital(section.facts.sentence)}.`;
   byId("section-caution").textContent = `${section.facts.caution}. Looking forward, left is left.`;
   byId("section-tools").append(
       button("Whole path", () => chooseStretch(null), { id: "section-whole" }), ...mapTools(),
@@ -215,5 +213,3 @@ function buildSection() {
   byId("section-svg").addEventListener("pointermove", readPicture);
   on("stretch", placeMapCursor);
 }
-
-const capital = (text) => text ? text[0].toUpperCase() + text.slice(1) : text;

@@ -14,18 +14,18 @@ function obstacleWords({ obstacle, witness }) {
 /** How far something reaches into the load or its margin, rounded up. */
 const depthCell = (depth) => depth < 0.0005 ? "< 0.001" : (Math.ceil(depth * 1000 - 1e-6) / 1000).toFixed(3);
 
-/** Title, cell of an intrusion, whether it is a number. */
+/** Columns with a cell for each intrusion. */
 function stopColumns() {
   const known = section.facts.check.stops.some((stop) => stop.intrusions.some((i) => i.witness));
   return [
-    ["Side", (i) => kSideWords[i.side], false],
-    [`Too far (${unitSymbol})`, (i) => depthCell(i.depth), true],
-    [`Deepest at chainage (${unitSymbol})`, (i) => i.chainage.toFixed(2), true],
-    ["Pose", (i) => String(i.first_pose), true],
-    [`y (${unitSymbol})`, (i) => `${signed(i.y_from)} – ${signed(i.y_to)}`, true],
-    [`z (${unitSymbol})`, (i) => `${signed(i.z_from)} – ${signed(i.z_to)}`, true],
-    ["Cells", (i) => count(i.cells), true],
-    known && ["What is there", obstacleWords, false],
+    { title: "Side", cell: (i) => kSideWords[i.side] },
+    { title: `Too far (${unitSymbol})`, cell: (i) => depthCell(i.depth), number: true },
+    { title: `Deepest at chainage (${unitSymbol})`, cell: (i) => i.chainage.toFixed(2), number: true },
+    { title: "Pose", cell: (i) => String(i.first_pose), number: true },
+    { title: `y (${unitSymbol})`, cell: (i) => `${signed(i.y_from)} – ${signed(i.y_to)}`, number: true },
+    { title: `z (${unitSymbol})`, cell: (i) => `${signed(i.z_from)} – ${signed(i.z_to)}`, number: true },
+    { title: "Cells", cell: (i) => count(i.cells), number: true },
+    known && { title: "What is there", cell: obstacleWords },
   ].filter(Boolean);
 }
 
@@ -35,18 +35,12 @@ function stopRows(stop, number, columns) {
     chooseStretch(index);
     byId("section").scrollIntoView();
   };
-  const cells = [...stop.intrusions.map((intrusion, i) => make("tr", { tabindex: i === 0 ? 0 : null, "data-stop": number, onclick: show,
-      onkeydown: (event) => {
-        if (event.key !== "Enter" && event.key !== " ") return;
-        event.preventDefault();
-        show();
-      } },
-      i === 0 && [make("td", { class: "number", rowspan: rows + 1 }, String(number)),
-                  make("td", { class: "number", rowspan: rows + 1 }, rangeWords(stretchRange(index)))],
-      columns.map(([, cell, isNumber]) => make("td", { class: isNumber ? "number" : null }, cell(intrusion))))),
+  const whole = (text) => make("td", { class: "number", rowspan: rows + 1 }, text);
+  return [...stop.intrusions.map((intrusion, i) => make("tr",
+      { ...chosenBy(show), tabindex: i === 0 ? 0 : null, "data-stop": number },
+      i === 0 && [whole(String(number)), whole(rangeWords(stretchRange(index)))], cellsOf(columns, intrusion))),
       make("tr", { class: "remedy", onclick: show }, make("td", { colspan: columns.length }, `${stop.remedy}.`,
           stop.obstacles.length > 0 ? ` There: ${stop.obstacles.join(", ")}.` : ""))];
-  return cells;
 }
 
 /** Named obstacles with the stretches that they stop, deepest first. */
@@ -78,22 +72,21 @@ function numberRanges(numbers) {
 function obstaclesTable() {
   const named = namedObstacles();
   if (named.length === 0) return "";
+  const columns = [
+    { title: "Obstacle", cell: ({ name }) => name },
+    { title: "Stops the load in stretches", cell: ({ stops }) => numberRanges(stops) },
+    { title: "Where it is deepest", cell: ({ deepest }) => deepest
+        ? `${depthCell(deepest.depth)} ${unitSymbol} too far, ${kSideWords[deepest.side]}, at chainage ` +
+          `${station(deepest.chainage)}, z = ${signed(deepest.z_from)} to ${signed(deepest.z_to)} ${unitSymbol}`
+        : "others reach deeper there" }];
   return make("div", {}, make("h3", {}, "By obstacle"), make("div", { class: "scroll" },
-      make("table", { class: "list", "aria-label": "Obstacles" },
-          make("thead", {}, make("tr", {}, ["Obstacle", "Stops the load in stretches", "Where it is deepest"].map((title) =>
-              make("th", { scope: "col" }, title)))),
-          make("tbody", {}, named.map(({ name, stops, deepest }) => make("tr", {}, make("td", {}, name),
-              make("td", {}, numberRanges(stops)),
-              make("td", {}, deepest ? `${depthCell(deepest.depth)} ${unitSymbol} too far, ${kSideWords[deepest.side]}, at chainage ` +
-                   `${station(deepest.chainage)}, z = ${signed(deepest.z_from)} to ${signed(deepest.z_to)} ${unitSymbol}`
-                   : "others reach deeper there")))))));
+      listTable("Obstacles", columns, named.map((one) => make("tr", {}, cellsOf(columns, one))))));
 }
 
 function buildStops() {
   const { check } = section.facts;
   if (!check || check.stops.length === 0) {
-    byId("stops").remove();
-    document.querySelector('nav a[href="#stops"]').remove();
+    removePart("stops");
     return;
   }
   const columns = stopColumns();
@@ -102,23 +95,24 @@ function buildStops() {
       "Too far is how much of the load and its margin it takes. Below each stretch stands what lets the load pass there. " +
       "y is to the left of the path, and z above it."));
   byId("stops-obstacles").append(obstaclesTable());
+  const titles = [{ title: "No." }, { title: `Chainage (${unitSymbol})` }, ...columns.map(({ title }) => ({ title }))];
   byId("stops-table").append(make("h3", {}, "By stretch"), make("div", { class: "scroll tall" },
-      make("table", { class: "list", "aria-label": "Stretches that stop the load" },
-          make("thead", {}, make("tr", {}, ["No.", `Chainage (${unitSymbol})`, ...columns.map(([title]) => title)]
-              .map((title) => make("th", { scope: "col" }, title)))),
-          make("tbody", {}, check.stops.flatMap((stop, i) => stopRows(stop, i + 1, columns))))));
+      listTable("Stretches that stop the load", titles, check.stops.flatMap((stop, i) => stopRows(stop, i + 1, columns)))));
 }
 
 /** Widths of the whole path, for each height and from the base up to it. */
 function buildWidths() {
   const { bands, boxes } = section.facts, side = (v) => v === null ? "open" : v.toFixed(2);
   const wide = (v) => v === null ? "open" : (Math.floor(v * 100 + 1e-6) / 100).toFixed(2);
+  const columns = [
+    [`Height (${unitSymbol})`, ({ z_from, z_to }) => rangeWords([z_from, z_to])],
+    ["Left", ({ left }) => side(left)], ["Right", ({ right }) => side(right)],
+    ["Symmetric width", (band) => wide(band.symmetric_width)],
+    ["Width from the base up to here", (band) => wide(boxes[bands.indexOf(band)].symmetric_width)],
+  ].map(([title, cell]) => ({ title, cell, number: true }));
   byId("widths-table").append(
       make("p", {}, `Left and right run from y = 0 to the border of the nearest blocked cell, anywhere on the path. The symmetric width ` +
            "has room for rounding taken off. The last column is for a load that stands on the first height."),
-      make("div", { class: "scroll tall" }, make("table", { class: "list", "aria-label": "Widths" },
-          make("thead", {}, make("tr", {}, [`Height (${unitSymbol})`, "Left", "Right", "Symmetric width", "Width from the base up to here"]
-              .map((title) => make("th", { scope: "col", class: "number" }, title)))),
-          make("tbody", {}, bands.map((band, i) => make("tr", {}, [rangeWords([band.z_from, band.z_to]), side(band.left), side(band.right),
-              wide(band.symmetric_width), wide(boxes[i].symmetric_width)].map((text) => make("td", { class: "number" }, text))))))));
+      make("div", { class: "scroll tall" },
+           listTable("Widths", columns, bands.map((band) => make("tr", {}, cellsOf(columns, band))))));
 }

@@ -31,27 +31,25 @@ function greatestOverthrow(row, what) {
 /** Without "−0.000". */
 const overthrowCell = (v) => v === null ? "" : (Math.abs(v) < 0.0005 ? 0 : v).toFixed(3).replace("-", "−");
 
-/** title, cell, whether it is a number. */
 function stationColumns() {
   const { list, bodies } = page.facts.stations;
   const places = ["least", "left", "right", "above"].filter((k) => list.some((r) => r[k] !== null));
   const digits = digitsFor(list.flatMap((r) => places.map((k) => r[k])));
   const distance = (key) => (r) => r[key] === null ? ""
       : isInside(r[key]) ? `inside, ${fixed(-r[key], digits)}` : fixed(r[key], digits);
-  const title = (key) => `${key[0].toUpperCase()}${key.slice(1)} (${unitSymbol})`;
-  const columns = [[`Chainage (${unitSymbol})`, chainageCell, true]];
-  if (list.some((r) => r.station_from !== undefined)) columns.push(["Station (m)", stationsCell, true]);
-  columns.push(...places.map((key) => [title(key), distance(key), true]));
+  const columns = [[`Chainage (${unitSymbol})`, chainageCell]];
+  if (list.some((r) => r.station_from !== undefined)) columns.push(["Station (m)", stationsCell]);
+  columns.push(...places.map((key) => [`${capital(key)} (${unitSymbol})`, distance(key)]));
   for (const [what, name] of [["end", "Overthrow of the ends"], ["middle", "of the middle"]]) {
     if (!list.some((r) => r.overthrow.some((body) => body[what] !== null))) continue;
     if (bodies.length > kBodyColumns) {
-      columns.push([`${name} (${unitSymbol})`, (r) => greatestOverthrow(r, what), true]);
+      columns.push([`${name} (${unitSymbol})`, (r) => greatestOverthrow(r, what)]);
       continue;
     }
     bodies.forEach((body, b) => columns.push([
-      `${body ? `${body}: ` : ""}${name} (${unitSymbol})`, (r) => overthrowCell(r.overthrow[b][what]), true]));
+      `${body ? `${body}: ` : ""}${name} (${unitSymbol})`, (r) => overthrowCell(r.overthrow[b][what])]));
   }
-  return [...columns, ["Verdict", rowVerdict, false]];
+  return [...columns.map(([title, cell]) => ({ title, cell, number: true })), { title: "Verdict", cell: rowVerdict }];
 }
 
 /** To the pose where the stretch has its nearest point, or else to its begin. */
@@ -60,41 +58,32 @@ function showStretch(row) {
 }
 
 function stationRow(row, columns) {
-  return make("tr", { tabindex: 0, "data-verdict": row.verdict, onclick: () => showStretch(row),
-                      onkeydown: (event) => {
-                        if (event.key !== "Enter" && event.key !== " ") return;
-                        event.preventDefault();
-                        showStretch(row);
-                      } },
-              columns.map(([, cell, number]) => make("td", { class: number ? "number" : null }, cell(row))));
+  return make("tr", { ...chosenBy(() => showStretch(row)), "data-verdict": row.verdict }, cellsOf(columns, row));
 }
 
 function stationsNote() {
   const { list, every, notes } = page.facts.stations;
   const of = (verdict) => list.filter((r) => r.verdict === verdict).length;
   const counts = ["conflict", "undecided", "clear"].map((v) => `${count(of(v))} ${v}`).join(", ");
-  const told = notes.map((note) => ` ${note}.`).join("");
+  const remarks = notes.map((note) => ` ${note}.`).join("");
   return `${plural(list.length, "stretch", "stretches")} of ${shortLength(every)}: ${counts}. A point counts on ` +
       "the stretch where the vehicle is nearest to it, to the left, to the right or above the box of the body " +
       "that is nearest. The overthrow is how far the centre line of a body leaves the path in curves: its ends " +
-      `outwards, its middle inwards.${told}`;
+      `outwards, its middle inwards.${remarks}`;
 }
 
 function buildStations() {
   const { stations } = page.facts;
   if (!stations || stations.list.length === 0) {
-    byId("stations").remove();
-    document.querySelector('nav a[href="#stations"]').remove();
+    removePart("stations");
     return;
   }
   const columns = stationColumns();
   byId("stations-note").append(make("p", {}, stationsNote()));
   byId("stations-table").append(make("details", { open: stations.list.length <= kUnfoldedRows ? "" : null },
       make("summary", {}, "The table"),
-      make("div", { class: "scroll" }, make("table", { class: "list", "aria-label": "Stations" },
-          make("thead", {}, make("tr", {}, columns.map(([title, , number]) =>
-              make("th", { scope: "col", class: number ? "number" : null }, title)))),
-          make("tbody", {}, stations.list.map((row) => stationRow(row, columns)))))));
+      make("div", { class: "scroll" },
+           listTable("Stations", columns, stations.list.map((row) => stationRow(row, columns))))));
 }
 
 /** All of it on paper; then as it was. */

@@ -8,7 +8,7 @@ const sizeOf = (c) => c.hi.map((h, k) => h - c.lo[k]);
 /** Whether the error budget leaves open if the conflict is one. */
 const isPossible = (conflict) => conflict.class === "possible";
 
-/** Whether the class of a conflict tells it from others. */
+/** Whether the class of a conflict distinguishes it from others. */
 function classesDiffer() {
   return new Set(conflictList().map((c) => classOf(c.least_distance).name)).size > 1;
 }
@@ -118,7 +118,7 @@ function tableHead(columns, sortable) {
 }
 
 function tableRow(conflict, columns, live) {
-  const cells = columns.map((c) => make("td", { class: c.number ? "number" : null }, c.cell(conflict)));
+  const cells = cellsOf(columns, conflict);
   if (!live) return make("tr", {}, cells);
   const chosen = conflict === page.conflict;
   return make("tr", { tabindex: -1, "data-id": conflict.id, class: chosen ? "chosen" : null,

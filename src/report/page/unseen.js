@@ -18,8 +18,8 @@ const scannedOnly = () => isNotScanned() ? " that was scanned" : "";
 function selectGroup(group) {
   page.group = group;
   page.pose = shownPose(group.first_pose);
-  tell("pose");
-  tell("group");
+  notify("pose");
+  notify("group");
 }
 
 /** "3.2 of 68.0 m". What would round to 0 is less than 0.1, because it is not nothing. */
@@ -92,22 +92,13 @@ function groupAdvice(group) {
 }
 
 function groupRow(group, columns, live) {
-  const cells = columns.map((c) => make("td", { class: c.number ? "number" : null }, c.cell(group)));
-  if (!live) return make("tr", {}, cells);
-  const choose = () => selectGroup(group);
-  return make("tr", { tabindex: 0, "data-group": group.id, onclick: choose, onkeydown: (event) => {
-    if (event.key !== "Enter" && event.key !== " ") return;
-    event.preventDefault();
-    choose();
-  } }, cells);
+  const choose = live ? { ...chosenBy(() => selectGroup(group)), "data-group": group.id } : {};
+  return make("tr", choose, cellsOf(columns, group));
 }
 
 function groupTable(groups, live) {
   const columns = groupColumns();
-  return make("table", { class: "list", "aria-label": "Places that were not scanned" },
-      make("thead", {}, make("tr", {}, columns.map((c) =>
-          make("th", { scope: "col", class: c.number ? "number" : null }, c.title)))),
-      make("tbody", {}, groups.map((g) => groupRow(g, columns, live))));
+  return listTable("Places that were not scanned", columns, groups.map((g) => groupRow(g, columns, live)));
 }
 
 function markGroupRow() {
@@ -184,8 +175,7 @@ function unseenNote() {
 
 function buildUnseen() {
   if (!seenFacts()) {
-    byId("unseen").remove();
-    document.querySelector('nav a[href="#unseen"]').remove();
+    removePart("unseen");
     return;
   }
   byId("unseen-note").append(make("p", {}, unseenNote()));
@@ -248,7 +238,7 @@ function notScannedLegend() {
       "passed through. The curve knows nothing of them.")];
 }
 
-/** The mask of the unseen cubes, hatched, so that it is told from points without its colour. */
+/** The mask of the unseen cubes, hatched, so that it differs from points without its colour. */
 function paintUnseen(context, painter, unitSize) {
   if (!page.unseen) return;
   const { width, height } = painter, { xyz, count: n } = page.unseen;

@@ -71,7 +71,7 @@ function clearTiles() {
     tiles.push(tile(station(least.chainage), `chainage of it${besideChainage(least.chainage)}`, () => {
       selectPose(shownPose(least.pose));
       byId("view").scrollIntoView();
-      tell("overview");
+      notify("overview");
     }));
   } else if (Math.max(query.clearance, query.profile) > 0) {
     tiles.push(tile(`over ${shortLength(Math.max(query.clearance, query.profile))}`,
@@ -311,7 +311,7 @@ function collidingIgnored({ colliding }) {
 
 function cautions() {
   const { facts } = page;
-  const out = facts.warnings.map((w) => w.message[0].toUpperCase() + w.message.slice(1) + ".");
+  const out = facts.warnings.map((w) => `${capital(w.message)}.`);
   const { conflicts, inputs, query } = facts;
   if (facts.ignored !== null) {
     out.push(`The search ignored ${plural(facts.ignored.points, "point")} of the environment ` +
@@ -326,10 +326,6 @@ function cautions() {
   return out;
 }
 
-function factRow(name, ...value) {
-  return make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, ...value));
-}
-
 function crsName(wkt) {
   const name = /^[A-Z]+\["([^"]+)"/.exec(wkt);
   return name ? name[1] : wkt ? "named in the scans" : "none given";
@@ -340,7 +336,7 @@ function questionTable() {
   const hash = (text) => make("code", {}, text);
   const box = inputs.model.box;
   const size = box.hi.map((h, k) => (h - box.lo[k]).toFixed(2)).join(" × ");
-  return make("table", { class: "facts" }, make("tbody", {},
+  return factsTable(
     factRow("Question", `Does anything come closer than ${shortLength(query.radius)} to the ` +
             (query.between_poses ? "vehicle, at its poses and between them?"
                                  : "vehicle, at any of its poses?")),
@@ -355,7 +351,7 @@ function questionTable() {
             `${station(inputs.trajectory.length)} long. `, hash(inputs.trajectory.hash)),
     factRow("Result", `${inputs.result.name}. `, hash(inputs.result.hash)),
     factRow("Asked for", askedFor(query)),
-    page.facts.ignored === null ? "" : factRow("Ignored", ignoredText(page.facts.ignored))));
+    page.facts.ignored === null ? "" : factRow("Ignored", ignoredText(page.facts.ignored)));
 }
 
 /** What the search took the model, or a body, for. */
@@ -434,33 +430,21 @@ function buildVerdict() {
   const [first, second] = verdictSentences(), warned = cautions(), missing = missingParts();
   const searched = searchedSentence(), scanned = scannedSentence();
   const doubtful = clear && warned.length > 0;
-  byId("made").textContent = `Made ${facts.date} by Clearway ${facts.clearway}`;
-  byId("about").append(...["project", "client", "author"].filter((key) => facts[key]).map((key) =>
-      make("span", {}, `${key[0].toUpperCase()}${key.slice(1)}: `, make("strong", {}, facts[key]))));
-  byId("loading").remove();
   byId("verdict-body").append(
-    make("div", { class: `banner ${doubtful ? "doubt" : facts.verdict}` },
-         doubtful ? doubtSymbol() : verdictSymbol(facts.verdict),
-         make("div", { class: "words" }, make("h2", { id: "verdict-word" },
-              doubtful ? "Clear, but doubtful" : kVerdictWords[facts.verdict]),
-              make("p", {}, first), make("p", {}, second),
-              scanned && make("p", { id: "scanned" }, scanned),
-              searched && make("p", { id: "searched" }, searched),
-              warned.length > 0 &&
-                  make("p", { class: "but" },
-                       `${conflict ? "See also" : clear ? "But see" : "See"} ${plural(warned.length, "warning")} below.`)),
-         make("div", { class: "tiles" }, scannedTiles(), conflict ? conflictTiles() : clearTiles())),
-    warned.length > 0 ? make("ul", { class: "warnings", "aria-label": "Warnings" },
-                             warned.map((text) => make("li", {}, text))) : "",
+    answerBanner({ kind: facts.verdict, word: kVerdictWords[facts.verdict], doubtful, lines: [
+          make("p", {}, first), make("p", {}, second),
+          scanned && make("p", { id: "scanned" }, scanned),
+          searched && make("p", { id: "searched" }, searched),
+          seeWarnings(conflict ? "See also" : clear ? "But see" : "See", warned)] },
+        make("div", { class: "tiles" }, scannedTiles(), conflict ? conflictTiles() : clearTiles())),
+    warningsList(warned),
     whatDecides(),
     basisOfVerdict(),
-    onSiteBox(),
+    vehicleBox(),
     make("div", { class: "columns" }, facts.budget ? make("div", {}, questionTable(), budgetTable()) : questionTable(),
          make("div", {}, legend(),
               missing.length > 0 && make("div", { class: "missing" },
                   make("p", {}, "This page could say more:"),
                   make("ul", {}, missing.map((m) => make("li", {}, `${m.what}: ${m.why}. `,
                                                          make("code", {}, m.how), " adds it.")))))));
-  byId("footer").textContent = "All data of this page is in this one file. Lengths are in the unit " +
-      `of the scans (${unitSymbol}). Chainage counts from the first pose along the path.`;
 }

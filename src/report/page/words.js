@@ -22,7 +22,7 @@ const isInside = (distance) => distance !== null && distance !== undefined && di
 const depthWords = (distance) => `${metres(-distance)} deep`;
 const metres = (v, digits = digitsFor([v])) => v === null || v === undefined ? "unknown"
     : `${fixed(v, digits)} ${unitSymbol}`;
-/** Below it the surfaces meet, as far as scans can tell. */
+/** Below it the surfaces meet, as far as scans can show. */
 const kTouching = 0.001;
 /** With the digits of the distance, so that both add up to what is required. */
 const missingWords = (missing, distance) => metres(missing, digitsFor([distance]));

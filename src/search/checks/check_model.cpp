@@ -151,8 +151,8 @@ void warn_of_scale(const Question& question, MessageLog& log) {
   }
   const bool one = most - least < kStretch * most;
   log.warn("scaled-poses",
-           "the poses scale the model by " + figure(least) +
-               (one ? std::string() : " to " + figure(most)) + ": in the scan it is " +
+           "the poses scale the model by " + format_digits(least, 3) +
+               (one ? std::string() : " to " + format_digits(most, 3)) + ": in the scan it is " +
                size_text(box, question.unit) + ", not " + size_text(question.model, question.unit) +
                ". The motion of a vehicle has no scale. Divide the rotations by it, or check the "
                "unit of the poses",
@@ -277,7 +277,7 @@ struct PointsInBox {
   }
 };
 
-/// The axis of the model along which it moves; the model's longest one where that cannot be told.
+/// The axis of the model along which it moves; the model's longest one where that is not clear.
 int axis_of_motion(const Question& question) {
   const Drive drive(question);
   if (!drive.is_one()) return question.model.longest_axis();

@@ -51,7 +51,7 @@ double least_motion(const Question& question) {
 }
 
 /// Whether a step is longer than `most` by more than the rounding of its poses: steps that were
-/// made as long as the radius are not warned of.
+/// made as long as the radius cause no warning.
 bool exceeds(double step, double most) {
   constexpr double kRounding = 1e-6;
   return step > most * (1 + kRounding);
@@ -141,12 +141,12 @@ Steps check_straight_ways(const Question& question, const std::vector<Jump>& jum
                      length_text(worst.distance, question.unit) + " after pose " +
                      std::to_string(number) + ", where the " + question.words().mover +
                      " goes on by " + length_text(moved, question.unit) + " and turns by " +
-                     figure(turned) + " degrees";
+                     format_digits(turned, 3) + " degrees";
   Steps starts;
   for (const Deviation& d : found) starts.push_back(question.number_of(d.pose));
   const auto jump = std::ranges::find(jumps, std::size_t{number}, &Jump::pose);
   if (warns && jump != jumps.end()) {
-    text += ". This step is " + figure(jump->length / jump->usual) +
+    text += ". This step is " + format_digits(jump->length / jump->usual, 3) +
             " times as long as those around it, so poses may be missing there";
   }
   if (warns) text += ". What is beside the straight way can be missed";
@@ -301,10 +301,10 @@ Steps starts_of(const std::vector<Jump>& jumps) {
   return steps;
 }
 
-void warn_of_jumps(const Question& question, std::vector<Jump> jumps, const Steps& told,
+void warn_of_jumps(const Question& question, std::vector<Jump> jumps, const Steps& warned,
                    const std::string& prefix, MessageLog& log) {
-  std::erase_if(jumps,
-                [&](const Jump& jump) { return has(told, static_cast<std::uint32_t>(jump.pose)); });
+  std::erase_if(
+      jumps, [&](const Jump& jump) { return has(warned, static_cast<std::uint32_t>(jump.pose)); });
   if (jumps.empty()) return;
   log.add(jump_warning(jumps, prefix, unit_name(question.unit),
                        question.query.between_poses
@@ -327,17 +327,17 @@ void StepChecks::check(const Question& question, MessageLog& log) {
   const std::vector<Jump> jumps = jumps_in(question);
   if (question.query.between_poses) {
     if (question.is_load()) check_growth(question, log);
-    told_ = united_steps(told_, check_straight_ways(question, jumps, log));
+    warned_ = united_steps(warned_, check_straight_ways(question, jumps, log));
   } else if (question.is_load()) {
     check_load_at_poses(question, starts_of(jumps), log);
   } else {
     check_poses_alone(question, united_steps(path_jumps_, starts_of(jumps)), log);
   }
-  warn_of_jumps(question, jumps, united_steps(told_, path_jumps_), "", log);
+  warn_of_jumps(question, jumps, united_steps(warned_, path_jumps_), "", log);
 }
 
 void StepChecks::check_path(const Question& path, MessageLog& log) const {
-  warn_of_jumps(path, jumps_in(path), told_, "the path: ", log);
+  warn_of_jumps(path, jumps_in(path), warned_, "the path: ", log);
 }
 
 namespace {
@@ -425,7 +425,7 @@ void warn_of_lean(const Question& question, const Drive& drive, MessageLog& log)
   if ((lean > 0 ? right : 1 - right) >= kCurve) return;  // it leans into a curve
   log.warn("leans",
            "along the whole path the " + std::string(question.words().mover) + " leans to the " +
-               (lean > 0 ? "right" : "left") + " by " + figure(std::abs(lean)) +
+               (lean > 0 ? "right" : "left") + " by " + format_digits(std::abs(lean), 3) +
                " degrees, also where it does not turn: are the poses of a scanner or an inertial "
                "unit that is mounted askew? If the ground has this slope, this is all right",
            {{"degrees", lean}});
@@ -522,13 +522,13 @@ void warn_of_tiny_path(const Question& question, MessageLog& log) {
            {{"path", across}, {"model_longest", longest}});
 }
 
-/// Whether reading the trajectory has told already how its rotations are wrong. It knows more than
-/// the poses alone tell, such as whether they were angles or quaternions.
-bool is_diagnosed(std::span<const Message> told) {
+/// Whether a message of reading the trajectory says already how its rotations are wrong. The reader
+/// knows more than the poses alone show, such as whether they were angles or quaternions.
+bool is_diagnosed(std::span<const Message> of_inputs) {
   constexpr std::string_view kDiagnoses[] = {"rotation-missing", "rotation-too-small",
                                              "poses-inverse",    "turns-against-path",
                                              "quaternion-order", "upside-down"};
-  return std::ranges::any_of(told, [&](const Message& message) {
+  return std::ranges::any_of(of_inputs, [&](const Message& message) {
     return std::ranges::find(kDiagnoses, message.code) != std::end(kDiagnoses);
   });
 }
@@ -543,10 +543,10 @@ void check_path_digits(const Question& question, MessageLog& log) {
   warn_of_rounded_path(question, log);
 }
 
-void check_heading(const Question& question, std::span<const Message> told, MessageLog& log) {
+void check_heading(const Question& question, std::span<const Message> of_inputs, MessageLog& log) {
   warn_of_tiny_path(question, log);
   const Drive drive(question);
-  if (!drive.is_one() || is_diagnosed(told)) return;
+  if (!drive.is_one() || is_diagnosed(of_inputs)) return;
   if (warn_of_tilt(question, drive, log) || warn_of_rotations(question, drive, log)) return;
   warn_of_lean(question, drive, log);
   warn_sideways(question, drive, log);

@@ -8,12 +8,13 @@
 #include "clearway/error.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/motion_tree_ref.hpp"
+#include "core/util/format.hpp"
 #include "search/checks/checks.hpp"
 #include "search/checks/facts/path_facts.hpp"
 #include "search/checks/facts/path_looks.hpp"
 #include "search/checks/facts/scan_facts.hpp"
 #include "search/checks/question.hpp"
-#include "search/checks/told_stretches.hpp"
+#include "search/checks/warning_stretches.hpp"
 
 namespace clearway {
 namespace {
@@ -221,7 +222,7 @@ class Trial {
     for (int k = 0; k < 3; ++k) {
       const double shift = question_.environment.centre()[k] - path_.centre()[k];
       const bool is_noise = std::abs(shift) < 0.001 * question_.metre;
-      by += (k == 0 ? "" : ", ") + figure(is_noise ? 0 : shift);
+      by += (k == 0 ? "" : ", ") + format_digits(is_noise ? 0 : shift, 3);
     }
     return by + " " + unit_name(question_.unit);
   }
@@ -387,19 +388,19 @@ void check_stretches_above(const Question& question, const PathLooks& looks, Mes
       kLeastFloating * question.metre, [&](const Look& l) { return l.height && *l.height >= low; });
   const Heights rest(looks.rest(runs));
   if (runs.empty() || rest.empty() || rest.spread() > kSteadyRest * question.metre) return;
-  const ToldStretches told(question, looks, runs);
-  const Heights here(looks.of(told.longest));
-  auto numbers = told.numbers;
+  const WarningStretches found(question, looks, runs);
+  const Heights here(looks.of(found.longest));
+  auto numbers = found.numbers;
   numbers.insert(numbers.end(), {{"height", here.at(0.5)}, {"height_elsewhere", rest.at(0.5)}});
   log.warn("floats",
-           told.where + " the " + question.words().mover + " is " +
+           found.where + " the " + question.words().mover + " is " +
                length_text(here.at(0.5), question.unit) +
                " above the highest point below it, and on the rest of the path " +
                length_text(rest.at(0.5), question.unit) +
                ": a part of the scan may be registered at another height, the ground may be "
                "missing there, or the path leaves it. Compare the heights of path and scan there" +
-               told.others,
-           numbers, told.stretches);
+               found.others,
+           numbers, found.stretches);
 }
 
 }  // namespace

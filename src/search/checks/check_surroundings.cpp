@@ -3,11 +3,12 @@
 #include <utility>
 
 #include "core/geometry/angle.hpp"
+#include "core/util/format.hpp"
 #include "search/checks/checks.hpp"
 #include "search/checks/facts/path_looks.hpp"
 #include "search/checks/facts/scan_facts.hpp"
 #include "search/checks/question.hpp"
-#include "search/checks/told_stretches.hpp"
+#include "search/checks/warning_stretches.hpp"
 
 namespace clearway {
 namespace {
@@ -96,7 +97,7 @@ class Stretches {
   std::vector<PoseRange> without_ground() const {
     const auto runs = runs_without(has_ground);
     if (runs.empty() || looks_.share(has_ground) < kSomeGround) return {};
-    return ToldStretches(question_, looks_, runs).stretches;
+    return WarningStretches(question_, looks_, runs).stretches;
   }
 
   /// For a model that is in the ground, which on a sound stretch is therefore inside it.
@@ -147,9 +148,9 @@ class Stretches {
             MessageLog& log,
             const std::vector<std::pair<std::string, double>>& numbers = {}) const {
     if (runs.empty()) return;
-    ToldStretches told(question_, looks_, runs);
-    told.numbers.insert(told.numbers.end(), numbers.begin(), numbers.end());
-    log.warn(code, told.where + text + told.others, told.numbers, told.stretches);
+    WarningStretches found(question_, looks_, runs);
+    found.numbers.insert(found.numbers.end(), numbers.begin(), numbers.end());
+    log.warn(code, found.where + text + found.others, found.numbers, found.stretches);
   }
 
   void warn_one_side(const std::vector<LookRun>& runs, double number, MessageLog& log) const {
@@ -279,7 +280,7 @@ void warn_of_fine_radius(const Question& question, MessageLog& log) {
   const double step = *std::max_element(scale, scale + 3);
   const double radius = question.query.radius;
   if (question.is_load() && radius == 0) return;  // points count where they touch the load
-  // A radius of ten steps as typed is not warned of because of its rounding.
+  // A radius of ten steps as typed causes no warning because of its rounding.
   if (radius >= kSteps * step * (1 - 1e-9)) return;
   log.warn(
       "fine-radius",
@@ -330,14 +331,14 @@ void check_errors(const QueryParameters& query, MessageLog& log) {
                                       query.error_registration.value_or(0), angle});
   if (query.sigmas < kLeastSigmas && deviations > 0) {
     log.warn("few-sigmas",
-             "the error budget counts " + figure(query.sigmas) +
+             "the error budget counts " + format_digits(query.sigmas, 3) +
                  " standard deviations, which most errors exceed, so that it says little about "
                  "what is certain. Usual are 2 or 3. Is it an error in metres?",
              {{"sigmas", query.sigmas}});
   }
   if (angle > 0 && angle < kLeastAngle) {
     log.warn("small-error-angle",
-             "the standard deviation of the angles is " + figure(angle / kDegree) +
+             "the standard deviation of the angles is " + format_digits(angle / kDegree, 3) +
                  " degrees, which no vehicle's rotation is known to. Was an angle in radians taken "
                  "for one in degrees?",
              {{"degrees", angle / kDegree}});

@@ -56,8 +56,8 @@ void check_errors(const QueryParameters& query, MessageLog& log);
 void check_radius(const Question& question, MessageLog& log);
 
 /// Warns of what may lie between two poses: "large-steps", and "trajectory-jump" for steps that
-/// "large-steps" does not warn of. A jump of the path that the bodies of a vehicle follow is told
-/// once, not for each body.
+/// "large-steps" does not warn of. A jump of the path that the bodies of a vehicle follow is
+/// reported once, not for each body.
 class StepChecks {
  public:
   StepChecks() = default;
@@ -71,7 +71,7 @@ class StepChecks {
 
  private:
   /// Poses from which a step starts, ascending.
-  std::vector<std::uint32_t> path_jumps_, told_;
+  std::vector<std::uint32_t> path_jumps_, warned_;
 };
 
 /// Warns where the positions of the path have lost digits that matter beside the radius:
@@ -79,8 +79,9 @@ class StepChecks {
 void check_path_digits(const Question& question, MessageLog& log);
 
 /// Compares the motion with the model's own axes: "tilted", "rotations", "leans", "sideways",
-/// "flat-model", "drives-backwards", "tiny-path". told: what reading the trajectory has told; where
-/// this names a mistake of the rotations, the same mistake is not told in other words.
-void check_heading(const Question& question, std::span<const Message> told, MessageLog& log);
+/// "flat-model", "drives-backwards", "tiny-path". of_inputs: the messages of
+/// reading the trajectory; where one names a mistake of the rotations, there is no second warning
+/// of it.
+void check_heading(const Question& question, std::span<const Message> of_inputs, MessageLog& log);
 
 }  // namespace clearway

@@ -15,10 +15,11 @@
 #include "core/trajectory/chainage.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
 #include "core/trajectory/pose_ranges.hpp"
+#include "core/util/format.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/checks.hpp"
 #include "search/checks/question.hpp"
-#include "search/checks/told_stretches.hpp"
+#include "search/checks/warning_stretches.hpp"
 #include "search/ignored.hpp"
 #include "search/section.hpp"
 
@@ -82,19 +83,22 @@ struct OfVehicle {
   }
 
  private:
-  bool is_better(const Message& other) const { return told_length(other) > told_length(*message); }
+  bool is_better(const Message& other) const {
+    return length_of_stretch(other) > length_of_stretch(*message);
+  }
 };
 
-void tell(Message message, const std::string& who, const std::string& body, MessageLog& log) {
+void add_message(Message message, const std::string& who, const std::string& body,
+                 MessageLog& log) {
   message.text = who + ": " + message.text;
   message.body = body;
   log.add(std::move(message));
 }
 
-/// Adds a message once for all bodies that have the same one. `first` is the body that is being
-/// told of; nothing is added where an earlier body has the message too.
-void tell_alike(const std::vector<BodyMessages>& bodies, std::size_t first, const Message& message,
-                MessageLog& log) {
+/// Adds a message once for all bodies that have the same one. `first` is the body whose
+/// message it is; nothing is added where an earlier body has the message too.
+void add_alike(const std::vector<BodyMessages>& bodies, std::size_t first, const Message& message,
+               MessageLog& log) {
   const auto is_same = [&](const Message& m) {
     return m.code == message.code && m.text == message.text;
   };
@@ -112,26 +116,26 @@ void tell_alike(const std::vector<BodyMessages>& bodies, std::size_t first, cons
   }
   of_all.stretches = united_ranges(std::move(of_all.stretches));
   const bool all = count == bodies.size() && count > 1;
-  tell(std::move(of_all), all ? "each body" : (count > 1 ? "bodies " : "body ") + names,
-       count == 1 ? names : "", log);
+  add_message(std::move(of_all), all ? "each body" : (count > 1 ? "bodies " : "body ") + names,
+              count == 1 ? names : "", log);
 }
 
 }  // namespace
 
-void tell_of_bodies(const std::vector<BodyMessages>& bodies, MessageLog& log) {
-  std::vector<const Message*> told;
+void warn_of_bodies_once(const std::vector<BodyMessages>& bodies, MessageLog& log) {
+  std::vector<const Message*> added;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (const Message& message : bodies[i].messages) {
       if (!is_of_vehicle(message)) {
-        tell_alike(bodies, i, message, log);
+        add_alike(bodies, i, message, log);
       } else if (std::ranges::none_of(
-                     told, [&](const Message* m) { return have_same_fault(*m, message); })) {
-        told.push_back(&message);
+                     added, [&](const Message* m) { return have_same_fault(*m, message); })) {
+        added.push_back(&message);
         const OfVehicle found(bodies, message);
         if (found.message == nullptr) continue;
         Message of_vehicle = *found.message;
         of_vehicle.stretches = found.stretches;
-        tell(std::move(of_vehicle), "the vehicle, as its body " + found.body->name, "", log);
+        add_message(std::move(of_vehicle), "the vehicle, as its body " + found.body->name, "", log);
       }
     }
   }
@@ -139,13 +143,13 @@ void tell_of_bodies(const std::vector<BodyMessages>& bodies, MessageLog& log) {
 
 namespace {
 
-void warn_of_unit(LengthUnit unit, const QuestionWords& words, std::span<const Message> told,
+void warn_of_unit(LengthUnit unit, const QuestionWords& words, std::span<const Message> of_inputs,
                   MessageLog& log) {
   if (unit == LengthUnit::kUnknown) {
     log.note("the environment names no unit of length, so metres are assumed");
   }
-  const bool is_told = std::ranges::find(told, "feet", &Message::code) != told.end();
-  if ((unit == LengthUnit::kFoot || unit == LengthUnit::kUsSurveyFoot) && !is_told) {
+  const bool is_reported = std::ranges::find(of_inputs, "feet", &Message::code) != of_inputs.end();
+  if ((unit == LengthUnit::kFoot || unit == LengthUnit::kUsSurveyFoot) && !is_reported) {
     log.warn("feet", std::string("the environment is in feet: lengths, ") + words.mover +
                          " and trajectory without a unit of their own are taken in feet too");
   }
@@ -174,7 +178,7 @@ void note_sizes(const Question& question, MessageLog& log) {
   const double length = path_length(question.query.poses);
   const SectionParameters* const asked = question.section;
   log.note((asked == nullptr ? "model " + size_text(question.model, question.unit)
-                             : "load from x = " + figure(asked->rear) + " to " +
+                             : "load from x = " + format_digits(asked->rear, 3) + " to " +
                                    length_text(asked->front, question.unit)) +
            ", path " + length_text(length, question.unit) + " long, environment " +
            size_text(question.environment, question.unit) + ", " + question.words().distance + " " +
@@ -211,7 +215,7 @@ void check_what_is_around(const Question& question, const PathCover& cover, bool
 }
 
 /// The checks of what moves along a path: a model, a body of a vehicle or the load of a section.
-void check_question(const Question& question, bool of_body, std::span<const Message> told,
+void check_question(const Question& question, bool of_body, std::span<const Message> of_inputs,
                     StepChecks& steps, MessageLog& log) {
   const PathCover cover(question);
   check_reach(question, cover, log);
@@ -220,16 +224,16 @@ void check_question(const Question& question, bool of_body, std::span<const Mess
   check_radius(question, log);
   steps.check(question, log);
   if (!of_body) check_path_digits(question, log);
-  check_heading(question, told, log);
+  check_heading(question, of_inputs, log);
 }
 
 /// The lowest height of the whole model where reading it left out its lowest part. body: the name
 /// of the body; empty for a single model.
-std::optional<double> bottom_before_cut(std::span<const Message> told, std::string_view body) {
-  const auto cut = std::ranges::find_if(told, [&](const Message& message) {
+std::optional<double> bottom_before_cut(std::span<const Message> of_inputs, std::string_view body) {
+  const auto cut = std::ranges::find_if(of_inputs, [&](const Message& message) {
     return message.code == "model-cut" && message.body == body;
   });
-  return cut == told.end() ? std::nullopt : number_in(*cut, "bottom");
+  return cut == of_inputs.end() ? std::nullopt : number_in(*cut, "bottom");
 }
 
 /// The longest side of a vehicle where it first has most of its bodies; 0 if none has a pose.
@@ -279,7 +283,7 @@ void check_same_bodies(std::span<const Body> bodies, MessageLog& log) {
 /// vehicle_longest: the longest side of the vehicle.
 void warn_of_body(const StoreReader& store, const Body& body, const Query& query,
                   const ModelLooks& looks, std::span<const double> chainage, double vehicle_longest,
-                  std::span<const Message> told, StepChecks& steps, MessageLog& log) {
+                  std::span<const Message> of_inputs, StepChecks& steps, MessageLog& log) {
   if (body.poses.empty()) {
     log.warn("no-poses", "has no poses: it cannot collide");
     return;
@@ -287,11 +291,11 @@ void warn_of_body(const StoreReader& store, const Body& body, const Query& query
   const Query own(body.model, body.poses, query);
   Question question(store, store.metadata().unit, own, looks, body.path_pose, chainage);
   question.longest = std::max(question.longest, vehicle_longest);
-  if (const auto bottom = bottom_before_cut(told, body.name)) {
+  if (const auto bottom = bottom_before_cut(of_inputs, body.name)) {
     question.bottom = std::min(question.bottom, *bottom);
   }
   note_sizes(question, log);
-  check_question(question, true, told, steps, log);
+  check_question(question, true, of_inputs, steps, log);
 }
 
 /// The indices of the path's poses at which a body has none, ascending.
@@ -303,19 +307,20 @@ std::vector<std::uint64_t> missing_poses(const Body& body, std::size_t path_pose
   return missing;
 }
 
-/// Whether reading the vehicle, or follow(), has told already which poses a body lacks.
-bool is_told(const Body& body, std::span<const Message> told) {
-  return std::ranges::any_of(told, [&](const Message& message) {
+/// Whether a message of reading the vehicle, or of follow(), says already which poses a body lacks.
+bool is_reported(const Body& body, std::span<const Message> of_inputs) {
+  return std::ranges::any_of(of_inputs, [&](const Message& message) {
     return (message.code == "body-off-path" || message.code == "body-undefined") &&
            message.body == body.name;
   });
 }
 
-/// Adds a message for each body that has no pose on part of the path, unless `told` has one.
-void tell_missing_poses(const Query& query, std::span<const Message> told, MessageLog& log) {
+/// Adds a message for each body that has no pose on part of the path, unless `of_inputs` has one.
+void warn_of_missing_poses(const Query& query, std::span<const Message> of_inputs,
+                           MessageLog& log) {
   for (const Body& body : query.bodies) {
     const std::vector<std::uint64_t> missing = missing_poses(body, query.poses.size());
-    if (missing.empty() || body.poses.empty() || is_told(body, told)) continue;
+    if (missing.empty() || body.poses.empty() || is_reported(body, of_inputs)) continue;
     Message message = off_path_message("body " + body.name, missing, query.poses.size(),
                                        "so nothing is known of it there",
                                        "Give it those poses too, or look at the stretches that "
@@ -328,22 +333,22 @@ void tell_missing_poses(const Query& query, std::span<const Message> told, Messa
 /// path: the vehicle's path, with a model of one point.
 void warn_of_bodies(const StoreReader& store, const Question& path, const Query& query,
                     const LooksOf& looks_of, std::span<const Message> before, MessageLog& log) {
-  tell_missing_poses(query, before, log);
+  warn_of_missing_poses(query, before, log);
   check_same_bodies(query.bodies, log);
-  std::vector<BodyMessages> told;
+  std::vector<BodyMessages> found;
   StepChecks steps(path);
   const std::vector<double> chainage = chainage_of(query.poses);
   const double longest = longest_side(query.bodies, looks_of);
   for (const Body& body : query.bodies) {
-    told.push_back({body.name, {}});
+    found.push_back({body.name, {}});
     const MessageCallback keep = [&](const Message& message) {
-      told.back().messages.push_back(message);
+      found.back().messages.push_back(message);
     };
     std::vector<Message> unused;
     MessageLog own(keep, unused);
     warn_of_body(store, body, query, *looks_of(body.model), chainage, longest, before, steps, own);
   }
-  tell_of_bodies(told, log);
+  warn_of_bodies_once(found, log);
   steps.check_path(path, log);
 }
 
@@ -365,14 +370,14 @@ void note_withheld(const StoreMetadata& store, MessageLog& log) {
 
 /// Warns of scan and path as they are. Returns whether there is more to check.
 bool warn_of_inputs(const StoreReader& store, std::size_t poses, const QuestionWords& words,
-                    std::span<const Message> told, MessageLog& log) {
+                    std::span<const Message> of_inputs, MessageLog& log) {
   for (Message& warning : store_warnings(store.metadata())) log.add(std::move(warning));
   note_withheld(store.metadata(), log);
   const LengthUnit unit = store.metadata().unit;
   if (poses == 0) {
     log.warn("no-poses", std::string("the trajectory has no poses: ") + words.nothing);
   }
-  warn_of_unit(unit, words, told, log);
+  warn_of_unit(unit, words, of_inputs, log);
   if (store.point_count() == 0) {
     log.warn("no-points", std::string("the environment has no points: ") + words.nothing);
     return false;
@@ -386,9 +391,9 @@ bool warn_of_inputs(const StoreReader& store, std::size_t poses, const QuestionW
 }
 
 void check_motion(const StoreReader& store, const Query& query, const LooksOf& looks_of,
-                  std::span<const Message> told, MessageLog& log) {
+                  std::span<const Message> of_inputs, MessageLog& log) {
   check_errors(query, log);
-  if (!warn_of_inputs(store, query.poses.size(), kWordsOfModel, told, log)) return;
+  if (!warn_of_inputs(store, query.poses.size(), kWordsOfModel, of_inputs, log)) return;
   const LengthUnit unit = store.metadata().unit;
   if (!query.bodies.empty()) {
     const Query points({Vec3{}}, query.poses, query);
@@ -396,23 +401,24 @@ void check_motion(const StoreReader& store, const Query& query, const LooksOf& l
     const Question path(store, unit, points, looks);
     warn_of_flat_scan(path, log);
     check_path_digits(path, log);
-    warn_of_bodies(store, path, query, looks_of, told, log);
+    warn_of_bodies(store, path, query, looks_of, of_inputs, log);
     return;
   }
   const std::shared_ptr<const ModelLooks> looks = looks_of(query.model);
   Question question(store, unit, query, *looks);
-  if (const auto bottom = bottom_before_cut(told, "")) {
+  if (const auto bottom = bottom_before_cut(of_inputs, "")) {
     question.bottom = std::min(question.bottom, *bottom);
   }
   note_sizes(question, log);
   warn_of_flat_scan(question, log);
   StepChecks steps;
-  check_question(question, false, told, steps, log);
+  check_question(question, false, of_inputs, steps, log);
 }
 
 void check_load(const StoreReader& store, const SectionParameters& asked, const Body& load,
-                std::span<const double> chainage, std::span<const Message> told, MessageLog& log) {
-  if (!warn_of_inputs(store, chainage.size(), kWordsOfLoad, told, log) || load.poses.empty()) {
+                std::span<const double> chainage, std::span<const Message> of_inputs,
+                MessageLog& log) {
+  if (!warn_of_inputs(store, chainage.size(), kWordsOfLoad, of_inputs, log) || load.poses.empty()) {
     return;
   }
   Query query({}, load.poses, ignored_by(asked));
@@ -428,30 +434,30 @@ void check_load(const StoreReader& store, const SectionParameters& asked, const 
   note_sizes(question, log);
   warn_of_flat_scan(question, log);
   StepChecks steps;
-  check_question(question, false, told, steps, log);
+  check_question(question, false, of_inputs, steps, log);
 }
 
 }  // namespace
 
 void warn_of_query(const StoreReader& store, const Query& query, const IgnoredPointCounts& ignored,
-                   const LooksOf& looks_of, std::span<const Message> told, MessageLog& log) {
-  check_motion(store, query, looks_of, told, log);
+                   const LooksOf& looks_of, std::span<const Message> of_inputs, MessageLog& log) {
+  check_motion(store, query, looks_of, of_inputs, log);
   warn_of_ignored(store, query, ignored, log);
 }
 
 void warn_of_query(const StoreReader& store, const Query& query, const IgnoredPointCounts& ignored,
-                   std::span<const Message> told, MessageLog& log) {
+                   std::span<const Message> of_inputs, MessageLog& log) {
   const auto make = [&](const Model& model) {
     return std::make_shared<const ModelLooks>(model, query.radius);
   };
-  warn_of_query(store, query, ignored, make, told, log);
+  warn_of_query(store, query, ignored, make, of_inputs, log);
 }
 
 void warn_of_section(const StoreReader& store, const SectionParameters& asked,
                      const IgnoredPointCounts& ignored, const Body& load,
-                     std::span<const double> chainage, std::span<const Message> told,
+                     std::span<const double> chainage, std::span<const Message> of_inputs,
                      MessageLog& log) {
-  check_load(store, asked, load, chainage, told, log);
+  check_load(store, asked, load, chainage, of_inputs, log);
   warn_of_ignored(store, ignored_by(asked), ignored, log);
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "core/geometry/point_box.hpp"
 
@@ -58,42 +57,24 @@ double scale_of(const Pose& pose) {
   return std::sqrt(sum / 3);
 }
 
-std::string figure(double value) {
-  const double size = std::abs(value);
-  char text[64];
-  if (size >= 1e9 || (size > 0 && size < 1e-4) || !std::isfinite(value)) {
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
-  }
-  const int digits =
-      size == 0 ? 0 : std::max(0, 2 - static_cast<int>(std::floor(std::log10(size))));
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  std::string out = text;
-  if (out.find('.') != std::string::npos) {
-    out.erase(out.find_last_not_of('0') + 1);
-    if (out.ends_with('.')) out.pop_back();
-  }
-  return out == "-0" ? "0" : out;
-}
-
 std::string unit_name(LengthUnit unit) {
   return unit == LengthUnit::kFoot || unit == LengthUnit::kUsSurveyFoot ? "ft" : "m";
 }
 
 std::string length_text(double length, LengthUnit unit) {
-  return figure(length) + " " + unit_name(unit);
+  return format_digits(length, 3) + " " + unit_name(unit);
 }
 
 std::string size_text(const Box& box, LengthUnit unit) {
-  return figure(box.hi.x - box.lo.x) + " x " + figure(box.hi.y - box.lo.y) + " x " +
-         length_text(box.hi.z - box.lo.z, unit);
+  return format_digits(box.hi.x - box.lo.x, 3) + " x " + format_digits(box.hi.y - box.lo.y, 3) +
+         " x " + length_text(box.hi.z - box.lo.z, unit);
 }
 
 std::string extent_text(const Box& box) {
   std::string text;
   for (int k = 0; k < 3; ++k) {
-    text += std::string(k == 0 ? "" : ", ") + "xyz"[k] + " " + figure(box.lo[k]) + " to " +
-            figure(box.hi[k]);
+    text += std::string(k == 0 ? "" : ", ") + "xyz"[k] + " " + format_digits(box.lo[k], 3) +
+            " to " + format_digits(box.hi[k], 3);
   }
   return text;
 }

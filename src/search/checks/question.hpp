@@ -88,10 +88,6 @@ double scale_of(const Pose& pose);
 
 // How the warnings write lengths and boxes.
 
-/// A number as the warnings show it, with at least three digits, and none after the decimal point
-/// for 1000 and above: "0.0045", "12.3", "4516203".
-std::string figure(double value);
-
 /// The symbol of a unit of length: "m" or "ft".
 std::string unit_name(LengthUnit unit);
 

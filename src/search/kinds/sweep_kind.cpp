@@ -17,7 +17,7 @@ constexpr PageEngineKind::IndexSize size_of(std::uint64_t mebibytes) {
   return {bytes, bytes + bytes / 4};
 }
 
-/// Fineness of the field on the CPU for a profile. A profile looks at all points near the model at
+/// Fineness of the field on the CPU for a profile. A profile examines all points near the model at
 /// every pose, and the field decides which of them need a search of the model.
 constexpr double kProfileFineness = 2;
 

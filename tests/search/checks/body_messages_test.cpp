@@ -17,7 +17,7 @@ std::vector<Message> told(const std::vector<BodyMessages>& bodies) {
   std::vector<Message> out, warnings;
   const MessageCallback keep = [&](const Message& message) { out.push_back(message); };
   MessageLog log(keep, warnings);
-  tell_of_bodies(bodies, log);
+  warn_of_bodies_once(bodies, log);
   return out;
 }
 

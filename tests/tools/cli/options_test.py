@@ -39,8 +39,8 @@ class Help(unittest.TestCase):
     def test_run_begins_with_the_five_that_matter(self):
         run = groups("run")
         self.assertEqual(next(iter(run.items())), ("Inputs and output", FIVE))
-        self.assertEqual(list(run), ["Inputs and output", "What is asked",
-                                     "How sure the answer is", "What is ignored", "The model",
+        self.assertEqual(list(run), ["Inputs and output", "The question",
+                                     "How sure the answer is", "Ignored points", "The model",
                                      "The path", "Units and frames",
                                      "Speed and memory", "Files and resume",
                                      "Messages and exit code"])

@@ -131,7 +131,7 @@ class Outlines(Sections):
         for outline, codes in ((RECTANGLE, []), (half, ["half-outline"])):
             answer = self.verdict(outline)
             self.assertEqual([w["code"] for w in answer["warnings"]], codes)
-        report = self.ok("section report section.h5 --outline outline.csv --json -o page.html --force")
+        report = self.ok("report section.h5 --outline outline.csv --json -o page.html --force")
         self.assertIn("half-outline", report.stdout)
         self.assertIn("--mirror", report.stderr)
         (self.folder / "outline.csv").write_text(half)
@@ -673,8 +673,8 @@ class Exports(Sections):
                                    0.92 if table == "boxes" else 0.42)
         self.refused(self.run_("section export out.h5 --outline --base 0 -o no.dxf"),
                      "below the window", 2)
-        self.refused(self.run_("section report out.h5 --base 0 -o no.html"), "below the window", 2)
-        self.ok("section report out.h5 -o page.html --force")
+        self.refused(self.run_("report out.h5 --base 0 -o no.html"), "below the window", 2)
+        self.ok("report out.h5 -o page.html --force")
 
     def test_a_section_in_doubt_has_no_widths(self):
         self.write_path("far.txt", 5, 0.5, lambda i: (5000, 0))

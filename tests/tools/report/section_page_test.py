@@ -71,7 +71,7 @@ class SectionPageTest(unittest.TestCase):
         return f"{self.street.folder}/{name}"
 
     def report(self, name, *options, code=0):
-        text = clearway("section", "report", self.street.section, "-o", self.file(name), "--force",
+        text = clearway("report", self.street.section, "-o", self.file(name), "--force",
                         "--json", "--date", DATE, *options, code=code)
         return json.loads(text) if code == 0 else text
 
@@ -224,7 +224,7 @@ class SectionPageTest(unittest.TestCase):
 
     def test_picture(self):
         picture = self.file("picture.svg")
-        clearway("section", "report", self.street.section, "-o", picture, "--outline",
+        clearway("report", self.street.section, "-o", picture, "--outline",
                  self.file("tall.csv"), "--margin", 0.1, *self.site(), "--conflicts",
                  self.file("conflicts.csv"))
         root = xml.parse(picture).getroot()

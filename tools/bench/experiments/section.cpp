@@ -44,7 +44,7 @@ Json by_brute_force(const SceneFiles& files) {
     const SectionPoses pose(one, number, bins);
     SectionRef section = section_ref(pose, lattice, slack, maps);
     SectionPoseNode node = section.nodes[0];
-    node.bin = SectionPoseNode::kManyBins;  // only the places tell
+    node.bin = SectionPoseNode::kManyBins;  // only the places decide
     const Stopwatch clock;
     for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
       const Cell& of = store.cells()[cell];

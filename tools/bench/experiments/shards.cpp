@@ -64,11 +64,11 @@ class ShardBalance {
       }
       computed.push_back(least);
     }
-    tell(scene, mode, estimated, computed);
+    print_estimate(scene, mode, estimated, computed);
   }
 
-  void tell(const std::string& scene, const ShardMode& mode, const std::vector<double>& estimated,
-            const std::vector<double>& computed) {
+  void print_estimate(const std::string& scene, const ShardMode& mode,
+                      const std::vector<double>& estimated, const std::vector<double>& computed) {
     const double mean = std::accumulate(computed.begin(), computed.end(), 0.0) / kShards;
     const double uneven = unevenness(computed);
     const std::string name = scene + ", " + mode.name;

@@ -6,6 +6,7 @@
 #include "bench/measure/scoring.hpp"
 #include "bench/variants/variants.hpp"
 #include "clearway/error.hpp"
+#include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 
 namespace clearway::bench {
@@ -37,7 +38,7 @@ class Surfaces {
       const double spacing = kSurfaceRadius / parts;
       const Json sampled =
           measure("sampled", "r / " + std::to_string(parts),
-                  sweep_.with({"--model-as", "points", "--model-spacing", shown(spacing)}));
+                  sweep_.with({"--model-as", "points", "--model-spacing", format_number(spacing)}));
       check(sampled, spacing);
     }
     wrong_.refuse();

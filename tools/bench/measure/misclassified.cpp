@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/result/result.hpp"
 
@@ -23,8 +24,9 @@ std::size_t decade_of(double distance) {
 void check_reach(const ResultReader& truth, double radius) {
   const double clearance = truth.header().clearance;
   if (clearance > radius) return;
-  refuse(truth.name(), "clearances up to " + shown(clearance) + " m; expected them beyond " +
-                           shown(radius) + " m (--clearance)");
+  refuse(truth.name(), "clearances up to " + format_number(clearance) +
+                           " m; expected them beyond " + format_number(radius) +
+                           " m (--clearance)");
 }
 
 /// Looks up distances by ascending source index.

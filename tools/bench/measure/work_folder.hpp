@@ -10,7 +10,7 @@
 namespace clearway::bench {
 
 /// Whether two programs with this description may still differ in their source, as its "commit"
-/// tells.
+/// says.
 bool may_have_changed(const Json& program);
 
 /// The folder of an experiment's scenes, stores and results. No other experiment uses it until this

@@ -30,7 +30,7 @@ CLOCK = [(re.compile(pattern), word) for pattern, word, _ in (
 )]
 # What depends on which thread finds a point first; of commands with a profile and several threads.
 THREADS = [(re.compile(rb"tests: [^\n]*"), b"tests: COUNTS")]
-# Outputs that tell of the clock: what a command prints, and these files. All others have to be equal.
+# Outputs that depend on the clock: what a command prints, and these files. All others have to be equal.
 TELLS_TIME = re.compile(
     r"(^|/)(stdout|stderr|log\.txt|plan\.json|run\.json|state\.json)$|/runs/.*/report\.html$")
 

@@ -1,4 +1,4 @@
-"""What is asked of both programs: groups of commands, each a line as one types it.
+"""The questions for both programs: groups of commands, each a line as one types it.
 
 `@` in a line is a name that no other line has. A line may end with `< FILE`, its standard input, and
 with `=> N`, the exit code to expect where it is not 0; `=> any` where the real files decide.
@@ -525,10 +525,13 @@ def section():
         "section export section_seen.h5 --table unknown-cells -o @.csv",
         "section export section_margin.h5 --outline --base 0.5 -o @.dxf => any",
         "section export section_clear.h5 --outline -o @.dxf => 2",
-        *(f"section report {name}.h5 {options} --date 2026-01-02 --json -o @.html -o @.svg => any"
+        *(f"report {name}.h5 {options} --date 2026-01-02 --json -o @.html -o @.svg => any"
           for name, options in (("section", ""), ("section", "--outline load.csv"), ("section_clear", "--title T"),
                                 ("section", f"--outline load.csv {known}"), ("section_seen", "--outline slim.csv"),
                                 ("section_margin", "--outline load.csv --margin 0.1 --base 0.5 --band 0.25"))),
+        "report section.h5 --gap 0.5 -o @.html => 2",
+        "report tables.h5 --env cells.h5 --trajectory hall/trajectory.txt --model hall/model.ply --base 0 -o @.html "
+        "=> 2",
     ]
 
 
@@ -619,7 +622,7 @@ def help_pages():
     """What every command says of itself."""
     commands = ["", "check", "convert", "run", "merge", "export", "conflicts", "stations", "shift", "compare", "info",
                 "verify", "model", "model box", "model outline", "report", "section", "section find", "section check",
-                "section export", "section report", "scene", "trajectory", "trajectory info", "trajectory resample",
+                "section export", "scene", "trajectory", "trajectory info", "trajectory resample",
                 "trajectory thin", "trajectory follow", "trajectory alignment", "trajectory line", "campaign",
                 "campaign plan", "campaign run", "campaign status", "campaign report"]
     return [*(f"{command} --help".strip() for command in commands), "nonsense => 2", "run --nonsense => 2",

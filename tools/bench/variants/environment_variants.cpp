@@ -7,6 +7,7 @@
 #include "bench/measure/publish.hpp"
 #include "bench/variants/variants.hpp"
 #include "clearway/error.hpp"
+#include "core/util/format.hpp"
 #include "io/files/bytes.hpp"
 #include "io/files/input_error.hpp"
 #include "io/scans/las/las_header.hpp"
@@ -92,14 +93,14 @@ double exact_sum(double a, double b) {
   const double sum = a + b;
   const double from_b = sum - a;
   if (std::isfinite(sum) && (a - (sum - from_b)) + (b - from_b) == 0) return sum;
-  throw UsageError("a shift of " + shown(b) + " m: offset " + shown(a) +
+  throw UsageError("a shift of " + format_number(b) + " m: offset " + format_number(a) +
                    " plus that has to be a double, without rounding");
 }
 
 void shift_header(HeaderBytes& header, const Vec3& shift) {
   for (int k = 0; k < 3; ++k) {
     if (!std::isfinite(shift[k]) || shift[k] != std::nearbyint(shift[k])) {
-      throw UsageError("a shift of " + shown(shift[k]) + " m; expected whole metres");
+      throw UsageError("a shift of " + format_number(shift[k]) + " m; expected whole metres");
     }
     const std::size_t offset = kOffsetByte + 8 * k;
     header.put(offset, exact_sum(header.at<double>(offset), shift[k]));
@@ -233,8 +234,8 @@ void sample_environment(const fs::path& las_in, const fs::path& las_out,
 
 int stretch_environment(const fs::path& las_in, const fs::path& las_out, double factor) {
   if (!(factor >= 1 && factor <= kGreatestStretch)) {
-    throw UsageError("a stretch of " + shown(factor) + "; expected 1 to " +
-                     shown(kGreatestStretch));
+    throw UsageError("a stretch of " + format_number(factor) + "; expected 1 to " +
+                     format_number(kGreatestStretch));
   }
   const auto reader = read_las(open_las(las_in));
   const CloudInfo& info = reader->info();

@@ -8,7 +8,7 @@
 #include "clearway/error.hpp"
 #include "clearway/model.hpp"
 #include "core/geometry/predicate.hpp"
-#include "io/files/input_error.hpp"
+#include "core/util/format.hpp"
 #include "io/scans/ply/ply_writer.hpp"
 
 namespace clearway::bench {
@@ -45,7 +45,7 @@ std::vector<bool> one_a_voxel(const std::vector<Vec3>& points, double voxel) {
 void write_thinned_model(const std::filesystem::path& in, const std::filesystem::path& out,
                          double voxel) {
   if (!(voxel > 0 && std::isfinite(voxel))) {
-    throw UsageError("a voxel of " + shown(voxel) + " m; expected a positive length");
+    throw UsageError("a voxel of " + format_number(voxel) + " m; expected a positive length");
   }
   const std::vector<Vec3> points = read_model_points(in);
   const std::vector<bool> kept = one_a_voxel(points, voxel);

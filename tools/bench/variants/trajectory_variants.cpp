@@ -8,6 +8,7 @@
 #include "bench/variants/variants.hpp"
 #include "clearway/error.hpp"
 #include "clearway/trajectory.hpp"
+#include "core/util/format.hpp"
 #include "core/util/progress.hpp"
 #include "io/files/input_error.hpp"
 #include "io/paths/trajectory_file.hpp"
@@ -41,7 +42,7 @@ void turn(Pose& pose, const Eigen::Vector3d& rotation_vector) {
 
 void check_sigma(double sigma) {
   if (sigma >= 0 && std::isfinite(sigma)) return;
-  throw UsageError("noise of " + shown(sigma) + "; expected 0 or more");
+  throw UsageError("noise of " + format_number(sigma) + "; expected 0 or more");
 }
 
 }  // namespace
@@ -66,7 +67,7 @@ void write_first_poses(const fs::path& in, const fs::path& out, std::uint64_t pa
 void write_shifted_poses(const fs::path& in, const fs::path& out, const Vec3& shift) {
   for (int k = 0; k < 3; ++k) {
     if (!std::isfinite(shift[k])) {
-      throw UsageError("a shift of " + shown(shift[k]) + " m; expected a finite length");
+      throw UsageError("a shift of " + format_number(shift[k]) + " m; expected a finite length");
     }
   }
   write_changed(in, out, [&](Pose& pose, std::size_t) {
@@ -131,7 +132,7 @@ void write_poses_aside(const fs::path& in, const fs::path& out, double metres) {
 
 void write_non_rigid_poses(const fs::path& in, const fs::path& out, double stretch) {
   if (!(stretch > -1 && std::isfinite(stretch))) {
-    throw UsageError("a stretch of " + shown(stretch) + "; expected more than -1");
+    throw UsageError("a stretch of " + format_number(stretch) + "; expected more than -1");
   }
   write_changed(in, out, [&](Pose& pose, std::size_t) {
     for (int row = 0; row < 3; ++row) pose.rotation[3 * row] *= 1 + stretch;

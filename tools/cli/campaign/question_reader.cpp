@@ -76,7 +76,7 @@ std::string text_of(const Arguments& arguments) {
   return text;
 }
 
-void tell(const std::string& key, const std::vector<Message>& messages) {
+void log_warnings(const std::string& key, const std::vector<Message>& messages) {
   for (Message message : messages) {
     if (message.severity == Message::Severity::kNote) continue;
     message.text = key + ": " + message.text;
@@ -162,7 +162,7 @@ std::uint32_t QuestionReader::add_bodies(const PlannedRun& run, const RunOptions
         {model_options_of(options), options.trajectory_options, options.search.threads}, &messages);
     check_bodies(query, options.search);
   });
-  tell(run.vehicle.key, messages);
+  log_warnings(run.vehicle.key, messages);
   std::vector<EstimatedModel> models;
   for (const Body& body : query.bodies) {
     header.model_points += body.model.vertices.size();
@@ -268,7 +268,7 @@ const QuestionReader::Environment& QuestionReader::environment(const campaign::E
     if (metadata.classes) facts.header.classes_hash = metadata.classes->hash;
     facts.metres = store.metres_per_unit();
     facts.unit_is_assumed = store.length_unit() == "unknown";
-    tell(entry.key, store.warnings());
+    log_warnings(entry.key, store.warnings());
     facts.unit = symbol_of_unit(store.length_unit());
     facts.fingerprint = hash_text(store.reader().fingerprint());
   });
@@ -287,7 +287,7 @@ const QuestionReader::ReadModel& QuestionReader::model(const PlannedRun& run,
     check_is_model(options.model);
     std::vector<Message> messages;
     const Model shape = read_model(options.model, how, &messages);
-    tell(run.vehicle.key, messages);
+    log_warnings(run.vehicle.key, messages);
     return models_[id] = {shape.vertices.size(), shape.triangles.size(), hash_of_model(shape),
                           shape.empty() ? Box{} : box_of(shape.vertices)};
   });
@@ -310,7 +310,7 @@ const QuestionReader::ReadTrajectory& QuestionReader::trajectory(const PlannedRu
     std::vector<Message> messages;
     std::vector<Pose> poses =
         read_trajectory(options.trajectory, options.trajectory_options, &messages);
-    if (known == trajectories_.end()) tell(run.route.key, messages);
+    if (known == trajectories_.end()) log_warnings(run.route.key, messages);
     ReadTrajectory& read = trajectories_[id];
     read = {poses.size(), hash_of_trajectory(poses)};
     if (needs_poses) read.poses = std::move(poses);

@@ -92,9 +92,9 @@ TaskFolder::TaskFolder(const campaign::Task& task, const fs::path& campaign)
 }
 
 /// Removes a result or journal that an earlier try made from inputs other than the planned ones;
-/// the inputs may have been put back since, so nothing else tells. Whether a journal belongs to
-/// another store only a run can tell, so the journal of a try that failed for its inputs is removed
-/// too.
+/// the inputs may have been put back since, so nothing else shows it. Whether a journal belongs to
+/// another store only a run can find out, so the journal of a try that failed for its inputs is
+/// removed too.
 void TaskFolder::remove_of_other_inputs(const std::optional<campaign::TaskState>& earlier) {
   const fs::path result = path_ / task_.result(), journal = journal_of(result);
   if (campaign::answers_another(result, task_.question)) remove_if_there(result);

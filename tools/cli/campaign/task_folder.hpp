@@ -34,8 +34,8 @@ class TaskFolder {
   /// The file for what `clearway run` prints.
   std::filesystem::path run_output() const { return path_ / "run.json"; }
 
-  /// To be called before each command, so that errors in the log can be told from those of earlier
-  /// commands. number: from 0.
+  /// To be called before each command, so that errors in the log can be distinguished from those of
+  /// earlier commands. number: from 0.
   void begin_command(std::size_t number);
   std::size_t command() const { return command_; }
 

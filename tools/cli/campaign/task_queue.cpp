@@ -247,17 +247,17 @@ void TaskQueue::start_command(Work& work, std::size_t number) {
 void TaskQueue::wait() {
   siginfo_t info{};
   const int signal = ::sigwaitinfo(&waited_, &info);
-  heed(signal);
+  handle(signal);
 }
 
 /// Heeds a pending signal, without waiting for one.
 void TaskQueue::look() {
   siginfo_t info{};
   const timespec none{};
-  heed(::sigtimedwait(&waited_, &info, &none));
+  handle(::sigtimedwait(&waited_, &info, &none));
 }
 
-void TaskQueue::heed(int signal) {
+void TaskQueue::handle(int signal) {
   if (signal == SIGINT || signal == SIGTERM) stop();
   if (signal > 0) reap();
 }

@@ -73,7 +73,7 @@ class TaskQueue {
   void start_command(Work& work, std::size_t number);
   void wait();
   void look();
-  void heed(int signal);
+  void handle(int signal);
   void reap();
   void stop();
   void end_command(std::list<Work>::iterator work, int status);

@@ -156,7 +156,7 @@ class Check {
     make_table<StationsCommand>(kStationsName, plan_.stations());
     write_page();
     record_->write();
-    tell(found, conflicts);
+    print_answer(found, conflicts);
     if (options_.open) open_page(plan_.file(kReportName));
     return found.report.verdict();
   }
@@ -396,7 +396,7 @@ class Check {
     nothing_done_ = nothing_done_ && was_there;
   }
 
-  void tell(const RunOutcome& found, const std::string& conflicts) const {
+  void print_answer(const RunOutcome& found, const std::string& conflicts) const {
     if (nothing_done_) {
       spdlog::info("{}: has the answer to this question already; nothing was to be done",
                    options_.folder.string());

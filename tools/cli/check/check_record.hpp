@@ -32,7 +32,7 @@ class CheckRecord {
   void note(const std::string& name, const nlohmann::ordered_json& what,
             const nlohmann::ordered_json& remembered);
 
-  /// What note_command() was told of a file; empty where nothing is known.
+  /// What note_command() noted of a file; empty where nothing is known.
   std::vector<std::string> command_of(const std::string& name) const;
   /// Notes the words of the command that made a file.
   void note_command(const std::string& name, const std::vector<std::string>& words);

@@ -46,9 +46,9 @@ struct ComparedSide {
     poses = read_poses(trajectory, options.trajectory_options, result);
     std::vector<Body> bodies;
     if (!vehicle.empty()) {
-      std::vector<Message> told;
-      bodies = read_bodies_of(vehicle, options.model_options, options, poses, result, told);
-      for (const Message& message : told) {
+      std::vector<Message> messages;
+      bodies = read_bodies_of(vehicle, options.model_options, options, poses, result, messages);
+      for (const Message& message : messages) {
         if (message.severity == Message::Severity::kWarning) log_message(message);
       }
     }
@@ -113,7 +113,7 @@ std::optional<bool> is_older(const Result& b, const Result& a) {
 /// Whether a conflict is worse in b than in a.
 enum class Worse { kNo, kYes, kUnknown };
 
-/// Whether two conflicts have the same points, as far as their numbers and places tell.
+/// Whether two conflicts have the same points, as far as their numbers and places show.
 bool are_same(const Conflict& a, const Conflict& b) {
   return a.points == b.points && a.box.lo == b.box.lo && a.box.hi == b.box.hi &&
          a.centroid == b.centroid;
@@ -250,7 +250,7 @@ std::string text_of(const ComparedConflicts& found, std::uint64_t show) {
   }
   if (!found.unknown_worse.empty() && found.distances_known) {
     text +=
-        list_text(std::string("not known whether they are worse, because nothing tells how deep "
+        list_text(std::string("not known whether they are worse, because nothing shows how deep "
                               "they are inside the model") +
                       (shifts_known ? "" : " (--model or --vehicle finds it by shifts)"),
                   found.unknown_worse, show, [&](const auto& pair) { return of_b(pair.second); });
@@ -286,7 +286,7 @@ void add_conflict_comparison(CLI::App& command, ConflictComparison& options,
       ->type_name("FILE");
   command
       .add_option("--model", options.model,
-                  "The model of A, and of B: for shifts, which tell how deep a surface is touched")
+                  "The model of A, and of B: for shifts, which show how deep a surface is touched")
       ->type_name("FILE");
   command.add_option("--model-b", options.model_b, "The model of B, where it is another")
       ->type_name("FILE");
@@ -298,6 +298,7 @@ void add_conflict_comparison(CLI::App& command, ConflictComparison& options,
       ->type_name("FILE");
   add_model_options(command, options.model_options, options.lengths);
   add_conflict_options(command, options);
+  add_trajectory_options(command, options.trajectory_options, options.lengths);
   add_axis_options(command, options);
   {
     const GroupScope conflict_group(command, OptionGroup::kConflicts);

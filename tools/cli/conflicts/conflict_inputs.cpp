@@ -32,7 +32,6 @@ void add_conflict_options(CLI::App& command, ConflictCommand& options) {
     add_memory_option(command, options.find.memory_bytes);
     add_threads_option(command, options.find.threads);
   }
-  add_trajectory_options(command, options.trajectory_options, options.lengths);
 }
 
 void add_axis_options(CLI::App& command, ConflictCommand& options) {

@@ -27,7 +27,7 @@ struct ConflictCommand {
   std::array<const CLI::Option*, 2> axes{};  ///< --forward and --up, where the command has them
 };
 
-/// Adds --gap, --min-points, --split, --memory, --threads and the options of trajectories.
+/// Adds --gap, --min-points, --split, --chainage-start, --memory and --threads.
 void add_conflict_options(CLI::App& command, ConflictCommand& options);
 
 /// Adds --forward and --up, which say how the model is seen. `options` outlive the command.

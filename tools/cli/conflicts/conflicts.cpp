@@ -217,10 +217,10 @@ SeenFrom read_seen_from(ConflictsCommand& options, const std::vector<Pose>& pose
     out.model = read_model_of(options.model, options.model_options, result);
   }
   if (!options.vehicle.empty()) {
-    std::vector<Message> told;
+    std::vector<Message> messages;
     out.bodies =
-        read_bodies_of(options.vehicle, options.model_options, options, poses, result, told);
-    for (const Message& message : told) {
+        read_bodies_of(options.vehicle, options.model_options, options, poses, result, messages);
+    for (const Message& message : messages) {
       if (message.severity == Message::Severity::kWarning) log_message(message);
     }
   }
@@ -335,6 +335,7 @@ void add_options(CLI::App& command, ConflictsCommand& options) {
                   "Output: .csv, .json, .geojson, .gpkg or .bcf; may be given several times")
       ->type_name("FILE");
   add_conflict_options(command, options);
+  add_trajectory_options(command, options.trajectory_options, options.lengths);
   add_sides(command, options);
   add_count_option(command, "--show", options.show, 0, 1'000'000'000,
                    "Print a table of so many conflicts");

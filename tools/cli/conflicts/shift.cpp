@@ -79,10 +79,10 @@ Query read_query_again(ShiftCommand& options, const Result& result, PoseLabels& 
     query.model = read_model_of(options.model, options.model_options, result);
     return query;
   }
-  std::vector<Message> told;
-  query.bodies =
-      read_bodies_of(options.vehicle, options.model_options, options, query.poses, result, told);
-  for (const Message& message : told) {
+  std::vector<Message> messages;
+  query.bodies = read_bodies_of(options.vehicle, options.model_options, options, query.poses,
+                                result, messages);
+  for (const Message& message : messages) {
     if (message.severity == Message::Severity::kWarning) log_message(message);
   }
   return query;
@@ -209,7 +209,7 @@ std::string perform(ShiftCommand& options) {
   for (const auto& output : outputs) output->pending.publish();
   spdlog::info("{} in {:.2f} s", counted(table.searches, "search", "searches"), table.seconds);
   spdlog::info(
-      "what was not scanned counts as free; clearway run --seen along the shifted path tells "
+      "what was not scanned counts as free; clearway run --seen along the shifted path shows "
       "whether it was");
   return options.json ? json_of(file) : table_text(file, options.show);
 }
@@ -228,7 +228,7 @@ void add_inputs(CLI::App& command, ShiftCommand& options) {
 void add_options(CLI::App& command, ShiftCommand& options) {
   add_inputs(command, options);
   {
-    const GroupScope group(command, OptionGroup::kAsked);
+    const GroupScope group(command, OptionGroup::kQuestion);
     options.lengths
         .add(command, "--lateral", options.lateral,
              "The shifts that are tried: from the right, below 0, to the left, above 0 (default: "
@@ -239,6 +239,7 @@ void add_options(CLI::App& command, ShiftCommand& options) {
   }
   add_model_options(command, options.model_options, options.lengths);
   add_conflict_options(command, options);
+  add_trajectory_options(command, options.trajectory_options, options.lengths);
   add_axis_options(command, options);
   add_fields(command, kDeviceFields<SessionOptions>, options.machine, options.lengths);
   add_count_option(command, "--show", options.show, 0, 1'000'000'000,

@@ -194,9 +194,10 @@ StationsOutcome perform(StationsCommand& command) {
   options.station = labels.station;
   std::vector<Body> bodies;
   if (!command.vehicle.empty()) {
-    std::vector<Message> told;
-    bodies = read_bodies_of(command.vehicle, command.model_options, command, poses, result, told);
-    for (const Message& message : told) {
+    std::vector<Message> messages;
+    bodies =
+        read_bodies_of(command.vehicle, command.model_options, command, poses, result, messages);
+    for (const Message& message : messages) {
       if (message.severity == Message::Severity::kWarning) log_message(message);
     }
   }

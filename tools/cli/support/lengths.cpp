@@ -190,8 +190,8 @@ double LengthOptions::convert_for(const std::string& result, const std::string& 
   return metres;
 }
 
-bool names_unit(const FileUnit& option, std::span<const Message> told) {
-  return option.is_known() || std::ranges::any_of(told, [](const Message& message) {
+bool names_unit(const FileUnit& option, std::span<const Message> messages) {
+  return option.is_known() || std::ranges::any_of(messages, [](const Message& message) {
            return message.code != "datum-accuracy" &&
                   std::ranges::any_of(message.numbers,
                                       [](const auto& number) { return number.first == "metres"; });

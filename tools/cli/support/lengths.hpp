@@ -80,7 +80,7 @@ class LengthOptions {
   /// the scan is not in metres.
   std::optional<Message> convert_for(const Store& store) const;
   /// Converts the lengths that were given with a unit into the unit of a result, which its CRS
-  /// tells, and returns the metres of that unit. Warns where there is no CRS and a length was given
+  /// names, and returns the metres of that unit. Warns where there is no CRS and a length was given
   /// with a unit, since the scan may have another unit all the same. result: its name, for the
   /// warning.
   double convert_for(const std::string& result, const std::string& crs_wkt) const;
@@ -95,8 +95,9 @@ class LengthOptions {
   bool lacks_unit_ = false;
 };
 
-/// Whether the unit of a file is known: by its option, or because reading it told of a unit.
-bool names_unit(const FileUnit& option, std::span<const Message> told);
+/// Whether the unit of a file is known: by its option, or because a message of reading it names a
+/// unit.
+bool names_unit(const FileUnit& option, std::span<const Message> messages);
 
 /// The note "feet" about a store in feet where all inputs name their units, so that nothing is
 /// assumed to be in feet and the search need not warn of it; none for other stores.

@@ -27,15 +27,16 @@ namespace clearway::tool {
 namespace {
 
 constexpr std::array kTitles{"Inputs and output",
-                             "What is asked",
+                             "The question",
                              "How sure the answer is",
-                             "What is ignored",
+                             "Ignored points",
                              "The store",
                              "The model",
                              "The path",
                              "Units and frames",
                              "Conflicts",
                              "The page",
+                             "The page of a section",
                              "Speed and memory",
                              "Files and resume",
                              "Messages and exit code"};
@@ -135,15 +136,15 @@ CLI::Validator seconds_up_to(double most) {
   return {check, ""};
 }
 
-void add_page_texts(CLI::App& command, std::string& title, std::string& project,
-                    std::string& client, std::string& author, std::string& date) {
-  command.add_option("--title", title, "Title of the page (default: names of the files)")
+void add_page_texts(CLI::App& command, PageTexts& texts) {
+  command.add_option("--title", texts.title, "Title of the page (default: names of the files)")
       ->type_name("TEXT");
-  command.add_option("--project", project, "Name of the project, in the head of the page")
+  command.add_option("--project", texts.project, "Name of the project, in the head of the page")
       ->type_name("TEXT");
-  command.add_option("--client", client, "Who the page is for")->type_name("TEXT");
-  command.add_option("--author", author, "Who made it")->type_name("TEXT");
-  command.add_option("--date", date, "Date on the page (default: now, in UTC)")->type_name("TEXT");
+  command.add_option("--client", texts.client, "Who the page is for")->type_name("TEXT");
+  command.add_option("--author", texts.author, "Who made it")->type_name("TEXT");
+  command.add_option("--date", texts.date, "Date on the page (default: now, in UTC)")
+      ->type_name("TEXT");
 }
 
 std::uint64_t parse_size(const std::string& option, const std::string& text) {

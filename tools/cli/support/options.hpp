@@ -5,6 +5,7 @@
 #include <string>
 
 #include "clearway/model.hpp"
+#include "clearway/report.hpp"
 #include "core/describe/field.hpp"
 
 namespace CLI {
@@ -87,8 +88,7 @@ void add_turn_options(CLI::App& command, Axis& forward, Axis& up);
 void add_model_options(CLI::App& command, ModelOptions& options, LengthOptions& lengths);
 
 /// Adds --title, --project, --client, --author and --date, the texts in the head of a page.
-void add_page_texts(CLI::App& command, std::string& title, std::string& project,
-                    std::string& client, std::string& author, std::string& date);
+void add_page_texts(CLI::App& command, PageTexts& texts);
 
 /// The bytes of "512M", "1.5G", "4GiB" or "300000000". Throws CLI::ValidationError naming the
 /// option.

@@ -14,7 +14,7 @@ namespace clearway::tool {
 Json program_json(std::initializer_list<std::pair<const char*, std::filesystem::path>> files);
 
 /// The files that a store was made of: "name", "bytes", "xxh64", and "first_source" and "points",
-/// which say which source indices are theirs and are null where the store does not tell.
+/// which say which source indices are theirs and are null where the store does not say.
 Json sources_json(const StoreMetadata& store);
 /// The origins of a store: how many are distinct, what they rest on, and how many points have none.
 Json origins_json(const StoreOrigins& origins);

@@ -1,11 +1,24 @@
-#include "scene/sites/halls.hpp"
-
 #include <cmath>
 
 #include "scene/scene.hpp"
+#include "scene/sites/kinds.hpp"
+#include "scene/vehicles/vehicles.hpp"
 
 namespace clearway::scene {
 namespace {
+
+/// What the hall and the plant share: a production line with a conveyor, seen by a scanner that
+/// rides on it (the paper, section 4.3), and a car body that follows.
+struct FactoryDesign {
+  std::vector<PathPiece> line;  ///< the path of the conveyor
+  double half_width;            ///< half the width of the aisle; less than any bend's radius
+  double height;                ///< height of the ceiling
+  CarBodySize car;
+  double rail_width;       ///< width of each of the conveyor's two rails
+  double fixture_spacing;  ///< along the line, between fixtures that reach close to the body
+  double guide_gap;        ///< greatest gap between guide rails on one side
+  double density_aspect;   ///< the aspect of rays_a_sweep
+};
 
 /// Where a piece of furniture stands: `side` is 1 on the left and -1 on the right of the line.
 struct Spot {
@@ -184,8 +197,7 @@ void add_conveyor(World& world, const FactoryDesign& design, double length) {
   }
 }
 
-}  // namespace
-
+/// Adds racks, machines, columns, robots, people, cables, lights and beams, floor to ceiling.
 void furnish(World& world, const FactoryDesign& design, double length, std::uint64_t seed) {
   Dice dice(seed, kLayoutStream);
   add_conveyor(world, design, length);
@@ -197,8 +209,6 @@ void furnish(World& world, const FactoryDesign& design, double length, std::uint
     world.add(box(s, 0, 0.3, design.half_width, 0, design.height));
   }
 }
-
-namespace {
 
 constexpr double kRideHeight = 0.5;  // height of the body's lowest parts above the floor
 constexpr double kScannerHeight = 1.9;
@@ -239,8 +249,6 @@ Pose body_pose(const Path& path, std::uint64_t number, std::uint64_t count) {
   return pose_along(path.to_world({s, sway, kRideHeight + lift}), path.direction(s), attitude);
 }
 
-}  // namespace
-
 std::unique_ptr<const Scene> make_factory(Kind kind, const FactoryDesign& design,
                                           const Sizes& sizes, std::uint64_t seed) {
   const Room room{.begin_s = 0,
@@ -261,6 +269,8 @@ std::unique_ptr<const Scene> make_factory(Kind kind, const FactoryDesign& design
   };
   return scene;
 }
+
+}  // namespace
 
 std::unique_ptr<const Scene> make_hall(const Sizes& sizes, std::uint64_t seed) {
   constexpr double kBend = 1 / 16.0;

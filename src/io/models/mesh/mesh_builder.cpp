@@ -201,8 +201,8 @@ void MeshBuilder::refuse_at(const FilePlace& at, const std::string& what) const 
 
 void MeshBuilder::add_vertex(const Vec3& vertex, const FilePlace& at) {
   if (!std::isfinite(vertex.x) || !std::isfinite(vertex.y) || !std::isfinite(vertex.z)) {
-    refuse_at(at, "vertex (" + shown(vertex.x) + ", " + shown(vertex.y) + ", " + shown(vertex.z) +
-                      "); expected finite coordinates");
+    refuse_at(at, "vertex (" + format_number(vertex.x) + ", " + format_number(vertex.y) + ", " +
+                      format_number(vertex.z) + "); expected finite coordinates");
   }
   if (vertices() > std::numeric_limits<std::uint32_t>::max() - 1) {
     refuse_at(at, "more than 4,294,967,295 vertices; expected fewer");

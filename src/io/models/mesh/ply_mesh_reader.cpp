@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/util/format.hpp"
 #include "io/files/bytes.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
@@ -315,8 +316,8 @@ class PlyMeshParser {
   std::uint64_t list_size(PlyNumbers& numbers, const PlyProperty& property) {
     const double count = numbers.next(*property.list_count, property.name);
     if (!(count >= 0 && count <= 0xFFFFFFFFp0 && count == std::floor(count))) {
-      mesh_.refuse_at(numbers.here(),
-                      "a list of " + shown(count) + " items; expected a whole number from 0");
+      mesh_.refuse_at(numbers.here(), "a list of " + format_number(count) +
+                                          " items; expected a whole number from 0");
     }
     return static_cast<std::uint64_t>(count);
   }
@@ -339,7 +340,7 @@ class PlyMeshParser {
     const bool ends_strip = kind == Kind::kStrip && value == -1;
     if (!ends_strip && !(value >= 0 && value < 0x1p32 && value == std::floor(value))) {
       mesh_.refuse_at(numbers.here(), std::string(kind == Kind::kEdge ? "an edge" : "a face") +
-                                          " names vertex " + shown(value) +
+                                          " names vertex " + format_number(value) +
                                           "; expected a whole number from 0");
     }
     return static_cast<std::int64_t>(value);

@@ -33,8 +33,9 @@ class StlMesh {
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec3& corner = corners[i];
       if (!std::isfinite(corner.x) || !std::isfinite(corner.y) || !std::isfinite(corner.z)) {
-        refuse(name_, at.text() + ": vertex (" + shown(corner.x) + ", " + shown(corner.y) + ", " +
-                          shown(corner.z) + "); expected finite coordinates");
+        refuse(name_, at.text() + ": vertex (" + format_number(corner.x) + ", " +
+                          format_number(corner.y) + ", " + format_number(corner.z) +
+                          "); expected finite coordinates");
       }
       triangle[i] = welder_.number_of(corner);
     }

@@ -21,7 +21,8 @@ namespace {
 void check_number(const std::optional<double>& value, const char* option, bool good,
                   const char* expected) {
   if (!value || (std::isfinite(*value) && good)) return;
-  throw UsageError(std::string(option) + ": " + brief(*value) + "; expected " + expected);
+  throw UsageError(std::string(option) + ": " + format_digits(*value, 9) + "; expected " +
+                   expected);
 }
 
 void check_options(const AlignmentOptions& options) {
@@ -33,8 +34,8 @@ void check_options(const AlignmentOptions& options) {
   check_number(options.station_to, "--to", true, "a finite station");
   check_number(options.height, "--height", true, "a finite height");
   if (options.station_from && options.station_to && *options.station_from > *options.station_to) {
-    throw UsageError("--from " + brief(*options.station_from) + " is after --to " +
-                     brief(*options.station_to) +
+    throw UsageError("--from " + format_digits(*options.station_from, 9) + " is after --to " +
+                     format_digits(*options.station_to, 9) +
                      "; expected ascending stations, and --reverse to travel against them");
   }
 }
@@ -59,10 +60,10 @@ double asked_station(const LandXml& xml, const AlignmentPlan& plan, double stati
   const double metres = UnitFactor(xml.metres_per_unit())(station);
   const double first = plan.first_station(), last = plan.last_station();
   if (metres < first - kSameStation || metres > last + kSameStation) {
-    throw UsageError(xml.name() + ": " + option + " " + brief(station) +
+    throw UsageError(xml.name() + ": " + option + " " + format_digits(station, 9) +
                      " is off the alignment; expected a station from " +
-                     brief(first / xml.metres_per_unit()) + " to " +
-                     brief(last / xml.metres_per_unit()));
+                     format_digits(first / xml.metres_per_unit(), 9) + " to " +
+                     format_digits(last / xml.metres_per_unit(), 9));
   }
   return std::clamp(metres, first, last);
 }
@@ -82,8 +83,8 @@ void clip_to_profile(const LandXml& xml, const AlignmentProfile& profile, Reach&
            std::min(reach.to, profile.last_station())};
   const double unit = xml.metres_per_unit();
   const std::string has = "the profile has heights from station " +
-                          brief(profile.first_station() / unit) + " to " +
-                          brief(profile.last_station() / unit) + " only";
+                          format_digits(profile.first_station() / unit, 9) + " to " +
+                          format_digits(profile.last_station() / unit, 9) + " only";
   if (reach.from > reach.to) refuse(xml.name(), has + ", where no pose is wanted");
   const double begins = reach.from - asked.from, ends = asked.to - reach.to;
   const std::string later =
@@ -108,15 +109,14 @@ void remark_cant_ends(const LandXml& xml, const Alignment& track, const Reach& r
   const double first = begin.station, last = end.station;
   const bool early = reach.from + kSameStation < first;
   const bool late = reach.to - kSameStation > last;
-  if (!early && !late) return;
   // Beyond an end without cant the track is level, as is usual.
   const bool canted = (early && begin.cant != 0) || (late && end.cant != 0);
+  if (!canted) return;
   const double unit = xml.metres_per_unit();
-  const std::string text = xml.name() + ": the cant is given from station " + brief(first / unit) +
-                           " to " + brief(last / unit) +
-                           " only; beyond its ends the last value was kept, which is " +
-                           (canted ? "not 0" : "0");
-  out.warn_or_note(canted, "cant-ends", text, {{"first", first / unit}, {"last", last / unit}});
+  const std::string text = xml.name() + ": the cant is given from station " +
+                           format_digits(first / unit, 9) + " to " + format_digits(last / unit, 9) +
+                           " only; beyond its ends the last value was kept, which is not 0";
+  out.warn("cant-ends", text, {{"first", first / unit}, {"last", last / unit}});
 }
 
 /// Warns where it matters which foot the file means.
@@ -132,7 +132,7 @@ void remark_feet(const LandXml& xml, const AlignmentPlan& plan, AlignmentFile& o
   if (!(moved > kFeetApart)) return;
   out.warn("alignment-feet",
            xml.name() + ": the coordinates are in " + units_text(unit) + ", up to " +
-               brief(largest / unit) + "; in " + units_text(other) + " they would be " +
+               format_digits(largest / unit, 9) + "; in " + units_text(other) + " they would be " +
                format_brief(moved) +
                " m elsewhere, so make sure that the scan and the file mean the same foot",
            {{"metres", moved}});
@@ -181,7 +181,7 @@ void add_poses(const LandXml& xml, const Alignment& track, AlignmentFile& out) {
     for (const double number : pose.translation) sum += number;
     if (!std::isfinite(sum)) {
       refuse(xml.name(), "gives no finite pose at station " +
-                             brief(station / xml.metres_per_unit()) +
+                             format_digits(station / xml.metres_per_unit(), 9) +
                              "; its lengths or heights are too large");
     }
     out.poses.push_back(pose);

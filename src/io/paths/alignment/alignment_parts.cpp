@@ -61,7 +61,8 @@ class PlanReader {
                      "alignment as lines, arcs and clothoids");
     }
     if (!(element.length >= 0)) {
-      xml_.refuse_at(node, "has the length " + brief(element.length) + " m; expected 0 or more");
+      xml_.refuse_at(
+          node, "has the length " + format_digits(element.length, 9) + " m; expected 0 or more");
     }
     if (element.length < kSameStation) return;
     check_turn(node, element);
@@ -115,7 +116,8 @@ class PlanReader {
     const Complex center = found ? place(*found) : Complex();
     const double radius = given ? *given : std::abs(element.start - center);
     if (!(radius > 0)) {
-      xml_.refuse_at(node, "has the radius " + brief(radius) + " m; expected more than 0");
+      xml_.refuse_at(node,
+                     "has the radius " + format_digits(radius, 9) + " m; expected more than 0");
     }
     element.first_curvature = element.last_curvature = sense / radius;
     if (element.start == element.end && !(length && *length < kSameStation)) {
@@ -131,7 +133,8 @@ class PlanReader {
 
   void check_turn(pugi::xml_node node, const PlanElement& element) const {
     if (!(std::abs(element.turn()) < 2 * std::numbers::pi)) {
-      xml_.refuse_at(node, "turns by " + brief(std::abs(element.turn()) * 180 / std::numbers::pi) +
+      xml_.refuse_at(node, "turns by " +
+                               format_digits(std::abs(element.turn()) * 180 / std::numbers::pi, 9) +
                                " degrees; expected less than a full circle, as closed curves are "
                                "not read");
     }
@@ -383,7 +386,7 @@ class ProfileReader {
     }
     if (!points.empty() && joins_last(node, point)) return;
     if (!points.empty() && !(point.station > points.back().station)) {
-      xml_.refuse_at(node, "stands at station " + brief(numbers[0]) +
+      xml_.refuse_at(node, "stands at station " + format_digits(numbers[0], 9) +
                                ", not after the point before it; expected ascending stations");
     }
     points.push_back(point);
@@ -404,9 +407,10 @@ class ProfileReader {
     }
     if (!(std::abs(point.height - before.height) <= kDeclared)) {
       const double unit = xml_.metres_per_unit();
-      xml_.refuse_at(node, "has the height " + brief(point.height / unit) + ", and " +
+      xml_.refuse_at(node, "has the height " + format_digits(point.height / unit, 9) + ", and " +
                                excerpt(nodes.back().name()) + " at the same station " +
-                               brief(point.station / unit) + " has " + brief(before.height / unit) +
+                               format_digits(point.station / unit, 9) + " has " +
+                               format_digits(before.height / unit, 9) +
                                "; expected one height at a station");
     }
     if (was_pvi) {
@@ -582,7 +586,8 @@ std::vector<CantPoint> cant_points(const LandXml& xml, pugi::xml_node cant, Alig
     point.ramp = ramp.value_or(CantRamp::kLinear);
     named.push_back(ramp.has_value());
     if (!points.empty() && !(point.station > points.back().station)) {
-      xml.refuse_at(node, "stands at station " + brief(point.station / xml.metres_per_unit()) +
+      xml.refuse_at(node, "stands at station " +
+                              format_digits(point.station / xml.metres_per_unit(), 9) +
                               ", not after the one before it; expected ascending stations");
     }
     points.push_back(point);
@@ -660,8 +665,8 @@ void read_cant(const LandXml& xml, pugi::xml_node alignment, const AlignmentOpti
   if (most == 0) return;
   const double distance = rail_distance_of(xml, cant, gauge, options);
   if (!(most < distance)) {
-    xml.refuse_at(cant, "raises a rail by up to " + brief(most) + " m, with rails " +
-                            brief(distance) + " m apart; expected a cant in " +
+    xml.refuse_at(cant, "raises a rail by up to " + format_digits(most, 9) + " m, with rails " +
+                            format_digits(distance, 9) + " m apart; expected a cant in " +
                             (xml.is_imperial() ? "inches" : "millimetres"));
   }
   track.cant_line = line_of(xml, cant, options, out);
@@ -681,7 +686,8 @@ void remark_left_out(const LandXml& xml, pugi::xml_node alignment, AlignmentFile
   for (const pugi::xml_node node : alignment.children("StaEquation")) {
     const auto ahead = xml.number(node, "staAhead"), internal = xml.number(node, "staInternal");
     if (count++ == 0 && ahead && internal) {
-      first = "; the first calls the internal station " + brief(*internal) + " " + brief(*ahead);
+      first = "; the first calls the internal station " + format_digits(*internal, 9) + " " +
+              format_digits(*ahead, 9);
     }
   }
   if (count == 0) return;

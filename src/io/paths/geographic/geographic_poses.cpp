@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "core/geometry/angle.hpp"
 #include "core/messages/messages.hpp"
@@ -25,11 +24,8 @@ struct Range {
     empty = false;
   }
   std::string text() const {
-    char digits[80];
-    std::snprintf(digits, sizeof digits, "%.6g", least);
-    const std::string from = digits;
-    std::snprintf(digits, sizeof digits, "%.6g", greatest);
-    return from == digits ? from : from + " to " + digits;
+    const std::string from = format_digits(least, 6), to = format_digits(greatest, 6);
+    return from == to ? from : from + " to " + to;
   }
 };
 
@@ -73,7 +69,7 @@ void check_shape(const MapProjection& map, const AttitudeRow& row, const std::st
   }
   if (skew > kConformal) {
     out.warn("map-distorts",
-             name + ": " + map.name() + " distorts angles by " + brief(skew / kDegree) +
+             name + ": " + map.name() + " distorts angles by " + format_digits(skew / kDegree, 9) +
                  " degrees; a rigid model does not fit such a map",
              {{"degrees", skew / kDegree}});
   }
@@ -107,13 +103,13 @@ void remark_map(const MapProjection& map, const TrajectoryOptions& options, cons
   const double unit = map.metres_per_unit(), environment = options.environment_unit;
   if (environment != 1 && std::abs(unit - environment) > 1e-9) {
     out.warn("map-unit",
-             name + ": positions are in the unit of " + map.name() + ", " + brief(unit) +
+             name + ": positions are in the unit of " + map.name() + ", " + format_digits(unit, 9) +
                  " m, but the environment is in " + units_text(environment) +
                  ". Give the CRS of the environment",
              {{"metres", unit}});
   } else if (unit < kFeet) {
     out.note("map-unit",
-             name + ": the unit of " + map.name() + " is " + brief(unit) +
+             name + ": the unit of " + map.name() + " is " + format_digits(unit, 9) +
                  " m; model, radius and lever arm are to be in it too",
              {{"metres", unit}});
   }
@@ -121,9 +117,9 @@ void remark_map(const MapProjection& map, const TrajectoryOptions& options, cons
   if (worst.error() > kMapScaleWarning) {
     out.warn("map-scale",
              name + ": lengths on the map of " + map.name() + " are wrong by " +
-                 brief(100 * worst.error()) + " % at longitude " + format_brief(worst.longitude) +
-                 ", latitude " + format_brief(worst.latitude) + ": they are " +
-                 format_brief(worst.farthest) + " times those on the ground (" +
+                 format_digits(100 * worst.error(), 9) + " % at longitude " +
+                 format_brief(worst.longitude) + ", latitude " + format_brief(worst.latitude) +
+                 ": they are " + format_brief(worst.farthest) + " times those on the ground (" +
                  format_brief(worst.mean) +
                  " times by area). Another zone or another CRS may be meant",
              {{"error", worst.error()}, {"scale", worst.farthest}, {"mean_scale", worst.mean}});
@@ -138,7 +134,7 @@ void remark_datum(const MapProjection& map, const TrajectoryOptions& options,
   const std::string datum = options.datum.empty() ? "WGS 84" : options.datum;
   const std::string text = name + ": positions were taken as " + datum + ", and the datum of " +
                            map.name() + " is reached with an accuracy of " +
-                           (accuracy > 0 ? brief(accuracy) + " m" : "unknown size") +
+                           (accuracy > 0 ? format_digits(accuracy, 9) + " m" : "unknown size") +
                            "; name the datum of the file where it is another";
   const bool is_expected = accuracy > 0 && accuracy <= kExpected;
   out.warn_or_note(!is_expected, "datum-accuracy", text, {{"metres", accuracy}});
@@ -159,8 +155,8 @@ void append_geographic_poses(std::span<const AttitudeRow> rows, AngleFrame frame
     if (!place) {
       refuse(name,
              "pose " + std::to_string(out.poses.size()) + ": " + map.name() +
-                 " does not reach latitude " + brief(row.position[1]) + ", longitude " +
-                 brief(row.position[0]) + "; expected a CRS of this place",
+                 " does not reach latitude " + format_digits(row.position[1], 9) + ", longitude " +
+                 format_digits(row.position[0], 9) + "; expected a CRS of this place",
              Remedy::kNameCrs);
     }
     Pose pose{{}, {place->position.x, place->position.y, place->position.z}};

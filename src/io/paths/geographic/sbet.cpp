@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/geometry/angle.hpp"
+#include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/paths/geographic/geographic_poses.hpp"
 
@@ -32,8 +33,8 @@ Record record_of(std::span<const std::byte> bytes) {
 
 std::string objection_to_angle(const char* name, double value, double most) {
   if (std::abs(value) <= most) return {};  // false for NaN
-  return std::string(name) + " " + brief(value) + " is no angle in radians up to " + brief(most) +
-         (std::isfinite(value) ? "; SBET has radians, not degrees" : "");
+  return std::string(name) + " " + format_digits(value, 9) + " is no angle in radians up to " +
+         format_digits(most, 9) + (std::isfinite(value) ? "; SBET has radians, not degrees" : "");
 }
 
 /// Why a record is not a pose; empty where it is one.
@@ -55,7 +56,7 @@ std::string objection_to(const Record& record) {
   }
   if (!std::isfinite(record.time)) return "expected a finite time";
   if (!(std::abs(record.altitude) <= kHighest)) {
-    return "altitude " + brief(record.altitude) + "; expected metres, within 100 km";
+    return "altitude " + format_digits(record.altitude, 9) + "; expected metres, within 100 km";
   }
   if (record.latitude == 0 && record.longitude == 0) {
     return "latitude and longitude are 0; expected a position";

@@ -25,7 +25,7 @@ namespace {
 void check_number(const std::optional<double>& value, const char* name, bool above_0,
                   const char* expected) {
   if (!value || (std::isfinite(*value) && (!above_0 || *value > 0))) return;
-  throw UsageError(std::string(name) + ": " + brief(*value) + "; expected " + expected);
+  throw UsageError(std::string(name) + ": " + format_digits(*value, 9) + "; expected " + expected);
 }
 
 void check_options(const LineOptions& options) {
@@ -43,8 +43,8 @@ void check_options(const LineOptions& options) {
 
 /// A vertex in words: "vertex 3 at 512.25 77.1".
 std::string vertex_text(const LineVertices& line, std::size_t vertex) {
-  return "vertex " + std::to_string(vertex + 1) + " at " + brief(line.x[vertex]) + " " +
-         brief(line.y[vertex]);
+  return "vertex " + std::to_string(vertex + 1) + " at " + format_digits(line.x[vertex], 9) + " " +
+         format_digits(line.y[vertex], 9);
 }
 
 struct Range {
@@ -69,8 +69,9 @@ void check_degrees(const std::string& name, const LineVertices& line, Remarks& o
   const double extent = std::max(x.width(), y.width()) / unit;
   if (!on_globe || extent > kMaybe) return;
   const std::string text =
-      name + ": the coordinates reach from " + brief(x.least / unit) + " " + brief(y.least / unit) +
-      " to " + brief(x.greatest / unit) + " " + brief(y.greatest / unit) +
+      name + ": the coordinates reach from " + format_digits(x.least / unit, 9) + " " +
+      format_digits(y.least / unit, 9) + " to " + format_digits(x.greatest / unit, 9) + " " +
+      format_digits(y.greatest / unit, 9) +
       (extent > kSurely ? ", which may be longitude and latitude"
                         : ", which are longitude and latitude or a line of less than half a metre");
   const std::string advice =
@@ -91,9 +92,10 @@ void remark_unit(const std::string& name, const LineVertices& line, const LineOp
              {{"metres", metres}});
   }
   if (metres != 1) {
-    out.note("trajectory-unit",
-             name + ": positions were multiplied by " + brief(metres) + " to give metres",
-             {{"metres", metres}});
+    out.note(
+        "trajectory-unit",
+        name + ": positions were multiplied by " + format_digits(metres, 9) + " to give metres",
+        {{"metres", metres}});
   }
   if (!is_foot(metres) || !is_foot(options.environment_unit)) return;
   const Range x = range_of(line.x), y = range_of(line.y);
@@ -132,8 +134,8 @@ void remark_stations(const std::string& name, const LineVertices& line,
   for (std::size_t i = 1; i < stations.size(); ++i) {
     if (stations[i] != stations[i - 1] && (stations[i] > stations[i - 1]) == ascends) continue;
     out.warn("station-order",
-             name + ": " + line.place_of(i) + ": the station " + brief(stations[i]) +
-                 " m comes after " + brief(stations[i - 1]) +
+             name + ": " + line.place_of(i) + ": the station " + format_digits(stations[i], 9) +
+                 " m comes after " + format_digits(stations[i - 1], 9) +
                  " m, so stations do not run evenly along the line",
              {{"vertex", static_cast<double>(i + 1)}});
     return;
@@ -272,14 +274,6 @@ void remark_curve(const std::string& name, const LineVertices& line,
   out.warn_or_note(most > kWarned, "line-curved", text, {{"aside", aside}, {"above", above}});
 }
 
-void remark_closed(const std::string& name, const LineVertices& line, Remarks& out) {
-  if (line.x.front() != line.x.back() || line.y.front() != line.y.back()) return;
-  out.note("line-closed",
-           name +
-               ": the line ends where it begins, and is driven round once from there; the corner "
-               "at this place is not rounded");
-}
-
 LinePlan plan_of(const std::string& name, const LineVertices& line,
                  const std::vector<PlanPoint>& vertices, const LineOptions& options) {
   if (!options.corner_radius) {
@@ -340,9 +334,9 @@ void set_cant(const std::string& name, const LineVertices& line, const LineOptio
   std::vector<CantPoint> points;
   for (std::size_t i = 0; i < line.size(); ++i) {
     if (!(std::abs(line.cant[i]) < path.rail_distance)) {
-      refuse(name, line.place_of(i) + ": a cant of " + brief(line.cant[i]) +
+      refuse(name, line.place_of(i) + ": a cant of " + format_digits(line.cant[i], 9) +
                        " m; expected less than the distance between the rails, " +
-                       brief(path.rail_distance) + " m");
+                       format_digits(path.rail_distance, 9) + " m");
     }
     points.push_back({path.plan.station_of(i), line.cant[i]});
   }
@@ -395,7 +389,6 @@ LineFile read_line_file(const std::filesystem::path& path, const LineOptions& gi
   set_heights(name, line, options, along);
   remark_unit(name, line, options, out);
   remark_crs(name, line, options, out);
-  remark_closed(name, line, out);
   remark_stations(name, line, vertices, out);
   remark_slopes(name, line, vertices, out);
   if (options.corner_radius) {

@@ -29,7 +29,7 @@ std::vector<GroundPlace> places_of(const LineVertices& line, const LinePath& pat
 }
 
 std::string place_text(const GroundPlace& place) {
-  return brief(place.plan.at.real()) + " " + brief(place.plan.at.imag());
+  return format_digits(place.plan.at.real(), 9) + " " + format_digits(place.plan.at.imag(), 9);
 }
 
 /// One side of the vehicle, with its name for messages.

@@ -117,7 +117,7 @@ class LineTable {
     for (std::size_t i = 0; i < header.names.size(); ++i) {
       const bool read =
           i == plan->x || i == plan->y || i == plan->z || i == found.station || i == found.cant;
-      if (!read && !header.names[i].empty()) found.unread.push_back(header.names[i]);
+      if (!read && !header.names[i].empty()) found.unread.push_back(header.written[i]);
     }
     std::vector<std::string> units{header.units[plan->x], header.units[plan->y]};
     if (plan->z) units.push_back(header.units[*plan->z]);
@@ -195,7 +195,7 @@ class LineTable {
   double coordinate(std::size_t column) const {
     const double metres = metres_(number_in(column, "coordinate"));
     if (!(std::abs(metres) <= kFarthest)) {
-      refuse_here("a coordinate of " + brief(metres) + " m; expected one within 1e9 m");
+      refuse_here("a coordinate of " + format_digits(metres, 9) + " m; expected one within 1e9 m");
     }
     return metres;
   }
@@ -220,7 +220,7 @@ class LineTable {
     for (std::size_t i = 0; i < out_.size(); ++i) {
       if (std::abs(out_.cant[i]) <= kMostCant) continue;
       refuse_line(name_, out_.place[i],
-                  "a cant of " + brief(out_.cant[i]) +
+                  "a cant of " + format_digits(out_.cant[i], 9) +
                       " m, if it is in the unit of the coordinates; expected its unit in the "
                       "header, as in cant [mm]");
     }
@@ -349,7 +349,8 @@ class GeoJsonLine {
       for (std::size_t k = 0; k < size; ++k) {
         numbers[k] = metres(position[k].template get<double>());
         if (!(std::abs(numbers[k]) <= kFarthest)) {
-          refuse_position("a coordinate of " + brief(numbers[k]) + " m; expected one within 1e9 m");
+          refuse_position("a coordinate of " + format_digits(numbers[k], 9) +
+                          " m; expected one within 1e9 m");
         }
       }
       out_.x.push_back(numbers[0]);
@@ -402,8 +403,8 @@ void drop_repeated(const std::string& name, LineVertices& line) {
          {Named{&line.z, "height"}, Named{&line.station, "station"}, Named{&line.cant, "cant"}}) {
       if (!differs(*list)) continue;
       refuse(name, line.place_of(i) + ": the vertex is at the same place as the one before it, " +
-                       "but its " + what + " differs by " + brief((*list)[i] - (*list)[kept - 1]) +
-                       " m");
+                       "but its " + what + " differs by " +
+                       format_digits((*list)[i] - (*list)[kept - 1], 9) + " m");
     }
     if (same) continue;
     each_list([&](auto& list) { list[kept] = list[i]; });

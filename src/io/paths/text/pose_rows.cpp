@@ -10,6 +10,7 @@
 #include "clearway/file_unit.hpp"
 #include "clearway/trajectory.hpp"
 #include "core/describe/labels.hpp"
+#include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
 #include "io/paths/text/trajectory_columns.hpp"
@@ -52,8 +53,8 @@ FileUnit unit_of_positions(std::span<const std::string> texts, const FileUnit& o
                            const std::string& name) {
   const FileUnit declared = unit_in_header(texts, name);
   if (contradict(declared, option)) {
-    refuse(name, "the header has positions in units of " + brief(declared.metres()) +
-                     " m, but a unit of " + brief(option.metres()) + " m was declared");
+    refuse(name, "the header has positions in units of " + format_digits(declared.metres(), 9) +
+                     " m, but a unit of " + format_digits(option.metres(), 9) + " m was declared");
   }
   const bool option_counts = !declared.is_known() || (declared.is_any_foot() && option.is_known());
   return option_counts ? option : declared;
@@ -357,13 +358,13 @@ void PoseRows::finish(TrajectoryFile& out) {
   if (is_metres && (options_.environment_unit == 1 || is_geographic())) return;
   std::string what;
   if (is_geographic()) {
-    what = "heights were multiplied by " + brief(metres_) + " to give metres";
+    what = "heights were multiplied by " + format_digits(metres_, 9) + " to give metres";
   } else if (metres_ == options_.environment_unit) {
     out.metres_per_unit = metres_;
     what = "positions are in " + units_text(metres_) +
            ", as the environment is, and are taken as they are";
   } else if (options_.environment_unit == 1) {
-    what = "positions were multiplied by " + brief(metres_) + " to give metres";
+    what = "positions were multiplied by " + format_digits(metres_, 9) + " to give metres";
   } else {
     what = "positions are in " + units_text(metres_) + " and were converted to " +
            units_text(options_.environment_unit) + ", the unit of the environment";

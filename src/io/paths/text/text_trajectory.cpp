@@ -110,7 +110,7 @@ class TextTrajectory {
   }
 
   void note_header(std::string_view line) {
-    if (auto columns = pose_columns(parse_column_names(line))) columns_ = std::move(columns);
+    if (auto columns = pose_columns(parse_table_header(line))) columns_ = std::move(columns);
   }
 
   /// Whether the first line that is not a comment names columns. Throws where these make no pose.
@@ -118,7 +118,7 @@ class TextTrajectory {
     if (starts_with_number(line)) return false;
     if (format_ == TrajectoryFormat::kEuroc) return true;
     if (!reads_names()) return false;
-    const ColumnNames names = parse_column_names(line);
+    const TableHeader names = parse_table_header(line);
     columns_ = pose_columns(names);
     if (!columns_ && line.starts_with('<')) {
       fail({excerpt(line) +

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/geometry/angle.hpp"
+#include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/paths/geographic/geographic_poses.hpp"
 #include "io/scans/length_unit.hpp"
@@ -46,9 +47,8 @@ constexpr std::string_view kQuaternion[] = {"q",
 constexpr std::string_view kMatrix[] = {"r", "r_"};
 
 /// The columns with each of the suffixes; empty where one is missing or not unique.
-std::vector<std::size_t> find_all(const ColumnNames& header,
-                                  std::span<const std::string_view> prefixes,
-                                  std::span<const std::string_view> suffixes) {
+std::vector<std::size_t> find_all(const TableHeader& header, ColumnNames prefixes,
+                                  ColumnNames suffixes) {
   std::vector<std::size_t> found;
   for (const std::string_view suffix : suffixes) {
     const auto column = header.find(prefixes, suffix);
@@ -58,82 +58,43 @@ std::vector<std::size_t> find_all(const ColumnNames& header,
   return found;
 }
 
-/// The header with units split from names: "roll_deg" is a column "roll" in the unit "deg". A unit
-/// in brackets stays.
-ColumnNames with_units(ColumnNames header) {
-  static constexpr std::string_view kAngles[] = {"deg", "degree", "degrees",
-                                                 "rad", "radian", "radians"};
-  for (std::size_t i = 0; i < header.names.size(); ++i) {
-    std::string& name = header.names[i];
-    if (!header.units[i].empty()) continue;
-    // The longest unit is taken: "x_us_ft" is a column x.
-    for (std::size_t at = name.find('_', 1); at != std::string::npos; at = name.find('_', at + 1)) {
-      const std::string_view unit = std::string_view(name).substr(at + 1);
-      if (find_unit(unit) == nullptr && std::ranges::find(kAngles, unit) == std::end(kAngles)) {
-        continue;
-      }
-      header.units[i] = unit;
-      name.resize(at);
-      break;
-    }
-  }
-  return header;
-}
-
-/// The only column with one of the names; nullopt where there is none or more than one.
-std::optional<std::size_t> find_one(const ColumnNames& header,
-                                    std::span<const std::string_view> names) {
-  return header.find(names, "");
-}
-
+// Without the single letters that name coordinates of a scan: beside a pose they mean other things.
 constexpr std::string_view kEasting[] = {"easting", "east"};
 constexpr std::string_view kNorthing[] = {"northing", "north"};
 constexpr std::string_view kHeight[] = {"height", "altitude", "alt", "elevation", "elev", "z"};
-constexpr std::string_view kLatitude[] = {"latitude", "lat"};
-constexpr std::string_view kLongitude[] = {"longitude", "long", "lon", "lng"};
-constexpr std::string_view kRoll[] = {"roll"};
-constexpr std::string_view kPitch[] = {"pitch"};
-constexpr std::string_view kHeading[] = {"heading", "azimuth"};
-constexpr std::string_view kYaw[] = {"yaw"};
 
-bool has(const ColumnNames& header, std::span<const std::string_view> names) {
-  return std::any_of(header.names.begin(), header.names.end(), [names](const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  });
-}
-
-bool find_position(const ColumnNames& header, PoseColumns& columns) {
+bool find_position(const TableHeader& header, PoseColumns& columns) {
   static constexpr std::string_view kXyz[] = {"x", "y", "z"};
   const auto xyz = find_all(header, kPosition, kXyz);
-  const auto height = find_one(header, kHeight);
-  const bool map = has(header, kEasting) || has(header, kNorthing);
-  const bool globe = has(header, kLatitude) || has(header, kLongitude);
+  const auto height = header.find(kHeight);
+  const bool map = header.has(kEasting) || header.has(kNorthing);
+  const bool globe = header.has(kLatitudeColumns) || header.has(kLongitudeColumns);
   if (!xyz.empty() && !map && !globe) {
     columns.position = {xyz[0], xyz[1], xyz[2]};
     return true;
   }
   // Neither, or both, so that it is not clear which is meant.
   if (!height || map == globe) return false;
-  const auto first = globe ? find_one(header, kLongitude) : find_one(header, kEasting);
-  const auto second = globe ? find_one(header, kLatitude) : find_one(header, kNorthing);
+  const auto first = globe ? header.find(kLongitudeColumns) : header.find(kEasting);
+  const auto second = globe ? header.find(kLatitudeColumns) : header.find(kNorthing);
   if (!first || !second) return false;
   columns.position = {*first, *second, *height};
   columns.geographic = globe;
   return true;
 }
 
-bool find_angles(const ColumnNames& header, PoseColumns& columns) {
-  const auto roll = find_one(header, kRoll);
-  const auto pitch = find_one(header, kPitch);
-  const auto heading = find_one(header, kHeading);
-  const auto yaw = find_one(header, kYaw);
+bool find_angles(const TableHeader& header, PoseColumns& columns) {
+  const auto roll = header.find(kRollColumns);
+  const auto pitch = header.find(kPitchColumns);
+  const auto heading = header.find(kHeadingColumns);
+  const auto yaw = header.find(kYawColumns);
   if (!roll || !pitch || heading.has_value() == yaw.has_value()) return false;
   columns.heading = heading.has_value();
   columns.rotation = {*roll, *pitch, heading ? *heading : *yaw};
   return true;
 }
 
-bool find_rotation(const ColumnNames& header, PoseColumns& columns) {
+bool find_rotation(const TableHeader& header, PoseColumns& columns) {
   static constexpr std::string_view kXyzw[] = {"x", "y", "z", "w"};
   static constexpr std::string_view kFromZero[] = {"00", "01", "02", "10", "11",
                                                    "12", "20", "21", "22"};
@@ -148,8 +109,7 @@ bool find_rotation(const ColumnNames& header, PoseColumns& columns) {
 
 }  // namespace
 
-std::optional<PoseColumns> pose_columns(const ColumnNames& given) {
-  const ColumnNames header = with_units(given);
+std::optional<PoseColumns> pose_columns(const TableHeader& header) {
   PoseColumns columns{.separator = header.separator, .fields = header.names.size()};
   if (!find_position(header, columns) || !find_rotation(header, columns)) return std::nullopt;
   if (columns.geographic && columns.rotation.size() != 3) return std::nullopt;
@@ -160,8 +120,8 @@ std::optional<PoseColumns> pose_columns(const ColumnNames& given) {
   std::size_t next = 0;
   for_each_label([&](const auto& label) {
     LabelColumn& column = columns.labels[next++];
-    column.at = find_one(header, label.columns);
-    if (!column.at) column.at = find_one(header, label.other_columns);
+    column.at = header.find(label.columns);
+    if (!column.at) column.at = header.find(label.other_columns);
     if (column.at) column.unit = header.units[*column.at];
   });
   // A column "station" may hold names too, such as numbers of scanner stations, but not where its
@@ -175,29 +135,28 @@ std::optional<PoseColumns> pose_columns(const ColumnNames& given) {
   });
   // `trajectory follow` writes the column path_pose for people.
   constexpr std::string_view kForPeople = "path_pose";
-  for (std::size_t i = 0; i < given.names.size(); ++i) {
-    if (given.names[i] == kForPeople) continue;
+  for (std::size_t i = 0; i < header.names.size(); ++i) {
+    if (header.written[i] == kForPeople) continue;
     const bool read = std::ranges::find(columns.position, i) != columns.position.end() ||
                       std::ranges::find(columns.rotation, i) != columns.rotation.end() ||
                       std::ranges::count(found, i, &LabelColumn::at) > 0;
-    if (!read && !given.names[i].empty()) columns.unread.push_back(given.names[i]);
+    if (!read && !header.written[i].empty()) columns.unread.push_back(header.written[i]);
   }
   return columns;
 }
 
-std::string objection_to_header(const ColumnNames& given) {
+std::string objection_to_header(const TableHeader& header) {
   static constexpr std::string_view kPhotogrammetric[] = {"omega", "phi", "kappa"};
-  const ColumnNames header = with_units(given);
   PoseColumns columns{};
-  if (has(header, kPhotogrammetric)) {
+  if (header.has(kPhotogrammetric)) {
     return "omega, phi and kappa are not read, as their order and axes differ between programs; "
            "expected roll, pitch and heading, or a quaternion or a matrix";
   }
-  const bool globe = has(header, kLatitude) || has(header, kLongitude);
-  if (globe && (has(header, kEasting) || has(header, kNorthing))) {
+  const bool globe = header.has(kLatitudeColumns) || header.has(kLongitudeColumns);
+  if (globe && (header.has(kEasting) || header.has(kNorthing))) {
     return "both latitude and longitude and easting and northing; expected one of them";
   }
-  if (has(header, kHeading) && has(header, kYaw))
+  if (header.has(kHeadingColumns) && header.has(kYawColumns))
     return "both heading and yaw; expected one of them";
   if (!find_position(header, columns)) {
     return "no position; expected the columns x y z (or tx, p_x, pos_x, ...), easting northing "
@@ -213,8 +172,10 @@ std::string objection_to_header(const ColumnNames& given) {
 PoseColumns euroc_columns(std::size_t fields) {
   std::vector<std::string> names{"time", "x", "y", "z", "qw", "qx", "qy", "qz"};
   names.resize(fields);
-  return *pose_columns(
-      {.separator = ',', .names = names, .units = std::vector<std::string>(fields)});
+  return *pose_columns({.separator = ',',
+                        .names = names,
+                        .units = std::vector<std::string>(fields),
+                        .written = names});
 }
 
 namespace {
@@ -283,7 +244,7 @@ double attitude_factor(const Largest& most, const PoseColumns& columns,
   const AngleUnit unit =
       said_unit(declared_unit(columns.angle_units, name), options.angle_unit, name);
   const bool surely_degrees = most.tilt > kMostTiltRadians || most.turn > kMostTurnRadians;
-  const std::string largest = "angles up to " + brief(std::max(most.tilt, most.turn));
+  const std::string largest = "angles up to " + format_digits(std::max(most.tilt, most.turn), 9);
   if (unit == AngleUnit::kRadians && surely_degrees) {
     refuse(name, largest + " are declared to be radians; these look like degrees");
   }
@@ -306,8 +267,8 @@ double geographic_factor(const Largest& most, const PoseColumns& columns,
   if (unit == AngleUnit::kDeclared) {
     unit = surely_degrees ? AngleUnit::kDegrees : options.angle_unit;
   }
-  const std::string largest =
-      "latitudes up to " + brief(most.latitude) + " and longitudes up to " + brief(most.longitude);
+  const std::string largest = "latitudes up to " + format_digits(most.latitude, 9) +
+                              " and longitudes up to " + format_digits(most.longitude, 9);
   if (unit == AngleUnit::kDeclared) {
     refuse(name, largest + " may be degrees or radians; expected a unit, as in the column lat_deg",
            Remedy::kDeclareAngles);

@@ -37,10 +37,10 @@ struct PoseColumns {
 };
 
 /// The columns that a header names; nullopt where one is missing or named twice.
-std::optional<PoseColumns> pose_columns(const ColumnNames& header);
+std::optional<PoseColumns> pose_columns(const TableHeader& header);
 
 /// Why a header makes no pose, and what is expected.
-std::string objection_to_header(const ColumnNames& header);
+std::string objection_to_header(const TableHeader& header);
 
 /// The columns of EuRoC: time, position, quaternion w x y z, then any others; `fields` columns in
 /// all.

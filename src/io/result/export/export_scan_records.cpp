@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "clearway/error.hpp"
+#include "core/util/format.hpp"
 #include "io/files/bytes.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/pending_file.hpp"
@@ -288,7 +289,9 @@ class ExtendedRecord {
   std::vector<std::byte> bytes_;
 };
 
-std::string place_text(const Vec3& p) { return shown(p.x) + " " + shown(p.y) + " " + shown(p.z); }
+std::string place_text(const Vec3& p) {
+  return format_number(p.x) + " " + format_number(p.y) + " " + format_number(p.z);
+}
 
 /// The result's integers of a point. Throws InputError unless they are what the conversion made of
 /// the record.

@@ -199,7 +199,7 @@ class E57Reader final : public PointReader {
  private:
   /// Adds where a scan's points were seen from, whose first record has number `first`: from its
   /// pose, or, as spherical coordinates are those of a scanner, from their origin. Cartesian
-  /// coordinates without a pose may have been moved, so they do not tell.
+  /// coordinates without a pose may have been moved, so they do not count.
   void add_origin(const E57Scan& scan, std::uint64_t first) {
     if (scan.records == 0) return;
     std::optional<Vec3> origin;

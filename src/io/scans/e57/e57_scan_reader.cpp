@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/geometry/predicate.hpp"
+#include "core/util/format.hpp"
 #include "io/files/bytes.hpp"
 #include "io/files/input_error.hpp"
 #include "io/scans/e57/e57_file.hpp"
@@ -375,7 +376,7 @@ void E57ScanReader::check_state(E57Place state, std::size_t count) const {
   if (wrong == states.end()) return;
   refuse_byte(pages_.name(), scan_.file_offset,
               scan_.name() + ", record " + std::to_string(next_ + (wrong - states.begin())) +
-                  " (counted from 0) has the invalid state " + shown(*wrong) +
+                  " (counted from 0) has the invalid state " + format_number(*wrong) +
                   "; expected 0, 1 or 2");
 }
 

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 
+#include "core/util/format.hpp"
 #include "io/files/bytes.hpp"
 #include "io/files/input_error.hpp"
 
@@ -70,12 +71,14 @@ Quantisation read_quantisation(const InputBuffer& input, const std::byte* header
     result.offset[axis] = load<double>(header + offset_byte);
     const std::string name(1, static_cast<char>('x' + axis));
     if (!std::isfinite(result.scale[axis]) || result.scale[axis] <= 0) {
-      refuse_byte(input.name(), scale_byte,
-                  name + " scale is " + shown(result.scale[axis]) + "; expected a positive number");
+      refuse_byte(
+          input.name(), scale_byte,
+          name + " scale is " + format_number(result.scale[axis]) + "; expected a positive number");
     }
     if (!std::isfinite(result.offset[axis])) {
-      refuse_byte(input.name(), offset_byte,
-                  name + " offset is " + shown(result.offset[axis]) + "; expected a finite number");
+      refuse_byte(
+          input.name(), offset_byte,
+          name + " offset is " + format_number(result.offset[axis]) + "; expected a finite number");
     }
   }
   return result;

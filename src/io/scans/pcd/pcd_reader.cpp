@@ -288,8 +288,9 @@ std::optional<Message> remark_on_viewpoint(const std::array<double, 7>& viewpoin
   }
   return warning(
       "pcd-viewpoint",
-      name + ": its VIEWPOINT lies at (" + brief(viewpoint[0]) + ", " + brief(viewpoint[1]) + ", " +
-          brief(viewpoint[2]) + "), turned by " + brief(degrees) +
+      name + ": its VIEWPOINT lies at (" + format_digits(viewpoint[0], 9) + ", " +
+          format_digits(viewpoint[1], 9) + ", " + format_digits(viewpoint[2], 9) + "), turned by " +
+          format_digits(degrees, 9) +
           " degrees. It is not applied: PCL defines it as the place of the sensor. If the points "
           "are in the sensor's frame, apply it first, for example with "
           "pcl_transform_from_viewpoint",
@@ -307,12 +308,7 @@ PcdBodyReader::PcdBodyReader(InputBuffer input, PcdHeader header)
     const auto& [x, y, z, w, i, j, k] = *header_.viewpoint;
     info_.origins = {{0, Vec3{x, y, z}}};
     info_.origins_rest_on = "viewpoints of PCD";
-    return;
   }
-  info_.remarks.push_back(
-      note("pcd-default-viewpoint",
-           input_.name() + ": its VIEWPOINT is the default of PCD, 0 0 0 1 0 0 0, so it does "
-                           "not tell from where the points were seen"));
 }
 
 bool PcdBodyReader::read(PointBatch& batch) {
@@ -331,7 +327,7 @@ bool PcdBodyReader::read(PointBatch& batch) {
 
 void PcdBodyReader::rewind() {
   input_.return_to(first_point_);
-  next_ = absent_ = 0;
+  next_ = 0;
   start_again();
 }
 
@@ -343,20 +339,12 @@ void PcdBodyReader::mark_absent(PointBatch& batch) {
     p = {kNaN, kNaN, kNaN};
     batch.absent.push_back(i);
   }
-  absent_ += batch.absent.size();
 }
 
 void PcdBodyReader::finish() {
   if (finished_) return;
   check_end();
   finished_ = true;
-  if (absent_ == 0) return;
-  info_.remarks.push_back(note("absent-points",
-                               input_.name() + ": " + format_count(absent_) + " of " +
-                                   format_count(header_.points) +
-                                   " places of the organised cloud hold no point",
-                               {{"absent", static_cast<double>(absent_)},
-                                {"records", static_cast<double>(header_.points)}}));
 }
 
 void PcdBodyReader::check_only_padding() {

@@ -42,7 +42,6 @@ class PcdBodyReader : public PointReader {
   void mark_absent(PointBatch& batch);
   void finish();
 
-  std::uint64_t absent_ = 0;
   bool finished_ = false;
 };
 

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/util/format.hpp"
 #include "io/files/bytes.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
@@ -168,7 +169,7 @@ class AsciiPlyReader final : public PlyBodyReader {
   void skip_items(const char*& at, const char* end, const PlyProperty& property,
                   double count) const {
     if (!(count >= 0 && count <= 0xFFFFFFFFp0 && count == std::floor(count))) {
-      fail("a list of " + shown(count) + " items; expected a whole number from 0");
+      fail("a list of " + format_number(count) + " items; expected a whole number from 0");
     }
     for (double i = 0; i < count; ++i) next_number(at, end, property);
   }
@@ -335,7 +336,7 @@ class BinaryPlyReader final : public PlyBodyReader {
       if (property.list_count) {
         if (value < 0) {
           refuse_byte(input_.name(), start,
-                      "a list of " + shown(value) + " items; expected a count from 0");
+                      "a list of " + format_number(value) + " items; expected a count from 0");
         }
         const auto items = static_cast<std::uint64_t>(value);
         if (!input_.skip(items * size_bytes(property.type))) refuse_cut(element, row);

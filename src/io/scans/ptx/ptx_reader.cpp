@@ -83,7 +83,7 @@ void read_row(InputBuffer& input, std::size_t row, std::array<double, 16>& matri
   const double last = row == 3 ? 1 : 0;
   if (std::abs(line[3] - last) > kNoise) {
     fail(input, "row " + std::to_string(row + 1) + " of the 4x4 matrix ends with " +
-                    shown(line[3]) + "; expected " + shown(last) +
+                    format_number(line[3]) + "; expected " + format_number(last) +
                     ", as the translation is in the last row");
   }
   std::copy(line.begin(), line.end(), matrix.begin() + static_cast<std::ptrdiff_t>(4 * row));
@@ -94,8 +94,9 @@ void judge_matrix(const InputBuffer& input, PtxHeader& header) {
   for (std::size_t i = 0; i < 9; ++i) pose.rotation[i] = header.matrix[i % 3 * 4 + i / 3];
   const Stretch stretch = stretch_of(pose);
   if (!(stretch.least > 0) || !std::isfinite(stretch.greatest)) {
-    fail(input, "the 4x4 matrix of the scan has singular values from " + shown(stretch.least) +
-                    " to " + shown(stretch.greatest) + "; expected an invertible matrix");
+    fail(input, "the 4x4 matrix of the scan has singular values from " +
+                    format_number(stretch.least) + " to " + format_number(stretch.greatest) +
+                    "; expected an invertible matrix");
   }
   header.stretch[0] = stretch.least;
   header.stretch[1] = stretch.greatest;
@@ -142,7 +143,7 @@ constexpr double kPositionTolerance = 1e-3;  // greatest distance between positi
 
 /// Counts of what deserves a remark, over all scans.
 struct PtxFindings {
-  std::uint64_t scans = 0, records = 0, absent = 0;
+  std::uint64_t scans = 0, records = 0;
   std::uint64_t not_rigid = 0, contradicting = 0;  // numbers of scans
   PtxHeader first_not_rigid, most_contradicting;
 
@@ -166,23 +167,14 @@ struct PtxFindings {
 
 double number(std::uint64_t count) { return static_cast<double>(count); }
 
-Message remark_on_scans(const PtxFindings& found, const std::string& name) {
-  return note("scans-placed",
-              name + ": " + format_count(found.scans) + (found.scans == 1 ? " scan" : " scans") +
-                  ", placed by the matrix in the file; " + format_count(found.absent) + " of " +
-                  format_count(found.records) + " records hold no point",
-              {{"scans", number(found.scans)},
-               {"absent", number(found.absent)},
-               {"records", number(found.records)}});
-}
-
 Message remark_on_stretch(const PtxFindings& found, const std::string& name) {
   const PtxHeader& h = found.first_not_rigid;
   return warning("scan-not-rigid",
                  name + ": " + format_count(found.not_rigid) + " of " + format_count(found.scans) +
                      " scans have a matrix that scales, shears or mirrors. The first is at line " +
-                     std::to_string(h.line) + ": singular values from " + brief(h.stretch[0]) +
-                     " to " + brief(h.stretch[1]) + ", determinant " + brief(h.determinant) +
+                     std::to_string(h.line) + ": singular values from " +
+                     format_digits(h.stretch[0], 9) + " to " + format_digits(h.stretch[1], 9) +
+                     ", determinant " + format_digits(h.determinant, 9) +
                      ". The matrices are applied as they are",
                  {{"scans", number(found.not_rigid)},
                   {"line", number(h.line)},
@@ -197,8 +189,8 @@ Message remark_on_axes(const PtxFindings& found, const std::string& name) {
                  name + ": the scanner's position and axes contradict the matrix in " +
                      format_count(found.contradicting) + " of " + format_count(found.scans) +
                      " scans. In the one at line " + std::to_string(h.line) +
-                     " the positions are " + brief(h.position_differs) +
-                     " apart, and the axes differ by " + brief(h.axes_differ) +
+                     " the positions are " + format_digits(h.position_differs, 9) +
+                     " apart, and the axes differ by " + format_digits(h.axes_differ, 9) +
                      ". The matrix is applied",
                  {{"scans", number(found.contradicting)},
                   {"line", number(h.line)},
@@ -207,7 +199,6 @@ Message remark_on_axes(const PtxFindings& found, const std::string& name) {
 }
 
 void PtxFindings::append_to(std::vector<Message>& remarks, const std::string& name) const {
-  remarks.push_back(remark_on_scans(*this, name));
   if (not_rigid > 0) remarks.push_back(remark_on_stretch(*this, name));
   if (contradicting > 0) remarks.push_back(remark_on_axes(*this, name));
 }
@@ -235,7 +226,6 @@ class PtxReader final : public PointReader {
       const auto index = static_cast<std::uint32_t>(batch.positions.size());
       if (!read_point(batch.positions.emplace_back())) batch.absent.push_back(index);
     }
-    findings_.absent += batch.absent.size();
     if (batch.positions.empty()) finish();
     return !batch.positions.empty();
   }

@@ -1,60 +1,11 @@
 #include "io/scans/text/table_header.hpp"
 
 #include <algorithm>
-#include <span>
+#include <iterator>
 #include <utility>
 
 namespace clearway {
 namespace {
-
-std::string_view without_mark(std::string_view line) {
-  for (const std::string_view mark : {"#", "//", "%"}) {
-    if (line.starts_with(mark)) {
-      line.remove_prefix(mark.size());
-      break;
-    }
-  }
-  return line;
-}
-
-/// The field in lower case, without quotes and blanks.
-std::string cleaned(std::string_view field) {
-  std::string name;
-  for (const char c : field) {
-    if (c == ' ' || c == '\t' || c == '"' || c == '\'') continue;
-    name += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  }
-  return name;
-}
-
-/// The name in a header's field: "  \"p_x [m]\"" becomes "p_x".
-std::string name_in(std::string_view field) {
-  return cleaned(field.substr(0, field.find_first_of("[(", 1)));
-}
-
-/// The unit in a header's field: "  \"p_x [m]\"" becomes "m".
-std::string unit_in(std::string_view field) {
-  const std::size_t open = field.find_first_of("[(", 1);
-  if (open == std::string_view::npos) return {};
-  field.remove_prefix(open + 1);
-  return cleaned(field.substr(0, field.find_first_of("])")));
-}
-
-/// Joins names with their units, because "roll [deg]" is one column even where blanks separate
-/// columns.
-void join_units(std::string_view line, std::vector<std::string_view>& fields) {
-  std::vector<std::string_view> joined;
-  for (const std::string_view field : fields) {
-    if (!joined.empty() && (field.front() == '[' || field.front() == '(')) {
-      const char* const start = joined.back().data();
-      const std::size_t length = static_cast<std::size_t>(field.data() - start) + field.size();
-      joined.back() = line.substr(static_cast<std::size_t>(start - line.data()), length);
-    } else {
-      joined.push_back(field);
-    }
-  }
-  fields = std::move(joined);
-}
 
 /// Index of the end of the field whose quotes open at `open`; 0 where the quotes do not close right
 /// before a separator or the end of the line.
@@ -72,20 +23,6 @@ std::size_t end_of_quoted(std::string_view line, std::size_t open, char separato
 }
 
 }  // namespace
-
-std::optional<std::size_t> ColumnNames::find(std::span<const std::string_view> prefixes,
-                                             std::string_view suffix) const {
-  std::optional<std::size_t> found;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    std::string_view name = names[i];
-    if (!name.ends_with(suffix)) continue;
-    name.remove_suffix(suffix.size());
-    if (std::find(prefixes.begin(), prefixes.end(), name) == prefixes.end()) continue;
-    if (found) return std::nullopt;
-    found = i;
-  }
-  return found;
-}
 
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields) {
   fields.clear();
@@ -121,25 +58,7 @@ void split_quoted_fields(std::string_view line, char separator,
   }
 }
 
-ColumnNames parse_column_names(std::string_view line) {
-  ColumnNames result;
-  line = without_mark(line);
-  result.separator = line.find(';') != std::string_view::npos   ? ';'
-                     : line.find(',') != std::string_view::npos ? ','
-                                                                : ' ';
-  std::vector<std::string_view> fields;
-  split_quoted_fields(line, result.separator, fields);
-  if (result.separator == ' ') join_units(line, fields);
-  for (const std::string_view field : fields) {
-    result.names.push_back(name_in(field));
-    result.units.push_back(unit_in(field));
-  }
-  return result;
-}
-
 namespace {
-
-using Names = std::span<const std::string_view>;
 
 constexpr std::string_view kEast[] = {"easting",    "east",  "e",       "utm_easting",
                                       "rechtswert", "utm_e", "utm_east"};
@@ -147,11 +66,11 @@ constexpr std::string_view kNorth[] = {"northing", "north", "n",        "utm_nor
                                        "hochwert", "utm_n", "utm_north"};
 constexpr std::string_view kHeight[] = {"height", "elevation", "altitude", "h",
                                         "elev",   "alt",       "hgt"};
-/// Units of coordinates, besides units of length, in which no scan is read.
-constexpr std::string_view kOthers[] = {"mil",    "um",      "deg",    "°",
-                                        "degree", "degrees", "arcsec", "rad"};
+/// Units besides those of length. No coordinates of a scan are read in them.
+constexpr std::string_view kOthers[] = {"mil",     "um",     "deg", "°",      "degree",
+                                        "degrees", "arcsec", "rad", "radian", "radians"};
 
-bool is_one_of(std::string_view text, Names names) {
+bool is_one_of(std::string_view text, ColumnNames names) {
   return std::find(names.begin(), names.end(), text) != names.end();
 }
 
@@ -161,21 +80,20 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\"'";
-  const std::size_t start = text.find_first_not_of(kBlanks);
+std::string_view trimmed(std::string_view text, std::string_view marks = " \t\"'") {
+  const std::size_t start = text.find_first_not_of(marks);
   if (start == std::string_view::npos) return {};
-  return text.substr(start, text.find_last_not_of(kBlanks) - start + 1);
+  return text.substr(start, text.find_last_not_of(marks) - start + 1);
 }
 
 /// Removes a comment mark and a label: "# columns: x y z" becomes "x y z".
 std::string_view without_mark_and_label(std::string_view line) {
-  line = trimmed(line);
+  line = trimmed(line, " \t");
   while (line.starts_with('#')) line.remove_prefix(1);
   if (line.starts_with("//")) line.remove_prefix(2);
   if (line.starts_with('%')) line.remove_prefix(1);
   const std::size_t colon = line.find(':');
-  if (colon != std::string_view::npos && line.find_first_of(",;") > colon) {
+  if (colon != std::string_view::npos && line.find_first_of(",;[(\"") > colon) {
     line.remove_prefix(colon + 1);
   }
   return line;
@@ -194,6 +112,7 @@ std::string bracketed_unit(std::string_view field) {
 void add_name(TableHeader& header, std::string_view field) {
   std::string name = table_name(field);
   std::string unit = bracketed_unit(field);
+  header.written.push_back(name);
   // The longest unit is taken: "x_us_ft" is a column x.
   std::size_t mark = unit.empty() ? name.find('_', 1) : std::string::npos;
   for (; mark != std::string::npos; mark = name.find('_', mark + 1)) {
@@ -207,22 +126,6 @@ void add_name(TableHeader& header, std::string_view field) {
   header.units.push_back(std::move(unit));
 }
 
-/// The only column with one of the names; nullopt where there is none or more than one.
-std::optional<std::size_t> find_one(const TableHeader& header, Names names) {
-  std::optional<std::size_t> found;
-  for (std::size_t i = 0; i < header.names.size(); ++i) {
-    if (!is_one_of(header.names[i], names)) continue;
-    if (found) return std::nullopt;
-    found = i;
-  }
-  return found;
-}
-
-bool has(const TableHeader& header, Names names) {
-  return std::any_of(header.names.begin(), header.names.end(),
-                     [&](const std::string& name) { return is_one_of(name, names); });
-}
-
 /// Whether there are names such as qx or q_rs_x for each of x, y, z and w.
 bool has_quaternion(const TableHeader& header) {
   return std::all_of(std::begin("xyzw"), std::end("xyzw") - 1, [&](char part) {
@@ -233,6 +136,24 @@ bool has_quaternion(const TableHeader& header) {
 }
 
 }  // namespace
+
+std::optional<std::size_t> TableHeader::find(ColumnNames prefixes, std::string_view suffix) const {
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    std::string_view name = names[i];
+    if (!name.ends_with(suffix)) continue;
+    name.remove_suffix(suffix.size());
+    if (!is_one_of(name, prefixes)) continue;
+    if (found) return std::nullopt;
+    found = i;
+  }
+  return found;
+}
+
+bool TableHeader::has(ColumnNames any_of) const {
+  return std::any_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return is_one_of(name, any_of); });
+}
 
 std::string table_name(std::string_view field) {
   field = trimmed(field);
@@ -251,7 +172,7 @@ TableHeader parse_table_header(std::string_view line) {
                      : line.find(',') != std::string_view::npos ? ','
                                                                 : ' ';
   std::vector<std::string_view> fields;
-  split_fields(line, header.separator, fields);
+  split_quoted_fields(line, header.separator, fields);
   for (const std::string_view field : fields) {
     // In "X [m] Y [m]", where blanks separate columns, the unit is a field of its own.
     if (header.separator == ' ' && !header.units.empty() && field.find_first_of("[(") == 0) {
@@ -263,21 +184,17 @@ TableHeader parse_table_header(std::string_view line) {
   return header;
 }
 
-std::optional<std::size_t> column_named(const TableHeader& header, std::string_view name) {
-  return find_one(header, {&name, 1});
-}
-
 std::optional<PlanColumns> plan_columns(const TableHeader& header) {
   static constexpr std::string_view kZ[] = {"z"};
-  auto x = column_named(header, "x");
-  auto y = column_named(header, "y");
+  auto x = header.find("x");
+  auto y = header.find("y");
   if (!x && !y) {
-    x = find_one(header, kEast);
-    y = find_one(header, kNorth);
+    x = header.find(kEast);
+    y = header.find(kNorth);
   }
-  const Names heights = has(header, kZ) ? Names(kZ) : Names(kHeight);
-  const auto z = find_one(header, heights);
-  if (!x || !y || (!z && has(header, heights))) return std::nullopt;
+  const ColumnNames heights = header.has(kZ) ? ColumnNames(kZ) : ColumnNames(kHeight);
+  const auto z = header.find(heights);
+  if (!x || !y || (!z && header.has(heights))) return std::nullopt;
   return PlanColumns{*x, *y, z};
 }
 
@@ -288,16 +205,13 @@ std::optional<CoordinateColumns> coordinate_columns(const TableHeader& header) {
 }
 
 std::string other_table(const TableHeader& header) {
-  constexpr std::string_view kLatitude[] = {"lat", "latitude"};
-  constexpr std::string_view kLongitude[] = {"lon", "long", "lng", "longitude"};
-  constexpr std::string_view kRoll[] = {"roll"};
-  constexpr std::string_view kPitch[] = {"pitch"};
-  constexpr std::string_view kHeading[] = {"yaw", "heading", "azimuth"};
   if (has_quaternion(header)) return "a trajectory (columns of a quaternion)";
-  if (has(header, kRoll) && has(header, kPitch) && has(header, kHeading)) {
+  const bool turns = header.has(kHeadingColumns) || header.has(kYawColumns);
+  if (header.has(kRollColumns) && header.has(kPitchColumns) && turns) {
     return "a trajectory (columns roll, pitch and heading)";
   }
-  if (has(header, kLatitude) && has(header, kLongitude) && !coordinate_columns(header)) {
+  if (header.has(kLatitudeColumns) && header.has(kLongitudeColumns) &&
+      !coordinate_columns(header)) {
     return "latitudes and longitudes, which are angles and no lengths";
   }
   return {};

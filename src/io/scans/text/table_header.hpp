@@ -12,21 +12,37 @@
 
 namespace clearway {
 
-/// The line of a text table that names its columns.
-struct ColumnNames {
+/// Names of columns, in lower case.
+using ColumnNames = std::span<const std::string_view>;
+
+inline constexpr std::string_view kLatitudeColumns[] = {"lat", "latitude"};
+inline constexpr std::string_view kLongitudeColumns[] = {"lon", "long", "lng", "longitude"};
+inline constexpr std::string_view kRollColumns[] = {"roll"};
+inline constexpr std::string_view kPitchColumns[] = {"pitch"};
+inline constexpr std::string_view kHeadingColumns[] = {"heading", "azimuth"};
+inline constexpr std::string_view kYawColumns[] = {"yaw"};
+
+/// A line that names the columns of a text table.
+struct TableHeader {
   char separator = ' ';  ///< ',', ';' or ' ' for any blanks
-  /// Names in lower case, without quotes, bracketed units and blanks.
+  /// Names in lower case, without quotes, blanks and units: "X_ft" and "x [ft]" are both "x".
   std::vector<std::string> names;
-  std::vector<std::string> units;  ///< units in brackets, lower case; empty where a column has none
+  /// The unit of each column, given in brackets or after `_`, in lower case; or empty.
+  std::vector<std::string> units;
+  std::vector<std::string> written;  ///< the names with units after `_`, such as "x_ft"
 
   /// The index of the only column whose name is one of `prefixes` followed by `suffix`; nullopt
   /// where there is no such column or more than one.
-  std::optional<std::size_t> find(std::span<const std::string_view> prefixes,
-                                  std::string_view suffix) const;
+  std::optional<std::size_t> find(ColumnNames prefixes, std::string_view suffix = {}) const;
+  std::optional<std::size_t> find(std::string_view name) const { return find({&name, 1}); }
+  bool has(ColumnNames any_of) const;
 };
 
-/// Splits a header line. A comment mark (#, // or %) before the first name is dropped.
-ColumnNames parse_column_names(std::string_view line);
+/// Splits a header line. A comment mark (#, // or %) and a label that ends in a colon are dropped.
+TableHeader parse_table_header(std::string_view line);
+
+/// The lower-case form of a name, as TableHeader holds it, with a unit after `_`.
+std::string table_name(std::string_view field);
 
 /// Splits a line of data in the same way as its header: at every comma or semicolon, or at runs of
 /// blanks. fields: views of `line`, including blanks around them; the vector keeps its capacity.
@@ -39,24 +55,6 @@ void split_quoted_fields(std::string_view line, char separator,
 
 /// Indices of the columns that hold x, y and z.
 using CoordinateColumns = std::array<std::size_t, 3>;
-
-/// A line that names the columns of a table of points.
-struct TableHeader {
-  char separator = ' ';            ///< ',', ';' or ' ' for any blanks
-  std::vector<std::string> names;  ///< names in lower case, without quotes, blanks and units
-  /// Unit of each name, given in brackets or after `_`; lower case.
-  std::vector<std::string> units;
-};
-
-/// Splits a header line. A comment mark and a label that ends in a colon are dropped.
-TableHeader parse_table_header(std::string_view line);
-
-/// The lower-case form of a name, as TableHeader holds it.
-std::string table_name(std::string_view field);
-
-/// The index of the only column of that name; nullopt where there is no such column or more than
-/// one.
-std::optional<std::size_t> column_named(const TableHeader& header, std::string_view name);
 
 /// The columns of x, y and z, or of easting, northing and height, in any order. Nullopt where one
 /// is missing or named twice.

@@ -371,7 +371,7 @@ class PrologueReader {
         columns[k] = *number - 1;
         continue;
       }
-      const auto found = header ? column_named(*header, table_name(wanted)) : std::nullopt;
+      const auto found = header ? header->find(table_name(wanted)) : std::nullopt;
       if (!found) return std::nullopt;
       columns[k] = *found;
     }

@@ -39,7 +39,7 @@ class OpenEnd {
 /// or semicolons (one kind within a line, so that decimal commas are refused). Blank lines and
 /// lines that start with # or // are comments. The first other line may be the number of points
 /// (PTS): exactly that many follow, perhaps then another such number with its points. A header line
-/// that names the columns tells where x, y and z are; so does a comment that fits the lines.
+/// that names the columns says where x, y and z are; so does a comment that fits the lines.
 /// Text without names that looks like something other than points is refused, unless the options
 /// choose the columns. `remarks` come before the reader's own. The input must be able to seek.
 std::unique_ptr<PointReader> read_xyz(InputBuffer input, const PointReadOptions& options = {},

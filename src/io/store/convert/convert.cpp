@@ -521,7 +521,7 @@ bool has_wanted_origins(const ConversionOptions& options, const StoreMetadata& f
 }
 
 /// Whether a conversion with these options could have made this store, as far as its metadata
-/// tells.
+/// says.
 bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
   const auto wanted = [&options](double scale) {
     return !options.scale || scale == *options.scale;
@@ -536,7 +536,7 @@ bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
          (options.ignore_crs || std::ranges::none_of(found.warnings, is_of_ignored_crs));
 }
 
-/// Whether a store tells whether these options made it. It does not record the columns with which
+/// Whether a store shows whether these options made it. It does not record the columns with which
 /// it was made, and standard input can be read only once.
 bool tells_whether_made_by(const ConversionOptions& options) {
   return options.inputs != std::vector<std::filesystem::path>{"-"} && options.columns.empty();
@@ -550,7 +550,7 @@ void refuse_other_output(const ConversionOptions& options) {
   if (!store_at(options.output)) {
     reason = ": exists already, and is no store";
   } else if (!tells_whether_made_by(options)) {
-    reason = ": exists already, and does not tell whether it is the store of these scans";
+    reason = ": exists already, and does not show whether it is the store of these scans";
   }
   throw UsageError(options.output.string() + reason, Remedy::kOverwriteNotResume);
 }

@@ -137,7 +137,7 @@ std::vector<Message> warn_of_lost_digits(std::span<const Vec3> samples) {
     const double step = step_of(samples, axis);
     if (step == 0) continue;
     axes += std::string(axes.empty() ? "" : ", ") + static_cast<char>('x' + axis);
-    steps += (steps.empty() ? "" : ", ") + brief(step) + " m";
+    steps += (steps.empty() ? "" : ", ") + format_digits(step, 9) + " m";
     coarsest = std::max(coarsest, step);
   }
   if (coarsest == 0) return warnings;
@@ -146,7 +146,7 @@ std::vector<Message> warn_of_lost_digits(std::span<const Vec3> samples) {
               "all coordinates " + axes + " are multiples of " + steps +
                   ". Rounded text or single floats have lost their digits, so points may "
                   "be wrong by " +
-                  brief(coarsest / 2) + " m. Export the scan with more digits",
+                  format_digits(coarsest / 2, 9) + " m. Export the scan with more digits",
               {{"step", coarsest}}));
   return warnings;
 }
@@ -180,12 +180,13 @@ class Choice {
     out.scale[axis] = scale.value_or(fitting);
     if (!fits(length, out.scale[axis])) {
       throw InputError(reach(axis) + " do not fit 32-bit integers at a scale of " +
-                           brief(out.scale[axis]) + far_points(),
+                           format_digits(out.scale[axis], 9) + far_points(),
                        Remedy::kScale, fits(length, fitting) ? fitting : 0);
     }
     if (!scale && fitting > kCoarsestOwnScale) {
-      throw InputError(reach(axis) + " need steps of " + brief(fitting) + " m; expected at most " +
-                           brief(kCoarsestOwnScale) + " m" + far_points(),
+      throw InputError(reach(axis) + " need steps of " + format_digits(fitting, 9) +
+                           " m; expected at most " + format_digits(kCoarsestOwnScale, 9) + " m" +
+                           far_points(),
                        Remedy::kAcceptScale, coarsest_needed());
     }
   }
@@ -197,8 +198,8 @@ class Choice {
     const char name = static_cast<char>('x' + axis);
     std::string text = files_[lo.file].string();
     if (hi.file != lo.file) text += " and " + files_[hi.file].string();
-    return text + ": coordinates " + name + " from " + brief(range_.lo(axis)) + " to " +
-           brief(range_.hi(axis));
+    return text + ": coordinates " + name + " from " + format_digits(range_.lo(axis), 9) + " to " +
+           format_digits(range_.hi(axis), 9);
   }
 
   /// The finest scale that fits all axes.
@@ -218,7 +219,8 @@ class Choice {
     return (files_.size() > 1 ? files_[p.file].string() + " " : std::string()) +
            (lines.empty() ? "point " + format_count(p.point) + " (counted from 0)"
                           : "line " + std::to_string(lines[0])) +
-           ": " + brief(p.at.x) + " " + brief(p.at.y) + " " + brief(p.at.z);
+           ": " + format_digits(p.at.x, 9) + " " + format_digits(p.at.y, 9) + " " +
+           format_digits(p.at.z, 9);
   }
 
   std::string far_points() const {
@@ -238,7 +240,7 @@ class Choice {
     for (int axis = 0; axis < 3; ++axis) {
       rest = std::max(rest, fitting_scale(far.hi[axis] - std::floor(far.lo[axis])));
     }
-    return text + ". Without them steps of " + brief(rest) + " m do";
+    return text + ". Without them steps of " + format_digits(rest, 9) + " m do";
   }
 
   const CoordinateRange& range_;

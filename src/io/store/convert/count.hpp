@@ -23,7 +23,7 @@ struct InputSurvey {
   FileBoxes boxes;
 };
 
-/// Hashes that tell whether a later pass reads the same points.
+/// Hashes that show whether a later pass reads the same points.
 struct CountedHashes {
   std::uint64_t points;
   std::optional<std::uint64_t> classes;  ///< nullopt where all points have class 0

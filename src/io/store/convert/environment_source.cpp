@@ -9,6 +9,7 @@
 
 #include "clearway/error.hpp"
 #include "core/messages/messages.hpp"
+#include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/store/convert/converted_heights.hpp"
 #include "io/store/convert/coordinate_range.hpp"
@@ -21,7 +22,8 @@ namespace {
 
 const EnvironmentOptions& checked(const EnvironmentOptions& options) {
   if (options.scale && !(*options.scale > 0 && std::isfinite(*options.scale))) {
-    throw UsageError("a scale of " + brief(*options.scale) + ": expected a positive length");
+    throw UsageError("a scale of " + format_digits(*options.scale, 9) +
+                     ": expected a positive length");
   }
   return options;
 }
@@ -346,7 +348,7 @@ void EnvironmentSource::append_kept(RecordBatch& records, QuantaBatch& out) cons
       if (shifted < std::numeric_limits<std::int32_t>::min() ||
           shifted > std::numeric_limits<std::int32_t>::max()) {
         throw InputError(files()[file].string() + ": too far from " + files()[0].string() +
-                             " for 32-bit integers of " + brief(own.scale[k]),
+                             " for 32-bit integers of " + format_digits(own.scale[k], 9),
                          Remedy::kScale);
       }
       q[k] = static_cast<std::int32_t>(shifted);
@@ -399,7 +401,8 @@ void EnvironmentSource::append_rounded(const RecordBatch& records, QuantaBatch& 
 void EnvironmentSource::refuse_beyond_quanta(std::size_t file) const {
   if (shifts_.empty()) refuse(files()[file].string(), "changed while it was read");
   refuse(files()[file].string(),
-         "too far from the other files for 32-bit integers of " + brief(quantisation_.scale[0]),
+         "too far from the other files for 32-bit integers of " +
+             format_digits(quantisation_.scale[0], 9),
          Remedy::kScale);
 }
 

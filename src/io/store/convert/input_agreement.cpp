@@ -6,6 +6,7 @@
 
 #include "clearway/error.hpp"
 #include "core/messages/messages.hpp"
+#include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/scans/map_scale.hpp"
 #include "io/scans/scan_crs.hpp"
@@ -87,7 +88,7 @@ LengthUnit environment_unit_of(const FileUnit& unit) {
        {LengthUnit::kMetre, LengthUnit::kFoot, LengthUnit::kUsSurveyFoot}) {
     if (unit.metres() == metres_of(known)) return known;
   }
-  throw UsageError("the coordinates of a scan in units of " + brief(unit.metres()) +
+  throw UsageError("the coordinates of a scan in units of " + format_digits(unit.metres(), 9) +
                    " m are not read; expected m, ft, ift or us-ft");
 }
 
@@ -241,12 +242,6 @@ void choose_heights(std::span<const std::filesystem::path> files, std::span<cons
         ", but " + name_of_length(common.height_unit) + " was given; expected the same unit",
         given.ignore_crs, common);
   }
-  if (common.height_factor == 1) return;
-  common.warnings.push_back(note("heights-converted",
-                                 "heights are converted from " +
-                                     name_of_length(common.height_unit) + " to " +
-                                     name_of_length(plane),
-                                 {{"factor", common.height_factor}}));
 }
 
 /// Warns of heights whose unit an input names, while it names none for its other coordinates.
@@ -339,7 +334,8 @@ std::optional<Message> remark_on_mixture(std::span<const std::filesystem::path> 
           " files have floating-point coordinates, the first is " +
           files[static_cast<std::size_t>(floating - infos.begin())].string() +
           ". They are rounded to the steps of " +
-          files[static_cast<std::size_t>(integers - infos.begin())].string() + ", " + brief(step) +
+          files[static_cast<std::size_t>(integers - infos.begin())].string() + ", " +
+          format_digits(step, 9) +
           (as_models_are ? ". Is one of them the model? It does not belong among the "
                            "scans"
                          : ""),

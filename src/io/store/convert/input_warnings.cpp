@@ -122,9 +122,9 @@ void warn_of_places(const EnvironmentSource& environment, const PlaceCounter& pl
   const Vec3 at = position(environment.quantisation(), most.at[0], most.at[1], most.at[2]);
   const bool zeros = environment.origin_of(environment.place_of(most.first).file) == most.at;
   std::string text = format_count(most.count) + " of " + format_count(points) + " points (" +
-                     percentage(share) + ") are at one place, " + brief(at.x) + " " + brief(at.y) +
-                     " " + brief(at.z) + ", from " + name_of(environment, most.first) + " to " +
-                     name_of(environment, most.last);
+                     percentage(share) + ") are at one place, " + format_digits(at.x, 9) + " " +
+                     format_digits(at.y, 9) + " " + format_digits(at.z, 9) + ", from " +
+                     name_of(environment, most.first) + " to " + name_of(environment, most.last);
   if (zeros) text += ". These are zeros in the file: a file copied by half reads so";
   if (crowded.size() > 1) {
     text += ". " + std::to_string(crowded.size() - 1) + " more such places hold fewer points";

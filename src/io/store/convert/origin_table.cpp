@@ -26,7 +26,9 @@ double percentage(std::uint64_t part, std::uint64_t all) {
   return 100 * static_cast<double>(part) / static_cast<double>(all);
 }
 
-std::string text_of(const Vec3& p) { return brief(p.x) + " " + brief(p.y) + " " + brief(p.z); }
+std::string text_of(const Vec3& p) {
+  return format_digits(p.x, 9) + " " + format_digits(p.y, 9) + " " + format_digits(p.z, 9);
+}
 
 double distance(const Box& box, const Vec3& p) {
   double squares = 0;
@@ -51,7 +53,7 @@ OriginQuanta quanta_of_origin(const Quantisation& quantisation, const Vec3& orig
     const double quantum = (at - quantisation.offset[k]) / quantisation.scale[k];
     if (!(std::abs(quantum) <= kMostQuantum)) {
       refuse(name, "an origin at " + text_of(origin) + ", which is too far away for steps of " +
-                       brief(quantisation.scale[k]));
+                       format_digits(quantisation.scale[k], 9));
     }
     q[k] = std::llround(quantum);
   }

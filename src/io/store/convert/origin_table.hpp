@@ -28,7 +28,7 @@ OriginQuanta quanta_of_origin(const Quantisation& quantisation, const Vec3& orig
                               const std::string& name);
 
 /// The origins of all points of a conversion, by runs of source indices: the points of a run were
-/// seen from the same place, or do not tell from where.
+/// seen from the same place, or do not say from where.
 class OriginTable {
  public:
   /// most_bytes: memory that the table may take.

@@ -141,7 +141,7 @@ PathOrigins::PathOrigins(const ConvertOptions& options, const EnvironmentSource&
       clock_ == Clock::kWeekSeconds || std::any_of(kinds_.begin(), kinds_.end(), counts_weeks);
   if (across && spans > kWeek) {
     refuse(name_, "its times span " + seconds_text(spans) +
-                      " s, which is more than a week, so seconds of the GPS week do not tell where "
+                      " s, which is more than a week, so seconds of the GPS week do not say where "
                       "on the path a point was measured; expected the path of one recording");
   }
 }
@@ -357,14 +357,14 @@ OriginsPathReport PathOrigins::finish(const EnvironmentSource& environment, Mess
                         "LAZ have in all point formats but 0 and 2");
   }
   refuse_same_times();
-  const std::string told = "the GPS times of the points go " + times_of_points() +
-                           ", those of the path " + range_text(path_->first(), path_->last()) +
-                           " (taken for " + clock_text() + "). ";
+  const std::string times = "the GPS times of the points go " + times_of_points() +
+                            ", those of the path " + range_text(path_->first(), path_->last()) +
+                            " (taken for " + clock_text() + "). ";
   if (all_.found == 0) {
-    refuse(name_, "gives no point an origin: " + told + advice(all_.first, all_.last));
+    refuse(name_, "gives no point an origin: " + times + advice(all_.first, all_.last));
   }
   refuse_several_weeks();
-  log.note(told + shifts_text());
+  log.note(times + shifts_text());
   warn(log);
   return report();
 }
@@ -426,7 +426,7 @@ void PathOrigins::warn(MessageLog& log) const {
   log.warn(
       "origins-path-gap",
       format_count(outside) + " of " + format_count(all_.with_time) +
-          " points with a GPS time have no origin, because the path does not tell where the "
+          " points with a GPS time have no origin, because the path does not say where the "
           "scanner was: " +
           format_count(all_.before) + " are from before its first pose, " +
           format_count(all_.after) + " from after its last one, and " + format_count(all_.in_gaps) +

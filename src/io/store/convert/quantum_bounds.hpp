@@ -12,7 +12,7 @@
 namespace clearway {
 
 /// Position of a point in the counting grid and the top tree: x, y, z as non-negative lattice
-/// coordinates, then the source index, so that coinciding points can be told apart.
+/// coordinates, then the source index, so that coinciding points can be distinguished.
 using LatticePoint = std::array<std::uint64_t, 4>;
 
 /// Maps the store's integers to lattice coordinates, monotonically on every axis. In a regular

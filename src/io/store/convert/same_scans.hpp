@@ -26,7 +26,7 @@ inline constexpr std::uint64_t kSamePlacePoints = 10;
 using PlaceQuanta = std::array<std::int32_t, 3>;
 
 /// A sample of the points: one of every 2^k consecutive ones, chosen by a hash, or all of up to
-/// 65,536 points. It tells which places may hold a large share of all points
+/// 65,536 points. It shows which places may hold a large share of all points
 /// (docs/design/conversion.md). Takes constant memory and depends only on the points in their
 /// order.
 class PlaceSample {

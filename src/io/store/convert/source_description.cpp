@@ -4,9 +4,9 @@
 #include <span>
 #include <utility>
 
+#include "core/util/format.hpp"
 #include "core/util/threads.hpp"
 #include "io/files/file.hpp"
-#include "io/files/input_error.hpp"
 #include "io/files/xxh64.hpp"
 
 namespace clearway {
@@ -53,7 +53,7 @@ std::vector<SourceFile> SourceDescription::get(std::vector<std::optional<SourceF
 }
 
 std::string layout_name(const std::optional<double>& regular_size) {
-  return regular_size ? "regular:" + shown(*regular_size) : "adaptive";
+  return regular_size ? "regular:" + format_number(*regular_size) : "adaptive";
 }
 
 }  // namespace clearway

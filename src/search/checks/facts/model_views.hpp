@@ -21,7 +21,7 @@ class ModelView {
 
   /// The share of empty cells in the model's outline. The outline consists of the cells with points
   /// and of the empty cells that have such cells in all four directions. 0 where the grid is too
-  /// coarse to tell.
+  /// coarse to show it.
   double open_share() const;
 
  private:

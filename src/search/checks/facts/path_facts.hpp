@@ -26,7 +26,7 @@ class Drive {
   Drive(const Query& query, double length);
 
   std::size_t pieces() const { return pieces_.size(); }
-  /// Whether there are enough pieces to tell how the model moves.
+  /// Whether there are enough pieces to see how the model moves.
   bool is_one() const { return pieces_.size() >= 8; }
 
   /// Shares of the motion along the model's x, y and z axes; their sum is 1.

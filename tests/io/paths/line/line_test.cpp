@@ -434,7 +434,7 @@ TEST_CASE("what is odd about a line is said with numbers") {
   }
   circle += "20.000000,0.000000\n";
   const MadePath closed = made_of(circle, {.height = 0});
-  check_equal(closed.codes(), "note line-closed, note line-curved");
+  check_equal(closed.codes(), "note line-curved");
   check_says(closed.text(), "0.07 ... beside the straight legs");
   CHECK(close(closed.poses.front(), 20, 0, 0));
   CHECK(close(closed.poses.back(), 20, 0, 0));

@@ -44,9 +44,7 @@ const Message* find(const ReadCloud& cloud, const std::string& code) {
 TEST_CASE("a scan is placed by its matrix, points are rows") {
   const auto cloud = read_ptx_text("1\n2\n" + kTurned + "1 2 3 0.5\n4 5 6 0.5 1 2 3\n");
   check_equal(cloud.positions, {{8, 21, 33}, {5, 24, 36}});
-  REQUIRE(cloud.info.remarks.size() == 1);
-  CHECK(cloud.info.remarks[0].severity == Message::Severity::kNote);
-  check_says(cloud.info.remarks[0].text, "1 scan ... 0 of 2 records");
+  CHECK(cloud.info.remarks.empty());
 }
 
 TEST_CASE("several scans follow each other, each with its matrix, 0 0 0 is no point") {
@@ -63,8 +61,7 @@ TEST_CASE("several scans follow each other, each with its matrix, 0 0 0 is no po
     CHECK(batch.positions[1] == Vec3{1, 2, 3});
     CHECK(batch.positions[2] == Vec3{8, 21, 33});
     CHECK_FALSE(reader->read(batch));
-    REQUIRE(reader->info().remarks.size() == 1);
-    check_says(reader->info().remarks[0].text, "2 scans ... 2 of 4 records");
+    CHECK(reader->info().remarks.empty());
     reader->rewind();
   }
 }
@@ -79,7 +76,7 @@ TEST_CASE("a PTX file with Windows line breaks, a mark, blank lines and no last 
   check_equal(read_ptx_text(windows).positions, {{8, 21, 33}});
   const auto cloud = read_ptx_text("1\n1\n" + kTurned + "1 2 3 0.5");
   check_equal(cloud.positions, {{8, 21, 33}});
-  check_equal(cloud.info.remarks.size(), 1);  // that the scans are placed
+  CHECK(cloud.info.remarks.empty());
   check_says(refusal_of_ptx("2\n1\n" + kTurned + "1 2 3 0.5\n1 2 3"), "3 of 4 values");
   check_says(refusal_of_ptx("1\n1\n" + kTurned + "1 2 3 0."), "within a number");
 }

@@ -1,4 +1,4 @@
-#include "search/checks/told_stretches.hpp"
+#include "search/checks/warning_stretches.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace clearway {
 
-ToldStretches::ToldStretches(const Question& question, const PathLooks& looks,
-                             const std::vector<LookRun>& runs)
+WarningStretches::WarningStretches(const Question& question, const PathLooks& looks,
+                                   const std::vector<LookRun>& runs)
     : longest(*std::ranges::max_element(runs, {},
                                         [&](const LookRun& run) { return looks.length(run); })) {
   const Look &first = looks.all()[longest.first], &last = looks.all()[longest.last];
@@ -48,7 +48,7 @@ bool is_of_stretch(const Message& message) {
   return number_in(message, "chainage_from").has_value();
 }
 
-double told_length(const Message& message) {
+double length_of_stretch(const Message& message) {
   return number_in(message, "chainage_to").value_or(0) -
          number_in(message, "chainage_from").value_or(0);
 }

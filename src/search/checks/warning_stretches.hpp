@@ -14,9 +14,10 @@ namespace clearway {
 
 /// Stretches of the path as a warning describes them: the longest one with its place, the others
 /// with their number and length.
-struct ToldStretches {
+struct WarningStretches {
   /// runs: at least one.
-  ToldStretches(const Question& question, const PathLooks& looks, const std::vector<LookRun>& runs);
+  WarningStretches(const Question& question, const PathLooks& looks,
+                   const std::vector<LookRun>& runs);
 
   LookRun longest;
   /// For example "between pose 120 and pose 180 (12 m to 18 m along the path)".
@@ -37,6 +38,6 @@ std::optional<double> number_in(const Message& message, std::string_view name);
 bool is_of_stretch(const Message& message);
 
 /// The length of the stretch that a warning names, by chainage; 0 where it names none.
-double told_length(const Message& message);
+double length_of_stretch(const Message& message);
 
 }  // namespace clearway

@@ -1,0 +1,87 @@
+// What the pages of a result and of a section share: the head, the answer, tables, and how a page starts.
+
+const capital = (text) => text ? text[0].toUpperCase() + text.slice(1) : text;
+
+/** A link to each part of the page, the texts of the head and the foot, and the button that prints. */
+function buildHead() {
+  const { facts } = page;
+  byId("print-page").before(...[...document.querySelectorAll("main > section[data-part]")].flatMap((part) =>
+      [make("a", { href: `#${part.id}` }, part.dataset.part), "\n"]));
+  byId("print-page").addEventListener("click", () => window.print());
+  byId("made").textContent = [facts.date && `Made ${facts.date}`, `by Clearway ${facts.clearway}`].filter(Boolean).join(" ");
+  byId("about").append(...["project", "client", "author"].filter((key) => facts[key]).map((key) =>
+      make("span", {}, `${capital(key)}: `, make("strong", {}, facts[key]))));
+  byId("footer").textContent = "All data of this page is in this one file. Lengths are in the unit of the scans " +
+      `(${unitSymbol}). Chainage counts from the first pose along the path.`;
+  byId("loading").remove();
+}
+
+/** Removes a part of the page that has nothing to show, with its link. */
+function removePart(id) {
+  byId(id)?.remove();
+  document.querySelector(`nav a[href="#${id}"]`)?.remove();
+}
+
+/** The answer. kind: clear, conflict, undecided, or plain for an answer without a sign. lines: elements below the word. */
+function answerBanner({ kind, word, doubtful, lines }, ...beside) {
+  const sign = doubtful ? doubtSymbol() : kind !== "plain" && verdictSymbol(kind);
+  return make("div", { class: `banner ${doubtful ? "doubt" : kind}` }, sign,
+      make("div", { class: "words" },
+           make("h2", { id: "verdict-word" }, doubtful ? `${word}, but doubtful` : word), lines), ...beside);
+}
+
+/** "See 2 warnings below." lead: its first words. */
+const seeWarnings = (lead, warnings) => warnings.length > 0 &&
+    make("p", { class: "but" }, `${lead} ${plural(warnings.length, "warning")} below.`);
+
+const warningsList = (texts) => texts.length === 0 ? ""
+    : make("ul", { class: "warnings", "aria-label": "Warnings" }, texts.map((text) => make("li", {}, text)));
+
+const factRow = (name, ...value) => make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, ...value));
+
+/** A table of names and values. */
+const factsTable = (...rows) => make("table", { class: "facts" }, make("tbody", {}, ...rows));
+
+/** Numbers that a person compares with the load and the place, because nothing in the files shows whether they are right. */
+const compareOnSite = (what, ...rows) => make("div", { class: "basis", id: "on-site" },
+    make("h3", {}, "Check these on site"),
+    make("p", { class: "note" }, `No file shows whether these are right. Compare them with ${what}.`),
+    factsTable(...rows));
+
+/** Attributes of a row that a click, Enter or the space bar chooses. */
+const chosenBy = (choose) => ({ tabindex: 0, onclick: choose, onkeydown: (event) => {
+  if (event.key !== "Enter" && event.key !== " ") return;
+  event.preventDefault();
+  choose();
+} });
+
+/** The cells of a row. columns: {title, cell, number}, where cell(item) is a text or an element. */
+const cellsOf = (columns, item) =>
+    columns.map(({ cell, number }) => make("td", { class: number ? "number" : null }, cell(item)));
+
+/** A table with a row of titles. */
+const listTable = (label, columns, rows) => make("table", { class: "list", "aria-label": label },
+    make("thead", {}, make("tr", {}, columns.map(({ title, number }) =>
+        make("th", { scope: "col", class: number ? "number" : null }, title)))),
+    make("tbody", {}, rows));
+
+/** Reads what the page holds, and then builds its parts in this order. */
+async function fillPage(read, builds) {
+  if (typeof DecompressionStream === "undefined") {
+    throw new Error("This browser is too old for this page: it needs DecompressionStream " +
+                    "(Chromium 80, Firefox 113, Safari 16.4, or later).");
+  }
+  await read();
+  for (const build of [buildHead, ...builds]) build();
+  document.body.dataset.ready = "true";
+}
+
+function startPage(read, builds) {
+  fillPage(read, builds).catch((error) => {
+    const holder = byId("loading") ?? byId("verdict-body");
+    holder.className = "problem";
+    holder.textContent = error.message;
+    document.body.dataset.ready = "failed";
+    console.error(error);
+  });
+}
