@@ -17,6 +17,7 @@
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "core/util/progress.hpp"
+#include "core/util/tsan_annotations.hpp"
 #include "findings/certain_points.hpp"
 #include "findings/check_conflicts.hpp"
 #include "findings/colliding_points.hpp"
@@ -494,7 +495,8 @@ class ConflictSearch {
                             reader_.header().radius, reader_.header().between_poses,
                             options_.threads);
     progress_.begin("shifts", out_.listed.size(), "conflicts");
-    tbb::parallel_for(std::size_t{0}, out_.listed.size(), [&](std::size_t i) {
+    const ParallelScope scope;
+    const auto free_conflict = piece_of(scope, [&](std::size_t i) {
       if (progress_.stop_requested()) return;
       Conflict& conflict = out_.listed[i];
       const std::uint32_t last = end_of(conflict.last_pose);
@@ -503,6 +505,8 @@ class ConflictSearch {
       conflict.shift_right = free.right;
       progress_.advance(1);
     });
+    scope.begin();
+    tbb::parallel_for(std::size_t{0}, out_.listed.size(), free_conflict);
     throw_if_stopped(progress_);
     progress_.end();
   }

@@ -164,7 +164,7 @@ TEST_CASE("one point far away is named with its line, and --scale accepts the st
   const Work work;
   work.put("a.xyz", rows(100) + "1e9 2 3\n" + rows(10));
   const std::string convert = "convert a.xyz -o a.h5";
-  check_refused(work.run(convert), 3, "line 101: 1e+09 2 3 ... --scale 1 accepts that step");
+  check_refused(work.run(convert), 3, "line 101: 1000000000 2 3 ... --scale 1 accepts that step");
   check_outcome(work.run(convert + " --scale 1"), 0);
 }
 

@@ -45,7 +45,7 @@ std::vector<KnownPose> known_poses() {
   return poses;
 }
 
-std::vector<std::string> codes_of(const std::vector<Message>& remarks) {
+std::vector<std::string> codes_in(const std::vector<Message>& remarks) {
   std::vector<std::string> codes;
   for (const Message& remark : remarks) {
     if (remark.severity == Message::Severity::kWarning) codes.push_back(remark.code);
@@ -106,13 +106,13 @@ TEST_CASE("public alignments are read, or refused with the reason") {
   const auto twin =
       read_alignment(alignment_named("PR_Twin_Branch_section_alignment.xml"), {}, &remarks);
   check_equal(twin.size(), 8526);
-  check_equal(codes_of(remarks), {"alignment-feet"});
+  check_equal(codes_in(remarks), {"alignment-feet"});
 
   const auto first = alignment_named("UT-Alignment-Aplitop-1.xml");
   remarks.clear();
   const auto clothoids = read_alignment(first, {}, &remarks);
   check_equal(clothoids.size(), 5072);
-  CHECK(codes_of(remarks).empty());
+  CHECK(codes_in(remarks).empty());
   // It ends where the file says that the last line does.
   check_near(clothoids.back().translation[0], 335420.420696, 1e-9);
   check_near(clothoids.back().translation[1], 4084689.855782, 1e-9);
@@ -131,13 +131,13 @@ TEST_CASE("public alignments are read, or refused with the reason") {
   const auto late = alignment_named("TOI-M14334-0000A.XML");
   remarks.clear();
   const auto road = read_alignment(late, {.step = 1}, &remarks);
-  check_equal(codes_of(remarks), {"profile-shorter"});
+  check_equal(codes_in(remarks), {"profile-shorter"});
   check_near(road.front().translation[2], 125.687614, 1e-9);
   check_near(road.back().translation[2], 125.806, 1e-8);
 
   remarks.clear();
   const auto crossing = read_alignment(alignment_named("TOI-Y3-0000A.XML"), {.step = 1}, &remarks);
-  check_equal(codes_of(remarks), {"profile-shorter"});
+  check_equal(codes_in(remarks), {"profile-shorter"});
   check_equal(crossing.size(), 37);
   check_near(crossing.back().translation[2], 126.005283, 1e-9);
 }
@@ -158,6 +158,6 @@ TEST_CASE("a Czech alignment with a PVI and a curve at one place is read") {
   const auto poses =
       read_alignment(data_folder() / "cases" / "cz_pvi_and_paracurve.xml",
                      {.station_from = 100, .station_to = 100, .cant = CantLine::kNone}, &remarks);
-  CHECK(codes_of(remarks).empty());
+  CHECK(codes_in(remarks).empty());
   check_near(poses.at(0).translation[2], 300.95, 1e-9);
 }

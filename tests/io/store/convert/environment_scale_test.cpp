@@ -164,9 +164,10 @@ TEST_CASE("steps coarser than a millimetre are taken only where they are asked f
   put_bytes(folder / "a.csv", rows + "1e9,7,8\n" + rows.substr(15) + "1,2,-4e8\n");
   const auto error = refused({folder / "a.csv"});
   REQUIRE(error);
-  check_says(error->what(),
-             "need steps of 1 m ... at most 0.001 m ... line 1003: 1e+09 7 8 ... line 2004: 1 2 "
-             "-400000000 ... Without them steps of 1e-06 m do");
+  check_says(
+      error->what(),
+      "need steps of 1 m ... at most 0.001 m ... line 1003: 1000000000 7 8 ... line 2004: 1 2 "
+      "-400000000 ... Without them steps of 0.000001 m do");
   CHECK(error->remedy() == Remedy::kAcceptScale);
   check_equal(error->amount(), 1);
   check_equal(read_environment({folder / "a.csv"}, with_scale(1)).points.size(), 2002);

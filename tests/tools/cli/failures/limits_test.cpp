@@ -19,9 +19,9 @@ struct Place : Workplace {
   json search(const std::string& environment, const std::string& trajectory,
               const std::string& options, const std::string& output) const {
     put("model.xyz", "0 0 0\n");
-    return json_of(
-        require_success(run("run --env " + environment + " --model model.xyz --trajectory " +
-                            trajectory + " --json -o " + output + " " + options)));
+    return json_of(require_success(run("run --env " + quoted(environment) +
+                                       " --model model.xyz --trajectory " + quoted(trajectory) +
+                                       " --json -o " + quoted(output) + " " + options)));
   }
 };
 
@@ -34,7 +34,7 @@ TEST_CASE("names with blanks, quotes and UTF-8 are names like others") {
   const std::string scan = "Prüf strecke \xE2\x84\xA6 \"1\" $HOME;.xyz";
   place.put(scan, "0 0 0\n5 5 5\n");
   place.put("der weg \xC3\xA4.txt", kPose);
-  place.succeed("convert " + scan + " -o " + place.path("s \xC3\xBC.h5"));
+  place.succeed("convert " + place.path(scan) + " -o " + place.path("s \xC3\xBC.h5"));
   check_json(
       place.search("s \xC3\xBC.h5", "der weg \xC3\xA4.txt", "--radius 1", "aus gabe \xC3\x9F.h5"),
       R"({"colliding_points": 1})");
