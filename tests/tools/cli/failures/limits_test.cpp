@@ -19,9 +19,9 @@ struct Place : Workplace {
   json search(const std::string& environment, const std::string& trajectory,
               const std::string& options, const std::string& output) const {
     put("model.xyz", "0 0 0\n");
-    return json_of(require_success(run("run --env " + quoted(environment) +
-                                       " --model model.xyz --trajectory " + quoted(trajectory) +
-                                       " --json -o " + quoted(output) + " " + options)));
+    return json_of(
+        require_success(run("run --env " + path(environment) + " --model model.xyz --trajectory " +
+                            path(trajectory) + " --json -o " + path(output) + " " + options)));
   }
 };
 
