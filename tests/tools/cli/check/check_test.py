@@ -375,7 +375,7 @@ class Again(Site):
         words = f"wide.txt --columns 2,3,4 {QUESTION} -o wide"
         self.check(words)
         self.assertIn("nothing was to be done", self.check(words).stderr)
-        self.assertIn("does not tell whether it is the store of these scans",
+        self.assertIn("does not show whether it is the store of these scans",
                       self.check(words.replace("2,3,4", "3,2,4"), 2).stderr)
 
     def test_a_killed_check_goes_on(self):
