@@ -267,11 +267,7 @@ class CampaignPage {
     add(Outcome::kClear, "is clear", "are clear");
     add(Outcome::kFailed, "has failed", "have failed");
     add(Outcome::kUnfinished, "is not done", "are not done");
-    std::string text = "Of " + counted(all, "run") + " ";
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      text += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
-    }
-    text += ".";
+    std::string text = "Of " + counted(all, "run") + " " + format_list(parts) + ".";
     if (const std::size_t runs = runs_that_ignore(); runs > 0) {
       text += " In " + counted(runs, "run") + " points were left out of the search.";
     }

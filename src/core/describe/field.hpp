@@ -29,6 +29,20 @@ enum class OptionGroup {
 /// What a number of a field counts.
 enum class FieldUnit { kMetres, kRadians, kSeconds, kBytes, kNone };
 
+/// The symbol of a unit, such as "m"; empty for bytes and for what has no unit.
+constexpr const char* symbol_of(FieldUnit unit) {
+  switch (unit) {
+    case FieldUnit::kMetres:
+      return "m";
+    case FieldUnit::kRadians:
+      return "rad";
+    case FieldUnit::kSeconds:
+      return "s";
+    default:
+      return "";
+  }
+}
+
 /// The finite numbers that a field accepts.
 enum class FieldRange { kAny, kFromZero, kAboveZero };
 

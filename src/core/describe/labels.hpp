@@ -11,6 +11,7 @@
 
 #include "clearway/trajectory.hpp"
 #include "core/describe/field.hpp"
+#include "core/util/format.hpp"
 
 namespace clearway {
 
@@ -111,11 +112,6 @@ void for_each_label(std::initializer_list<LabelPlace> places, const Visit& visit
   }
 }
 
-/// The symbol of a label's unit, such as "m"; empty where it counts nothing.
-constexpr std::string_view symbol_of(FieldUnit unit) {
-  return unit == FieldUnit::kMetres ? "m" : unit == FieldUnit::kSeconds ? "s" : "";
-}
-
 /// Whether any pose has a label.
 inline bool has_labels(const PoseLabels& labels) {
   bool found = false;
@@ -130,11 +126,7 @@ std::string names_of_labels(const Picks& is_meant) {
   for_each_label([&](const auto& label) {
     if (is_meant(label)) names.emplace_back(label.plural);
   });
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
-  }
-  return text;
+  return format_list(names);
 }
 
 }  // namespace clearway

@@ -30,6 +30,14 @@ std::string counted(std::uint64_t count, const std::string& one, const std::stri
   return format_count(count) + " " + (count == 1 ? one : many.empty() ? one + "s" : many);
 }
 
+std::string format_list(const std::vector<std::string>& texts) {
+  std::string list;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    list += (i == 0 ? "" : i + 1 == texts.size() ? " and " : ", ") + texts[i];
+  }
+  return list;
+}
+
 std::string format_number(double value) {
   const double size = std::abs(value);
   const bool plain = size == 0 || (size >= 1e-4 && size < 1e16);

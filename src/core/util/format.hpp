@@ -17,6 +17,9 @@ std::string format_count(std::uint64_t count);
 /// `one` with an s.
 std::string counted(std::uint64_t count, const std::string& one, const std::string& many = {});
 
+/// Texts as a list in a sentence, such as "times, names and stations".
+std::string format_list(const std::vector<std::string>& texts);
+
 /// The shortest decimal that reads back as the same number; without an exponent from 1e-4 to 1e16.
 std::string format_number(double value);
 

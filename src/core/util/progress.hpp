@@ -40,7 +40,7 @@ class NoProgress final : public Progress {
 /// wants it to stop.
 class CallbackProgress final : public Progress {
  public:
-  /// Tell and stop must outlive this object.
+  /// Callback and stop must outlive this object.
   CallbackProgress(const ProgressCallback& callback, StopFlag stop)
       : callback_(callback), stop_(stop) {}
 

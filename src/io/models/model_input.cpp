@@ -432,12 +432,11 @@ Model solids_of(const ModelInput& input, const ModelOptions& options,
                      "its surface, or take a file without what is to be left out");
   }
   MeshParts parts = parts_with_solids(surface_of(input, options, messages), input.path.string());
-  const auto add = [&](const std::string& text) {
-    messages.push_back(plain_note(input.path.string() + ": " + text));
-  };
-  add(summary_of(parts));
+  add_note(messages, input, summary_of(parts));
   const std::string faults = faults_of(parts);
-  if (!faults.empty()) add("what keeps parts from being solid: " + faults);
+  if (!faults.empty()) {
+    add_note(messages, input, "what keeps parts from being solid: " + faults);
+  }
   return {std::move(parts.mesh.vertices), std::move(parts.mesh.triangles),
           std::move(parts.solid_of)};
 }

@@ -90,8 +90,10 @@ std::string quantisation_text(const Quantisation& quantisation) {
   return text;
 }
 
-const char* symbol_of(FieldUnit unit) {
-  return unit == FieldUnit::kNone ? "" : unit == FieldUnit::kRadians ? " rad" : " m";
+/// A number with its unit, such as "0.1 m".
+std::string number_text(double value, FieldUnit unit) {
+  const std::string symbol = symbol_of(unit);
+  return format_number(value) + (symbol.empty() ? "" : " " + symbol);
 }
 
 /// What the question says of a field, in words.
@@ -104,9 +106,9 @@ std::string field_text(const Field<QueryParameters, Value>& field, const ResultH
     return std::to_string(value);
   } else if constexpr (std::is_same_v<Value, double>) {
     const bool is_set = value > 0 || field.unit == FieldUnit::kNone || field.is_required;
-    return is_set ? format_number(value) + symbol_of(field.unit) : field.no;
+    return is_set ? number_text(value, field.unit) : field.no;
   } else {
-    return value ? format_number(*value) + symbol_of(field.unit) : field.no;
+    return value ? number_text(*value, field.unit) : field.no;
   }
 }
 
