@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <type_traits>
 
@@ -30,7 +31,7 @@ enum class OptionGroup {
 enum class FieldUnit { kMetres, kRadians, kSeconds, kBytes, kNone };
 
 /// The symbol of a unit, such as "m"; empty for bytes and for what has no unit.
-constexpr const char* symbol_of(FieldUnit unit) {
+constexpr std::string_view symbol_of(FieldUnit unit) {
   switch (unit) {
     case FieldUnit::kMetres:
       return "m";

@@ -92,7 +92,7 @@ std::string quantisation_text(const Quantisation& quantisation) {
 
 /// A number with its unit, such as "0.1 m".
 std::string number_text(double value, FieldUnit unit) {
-  const std::string symbol = symbol_of(unit);
+  const std::string symbol(symbol_of(unit));
   return format_number(value) + (symbol.empty() ? "" : " " + symbol);
 }
 
