@@ -10,6 +10,7 @@
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
+#include "core/util/format.hpp"
 #include "io/scans/length_unit.hpp"
 
 namespace clearway::tool {
