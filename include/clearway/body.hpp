@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct Body {
   std::vector<Pose> poses;  ///< the poses that the body has, in the order of the path
   /// For each entry of `poses`, the index of the path's pose; ascending
   std::vector<std::uint32_t> path_pose;
+  /// Metres in the body's frame: takes the place of the query's floor for this body.
+  std::optional<double> floor = {};
 };
 
 /// Limits of a vehicle: more bodies, or longer names, are refused.

@@ -27,6 +27,10 @@ struct QueryParameters {
   /// Metres: asks for the least distance of every pose, and the point that has it, if the distance
   /// is below this; 0: no profile.
   double profile = 0;
+  /// Height in each body's frame, metres: a point counts at a pose only if it lies at this height
+  /// or above, seen from the body there. What is lower, such as the ground that the wheels stand
+  /// on, is counted but not judged. Between poses it has to lie so at either end of the way.
+  std::optional<double> floor = {};
   /// Classes whose points are left out of the search, as if the scans did not have them. Only for
   /// an environment that has classes.
   std::vector<std::uint8_t> ignore_classes = {};
@@ -88,6 +92,7 @@ struct MovingBody {
   /// For each of `poses`, the index of the pose of the path that it belongs to, ascending; empty if
   /// the poses are those of the path.
   std::span<const std::uint32_t> path_pose = {};
+  std::optional<double> floor = {};  ///< its own, or that of the query
 
   /// Its pose at a pose of the path; nullptr if it has none there.
   const Pose* pose_at(std::uint32_t pose) const {
@@ -100,17 +105,25 @@ struct MovingBody {
 
 /// What moves along a path: the bodies, or the model as the only one if there are none.
 inline std::vector<MovingBody> moving_bodies(const Model& model, std::span<const Pose> path,
-                                             std::span<const Body> bodies) {
+                                             std::span<const Body> bodies,
+                                             std::optional<double> floor = {}) {
   std::vector<MovingBody> out;
   for (const Body& body : bodies) {
-    out.push_back({body.name, body.model, body.poses, body.path_pose});
+    out.push_back({body.name, body.model, body.poses, body.path_pose,
+                   body.floor ? body.floor : floor});
   }
-  if (out.empty()) out.push_back({{}, model, path});
+  if (out.empty()) out.push_back({{}, model, path, {}, floor});
   return out;
 }
 
 inline std::vector<MovingBody> moving_bodies(const Query& query) {
-  return moving_bodies(query.model, query.poses, query.bodies);
+  return moving_bodies(query.model, query.poses, query.bodies, query.floor);
+}
+
+/// Whether any body of the query has a floor.
+inline bool has_floor(const Query& query) {
+  return std::ranges::any_of(moving_bodies(query),
+                             [](const MovingBody& body) { return body.floor.has_value(); });
 }
 
 /// Whether any body of the query has closed parts.

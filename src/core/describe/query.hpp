@@ -50,6 +50,17 @@ inline constexpr std::tuple kQueryValues{
               "The least distance at every pose is asked for, where it is below this; metres; 0: "
               "it is not.",
           .is_always_listed = true},
+    Field{.member = &QueryParameters::floor,
+          .key = "floor",
+          .topic = "floor",
+          .option = "--floor",
+          .group = OptionGroup::kQuestion,
+          .help = "Judge only what lies at this height of the vehicle's frame or above, for example "
+                  "0.25, so that the ground under the wheels does not collide",
+          .doc = "Height in each body's frame, metres: a point counts at a pose only if it lies at "
+                 "this height or above, seen from the body there; None: all points count.",
+          .no = "none",
+          .range = FieldRange::kAny},
     Field{.member = &QueryParameters::between_poses,
           .key = "between_poses",
           .topic = "motion",
