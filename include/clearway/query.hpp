@@ -109,8 +109,8 @@ inline std::vector<MovingBody> moving_bodies(const Model& model, std::span<const
                                              std::optional<double> floor = {}) {
   std::vector<MovingBody> out;
   for (const Body& body : bodies) {
-    out.push_back({body.name, body.model, body.poses, body.path_pose,
-                   body.floor ? body.floor : floor});
+    out.push_back(
+        {body.name, body.model, body.poses, body.path_pose, body.floor ? body.floor : floor});
   }
   if (out.empty()) out.push_back({{}, model, path, {}, floor});
   return out;
@@ -124,6 +124,14 @@ inline std::vector<MovingBody> moving_bodies(const Query& query) {
 inline bool has_floor(const Query& query) {
   return std::ranges::any_of(moving_bodies(query),
                              [](const MovingBody& body) { return body.floor.has_value(); });
+}
+
+/// Moves the floors of a query and of its bodies up by `metres`.
+inline void raise_floors(Query& query, double metres) {
+  if (query.floor) *query.floor += metres;
+  for (Body& body : query.bodies) {
+    if (body.floor) *body.floor += metres;
+  }
 }
 
 /// Whether any body of the query has closed parts.

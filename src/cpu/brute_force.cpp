@@ -49,6 +49,11 @@ bool touched(const Vec3& e, const std::vector<Element>& moved, double radius) {
   return false;
 }
 
+/// Whether the pair of a pose and e counts: e is not below the floor there.
+bool counts(const Query& query, std::size_t pose, const Vec3& e) {
+  return !query.floor || pulled_back(query.poses[pose], e).z >= *query.floor;
+}
+
 /// Whether e collides on the way from a pose to the next, both included.
 bool touched_on_way(const Vec3& e, const std::vector<Vec3>& from, const std::vector<Vec3>& to,
                     double radius) {
@@ -70,7 +75,8 @@ std::vector<std::uint32_t> first_poses(std::span<const Vec3> environment, const 
     const std::vector<Element> at_pose = moved(model, query.poses[i]);
 #pragma omp parallel for schedule(static) if (worth_threads)
     for (std::size_t e = 0; e < environment.size(); ++e) {
-      if (first[e] == HitSet::kNever && touched(environment[e], at_pose, query.radius)) {
+      if (first[e] == HitSet::kNever && touched(environment[e], at_pose, query.radius) &&
+          counts(query, i, environment[e])) {
         first[e] = i;
       }
     }
@@ -90,8 +96,10 @@ std::vector<std::uint32_t> first_poses_of_ways(std::span<const Vec3> environment
 #pragma omp parallel for schedule(static) if (worth_threads)
     for (std::size_t e = 0; e < environment.size(); ++e) {
       if (first[e] != HitSet::kNever) continue;
-      if (moves_on ? touched_on_way(environment[e], from, to, query.radius)
-                   : touched(environment[e], from, query.radius)) {
+      const Vec3& point = environment[e];
+      if (!counts(query, i, point) && !(moves_on && counts(query, i + 1, point))) continue;
+      if (moves_on ? touched_on_way(point, from, to, query.radius)
+                   : touched(point, from, query.radius)) {
         first[e] = i;
       }
     }
@@ -107,7 +115,9 @@ std::vector<Clearance> clearances(std::span<const Vec3> environment, const Query
     for (const Element& element : moved(model, query.poses[i])) {
       for (std::size_t e = 0; e < environment.size(); ++e) {
         const double squared = squared_distance(environment[e], element);
-        if (squared < least[e].squared) least[e] = {squared, i};
+        if (squared < least[e].squared && counts(query, i, environment[e])) {
+          least[e] = {squared, i};
+        }
       }
     }
   }
@@ -166,7 +176,9 @@ std::vector<std::uint32_t> first_poses_of_solids(std::span<const Vec3> environme
   const SolidTriangles solids(query);
   for (std::size_t e = 0; e < environment.size(); ++e) {
     for (std::uint32_t i = 0; i < std::min<std::size_t>(first[e], query.poses.size()); ++i) {
-      if (solids.contains(environment[e], query.poses[i])) first[e] = i;
+      if (counts(query, i, environment[e]) && solids.contains(environment[e], query.poses[i])) {
+        first[e] = i;
+      }
     }
   }
   return first;
@@ -177,6 +189,7 @@ std::vector<Clearance> clearances_of_solids(std::span<const Vec3> environment, c
   const SolidTriangles solids(query);
   for (std::size_t e = 0; e < environment.size(); ++e) {
     for (std::uint32_t i = 0; i < query.poses.size(); ++i) {
+      if (!counts(query, i, environment[e])) continue;
       const double square = solids.inside_square(environment[e], query.poses[i]);
       if (square < 0 && square < least[e].squared) least[e] = {square, i};
     }
@@ -196,7 +209,9 @@ std::vector<NearestPoint> profile_of(std::span<const Vec3> environment, const Qu
     for (std::size_t e = 0; e < environment.size(); ++e) {
       for (const Element& element : at_pose) {
         const double squared = squared_distance(environment[e], element);
-        if (squared < limit && squared < best.squared) best = {squared, e};
+        if (squared < limit && squared < best.squared && counts(query, i, environment[e])) {
+          best = {squared, e};
+        }
       }
     }
     profile[i] = best;
@@ -209,6 +224,7 @@ std::vector<NearestPoint> profile_of_solids(std::span<const Vec3> environment, c
   const SolidTriangles solids(query);
   for (std::size_t i = 0; i < query.poses.size(); ++i) {
     for (std::size_t e = 0; e < environment.size(); ++e) {
+      if (!counts(query, i, environment[e])) continue;
       const double square = solids.inside_square(environment[e], query.poses[i]);
       if (square < 0 && square < profile[i].squared) profile[i] = {square, e};
     }

@@ -115,7 +115,7 @@ void RangeSearch::search_nodes(const SearchTask& task, std::size_t begin, std::s
 bool RangeSearch::dismiss_or_take(const SearchTask& task, const Candidate& candidate) {
   if (resolved_.node_resolved(candidate.node, task.poses.first)) return true;
   if (least_squared_distance(candidate.box, task.centre) > task.reach_squared) return true;
-  if (task.hit_is_final &&
+  if (task.hit_is_final && !query_.floor &&
       greatest_squared_distance(candidate.box, task.centre) < radius_squared_) {
     mark_node(candidate.node, task.poses.reference);
     return true;
@@ -169,7 +169,7 @@ void RangeSearch::gather_block(const SearchTask& task, const EnvironmentNode& no
   const std::uint64_t first_entry = environment_.block_index(node.cell, block) * kBlockPoints;
   for (std::uint64_t rest = open; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
-    if (squared_[i] < radius_squared_) {
+    if (squared_[i] < radius_squared_ && counts(from, i, task.poses.reference)) {
       mark(first_entry + i, task.poses.reference);
       if (task.hit_is_final) continue;
     }
@@ -193,7 +193,7 @@ void RangeSearch::search_points(const SearchTask& task, Points points) {
     const std::uint64_t slot = slots_[points.begin + i];
     if (squared_[i] > task.reach_squared) continue;
     if (resolved_.point_resolved(slot, task.poses.first)) continue;
-    if (squared_[i] < radius_squared_) {
+    if (squared_[i] < radius_squared_ && counts(from, i, task.poses.reference)) {
       mark(slot, task.poses.reference);
       if (task.hit_is_final) continue;
     }
@@ -215,7 +215,8 @@ void RangeSearch::test_points(const SearchTask& task, Points points) {
   const MutableColumns moved{moved_x_.data(), moved_y_.data(), moved_z_.data()};
   const std::uint32_t pose = task.poses.first;
   transform_points(query_.poses[pose], model_.columns(leaf), leaf.padded, moved);
-  if (query_.between_poses && pose + 1 < query_.poses.size()) {
+  const bool moves_on = query_.between_poses && pose + 1 < query_.poses.size();
+  if (moves_on) {
     const MutableColumns next{next_x_.data(), next_y_.data(), next_z_.data()};
     transform_points(query_.poses[pose + 1], model_.columns(leaf), leaf.padded, next);
     collide_any_on_way(columns(points), points.count, moved, next, leaf.padded, query_.radius,
@@ -224,7 +225,11 @@ void RangeSearch::test_points(const SearchTask& task, Points points) {
     collide_any(columns(points), points.count, moved, leaf.padded, query_.radius, hit_.data());
   }
   for (std::size_t i = 0; i < points.count; ++i) {
-    if (hit_[i] != 0) mark(slots_[points.begin + i], pose);
+    if (hit_[i] == 0) continue;
+    const Columns from = columns(points);
+    if (counts(from, i, pose) || (moves_on && counts(from, i, pose + 1))) {
+      mark(slots_[points.begin + i], pose);
+    }
   }
   tested_searches_ += leaf.count;
 }

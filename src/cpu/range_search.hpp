@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "clearway/query.hpp"
+#include "core/geometry/floor.hpp"
 #include "core/query/pose_journal.hpp"
 #include "cpu/cell_search.hpp"
 #include "cpu/environment_tree.hpp"
@@ -76,6 +77,11 @@ class RangeSearch {
   void mark_node(const EnvironmentNode& node, std::uint32_t pose) {
     resolved_.mark_node(
         node, pose, [&](std::uint64_t word, std::uint64_t bits) { marks_.add(word, bits, pose); });
+  }
+  /// Whether the pair of point i and a pose counts.
+  bool counts(Columns from, std::size_t i, std::uint32_t pose) const {
+    return !query_.floor ||
+           is_above_floor(query_.poses[pose], {from.x[i], from.y[i], from.z[i]}, *query_.floor);
   }
   void put_point(std::size_t to, Columns from, std::size_t i, std::uint64_t slot) {
     x_[to] = from.x[i];

@@ -52,6 +52,8 @@ SweepOnDevice<Element> put_poses_on_device(SweepRefOf<Element> ref, Arrays& arra
   move(ref.motion.inverse_poses, poses);
   move(ref.motion.poses, poses);
   move(ref.motion.curves, ref.motion.curves == nullptr ? 0 : 2 * poses - 1);
+  // Null says that there is no floor.
+  if (ref.motion.floors != nullptr) move(ref.motion.floors, 2 * poses - 1);
   return {ref, arrays.template zeros<unsigned long long>(SweepOnDevice<Element>::kTallies)};
 }
 

@@ -142,6 +142,9 @@ void check_numbers(const QueryParameters& query, const SearchOptions& options) {
       if (!field.is_of_budget) check(topic.c_str(), field.of(query), !field.is_required);
     }
   });
+  if (query.floor && !std::isfinite(*query.floor)) {
+    throw UsageError("the floor has to be a finite number of metres");
+  }
   check_budget(query);
   if (options.threads < 0) throw UsageError("the number of threads cannot be negative");
   if (!(options.journal_interval_seconds >= 0)) {
@@ -209,6 +212,20 @@ void check_model_size(const std::string& what, const Model& of) {
     }
   }
   check_solids(what, of);
+}
+
+/// A height above the floor exists only where the rotation has an inverse.
+void check_floor(const MovingBody& body, bool is_alone) {
+  if (!body.floor) return;
+  const std::string what = is_alone ? "" : "body " + std::string(body.name) + ": ";
+  if (!std::isfinite(*body.floor)) {
+    throw UsageError(what + "the floor has to be a finite number of metres");
+  }
+  for (std::size_t i = 0; i < body.poses.size(); ++i) {
+    if (std::isfinite(1 / PullBack(body.poses[i]).determinant)) continue;
+    throw InputError(what + "the rotation of pose " + std::to_string(i) +
+                     " has no inverse, so that heights above a floor are not known there");
+  }
 }
 
 }  // namespace
@@ -284,6 +301,7 @@ void check_sizes(const Query& query) {
   for (const MovingBody& body : moving_bodies(query)) {
     const bool is_alone = query.bodies.empty();
     check_model_size(is_alone ? "the model" : "body " + std::string(body.name), body.model);
+    check_floor(body, is_alone);
   }
 }
 

@@ -163,7 +163,7 @@ bool suits_kdtree(const StoreReader& store, const Query& query, const SearchOpti
   const bool is_small =
       query.poses.size() <= kMostPosesOfKdtree && query.radius <= kLargestRadiusOfKdtree;
   const bool asks_for_sweep = query.clearance > 0 || query.profile > 0 || query.between_poses ||
-                              query.model.is_surface() || !query.bodies.empty();
+                              query.floor || query.model.is_surface() || !query.bodies.empty();
   return is_small && !asks_for_sweep &&
          kdtree_needed_bytes(store, query, options) <= options.memory_bytes;
 }

@@ -360,10 +360,12 @@ class Search {
     found.result.last_poses.emplace(query_, std::move(other.result.hits));
   }
 
-  /// The query without what a further search for points alone does not need.
+  /// The query without what a further search for points alone does not need. Floors keep their
+  /// distance from the places that the radius reaches.
   Query plain_query(double radius, bool first_pose) const {
     Query query = query_;
     query.radius = radius;
+    raise_floors(query, query_.radius - radius);
     query.first_pose = first_pose;
     query.clearance = query.profile = 0;
     query.error_scan = query.error_registration = query.error_pose = query.error_angle =
@@ -418,6 +420,7 @@ class Search {
     } else if (has_solids(query_)) {
       Query signed_query = plain_query(query_.radius, false);
       signed_query.clearance = query_.radius;
+      raise_floors(signed_query, query_.radius - radius);
       const Found other = search_further(found, std::move(signed_query), &cells, "certain points");
       const double deeper = -(radius * radius);
       for_each_word_of_entries([&](std::uint64_t word) {

@@ -49,6 +49,7 @@ constexpr std::uint64_t kMemoryParts = 4;
 Query query_of_cubes(const Query& query, double radius) {
   Query out = query;
   out.radius = radius;
+  raise_floors(out, query.radius - radius);
   out.first_pose = true;
   out.seen = false;
   out.clearance = out.profile = 0;

@@ -55,8 +55,9 @@ inline constexpr std::tuple kQueryValues{
           .topic = "floor",
           .option = "--floor",
           .group = OptionGroup::kQuestion,
-          .help = "Judge only what lies at this height of the vehicle's frame or above, for example "
-                  "0.25, so that the ground under the wheels does not collide",
+          .help =
+              "Judge only what lies at this height of the vehicle's frame or above, for example "
+              "0.25, so that the ground under the wheels does not collide",
           .doc = "Height in each body's frame, metres: a point counts at a pose only if it lies at "
                  "this height or above, seen from the body there; None: all points count.",
           .no = "none",

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "clearway/error.hpp"
+#include "core/geometry/floor.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/grid/grid_size.hpp"
 
@@ -51,6 +52,7 @@ GridScene::GridScene(const Query& query, const MotionTree& motion, const PackedC
   view_.bucket_count = std::max(64U, std::bit_ceil(cloud.cell_entries()));
   view_.word_count = std::bit_ceil(std::max(64U, cloud.cell_entries() * kOccupancyBits / 64));
   view_.radius = view_.search_radius = query.radius;
+  view_.floor = query.floor.value_or(kNoFloor);
   view_.float_alone = options.precision == GridPrecision::kFloat;
   if (view_.float_alone) view_.search_radius = float_search_radius(cloud);
   choose_group_radius();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/geometry/floor.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/geometry/sweep_bounds.hpp"
 #include "core/grid/float_predicate.hpp"
@@ -81,6 +82,13 @@ CLEARWAY_HD inline bool is_hit(const GridSceneView& scene, const GridPageView& p
   return collides_in_float(e, scene.poses[pose], scene.points[model_point], scene.radius);
 }
 
+/// Whether the pair of a point and a pose counts.
+CLEARWAY_HD inline bool counts(const GridSceneView& scene, const GridPageView& page,
+                               std::uint32_t cell, std::uint32_t index, std::uint32_t pose) {
+  return scene.floor == kNoFloor ||
+         is_above_floor(scene.poses[pose], position_of(scene, page, cell, index), scene.floor);
+}
+
 /// A model point at a pose, for the predicate and in the cell's floats.
 struct MovedPoint {
   std::uint32_t pose;
@@ -104,6 +112,7 @@ CLEARWAY_HD inline void test_pair(const GridSceneView& scene, const GridPageView
     ++statistics.exact_tests;
     if (!is_hit(scene, page, cell, p.index, moved.pose, moved.model_point, moved.m)) return;
   }
+  if (!counts(scene, page, cell, p.index, moved.pose)) return;
   mark_hit(scene, page, cell, p.index, moved.pose);
   if (page.done != nullptr) or_bits(page.done[at / 64], std::uint64_t{1} << (at % 64));
 }
@@ -183,7 +192,8 @@ CLEARWAY_HD inline void search_point(const GridSceneView& scene, const GridPageV
     for (std::uint32_t i = 0; i < grid.count; ++i) {
       if (!page.page.is_searched(cell, i) || !is_wanted(scene, page, cell, i, pose)) continue;
       ++statistics.exact_tests;
-      if (is_hit(scene, page, cell, i, pose, model_point, m)) {
+      if (is_hit(scene, page, cell, i, pose, model_point, m) &&
+          counts(scene, page, cell, i, pose)) {
         mark_hit(scene, page, cell, i, pose);
       }
     }

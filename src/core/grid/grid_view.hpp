@@ -50,6 +50,7 @@ struct GridSceneView {
   std::uint32_t word_count;    ///< words of an occupancy, a power of two
   double radius;
   double search_radius;  ///< pairs farther apart are no hit; exceeds the radius if floats decide
+  double floor;          ///< in the model's frame, metres; kNoFloor if the query has none
   bool float_alone;
 };
 

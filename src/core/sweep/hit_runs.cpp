@@ -81,7 +81,8 @@ typename HitRuns<Element>::Answer HitRuns<Element>::search(const Vec3& e, std::u
     const TriangleCurve curve(sweep_.motion, node, e);
     bool is_near = false, is_hit = false;
     const auto visit_pose = [&](std::uint32_t pose, const Triangle& t) {
-      if (pose >= end || !collides(e, transform(sweep_.motion.poses[pose], t), sweep_.radius)) {
+      if (pose >= end || !collides(e, transform(sweep_.motion.poses[pose], t), sweep_.radius) ||
+          !sweep_.counts(e, pose)) {
         return false;
       }
       end = pose;
@@ -105,8 +106,12 @@ typename HitRuns<Element>::Answer HitRuns<Element>::search(const Vec3& e, std::u
       if (is_near) return is_hit && any ? Answer::kHit : Answer::kUnknown;
       const Pose& pose = sweep_.motion.poses[node.first];
       if (!sweep_.field.inside.solids.contains(pulled_back(pose, e))) return Answer::kNever;
-      end = std::min(end, node.first);
-      return Answer::kHit;
+      for (std::uint32_t i = node.first; i < std::min(end, node.first + node.count); ++i) {
+        if (!sweep_.counts(e, i)) continue;
+        end = i;
+        return Answer::kHit;
+      }
+      return Answer::kNever;
     }
     return is_hit ? Answer::kHit : Answer::kNever;
   }

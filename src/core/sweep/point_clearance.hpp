@@ -45,6 +45,7 @@ class PointClearance {
   CLEARWAY_HD bool offer(std::uint32_t pose, const Element& m) {
     const double squared = squared_distance(e_, transform(sweep_.motion.poses[pose], m));
     if (!(squared < best_.squared || (squared == best_.squared && pose < best_.pose))) return false;
+    if (!sweep_.counts(e_, pose)) return false;
     near_ = m;
     set_best(squared, pose);
     return true;
@@ -103,6 +104,7 @@ class PointClearance {
 
   CLEARWAY_HD bool is_given_up(std::uint32_t at, double squared_lower) const {
     const MotionNode& node = sweep_.motion.nodes[at];
+    if (sweep_.floor_side(node, e_) == FloorSide::kBelow) return true;
     return farther(sweep_.motion.inverse_poses[node.mid].least, squared_lower, reach_ + node.delta);
   }
 

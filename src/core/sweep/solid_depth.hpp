@@ -139,7 +139,8 @@ class SolidDepth {
   /// DepthAtPose::squared(), at most the square of the best.
   CLEARWAY_HD double offer(std::uint32_t pose, double below) {
     const double squared = at_pose_.squared(pose, below, near_);
-    if (squared > -best_.squared || (squared == -best_.squared && pose < best_.pose)) {
+    if ((squared > -best_.squared || (squared == -best_.squared && pose < best_.pose)) &&
+        sweep_.counts(e_, pose)) {
       best_ = {0 - squared, pose};
     }
     return squared;
@@ -156,10 +157,11 @@ class SolidDepth {
     }
   }
 
-  /// Whether the field proves that the point is inside at no pose of a node.
+  /// Whether it is proven that the point is inside, or above the floor, at no pose of a node.
   CLEARWAY_HD bool is_outside(std::uint32_t at) {
     ++statistics_.point_tests;
     const MotionNode& node = sweep_.motion.nodes[at];
+    if (sweep_.floor_side(node, e_) == FloorSide::kBelow) return true;
     const InversePose& back = sweep_.motion.inverse_poses[node.mid];
     const Vec3 x = back.apply(e_);
     const double squared_lower = sweep_.field.bounds(x).squared_lower;

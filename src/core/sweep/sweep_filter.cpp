@@ -69,6 +69,12 @@ SweepFilterOf<Element>::SweepFilterOf(const Query& query, const MotionTree& moti
            .first_pose = query.first_pose,
            .between_poses = query.between_poses},
       runs_(motion, model, ref_) {
+  if (query.floor) {
+    floors_ = MotionFloors(motion, threads);
+    ref_.motion.floors = floors_.data();
+    ref_.floor = *query.floor;
+    ref_.floor_rounding = motion.height_rounding(largest_coordinate(cloud));
+  }
   if (query.clearance > 0) {
     curves_ = MotionCurves(motion, model.box(), query.clearance * kRoundedUp + ref_.rounding,
                            spacing_of(model, query.clearance), threads);

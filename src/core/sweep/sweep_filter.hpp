@@ -14,6 +14,7 @@
 #include "core/sweep/hit_runs.hpp"
 #include "core/sweep/sweep_ref.hpp"
 #include "core/trajectory/motion_curves.hpp"
+#include "core/trajectory/motion_floors.hpp"
 #include "core/trajectory/motion_tree.hpp"
 
 namespace clearway {
@@ -35,7 +36,8 @@ class SweepFilterOf final : public PoseReach {
   const MotionTree& motion() const override { return motion_; }
   const ModelTreeOf<StoredElement<Element>>& model() const { return model_; }
   std::uint64_t allocated_bytes() const {
-    return curves_.allocated_bytes() + wide_.allocated_bytes() + runs_.most_bytes();
+    return curves_.allocated_bytes() + floors_.allocated_bytes() + wide_.allocated_bytes() +
+           runs_.most_bytes();
   }
 
   /// Replaces `out` with those of `nodes` and the nodes below them that may touch a point of the
@@ -103,6 +105,7 @@ class SweepFilterOf final : public PoseReach {
   const ModelTreeOf<StoredElement<Element>>& model_;
   SweepRefOf<Element> ref_;
   MotionCurves curves_;                      ///< made only with a clearance
+  MotionFloors floors_;                      ///< made only with a floor
   WideTreeOf<StoredElement<Element>> wide_;  ///< made only with a clearance
   HitRuns<Element> runs_;
   SweepRefOf<Element> for_plan_;  ///< makes no bricks, because cells are too large to need them

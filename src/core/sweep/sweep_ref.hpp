@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
+#include "core/geometry/floor.hpp"
 #include "core/geometry/model_element.hpp"
 #include "core/geometry/model_tree_ref.hpp"
 #include "core/geometry/sweep_bounds.hpp"
@@ -36,6 +38,20 @@ struct SweepStatistics {
   }
 };
 
+/// Poses around one of them: those of a motion node, or a single one.
+struct PosesAround {
+  std::uint32_t pose;
+  double delta = 0;  ///< no model point is farther than this from where it is at `pose`, metres
+  MotionFloor floor = {};
+};
+
+/// Where points lie at some poses, seen from the floor.
+enum class FloorSide {
+  kBelow,  ///< no pair of the points and the poses counts
+  kOpen,   ///< pairs have to be looked at one by one
+  kAbove,  ///< every pair counts
+};
+
 /// A set of environment points, known only by its box.
 struct PointBox {
   Box box;
@@ -44,6 +60,15 @@ struct PointBox {
 
   CLEARWAY_HD explicit PointBox(const Box& of)
       : box(of), centre(of.centre()), rho(half_diagonal(of)) {}
+
+  /// No point is farther than this from the centre along each axis.
+  CLEARWAY_HD Vec3 half() const {
+    Vec3 out;
+    for (int k = 0; k < 3; ++k) {
+      out[k] = greater_of(box.hi[k] - centre[k], centre[k] - box.lo[k]) * kRoundedUp;
+    }
+    return out;
+  }
 };
 
 /// What becomes of a motion node for the points of a box.
@@ -84,6 +109,55 @@ struct SweepRefOf {
   double rounding;   ///< rounding of a test of one point at one pose, metres
   bool first_pose;
   bool between_poses;
+  double floor = kNoFloor;
+  double floor_rounding = 0;  ///< bound on the error of a height that is not the exact test's
+
+  CLEARWAY_HD bool has_floor() const { return motion.floors != nullptr; }
+
+  CLEARWAY_HD PosesAround around(const MotionNode& node) const {
+    return {node.mid, node.delta,
+            has_floor() ? motion.floors[&node - motion.nodes] : MotionFloor{}};
+  }
+
+  /// Where all points that are at most `half` from a centre along each axis lie at the poses.
+  CLEARWAY_HD FloorSide floor_side(const PosesAround& poses, const Vec3& centre,
+                                   const Vec3& half) const {
+    if (!has_floor()) return FloorSide::kAbove;
+    const InversePose& back = motion.inverse_poses[poses.pose];
+    double height = 0, spread = floor_rounding + poses.floor.rise, squared = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double away = centre[k] - back.translation[k];
+      height += back.inverse[6 + k] * away;
+      spread += std::fabs(back.inverse[6 + k]) * half[k];
+      const double farthest = std::fabs(away) + half[k];
+      squared += farthest * farthest;
+    }
+    spread = (spread + poses.floor.tilt * std::sqrt(squared)) * kRoundedUp;
+    if (height + spread < floor) return FloorSide::kBelow;
+    return height - spread >= floor ? FloorSide::kAbove : FloorSide::kOpen;
+  }
+
+  CLEARWAY_HD FloorSide floor_side(const MotionNode& node, const Vec3& e) const {
+    if (!has_floor()) return FloorSide::kAbove;
+    return floor_side(around(node), e, Vec3{0, 0, 0});
+  }
+
+  /// Whether all points within rho of the centre surely count at a pose.
+  CLEARWAY_HD bool is_above(std::uint32_t pose, const Vec3& centre, double rho) const {
+    return floor_side({pose}, centre, {rho, rho, rho}) == FloorSide::kAbove;
+  }
+
+  /// Whether the pair of e and a pose counts.
+  CLEARWAY_HD bool counts(const Vec3& e, std::uint32_t pose) const {
+    const FloorSide side = floor_side({pose}, e, {0, 0, 0});
+    if (side != FloorSide::kOpen) return side == FloorSide::kAbove;
+    return is_above_floor(motion.poses[pose], e, floor);
+  }
+
+  /// Whether the pair of e and the single pose of a node counts; between poses, the way from it.
+  CLEARWAY_HD bool counts_at(const Vec3& e, const MotionNode& node) const {
+    return counts(e, node.mid) || (moves_on(node) && counts(e, node.mid + 1));
+  }
 
   /// Whether the least d2 below the clearance decides by itself which points collide.
   CLEARWAY_HD bool hits_follow_from_clearance() const { return clearance >= radius && !first_pose; }
@@ -121,6 +195,13 @@ struct SweepRefOf {
                                     bool accept) const {
     const Vec3& centre = points.centre;
     const double rho = points.rho;
+    if (has_floor()) {
+      const Vec3 half = points.half();
+      const FloorSide side = floor_side(around(node), centre, half);
+      if (side == FloorSide::kBelow) return BoxClass::kDismissed;
+      accept = accept && (side == FloorSide::kAbove ||
+                          floor_side({node.mid}, centre, half) == FloorSide::kAbove);
+    }
     const InversePose& back = motion.inverse_poses[node.mid];
     const double reach = limit + node.delta + rho + rounding;
     const ModelFieldRef::Bounds bounds = field.bounds(back.apply(centre));
@@ -158,7 +239,7 @@ struct SweepRefOf {
       ++statistics.node_tests;
       const std::uint32_t mid = motion.nodes[nodes[i]].mid;
       const std::uint32_t near = field.bounds(motion.inverse_poses[mid].apply(centre)).near;
-      if (near == ModelFieldRef::kNone) continue;
+      if (near == ModelFieldRef::kNone || !is_above(mid, centre, rho)) continue;
       const double here =
           squared_distance(centre, transform(motion.poses[mid], model.elements[near]));
       if (here < squared) squared = here;
@@ -183,13 +264,20 @@ struct SweepRefOf {
   CLEARWAY_HD Verdict look(const Vec3& e, const MotionNode& node, SweepStatistics& statistics,
                            double& squared_lower) const {
     ++statistics.point_tests;
+    squared_lower = kInfinity;
+    const FloorSide side = floor_side(node, e);
+    if (side == FloorSide::kBelow) return Verdict::kDismissed;
+    const bool counts_at_mid = side == FloorSide::kAbove || counts(e, node.mid);
+    if (!counts_at_mid && node.count == 1 && !moves_on(node)) return Verdict::kDismissed;
     const InversePose& back = motion.inverse_poses[node.mid];
     const ModelFieldRef::Bounds bounds = field.bounds(back.apply(e));
     squared_lower = bounds.squared_lower;
     if (farther(back.least, squared_lower, radius + node.delta + rounding)) {
-      return is_inside(back.apply(e), squared_lower) ? Verdict::kHitAtMid : Verdict::kDismissed;
+      if (!is_inside(back.apply(e), squared_lower)) return Verdict::kDismissed;
+      return counts_at_mid ? Verdict::kHitAtMid : Verdict::kOpen;
     }
-    if (bounds.near != ModelFieldRef::kNone && may_hit_at_mid(back, squared_lower) &&
+    if (counts_at_mid && bounds.near != ModelFieldRef::kNone &&
+        may_hit_at_mid(back, squared_lower) &&
         collides(e, transform(motion.poses[node.mid], model.elements[bounds.near]), radius)) {
       return Verdict::kHitAtMid;
     }
@@ -216,6 +304,7 @@ struct SweepRefOf {
 
   /// Whether e collides at a single pose that look() left open, or on the way from it to the next.
   CLEARWAY_HD bool collides_at(const Vec3& e, const MotionNode& node) const {
+    if (!counts_at(e, node)) return false;
     if constexpr (!kIsTriangle<Element>) {
       if (moves_on(node)) {
         return SweptStep(motion, model, node.first, radius, rounding).touches(e);

@@ -135,6 +135,13 @@ double MotionTree::rounding(double reach, double lattice) const {
   return 256 * kUnitRoundoff * magnitude * (1 + condition_) * (1 + condition_);
 }
 
+double MotionTree::height_rounding(double reach) const {
+  double least = 1;
+  for (const InversePose& pose : inverse_poses_) least = std::min(least, pose.least);
+  // Infinite where a rotation may have no inverse, so that nothing is decided by the bound.
+  return 256 * kUnitRoundoff * (reach + magnitude_) * (1 + condition_) * (1 + condition_) / least;
+}
+
 std::uint64_t MotionTree::allocated_bytes() const {
   return nodes_.capacity() * sizeof(MotionNode) + inverse_poses_.capacity() * sizeof(InversePose);
 }

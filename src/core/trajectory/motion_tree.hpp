@@ -40,6 +40,12 @@ class MotionTree {
   /// lattice of the look-ups extends beyond the model (docs/design/numerics.md).
   double rounding(double reach, double lattice = 0) const;
 
+  /// Bound in metres on how far the height of an environment point in the body's frame, computed
+  /// with any inverse_pose(), is from the exact test's (core/geometry/floor.hpp). reach: as for
+  /// rounding().
+  double height_rounding(double reach) const;
+  bool between_poses() const { return between_poses_; }
+
   std::uint64_t allocated_bytes() const;
 
  private:

@@ -52,6 +52,14 @@ struct MotionCurve {
   CLEARWAY_HD bool is_smooth() const { return error < kNone; }
 };
 
+/// How far the height of a place in the body's frame may change over the poses of a node: by at
+/// most tilt times the place's distance from the middle pose's position, plus rise
+/// (docs/design/floor.md). Between poses that includes the pose after the range.
+struct MotionFloor {
+  double tilt = 0;  ///< change of the third row of the inverse rotation
+  double rise = 0;  ///< metres
+};
+
 /// A parabola through a point pulled back by the first, a middle and the last pose of a node, at
 /// the places 0, `middle_place` and 1.
 struct MotionParabola {
@@ -97,6 +105,7 @@ struct MotionTreeRef {
   const Pose* poses;
   std::uint32_t pose_count;
   const MotionCurve* curves = nullptr;  ///< one for each node, or null if none are needed
+  const MotionFloor* floors = nullptr;  ///< one for each node, or null without a floor
 
   /// Replaces, repeatedly, both halves of a smooth node by the node itself. list: nodes in the
   /// order of the poses. Returns how many are left.

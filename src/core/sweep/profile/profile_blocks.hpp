@@ -66,20 +66,19 @@ class ProfileBlocks {
     return true;
   }
 
-  /// Looks at the blocks open at a level, all at once at `pose`. Those that may matter to poses at
-  /// which no model point is farther than delta from where it is at `pose` become open at the next
-  /// level. reach: a distance beyond which nothing matters to these poses. Returns whether any
-  /// block is left.
-  CLEARWAY_HD bool look(double delta, std::uint32_t pose, std::uint32_t level, double reach) {
+  /// Looks at the blocks open at a level, all at once at the middle one of some poses. Those that
+  /// may matter to the poses become open at the next level. reach: a distance beyond which nothing
+  /// matters to these poses. Returns whether any block is left.
+  CLEARWAY_HD bool look(const PosesAround& poses, std::uint32_t level, double reach) {
     inside_ = false;
-    return look_at_open(delta, pose, level, reach);
+    return look_at_open(poses, level, reach);
   }
 
   /// Looks at the blocks open at a level as look() does, but opens those that may hold points
   /// inside solids.
-  CLEARWAY_HD bool look_inside(double delta, std::uint32_t pose, std::uint32_t level) {
+  CLEARWAY_HD bool look_inside(const PosesAround& poses, std::uint32_t level) {
     inside_ = true;
-    return look_at_open(delta, pose, level, sweep_.rounding);
+    return look_at_open(poses, level, sweep_.rounding);
   }
 
   CLEARWAY_HD Sphere sphere(std::uint32_t block) const { return sphere_of(block, 1); }
@@ -94,7 +93,8 @@ class ProfileBlocks {
 
   /// Whether anything within rho of a place with this bound from the field may matter.
   CLEARWAY_HD bool matters(double rho, double squared_lower) const {
-    return !farther(sweep_.motion.inverse_poses[pose_].least, squared_lower, reach_ + delta_ + rho);
+    return !farther(sweep_.motion.inverse_poses[poses_.pose].least, squared_lower,
+                    reach_ + poses_.delta + rho);
   }
 
   /// The block that seems to be nearest, or kNone.
@@ -140,10 +140,8 @@ class ProfileBlocks {
     return {positions.centre(), half_diagonal(positions)};
   }
 
-  CLEARWAY_HD bool look_at_open(double delta, std::uint32_t pose, std::uint32_t level,
-                                double reach) {
-    delta_ = delta;
-    pose_ = pose;
+  CLEARWAY_HD bool look_at_open(const PosesAround& poses, std::uint32_t level, double reach) {
+    poses_ = poses;
     reach_ = reach;
     nearest_ = kNone;
     nearest_squared_ = kInfinity;
@@ -196,13 +194,17 @@ class ProfileBlocks {
     return keep != 0;
   }
 
-  /// The field's bound at the centre of a sphere. upper: becomes a distance that no point of the
-  /// sphere exceeds at any of the poses, up to the rounding of a test. When looking for points
-  /// inside solids, returns 0 instead of the bound if the whole sphere is inside, and leaves
-  /// `upper` alone.
+  /// The field's bound at the centre of a sphere; infinity if the sphere is below the floor at all
+  /// poses. upper: becomes a distance that no point of the sphere exceeds at any of the poses, up
+  /// to the rounding of a test, if all points count at all poses. When looking for points inside
+  /// solids, returns 0 instead of the bound if the whole sphere is inside, and leaves `upper`
+  /// alone.
   CLEARWAY_HD double look_at(const Sphere& sphere, std::uint32_t lane, double& upper) {
     ++statistics_[lane].node_tests;
-    const Vec3 x = sweep_.motion.inverse_poses[pose_].apply(sphere.centre);
+    const FloorSide side =
+        sweep_.floor_side(poses_, sphere.centre, {sphere.rho, sphere.rho, sphere.rho});
+    if (side == FloorSide::kBelow) return kInfinity;
+    const Vec3 x = sweep_.motion.inverse_poses[poses_.pose].apply(sphere.centre);
     const ModelFieldRef::Bounds bounds = sweep_.field.bounds(x);
     if constexpr (kIsSolid<Element>) {
       if (inside_) {
@@ -210,10 +212,11 @@ class ProfileBlocks {
         return is_same && sweep_.is_inside(x, bounds.squared_lower) ? 0 : bounds.squared_lower;
       }
     }
-    if (bounds.near != ModelFieldRef::kNone) {
-      const Element m = transform(sweep_.motion.poses[pose_], sweep_.model.elements[bounds.near]);
-      upper = std::sqrt(squared_distance(sphere.centre, m)) * kRoundedUp + sphere.rho + delta_ +
-              2 * sweep_.rounding;
+    if (bounds.near != ModelFieldRef::kNone && side == FloorSide::kAbove) {
+      const Element m =
+          transform(sweep_.motion.poses[poses_.pose], sweep_.model.elements[bounds.near]);
+      upper = std::sqrt(squared_distance(sphere.centre, m)) * kRoundedUp + sphere.rho +
+              poses_.delta + 2 * sweep_.rounding;
     }
     return bounds.squared_lower;
   }
@@ -229,8 +232,7 @@ class ProfileBlocks {
   std::uint32_t index_ = 0;        ///< index of the cell in the page
   std::uint32_t first_block_ = 0;  ///< first block of the part, in the cell
   std::uint32_t count_ = 0;
-  double delta_ = 0;
-  std::uint32_t pose_ = 0;
+  PosesAround poses_{0};
   double reach_ = 0;
   bool inside_ = false;  ///< whether points inside solids are looked for
   std::uint32_t nearest_ = kNone;

@@ -69,7 +69,7 @@ class ProfileDepths {
   CLEARWAY_HD double search_pose(std::uint32_t pose, std::uint32_t level, double bound) {
     bound_ = bound;
     found_ = kInfinity;
-    if (!blocks_.look_inside(0, pose, level)) return found_;
+    if (!blocks_.look_inside({pose}, level)) return found_;
     for (std::uint32_t word = 0; word < blocks_.word_count(); ++word) {
       std::uint32_t open = blocks_.still_open(word, level + 1, Blocks::kNone);
       for (; open != 0; open &= open - 1) {
@@ -90,7 +90,7 @@ class ProfileDepths {
       search_single(node.mid, level);
       return false;
     }
-    if (!blocks_.look_inside(node.delta, node.mid, level)) return false;
+    if (!blocks_.look_inside(sweep_.around(node), level)) return false;
     if (level + 1 < kPathLevels) return true;
     for (std::uint32_t i = 0; i < node.count; ++i) search_single(node.first + i, level + 1);
     return false;
@@ -137,7 +137,7 @@ class ProfileDepths {
       if (!page_.is_searched(index_, index)) return;
       const Vec3 e = page_.position(quantisation_, *cell_, index);
       ++statistics_[lane].point_tests;
-      if (!may_be_inside(pose, e)) return;
+      if (!may_be_inside(pose, e) || !sweep_.counts(e, pose)) return;
       // A depth below the bound need not be exact, because its value stays above the bound.
       std::uint32_t near = near_;
       const double squared = DepthAtPose<Element>(sweep_, e, statistics_[lane])

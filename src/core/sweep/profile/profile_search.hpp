@@ -128,7 +128,7 @@ class ProfileSearch {
     if constexpr (kIsSolid<Element>) {
       if (bound < 0) found_ = depths_.search_pose(pose, 0, bound);
     }
-    if (!(bound < 0) && blocks_.look(0, pose, 0, reaches_.of(bound))) search_blocks(pose, 1);
+    if (!(bound < 0) && blocks_.look({pose}, 0, reaches_.of(bound))) search_blocks(pose, 1);
     Warp::each([&](std::uint32_t lane) {
       if (lane == 0 && found_ < kInfinity) ties_.keep(pose, found_);
     });
@@ -147,7 +147,7 @@ class ProfileSearch {
       return false;
     }
     const double known = Warp::once([&] { return load_shared(bests_.of_node + index); });
-    if (!blocks_.look(node.delta, node.mid, level, known)) return false;
+    if (!blocks_.look(sweep_.around(node), level, known)) return false;
     const double reach = blocks_.reach();
     if (reach < known) {
       Warp::each([&](std::uint32_t lane) {
@@ -173,8 +173,10 @@ class ProfileSearch {
       return;
     }
     last_pose_ = kSweepNever;
-    if (has_guess_) lower_bound(squared_at(pose, shared_.point, shared_.element));
-    if (!blocks_.look(0, pose, level, reaches_.of(bound_))) return;
+    if (has_guess_ && sweep_.counts(shared_.point, pose)) {
+      lower_bound(squared_at(pose, shared_.point, shared_.element));
+    }
+    if (!blocks_.look({pose}, level, reaches_.of(bound_))) return;
     search_blocks(pose, level + 1);
     last_pose_ = pose;
     was_found_ = found_ < kInfinity;
@@ -224,6 +226,7 @@ class ProfileSearch {
       e[lane] = page_.position(quantisation_, *cell_, index);
       bounds[lane] = sweep_.field.bounds(sweep_.motion.inverse_poses[pose].apply(e[lane]));
       if (!blocks_.matters(0, bounds[lane].squared_lower)) return false;
+      if (!sweep_.counts(e[lane], pose)) return false;
       if (bounds[lane].near != ModelFieldRef::kNone) {
         offer(pose, e[lane], sweep_.model.elements[bounds[lane].near], least[lane], m[lane]);
       }
