@@ -94,6 +94,9 @@ struct Answer : TableSummary {
   /// How many of the ignored points would collide if they were searched, and how many of these the
   /// model first touches more than half a metre above its lowest point.
   std::uint64_t ignored_colliding = 0, ignored_colliding_high = 0;
+  /// How many points would collide without a floor and neither collide nor are near with it. They
+  /// are not judged. nullopt without a floor.
+  std::optional<std::uint64_t> floor_colliding;
   std::vector<std::string> bodies;  ///< names of the bodies, if the query has several
   std::optional<Shard> shard;  ///< the shard that this answer is about; nullopt for a whole query
   /// Warnings about the question and its inputs, in the order in which they were given. Results

@@ -145,6 +145,9 @@ path_pose: for each of these poses the index of the path's pose at which the bod
       .def_property_readonly(
           "path_pose", [](const PlacedBody& b) { return to_array(b.path_pose); },
           "For each pose of the body the index of the path's pose that it belongs to: n uint32.")
+      .def_readwrite("floor", &PlacedBody::floor,
+                     "The body's own floor, metres in its frame, which takes the place of the "
+                     "query's; None: it has the query's. May be assigned.")
       .def("__repr__", [](const PlacedBody& b) {
         return text("<Body " + b.name + ": " + std::to_string(b.model.vertices.size()) +
                     " points, " + std::to_string(b.poses.size()) + " poses>");

@@ -40,6 +40,8 @@ void add_seconds(py::module_& module) {
       .def_readonly("upload", &Seconds::upload, "Seconds in which cells were copied to a GPU.")
       .def_readonly("compute", &Seconds::compute, "Seconds in which distances were computed.")
       .def_readonly("collect", &Seconds::collect, "Seconds in which what was found was gathered.")
+      .def_readonly("below", &Seconds::below,
+                    "Seconds of counting what would collide below the floor.")
       .def_readonly("swept", &Seconds::swept, "Seconds of finding the cubes that the model sweeps.")
       .def_readonly("beams", &Seconds::beams,
                     "Seconds of following the scanner's beams through these cubes.")
@@ -142,6 +144,9 @@ void add_counts_of(py::class_<Answer>& answer) {
           "At how many poses something is closer than the profile's distance that was asked for.")
       .def_readonly("ignored", &Answer::ignored,
                     "How many points of the environment the query left out: IgnoredPointCounts.")
+      .def_readonly("floor_colliding", &Answer::floor_colliding,
+                    "How many points would collide without the floor and are not judged because of "
+                    "it. None without a floor.")
       .def_readonly("ignored_colliding", &Answer::ignored_colliding,
                     "How many ignored points would collide if they were searched.")
       .def_readonly(

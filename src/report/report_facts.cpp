@@ -20,6 +20,7 @@
 #include "findings/conflict_rank.hpp"
 #include "io/files/json.hpp"
 #include "io/files/xxh64.hpp"
+#include "io/result/floor_json.hpp"
 #include "io/result/result.hpp"
 #include "io/store/store_metadata.hpp"
 #include "io/store/store_reader.hpp"
@@ -489,6 +490,7 @@ std::string json_of(const ReportFacts& facts) {
   out["inside"] = json_of_inside(facts);
   out["query"] = json_of_query(facts);
   out["ignored"] = json_of_ignored_points(facts.result.reader().header(), answer);
+  out["floor"] = floor_json(answer);
   out["inputs"] = json_of_inputs(facts);
   out["unsearched"] = json_of_unsearched(facts);
   out["on_site"] = on_site(facts);

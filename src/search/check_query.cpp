@@ -106,15 +106,16 @@ void check_seen(const QueryParameters& query) {
   if (query.seen_min == 0) throw UsageError("the least group of unseen cubes has at least 1 cube");
 }
 
-/// Refuses errors that are no errors.
+/// Refuses errors that are no errors, and a floor that is no height.
 void check_budget(const QueryParameters& query) {
   for_each_field(kQueryValues, [&](const auto& field) {
     using Value = typename std::decay_t<decltype(field)>::Value;
     if constexpr (std::is_same_v<Value, std::optional<double>>) {
-      const std::optional<double>& error = field.of(query);
-      if (!error || (std::isfinite(*error) && *error >= 0)) return;
-      throw UsageError(std::string("the ") + field.topic + " is " + std::to_string(*error) +
-                       ", expected a finite number, 0 or above");
+      const std::optional<double>& value = field.of(query);
+      const bool is_any = field.range == FieldRange::kAny;
+      if (!value || (std::isfinite(*value) && (is_any || *value >= 0))) return;
+      throw UsageError(std::string("the ") + field.topic + " is " + std::to_string(*value) +
+                       ", expected a finite number" + (is_any ? "" : ", 0 or above"));
     } else if constexpr (std::is_same_v<Value, double>) {
       if (!field.is_of_budget || query.has_budget() || field.is_default(query)) return;
       throw UsageError(std::string("the ") + field.topic +
@@ -142,9 +143,6 @@ void check_numbers(const QueryParameters& query, const SearchOptions& options) {
       if (!field.is_of_budget) check(topic.c_str(), field.of(query), !field.is_required);
     }
   });
-  if (query.floor && !std::isfinite(*query.floor)) {
-    throw UsageError("the floor has to be a finite number of metres");
-  }
   check_budget(query);
   if (options.threads < 0) throw UsageError("the number of threads cannot be negative");
   if (!(options.journal_interval_seconds >= 0)) {

@@ -22,6 +22,7 @@
 #include "clearway/error.hpp"
 #include "clearway/shift.hpp"
 #include "core/geometry/axes.hpp"
+#include "core/geometry/floor.hpp"
 #include "core/geometry/inside.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/geometry/triangle.hpp"
@@ -140,9 +141,14 @@ class PointSample {
 
 /// What moves along the path, as all stretches share it.
 struct MovingShapes {
-  MovingShapes(const Query& query, Axis left_axis, int threads)
-      : bodies(moving_bodies(query)), path(query.poses), left(left_axis) {
-    for (const MovingBody& body : bodies) {
+  /// asked: the question about shifts. lower: by how much its floors are below those of the search.
+  MovingShapes(const Query& query, const QueryParameters& asked, double lower, Axis left_axis,
+               int threads)
+      : bodies(moving_bodies(query.model, query.poses, query.bodies)),
+        path(query.poses),
+        left(left_axis) {
+    for (MovingBody& body : bodies) {
+      body.floor = body.floor ? *body.floor - lower : asked.floor;
       shapes.push_back(std::make_unique<ModelIndex>(body.model, threads, 1));
     }
   }
@@ -158,6 +164,7 @@ struct MovingShapes {
 /// body, because every search of the shift would find that point.
 class ObstaclePoints {
  public:
+  /// moving: with the floors of the question that is asked.
   ObstaclePoints(const MovingShapes& moving, PoseRange stretch, double radius, bool ways,
                  const ShiftOptions& range)
       : moving_(moving),
@@ -199,6 +206,7 @@ class ObstaclePoints {
     std::optional<Pose> next;
     Vec3 left, next_left;  ///< the directions of the shift in the environment
     Box reach;             ///< what comes within the radius of the body's box, in its own frame
+    double floor;          ///< kNoFloor without one
   };
   struct Contact {
     Vec3 point;
@@ -209,7 +217,13 @@ class ObstaclePoints {
     const Pose* pose = moving_.bodies[body].pose_at(i);
     if (pose == nullptr) return;
     const ModelIndex& shape = *moving_.shapes[body];
-    Place place{&shape, *pose, {}, left_of(moving_.path[i], moving_.left), {}, {}};
+    Place place{&shape,
+                *pose,
+                {},
+                left_of(moving_.path[i], moving_.left),
+                {},
+                {},
+                moving_.bodies[body].floor.value_or(kNoFloor)};
     place.reach = shape.box().grown(radius_);
     const Pose* next = ways_ && i < stretch.last ? moving_.bodies[body].pose_at(i + 1) : nullptr;
     if (next != nullptr) {
@@ -254,7 +268,7 @@ class ObstaclePoints {
       return collides_on_way(place, pose, shifted(*place.next, place.next_left, shift),
                              contact.point, x);
     }
-    if (!place.reach.contains(x)) return false;
+    if (!place.reach.contains(x) || !is_above_floor(pose, contact.point, place.floor)) return false;
     const ModelIndex& shape = *place.shape;
     if (shape.triangles.size() == 0) {
       const Vec3& m = shape.points.element(shape.points.nearest(x).element);
@@ -270,6 +284,7 @@ class ObstaclePoints {
                        const Vec3& x) const {
     const Vec3 end = pulled_back(next, point);
     if (!segment(x, end).meets(place.reach)) return false;
+    if (!is_above_floor_on_way(pose, next, point, place.floor)) return false;
     const ModelTree& points = place.shape->points;
     if (points.size() == 0) return false;
     for (int part = 0; part <= kPartsOfWay; ++part) {
@@ -297,8 +312,9 @@ class ObstaclePoints {
 class ShiftedQuery {
  public:
   /// The bodies' poses of the stretch are counted from its first pose. Bodies that have no pose
-  /// there are left out.
-  ShiftedQuery(const Query& query, const QueryParameters& asked, PoseRange stretch, Axis left)
+  /// there are left out. lower: as for MovingShapes.
+  ShiftedQuery(const Query& query, const QueryParameters& asked, double lower, PoseRange stretch,
+               Axis left)
       : query_(query.model, {}, asked) {
     for (std::uint32_t i = stretch.first; i <= stretch.last; ++i) {
       path_.push_back(query.poses[i]);
@@ -306,6 +322,7 @@ class ShiftedQuery {
     }
     for (const Body& body : query.bodies) {
       Body part{body.name, body.model, {}, {}};
+      if (body.floor) part.floor = *body.floor - lower;
       for (std::size_t k = 0; k < body.poses.size(); ++k) {
         const std::uint32_t i = body.path_pose[k];
         if (i < stretch.first || i > stretch.last) continue;
@@ -350,6 +367,8 @@ class ShiftedQuery {
 QueryParameters plain_parameters(const ResultHeader& header) {
   QueryParameters out;
   out.radius = header.budget ? header.budget->near_radius(header.radius) : header.radius;
+  // The floor of the points that may be too close.
+  if (header.floor) out.floor = *header.floor - (out.radius - header.radius);
   out.between_poses = header.between_poses;
   out.ignore_classes = header.ignore_classes;
   out.ignore_boxes = header.ignore_boxes;
@@ -368,8 +387,9 @@ class ShiftSearch {
         candidates_(candidates),
         progress_(progress),
         asked_(plain_parameters(reader_.header())),
+        lower_(asked_.radius - reader_.header().radius),
         threads_(threads_or_all(session.options().threads)),
-        moving_(query, axis_to_left({options.forward, options.up}), threads_),
+        moving_(query, asked_, lower_, axis_to_left({options.forward, options.up}), threads_),
         chainage_(chainage_of(query.poses)) {}
 
   ShiftTable run(std::span<const Conflict> conflicts) {
@@ -475,7 +495,7 @@ class ShiftSearch {
   /// points that may stand in the way.
   Found find(StretchShift row, std::uint64_t rank, std::span<const Vec3> points = {}) const {
     const PoseRange stretch = range_of(row);
-    ShiftedQuery moved(query_, asked_, stretch, moving_.left);
+    ShiftedQuery moved(query_, asked_, lower_, stretch, moving_.left);
     ObstaclePoints obstacles(moving_, stretch, asked_.radius, asked_.between_poses, options_);
     obstacles.add(known_points(stretch));
     obstacles.add(points);
@@ -566,6 +586,7 @@ class ShiftSearch {
   const ShiftCandidates& candidates_;
   Progress& progress_;
   const QueryParameters asked_;
+  const double lower_;  ///< by how much the floors are below those of the search, metres
   const int threads_;
   const MovingShapes moving_;
   const std::vector<double> chainage_;

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <memory>
 #include <optional>
@@ -22,6 +23,7 @@
 #include "io/result/answer.hpp"
 #include "search/answer_question.hpp"
 #include "search/check_query.hpp"
+#include "search/checks/check_floor.hpp"
 #include "search/checks/query_warnings.hpp"
 #include "search/checks/question.hpp"
 #include "search/choose_engine.hpp"
@@ -162,6 +164,7 @@ class Search {
     if (query_.first_pose) passes.push_back(&Search::find_last_poses);
     if (header_.budget) passes.push_back(&Search::find_certain);
     if (header_.budget) passes.push_back(&Search::find_near);
+    if (has_floor(query_)) passes.push_back(&Search::count_below_floor);
     if (query_.seen) passes.push_back(&Search::find_unseen);
     return passes;
   }
@@ -171,8 +174,11 @@ class Search {
     const std::vector<Pass> passes = further_passes();
     const bool end_gpus = std::exchange(options_.end_gpus, false);
     choose_device_and_engine();
+    look_at_ground();
     // A question with further searches has all the memory, because these need some of their own.
-    if (query_.ignores_points() || query_.has_budget() || query_.seen) take_memory(~0ULL);
+    if (query_.ignores_points() || query_.has_budget() || query_.seen || has_floor(query_)) {
+      take_memory(~0ULL);
+    }
     const CollidingIgnored ignored = count_ignored_that_collide();
     options_.end_gpus = end_gpus && passes.empty();
     Found found = find_hits();
@@ -203,9 +209,20 @@ class Search {
       };
       warn_of_query(store_, query_, header_.ignored, looks_of, options_.input_warnings, log_);
     });
+    for (const MovingBody& body : moving_bodies(query_)) check_floor_axis(body, log_);
     note_large_errors();
     if (query_.seen) warn_of_large_cubes(store_, query_, swept_radius(), log_);
     if (options_.strict) refuse_warnings(report_.warnings);
+  }
+
+  /// Tells before the search where the ground will collide.
+  void look_at_ground() {
+    if (!options_.message) return;  // nobody would see the note
+    for (const MovingBody& body : moving_bodies(query_)) {
+      const auto index =
+          session_.models().index_of(body.model, hash_of(body.model), options_.threads);
+      look_for_ground(store_, store_.metadata().unit, metre_of(store_), query_, body, *index, log_);
+    }
   }
 
   /// The hash of one of the query's own models.
@@ -449,6 +466,28 @@ class Search {
     });
   }
 
+  /// Counts the points that a search of the set without floors finds, and that are neither
+  /// colliding nor near. Its seconds are reported apart from those of the search.
+  void count_below_floor(Found& found) {
+    const Stopwatch clock;
+    const SearchSeconds before = report_.seconds;
+    Query query = plain_query(query_.radius, false);
+    query.floor.reset();
+    for (Body& body : query.bodies) body.floor.reset();
+    const Found all = search_further(found, std::move(query), only(), "below the floor");
+    const SearchResult& result = found.result;
+    std::atomic<std::uint64_t> below = 0;
+    for_each_word_of_entries([&](std::uint64_t word) {
+      const std::uint64_t judged =
+          result.hits.word(word) | (result.near ? result.near->word(word) : 0);
+      const std::uint64_t left = all.result.hits.word(word) & ~judged;
+      if (left != 0) below += static_cast<std::uint64_t>(std::popcount(left));
+    });
+    report_.floor_colliding = below;
+    report_.seconds = before;
+    report_.seconds.below = clock.seconds();
+  }
+
   /// Finds out which places that the model sweeps no beam of the scanner passed through. A shard
   /// follows the beams of its own cells; the groups of what none of them saw are made by the merge.
   void find_unseen(Found& found) {
@@ -588,6 +627,7 @@ class Search {
     }
     if (header_.budget) found.certain = report_.certain;
     found.seen = report_.seen;
+    found.floor_colliding = report_.floor_colliding;
     if (!query_.ignores_points()) return found;
     found.ignored_colliding = report_.ignored_colliding;
     found.ignored_colliding_high = report_.ignored_colliding_high;

@@ -79,6 +79,8 @@ struct Scene {
     for (const Body& body : bodies) {
       Query moved(body.model, {}, {.radius = radius});
       moved.between_poses = query.between_poses;
+      moved.floor = body.floor ? body.floor : query.floor;
+      if (moved.floor) *moved.floor -= radius - query.radius;
       for (std::size_t k = 0; k < body.poses.size(); ++k) {
         const std::uint32_t i = body.path_pose[k];
         if (i < first || i > last) continue;
@@ -250,6 +252,8 @@ Query random_query(Random& random, const std::function<int(int)>& choose) {
     query.error_pose = 0.01;
     query.error_scan = 0.005;
   }
+  if (choose(3) == 0) query.floor = uniform(random, -0.2, 0.3);
+  if (query.floor && !query.bodies.empty()) query.bodies.front().floor = uniform(random, -0.2, 0.3);
   return query;
 }
 

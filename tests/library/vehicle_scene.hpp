@@ -69,6 +69,7 @@ struct Vehicle {
     Query own(query.bodies[body].model, query.bodies[body].poses, query);
     own.model.triangles = query.bodies[body].model.triangles;
     own.model.solid_of = query.bodies[body].model.solid_of;
+    if (query.bodies[body].floor) own.floor = query.bodies[body].floor;
     return own;
   }
   /// The points for brute force, with the ignored points moved far away.

@@ -64,6 +64,7 @@ inline void check_clearances(Vehicle& vehicle) {
   for (std::uint32_t body = 0; body < vehicle.query.bodies.size(); ++body) {
     const auto all = brute_force_clearances(vehicle.searched_places(), vehicle.of(body));
     for (std::size_t i = 0; i < all.size(); ++i) {
+      if (!all[i].found()) continue;  // it is below the floor at all poses
       const First first{vehicle.query.bodies[body].path_pose[all[i].pose], body};
       Least& least = expected[i];
       const bool nearer = all[i].squared < least.squared;

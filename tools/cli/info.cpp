@@ -19,6 +19,7 @@
 #include "io/files/xxh64.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/conflicts/conflict_fields.hpp"
+#include "io/result/floor_json.hpp"
 #include "io/result/journal.hpp"
 #include "io/result/result.hpp"
 #include "io/section/section_file.hpp"
@@ -184,6 +185,7 @@ ordered_json describe(const ResultReader& result) {
     description["ignored"] = ignored_json(answer);
     if (!h.ignore_classes.empty()) description["classes_hash"] = hash_text(h.classes_hash);
   }
+  if (answer.floor_colliding) description["floor"] = floor_json(answer);
   if (h.part) {
     description["kind"] = "part of a result";
     description["shard"] = to_string(h.part->shard);

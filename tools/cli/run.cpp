@@ -151,9 +151,9 @@ nlohmann::ordered_json seconds_of(const SearchSeconds& search, const ProgramRepo
           {"field", search.field},          {"engine", search.engine},
           {"search", search.search},        {"read", search.read},
           {"upload", search.upload},        {"compute", search.compute},
-          {"collect", search.collect},      {"swept", search.swept},
-          {"beams", search.beams},          {"write", search.write},
-          {"end_wait", search.end_wait}};
+          {"collect", search.collect},      {"below", search.below},
+          {"swept", search.swept},          {"beams", search.beams},
+          {"write", search.write},          {"end_wait", search.end_wait}};
 }
 
 /// The value if it is known of this run; otherwise null.

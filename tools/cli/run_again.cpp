@@ -94,6 +94,7 @@ std::string asked_words(const ResultHeader& header, Remedy missing) {
   if (clearance > 0) text += " --clearance " + format_number(clearance);
   if (profile > 0) text += " --profile " + format_number(profile);
   if (header.between_poses) text += " --between-poses";
+  if (header.floor) text += " --floor " + format_number(*header.floor);
   return text;
 }
 

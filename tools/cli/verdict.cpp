@@ -16,6 +16,7 @@
 #include "core/util/format.hpp"
 #include "io/files/json.hpp"
 #include "io/result/answer.hpp"
+#include "io/result/floor_json.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -86,6 +87,17 @@ std::string ignored_clause(const Answer& answer) {
   return text + format_count(answer.ignored_colliding) + " of which would collide";
 }
 
+/// A clause about what lies below the floor, such as ", with 1,190 points below 0.25 m of the
+/// vehicle that are not judged"; empty without a floor.
+std::string floor_clause(const Answer& answer, const std::string& unit) {
+  if (!answer.floor_colliding) return "";
+  const std::string floor = answer.parameters.floor ? format_brief(*answer.parameters.floor) + " " +
+                                                          unit + " of the vehicle"
+                                                    : "the floors of its bodies";
+  return ", with " + counted(*answer.floor_colliding, "point") + " within the radius below " +
+         floor + " not judged";
+}
+
 /// " on 3.2 of 68.0 m", or " on 3.2 m of the path" where its length is not known. What would round
 /// to 0 is less than 0.1, because it is not nothing. Empty for a path that stands still.
 std::string part_of_path(double part, double path, const std::string& unit) {
@@ -130,7 +142,7 @@ std::string finding_with_budget(const Answer& answer, const PathWords& path,
   const std::string within = fmt::format("{} {} (the margin of {} {} and {} {} of errors)",
                                          format_brief(budget.near_radius(margin)), unit, margin,
                                          unit, format_brief(budget.clear()), unit);
-  const std::string ignored = ignored_clause(answer);
+  const std::string ignored = ignored_clause(answer) + floor_clause(answer, unit);
   const std::string points = counted(answer.colliding_points, "point is", "points are") +
                              " closer than the margin and " + format_count(answer.near_points) +
                              " more closer than " + within;
@@ -166,7 +178,7 @@ std::string finding_with_budget(const Answer& answer, const PathWords& path,
 std::string finding_text(const Answer& answer, const PathWords& path, const std::string& unit) {
   if (answer.budget) return finding_with_budget(answer, path, unit);
   const std::string limit = fmt::format("{} {}", answer.parameters.radius, unit);
-  const std::string ignored = ignored_clause(answer);
+  const std::string ignored = ignored_clause(answer) + floor_clause(answer, unit);
   const std::string none = std::string("no ") + (ignored.empty() ? "environment" : "other") +
                            " point is closer than " + limit + " to the model on its way";
   switch (answer.verdict()) {
@@ -394,6 +406,7 @@ void add_answer(const Answer& answer, const PathWords& path, ordered_json& out) 
   out["model_spacing"] = nullptr;
   if (answer.model_spacing > 0) out["model_spacing"] = answer.model_spacing;
   out["ignored"] = ignored_json(answer);
+  out["floor"] = floor_json(answer);
   out["path_length"] = out["searched_length"] = out["partly_searched_length"] = nullptr;
   if (answer.searched) add_searched(*answer.searched, out);
   out["shard"] = answer.shard ? ordered_json(to_string(*answer.shard)) : ordered_json(nullptr);

@@ -370,6 +370,13 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
      "The model is above the ground on most of the path, or is at least 0.5 m higher above the "
      "ground on a stretch of it than elsewhere.",
      {.doubt = Doubt::kStretch, .of_vehicle = true}},
+    {"floor-axis", kWarning, kQueries,
+     "The model's z axis is more than 45 degrees from the scan's up at most poses, so a floor does "
+     "not leave out the ground."},
+    {"ground-collides", kNote, kQueries,
+     "At more than half of 16 poses points under the model, in its lowest 0.3 m, are within the "
+     "radius, as the ground is under wheels. It is looked for before the search; the message names "
+     "the `--floor` that leaves them out."},
     {"ignored-collide", kWarning, kQueries,
      "More ignored points would collide than searched ones do. There is no such warning if the "
      "lowest part of the model was left out. This is known only after the search, so `--strict` "

@@ -130,13 +130,15 @@ std::vector<BodyEntry> read_vehicle_file(const std::filesystem::path& path,
   std::set<std::string> names;
   const std::filesystem::path folder = path.parent_path();
   for (const KeyReader& body : bodies) {
-    body.allow({"name", "model", "model_unit", "at", "pivots", "towed", "trajectory"});
+    body.allow({"name", "model", "model_unit", "at", "pivots", "towed", "trajectory",
+                "floor"});
     const std::string model = body.at("model").text();
     BodyEntry entry{.at = body,
                     .name = name_of(body.at("name"), names),
                     .model = names_box(model) ? std::filesystem::path(model) : folder / model,
                     .trajectory = {}};
     if (body.has("model_unit")) entry.model_unit = unit_of(body.at("model_unit"));
+    if (body.has("floor")) entry.floor = length_at(body.at("floor"), environment_unit);
     set_motion(body, folder, environment_unit, entry);
     entries.push_back(std::move(entry));
   }
@@ -405,8 +407,11 @@ std::vector<Body> read_vehicle(const std::filesystem::path& file, const std::vec
   std::vector<Body> bodies;
   const std::vector<BodyEntry> entries = read_vehicle_file(file, options.model.environment_unit);
   for (const BodyEntry& entry : entries) {
-    bodies.push_back(
-        {.name = entry.name, .model = reader.read_model_of(entry), .poses = {}, .path_pose = {}});
+    bodies.push_back({.name = entry.name,
+                      .model = reader.read_model_of(entry),
+                      .poses = {},
+                      .path_pose = {},
+                      .floor = entry.floor});
     if (!std::holds_alternative<BodyTowed>(entry.mount)) reader.place(entry, bodies.back());
   }
   reader.place_towed(entries, towing_of(entries), bodies);

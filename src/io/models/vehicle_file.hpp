@@ -21,6 +21,7 @@ struct BodyEntry {
   std::filesystem::path model;  ///< its file, or a box that is named by its size
   FileUnit model_unit = {};     ///< unit of the model's file; where not known, that of the command
   BodyMount mount = BodyStation{0};
+  std::optional<double> floor = {};  ///< see Body, in the environment's unit
   std::filesystem::path trajectory;  ///< file of the poses of a body with BodyOwnPoses; else empty
 
   /// The files that the body is read from: of its model, unless that is a box, and of its poses.

@@ -40,6 +40,7 @@ std::uint64_t hash_of_bodies(std::span<const Body> bodies, std::span<const std::
     add(body.path_pose.size());
     hash.update(std::as_bytes(std::span(body.path_pose)));
     add(hash_of_trajectory(body.poses));
+    if (body.floor) add(std::bit_cast<std::uint64_t>(*body.floor));
   }
   return hash.digest();
 }

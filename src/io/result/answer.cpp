@@ -120,6 +120,7 @@ void add_findings(const ResultFindings& findings, Answer& answer) {
   answer.searched = findings.searched;
   answer.certain = findings.certain.value_or(CertainPoints{});
   answer.seen = findings.seen;
+  answer.floor_colliding = findings.floor_colliding;
   answer.ignored_colliding = findings.ignored_colliding;
   answer.ignored_colliding_high = findings.ignored_colliding_high;
 }

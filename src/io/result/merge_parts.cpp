@@ -158,6 +158,9 @@ ResultFindings PartSet::findings() const {
     out.withheld_points = part.findings().withheld_points;  // the same of each part
     if (!out.searched) out.searched = part.findings().searched;
     if (out.without_bodies.empty()) out.without_bodies = part.findings().without_bodies;
+    if (const auto& below = part.findings().floor_colliding) {
+      out.floor_colliding = out.floor_colliding.value_or(0) + *below;
+    }
     out.ignored_colliding += part.findings().ignored_colliding;
     out.ignored_colliding_high += part.findings().ignored_colliding_high;
   }

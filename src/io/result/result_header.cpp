@@ -439,6 +439,9 @@ void write_result_findings(const hdf5::Id& file, const ResultFindings& findings,
   write_scan_dates(file, findings.scanned);
   write_all(file, kWithheld, findings);
   if (header.ignores_points()) write_all(file, kIgnoredColliding, findings);
+  if (findings.floor_colliding) {
+    hdf5::write_number(file, names::kFloorColliding, *findings.floor_colliding);
+  }
   if (findings.seen) write_all(file, kSeen, *findings.seen);
   if (findings.certain) write_all(file, kCertain, *findings.certain);
   if (!header.bodies.empty())
@@ -463,6 +466,13 @@ ResultFindings read_result_findings(const hdf5::Id& file, const std::string& nam
     check_at_most(findings.ignored_colliding, header.ignored.points, "ignored_colliding", name);
     check_at_most(findings.ignored_colliding_high, findings.ignored_colliding,
                   "ignored_colliding_high", name);
+  }
+  if (hdf5::has_attribute(file, names::kFloorColliding, name)) {
+    read_value(file, names::kFloorColliding, name, findings.floor_colliding.emplace());
+    check_at_most(*findings.floor_colliding, header.environment_points, names::kFloorColliding,
+                  name);
+  } else if (header.floor) {
+    refuse(name, std::string("attribute '") + names::kFloorColliding + "' is missing");
   }
   if (header.seen) {
     SeenSummary& seen = findings.seen.emplace();

@@ -106,6 +106,8 @@ struct ResultFindings {
   /// Number of points of the scans that the store left out because they have the flag `withheld`
   std::uint64_t withheld_points = 0;
   std::uint64_t ignored_colliding = 0, ignored_colliding_high = 0;  ///< see Answer
+  /// See Answer. A file has it where there is a floor.
+  std::optional<std::uint64_t> floor_colliding = {};
   /// See Answer. A file has it where there is an error budget.
   std::optional<CertainPoints> certain = {};
   /// See Answer. A file has it where seen space is asked for.

@@ -54,6 +54,7 @@ inline constexpr const char* kIgnoredPoints = "ignored_points";
 inline constexpr const char* kIgnoredHash = "ignored_hash";  // hash of the group's datasets
 inline constexpr const char* kClassesHash = "classes_hash";
 
+inline constexpr const char* kFloorColliding = "floor_colliding";
 inline constexpr const char* kBodies = "bodies";  // names, one per line
 inline constexpr const char* kRunsWithoutBodies = "runs_without_bodies";
 inline constexpr const char* kPosesWithoutBodies = "poses_without_bodies";

@@ -10,6 +10,7 @@
 #include "core/query/ignored_points.hpp"
 #include "io/files/text_writer.hpp"
 #include "io/files/xxh64.hpp"
+#include "io/result/floor_json.hpp"
 
 namespace clearway {
 std::vector<ConflictField> fields_of(const Conflict& c, const ResultHeader& header) {
@@ -138,6 +139,7 @@ Json summary_of(const ConflictFile& file) {
     out["ignored_colliding"] = file.answer.ignored_colliding;
     out["ignored"] = ignored_text(header);
   }
+  if (file.answer.floor_colliding) out["floor"] = floor_json(file.answer);
   out["gap"] = file.options.gap;
   out["min_points"] = file.options.min_points;
   out["split"] = file.options.split;
