@@ -5,6 +5,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "core/geometry/floor.hpp"
 #include "core/messages/messages.hpp"
 #include "core/trajectory/pose_ranges.hpp"
 #include "io/result/answer.hpp"
@@ -47,6 +48,11 @@ double reach_of(const ResultHeader& header) {
   return header.budget ? header.budget->near_radius(header.radius) : header.radius;
 }
 
+/// The height in the model's frame from which on a result has points.
+double lowest_of(const ResultHeader& header) {
+  return header.floor ? *header.floor - (reach_of(header) - header.radius) : kNoFloor;
+}
+
 }  // namespace
 
 SearchedPlaces::SearchedPlaces(const Result& a, const std::vector<Pose>& poses_a, const Result& b,
@@ -69,6 +75,7 @@ void SearchedPlaces::compare_questions(const std::vector<Pose>& poses_a,
                           a_.model_triangles == b_.model_triangles && a_.bodies == b_.bodies &&
                           a_.model_solids <= b_.model_solids;
   if (reach_of(b_) < reach_of(a_)) everywhere_.insert("radius");
+  if (lowest_of(b_) > lowest_of(a_)) everywhere_.insert("floor");
   const bool same_path = a_.poses == b_.poses && a_.trajectory_hash == b_.trajectory_hash;
   if (!same_scan_) {
     if (!same_model) everywhere_.insert("model");

@@ -26,7 +26,7 @@ class SearchedPlaces {
 
   /// Adds the reasons why b has not searched the place of a point of a, none where it has: "radius"
   /// where that of b is smaller, "model", "motion" or "path" where these are others than in a,
-  /// "ignored" where b left out points there, "withheld" where the scans of b have more points that
+  /// "floor" where that of b is higher, "ignored" where b left out points there, "withheld" where the scans of b have more points that
   /// were left out as deleted, and the code of each warning of b that says so. If
   /// both are about the same scan, the point is known to be there still, and another vehicle or
   /// path that does not touch it has freed it, so that these are no reasons. first, last: the first

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/geometry/inside.hpp"
+#include "cpu/brute_force.hpp"
 #include "support/compare.hpp"
 #include "support/engines/engines.hpp"
 #include "support/solid_scene.hpp"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/geometry/point_box.hpp"
+#include "core/util/format.hpp"
 
 namespace clearway {
 
