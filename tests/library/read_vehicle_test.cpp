@@ -44,7 +44,7 @@ TEST_CASE("a vehicle's file gives the bodies that follow gives") {
   std::vector<Message> told, expected_told;
   const auto bodies = files.read(
       R"({"name": "body", "model": "line.xyz", "model_unit": "cm", "pivots": [5, "-500cm"]},
-         {"name": "bogie", "model": "fin.off", "at": 5},
+         {"name": "bogie", "model": "fin.off", "at": 5, "floor": "20cm"},
          {"name": "path", "model": "fin.off"},
          {"name": "crane", "model": "fin.off", "trajectory": "own.txt"})",
       {}, &told);
@@ -54,7 +54,10 @@ TEST_CASE("a vehicle's file gives the bodies that follow gives") {
                              {.name = "bogie", .model = fin, .poses = {}, .path_pose = {}}};
   expected[0] = follow(expected[0], files.path, BodyPivots{5, -5}, &expected_told);
   expected[1] = follow(expected[1], files.path, BodyStation{5}, &expected_told);
+  CHECK(hash_of_bodies({{bodies[1]}}) != hash_of_bodies({{expected[1]}}));
+  expected[1].floor = 0.2;
   REQUIRE(bodies.size() == 4);
+  CHECK(!bodies[0].floor);
   for (std::size_t i = 0; i < 2; ++i) {
     INFO(bodies[i].name);
     CHECK(bodies[i].path_pose.size() < files.path.size());

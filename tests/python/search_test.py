@@ -226,6 +226,25 @@ class FindsWhatBruteForceFinds(SceneTest):
         self.assertEqual(report.ignored_colliding, every - report.colliding_points)
         self.assertEqual(result.answer().ignored_colliding, report.ignored_colliding)
 
+    def test_floor(self):
+        every = self.search("all.h5").colliding_points
+        report = self.search(query=self.query(floor=0.05))
+        result = clearway.Result(self.folder / "out.h5")
+        self.assertEqual(report.floor_colliding, every - report.colliding_points)
+        self.assertEqual(result.answer().floor_colliding, report.floor_colliding)
+        self.assertEqual(result.parameters().floor, 0.05)
+        self.assertIsNone(clearway.Result(self.folder / "all.h5").answer().floor_colliding)
+        self.assertIsNone(self.query().floor)
+        body = clearway.Body("car", self.model, self.poses)
+        self.assertIsNone(body.floor)
+        body.floor = 0.05
+        query = clearway.Query(poses=self.poses, radius=RADIUS, bodies=[body])
+        same = self.search("body.h5", query=query)
+        self.assertEqual(same.colliding_points, report.colliding_points)
+        self.assertEqual(same.floor_colliding, report.floor_colliding)
+        with self.assertRaisesRegex(clearway.UsageError, "floor"):
+            self.search("nan.h5", query=self.query(floor=float("nan")))
+
     def test_ignored_classes_of_a_store_without(self):
         self.assertEqual(clearway.Store(self.folder / "site.h5").class_points(), {})
         with self.assertRaisesRegex(clearway.UsageError, "have no classes"):

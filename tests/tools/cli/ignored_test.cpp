@@ -59,6 +59,24 @@ TEST_CASE("conflicts and export of a result repeat how many ignored points would
   check_json(json_of(exported), R"({"ignored": {"colliding": 40}})");
 }
 
+TEST_CASE("a verdict says what lies below the floor, and so does every output") {
+  const Garden garden;
+  const Outcome searched = garden.search("--floor 0.01 --json -o b.h5");
+  require_success(searched);
+  const std::string verdict =
+      "conflict, with 10 points within the radius below 0.01 m of the vehicle not judged: 30 "
+      "points are closer";
+  check_json(json_of(searched),
+             R"({"floor": {"height": 0.01, "colliding": 10}, "colliding_points": 30})");
+  check_json(json_of(require_success(garden.run("info b.h5 --json"))),
+             R"({"floor": {"height": 0.01, "colliding": 10}})");
+  require_success(garden.search("--floor 1cm --first-pose -o c.h5"));
+  const Outcome listed = garden.run("conflicts c.h5 --trajectory path.txt --json");
+  check_json(json_of(listed), R"({"floor": {"height": 0.01, "colliding": 10}})");
+  check_says(garden.search("--floor 0.01 -o e.h5").out, verdict);
+  CHECK(json_of(garden.search("--json -o d.h5"))["floor"].is_null());
+}
+
 TEST_CASE("a verdict says what was ignored") {
   const Garden garden;
   check_says(garden.search("-o a.h5").out, "conflict: 40 points are closer");

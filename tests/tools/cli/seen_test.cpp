@@ -135,6 +135,31 @@ TEST_CASE("a path through space that beams crossed is clear, and a hidden place 
   check_outcome(run_program(road.folder, "verify out.h5"), 0);
 }
 
+TEST_CASE("a floor leaves out the cubes whose middle is below it") {
+  const Road road;
+  road.scan(Road::beams(true));
+  // On a level path the height of a middle in the car's frame is its z; cubes are 0.2 m.
+  const auto cubes_from = [&](const std::string& options, double height) {
+    require_success(road.run(options));
+    const double offset =
+        json_of(run_program(road.folder, "info out.h5 --json"))["offset"][2].get<double>();
+    std::set<std::array<std::int32_t, 3>> out;
+    for (const auto& cube : Result(road.folder / "out.h5").unseen().cube) {
+      if (0.2 * cube[2] + 0.1 + offset >= height) out.insert(cube);
+    }
+    return out;
+  };
+  const std::string seen = "--seen --seen-min 1 ";
+  const auto above = cubes_from(seen, 0.05);
+  CHECK(above.size() < cubes_from(seen, -10).size());
+  CHECK(cubes_from(seen + "--floor 0.05", -10) == above);
+  // With an error budget the floor of near points counts, which is lower.
+  const std::string budget = seen + "--error-scan 0.03 --sigmas 2 ";
+  const double lower = road.answer(budget)["margins"]["clear"];
+  CHECK(lower > 0.05);
+  CHECK(cubes_from(budget + "--floor 0.05", -10) == cubes_from(budget, 0.05 - lower));
+}
+
 TEST_CASE("poses closer than a cube do not make the length that was not scanned shorter") {
   const Road road;
   road.scan(Road::beams(true));

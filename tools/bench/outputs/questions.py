@@ -22,7 +22,7 @@ def groups(data):
     return {
         "scenes": SCENES, "stores": STORES, "convert": CONVERT, "convert refuses": CONVERT_REFUSES,
         **({"formats": formats(data)} if data else {}),
-        "engines": engines(), "models": models(), "paths": paths(), "ignored": IGNORED, "units": UNITS,
+        "engines": engines(), "floor": FLOOR, "models": models(), "paths": paths(), "ignored": IGNORED, "units": UNITS,
         "vehicles": VEHICLES, "options": OPTIONS, "run refuses": RUN_REFUSES, "shards": shards(),
         "export": EXPORT, "conflicts": conflicts(), "compare": COMPARE, "report": REPORT, "info": INFO,
         "trajectory": trajectory(), "lines": LINES, "model": MODEL, "certainty": CERTAINTY,
@@ -40,6 +40,15 @@ SCENES = [
     "scene hall --points 400000 --model-points 10000 --poses 1500 -o long",
     "scene hall --points 1000 --poses 5 --model-points 50 -o hall => 2",
     "scene mine --points 1000 --model-points 100 --poses 10 --environment - -o small_mine",
+]
+
+FLOOR = [
+    f"run {HALL} --radius 0.2 --floor 0.3 {ALL_TABLES} -o floor.h5",
+    f"run {CELLS} --radius 0.2 --floor 0.3 --between-poses -o @.h5",
+    f"run {CELLS} --radius 0.2 --floor 0.3 --engine grid -o @.h5",
+    f"run {CELLS} --radius 0.2 --floor 0.3 --engine kdtree -o @.h5",
+    f"run {CELLS} --radius 0.2 --floor 0.3 --error-scan 0.01 --json -o @.h5",
+    "conflicts floor.h5 --env hall.h5 --model hall/model.ply --trajectory hall/trajectory.txt -o @.csv",
 ]
 
 STORES = [
