@@ -1,5 +1,6 @@
 // Searches with a floor against brute force: vehicles, what is left out, parts, sessions, and the
 // look for the ground before a search.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -127,6 +128,13 @@ TEST_CASE("what would collide below the floors is counted") {
     CHECK(vehicle.report.floor_colliding == expected);
     CHECK(result.answer().floor_colliding == expected);
     sum += expected;
+    if (budget) {
+      const double less = budget->certain_radius(vehicle.query.radius) - vehicle.query.radius;
+      const auto certain = touched_by_hand(vehicle, less, true);
+      CHECK(vehicle.report.certain.points ==
+            static_cast<std::uint64_t>(std::ranges::count(certain, true)));
+      CHECK(vehicle.report.certain.points > 0);
+    }
 
     std::uint64_t of_parts = 0;
     std::vector<std::filesystem::path> parts;

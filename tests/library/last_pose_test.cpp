@@ -54,6 +54,7 @@ Query one_model(const Vehicle& vehicle, bool between_poses) {
   Query query(vehicle.query.bodies[0].model, vehicle.query.poses, vehicle.query);
   query.first_pose = true;
   query.between_poses = between_poses;
+  if (vehicle.query.bodies[0].floor) query.floor = vehicle.query.bodies[0].floor;
   return query;
 }
 
@@ -68,8 +69,9 @@ Result search_of(const Vehicle& vehicle, const Query& query, const SearchOptions
 }  // namespace
 
 TEST_CASE("every engine finds the last pose that touches each point") {
-  for (const std::uint64_t seed : {1, 2, 3}) {
-    const Vehicle vehicle(seed);
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+    Vehicle vehicle(seed);
+    if (seed > 3) vehicle.query.bodies[0].floor = -0.05;
     const Query query = one_model(vehicle, false);
     const auto expected = last_by_hand(vehicle.places, query, {});
     for (const Engine engine : {Engine::kSweep, Engine::kGrid, Engine::kKdtree}) {
@@ -80,8 +82,9 @@ TEST_CASE("every engine finds the last pose that touches each point") {
 }
 
 TEST_CASE("between poses the last pose is the start of the last way that touches") {
-  for (const std::uint64_t seed : {4, 5}) {
-    const Vehicle vehicle(seed);
+  for (const std::uint64_t seed : {4, 5, 6, 7}) {
+    Vehicle vehicle(seed);
+    if (seed > 5) vehicle.query.bodies[0].floor = -0.05;
     const Query query = one_model(vehicle, true);
     const auto expected = last_by_hand(vehicle.places, query, {});
     for (const Engine engine : {Engine::kSweep, Engine::kKdtree}) {
@@ -117,6 +120,7 @@ TEST_CASE("last poses of a vehicle's bodies are of the path, at poses and betwee
     Vehicle vehicle(7, !between);
     vehicle.query.first_pose = true;
     vehicle.query.between_poses = between;
+    vehicle.query.bodies[1].floor = -0.05;
     std::vector<std::uint32_t> expected(vehicle.places.size(), kNever);
     for (std::size_t body = 0; body < vehicle.query.bodies.size(); ++body) {
       const auto own =
