@@ -292,8 +292,8 @@ const char* name_of(SectionTable table);
 /// The heights for which widths are listed.
 struct SectionHeights {
   double band = 0;  ///< height of a band; 0: 0.1 m
-  /// Where the first band begins, in the window; none: 0, or the bottom of a window that does not
-  /// have z = 0
+  /// Where the first band begins, in the window; none: 0, or the bottom of a window without z = 0,
+  /// and for boxes and the largest load the lowest band whose middle is free
   std::optional<double> base = {};
 };
 

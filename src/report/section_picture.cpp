@@ -15,7 +15,7 @@
 namespace clearway {
 namespace {
 
-constexpr double kWidth = 1000, kLeft = 66, kRight = 22, kMostHeight = 640;
+constexpr double kWidth = 1000, kLeft = 94, kRight = 54, kMostHeight = 640;
 constexpr double kLetter = 6.9;  ///< width of a letter of 13 pixels
 constexpr std::size_t kMostMarks = 24;
 constexpr int kColours = static_cast<int>(kSectionColours.size());
@@ -28,40 +28,12 @@ std::string px(double value) {
   return out.text();
 }
 
-/// Numbers such as "1-4, 6".
-std::string list_of(std::vector<std::size_t> numbers) {
-  std::ranges::sort(numbers);
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-  std::string out;
-  for (const std::string& range : number_ranges(numbers)) out += (out.empty() ? "" : ", ") + range;
-  return out;
-}
-
-/// Intrusions of several stretches by the same obstacle, or by points that lie close together.
+/// A place of the load in the picture, and its letter beside it.
 struct Mark {
-  const ShownIntrusion* deepest = nullptr;
-  std::vector<std::size_t> stops = {};  ///< numbers of the stops, from 1
-  double chainage_from = 0, chainage_to = 0;
-  double x = 0, y = 0;  ///< of its label
-
-  /// The obstacle's name, or the numbers of the stretches that it stops.
-  std::string label() const {
-    constexpr std::size_t kLongestName = 24;
-    const std::string& name = deepest->obstacle;
-    return !name.empty() && name.size() <= kLongestName ? name : list_of(stops);
-  }
+  const ShownPlace* place = nullptr;
+  double x = 0, y = 0;              ///< of the deepest cell
+  double label_x = 0, label_y = 0;  ///< of the letter
 };
-
-/// Whether two intrusions get one mark: they have the same name, or none and lie close together, in
-/// the environment or in the picture.
-bool have_one_mark(const ShownIntrusion& a, const ShownIntrusion& b, double close_cells) {
-  if (a.intrusion.side != b.intrusion.side) return false;
-  if (!a.obstacle.empty() || !b.obstacle.empty()) return a.obstacle == b.obstacle;
-  constexpr double kClose = 3;
-  if (a.witness && b.witness && length(a.witness->xyz - b.witness->xyz) < kClose) return true;
-  return std::hypot(a.intrusion.cell[0] - b.intrusion.cell[0],
-                    a.intrusion.cell[1] - b.intrusion.cell[1]) < close_cells;
-}
 
 class Picture {
  public:
@@ -71,13 +43,12 @@ class Picture {
     width_ = scale_ * lattice_.columns;
     height_ = scale_ * lattice_.rows;
     left_ = kLeft + (kWidth - kLeft - kRight - width_) / 2;
-    find_marks();
   }
 
   std::string svg() {
     const std::vector<std::string> title = whole_ ? title_lines() : std::vector<std::string>{};
     top_ = 30 + 19 * static_cast<double>(title.size());
-    place_marks();
+    find_marks();
     TextBuffer body;
     std::swap(body, out_);
     for (std::size_t i = 0; i < title.size(); ++i) {
@@ -85,8 +56,8 @@ class Picture {
     }
     draw_cells();
     draw_load();
-    draw_axes();
     draw_marks();
+    draw_axes();
     double bottom = draw_legend(top_ + height_ + 52);
     if (whole_) bottom = draw_list(bottom);
     std::swap(body, out_);
@@ -106,6 +77,8 @@ class Picture {
            "#section-svg .section_title{font-size:16px;font-weight:600;fill:#111827}"
            "#section-svg .section_strong{font-weight:600;fill:#111827}"
            "#section-svg .section_end{text-anchor:end}#section-svg "
+           ".section_halo{paint-order:stroke;"
+           "stroke:#fff;stroke-width:4px}#section-svg "
            ".section_middle{text-anchor:middle}"
            "</style>\n";
     const double hatch = 8 / scale_;
@@ -157,7 +130,7 @@ class Picture {
     if (!picture.section_name.empty()) name += " of " + picture.section_name;
     name += ", for a load from x = " + format_brief(asked.rear) + " to " +
             format_brief(asked.front) + " " + view_.unit();
-    std::vector<std::string> lines{name};
+    std::vector<std::string> lines = wrapped(name, 100);
     const auto add = [&](std::string words) {
       words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
       for (std::string& line : wrapped(words + ".", 132)) lines.push_back(std::move(line));
@@ -305,7 +278,7 @@ class Picture {
     }
     for (const double z : z_ticks()) {
       line(left_ - 5, y_of(z), left_, y_of(z), kInk);
-      text(left_ - 9, y_of(z) + 4, signed_words(z), "section_end");
+      text(left_ - 9, y_of(z) + 4, signed_words(z), "section_end section_halo");
     }
     text(left_, bottom + 40, "\u2190 left of the path", "section_strong");
     text(left_ + width_ / 2, bottom + 40, "y (" + view_.unit() + "), looking forward",
@@ -314,90 +287,58 @@ class Picture {
     text(left_, top_ - 9, "height z (" + view_.unit() + ")", "section_strong");
   }
 
+  static constexpr double kLabelStep = 23;  ///< from one letter to the next below it
+
+  /// Takes the deepest places, as many as have room for their letters on both sides.
   void find_marks() {
-    const std::vector<ShownStop>& stops = view_.stops();
-    for (std::size_t s = 0; s < stops.size(); ++s) {
-      for (const ShownIntrusion& in : stops[s].intrusions) {
-        constexpr double kClosePixels = 40;
-        const auto known = std::ranges::find_if(marks_, [&](const Mark& mark) {
-          return have_one_mark(*mark.deepest, in, kClosePixels / scale_);
-        });
-        Mark& mark = known == marks_.end() ? marks_.emplace_back() : *known;
-        const double chainage = in.intrusion.chainage;
-        if (mark.deepest == nullptr) mark.chainage_from = mark.chainage_to = chainage;
-        mark.chainage_from = std::min(mark.chainage_from, chainage);
-        mark.chainage_to = std::max(mark.chainage_to, chainage);
-        if (mark.deepest == nullptr || in.intrusion.depth > mark.deepest->intrusion.depth) {
-          mark.deepest = &in;
-        }
-        mark.stops.push_back(s + 1);
-      }
+    for (const ShownPlace& place : view_.places()) {
+      if (marks_.size() == kMostMarks) break;
+      const auto& cell = place.deepest.intrusion.cell;
+      marks_.push_back(
+          {&place, x_of((cell[0] + 0.5) * lattice_.cell), y_of((cell[1] + 0.5) * lattice_.cell)});
     }
-    std::ranges::stable_sort(marks_, [](const Mark& a, const Mark& b) {
-      return a.deepest->intrusion.depth > b.deepest->intrusion.depth;
-    });
-    more_marks_ = marks_.size() > kMostMarks ? marks_.size() - kMostMarks : 0;
-    if (marks_.size() > kMostMarks) marks_.resize(kMostMarks);
-    std::ranges::stable_sort(marks_, {}, [](const Mark& mark) { return mark.stops.front(); });
+    for (const bool on_left : {true, false}) place_letters(on_left);
+    std::erase_if(marks_, [](const Mark& mark) { return mark.label_x == 0; });
   }
 
-  std::array<double, 2> place_of(const Mark& mark) const {
-    const auto& cell = mark.deepest->intrusion.cell;
-    return {x_of((cell[0] + 0.5) * lattice_.cell), y_of((cell[1] + 0.5) * lattice_.cell)};
-  }
+  bool is_left(const Mark& mark) const { return mark.x < left_ + width_ / 2; }
 
-  static double half_width(const Mark& mark) {
-    return 8 + 0.56 * kLetter * static_cast<double>(mark.label().size());
-  }
-
-  /// Puts each label near its cell, where no other label is.
-  void place_marks() {
-    for (std::size_t i = 0; i < marks_.size(); ++i) {
-      const auto [x, y] = place_of(marks_[i]);
-      constexpr int kMostAttempts = 1500;
-      for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
-        const double angle = -0.9 + 2.4 * attempt, far = 26 + 0.4 * attempt;
-        marks_[i].x = x + 1.5 * far * std::cos(angle);
-        marks_[i].y = y + far * std::sin(angle);
-        if (is_free(i)) break;
-      }
+  /// Writes the letters of one half of the picture below each other beside it, each as near to the
+  /// height of its place as its neighbours let it. Those that do not fit get no place.
+  void place_letters(bool on_left) {
+    const auto fits = static_cast<std::size_t>(std::max(1.0, std::floor(height_ / kLabelStep)));
+    std::vector<Mark*> column;
+    for (Mark& mark : marks_) {
+      if (is_left(mark) == on_left && column.size() < fits) column.push_back(&mark);
     }
-  }
-
-  bool is_free(std::size_t i) const {
-    const Mark& mark = marks_[i];
-    const double half = half_width(mark);
-    if (mark.x - half < left_ || mark.x + half > left_ + width_ || mark.y - 11 < top_ ||
-        mark.y + 11 > top_ + height_) {
-      return false;
+    std::ranges::stable_sort(column, {}, [](const Mark* mark) { return mark->y; });
+    double next = top_;
+    for (Mark* mark : column) {
+      mark->label_x = on_left ? left_ - 66 : left_ + width_ + 30;
+      mark->label_y = std::max(mark->y, next);
+      next = mark->label_y + kLabelStep;
     }
-    for (std::size_t other = 0; other < marks_.size(); ++other) {
-      const auto [x, y] = place_of(marks_[other]);
-      if (std::abs(x - mark.x) < half + 3 && std::abs(y - mark.y) < 14) return false;
-      if (other < i && std::abs(marks_[other].x - mark.x) < half + half_width(marks_[other]) + 2 &&
-          std::abs(marks_[other].y - mark.y) < 23) {
-        return false;
-      }
+    next = top_ + height_;
+    for (auto mark = column.rbegin(); mark != column.rend(); ++mark) {
+      (*mark)->label_y = std::min((*mark)->label_y, next);
+      next = (*mark)->label_y - kLabelStep;
     }
-    return true;
   }
 
   void draw_marks() {
     out_ << "<g id=\"section-marks\">\n";
     for (const Mark& mark : marks_) {
-      const auto [x, y] = place_of(mark);
-      line(x, y, mark.x, mark.y, R"(stroke="#fff" stroke-width="4")");
-      line(x, y, mark.x, mark.y, R"(stroke="#111827" stroke-width="1.5")");
+      const double end = mark.label_x + (is_left(mark) ? 15 : -15);
+      line(mark.x, mark.y, end, mark.label_y, R"(stroke="#fff" stroke-width="4")");
+      line(mark.x, mark.y, end, mark.label_y, R"(stroke="#111827" stroke-width="1.3")");
     }
     for (const Mark& mark : marks_) {
-      const auto [x, y] = place_of(mark);
-      out_ << "<circle cx=\"" << px(x) << "\" cy=\"" << px(y)
+      out_ << "<circle cx=\"" << px(mark.x) << "\" cy=\"" << px(mark.y)
            << R"(" r="4" fill="#fff" stroke="#111827" stroke-width="2"/>)"
-           << "<rect x=\"" << px(mark.x - half_width(mark)) << "\" y=\"" << px(mark.y - 10)
-           << "\" width=\"" << px(2 * half_width(mark))
-           << R"(" height="20" rx="10" fill="#fff" stroke="#111827" stroke-width="1.5"/>)"
-           << "\n";
-      text(mark.x, mark.y + 4.5, mark.label(), "section_middle section_strong");
+           << "<rect x=\"" << px(mark.label_x - 15) << "\" y=\"" << px(mark.label_y - 10)
+           << R"(" width="30" height="20" rx="10" fill="#fff" stroke="#111827" )"
+           << "stroke-width=\"1.5\"/>\n";
+      text(mark.label_x, mark.label_y + 4.5, mark.place->label, "section_middle section_strong");
     }
     out_ << "</g>\n";
   }
@@ -452,7 +393,7 @@ class Picture {
         legend_item(x, y,
                     R"(<rect x="2" y="-1" width="20" height="18" rx="9" fill="#fff" )"
                     R"(stroke="#111827" stroke-width="1.5"/>)",
-                    "what it is, or the numbers of the stretches, and its deepest place");
+                    "a place that stops the load, with its letter");
       }
     }
     return y + 34;
@@ -464,27 +405,27 @@ class Picture {
     return hundredths < 1 ? "less than 0.01" : format_brief(hundredths / 100);
   }
 
-  /// One line for each mark: where, how deep, and what it is.
+  /// What each letter stands for: where, how deep, and what it is.
   double draw_list(double y) {
     const std::string unit = view_.unit();
     for (const Mark& mark : marks_) {
-      const SectionIntrusion& in = mark.deepest->intrusion;
-      std::string words =
-          std::string(name_of(in.side)) + ", chainage " + format_brief(mark.chainage_from);
-      if (mark.chainage_to != mark.chainage_from) words += " to " + format_brief(mark.chainage_to);
-      words += " " + unit + (mark.stops.size() == 1 ? ", stretch " : ", stretches ") +
-               list_of(mark.stops) + ": reaches " + depth_words(in.depth) + " " + unit +
-               " too far, z = " + format_brief(in.z_from) + " to " + format_brief(in.z_to) + " " +
-               unit;
-      if (mark.deepest->witness) {
-        words += ", point " + std::to_string(mark.deepest->witness->source);
+      const ShownIntrusion& deepest = mark.place->deepest;
+      const SectionIntrusion& in = deepest.intrusion;
+      std::string words = deepest.obstacle.empty() ? "" : deepest.obstacle + ", ";
+      words += std::string(name_of(in.side)) + ", chainage " +
+               format_brief(mark.place->chainage_from) + " to " +
+               format_brief(mark.place->chainage_to) + " " + unit + ": reaches " +
+               depth_words(in.depth) + " " + unit + " too far, z = " + format_brief(in.z_from) +
+               " to " + format_brief(in.z_to) + " " + unit;
+      if (deepest.witness) words += ", point " + std::to_string(deepest.witness->source);
+      text(40, y, mark.place->label, "section_end section_strong");
+      for (const std::string& part : wrapped(words, 132)) {
+        text(52, y, part);
+        y += 19;
       }
-      text(190, y, mark.label(), "section_end section_strong");
-      text(202, y, words);
-      y += 19;
     }
-    if (more_marks_ > 0) {
-      text(202, y, "and " + counted(more_marks_, "place") + " less deep");
+    if (const std::size_t more = view_.places().size() - marks_.size(); more > 0) {
+      text(52, y, "and " + counted(more, "place") + " less deep");
       y += 19;
     }
     return y + 4;
@@ -495,7 +436,6 @@ class Picture {
   const bool whole_;
   double scale_ = 1, width_ = 0, height_ = 0, left_ = 0, top_ = 0;
   std::vector<Mark> marks_;
-  std::size_t more_marks_ = 0;
   TextBuffer out_;
 };
 

@@ -86,6 +86,60 @@ SectionView::SectionView(const Section& section, const SectionPicture& picture)
     stops_.push_back(std::move(shown));
   }
   if (picture.store != nullptr && picture.path != nullptr) find_obstacles();
+  find_places();
+}
+
+namespace {
+
+/// "A" to "Z", then "AA" and so on.
+std::string letters(std::size_t number) {
+  std::string out(1, static_cast<char>('A' + number % 26));
+  return number < 26 ? out : letters(number / 26 - 1) + out;
+}
+
+/// Whether two intrusions overlap across the path, or lie within a cell of each other.
+bool overlap_across(const SectionIntrusion& a, const SectionIntrusion& b, double cell) {
+  return a.y_from <= b.y_to + cell && b.y_from <= a.y_to + cell && a.z_from <= b.z_to + cell &&
+         b.z_from <= a.z_to + cell;
+}
+
+}  // namespace
+
+void SectionView::find_places() {
+  std::vector<const ShownIntrusion*> last;  // of each place
+  for (std::size_t s = 0; s < stops_.size(); ++s) {
+    const std::uint32_t bin = stops_[s].stop.bin;
+    for (const ShownIntrusion& shown : stops_[s].intrusions) {
+      const SectionIntrusion& in = shown.intrusion;
+      std::size_t at = 0;
+      for (; at < places_.size(); ++at) {
+        const ShownIntrusion& before = *last[at];
+        if (before.intrusion.side != in.side || before.obstacle != shown.obstacle) continue;
+        const bool follows = stops_[places_[at].stops.back() - 1].stop.bin + 1 == bin;
+        if (!shown.obstacle.empty() ||
+            (follows && overlap_across(before.intrusion, in, lattice_.cell))) {
+          break;
+        }
+      }
+      if (at == places_.size()) {
+        places_.push_back({.deepest = shown, .chainage_from = chainage_of_bin(bin)});
+        last.push_back(&shown);
+      }
+      ShownPlace& place = places_[at];
+      last[at] = &shown;
+      const double z_from = std::min(place.deepest.intrusion.z_from, in.z_from);
+      const double z_to = std::max(place.deepest.intrusion.z_to, in.z_to);
+      if (in.depth > place.deepest.intrusion.depth) place.deepest = shown;
+      place.deepest.intrusion.z_from = z_from;
+      place.deepest.intrusion.z_to = z_to;
+      place.chainage_to = std::min(chainage_of_bin(bin + 1.0), section_.data().chainage.back());
+      place.stops.push_back(s + 1);
+    }
+  }
+  std::ranges::stable_sort(places_, [](const ShownPlace& a, const ShownPlace& b) {
+    return a.deepest.intrusion.depth > b.deepest.intrusion.depth;
+  });
+  for (std::size_t i = 0; i < places_.size(); ++i) places_[i].label = letters(i);
 }
 
 void SectionView::find_obstacles() {
@@ -226,18 +280,29 @@ std::string remedy_of(const SectionIntrusion& in, double cell, const std::string
   }
 }
 
+std::string capitalized(std::string words) {
+  if (!words.empty()) words[0] = static_cast<char>(words[0] - 'a' + 'A');
+  return words;
+}
+
 }  // namespace
 
 std::string SectionView::remedy(const ShownStop& stop) const {
   std::string out;
   for (const ShownIntrusion& shown : stop.intrusions) {
     if (!out.empty()) out += "; and ";
-    const SectionIntrusion& in = shown.intrusion;
-    const bool gives_way = in.depth < size_across(picture_.outline, in.side) / 2;
-    out += remedy_of(in, lattice_.cell, unit(), gives_way);
+    out += remedy(shown.intrusion);
   }
-  if (!out.empty()) out[0] = static_cast<char>(out[0] - 'a' + 'A');
-  return out;
+  return capitalized(std::move(out));
+}
+
+std::string SectionView::remedy(const ShownPlace& place) const {
+  return capitalized(remedy(place.deepest.intrusion));
+}
+
+std::string SectionView::remedy(const SectionIntrusion& intrusion) const {
+  const bool gives_way = intrusion.depth < size_across(picture_.outline, intrusion.side) / 2;
+  return remedy_of(intrusion, lattice_.cell, unit(), gives_way);
 }
 
 bool SectionView::has_cells_of_bins() const {
@@ -334,9 +399,23 @@ Json SectionView::json_of_check() const {
                      {"obstacles", shown.obstacles},
                      {"intrusions", std::move(intrusions)}});
   }
-  return {{"verdict", name_of(check_->verdict)},   {"reason", check_->reason},
-          {"outline_name", picture_.outline_name}, {"margin", margin()},
-          {"outline", std::move(outline)},         {"stops", std::move(stops)}};
+  Json places = Json::array();
+  for (const ShownPlace& place : places_) {
+    Json json = json_of(place.deepest, lattice_.cell);
+    json["label"] = place.label;
+    json["stops"] = place.stops;
+    json["chainage_from"] = place.chainage_from;
+    json["chainage_to"] = place.chainage_to;
+    json["remedy"] = remedy(place);
+    places.push_back(std::move(json));
+  }
+  return {{"verdict", name_of(check_->verdict)},
+          {"reason", check_->reason},
+          {"outline_name", picture_.outline_name},
+          {"margin", margin()},
+          {"outline", std::move(outline)},
+          {"places", std::move(places)},
+          {"stops", std::move(stops)}};
 }
 
 Json SectionView::facts() const {

@@ -32,6 +32,15 @@ struct ShownStop {
   std::vector<std::string> obstacles = {};  ///< names of all that are known to stop the load here
 };
 
+/// What reaches into the load in stretches one after the other: the same obstacle by its name or,
+/// without names, intrusions of one side in neighbouring stretches that overlap across the path.
+struct ShownPlace {
+  std::string label = {};                     ///< "A", "B" and so on; A is the deepest
+  ShownIntrusion deepest = {};                ///< with the heights of all of its intrusions
+  std::vector<std::size_t> stops = {};        ///< numbers of the stops, from 1, ascending
+  double chainage_from = 0, chainage_to = 0;  ///< ends of its stretches
+};
+
 /// All that is drawn and said of a section.
 class SectionView {
  public:
@@ -46,6 +55,8 @@ class SectionView {
   double margin() const;     ///< the distance that the load keeps
   const std::optional<SectionCheck>& check() const { return check_; }
   const std::vector<ShownStop>& stops() const { return stops_; }
+  /// What the stops have in common, deepest first.
+  const std::vector<ShownPlace>& places() const { return places_; }
   /// Whether each cell of the whole path, in its order, stops the load; empty without an outline.
   const std::vector<bool>& stopping() const { return stopping_; }
   const std::vector<SectionBand>& bands() const { return bands_; }
@@ -60,6 +71,8 @@ class SectionView {
   std::string caution() const;
   /// What would let the load pass on a stretch, as a sentence.
   std::string remedy(const ShownStop& stop) const;
+  /// What would free the load from a place, as a sentence.
+  std::string remedy(const ShownPlace& place) const;
 
   /// Chainage at which a bin begins.
   double chainage_of_bin(double number) const { return number * section_.data().parameters.bin; }
@@ -73,6 +86,8 @@ class SectionView {
 
  private:
   void find_obstacles();
+  void find_places();
+  std::string remedy(const SectionIntrusion& intrusion) const;
   void add_question(Json& json) const;
   Json json_of_check() const;
   std::string sentence_of_widths() const;
@@ -83,6 +98,7 @@ class SectionView {
   std::optional<SectionCheck> check_;
   std::vector<bool> stopping_;
   std::vector<ShownStop> stops_;
+  std::vector<ShownPlace> places_;
   std::vector<SectionBand> bands_;
   std::vector<SectionStretch> stretches_;
 };

@@ -106,6 +106,7 @@ std::string widths_sentence(const Section& section, const SectionHeights& height
   const std::string unit = section_unit(data);
   const std::vector<SectionBand> boxes = section_boxes(section, heights);
   const double base = boxes[0].z_from;
+  const std::vector<SectionBand> bands = section_bands(section, heights);
   std::vector<BoxLoad> loads;  // the highest of each width
   for (const SectionBand& box : boxes) {
     const auto width = symmetric_width(data, box);
@@ -117,6 +118,10 @@ std::string widths_sentence(const Section& section, const SectionHeights& height
     }
   }
   const std::string stands = "a load that stands at z = " + format_brief(base) + " " + unit;
+  const std::string below = base > bands[0].z_from ? ". Below z = " + format_brief(base) + " " +
+                                                         unit + " the very middle is blocked, " +
+                                                         first_stop_words(data, bands[0])
+                                                   : "";
   if (loads.empty()) {
     return "nothing passes: " + stands + " is stopped in the very middle, " +
            first_stop_words(data, boxes[0]) + ". " + free_heights_words(section, heights);
@@ -132,6 +137,7 @@ std::string widths_sentence(const Section& section, const SectionHeights& height
   const bool to_the_top = loads.back().height == boxes.back().z_to - base;
   out += to_the_top ? ". Heights end with the window"
                     : ". Higher loads are stopped in the very middle";
+  out += below;
   const std::size_t warned = data.warnings.size();
   return warned == 0 ? out : out + ". The section has " + counted(warned, "warning");
 }

@@ -346,6 +346,37 @@ TEST_CASE("cells that are not known are hatched in the picture and on the page")
         std::string::npos);
 }
 
+TEST_CASE("what reaches in on one side in stretches one after the other is one place") {
+  Random random(5);
+  SectionData data = blobs(random, 80, 50, 60, 0);
+  const auto block = [&](std::uint32_t bin, int k, int j) {
+    data.bin_cells.bin.push_back(bin);
+    data.bin_cells.k.push_back(k);
+    data.bin_cells.j.push_back(j);
+    data.bin_cells.first_pose.push_back(5 * bin);
+  };
+  for (std::uint32_t bin = 0; bin < 60; ++bin) {
+    if (bin != 30) block(bin, 10, -14);  // a walkway on the right with a gap
+    if (bin == 7 || bin == 8) block(bin, 20, 12);
+  }
+  const Section section(data);
+  const ScratchFolder folder;
+  SectionPageOptions options;
+  options.outline = box(-1.5, 1.5, 0.4, 3);
+  write_section_page(section, folder / "page.html", options);
+  const std::string page = text_in(folder / "page.html");
+  const std::string places = page.substr(page.find("\"places\":["));
+  const auto count = [&](const std::string& words, const std::string& text) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(words); at != text.npos; at = text.find(words, at + 1)) ++found;
+    return found;
+  };
+  CHECK(count("\"label\":", page) == 3);
+  CHECK(count("\"chainage_from\":0,\"chainage_to\":150", places) == 1);
+  CHECK(count("\"chainage_from\":155,\"chainage_to\":299", places) == 1);
+  CHECK(count("\"chainage_from\":35,\"chainage_to\":45", places) == 1);
+}
+
 TEST_CASE("a page of a hundred stretches of a fine section stays below 5 MB") {
   Random random(4);
   const Section section(blobs(random, 400, 300, 100, 14));

@@ -8,6 +8,7 @@
 
 #include "clearway/trajectory.hpp"
 #include "cli/commands.hpp"
+#include "cli/model.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/ignored_options.hpp"
 #include "cli/support/program_json.hpp"
@@ -292,8 +293,9 @@ ordered_json describe(const std::filesystem::path& file) {
     case FileKind::kOtherHdf5:
       return describe(StoreReader(file));
     case FileKind::kPoints:
-    case FileKind::kMesh:
       return describe_points(file);
+    case FileKind::kMesh:
+      return either(file, description_of_model, describe_points);
     case FileKind::kTrajectory:
       return either(file, describe_trajectory, describe_points);
     default:

@@ -64,6 +64,13 @@ void check_is_model(const std::filesystem::path& path) {
               use_of(file.kind, path));
 }
 
+void check_has_poses(const std::vector<Pose>& poses, const std::filesystem::path& path) {
+  if (!poses.empty()) return;
+  throw InputError(path.string() +
+                   ": has no poses; expected at least one, because a vehicle that is nowhere "
+                   "comes close to nothing");
+}
+
 void check_is_trajectory(const std::filesystem::path& path) {
   const FileDescription file = describe_file(path);
   const bool points = file.kind == FileKind::kPoints || file.kind == FileKind::kMesh;

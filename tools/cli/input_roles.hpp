@@ -1,6 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
+
+#include "clearway/pose.hpp"
 
 namespace clearway::tool {
 
@@ -9,5 +12,8 @@ namespace clearway::tool {
 void check_is_store(const std::filesystem::path& path);
 void check_is_model(const std::filesystem::path& path);
 void check_is_trajectory(const std::filesystem::path& path);
+
+/// Throws InputError for a path without poses, about which nothing can be asked.
+void check_has_poses(const std::vector<Pose>& poses, const std::filesystem::path& path);
 
 }  // namespace clearway::tool

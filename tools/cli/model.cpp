@@ -1,4 +1,4 @@
-#include "clearway/model.hpp"
+#include "cli/model.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "clearway/model.hpp"
 #include "clearway/outline.hpp"
 #include "cli/commands.hpp"
 #include "cli/support/console.hpp"
@@ -240,35 +241,57 @@ void run_model(const ModelCommand& options) {
   print(options.json ? indented_text(facts) : facts_text(facts));
 }
 
+/// Adds the file of a model, and how it is read.
+void add_reading(CLI::App& command, ModelCommand& options) {
+  command
+      .add_option("IN", options.input,
+                  "A mesh in STL, OBJ, PLY or OFF, points in a scan's format, or box:L,W,H")
+      ->type_name("FILE");
+  add_unit_alone(command, "--unit,--model-unit", options.how.unit);
+  add_turn_options(command, options.how.forward, options.how.up);
+  command.add_flag("--json", options.json, "Print one JSON object");
+}
+
+void add_info_of_model(CLI::App& model) {
+  const auto options = std::make_shared<ModelCommand>();
+  CLI::App* command = model.add_subcommand(
+      "info", "Say what is in a model's file: its size, its parts, and whether they are closed");
+  add_reading(*command, *options);
+  command->get_option("IN")->required();
+  command->footer("Example: clearway model info car.obj");
+  command->callback([options] { run_model(*options); });
+}
+
 }  // namespace
+
+ordered_json description_of_model(const std::filesystem::path& file) {
+  ordered_json description = describe(read_model_input(file, {}));
+  description["more"] = "clearway model info " + file.filename().string();
+  return description;
+}
 
 void add_model(CLI::App& program) {
   const auto options = std::make_shared<ModelCommand>();
   CLI::App* command = program.add_subcommand(
       "model", "Say what is in a model's file, sample a mesh to points, make a box or a gauge");
-  command
-      ->add_option("IN", options->input,
-                   "A mesh in STL, OBJ, PLY or OFF, points in a scan's format, or box:L,W,H")
-      ->type_name("FILE");
+  add_reading(*command, *options);
   command->add_option("-o,--output", options->output, "The model's points in metres, a PLY file")
       ->type_name("FILE");
   CLI::Option* spacing = options->lengths.add(
       *command, "--spacing,--model-spacing", options->how.spacing,
       "Spacing of the points on a mesh: no place of its surface is farther than this from "
       "one");
-  add_unit_alone(*command, "--unit,--model-unit", options->how.unit);
   command
       ->add_flag("--vertices,--model-vertices", options->how.vertices_only,
                  "Take the vertices of a mesh alone, not its surface")
       ->excludes(spacing);
   options->lengths.add(*command, "--above,--model-above", options->how.above,
                        "Leave out the points whose z is below this", FieldRange::kAny);
-  add_turn_options(*command, options->how.forward, options->how.up);
   command->add_flag("--force", options->force, "Overwrite an existing output");
-  command->add_flag("--json", options->json, "Print one JSON object");
   command->footer(
       "clearway run searches the mesh itself. With --model-as points it makes such points.\n"
       "Example: clearway model car.stl --unit mm -o car.ply --spacing 0.025");
+  add_info_of_model(*command);
   add_box(*command);
   add_outline(*command);
   command->callback([options, command] {

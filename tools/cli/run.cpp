@@ -120,6 +120,7 @@ Query read_query(RunOptions& options, const Store& store, PoseLabels& labels) {
   const std::size_t of_model = warnings.size();
   options.trajectory_options.default_crs = store.crs_wkt();
   query.poses = read_trajectory(options.trajectory, options.trajectory_options, &warnings, &labels);
+  check_has_poses(query.poses, options.trajectory);
   const std::span<const Message> read(warnings);
   if (options.vehicle.empty() && options.lengths.all_have_units() &&
       names_unit(how.unit, read.first(of_model)) &&

@@ -104,6 +104,7 @@ std::vector<Pose> read_path(FindCommand& options, const Store& store) {
   const std::size_t before = messages.size();
   std::vector<Pose> path =
       read_trajectory(options.trajectory, options.trajectory_options, &messages);
+  check_has_poses(path, options.trajectory);
   if (options.lengths.all_have_units() &&
       names_unit(options.trajectory_options.metres_per_unit,
                  std::span<const Message>(messages).subspan(before))) {

@@ -36,6 +36,28 @@ struct ConvertCommand {
 void add_options(CLI::App& command, ConvertCommand& options);
 ConvertReport perform(ConvertCommand& options);
 
+/// The options of `clearway trajectory resample` and thin.
+struct ChangeCommand {
+  std::filesystem::path input, output, model, environment;
+  double max_motion = 0;
+  FileUnit model_unit = {};
+  ModelAxes model_axes;
+  LengthOptions lengths;
+  TrajectoryOptions trajectory;
+  std::string unit = "m";  ///< the symbol of the unit of lengths, for messages
+  bool force = false;
+  bool json = false;
+};
+
+/// Adds the options of `clearway trajectory resample`.
+void add_options(CLI::App& command, ChangeCommand& options);
+/// Writes a path with poses in between.
+void perform(ChangeCommand& options);
+/// The largest motion of the model from one pose to the next where it exceeds max_motion and poses
+/// in between can be added: not where the path has jumps, between which nobody knows the way, and
+/// not where millions of poses would be needed. Otherwise 0. The options are not to be used again.
+double motion_to_fill(ChangeCommand& options);
+
 /// What a run found.
 struct RunOutcome {
   SearchReport report;

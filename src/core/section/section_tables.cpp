@@ -1,6 +1,7 @@
 #include "core/section/section_tables.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -122,11 +123,28 @@ double kept_beside(const SectionFacts& section) {
   return section.rounding + (section.motion ? (*section.motion)[1] / 2 : 0);
 }
 
+namespace {
+
+/// What the largest load keeps from the borders of blocked cells on each side.
+double inset_of(const SectionFacts& section) { return section.rounding + kept_beside(section); }
+
+/// The room to the left and to the right; an open side ends at the border of the window.
+std::array<double, 2> room_beside(const SectionFacts& section, const SectionBand& band) {
+  const SectionLattice lattice = lattice_of(section);
+  return {band.left ? band.left->width : lattice.j_to * lattice.cell,
+          band.right ? band.right->width : -lattice.j_from * lattice.cell};
+}
+
+bool has_room(const SectionFacts& section, const SectionBand& band) {
+  const auto [left, right] = room_beside(section, band);
+  return std::min(left, right) > 2 * inset_of(section);
+}
+
+}  // namespace
+
 std::optional<double> symmetric_width(const SectionFacts& section, const SectionBand& band) {
   if (!band.left && !band.right) return std::nullopt;
-  const SectionLattice lattice = lattice_of(section);
-  const double left = band.left ? band.left->width : lattice.j_to * lattice.cell;
-  const double right = band.right ? band.right->width : -lattice.j_from * lattice.cell;
+  const auto [left, right] = room_beside(section, band);
   return std::max(0.0, 2 * std::min(left, right) - 2 * kept_beside(section));
 }
 
@@ -158,8 +176,17 @@ std::vector<SectionStretch> section_stations(const Section& section,
   return stretches;
 }
 
+SectionHeights heights_of_load(const Section& section, const SectionHeights& heights) {
+  SectionHeights out = heights;
+  const std::vector<SectionBand> bands = section_bands(section, heights);
+  const auto lowest = std::ranges::find_if(
+      bands, [&](const SectionBand& band) { return has_room(section.data(), band); });
+  if (!out.base && lowest != bands.end() && lowest != bands.begin()) out.base = lowest->z_from;
+  return out;
+}
+
 std::vector<SectionBand> section_boxes(const Section& section, const SectionHeights& heights) {
-  std::vector<SectionBand> boxes = section_bands(section, heights);
+  std::vector<SectionBand> boxes = section_bands(section, heights_of_load(section, heights));
   for (std::size_t i = 1; i < boxes.size(); ++i) {
     const SectionBand& below = boxes[i - 1];
     boxes[i].z_from = boxes[0].z_from;
@@ -191,15 +218,12 @@ void add_side(const std::vector<SectionBand>& bands, const std::vector<double>& 
 }  // namespace
 
 std::vector<OutlinePoint> largest_outline(const Section& section, const SectionHeights& heights) {
-  const std::vector<SectionBand> bands = section_bands(section, heights);
-  const SectionLattice lattice = lattice_of(section.data());
-  const double inset =
-      2 * section.data().rounding + (kept_beside(section.data()) - section.data().rounding);
+  const std::vector<SectionBand> bands = section_bands(section, heights_of_load(section, heights));
+  const double inset = inset_of(section.data());
   std::vector<double> left, right;
   for (const SectionBand& band : bands) {
-    const double to_left = band.left ? band.left->width : lattice.j_to * lattice.cell;
-    const double to_right = band.right ? band.right->width : -lattice.j_from * lattice.cell;
-    if (to_left <= 2 * inset || to_right <= 2 * inset) break;
+    if (!has_room(section.data(), band)) break;
+    const auto [to_left, to_right] = room_beside(section.data(), band);
     left.push_back(to_left);
     right.push_back(to_right);
   }

@@ -48,13 +48,18 @@ std::vector<SectionBand> section_bands(const Section& section, const SectionHeig
 /// The bands of each bin in which the load has a pose, ascending. Throws as section_bands().
 std::vector<SectionStretch> section_stations(const Section& section, const SectionHeights& heights);
 
-/// For each band, the room from the base up to its top, of which z_from is the base. Throws as
-/// section_bands().
+/// The heights with the base on which a load stands: the one that is given; without one the bottom
+/// of the lowest band that has room for a load in its middle, because what lies below is most often
+/// the ground. Where no band has room, the base of section_base(). Throws as section_bands().
+SectionHeights heights_of_load(const Section& section, const SectionHeights& heights);
+
+/// For each band from the base of heights_of_load() on, the room from there up to its top; z_from
+/// is that base. Throws as section_bands().
 std::vector<SectionBand> section_boxes(const Section& section, const SectionHeights& heights);
 
-/// The outline of the largest load that stands on the base, inset by more than kept_beside(),
-/// counter-clockwise when looking forward with y to the left. Open sides end at the window. Throws
-/// as section_bands(), and where no load stands on the base.
+/// The outline of the largest load that stands on the base of heights_of_load(), inset by more than
+/// kept_beside(), counter-clockwise when looking forward with y to the left. Open sides end at the
+/// window. Throws as section_bands(), and where no load stands on the base.
 std::vector<OutlinePoint> largest_outline(const Section& section, const SectionHeights& heights);
 
 }  // namespace clearway

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <span>
@@ -66,6 +67,13 @@ class TextWriter {
 /// begins with "=", "+", "-", "@", a tab or a line break, gets an apostrophe in front, which
 /// spreadsheets take as "this is text". A text that is a number, such as "-12.5", stays as it is.
 std::string csv_cell(std::string_view text);
+
+/// A length of a table that people read, to 0.1 mm: the digits after that are no more than
+/// roundings, and JSON and HDF5 keep them.
+inline double readable_length(double length) {
+  constexpr double kTenthsOfMillimetres = 1e4;
+  return std::round(length * kTenthsOfMillimetres) / kTenthsOfMillimetres + 0.0;  // 0 instead of -0
+}
 
 /// A label of a pose as a cell of a CSV file.
 inline double label_cell(double number) { return number; }

@@ -38,7 +38,7 @@ void check_names(const InputBuffer& input, std::string_view line, bool mirror) {
   std::string expected = mirror ? "two numbers, or first the names height,half_width"
                                 : "two numbers, or first the names y,z";
   if (names == "height,half_width")
-    expected += "; one half of a symmetric outline is to be mirrored";
+    expected += "; one half of a symmetric outline is to be mirrored with --mirror";
   if (names == "y,z") expected += "; a whole outline is not to be mirrored";
   refuse_line(input.name(), input.line(),
               excerpt(line) + decimal_commas_in(line) + "; expected " + expected);

@@ -312,9 +312,11 @@ std::vector<QueryDifference> query_differences(const ResultHeader& a, const Resu
 Comparison compare_results(const ResultReader& a, const ResultReader& b, std::size_t kept) {
   if (a.header().environment_points != b.header().environment_points ||
       a.header().environment_hash != b.header().environment_hash) {
-    throw InputError(a.name() + " and " + b.name() + ": results about different environments (" +
-                     environment_text(a.header()) + "; " + environment_text(b.header()) +
-                     "), whose point indices cannot be compared");
+    throw InputError(
+        a.name() + " and " + b.name() + ": results about different environments (" +
+        environment_text(a.header()) + "; " + environment_text(b.header()) +
+        "), whose point indices cannot be compared. clearway compare --conflicts compares "
+        "the places of results of two scans");
   }
   Comparison out = Merge(a, b, kept).run();
   if (a.header().clearance > 0 && b.header().clearance > 0) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -21,7 +22,8 @@ void refuse_replacing(const Section& section, const std::filesystem::path& outpu
 }
 
 /// What a reader of widths has to know, in lines that begin with "#".
-void write_preamble(TextWriter& out, const Section& section, const SectionHeights& heights) {
+void write_preamble(TextWriter& out, const Section& section, SectionTable table,
+                    const SectionHeights& heights) {
   const double base = section_base(section, heights);
   const SectionData& data = section.data();
   const SectionParameters& asked = data.parameters;
@@ -44,6 +46,13 @@ void write_preamble(TextWriter& out, const Section& section, const SectionHeight
   if (!heights.base && base != 0) {
     out << "# The base is the bottom of the window, z = " << format_number(base) << "\n";
   }
+  if (table == SectionTable::kBoxes) {
+    const std::optional<double> from = heights_of_load(section, heights).base;
+    if (!heights.base && from) {
+      out << "# The boxes stand at z = " << format_number(*from)
+          << ", the lowest band whose middle is free\n";
+    }
+  }
   for (const Message& warning : data.warnings) {
     std::string line = warning.text;
     for (char& c : line) {
@@ -58,13 +67,15 @@ void write_half(TextWriter& out, const SectionData& section, const std::optional
     out << "open,,";
     return;
   }
-  out << half->width << "," << half->first_pose << "," << section.chainage[half->first_pose];
+  out << readable_length(half->width) << "," << half->first_pose << ","
+      << readable_length(section.chainage[half->first_pose]);
 }
 
 void write_symmetric(TextWriter& out, const SectionData& section, const SectionBand& band) {
   const auto width = symmetric_width(section, band);
   if (width) {
-    out << *width;
+    // Down to 0.1 mm, so that a load of this width still passes, but for roundings of the division.
+    out << std::floor(*width * 1e4 + 1e-5) / 1e4;
   } else {
     out << "open";
   }
@@ -82,7 +93,7 @@ const char* names_of_ends(const SectionData& section) {
 }
 
 void write_band(TextWriter& out, const SectionData& section, const SectionBand& band) {
-  out << band.z_from << "," << band.z_to << ",";
+  out << readable_length(band.z_from) << "," << readable_length(band.z_to) << ",";
   write_half(out, section, band.left);
   out << ",";
   write_half(out, section, band.right);
@@ -99,7 +110,8 @@ void write_stations(TextWriter& out, const Section& section, const SectionHeight
   out << "bin,chainage_from,chainage_to," << kBandColumns << names_of_ends(data);
   for (const SectionStretch& stretch : section_stations(section, heights)) {
     for (const SectionBand& band : stretch.bands) {
-      out << stretch.bin << "," << stretch.bin * bin << "," << (stretch.bin + 1.0) * bin << ",";
+      out << stretch.bin << "," << readable_length(stretch.bin * bin) << ","
+          << readable_length((stretch.bin + 1.0) * bin) << ",";
       write_band(out, data, band);
     }
   }
@@ -108,14 +120,14 @@ void write_stations(TextWriter& out, const Section& section, const SectionHeight
 void write_boxes(TextWriter& out, const Section& section, const SectionHeights& heights) {
   const auto side = [&out](const std::optional<HalfWidth>& half) {
     if (half) {
-      out << half->width << ",";
+      out << readable_length(half->width) << ",";
     } else {
       out << "open,";
     }
   };
   out << "top,left,right,symmetric_width" << names_of_ends(section.data());
   for (const SectionBand& box : section_boxes(section, heights)) {
-    out << box.z_to << ",";
+    out << readable_length(box.z_to) << ",";
     side(box.left);
     side(box.right);
     write_symmetric(out, section.data(), box);
@@ -148,18 +160,18 @@ void export_section(const Section& section, SectionTable table, const std::files
     TextWriter out(file);
     switch (table) {
       case SectionTable::kBands:
-        write_preamble(out, section, heights);
+        write_preamble(out, section, table, heights);
         out << kBandColumns << names_of_ends(section.data());
         for (const SectionBand& band : section_bands(section, heights)) {
           write_band(out, section.data(), band);
         }
         break;
       case SectionTable::kStations:
-        write_preamble(out, section, heights);
+        write_preamble(out, section, table, heights);
         write_stations(out, section, heights);
         break;
       case SectionTable::kBoxes:
-        write_preamble(out, section, heights);
+        write_preamble(out, section, table, heights);
         write_boxes(out, section, heights);
         break;
       case SectionTable::kCells:

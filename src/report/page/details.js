@@ -90,7 +90,7 @@ function drawDetails() {
   holder.replaceChildren(
     make("div", { class: "tools" }, make("h3", {}, `Conflict ${conflict.id}`),
          neighbourButton("Previous", -1), neighbourButton("Next", 1),
-         button("Show in 3-D", () => byId("view").scrollIntoView())),
+         button("Show in 3-D", () => showInView(poseOf(conflict), flyToConflict))),
     make("div", { class: "details" }, conflictFacts(conflict),
          conflictPictures(conflict, innerWidth > 1800 ? 880 : 640)));
   const buttons = [...holder.querySelectorAll("button:not(:disabled)")];

@@ -23,11 +23,11 @@ function removePart(id) {
 }
 
 /** The answer. kind: clear, conflict, undecided, or plain for an answer without a sign. lines: elements below the word. */
-function answerBanner({ kind, word, doubtful, lines }, ...beside) {
+function answerBanner({ kind, word, doubtful, lines }) {
   const sign = doubtful ? doubtSymbol() : kind !== "plain" && verdictSymbol(kind);
   return make("div", { class: `banner ${doubtful ? "doubt" : kind}` }, sign,
       make("div", { class: "words" },
-           make("h2", { id: "verdict-word" }, doubtful ? `${word}, but doubtful` : word), lines), ...beside);
+           make("h2", { id: "verdict-word" }, doubtful ? `${word}, but doubtful` : word), lines));
 }
 
 /** "See 2 warnings below." lead: its first words. */

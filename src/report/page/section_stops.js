@@ -1,4 +1,4 @@
-// What stops the load, stretch by stretch and obstacle by obstacle, and the widths as a table.
+// What stops the load, place by place and stretch by stretch, and the widths as a table.
 
 const kSideWords = { left: "left", right: "right", above: "above", below: "below" };
 
@@ -31,32 +31,13 @@ function stopColumns() {
 
 function stopRows(stop, number, columns) {
   const index = sectionBins().indexOf(stop.bin), rows = stop.intrusions.length;
-  const show = () => {
-    chooseStretch(index);
-    byId("section").scrollIntoView();
-  };
+  const show = () => showStretch(stop.bin);
   const whole = (text) => make("td", { class: "number", rowspan: rows + 1 }, text);
   return [...stop.intrusions.map((intrusion, i) => make("tr",
       { ...chosenBy(show), tabindex: i === 0 ? 0 : null, "data-stop": number },
       i === 0 && [whole(String(number)), whole(rangeWords(stretchRange(index)))], cellsOf(columns, intrusion))),
       make("tr", { class: "remedy", onclick: show }, make("td", { colspan: columns.length }, `${stop.remedy}.`,
           stop.obstacles.length > 0 ? ` There: ${stop.obstacles.join(", ")}.` : ""))];
-}
-
-/** Named obstacles with the stretches that they stop, deepest first. */
-function namedObstacles() {
-  const found = new Map();
-  section.facts.check.stops.forEach((stop, i) => {
-    for (const name of stop.obstacles) {
-      if (!found.has(name)) found.set(name, { name, stops: [], deepest: null });
-      found.get(name).stops.push(i + 1);
-    }
-    for (const intrusion of stop.intrusions) {
-      const of = found.get(intrusion.obstacle);
-      if (of && (!of.deepest || intrusion.depth > of.deepest.depth)) of.deepest = intrusion;
-    }
-  });
-  return [...found.values()].sort((a, b) => (b.deepest?.depth ?? 0) - (a.deepest?.depth ?? 0) || b.stops.length - a.stops.length);
 }
 
 /** Numbers such as "1 – 4, 6". */
@@ -69,19 +50,44 @@ function numberRanges(numbers) {
   return out.map(([a, b]) => a === b ? String(a) : `${a} – ${b}`).join(", ");
 }
 
-function obstaclesTable() {
-  const named = namedObstacles();
-  if (named.length === 0) return "";
+const kShownPlaces = 24, kShownStretches = 12;
+
+/** What stops the load, place by place, deepest first, with what would free it. */
+function placesTable() {
+  const { places } = section.facts.check, known = places.some((p) => p.obstacle || p.witness);
   const columns = [
-    { title: "Obstacle", cell: ({ name }) => name },
-    { title: "Stops the load in stretches", cell: ({ stops }) => numberRanges(stops) },
-    { title: "Where it is deepest", cell: ({ deepest }) => deepest
-        ? `${depthCell(deepest.depth)} ${unitSymbol} too far, ${kSideWords[deepest.side]}, at chainage ` +
-          `${station(deepest.chainage)}, z = ${signed(deepest.z_from)} to ${signed(deepest.z_to)} ${unitSymbol}`
-        : "others reach deeper there" }];
-  return make("div", {}, make("h3", {}, "By obstacle"), make("div", { class: "scroll" },
-      listTable("Obstacles", columns, named.map((one) => make("tr", {}, cellsOf(columns, one))))));
+    { title: "", cell: ({ label }) => label },
+    { title: "Side", cell: ({ side }) => kSideWords[side] },
+    { title: `Too far (${unitSymbol})`, cell: ({ depth }) => depthCell(depth), number: true },
+    { title: `Chainage (${unitSymbol})`, cell: (p) => rangeWords([p.chainage_from, p.chainage_to]), number: true },
+    { title: "Stretches", cell: ({ stops }) => numberRanges(stops) },
+    { title: `Deepest at (${unitSymbol})`, cell: ({ chainage }) => chainage.toFixed(2), number: true },
+    { title: `z (${unitSymbol})`, cell: (p) => `${signed(p.z_from)} – ${signed(p.z_to)}`, number: true },
+    known && { title: "What is there", cell: obstacleWords },
+    { title: "What lets the load pass", cell: ({ remedy }) => remedy },
+  ].filter(Boolean);
+  const rows = places.map((place) => {
+    const show = () => showStretch(section.facts.check.stops[deepestStop(place)].bin);
+    return make("tr", { ...chosenBy(show), tabindex: 0, "data-place": place.label }, cellsOf(columns, place));
+  });
+  const table = (part) => make("div", { class: "scroll tall" }, listTable("Places that stop the load", columns, part));
+  return make("div", {}, make("h3", {}, "By place"), table(rows.slice(0, kShownPlaces)),
+      folded(`${plural(places.length - kShownPlaces, "place")} less deep`, rows.length > kShownPlaces && table(rows.slice(kShownPlaces))));
 }
+
+/** The index of the stop in which a place is deepest. */
+function deepestStop({ stops, side, depth }) {
+  const all = section.facts.check.stops;
+  return stops.map((n) => n - 1).find((i) => all[i].intrusions.some((one) => one.side === side && one.depth === depth)) ?? stops[0] - 1;
+}
+
+function showStretch(bin) {
+  chooseStretch(sectionBins().indexOf(bin));
+  byId("section").scrollIntoView();
+}
+
+/** What is long and seldom read, behind a title. */
+const folded = (title, content) => content && make("details", {}, make("summary", {}, title), content);
 
 function buildStops() {
   const { check } = section.facts;
@@ -89,30 +95,36 @@ function buildStops() {
     removePart("stops");
     return;
   }
-  const columns = stopColumns();
-  byId("stops-note").append(make("p", {}, `${plural(check.stops.length, "stretch", "stretches")} of ${sectionBins().length} ` +
-      `with a pose of the load. A long load meets one obstacle in many stretches, as it passes it from its front to its rear. ` +
-      "Too far is how much of the load and its margin it takes. Below each stretch stands what lets the load pass there. " +
-      "y is to the left of the path, and z above it."));
-  byId("stops-obstacles").append(obstaclesTable());
+  const columns = stopColumns(), { stops, places } = check;
+  byId("stops-note").append(make("p", {}, `${plural(places.length, "place")}, in ${plural(stops.length, "stretch", "stretches")} of ${sectionBins().length} ` +
+      "with a pose of the load. What reaches in on one side in stretches one after the other is one place. " +
+      "A long load meets one obstacle in many stretches, as it passes it from its front to its rear. " +
+      "Too far is how much of the load and its margin it takes. y is to the left of the path, and z above it."));
+  byId("stops-places").append(placesTable());
   const titles = [{ title: "No." }, { title: `Chainage (${unitSymbol})` }, ...columns.map(({ title }) => ({ title }))];
-  byId("stops-table").append(make("h3", {}, "By stretch"), make("div", { class: "scroll tall" },
-      listTable("Stretches that stop the load", titles, check.stops.flatMap((stop, i) => stopRows(stop, i + 1, columns)))));
+  const table = make("div", { class: "scroll tall" },
+      listTable("Stretches that stop the load", titles, stops.flatMap((stop, i) => stopRows(stop, i + 1, columns))));
+  byId("stops-table").append(...(stops.length > kShownStretches
+      ? [folded(`By stretch: ${count(stops.length)} stretches, each with what lets the load pass there`, table)]
+      : [make("h3", {}, "By stretch"), table]));
 }
 
 /** Widths of the whole path, for each height and from the base up to it. */
 function buildWidths() {
   const { bands, boxes } = section.facts, side = (v) => v === null ? "open" : v.toFixed(2);
   const wide = (v) => v === null ? "open" : (Math.floor(v * 100 + 1e-6) / 100).toFixed(2);
+  const below = bands.length - boxes.length, base = boxes[0].z_from;
+  const wideFrom = (box) => box ? wide(box.symmetric_width) : "";
   const columns = [
     [`Height (${unitSymbol})`, ({ z_from, z_to }) => rangeWords([z_from, z_to])],
     ["Left", ({ left }) => side(left)], ["Right", ({ right }) => side(right)],
     ["Symmetric width", (band) => wide(band.symmetric_width)],
-    ["Width from the base up to here", (band) => wide(boxes[bands.indexOf(band)].symmetric_width)],
+    [`Width from z = ${fixed(base, 2)} up to here`, (band) => wideFrom(boxes[bands.indexOf(band) - below])],
   ].map(([title, cell]) => ({ title, cell, number: true }));
   byId("widths-table").append(
       make("p", {}, `Left and right run from y = 0 to the border of the nearest blocked cell, anywhere on the path. The symmetric width ` +
-           "has room for rounding taken off. The last column is for a load that stands on the first height."),
+           `has room for rounding taken off. The last column is for a load that stands at z = ${fixed(base, 2)} ${unitSymbol}` +
+           `${below > 0 ? ", the lowest height at which the middle is free." : "."}`),
       make("div", { class: "scroll tall" },
            listTable("Widths", columns, bands.map((band) => make("tr", {}, cellsOf(columns, band))))));
 }

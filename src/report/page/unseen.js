@@ -124,7 +124,7 @@ function chosenGroup() {
       `${plural(group.cubes, "cube")} that no beam passed through. The vehicle first reaches it at ` +
       `chainage ${placeWords(group.chainage_from)} (pose ${count(group.first_pose)})${after(side)}, ` +
       `and its last cube at ${placeWords(group.chainage_to)}.${where}${behind}`),
-      button("Show in 3-D", () => byId("view").scrollIntoView())];
+      button("Show in 3-D", () => showInView(group.first_pose, flyToGroup))];
 }
 
 /** What can be done about all that was not scanned, one sentence for each kind of group. */

@@ -380,7 +380,7 @@ function bodyList({ name, bodies }) {
 function ignoredText({ classes, boxes }) {
   const parts = classes.map((c) => `class ${c.class}${c.name ? ` (${c.name})` : ""}: ` +
                                    plural(c.points, "point"));
-  const corner = (p) => p.map((v) => String(v)).join(" ");
+  const corner = (p) => p.map((v) => String(+v.toFixed(4))).join(" ");
   parts.push(...boxes.map((b) => `box ${corner(b.lo)} to ${corner(b.hi)}: ` +
                                  plural(b.points, "point")));
   return `${parts.join("; ")}.`;
@@ -435,8 +435,8 @@ function buildVerdict() {
           make("p", {}, first), make("p", {}, second),
           scanned && make("p", { id: "scanned" }, scanned),
           searched && make("p", { id: "searched" }, searched),
-          seeWarnings(conflict ? "See also" : clear ? "But see" : "See", warned)] },
-        make("div", { class: "tiles" }, scannedTiles(), conflict ? conflictTiles() : clearTiles())),
+          seeWarnings(conflict ? "See also" : clear ? "But see" : "See", warned)] }),
+    make("div", { class: "tiles" }, scannedTiles(), conflict ? conflictTiles() : clearTiles()),
     warningsList(warned),
     whatDecides(),
     basisOfVerdict(),

@@ -158,6 +158,13 @@ function flyToPlace(v, place) {
           yaw: Math.atan2(eye[1], eye[0]) });
 }
 
+/** Brings the 3-D view into sight, the vehicle back to a pose of the trajectory, and the camera to what was chosen. */
+function showInView(pose, fly) {
+  selectPose(shownPose(pose));
+  fly();
+  byId("view").scrollIntoView();
+}
+
 /** Distance from which all of the path and what is beside it is in sight. */
 function fittingDistance(target, yaw, pitch) {
   const canvas = byId("view-canvas"), wide = Math.tan(kHalfAngle) * canvas.width / canvas.height;

@@ -185,16 +185,17 @@ void check_poses_alone(const Question& question, const Steps& known, MessageLog&
     }
   }
   if (large.empty()) return;
+  MessageNumbers numbers{{"share", static_cast<double>(large.size()) / static_cast<double>(steps)},
+                         {"largest", largest},
+                         {"pose", static_cast<double>(at)}};
+  if (!query.model.triangles.empty()) numbers.emplace_back("of_mesh", 1);
   log.warn("large-steps",
            "at " + format_count(large.size()) + " of " + format_count(steps) +
                " steps the model moves farther than the radius of " +
                length_text(query.radius, question.unit) + ", at most " +
                length_text(largest, question.unit) + " after pose " + std::to_string(at) +
                ". What lies between two poses can be missed",
-           {{"share", static_cast<double>(large.size()) / static_cast<double>(steps)},
-            {"largest", largest},
-            {"pose", static_cast<double>(at)}},
-           pose_ranges(large, 1));
+           std::move(numbers), pose_ranges(large, 1));
 }
 
 /// A step of a load between whose ends it is not searched.

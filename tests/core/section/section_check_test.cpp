@@ -224,6 +224,17 @@ TEST_CASE("widths need the middle and a band in the window") {
                 "below the window");
 }
 
+TEST_CASE("the largest load stands above what blocks the middle, unless a base is given") {
+  const Section section(section_of({{0, 0, 0, 0}, {1, -1, 1, 5}, {2, 3, 4, 10}}));
+  check_refused([&] { return largest_outline(section, {.band = 0.5, .base = 0}); },
+                "the middle is blocked");
+  const auto outline = largest_outline(section, {.band = 0.5});
+  CHECK(std::ranges::min(outline, {}, &OutlinePoint::z).z == Approx(1));
+  CHECK(section.check(outline, 0).verdict == SectionVerdict::kPasses);
+  check_equal(section_boxes(section, {.band = 0.5}).front().z_from, 1);
+  check_equal(section_boxes(section, {.band = 0.5, .base = 0}).front().z_from, 0);
+}
+
 TEST_CASE("the largest outline passes, and no wider one does") {
   Random random(11);
   for (int i = 0; i < 100; ++i) {

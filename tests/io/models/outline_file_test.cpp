@@ -52,7 +52,7 @@ TEST_CASE("an outline that is malformed is refused with its line") {
   };
   refused("", false, "holds no corner");
   refused("y,z\n", false, "holds no corner");
-  refused("height,half_width\n0,1\n", false, "is to be mirrored");
+  refused("height,half_width\n0,1\n", false, "is to be mirrored with --mirror");
   refused("y,z\n0,1\n", true, "not to be mirrored");
   refused("x,y\n0,1\n", false, "line 1: \"x,y\"; expected two numbers, or first the names y,z");
   refused("y,z\n0,1,2\n", false, "line 2: \"0,1,2\"; expected two finite numbers");

@@ -78,6 +78,8 @@ class PageChecks:
         page.run("preparePrint()")
         rows = page.run("document.querySelectorAll('#conflicts #print-table tbody tr').length")
         self.assertEqual(rows, min(200, facts["conflicts"]["count"]))  # the filter is still on
+        size = "(({ width, height, x, y }) => [width, height, x, y])(byId('%s').getBoundingClientRect())"
+        self.assertEqual(page.run(size % "view-canvas"), page.run(size % "view-numbers"))
         text = page.run("document.body.innerText")
         for hint in ("Show it", "Drag", "Tab to"):
             self.assertNotIn(hint, text)
@@ -89,6 +91,20 @@ class PageChecks:
         self.assertEqual(page.run("byId('print-table').childElementCount + "
                                   "document.querySelectorAll('.on-paper').length"), 0)
         page.call("Emulation.setEmulatedMedia", media="")
+
+    def check_show(self, page):
+        """The button brings the camera to the conflict, wherever it and the vehicle were before."""
+        camera = "JSON.stringify([page.pose, view.target, view.distance, view.yaw, view.pitch])"
+        button = "[...byId('conflict-details').querySelectorAll('button')].find((b) => b.textContent === 'Show in 3-D')"
+        page.run(f"{button}.click()")
+        page.frames()
+        there = page.run(camera)
+        page.run("selectPose(0), flyToOverview()")
+        page.frames()
+        self.assertNotEqual(page.run(camera), there)
+        page.run(f"{button}.click()")
+        page.frames()
+        self.assertEqual(page.run(camera), there)
 
     def check_keys(self, page):
         """From a row of the table to the next, and into it, without a mouse."""

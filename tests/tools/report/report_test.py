@@ -183,6 +183,7 @@ class ReportTest(PageChecks, unittest.TestCase):
         self.check_ends(page)
         self.check_table(page, facts)
         self.check_keys(page)
+        self.check_show(page)
         self.check_paper(page, facts)
         shot = f"{self.hall.folder}/shot.png"
         page.screenshot(shot)

@@ -116,6 +116,10 @@ class SectionPageTest(unittest.TestCase):
             self.assertEqual([float(v) for v in lines[witness["source"]].split()],
                              [round(v, 4) for v in witness["xyz"]])
         self.assertTrue(post["obstacles"] and post["obstacles"] != wire["obstacles"])
+        places = check["places"]  # the deepest is A
+        self.assertEqual([(p["label"], p["side"], p["chainage_from"], p["chainage_to"]) for p in places],
+                         [("A", "left", 15, 20), ("B", "above", 25, 30)])
+        self.assertIn("Clear on the left to y = 1.40 m", places[0]["remedy"])
         self.assertTrue(post["intrusions"][0]["obstacle"].startswith("conflict "))
 
     def test_names_of_ones_own(self):
@@ -130,7 +134,7 @@ class SectionPageTest(unittest.TestCase):
         self.assertTrue(names and all(re.fullmatch(r"tree \d+, <old>", name) for name in names))
         page = self.open("named.html")
         self.check_page(page, facts)
-        self.assertIn(sorted(names)[0], page.run("byId('stops-obstacles').innerText"))
+        self.assertIn(sorted(names)[0], page.run("byId('stops-places').innerText"))
 
     def test_page_in_a_browser(self):
         facts = self.report("tall.html", "--outline", self.file("tall.csv"), "--margin", 0.1,

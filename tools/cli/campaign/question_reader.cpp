@@ -310,6 +310,7 @@ const QuestionReader::ReadTrajectory& QuestionReader::trajectory(const PlannedRu
     std::vector<Message> messages;
     std::vector<Pose> poses =
         read_trajectory(options.trajectory, options.trajectory_options, &messages);
+    check_has_poses(poses, options.trajectory);
     if (known == trajectories_.end()) log_warnings(run.route.key, messages);
     ReadTrajectory& read = trajectories_[id];
     read = {poses.size(), hash_of_trajectory(poses)};

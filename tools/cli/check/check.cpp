@@ -150,6 +150,7 @@ class Check {
     record_.emplace(options_.folder);
     claim_folder();
     if (!plan_.has_store()) convert_scans();
+    fill_path();
     const RunOutcome found = search();
     made_for_ = question();
     const std::string conflicts = make_table<ConflictsCommand>(kConflictsName, plan_.conflicts());
@@ -259,6 +260,7 @@ class Check {
     try {
       const std::vector<Pose> poses =
           read_trajectory(options.trajectory, options.trajectory_options);
+      check_has_poses(poses, options.trajectory);
       if (options.vehicle.empty()) {
         read_model(options.model, model_options_of(options));
       } else {
@@ -305,6 +307,47 @@ class Check {
     conversion.columns.clear();
     ConsoleProgress progress;
     return is_converted({conversion, step.options().inputs, step.options().output}, progress);
+  }
+
+  /// Puts poses in between where the model moves farther than the radius from one pose to the next,
+  /// because what lies there would be missed. A path that cannot be filled stays as it is, with the
+  /// warning of the search.
+  void fill_path() {
+    const Words words = plan_.resample();
+    if (words.empty()) return;
+    const Words of_step(words.begin() + 1, words.end());
+    try {
+      const double motion = motion_to_fill(Step<ChangeCommand>(of_step).options());
+      if (motion == 0) return;
+      Step<ChangeCommand> step(of_step);
+      const fs::path path = plan_.file(kPathName);
+      const ordered_json what = made_of_path(words);
+      const bool was_there = record_->find(kPathName, what).is_boolean();
+      if (!was_there) {
+        perform(step.options());
+        record_->note(kPathName, what, true);
+      }
+      spdlog::info(
+          "{}: from one pose to the next the model moves by up to {:.4g} {}, farther than the "
+          "radius, so this path has poses in between, on a smooth curve. All numbers of poses are "
+          "of "
+          "this path",
+          path.string(), motion, step.options().unit);
+      plan_.take_denser_path();
+      note_step(kPathName, words, was_there);
+    } catch (const InputError& error) {
+      spdlog::info("no poses are put between those of the path: {}", error.what());
+    }
+  }
+
+  /// What the denser path is made of: the words of its step, and the contents of the files.
+  ordered_json made_of_path(const Words& words) const {
+    ordered_json what{{"words", words}, {"inputs", ordered_json::array()}};
+    for (const char* option : {"--trajectory", "--model"}) {
+      const fs::path input = options_.command->get_option(option)->results().back();
+      if (!names_box(input)) what["inputs"].push_back(contents_of(input));
+    }
+    return what;
   }
 
   RunOutcome search() {

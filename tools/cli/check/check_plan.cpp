@@ -35,6 +35,8 @@ const StepOptions kConvertOptions{{"--output", "--force", "--resume", "--json", 
 // --gap is that of conflicts, and only a run with an error budget takes it.
 const StepOptions kRunOptions{{"--env", "--output", "--first-pose", "--gap", "--shard", "--force",
                                "--resume", "--fail-on-collision", "--json", "--help"}};
+const StepOptions kResampleOptions{
+    {"--output", "--env", "--max-motion", "--force", "--json", "--help"}};
 // The run turns the model, and what reads its result knows that.
 const StepOptions kConflictsOptions{
     {"--output", "--forward", "--up", "--date", "--force", "--json", "--help"}};
@@ -124,28 +126,66 @@ Words CheckPlan::convert(bool replacing) const {
          given<ConvertCommand>(check_, kConvertOptions) + again(replacing);
 }
 
+Words CheckPlan::resample() const {
+  if (is_given("--between-poses") || !is_given("--model") || is_given("--vehicle")) return {};
+  return Words{"trajectory",
+               "resample",
+               value_of("--trajectory"),
+               "-o",
+               file(kPathName).string(),
+               "--max-motion",
+               value_of("--radius"),
+               "--env",
+               environment().string()} +
+         given<ChangeCommand>(check_, kResampleOptions) + Words{"--force"};
+}
+
+/// The words of a step with the denser path, which is in the environment's frame and unit, so that
+/// what says how the file of the user is read goes.
+Words CheckPlan::with_path(Words words) const {
+  if (!has_denser_path_) return words;
+  constexpr std::array kReading{
+      "--trajectory-format", "--allow-non-rigid",  "--lever-arm",      "--angles",
+      "--trajectory-crs",    "--trajectory-datum", "--trajectory-unit"};
+  Words out;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::size_t equals = words[i].find('=');
+    const std::string name = words[i].substr(0, equals);
+    const bool takes_value = equals == std::string::npos && name != "--allow-non-rigid";
+    if (name == "--trajectory") {
+      out.insert(out.end(), {name, file(kPathName).string()});
+    } else if (std::ranges::find(kReading, name) == kReading.end()) {
+      out.push_back(words[i]);
+      continue;
+    }
+    if (takes_value) ++i;
+  }
+  return out;
+}
+
 Words CheckPlan::run(bool replacing) const {
   Words words = Words{"run", "--env", environment().string()} +
-                given<RunOptions>(check_, kRunOptions) + Words{"--first-pose"} + distances();
+                with_path(given<RunOptions>(check_, kRunOptions)) + Words{"--first-pose"} +
+                distances();
   if (has_budget() && is_given("--gap")) words = words + Words{"--gap", value_of("--gap")};
   return words + Words{"-o", file(kResultName).string()} + again(replacing);
 }
 
 Words CheckPlan::conflicts() const {
   return Words{"conflicts", file(kResultName).string()} +
-         given<ConflictsCommand>(check_, kConflictsOptions) +
+         with_path(given<ConflictsCommand>(check_, kConflictsOptions)) +
          Words{"-o", file(kConflictsName).string(), "--force"};
 }
 
 Words CheckPlan::stations() const {
   return Words{"stations", file(kResultName).string()} +
-         given<StationsCommand>(check_, kStationsOptions) +
+         with_path(given<StationsCommand>(check_, kStationsOptions)) +
          Words{"-o", file(kStationsName).string(), "--force"};
 }
 
 Words CheckPlan::report(const std::string& date) const {
   Words words = Words{"report", file(kResultName).string(), "--env", environment().string()} +
-                given<ReportCommand>(check_, kReportOptions);
+                with_path(given<ReportCommand>(check_, kReportOptions));
   if (!is_given("--date") && !date.empty()) words = words + Words{"--date", date};
   return words + Words{"-o", file(kReportName).string(), "--force"};
 }

@@ -12,6 +12,7 @@ namespace clearway::tool {
 
 // The files in the folder of a check.
 inline constexpr const char* kStoreName = "site.h5";
+inline constexpr const char* kPathName = "path.txt";
 inline constexpr const char* kResultName = "result.h5";
 inline constexpr const char* kConflictsName = "conflicts.csv";
 inline constexpr const char* kStationsName = "stations.csv";
@@ -45,6 +46,12 @@ class CheckPlan {
   /// replacing: in the place of what is there and does not agree. Otherwise the step goes on with
   /// what is there.
   Words convert(bool replacing) const;
+  /// The path with more poses, so that the model moves no farther than the radius from one to the
+  /// next; no words where the question needs none, or the path is not that of one model.
+  Words resample() const;
+  /// From here on the steps take the output of resample() as the path.
+  void take_denser_path() { has_denser_path_ = true; }
+
   Words run(bool replacing) const;
   Words conflicts() const;
   Words stations() const;
@@ -60,10 +67,12 @@ class CheckPlan {
   std::string value_of(const char* name) const;
   bool has_budget() const;
   Words distances() const;
+  Words with_path(Words words) const;
 
   const CheckCommand& options_;
   const CLI::App& check_;
   bool has_store_;
+  bool has_denser_path_ = false;
 };
 
 }  // namespace clearway::tool

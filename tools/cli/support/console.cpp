@@ -152,6 +152,10 @@ void start_log() {
 
 ConsoleProgress::ConsoleProgress() : terminal_(::isatty(STDERR_FILENO) == 1) {}
 
+ConsoleProgress::~ConsoleProgress() {
+  if (is_drawn_) std::fputs("\n", stderr);
+}
+
 void ConsoleProgress::begin(std::string_view stage, std::uint64_t total, std::string_view unit) {
   const std::lock_guard lock(mutex_);
   stage_ = stage;
@@ -182,13 +186,15 @@ void ConsoleProgress::update(const ProgressUpdate& update) {
 
 void ConsoleProgress::end() {
   const std::lock_guard lock(mutex_);
-  if (terminal_ && drawn_ != start_) std::fputs("\r\033[K", stderr);
+  if (is_drawn_) std::fputs("\r\033[K", stderr);
+  is_drawn_ = false;
 }
 
 bool ConsoleProgress::stop_requested() const { return tool::stop_requested(); }
 
 void ConsoleProgress::draw(Clock::time_point now) {
   drawn_ = now;
+  is_drawn_ = true;
   const double seconds = std::chrono::duration<double>(now - start_).count();
   const double rate = static_cast<double>(done_) / std::max(seconds, 1e-9);
   const std::string speed = ", " + short_number(rate) + " " + unit_ + "/s";

@@ -45,6 +45,8 @@ void start_log();
 class ConsoleProgress final : public Progress {
  public:
   ConsoleProgress();
+  /// Ends the line of a stage that an error or a signal left unfinished.
+  ~ConsoleProgress() override;
   void begin(std::string_view stage, std::uint64_t total, std::string_view unit) override;
   void advance(std::uint64_t units) override;
   void end() override;
@@ -58,6 +60,7 @@ class ConsoleProgress final : public Progress {
   void draw(Clock::time_point now);
 
   bool terminal_;
+  bool is_drawn_ = false;  ///< whether the terminal shows a line of the stage
   std::mutex mutex_;
   std::string stage_, unit_;
   std::uint64_t total_ = 0, done_ = 0;

@@ -85,8 +85,9 @@ std::string advice_on(const Message& message) {
                    "trajectory "
                    "resample adds poses on a smooth curve";
     }
-    return ". clearway trajectory resample adds poses; with a model of points, and for a section, "
-           "--between-poses searches the way too";
+    return has_number(message, "of_mesh") ? ". clearway trajectory resample adds poses"
+                                          : ". clearway trajectory resample adds poses, or "
+                                            "--between-poses searches the way too";
   }
   if (message.code == "line-curved") {
     return "; --corner-radius keeps legs straight and rounds their corners";
@@ -129,19 +130,30 @@ const CLI::Option* repeated_option(const CLI::App& app) {
 
 /// CLI11's message on an error; the one on a repeated option is reworded, because it says too
 /// little.
-std::string failure_text(const CLI::App* program, const CLI::Error& error) {
+std::string failure_text(const CLI::App& program, const CLI::Error& error) {
   const bool mismatch = dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr;
-  const CLI::Option* option = mismatch ? repeated_option(*program) : nullptr;
-  if (option == nullptr) return CLI::FailureMessage::simple(program, error);
-  CLI::ArgumentMismatch reworded(option->get_name() +
-                                 ": given more than once; expected one, but there are " +
-                                 std::to_string(option->count()));
-  return CLI::FailureMessage::simple(program, reworded);
+  const CLI::Option* option = mismatch ? repeated_option(program) : nullptr;
+  if (option == nullptr) return error.what();
+  return option->get_name() + ": given more than once; expected one, but there are " +
+         std::to_string(option->count());
+}
+
+/// The words of the command that was called, such as "clearway section find".
+std::string name_of_command(const CLI::App& program, std::string name) {
+  for (const CLI::App* command : program.get_subcommands()) {
+    return name_of_command(*command, name + " " + command->get_name());
+  }
+  return name;
 }
 
 /// Prints help, version or the error. Help goes to standard output, where a full disk is an error.
-int finish(const CLI::App& program, const CLI::ParseError& error) {
-  if (program.exit(error) != 0) return kWrongUsage;
+int finish(const CLI::App& program, const std::string& name, const CLI::ParseError& error) {
+  if (error.get_exit_code() != 0) {
+    spdlog::error("{} ({} --help explains it)", failure_text(program, error),
+                  name_of_command(program, name));
+    return kWrongUsage;
+  }
+  program.exit(error);
   if (!std::cout.flush()) throw ResourceError("standard output: cannot write");
   return kDone;
 }
@@ -151,7 +163,6 @@ int run(const ProgramText& text, int argc, char** argv, AddCommands add_commands
   program.set_version_flag("--version", CLEARWAY_VERSION);
   program.require_subcommand(1);
   int exit_code = kDone;
-  program.failure_message(failure_text);
   show_groups_in_order(program);
   add_commands(program, exit_code);
   group_common_options(program);
@@ -161,7 +172,7 @@ int run(const ProgramText& text, int argc, char** argv, AddCommands add_commands
   try {
     program.parse(static_cast<int>(pointers.size()), pointers.data());
   } catch (const CLI::ParseError& error) {
-    return finish(program, error);
+    return finish(program, text.name, error);
   }
   return exit_code;
 }

@@ -8,11 +8,13 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "clearway/error.hpp"
 #include "clearway/model.hpp"
 #include "clearway/store.hpp"
 #include "clearway/trajectory.hpp"
+#include "cli/steps.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
@@ -30,18 +32,6 @@
 
 namespace clearway::tool {
 namespace {
-
-struct ChangeOptions {
-  std::filesystem::path input, output, model, environment;
-  double max_motion = 0;
-  FileUnit model_unit = {};
-  ModelAxes model_axes;
-  LengthOptions lengths;
-  TrajectoryOptions trajectory;
-  std::string unit = "m";  ///< the symbol of the unit of lengths, for messages
-  bool force = false;
-  bool json = false;
-};
 
 struct Change {
   std::function<std::vector<Pose>(const std::vector<Pose>& poses, const Box& model,
@@ -63,7 +53,7 @@ std::vector<Pose> thin(const std::vector<Pose>& poses, const Box& model, double 
 }
 
 std::vector<Pose> changed(const std::vector<Pose>& poses, const Box& model,
-                          const ChangeOptions& options, const Change& change, Progress& progress) {
+                          const ChangeCommand& options, const Change& change, Progress& progress) {
   try {
     return change.make(poses, model, options.max_motion, progress);
   } catch (const InputError& error) {
@@ -71,21 +61,35 @@ std::vector<Pose> changed(const std::vector<Pose>& poses, const Box& model,
   }
 }
 
-/// Warns of gaps in the recording, which can no longer be seen in the output.
-void warn_of_jumps(const std::vector<Pose>& poses, const Box& model, const ChangeOptions& options,
-                   const std::string& consequence) {
+/// The bounding box of the model: no other place of a mesh is farther out than its vertices.
+Box box_of_model(const ChangeCommand& options) {
+  return box_of(
+      read_model_points(options.model, {.unit = options.model_unit,
+                                        .environment_unit = options.trajectory.environment_unit,
+                                        .forward = options.model_axes.forward,
+                                        .up = options.model_axes.up,
+                                        .vertices_only = true}));
+}
+
+std::vector<double> motions_of(const std::vector<Pose>& poses, const Box& model) {
   std::vector<double> motions;
   for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
     motions.push_back(motion_bound(model, poses[i], poses[i + 1]));
   }
-  const auto jumps = jumps_of(motions, std::min(kLeastJump, options.max_motion));
+  return motions;
+}
+
+/// Warns of gaps in the recording, which can no longer be seen in the output.
+void warn_of_jumps(const std::vector<Pose>& poses, const Box& model, const ChangeCommand& options,
+                   const std::string& consequence) {
+  const auto jumps = jumps_of(motions_of(poses, model), std::min(kLeastJump, options.max_motion));
   if (jumps.empty()) return;
   log_message(jump_warning(jumps, options.input.string() + ": as the model moves, ", options.unit,
                            consequence));
 }
 
 /// Takes the store's unit for lengths and for files without a unit of their own.
-void take_unit_of_environment(ChangeOptions& options) {
+void take_unit_of_environment(ChangeCommand& options) {
   if (options.environment.empty()) return;
   const Store store(options.environment);
   if (const auto warning = options.lengths.convert_for(store)) log_message(*warning);
@@ -94,7 +98,7 @@ void take_unit_of_environment(ChangeOptions& options) {
   options.unit = symbol_of_unit(store.length_unit());
 }
 
-void write_changed(ChangeOptions& options, const Change& change) {
+void write_changed(ChangeCommand& options, const Change& change) {
   std::vector<std::filesystem::path> inputs{options.input, options.model};
   if (!options.environment.empty()) inputs.push_back(options.environment);
   refuse_overwriting(options.output, inputs);
@@ -107,13 +111,7 @@ void write_changed(ChangeOptions& options, const Change& change) {
   for (const Message& remark : remarks) log_message(remark);
   tell_of_labels(options.input, labels);
   if (before.empty()) spdlog::warn("{}: no poses", options.input.string());
-  // No other place of a mesh is farther out than its vertices.
-  const Box model = box_of(
-      read_model_points(options.model, {.unit = options.model_unit,
-                                        .environment_unit = options.trajectory.environment_unit,
-                                        .forward = options.model_axes.forward,
-                                        .up = options.model_axes.up,
-                                        .vertices_only = true}));
+  const Box model = box_of_model(options);
   const double motion_before = largest_motion(model, before);
   if (!std::isfinite(motion_before)) {
     throw InputError(options.input.string() +
@@ -139,41 +137,66 @@ void write_changed(ChangeOptions& options, const Change& change) {
   }
 }
 
-void add_change(CLI::App& command, const char* max_motion_help, const Change& change) {
-  const auto options = std::make_shared<ChangeOptions>();
-  command.add_option("IN", options->input, kTrajectoryHelp)->type_name("FILE")->required();
+void add_change_options(CLI::App& command, ChangeCommand& options, const char* max_motion_help) {
+  command.add_option("IN", options.input, kTrajectoryHelp)->type_name("FILE")->required();
   command
-      .add_option("-o,--output", options->output,
+      .add_option("-o,--output", options.output,
                   "The new trajectory: 16 numbers a line, a row-major 4x4 matrix")
       ->type_name("FILE")
       ->required();
-  options->lengths.add(command, "--max-motion", options->max_motion, max_motion_help)->required();
+  options.lengths.add(command, "--max-motion", options.max_motion, max_motion_help)->required();
   command
-      .add_option("--model", options->model,
+      .add_option("--model", options.model,
                   "The model, as clearway run reads it; its bounding box is what moves")
       ->type_name("FILE")
       ->required();
   command
-      .add_option("--env", options->environment,
+      .add_option("--env", options.environment,
                   "The store: says the unit of lengths, and which foot a ft is, and gives the CRS")
       ->type_name("FILE");
-  add_model_unit(command, options->model_unit);
-  add_turn_options(command, options->model_axes.forward, options->model_axes.up);
-  add_trajectory_options(command, options->trajectory, options->lengths);
-  command.add_flag("--force", options->force, "Overwrite an existing output");
-  command.add_flag("--json", options->json, "One JSON object on standard output");
+  add_model_unit(command, options.model_unit);
+  add_turn_options(command, options.model_axes.forward, options.model_axes.up);
+  add_trajectory_options(command, options.trajectory, options.lengths);
+  command.add_flag("--force", options.force, "Overwrite an existing output");
+  command.add_flag("--json", options.json, "One JSON object on standard output");
+}
+
+void add_change(CLI::App& command, const char* max_motion_help, const Change& change) {
+  const auto options = std::make_shared<ChangeCommand>();
+  add_change_options(command, *options, max_motion_help);
   command.callback([options, change] {
     run_stoppable(options->output, kStartsAgain, [&] { write_changed(*options, change); });
   });
 }
 
+constexpr const char* kResampleMotion =
+    "The most that a model point may move from one pose to the next";
+const Change kResample{resample, ". The poses that are put between them are a guess"};
+
 }  // namespace
+
+void add_options(CLI::App& command, ChangeCommand& options) {
+  add_change_options(command, options, kResampleMotion);
+}
+
+void perform(ChangeCommand& options) { write_changed(options, kResample); }
+
+double motion_to_fill(ChangeCommand& options) {
+  constexpr double kRounding = 1e-6, kMostPoses = 1e6;
+  take_unit_of_environment(options);
+  const std::vector<Pose> poses = read_trajectory(options.input, options.trajectory);
+  const std::vector<double> motions = motions_of(poses, box_of_model(options));
+  if (motions.empty()) return 0;
+  const double largest = std::ranges::max(motions), most = options.max_motion;
+  const double needed = std::accumulate(motions.begin(), motions.end(), 0.0) / most;
+  const bool has_jumps = !jumps_of(motions, std::min(kLeastJump, most)).empty();
+  return largest > most * (1 + kRounding) && needed < kMostPoses && !has_jumps ? largest : 0;
+}
 
 void add_trajectory_changes(CLI::App& trajectory) {
   CLI::App* resampling = trajectory.add_subcommand(
       "resample", "Add poses on a smooth curve until all steps are small; the given poses stay");
-  add_change(*resampling, "The most that a model point may move from one pose to the next",
-             {resample, ". The poses that are put between them are a guess"});
+  add_change(*resampling, kResampleMotion, kResample);
   resampling->footer(
       "Example: clearway trajectory resample path.txt -o dense.txt --max-motion 0.05 --model "
       "car.ply");

@@ -107,6 +107,9 @@ Json json_of(const std::vector<ConflictField>& fields) {
 
 std::string csv_value(const FieldValue& value) {
   if (std::holds_alternative<std::monostate>(value)) return "";
+  if (const double* length = std::get_if<double>(&value)) {
+    return line_text(Json(readable_length(*length)));
+  }
   const auto* word = std::get_if<std::string_view>(&value);
   return word != nullptr ? csv_cell(*word) : line_text(json_of(value));
 }

@@ -44,7 +44,7 @@ TEST_CASE("names with blanks, quotes and UTF-8 are names like others") {
   check_says(place.run("info " + place.path("s \xC3\xBC.h5")).out, scan);
 }
 
-TEST_CASE("no points and no poses have an empty answer") {
+TEST_CASE("no points have an empty answer, and no poses are refused") {
   const Place place;
   write_las(place.folder / "none.las", {});
   place.put("scan.xyz", "0 0 0\n");
@@ -55,9 +55,11 @@ TEST_CASE("no points and no poses have an empty answer") {
   const std::string engine = GENERATE("sweep", "grid", "kdtree");
   const std::string options = "--radius 1 --engine " + engine;
   CHECK(place.search("none.h5", "path.txt", options, "a.h5")["colliding_points"] == 0);
-  CHECK(place.search("scan.h5", "none.txt", options, "b.h5")["colliding_points"] == 0);
+  check_outcome(place.run("run --env scan.h5 --model " + place.path("model.xyz") +
+                          " --trajectory none.txt -o b.h5 " + options),
+                3, "none.txt: has no poses");
   check_outcome(place.run("verify a.h5"), 0);
-  check_outcome(place.run("export b.h5 -o b.las"), 0);
+  check_outcome(place.run("export a.h5 -o a.las"), 0);
 }
 
 TEST_CASE("more than 2^16 cells, and more than 10^6 poses") {
