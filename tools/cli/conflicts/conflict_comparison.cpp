@@ -9,6 +9,7 @@
 #include <deque>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,6 @@
 #include "io/files/pending_file.hpp"
 #include "io/files/text_writer.hpp"
 #include "io/result/answer.hpp"
-#include "io/result/conflicts/markup_text.hpp"
 #include "io/result/result.hpp"
 #include "io/scans/scan_crs.hpp"
 
@@ -76,6 +76,8 @@ struct ComparedSide {
     out.doubts = answer.doubts();
     for (const Reason reason : answer.reasons()) out.reasons.emplace_back(name_of(reason));
     out.chainage = chainage;
+    for (const Pose& pose : poses) out.path.push_back(pose.position());
+    out.scanned = result.reader().findings().scanned;
     out.has_distances = header.clearance > 0;
     out.has_surface = header.model_triangles > 0;
     out.has_solids = header.model_solids > 0;
@@ -149,7 +151,8 @@ void find_worse(ComparedConflicts& found) {
   }
 }
 
-/// Why a conflict is worse, such as "0.080 -> 0.030 m", or "to be freed by 0.100 -> 0.250 m".
+}  // namespace
+
 std::string worsening_text(const ComparedConflicts& found, const Conflict& a, const Conflict& b) {
   const auto change = [&](std::optional<double> before, std::optional<double> now,
                           const char* none) {
@@ -165,6 +168,8 @@ std::string worsening_text(const ComparedConflicts& found, const Conflict& a, co
   };
   return "freed by a shift of " + change(shift(a), shift(b), "more than 2");
 }
+
+namespace {
 
 std::string line_of(const Conflict& c) {
   return fmt::format("  {:>5}  {:>19}  {:>11} {:<6}  {:>7}  {:.3f} {:.3f} {:.3f}\n", c.id,
@@ -546,34 +551,6 @@ std::string csv_of(const ComparedConflicts& found) {
   return out;
 }
 
-std::string html_of(const ComparedConflicts& found) {
-  std::string out =
-      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<title>Conflicts compared</title>\n<style>\nbody { font: 15px/1.5 sans-serif; margin: 2em; "
-      "}\ntable { border-collapse: collapse; }\nth, td { padding: 0.2em 0.7em; border-bottom: 1px "
-      "solid #ccc; text-align: right; }\nth:first-child, td:first-child, td:last-child { "
-      "text-align: left; }\ntr.new, tr.worse, tr.question, tr.not { font-weight: bold; "
-      "}\n</style>\n"
-      "</head>\n<body>\n<h1>Conflicts compared</h1>\n";
-  out += "<p>a: " + markup_text(found.a.file) + "<br>b: " + markup_text(found.b.file) +
-         "</p>\n<p><strong>" + markup_text(sentence_of(found)) +
-         "</strong></p>\n<p>Lengths are in " + found.a.unit + ".</p>\n<table>\n<tr>";
-  for (const char* column : kColumns) {
-    std::string title = column;
-    std::ranges::replace(title, '_', ' ');
-    out += "<th scope=\"col\">" + title + "</th>";
-  }
-  out += "</tr>\n";
-  const auto number = [](double v) { return fmt::format("{:.3f}", v); };
-  for (const Row& row : rows_of(found)) {
-    out += "<tr class=\"" + row.status.substr(0, row.status.find(' ')) + "\">";
-    for (const std::string& cell : cells_of(found, row, number))
-      out += "<td>" + markup_text(cell) + "</td>";
-    out += "</tr>\n";
-  }
-  return out + "</table>\n</body>\n</html>\n";
-}
-
 }  // namespace
 
 namespace {
@@ -628,7 +605,9 @@ std::string sentence_of(const ComparedConflicts& found) {
     out += (out.empty() ? "" : ", ") + format_count(count) + " " + (count == 1 ? one : many);
   };
   add(found.match.added.size(), "new conflict", "new conflicts");
-  add(found.worse.size(), "conflict is worse", "conflicts are worse");
+  std::set<std::uint32_t> worse;  // a conflict of b may be worse than several of a
+  for (const auto& pair : found.worse) worse.insert(pair.second);
+  add(worse.size(), "conflict is worse", "conflicts are worse");
   add(found.match.grown.size(), "part of another conflict is new",
       "parts of other conflicts are new");
   add(found.match.small.size(), "new group is too small to be listed",
@@ -711,7 +690,9 @@ void write_comparison(const ComparedConflicts& found, const std::filesystem::pat
   const std::string ending = file_ending(output);
   const File file = File::create(path);
   TextWriter out(file);
-  out << (ending == ".csv" ? csv_of(found) : ending == ".json" ? json_of(found) : html_of(found));
+  out << (ending == ".csv"    ? csv_of(found)
+          : ending == ".json" ? json_of(found)
+                              : html_of(found, output));
   out.flush();
 }
 

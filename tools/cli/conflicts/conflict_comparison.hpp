@@ -13,6 +13,7 @@
 #include "cli/support/program.hpp"
 #include "findings/match_conflicts.hpp"
 #include "io/result/check_results.hpp"
+#include "io/scans/scan_dates.hpp"
 
 namespace clearway::tool {
 
@@ -50,6 +51,8 @@ struct ComparedResult {
   std::vector<std::string> doubts;   ///< see Answer
   std::vector<std::string> reasons;  ///< names of the reasons of an undecided verdict
   std::vector<double> chainage;      ///< of each pose, metres, from --chainage-start on
+  std::vector<Vec3> path;            ///< the position of each pose
+  ScanDates scanned;                 ///< the days of the scans, by the dates of their files
   bool has_distances = false;        ///< whether the run had clearances
   bool has_surface = false;          ///< whether the model has triangles
   bool has_solids = false;           ///< whether the depth inside the model is known
@@ -98,6 +101,12 @@ struct ComparedConflicts {
   /// 1 where they differ, 6 where b shows nothing, and otherwise 0.
   int exit_code() const { return differs() ? kDiffers : shows_nothing() ? kUndecided : kDone; }
 };
+
+/// Why a conflict is worse, such as "0.080 -> 0.030 m", or "freed by a shift of 0.100 -> 0.250 m".
+std::string worsening_text(const ComparedConflicts& found, const Conflict& a, const Conflict& b);
+
+/// The comparison as a page for any browser. output: the page's file, from which its links lead.
+std::string html_of(const ComparedConflicts& found, const std::filesystem::path& output);
 
 /// What the comparison found, in one sentence: the last line of the text.
 std::string sentence_of(const ComparedConflicts& found);

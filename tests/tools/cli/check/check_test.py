@@ -46,7 +46,7 @@ class Site(unittest.TestCase):
         cls.addClassCleanup(cls.scratch.cleanup)
         cls.master = Path(cls.scratch.name) / "master"
         cls.master.mkdir()
-        made = clearway("scene hall --points 20000 --model-points 500 --poses 200 -o .", cls.master)
+        made = clearway("scene hall --points 20000 --model-points 500 --poses 1600 -o .", cls.master)
         assert made.returncode == 0, made.stderr
         (cls.master / "scans").mkdir()
         (cls.master / "environment.las").rename(cls.master / "scans/environment.las")
@@ -105,6 +105,39 @@ class Finding(Site):
         self.assertEqual(done.stdout.splitlines()[-1], verdict.splitlines()[-1])
         self.assertIn("taken by default: --clearance 0.3 (3 times the radius) and "
                       "--profile 0.5 (5 times the radius)", done.stderr)
+
+    def coarse_path(self):
+        lines = (self.folder / "trajectory.txt").read_text().splitlines()
+        (self.folder / "coarse.txt").write_text("\n".join(lines[::40]) + "\n")
+        return lines
+
+    def test_a_path_with_large_steps_is_made_denser(self):
+        self.coarse_path()
+        coarse = "--model model.ply --trajectory coarse.txt --radius 0.1"
+        done = self.check(f"scans {coarse} -o site")
+        self.assertIn("site/path.txt: from one pose to the next the model moves by up to", done.stderr)
+        self.assertNotIn("What lies between two poses can be missed", done.stderr)
+        commands = printed_commands(done.stdout)
+        self.assertEqual([shlex.split(command)[1] for command in commands],
+                         ["convert", "trajectory", "run", "conflicts", "stations", "report"])
+        self.assertTrue(all("--trajectory site/path.txt" in c for c in commands[2:]), commands)
+        first = bytes_of(self.folder / "site")
+        again = json.loads(self.check(f"scans {coarse} -o site --json").stdout)
+        self.assertTrue(again["nothing_done"])
+        self.assertEqual(set(again["reused"].values()), {True})
+        self.assertEqual(bytes_of(self.folder / "site"), first)
+        # The way of reading the path is that of the file, and not of the denser one.
+        given = self.check(f"scans {coarse} --trajectory-format matrix --lever-arm 0,0,0.01 -o site --force")
+        run = next(c for c in printed_commands(given.stdout) if " run " in c)
+        self.assertNotIn("--lever-arm", run)
+        self.assertNotIn("--trajectory-format", run)
+
+    def test_a_path_with_a_jump_stays_as_it_is(self):
+        lines = self.coarse_path()
+        (self.folder / "jump.txt").write_text("\n".join(lines[:400] + lines[1200:]) + "\n")
+        done = self.check("scans --model model.ply --trajectory jump.txt --radius 0.1 -o site")
+        self.assertFalse((self.folder / "site/path.txt").exists())
+        self.assertNotIn("resample", done.stdout)
 
     def test_the_printed_commands_give_the_same_bytes(self):
         done = self.asked("")

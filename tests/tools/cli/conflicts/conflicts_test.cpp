@@ -341,7 +341,8 @@ TEST_CASE("compare --conflicts tells what became worse, and writes it") {
   check_outcome(street.compare("a", "b", "--force -o c.json"), 1);
   CHECK(json::parse(street.bytes("c.json"))["worse"].size() == 1);
   check_outcome(street.compare("a", "b", "-o c.html"), 1);
-  check_says(street.bytes("c.html"), "<table> ... worse");
+  check_says(street.bytes("c.html"),
+             "<strong>Worse</strong> ... Question ... Plan ... Obstacles ... worse</span>");
   check_refused(street.compare("a", "b", "-o c.xml"), 2, "unknown output format");
   check_refused(street.compare("a", "b", "-o c.csv"), 2, "--force");
 }
