@@ -68,8 +68,8 @@ struct Model {
 /// What the file of a model is searched as. A mesh's surface becomes points only if the caller asks
 /// for points, because a search of points can miss what comes closer to the surface.
 enum class ModelAs {
-  /// A mesh as its surface, and any other file as its points. With ModelOptions::spacing or
-  /// ModelOptions::vertices_only it means kPoints.
+  /// A mesh all of whose parts are closed as kSolid, any other mesh as kSurface, and other files as
+  /// their points. With ModelOptions::spacing or ModelOptions::vertices_only it means kPoints.
   kAuto,
   kPoints,   ///< samples of a mesh's surface, or the points of the file
   kSurface,  ///< the triangles of a mesh; a file without any is refused

@@ -31,10 +31,11 @@ inline constexpr std::tuple kKindOfModel{Field{
     .value_name = "KIND",
     .help = "surface: search the triangles of a mesh as they are. solid: and what its closed parts "
             "enclose. points: search points on its surface; the answer says how far they are "
-            "apart. auto: surface for a mesh, points for other files (default)",
+            "apart. auto: solid for a mesh whose parts are all closed, surface for other meshes, points "
+            "for other files (default)",
     .doc =
-        "'auto': a mesh as its surface, any other file as its points; with spacing or\n"
-        "    vertices_only a mesh as points.\n"
+        "'auto': a mesh whose parts are all closed as a solid, another mesh as its surface, any\n"
+        "    other file as its points; with spacing or vertices_only a mesh as points.\n"
         "    'surface': the triangles of the mesh; a file without any is refused.\n"
         "    'solid': the same, and what its closed parts enclose; a mesh without any is refused.\n"
         "    'points': samples of the surface of a mesh, or the points of the file."}};

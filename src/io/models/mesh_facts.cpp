@@ -207,6 +207,23 @@ std::string faults_of(const MeshParts& parts) {
   return text;
 }
 
+std::string why_not_closed(const MeshParts& parts) {
+  const std::uint64_t all = parts.solids + parts.surface_parts;
+  if (all == 0) return "it encloses nothing";
+  std::string text = all == 1 ? "it is not closed"
+                              : format_count(parts.surface_parts) + " of its " + format_count(all) +
+                                    " parts " + (parts.surface_parts == 1 ? "is" : "are") +
+                                    " not closed";
+  for (const EdgeFault fault : kEdgeFaults) {
+    const FaultyEdges& edges = parts.faulty[static_cast<std::size_t>(fault)];
+    if (edges.count == 0) continue;
+    return text + ": " + counted(edges.count, "edge") + (edges.count == 1 ? " is " : " are ") +
+           words_for(fault) + ", the first from " + shown_place(edges.first[0][0]) + " to " +
+           shown_place(edges.first[0][1]);
+  }
+  return text;
+}
+
 MeshParts parts_with_solids(const TriangleMesh& mesh, const std::string& name) {
   MeshParts parts = find_parts(mesh);
   if (parts.solids > 0) return parts;

@@ -48,6 +48,15 @@ std::string summary_of(const MeshParts& parts);
 /// The faulty edges in words, with places; empty where there are none.
 std::string faults_of(const MeshParts& parts);
 
+/// Whether every part is closed, and there is one. Triangles without an area belong to no part, and
+/// do not matter.
+inline bool all_closed(const MeshParts& parts) {
+  return parts.solids > 0 && parts.surface_parts == 0;
+}
+
+/// Why not all parts are closed, in words: the first edge that keeps one open.
+std::string why_not_closed(const MeshParts& parts);
+
 /// The parts of a mesh that must have a solid. Throws InputError, which names the faulty edges,
 /// where it has none. name: the file's, for messages.
 MeshParts parts_with_solids(const TriangleMesh& mesh, const std::string& name);

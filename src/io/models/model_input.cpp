@@ -409,12 +409,6 @@ void check_model_options(const ModelOptions& options) {
       Remedy::kModelPoints);
 }
 
-ModelAs resolved_kind(const ModelInput& input, const ModelOptions& options) {
-  check_model_options(options);
-  if (options.as != ModelAs::kAuto) return options.as;
-  return input.is_mesh() && !options.asks_for_points() ? ModelAs::kSurface : ModelAs::kPoints;
-}
-
 Model points_of(const ModelInput& input, const ModelOptions& options,
                 std::vector<Message>& messages) {
   messages.insert(messages.end(), input.messages.begin(), input.messages.end());
@@ -423,6 +417,11 @@ Model points_of(const ModelInput& input, const ModelOptions& options,
 }
 
 namespace {
+
+Model model_of(MeshParts parts) {
+  return {std::move(parts.mesh.vertices), std::move(parts.mesh.triangles),
+          std::move(parts.solid_of)};
+}
 
 Model solids_of(const ModelInput& input, const ModelOptions& options,
                 std::vector<Message>& messages) {
@@ -437,8 +436,26 @@ Model solids_of(const ModelInput& input, const ModelOptions& options,
   if (!faults.empty()) {
     add_note(messages, input, "what keeps parts from being solid: " + faults);
   }
-  return {std::move(parts.mesh.vertices), std::move(parts.mesh.triangles),
-          std::move(parts.solid_of)};
+  return model_of(std::move(parts));
+}
+
+/// A mesh as a solid where all of its parts are closed, otherwise as a surface; says which and why.
+Model closed_or_surface_of(const ModelInput& input, const ModelOptions& options,
+                           std::vector<Message>& messages) {
+  TriangleMesh surface = surface_of(input, options, messages);
+  MeshParts parts = find_parts(surface);
+  if (all_closed(parts) && !options.above) {
+    add_note(messages, input,
+             (parts.solids == 1 ? std::string("it is")
+                                : "all of its " + format_count(parts.solids) + " parts are") +
+                 " closed, so it is searched as a solid: points inside it collide too");
+    return model_of(std::move(parts));
+  }
+  add_note(
+      messages, input,
+      "searched as a surface, which has no inside, because " +
+          (all_closed(parts) ? std::string("its lowest part is cut off") : why_not_closed(parts)));
+  return {std::move(surface.vertices), std::move(surface.triangles)};
 }
 
 }  // namespace
@@ -456,7 +473,8 @@ Model read_model(const std::filesystem::path& path, const ModelOptions& options,
   const ModelInput input = read_model_input(path, options);
   std::vector<Message> remarks;
   Model shape;
-  switch (resolved_kind(input, options)) {
+  // The only place that decides what a file becomes.
+  switch (options.as) {
     case ModelAs::kSolid:
       shape = solids_of(input, options, remarks);
       break;
@@ -465,6 +483,12 @@ Model read_model(const std::filesystem::path& path, const ModelOptions& options,
       shape = {std::move(surface.vertices), std::move(surface.triangles)};
       break;
     }
+    case ModelAs::kAuto:
+      if (input.is_mesh() && !options.asks_for_points()) {
+        shape = closed_or_surface_of(input, options, remarks);
+        break;
+      }
+      [[fallthrough]];
     default:
       shape = points_of(input, options, remarks);
   }

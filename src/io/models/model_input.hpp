@@ -57,9 +57,6 @@ Message loose_vertices_warning(const ModelInput& input, std::uint64_t vertices);
 /// Throws UsageError for parallel axes, and where options of points are combined with a surface.
 void check_model_options(const ModelOptions& options);
 
-/// How a file is searched, never kAuto. This is the only place that decides what a mesh becomes.
-ModelAs resolved_kind(const ModelInput& input, const ModelOptions& options);
-
 /// The points of a file that the options ask for: samples of a mesh, or all its vertices; the model
 /// has the spacing of a mesh. Throws InputError as sample_mesh() does, and for a mesh without a
 /// spacing. Appends notes and warnings to `messages`.

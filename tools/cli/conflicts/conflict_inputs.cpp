@@ -2,7 +2,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <iterator>
 #include <string>
+#include <utility>
 
 #include "clearway/error.hpp"
 #include "clearway/vehicle.hpp"
@@ -92,8 +94,7 @@ ModelOptions model_options_of(const Result& result, ModelOptions options) {
   if (header.model_solids > 0) {
     options.as = ModelAs::kSolid;
   } else if (header.model_triangles > 0) {
-    // A body of a vehicle may be points where another one is a surface.
-    options.as = header.bodies.empty() ? ModelAs::kSurface : ModelAs::kAuto;
+    options.as = ModelAs::kSurface;
   } else {
     options.as = ModelAs::kPoints;
     if (!options.asks_for_points()) options.spacing = header.notes.model_spacing;
@@ -118,7 +119,27 @@ std::vector<Body> read_bodies_of(const std::filesystem::path& vehicle, const Mod
   VehicleOptions all{model_options_of(result, model), options.trajectory_options,
                      options.find.threads};
   all.trajectory.default_crs = result.reader().header().crs_wkt;
-  return read_vehicle(vehicle, path, all, &warnings);
+  // Of the bodies, some may be solids, surfaces or points by themselves, or all of them what the
+  // run was told to take them for; which it was, only the hash says.
+  const ModelAs told = all.model.as;
+  std::vector<Message> of_auto;
+  all.model.as = told == ModelAs::kPoints ? told : ModelAs::kAuto;
+  std::vector<Body> bodies = read_vehicle(vehicle, path, all, &of_auto);
+  if (all.model.as != told && hash_of_bodies(bodies) != result.reader().header().model_hash) {
+    try {
+      all.model.as = told;
+      std::vector<Message> of_told;
+      std::vector<Body> others = read_vehicle(vehicle, path, all, &of_told);
+      if (hash_of_bodies(others) == result.reader().header().model_hash) {
+        bodies = std::move(others);
+        of_auto = std::move(of_told);
+      }
+    } catch (const Error&) {
+      // Then the vehicle is another one, which is said where the bodies are compared.
+    }
+  }
+  std::ranges::move(of_auto, std::back_inserter(warnings));
+  return bodies;
 }
 
 Model read_model_of(const std::filesystem::path& path, const ModelOptions& options,
