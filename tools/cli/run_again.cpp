@@ -61,8 +61,12 @@ std::string model_words(const ResultHeader& header, const CLI::App& command) {
   if (const ModelAxes axes = header.notes.model_axes; axes.need_turn()) {
     text += std::string(" --forward ") + name_of(axes.forward) + " --up " + name_of(axes.up);
   }
-  if (header.model_solids > 0) return text + " --model-as solid";
-  return header.model_triangles == 0 && one ? text + " --model-as points" : text;
+  // Of a vehicle, each body may be another kind by itself.
+  if (!one) return text;
+  return text + " --model-as " +
+         (header.model_solids > 0      ? "solid"
+          : header.model_triangles > 0 ? "surface"
+                                       : "points");
 }
 
 std::string ignored_words(const ResultHeader& header) {

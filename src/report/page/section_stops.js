@@ -54,7 +54,7 @@ const kShownPlaces = 24, kShownStretches = 12;
 
 /** What stops the load, place by place, deepest first, with what would free it. */
 function placesTable() {
-  const { places } = section.facts.check, known = places.some((p) => p.obstacle || p.witness);
+  const { places } = section.facts.check, known = places.some((p) => p.obstacle || p.witness || othersAt(p));
   const columns = [
     { title: "", cell: ({ label }) => label },
     { title: "Side", cell: ({ side }) => kSideWords[side] },
@@ -63,7 +63,7 @@ function placesTable() {
     { title: "Stretches", cell: ({ stops }) => numberRanges(stops) },
     { title: `Deepest at (${unitSymbol})`, cell: ({ chainage }) => chainage.toFixed(2), number: true },
     { title: `z (${unitSymbol})`, cell: (p) => `${signed(p.z_from)} – ${signed(p.z_to)}`, number: true },
-    known && { title: "What is there", cell: obstacleWords },
+    known && { title: "What is there", cell: (p) => [obstacleWords(p), othersAt(p)].filter(Boolean).join("; ") },
     { title: "What lets the load pass", cell: ({ remedy }) => remedy },
   ].filter(Boolean);
   const rows = places.map((place) => {
@@ -73,6 +73,13 @@ function placesTable() {
   const table = (part) => make("div", { class: "scroll tall" }, listTable("Places that stop the load", columns, part));
   return make("div", {}, make("h3", {}, "By place"), table(rows.slice(0, kShownPlaces)),
       folded(`${plural(places.length - kShownPlaces, "place")} less deep`, rows.length > kShownPlaces && table(rows.slice(kShownPlaces))));
+}
+
+/** Other named obstacles of the stretches of a place. */
+function othersAt({ stops, obstacle }) {
+  const names = new Set(stops.flatMap((n) => section.facts.check.stops[n - 1].obstacles));
+  names.delete(obstacle);
+  return names.size > 0 ? `in these stretches: ${[...names].join(", ")}` : "";
 }
 
 /** The index of the stop in which a place is deepest. */

@@ -95,10 +95,40 @@ TEST_CASE("run of a mesh is run of the points that model wrote") {
   check_outcome(meshes.work.run("compare mesh.h5 points.h5"), 0);
 }
 
+TEST_CASE("run searches a closed mesh as a solid, an open one as its surface, and says why") {
+  const Meshes meshes;
+  const auto searched = [&](const std::string& model, const std::string& options) {
+    const Outcome run =
+        require_success(meshes.run(model, "auto.h5", options + " --force --json --first-pose"));
+    return std::pair(json_of(run)["model_as"].get<std::string>(), run.err);
+  };
+  const auto [closed, why_closed] = searched("car.stl", "--model-unit mm");
+  CHECK(closed == "solid");
+  check_says(why_closed, "it is closed, so it is searched as a solid");
+  require_success(
+      meshes.run("car.stl", "told.h5", "--model-unit mm --model-as solid --first-pose"));
+  check_same(meshes.work.bytes("told.h5"), meshes.work.bytes("auto.h5"));
+  CHECK(searched("box:4,1.8,1.4", "").first == "solid");
+  std::string box =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+      "f 4 3 2 1\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+  meshes.work.put("crate.obj", box);  // without a lid
+  const auto [open, why_open] = searched("crate.obj", "");
+  CHECK(open == "surface");
+  check_says(why_open,
+             "searched as a surface, which has no inside, because it is not closed: 4 edges are of "
+             "one triangle only (an open border), the first from (0, 0, 1) to (1, 0, 1)");
+  meshes.work.put("both.obj", box + "f 5 6 7 8\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf 9 10 11\n");
+  check_says(searched("both.obj", "").second, "because 1 of its 2 parts is not closed: 3 edges");
+  CHECK(searched("car.stl", "--model-unit mm --model-as surface").first == "surface");
+  CHECK(searched("car.stl", "--model-unit mm --model-spacing 0.1").first == "points");
+  check_refused(meshes.run("car.stl", "no.h5", "--model-unit mm --engine kdtree"), 2, "kdtree");
+}
+
 TEST_CASE("run of a mesh searches its surface") {
   const Meshes meshes;
-  const Outcome run =
-      require_success(meshes.run("car.stl", "surface.h5", "--model-unit mm --first-pose --json"));
+  const Outcome run = require_success(meshes.run(
+      "car.stl", "surface.h5", "--model-unit mm --model-as surface --first-pose --json"));
   const json told = json_of(run);
   check_json(told, R"({
     "model_as": "surface", "model_points": 8, "model_triangles": 12, "engine": "sweep"})");
@@ -120,11 +150,12 @@ TEST_CASE("run of a mesh searches its surface") {
   CHECK(hits >= fine);
   CHECK(hits - fine < hits / 20);
   // The same search gives the same result in parts, and with the same identity of its journal.
-  require_success(meshes.run("car.stl", "part1.h5", "--model-unit mm --first-pose --shard 1/2"));
-  require_success(meshes.run("car.stl", "part2.h5", "--model-unit mm --first-pose --shard 2/2"));
+  const std::string again = "--model-unit mm --model-as surface --first-pose ";
+  require_success(meshes.run("car.stl", "part1.h5", again + "--shard 1/2"));
+  require_success(meshes.run("car.stl", "part2.h5", again + "--shard 2/2"));
   require_success(meshes.work.run("merge part1.h5 part2.h5 -o merged.h5"));
   check_same(meshes.work.bytes("merged.h5"), meshes.work.bytes("surface.h5"));
-  check_outcome(meshes.run("car.stl", "surface.h5", "--model-unit mm --first-pose --resume"), 0);
+  check_outcome(meshes.run("car.stl", "surface.h5", again + "--resume"), 0);
   check_refused(meshes.run("car.stl", "surface.h5",
                            "--model-unit mm --first-pose --model-as points --resume"),
                 2, "surface.h5");
@@ -133,7 +164,7 @@ TEST_CASE("run of a mesh searches its surface") {
 TEST_CASE("run of a solid finds what is inside") {
   const Meshes meshes;
   const std::string options = "--model-unit mm --clearance 0.5 --profile 0.5 --first-pose --json ";
-  const Outcome surface = meshes.run("car.stl", "surface.h5", options);
+  const Outcome surface = meshes.run("car.stl", "surface.h5", options + "--model-as surface");
   const Outcome solid =
       require_success(meshes.run("car.stl", "solid.h5", options + "--model-as solid"));
   const json told = json_of(solid);

@@ -100,7 +100,8 @@ TEST_CASE("a vehicle of solids tells what is inside and which body it is") {
   CHECK(facts["inside"]["depth"] == told["greatest_depth"]);
   for (const json& body : facts["inputs"]["model"]["bodies"]) CHECK(body["solids"] == 1);
   // As a surface the model gives another answer.
-  const json surface = json_of(yard.search("--vehicle wagon.json --clearance 0.3"));
+  const json surface =
+      json_of(yard.search("--vehicle wagon.json --model-as surface --clearance 0.3"));
   check_json(surface, R"({"model_as": "surface", "greatest_depth": null})");
 }
 
@@ -130,8 +131,11 @@ TEST_CASE("what a solid contains is no reason to warn") {
   yard.put("things.xyz", things);
   yard.succeed("convert things.xyz -o things.h5");
   for (const std::string model : {"--model wide.off ", "--vehicle wagon.json "}) {
-    CHECK(codes_of(yard.search(model, "things.h5")).count("inside-model") == 1);
-    CHECK(codes_of(yard.search(model + "--model-as solid", "things.h5")).count("inside-model") ==
-          0);
+    const auto warned = [&](const std::string& as) {
+      return codes_of(yard.search(model + as, "things.h5")).count("inside-model");
+    };
+    CHECK(warned("--model-as surface") == 1);
+    CHECK(warned("--model-as solid") == 0);
+    CHECK(warned("") == 0);  // the bodies are closed
   }
 }

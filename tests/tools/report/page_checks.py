@@ -94,7 +94,7 @@ class PageChecks:
 
     def check_show(self, page):
         """The button brings the camera to the conflict, wherever it and the vehicle were before."""
-        camera = "JSON.stringify([page.pose, view.target, view.distance, view.yaw, view.pitch])"
+        camera = "JSON.stringify([page.pose, ...view.target, view.distance, view.yaw, view.pitch].map((v) => +v.toFixed(6)))"
         button = "[...byId('conflict-details').querySelectorAll('button')].find((b) => b.textContent === 'Show in 3-D')"
         page.run(f"{button}.click()")
         page.frames()
