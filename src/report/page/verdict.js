@@ -309,6 +309,11 @@ function collidingIgnored({ colliding }) {
   return `${count(colliding)} of them would collide if they were searched.`;
 }
 
+/** Where the floor is. */
+function floorWords({ height }) {
+  return height === null ? "the floors of the vehicle's bodies" : `${shortLength(height)} of the vehicle`;
+}
+
 function cautions() {
   const { facts } = page;
   const out = facts.warnings.map((w) => `${capital(w.message)}.`);
@@ -317,11 +322,16 @@ function cautions() {
     out.push(`The search ignored ${plural(facts.ignored.points, "point")} of the environment ` +
              `(${facts.ignored.what}). ${collidingIgnored(facts.ignored)}`);
   }
+  if (facts.floor !== null) {
+    out.push(`${plural(facts.floor.colliding, "point")} within the radius ` +
+             `${facts.floor.colliding === 1 ? "lies" : "lie"} below ${floorWords(facts.floor)}, such as ` +
+             "points of the ground, and nothing is said about them.");
+  }
   if (conflicts && inputs.trajectory.length > 0 && conflicts.longest_group > 5 &&
       conflicts.longest_group > 0.5 * inputs.trajectory.length) {
     out.push(`One group of touching points goes along ${station(conflicts.longest_group)} of the ` +
              `path's ${station(inputs.trajectory.length)}. That is often the ground below the ` +
-             "wheels. clearway run --model-above leaves out what stands on the ground.");
+             "wheels. clearway run --floor leaves out what lies below a height of the vehicle.");
   }
   return out;
 }
@@ -351,6 +361,9 @@ function questionTable() {
             `${station(inputs.trajectory.length)} long. `, hash(inputs.trajectory.hash)),
     factRow("Result", `${inputs.result.name}. `, hash(inputs.result.hash)),
     factRow("Asked for", askedFor(query)),
+    page.facts.floor === null ? ""
+        : factRow("Floor", `Only what lies at ${floorWords(page.facts.floor)} or above is judged. `,
+                  optionName("--floor")),
     page.facts.ignored === null ? "" : factRow("Ignored", ignoredText(page.facts.ignored)));
 }
 
