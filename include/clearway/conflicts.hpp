@@ -17,8 +17,8 @@
 
 namespace clearway {
 
-/// Where a conflict lies, seen from the model.
-enum class Side { kUnknown, kLeft, kRight, kAbove, kBelow, kFront, kBehind };
+/// Where a conflict lies, seen from the model. kAround: on both sides of it, as a portal does.
+enum class Side { kUnknown, kLeft, kRight, kAbove, kBelow, kFront, kBehind, kAround };
 
 /// The name of a side in lower case, such as "left"; "unknown" for kUnknown.
 inline const char* name_of(Side side) {
@@ -37,14 +37,25 @@ inline const char* name_of(Side side) {
       return "front";
     case Side::kBehind:
       return "behind";
+    case Side::kAround:
+      return "around";
   }
   return "";
 }
 
+/// What a length says that was computed for a conflict.
+enum class Bound { kExact, kAtLeast };
+
+/// The name of a bound, "exact" or "at-least".
+inline const char* name_of(Bound bound) { return bound == Bound::kExact ? "exact" : "at-least"; }
+
 struct ConflictOptions {
-  /// Greatest distance of two neighbouring points of a conflict, in metres.
-  double gap = 0.3;
-  std::uint64_t min_points = 10;  ///< smaller groups are counted and not listed
+  /// Greatest distance of two neighbouring points of a conflict, in the unit of the environment; 0:
+  /// 0.3 m, or more where the colliding points are farther apart (Conflicts::gap).
+  double gap = 0;
+  /// Smaller groups are counted and not listed; 0: as many as the colliding points have on a square
+  /// of 10 cm, at least 1 and at most 10 (Conflicts::min_points).
+  std::uint64_t min_points = 0;
   /// Longest stretch of a conflict along the path, in metres: longer groups are cut at multiples of
   /// it. 0: groups are never cut.
   double split = 25;
@@ -70,8 +81,12 @@ struct ConflictOptions {
 
 /// Colliding points that hang together: each has a neighbour within the gap.
 struct Conflict {
-  std::uint32_t id = 0;      ///< 1, 2, ... in the order of chainage_from, then source
-  std::uint64_t points = 0;  ///< number of its colliding points
+  std::uint32_t id = 0;  ///< 1, 2, ... in the order of chainage_from, then source
+  /// 1 for the worst conflict, 2 for the next, and so on (docs/design/findings.md, "Ranks").
+  std::uint32_t rank = 0;
+  std::uint64_t points = 0;  ///< number of its points
+  /// How many of its points collide. The others, which only an error budget adds, are near.
+  std::uint64_t colliding = 0;
   std::uint64_t source = 0;  ///< smallest source index of its points
   Box box{};                 ///< box around its points, metres
   Vec3 centroid{};           ///< mean of its points, metres, from exact sums of the stored integers
@@ -91,14 +106,22 @@ struct Conflict {
   /// None if the pose's rotation cannot be inverted.
   std::optional<double> obstacle_chainage = {};
   /// Least shift of the vehicle to the left, or to the right, along the Y axis of the path's poses,
-  /// that frees the points of this conflict at all its poses; metres. Other points may need more.
-  /// None if 2 m do not free them, or if the model was not given.
-  std::optional<double> shift_left = {}, shift_right = {};
+  /// that frees the points of this conflict at all its poses; metres. It is a lower bound, because
+  /// other points may need more. None if 2 m do not free them, if none of the points collides, or
+  /// if the model was not given.
+  std::optional<double> own_shift_left = {}, own_shift_right = {};
+  /// What taken off that side of the body which is touched first is enough to free it from this
+  /// conflict, in metres; less may do. None where it would take nothing, or more than half of the
+  /// body (docs/design/findings.md, "Sides and trims").
+  std::optional<double> trim_left = {}, trim_right = {}, trim_above = {}, trim_below = {};
   std::optional<double> least_distance = {};  ///< least clearance, metres; none without clearances
   std::optional<std::uint32_t> nearest_pose = {};  ///< pose that has least_distance
   /// Source index of the point that has least_distance
   std::optional<std::uint64_t> nearest_source = {};
   std::optional<double> encroachment = {};  ///< radius - least_distance, metres
+  /// Whether exactly so much is missing, or at least so much, because a surface and points have no
+  /// inside. None without an encroachment.
+  std::optional<Bound> encroachment_is = {};
   /// Greatest depth of one of the points inside the model, in metres, 0 if none is inside; and how
   /// many of the points are inside at any pose. None unless the model has solids and the result has
   /// clearances.
@@ -106,9 +129,11 @@ struct Conflict {
   std::optional<std::uint64_t> points_inside = {};
   /// Position of nearest_source
   std::optional<Vec3> nearest_point = {};
-  /// The side of the model or body on which the points lie that it touches at the first pose
-  /// (docs/design/findings.md, "Stations and sides").
+  /// The side of the model, or of the body that is touched first, which the least trim is taken
+  /// from; otherwise kAround or first_touch (docs/design/findings.md, "Sides and trims").
   Side side = Side::kUnknown;
+  /// The side of the model or body on which the points lie that it touches at the first pose.
+  Side first_touch = Side::kUnknown;
   /// Place of the point that obstacle_chainage belongs to, in metres from the pose's position: to
   /// the left along the model's own axis, and up. The model's box is not needed. None if the pose's
   /// rotation cannot be inverted. With ConflictOptions::bodies the pose is that of the conflict's
@@ -119,6 +144,8 @@ struct Conflict {
   /// touches the point with the smallest source index of the first pose. None if the result is not
   /// a vehicle's.
   std::optional<std::uint32_t> body = {};
+  /// Index of the body that is touched first, which the trims are taken from. None as for body.
+  std::optional<std::uint32_t> first_body = {};
   /// Whether the conflict is certain, because ten or more of its points that the error budget says
   /// are certainly too close hang together by the gap of the search; otherwise it is possible. None
   /// without a budget.
@@ -137,6 +164,13 @@ struct SmallGroup {
 
 struct Conflicts {
   std::vector<Conflict> listed;  ///< in the order of their ids
+  double gap = 0;                ///< the gap that was used, in the unit of the environment
+  std::uint64_t min_points = 0;  ///< the least number of points that was used
+  /// How far apart colliding points are: the lower median of their distances to the nearest one at
+  /// another place, in the unit of the environment. None where there are fewer than 10 places.
+  std::optional<double> spacing = {};
+  bool knows_shifts = false;  ///< whether the model or bodies were given, so that shifts are known
+  bool knows_trims = false;   ///< whether the boxes of all bodies are known, and so the trims
   std::uint64_t colliding_points = 0;
   /// Number of points that are grouped too because they may be too close in truth; 0 without an
   /// error budget

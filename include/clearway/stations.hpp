@@ -51,11 +51,18 @@ struct StationRow {
   /// Station along the alignment at chainage_from and chainage_to, metres, interpolated linearly
   /// along the way between the stations of the poses. None without stations.
   std::optional<double> station_from = {}, station_to = {};
-  /// The point that has the least clearance of all whose nearest pose is on the stretch; and of
-  /// those that lie there to the left of their body's box, to the right of it, and above it. Of
-  /// equally near points, the one with the smallest source index. None where there is no such
-  /// point, or the result has no clearances.
-  std::optional<FoundPlace> least = {}, left = {}, right = {}, above = {};
+  /// The nearest point of the stretch: the least of the profile of its poses, and of the clearances
+  /// of the points whose nearest pose is on it. Of equally near points, the one with the smallest
+  /// source index. None where there is no such point, and where least_below says more.
+  std::optional<FoundPlace> least = {};
+  /// The radius, on a stretch with a conflict whose least distance is not known: it is below this.
+  std::optional<double> least_below = {};
+  /// The distance that the profile was asked for, on a clear stretch where it found nothing: the
+  /// least distance is at least this at every pose.
+  std::optional<double> least_above = {};
+  /// The point that has the least clearance of all whose nearest pose is on the stretch and that
+  /// lie there to the left of their body's box; to the right of it; above it.
+  std::optional<FoundPlace> left = {}, right = {}, above = {};
   /// What is known of the stretch: kClear, kConflict or kUndecided.
   Verdict verdict = Verdict::kClear;
   /// Why the verdict is kUndecided, except because the vehicle was not searched; see is_searched.

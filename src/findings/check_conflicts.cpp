@@ -18,9 +18,9 @@ namespace {
 constexpr double kLeastSplit = 1e-9;
 
 void check_options(const ConflictOptions& options) {
-  if (!(options.gap > 0) || !std::isfinite(options.gap)) {
+  if (!(options.gap >= 0) || !std::isfinite(options.gap)) {
     throw UsageError("a gap of " + format_number(options.gap) +
-                     " m; expected a finite length above 0");
+                     " m; expected a finite length above 0, or 0 for the usual one");
   }
   if (!(options.split >= 0) || !std::isfinite(options.split)) {
     throw UsageError("stretches of " + format_number(options.split) +

@@ -1,46 +1,80 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "clearway/conflicts.hpp"
 
 namespace clearway {
 
-/// Distances below this, in metres, say only that the surfaces touch, because a scan can show no
-/// more. Which of two such distances is smaller by a tenth of a millimetre does not matter for the
-/// rank.
-inline constexpr double kTouching = 0.001;
-
-/// The distance by which a conflict is ranked; infinity where none is known.
-inline double ranked_distance(const Conflict& c) {
-  const double distance = c.least_distance.value_or(std::numeric_limits<double>::infinity());
-  return distance >= 0 && distance < kTouching ? 0 : distance;
-}
-
-/// The shorter of the shifts to the left and to the right that free the conflict. Infinity where
-/// neither side frees it, and 0 where no shifts are known.
-inline double ranked_shift(const Conflict& c, bool shifts_known) {
-  if (!shifts_known) return 0;
+/// The shorter of the conflict's own shifts; infinity where neither side frees it.
+inline double least_own_shift(const Conflict& c) {
   const double none = std::numeric_limits<double>::infinity();
-  return std::min(c.shift_left.value_or(none), c.shift_right.value_or(none));
+  return std::min(c.own_shift_left.value_or(none), c.own_shift_right.value_or(none));
 }
 
-/// Whether a is worse than b: deeper or nearer, then harder to free by a shift, then of more
-/// points, then earlier along the path. shifts_known: whether any of the conflicts has a shift.
-inline bool is_worse(const Conflict& a, const Conflict& b, bool shifts_known) {
-  const double near_a = ranked_distance(a), near_b = ranked_distance(b);
-  if (near_a != near_b) return near_a < near_b;
-  const double shift_a = ranked_shift(a, shifts_known), shift_b = ranked_shift(b, shifts_known);
-  if (shift_a != shift_b) return shift_a > shift_b;
-  if (a.points != b.points) return a.points > b.points;
-  return a.id < b.id;
-}
+/// Orders conflicts from the worst on: first those with points inside a solid, the deepest first;
+/// then the others of which points collide, by the least that is known to free them, the largest
+/// first; then those whose points are only near, the nearest first. Equal ones are ordered by their
+/// points, most first, and then along the path.
+class WorseFirst {
+ public:
+  explicit WorseFirst(const Conflicts& of)
+      : knows_shifts_(of.knows_shifts), knows_trims_(of.knows_trims) {}
 
-inline bool has_shifts(const Conflicts& conflicts) {
-  return std::ranges::any_of(conflicts.listed, [](const Conflict& c) {
-    return c.shift_left.has_value() || c.shift_right.has_value();
+  bool operator()(const Conflict& a, const Conflict& b) const {
+    const auto of_a = key(a), of_b = key(b);
+    if (of_a != of_b) return of_a < of_b;
+    if (a.points != b.points) return a.points > b.points;
+    return a.id < b.id;
+  }
+
+ private:
+  /// The kind of a conflict, and what orders those of a kind; the worst first.
+  std::pair<int, double> key(const Conflict& c) const {
+    if (c.depth.value_or(0) > 0) return {0, -*c.depth};
+    if (c.colliding > 0) return {1, -least_that_frees(c)};
+    return {2, c.least_distance.value_or(kNone)};
+  }
+
+  /// The least of the known shifts and trims, where none that exists is infinite; 0 if none is
+  /// known.
+  double least_that_frees(const Conflict& c) const {
+    if (!knows_shifts_ && !knows_trims_) return 0;
+    double least = knows_shifts_ ? least_own_shift(c) : kNone;
+    if (!knows_trims_) return least;
+    for (const auto& trim : {c.trim_left, c.trim_right, c.trim_above, c.trim_below}) {
+      least = std::min(least, trim.value_or(kNone));
+    }
+    return least;
+  }
+
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+  bool knows_shifts_, knows_trims_;
+};
+
+/// Sets the rank of each conflict, 1 for the worst.
+inline void rank(Conflicts& conflicts) {
+  std::vector<Conflict*> order;
+  for (Conflict& conflict : conflicts.listed) order.push_back(&conflict);
+  std::ranges::sort(order, [worse = WorseFirst(conflicts)](const Conflict* a, const Conflict* b) {
+    return worse(*a, *b);
   });
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    order[i]->rank = static_cast<std::uint32_t>(i + 1);
+  }
+}
+
+/// The conflicts from the worst on.
+inline std::vector<const Conflict*> by_rank(const Conflicts& conflicts) {
+  std::vector<const Conflict*> out;
+  for (const Conflict& conflict : conflicts.listed) out.push_back(&conflict);
+  std::ranges::sort(out, {}, &Conflict::rank);
+  return out;
 }
 
 }  // namespace clearway

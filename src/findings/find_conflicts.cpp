@@ -18,9 +18,12 @@
 #include "core/util/format.hpp"
 #include "core/util/progress.hpp"
 #include "core/util/tsan_annotations.hpp"
+#include "findings/across_body.hpp"
 #include "findings/certain_points.hpp"
 #include "findings/check_conflicts.hpp"
 #include "findings/colliding_points.hpp"
+#include "findings/colliding_spacing.hpp"
+#include "findings/conflict_rank.hpp"
 #include "findings/group/cell_grid.hpp"
 #include "findings/group/point_groups.hpp"
 #include "findings/least_shift.hpp"
@@ -162,6 +165,7 @@ class ConflictSearch {
   static constexpr std::uint64_t kMostPairs = 4'000'000, kMostPairsOfAll = 200'000'000;
   /// The most points of all conflicts from which shifts are found, of 24 bytes each.
   static constexpr std::uint64_t kMostPointsOfAll = 5'000'000;
+  inline static const Model kNoModel{};
   /// The cosine of 45 degrees: the model moves along its forward axis up to this angle.
   static constexpr double kAlong = 0.7071067811865476;
 
@@ -171,6 +175,7 @@ class ConflictSearch {
         poses_(poses),
         options_(options),
         boxes_(boxes_of(result, options)),
+        metre_(metres_per_unit(reader_.header())),
         progress_(progress),
         memory_(options.memory_bytes, reader_.collisions() + reader_.near(), poses.size()),
         chainage_(chainage_of(poses)) {}
@@ -182,9 +187,16 @@ class ConflictSearch {
     out_.near_points = reader_.near();
     if (conflict_of != nullptr) conflict_of->clear();
     if (conflict_of_near != nullptr) conflict_of_near->clear();
-    if (out_.colliding_points + out_.near_points == 0) return std::move(out_);
+    out_.knows_trims = !boxes_.empty();
+    out_.knows_shifts =
+        !options_.bodies.empty() || (options_.model != nullptr && !options_.model->empty());
+    if (out_.colliding_points + out_.near_points == 0) {
+      choose_grouping();
+      return std::move(out_);
+    }
     memory_.check_points();
     points_ = read_colliding_points(reader_, progress_);
+    choose_grouping();
     const std::vector<std::uint32_t> certain = rows_of_certain_groups();
     group();
     std::vector<std::uint32_t> part_of_row = list();
@@ -240,14 +252,39 @@ class ConflictSearch {
     return near;
   }
 
+  static double metres_per_unit(const ResultHeader& header) {
+    const double metre = metres_of(unit_of_crs(header.crs_wkt));
+    return metre > 0 ? metre : 1;
+  }
+
+  /// Chooses the gap and the least number of points, where the options leave them open.
+  void choose_grouping() {
+    const Grouping usual =
+        usual_grouping(out_.colliding_points > 0, spacing_of_colliding(), metre_);
+    out_.gap = options_.gap > 0 ? options_.gap : usual.gap;
+    out_.min_points = options_.min_points > 0 ? options_.min_points : usual.min_points;
+  }
+
+  std::optional<double> spacing_of_colliding() {
+    std::vector<QuantumPoint> colliding;
+    if (out_.near_points > 0) {
+      for (std::size_t row = 0; row < points_.kind.size(); ++row) {
+        if (points_.kind[row] != CollidingPoints::kNear) colliding.push_back(points_.quanta[row]);
+      }
+    }
+    out_.spacing = colliding_spacing(out_.near_points > 0 ? colliding : points_.quanta,
+                                     reader_.header().quantisation, progress_);
+    return out_.spacing;
+  }
+
   void group() {
-    const Neighbourhood neighbourhood(reader_.header().quantisation, options_.gap);
+    const Neighbourhood neighbourhood(reader_.header().quantisation, out_.gap);
     grid_.emplace(points_.quanta, neighbourhood,
                   [this](std::uint64_t cells) { memory_.check_cells(cells); });
     points_.quanta = {};
     UnionFind sets(grid_->cells());
     join_cells(*grid_, neighbourhood, sets, progress_);
-    groups_ = number_groups(*grid_, sets, options_.min_points);
+    groups_ = number_groups(*grid_, sets, out_.min_points);
     out_.groups = groups_.count + groups_.small_groups;
     out_.small_groups = groups_.small_groups;
     out_.small_points = groups_.small_points;
@@ -269,11 +306,14 @@ class ConflictSearch {
         tally_parts(*grid_, groups_, parts, stretches, touch, part_of_row, progress_);
     make_conflicts(groups, parts, tallies);
     add_touched_first(tallies, part_of_row);
+    add_trims(tallies, part_of_row);
     grid_.reset();
     number(part_of_row, tallies.size());
     add_distances(part_of_row);
     for (Conflict& conflict : out_.listed) complete(conflict);
+    count_colliding(part_of_row);
     add_shifts(part_of_row);
+    rank(out_);
     return part_of_row;
   }
 
@@ -401,6 +441,7 @@ class ConflictSearch {
     for (Conflict& conflict : out_.listed) {
       const Tally& tally = tallies[conflict.id - 1];
       if (!points_.body.empty()) conflict.body = points_.body[tally.first_touched];
+      conflict.first_body = conflict.body;
       firsts[conflict.id - 1] = {tally.first_pose, tally.first_touched, conflict.body,
                                  pose_of(conflict.body, tally.first_pose)};
     }
@@ -411,9 +452,29 @@ class ConflictSearch {
       const TouchedFirst& first = firsts[conflict.id - 1];
       if (boxes_.empty() || first.pose == nullptr || !first.is_finite()) continue;
       const Box& box = boxes_[conflict.body.value_or(0)];
-      conflict.side = side_of(first.seen, box, options_.forward, options_.up);
+      conflict.first_touch = side_of(first.seen, box, options_.forward, options_.up);
     }
     for (const TouchedFirst& first : firsts) first_places_.push_back(first.place);
+  }
+
+  /// Sets the trims and the sides. Called before conflicts are numbered.
+  void add_trims(const std::vector<Tally>& tallies, std::span<const std::uint32_t> part_of_row) {
+    if (boxes_.empty()) return;
+    const ResultHeader& header = reader_.header();
+    const std::vector<MovingBody> bodies =
+        moving_bodies(kNoModel, poses_, options_.bodies, header.floor);
+    const BodiesAcross how{
+        bodies, boxes_, {options_.forward, options_.up}, header.radius, header.between_poses};
+    std::vector<PartAcross> parts(tallies.size());
+    for (const Conflict& conflict : out_.listed) {
+      parts[conflict.id - 1] = {conflict.first_body.value_or(0), conflict.first_pose,
+                                end_of(conflict.last_pose)};
+    }
+    find_across_bodies(*grid_, groups_, part_of_row, header.quantisation, how, parts, progress_);
+    for (Conflict& conflict : out_.listed) {
+      const PartAcross& part = parts[conflict.id - 1];
+      set_trims(part.found, how.box_from_floor(part.body), header.radius, conflict);
+    }
   }
 
   void add_distances(const std::vector<std::uint32_t>& conflict_of_row) {
@@ -433,6 +494,24 @@ class ConflictSearch {
       conflict.nearest_point = found.xyz;
       if (found.body) conflict.body = found.body;
       conflict.encroachment = reader_.header().radius - found.distance;
+      conflict.encroachment_is = bound_of(conflict);
+    }
+  }
+
+  /// Whether the encroachment is exact: of a solid, and of what is certainly inside one.
+  Bound bound_of(const Conflict& conflict) const {
+    const bool is_of_bodies = !reader_.header().bodies.empty();
+    const bool is_solid = !is_of_bodies ? reader_.header().model_solids > 0
+                                        : !options_.bodies.empty() && conflict.body &&
+                                              options_.bodies[*conflict.body].model.is_solid();
+    return is_solid || *conflict.least_distance < 0 ? Bound::kExact : Bound::kAtLeast;
+  }
+
+  void count_colliding(std::span<const std::uint32_t> conflict_of_row) {
+    for (Conflict& conflict : out_.listed) conflict.colliding = conflict.points;
+    for (std::size_t row = 0; row < points_.kind.size(); ++row) {
+      const std::uint32_t id = conflict_of_row[row];
+      if (id != 0 && points_.kind[row] == CollidingPoints::kNear) --out_.listed[id - 1].colliding;
     }
   }
 
@@ -481,16 +560,12 @@ class ConflictSearch {
   /// Finds the shifts that free each conflict, from its points; of very many points, from every
   /// n-th.
   void add_shifts(std::span<const std::uint32_t> conflict_of_row) {
-    std::vector<Body> one;
-    std::span<const Body> bodies = options_.bodies;
-    if (bodies.empty()) {
-      if (options_.model == nullptr || options_.model->empty()) return;
-      one.push_back({"", *options_.model, poses_, {}});
-      bodies = one;
-    }
+    if (!out_.knows_shifts) return;
+    const Model& model = options_.model != nullptr ? *options_.model : kNoModel;
+    const std::vector<MovingBody> bodies =
+        moving_bodies(model, poses_, options_.bodies, reader_.header().floor);
     const std::vector<std::vector<Vec3>> points = points_to_free(conflict_of_row);
-    const double metre = metres_of(unit_of_crs(reader_.header().crs_wkt));
-    const double most = kMostShift / (metre > 0 ? metre : 1);
+    const double most = kMostShift / metre_;
     const LeastShift shifts(bodies, poses_, direction_to_left(options_.forward, options_.up),
                             reader_.header().radius, reader_.header().between_poses,
                             options_.threads);
@@ -499,10 +574,11 @@ class ConflictSearch {
     const auto free_conflict = piece_of(scope, [&](std::size_t i) {
       if (progress_.stop_requested()) return;
       Conflict& conflict = out_.listed[i];
+      if (conflict.colliding == 0) return progress_.advance(1);
       const std::uint32_t last = end_of(conflict.last_pose);
       const SideShifts free = shifts.least(points[i], conflict.first_pose, last, most);
-      conflict.shift_left = free.left;
-      conflict.shift_right = free.right;
+      conflict.own_shift_left = free.left;
+      conflict.own_shift_right = free.right;
       progress_.advance(1);
     });
     scope.begin();
@@ -542,6 +618,7 @@ class ConflictSearch {
   const std::vector<Pose>& poses_;
   const ConflictOptions& options_;
   const std::vector<Box> boxes_;
+  const double metre_;  ///< length of the environment's unit
   Progress& progress_;
   const ConflictMemory memory_;
   const std::vector<double> chainage_;

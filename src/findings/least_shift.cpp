@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
-#include "clearway/query.hpp"
 #include "core/geometry/inside.hpp"
 #include "core/geometry/model_tree.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/geometry/solid_parts.hpp"
 #include "core/geometry/triangle_box.hpp"
-#include "core/query/body_numbers.hpp"
 
 namespace clearway {
 namespace {
@@ -90,8 +90,12 @@ Pose between(const Pose& a, const Pose& b, double part) {
 /// The model of a body with its trees, in the body's own frame.
 class LeastShift::Shape {
  public:
-  Shape(const Model& model, double radius, int threads)
+  Shape(const MovingBody& body, double radius, int threads)
+      : Shape(body.model, body.floor, radius, threads) {}
+
+  Shape(const Model& model, std::optional<double> floor, double radius, int threads)
       : radius_(radius),
+        floor_(floor),
         points_(model.is_surface() ? std::span<const Vec3>() : std::span(model.vertices), threads),
         triangles_(triangles_of(model), threads),
         solids_(model, threads),
@@ -112,16 +116,25 @@ class LeastShift::Shape {
   double free_from(const PointWay& point, double shift, double most) const {
     while (shift <= most) {
       const Vec3 x = point.at(shift);
-      if (!may_reach({x, {0, 0, 0}}, 0)) return shift;
+      if (!may_reach({x, {0, 0, 0}}, 0) || is_below_floor(x)) return shift;
       const double next = triangles_.size() > 0 ? next_of(triangles_, point, x, shift)
                                                 : next_of(points_, point, x, shift);
       if (next == shift) return shift;
-      shift = std::max(next, shift + kStep);
+      shift = std::max(std::min(next, sinks_below_floor(point)), shift + kStep);
     }
     return shift;
   }
 
  private:
+  bool is_below_floor(const Vec3& x) const { return floor_ && x.z < *floor_; }
+
+  /// The shift from which on a point that sinks lies below the floor; infinity for others. Only a
+  /// body that leans against its path makes points sink.
+  double sinks_below_floor(const PointWay& point) const {
+    if (!floor_ || !(point.way.z > 0)) return std::numeric_limits<double>::infinity();
+    return (point.from.z - *floor_) / point.way.z;
+  }
+
   template <typename Element>
   double next_of(const ModelTreeOf<Element>& tree, const PointWay& point, const Vec3& x,
                  double shift) const {
@@ -138,17 +151,18 @@ class LeastShift::Shape {
   Box grown(const Box& box) const { return box.grown(radius_); }
 
   double radius_;
+  std::optional<double> floor_;
   ModelTreeOf<Vec3> points_;
   ModelTreeOf<Triangle> triangles_;
   SolidParts solids_;
   Box box_;
 };
 
-LeastShift::LeastShift(std::span<const Body> bodies, const std::vector<Pose>& path,
+LeastShift::LeastShift(std::span<const MovingBody> bodies, const std::vector<Pose>& path,
                        const Vec3& left, double radius, bool ways, int threads)
     : bodies_(bodies), path_(path), left_(left), radius_(radius), ways_(ways) {
-  for (const Body& body : bodies) {
-    shapes_.push_back(std::make_unique<Shape>(body.model, radius, threads));
+  for (const MovingBody& body : bodies) {
+    shapes_.push_back(std::make_unique<Shape>(body, radius, threads));
   }
 }
 
@@ -193,10 +207,10 @@ SideShifts LeastShift::least(std::span<const Vec3> points, std::uint32_t first, 
   for (std::size_t body = 0; body < bodies_.size(); ++body) {
     if (shapes_[body]->is_empty()) continue;
     for (std::uint32_t i = first; i <= last; ++i) {
-      const Pose* pose = pose_at(bodies_[body], i);
+      const Pose* pose = bodies_[body].pose_at(i);
       if (pose == nullptr) continue;
       add_runs(body, *pose, path_[i], points, most, runs, seen);
-      const Pose* next = ways_ && i < last ? pose_at(bodies_[body], i + 1) : nullptr;
+      const Pose* next = ways_ && i < last ? bodies_[body].pose_at(i + 1) : nullptr;
       if (next == nullptr) continue;
       const int steps = steps_between(*pose, *next, radius_);
       for (int step = 1; step < steps; ++step) {

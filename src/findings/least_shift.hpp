@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "clearway/body.hpp"
 #include "clearway/pose.hpp"
+#include "clearway/query.hpp"
 #include "clearway/vec3.hpp"
 
 namespace clearway {
@@ -23,11 +23,11 @@ struct SideShifts {
 /// to the left (docs/design/findings.md, "Shifts"). Thread safe once constructed.
 class LeastShift {
  public:
-  /// bodies: where one has no path_pose, its poses are those of the path. left: the direction to
-  /// the left in the frame of the path's poses, +Y for a vehicle whose front points along +X. ways:
-  /// whether model points move on straight segments from pose to pose, which are looked at in steps
-  /// of half the radius. All references outlive it.
-  LeastShift(std::span<const Body> bodies, const std::vector<Pose>& path, const Vec3& left,
+  /// left: the direction to the left in the frame of the path's poses, +Y for a vehicle whose front
+  /// points along +X. ways: whether model points move on straight segments from pose to pose, which
+  /// are looked at in steps of half the radius. A point below a body's floor does not collide with
+  /// it. All references outlive it.
+  LeastShift(std::span<const MovingBody> bodies, const std::vector<Pose>& path, const Vec3& left,
              double radius, bool ways, int threads);
   ~LeastShift();
   LeastShift(const LeastShift&) = delete;
@@ -44,7 +44,7 @@ class LeastShift {
   void add_runs(std::size_t body, const Pose& pose, const Pose& of_path,
                 std::span<const Vec3> points, double most, std::vector<Run>& runs,
                 std::vector<Vec3>& seen) const;
-  std::span<const Body> bodies_;
+  std::span<const MovingBody> bodies_;
   const std::vector<Pose>& path_;
   const Vec3 left_;
   const double radius_;

@@ -52,9 +52,11 @@ class TableMaker {
     if (table_.bodies.empty()) table_.bodies.emplace_back();
     make_rows();
     if (rows_.size() == 0) return std::move(table_);
+    add_profile();
     add_distances();
     add_overthrow();
     judge();
+    limit_least();
     return std::move(table_);
   }
 
@@ -78,6 +80,53 @@ class TableMaker {
   std::optional<double> station_at(double chainage) const {
     if (options_.station.empty()) return std::nullopt;
     return value_at(rows_.chainage(), options_.station, chainage);
+  }
+
+  /// Adds the least distance of the poses of each row.
+  void add_profile() {
+    if (!(header_.profile > 0)) return;
+    progress_.begin("profile", poses_.size(), "poses");
+    RowStream<ProfileRows> stream(reader_);
+    std::uint32_t pose = 0;
+    for (ProfileRows rows; stream.read(rows);) {
+      throw_if_stopped(progress_);
+      for (std::size_t i = 0; i < rows.size(); ++i, ++pose) {
+        if (rows.source[i] == Profile::kNoPoint) continue;
+        keep_least({rows.source[i], pose, rows.xyz[i], rows.distance[i]},
+                   table_.rows[rows_.of_pose(pose)].least);
+      }
+      progress_.advance(rows.size());
+    }
+    progress_.end();
+    if (!decides_by_profile()) return;
+    out_of_radius_.resize(rows_.size());
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const auto& least = table_.rows[i].least;
+      out_of_radius_[i] = !least || !(least->distance < header_.radius);
+    }
+  }
+
+  /// Whether the profile shows on which rows anything collides at all.
+  bool decides_by_profile() const {
+    return header_.profile >= header_.radius && !header_.between_poses;
+  }
+
+  /// Says below or above which distance the least one is, where it is not known.
+  void limit_least() {
+    RowSet with_pose(rows_.size());
+    for (std::size_t i = 0; i < poses_.size(); ++i) with_pose.add(rows_.of_pose(i));
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      StationRow& row = table_.rows[i];
+      if (row.verdict == Verdict::kConflict) {
+        // What collides may have its clearance on another row, where it is nearer.
+        if (row.least && row.least->distance < header_.radius) continue;
+        row.least.reset();
+        row.least_below = header_.radius;
+      } else if (row.verdict == Verdict::kClear && !row.least && header_.profile > 0 &&
+                 with_pose.contains(i)) {
+        row.least_above = header_.profile;
+      }
+    }
   }
 
   void add_distances() {
@@ -114,7 +163,8 @@ class TableMaker {
   }
 
   static void keep_least(const FoundPlace& found, std::optional<FoundPlace>& least) {
-    if (!least || found.distance < least->distance) least = found;
+    const auto key = [](const FoundPlace& of) { return std::pair(of.distance, of.source); };
+    if (!least || key(found) < key(*least)) least = found;
   }
 
   void keep_side(const FoundPlace& found, StationRow& row) const {
@@ -183,7 +233,16 @@ class TableMaker {
     add(first, set);
     const auto last = rows_of(rows.last_pose[i]);
     add(last, set);
-    add_near(rows.xyz[i], header_.radius, first[1], last[0], set);
+    if (out_of_radius_.empty()) {
+      return add_near(rows.xyz[i], header_.radius, first[1], last[0], set);
+    }
+    // The profile leaves out rows on which nothing collides, although a body's box may be near.
+    for (std::size_t from = first[1]; from < last[0];) {
+      std::size_t to = from;
+      while (to < last[0] && !out_of_radius_[to]) ++to;
+      add_near(rows.xyz[i], header_.radius, from, to, set);
+      from = to + 1;
+    }
   }
 
   /// With an error budget, whether each colliding point is one of ten or more that hang together
@@ -391,6 +450,8 @@ class TableMaker {
   const std::vector<MovingBody> bodies_;
   std::vector<Box> boxes_;  ///< one for each of bodies_, or none where they are not known
   std::optional<BoxReach> reach_;
+  /// The rows at none of whose poses anything collides; empty where the profile does not show it.
+  std::vector<bool> out_of_radius_;
   StationTable table_;
 };
 

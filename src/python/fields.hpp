@@ -172,6 +172,13 @@ void add_properties(py::class_<Row>& rows, const std::tuple<Columns...>& columns
     } else if constexpr (std::is_enum_v<Value>) {
       rows.def_property_readonly(
           column.key, [member](const Row& row) { return name_of(row.*member); }, column.doc);
+    } else if constexpr (requires(const Value& value) { name_of(*value); }) {
+      rows.def_property_readonly(
+          column.key,
+          [member](const Row& row) {
+            return row.*member ? std::optional(name_of(*(row.*member))) : std::nullopt;
+          },
+          column.doc);
     } else {
       rows.def_readonly(column.key, member, column.doc);
     }

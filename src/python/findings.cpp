@@ -60,6 +60,13 @@ void add_conflicts(py::module_& module) {
           "conflict_of", [](const Found& c) { return to_array(c.conflict_of); },
           "The id of the conflict of each row of the result: n uint32; 0 where its group is too "
           "small to be listed.")
+      .def_readonly("gap", &Found::gap,
+                    "How far apart points of one conflict are at most: the gap that was used.")
+      .def_readonly("min_points", &Found::min_points,
+                    "How many points a conflict has at least: the number that was used.")
+      .def_readonly("spacing", &Found::spacing,
+                    "How far apart colliding points are, as the lower median of the distances to "
+                    "the nearest one at another place; None with fewer than 10 places.")
       .def_readonly("colliding_points", &Found::colliding_points,
                     "How many colliding points the result has, listed or not.")
       .def_readonly("groups", &Found::groups,
@@ -112,19 +119,22 @@ void add_find_conflicts(py::module_& module) {
       "bodies"_a = py::tuple(), "labels"_a = py::none(),
       "memory_bytes"_a = ConflictOptions{}.memory_bytes, "threads"_a = 0, "progress"_a = py::none(),
       "stop"_a = py::none(),
-      R"(find_conflicts(result, poses, *, gap=0.3, min_points=10, split=25.0, chainage_start=0.0, forward='+x', up='+z', model=None, bodies=(), labels=None, memory_bytes=4294967296, threads=0, progress=None, stop=None)
+      R"(find_conflicts(result, poses, *, gap=0.0, min_points=0, split=25.0, chainage_start=0.0, forward='+x', up='+z', model=None, bodies=(), labels=None, memory_bytes=4294967296, threads=0, progress=None, stop=None)
 --
 
 Group the colliding points of a result, place by place. Returns a Conflicts.
 
 result: the Result of a query with first_pose=True.
 poses: the poses of the search, n x 4 x 4.
-gap: metres; points at most this far apart belong to the same conflict.
-min_points: groups of fewer are counted, not listed.
+gap: metres; points at most this far apart belong to the same conflict; 0: 0.3 m, or three times
+    the spacing of the colliding points where that is more.
+min_points: groups of fewer are counted, not listed; 0: as many as lie on a square of 10 cm, at
+    least 1 and at most 10.
 split: metres along the path; longer groups are cut at multiples of it; 0: never.
 chainage_start: the chainage of the first pose, metres.
 forward, up: which axes of the model point ahead and up, such as '+x' or '-z'.
-model: the one model of the search, an n x 3 array or a Model: for shift_left, shift_right.
+model: the one model of the search, an n x 3 array or a Model: for own_shift_left and
+    own_shift_right.
 bodies: the bodies of the search, where it was one of a vehicle; sides and offsets are then
     seen from the body that touches.
 labels: the PoseLabels that read_trajectory() filled; with stations, conflicts have theirs too.

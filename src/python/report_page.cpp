@@ -36,7 +36,7 @@ void add_summary(py::module_& module) {
 }
 
 constexpr const char* kWriteReport =
-    R"(write_report(result, store, model, poses, output, *, title='', project='', client='', author='', date='', result_name='', environment_name='', model_name='', trajectory_name='', model_above=None, model_left_out=0, classes=(), max_points=1000000, gap=0.3, min_points=10, split=25.0, chainage_start=0.0, forward='+x', up='+z', memory_bytes=4294967296, threads=0, labels=None, every=0.0, shifts=None, warnings=(), bodies=(), overwrite=False, progress=None, stop=None)
+    R"(write_report(result, store, model, poses, output, *, title='', project='', client='', author='', date='', result_name='', environment_name='', model_name='', trajectory_name='', model_above=None, model_left_out=0, classes=(), max_points=1000000, gap=0.0, min_points=0, split=25.0, chainage_start=0.0, forward='+x', up='+z', memory_bytes=4294967296, threads=0, labels=None, every=0.0, shifts=None, warnings=(), bodies=(), overwrite=False, progress=None, stop=None)
 --
 
 Write one HTML file that needs nothing else: verdict, profile, plan, conflicts, 3-D view.

@@ -69,7 +69,7 @@ ShiftTable shifts_of(const Result& result, const std::filesystem::path& store, c
 }
 
 constexpr const char* kFindShifts =
-    R"(find_shifts(result, store, model, poses, *, lateral=(-2.0, 2.0), step=0.01, gap=0.3, min_points=10, split=25.0, chainage_start=0.0, forward='+x', up='+z', bodies=(), labels=None, memory_bytes=4294967296, threads=0, progress=None, stop=None)
+    R"(find_shifts(result, store, model, poses, *, lateral=(-2.0, 2.0), step=0.01, gap=0.0, min_points=0, split=25.0, chainage_start=0.0, forward='+x', up='+z', bodies=(), labels=None, memory_bytes=4294967296, threads=0, progress=None, stop=None)
 --
 
 Find the least lateral shift that frees the whole path, and that of each conflict's stretch.

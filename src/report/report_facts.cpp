@@ -20,8 +20,10 @@
 #include "findings/conflict_rank.hpp"
 #include "io/files/json.hpp"
 #include "io/files/xxh64.hpp"
+#include "io/result/conflicts/conflict_words.hpp"
 #include "io/result/floor_json.hpp"
 #include "io/result/result.hpp"
+#include "io/scans/scan_crs.hpp"
 #include "io/store/store_metadata.hpp"
 #include "io/store/store_reader.hpp"
 #include "report/on_site.hpp"
@@ -188,6 +190,8 @@ void add_finding(Json& json, const Column& column, const Row& row) {
     json["hi"] = value.hi;
   } else if constexpr (std::is_enum_v<Value>) {
     json[column.key] = name_of(value);
+  } else if constexpr (requires { name_of(*value); }) {
+    json[column.key] = value ? Json(name_of(*value)) : Json();
   } else if constexpr (requires { value.has_value(); }) {
     if (value || !column.is_left_out) json[column.key] = or_null(value);
   } else {
@@ -195,13 +199,23 @@ void add_finding(Json& json, const Column& column, const Row& row) {
   }
 }
 
-/// A conflict. rank: 1 for the worst of all.
-Json json_of(const Conflict& conflict, std::size_t rank, const ReportFacts& facts) {
-  Json out{{"rank", rank}};
+/// What frees the vehicle from a conflict, in words.
+std::string remedy_of(const Conflict& conflict, const ReportFacts& facts) {
+  const LengthUnit unit = unit_of_crs(facts.result.reader().header().crs_wkt);
+  RemedyWords how{*facts.conflicts, symbol_of(unit)};
+  if (metres_of(unit) > 0) how.metre = metres_of(unit);
+  if (conflict.first_body) how.body = facts.bodies[*conflict.first_body].name;
+  if (facts.options.shifts) how.shifts = &*facts.options.shifts;
+  return remedy_words(conflict, how);
+}
+
+Json json_of(const Conflict& conflict, const ReportFacts& facts) {
+  Json out = Json::object();
   for_each_field(kConflictColumns, [&](const auto& column) {
     if (column.is_in_files) add_finding(out, column, conflict);
   });
   if (conflict.certain) out["class"] = *conflict.certain ? "certain" : "possible";
+  out["remedy"] = remedy_of(conflict, facts);
   const auto place = conflict.nearest_source ? facts.points.places.find(*conflict.nearest_source)
                                              : facts.points.places.end();
   out["nearest_point"] = place == facts.points.places.end() ? Json() : Json(place->second);
@@ -221,36 +235,25 @@ Json first_small(const Conflicts& found) {
           {"chainage_to", first.chainage_to}};
 }
 
-/// A conflict and its rank, 1 for the worst.
-using RankedConflict = std::pair<const Conflict*, std::size_t>;
-
 /// The worst conflicts, at most kMostListedConflicts, in the order of their ids.
-std::vector<RankedConflict> listed_in_page(const Conflicts& conflicts) {
-  std::vector<const Conflict*> out;
-  for (const Conflict& conflict : conflicts.listed) out.push_back(&conflict);
-  const bool shifts = has_shifts(conflicts);
-  std::ranges::sort(out,
-                    [&](const Conflict* a, const Conflict* b) { return is_worse(*a, *b, shifts); });
+std::vector<const Conflict*> listed_in_page(const Conflicts& conflicts) {
+  std::vector<const Conflict*> out = by_rank(conflicts);
   if (out.size() > kMostListedConflicts) out.resize(kMostListedConflicts);
-  std::vector<RankedConflict> ranked;
-  for (const Conflict* conflict : out) ranked.emplace_back(conflict, ranked.size() + 1);
-  std::ranges::sort(ranked, {}, [](const RankedConflict& one) { return one.first->id; });
-  return ranked;
+  std::ranges::sort(out, {}, [](const Conflict* one) { return one->id; });
+  return out;
 }
 
 Json json_of_conflicts(const ReportFacts& facts) {
   if (facts.conflicts == nullptr) return {};
   const Conflicts& found = *facts.conflicts;
-  const ConflictOptions& options = facts.options.conflicts;
   const Conflict* worst = worst_of(found);
   Json list = Json::array();
-  for (const auto& [conflict, rank] : listed_in_page(found)) {
-    list.push_back(json_of(*conflict, rank, facts));
-  }
+  for (const Conflict* conflict : listed_in_page(found)) list.push_back(json_of(*conflict, facts));
   return {{"count", found.listed.size()},
-          {"gap", options.gap},
-          {"min_points", options.min_points},
-          {"split", options.split},
+          {"gap", found.gap},
+          {"min_points", found.min_points},
+          {"spacing", or_null(found.spacing)},
+          {"split", facts.options.conflicts.split},
           {"groups", found.groups},
           {"small_groups", found.small_groups},
           {"small_points", found.small_points},
@@ -271,6 +274,8 @@ Json json_of(const StationRow& row) {
   Json out{{"chainage_from", row.chainage_from}, {"chainage_to", row.chainage_to}};
   add_stations(out, row);
   add_place(out, "least", row.least);
+  out["least_below"] = or_null(row.least_below);
+  out["least_above"] = or_null(row.least_above);
   add_place(out, "left", row.left);
   add_place(out, "right", row.right);
   add_place(out, "above", row.above);
@@ -461,10 +466,7 @@ Json json_of_warnings(const std::vector<Message>& warnings) {
 }  // namespace
 
 const Conflict* worst_of(const Conflicts& conflicts) {
-  const bool shifts = has_shifts(conflicts);
-  const auto worst = std::ranges::min_element(
-      conflicts.listed,
-      [&](const Conflict& a, const Conflict& b) { return is_worse(a, b, shifts); });
+  const auto worst = std::ranges::min_element(conflicts.listed, {}, &Conflict::rank);
   return worst == conflicts.listed.end() ? nullptr : &*worst;
 }
 

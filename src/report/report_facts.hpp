@@ -62,7 +62,7 @@ struct ReportFacts {
 
 inline constexpr std::size_t kMostListedConflicts = 5'000;
 
-/// The conflict that matters most, by is_worse(). Null where there are none.
+/// The conflict with rank 1. Null where there are none.
 const Conflict* worst_of(const Conflicts& conflicts);
 
 /// The most cubes of listed groups that the page draws; each group keeps its share, and at least

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -27,8 +28,11 @@ struct Found {
   double clearance = 0;
   Clearances clearances = {};
   std::uint64_t solids = 0;
-  std::vector<Body> bodies = {};         ///< the bodies of a vehicle
-  std::vector<std::uint32_t> body = {};  ///< the body of each row, where there are bodies
+  std::vector<Body> bodies = {};              ///< the bodies of a vehicle
+  std::vector<std::uint32_t> body = {};       ///< the body of each row, where there are bodies
+  std::vector<std::uint32_t> last_pose = {};  ///< empty: the first poses
+  std::optional<double> floor = {};
+  bool between_poses = false;
 
   ResultHeader header() const {
     ResultHeader out;
@@ -38,6 +42,8 @@ struct Found {
     out.trajectory_hash = hash_of_trajectory(poses);
     out.radius = 0.5;
     out.first_pose = true;
+    out.floor = floor;
+    out.between_poses = between_poses;
     out.clearance = clearance;
     out.model_triangles = 12 * solids;
     out.model_solids = solids;
@@ -51,6 +57,7 @@ struct Found {
   Collisions rows() const {
     Collisions out;
     out.body = body;
+    out.last_pose = last_pose;
     for (std::size_t i = 0; i < quanta.size(); ++i) {
       out.source.push_back(source.empty() ? i : source[i]);
       out.xyz.push_back(position(quantisation, quanta[i][0], quanta[i][1], quanta[i][2]));

@@ -97,7 +97,7 @@ TEST_CASE("the side is seen from the model's box at the pose") {
     found.quanta = {{0, 0, 0}};
     ConflictOptions options = how;
     options.min_points = 1;
-    return conflicts_with_sides(found, options).listed.at(0).side;
+    return conflicts_with_sides(found, options).listed.at(0).first_touch;
   };
   const Pose ahead = translation({100, 50, 0});
   CHECK(side({100, 52, 0}, ahead) == Side::kLeft);
@@ -158,11 +158,11 @@ struct TwoBodies : Found {
 TEST_CASE("a conflict of a vehicle is seen from its body at its own pose") {
   const TwoBodies found;
   const Conflict seen = found.conflict(found.bodies);
-  CHECK(seen.side == Side::kRight);
+  CHECK(seen.first_touch == Side::kRight);
   check_equal(seen.lateral, -2);
   check_equal(seen.height, 0.5);
   const Conflict unseen = found.conflict({});
-  CHECK(unseen.side == Side::kUnknown);
+  CHECK(unseen.first_touch == Side::kUnknown);
   check_equal(unseen.lateral, 10);
   CHECK(unseen.body == 0u);
 }
@@ -177,11 +177,12 @@ TEST_CASE("with clearances it is seen from the nearest body at the nearest pose"
   found.clearances.xyz = found.rows().xyz;
   const Conflict seen = found.conflict(found.bodies);
   CHECK(seen.body == 1u);
-  CHECK(seen.side == Side::kRight);
+  CHECK(seen.first_touch == Side::kRight);
   check_equal(seen.lateral, -3.5);
   found.clearances.pose = {0};  // a pose that the second body lacks
   const Conflict lost = found.conflict(found.bodies);
-  CHECK(lost.side == Side::kRight);  // seen from the body that touches first, at its first pose
+  CHECK(lost.first_touch ==
+        Side::kRight);  // seen from the body that touches first, at its first pose
   CHECK_FALSE(lost.lateral);
   CHECK_FALSE(lost.height);
 }

@@ -282,3 +282,102 @@ TEST_CASE("equal points match whatever the gap, and nothing matches nothing") {
   CHECK(match({}, row(0, 1000)).added == Ids{1});
   CHECK(match(row(0, 1000), {}).gone == Ids{1});
 }
+
+namespace {
+
+/// The lower median of the distances to the nearest point at another place, by looking at all
+/// pairs.
+std::optional<double> spacing_by_all_pairs(const Found& found) {
+  const std::vector<Vec3> xyz = found.rows().xyz;
+  std::vector<double> distances;
+  for (std::size_t i = 0; i < xyz.size(); ++i) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < xyz.size(); ++j) {
+      if (found.quanta[i] == found.quanta[j]) continue;
+      const Vec3 d = xyz[i] - xyz[j];
+      least = std::min(least, std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z));
+    }
+    distances.push_back(least);
+  }
+  std::ranges::sort(distances);
+  return distances[(distances.size() - 1) / 2];
+}
+
+Conflicts grouped_as_usual(const Found& found, const ConflictOptions& options = {}) {
+  const ScratchFolder folder;
+  return find_conflicts(found.write(folder), found.poses, options);
+}
+
+}  // namespace
+
+TEST_CASE("the usual grouping follows from how far apart the colliding points are") {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    Found found;
+    const double size = 0.2 * static_cast<double>(1 + below(random, 40));
+    for (const Vec3& p : random_points(random, {{0, 0, 0}, {size, size, size / 4}}, 400)) {
+      found.quanta.push_back({});
+      for (int k = 0; k < 3; ++k) {
+        found.quanta.back()[static_cast<std::size_t>(k)] =
+            static_cast<std::int32_t>(std::lround(p[k] * 1000));
+      }
+      if (seed % 2 == 0) found.quanta.push_back(found.quanta[below(random, found.quanta.size())]);
+    }
+    const Conflicts conflicts = grouped_as_usual(found);
+    REQUIRE(conflicts.spacing);
+    const double s = spacing_by_all_pairs(found).value();
+    CHECK(*conflicts.spacing == Approx(s).epsilon(1e-9));
+    CHECK(conflicts.gap == Approx(std::max(0.3, 3 * s)));
+    const double patch = std::clamp(std::ceil(0.01 / (s * s)), 1.0, 10.0);
+    CHECK(conflicts.min_points == static_cast<std::uint64_t>(patch));
+  }
+}
+
+TEST_CASE("a sign of nine points in a thin scan is a conflict, and noise in a dense one is not") {
+  // Nine points 0.25 m apart, and a pole whose points are as far apart, 5 m away.
+  Found thin;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) thin.quanta.push_back({0, 250 * i, 3000 + 250 * k});
+  }
+  for (int k = 0; k < 8; ++k) thin.quanta.push_back({5000, 0, 250 * k});
+  const Conflicts found = grouped_as_usual(thin);
+  REQUIRE(found.listed.size() == 2);
+  check_equal(found.listed[0].points, 9);
+  CHECK(found.gap == Approx(0.75));
+  check_equal(found.min_points, 1);
+
+  // A wall whose points are 2 cm apart, and three points of noise.
+  Found dense;
+  for (int i = 0; i < 50; ++i) {
+    for (int k = 0; k < 50; ++k) dense.quanta.push_back({0, 20 * i, 20 * k});
+  }
+  for (int k = 0; k < 3; ++k) dense.quanta.push_back({9000, 100 * k, 0});
+  const Conflicts wall = grouped_as_usual(dense);
+  check_equal(wall.listed.size(), 1);
+  check_equal(wall.small_groups, 1);
+  check_equal(wall.gap, 0.3);
+  check_equal(wall.min_points, 10);
+}
+
+TEST_CASE("with few places, or where nothing collides, the grouping is fixed") {
+  Found few;
+  for (int k = 0; k < 9; ++k) few.quanta.push_back({5000 * k, 0, 0});
+  for (int k = 0; k < 9; ++k) few.quanta.push_back({5000 * k, 0, 0});
+  const Conflicts found = grouped_as_usual(few);
+  check_equal(found.listed.size(), 9);
+  check_equal(found.gap, 0.3);
+  check_equal(found.min_points, 1);
+  CHECK_FALSE(found.spacing);
+  few.quanta.push_back({5000 * 9, 0, 0});
+  CHECK(grouped_as_usual(few).spacing == 5.0);
+  check_equal(grouped_as_usual(few).listed.size(), 1);
+  check_equal(grouped_as_usual({}).gap, 0.3);
+  check_equal(grouped_as_usual({}).min_points, 10);
+  // What is asked for is taken, and the other of the two stays as usual.
+  ConflictOptions options;
+  options.gap = 1;
+  const Conflicts asked = grouped_as_usual(few, options);
+  check_equal(asked.gap, 1);
+  check_equal(asked.min_points, 1);
+}

@@ -22,6 +22,7 @@ struct Scene : SearchedScene {
 
   Conflicts conflicts(std::vector<std::uint32_t>* conflict_of = nullptr) const {
     ConflictOptions options;
+    options.gap = 0.3;
     options.min_points = 1;
     options.model = &query.model;
     options.threads = 2;
@@ -90,7 +91,7 @@ TEST_CASE("a conflict's poses hold the one of its least distance, and shifts fre
       CHECK(conflict.first_pose == from);
       CHECK(conflict.last_pose == to);
       for (const auto& [shift, side] :
-           {std::pair(conflict.shift_left, 1.0), std::pair(conflict.shift_right, -1.0)}) {
+           {std::pair(conflict.own_shift_left, 1.0), std::pair(conflict.own_shift_right, -1.0)}) {
         if (!shift) continue;
         CHECK_FALSE(scene.collides(group, conflict, side * (*shift + 1e-6)));
         for (int step = 0; step < 20; ++step) {
@@ -126,11 +127,11 @@ TEST_CASE("a pole that a long load meets in its middle is named with station, si
     REQUIRE(c.obstacle_chainage);
     // The pole stands beside the pose in the middle of the path, at 0.4 rad of 50 m.
     CHECK(*c.obstacle_chainage == Approx(20).margin(0.5));
-    REQUIRE(c.shift_right);
-    CHECK(*c.shift_right > 0.2);
-    CHECK_FALSE(scene.collides(scene.points, c, -(*c.shift_right + 1e-6)));
-    CHECK(scene.collides(scene.points, c, -(*c.shift_right - 1e-6)));
-    CHECK_FALSE(c.shift_left);  // 3 m more than there is
+    REQUIRE(c.own_shift_right);
+    CHECK(*c.own_shift_right > 0.2);
+    CHECK_FALSE(scene.collides(scene.points, c, -(*c.own_shift_right + 1e-6)));
+    CHECK(scene.collides(scene.points, c, -(*c.own_shift_right - 1e-6)));
+    CHECK_FALSE(c.own_shift_left);  // 3 m more than there is
     CHECK(c.chainage_to > c.chainage_from + 5);
   }
 }
@@ -146,7 +147,7 @@ TEST_CASE("what the front of a vehicle meets is in front, whatever it is made of
     query.clearance = 0.2;
     const Conflicts found = Scene(wall, query).conflicts();
     REQUIRE(found.listed.size() == 1);
-    CHECK(found.listed[0].side == Side::kFront);
+    CHECK(found.listed[0].first_touch == Side::kFront);
     CHECK(*found.listed[0].obstacle_chainage == Approx(12.1).margin(1e-9));
     // The conflict reaches from the pose at 10 m, whose front is at 12 m, to where the rear at -2 m
     // has passed.
@@ -172,6 +173,7 @@ TEST_CASE("groups that are too small to be listed are told one by one") {
   Query query({{0, 0, 0.5}}, straight_path(10), {.radius = 0.1});
   const Scene scene({{4, 0, 0.5}, {4, 0.05, 0.5}, {8, 0, 0.5}}, query);
   ConflictOptions options;
+  options.min_points = 10;
   const Conflicts found =
       find_conflicts(Result(scene.folder / "out.h5"), scene.query.poses, options);
   CHECK(found.listed.empty());
@@ -192,10 +194,10 @@ TEST_CASE("between poses, shifts free the ways too") {
   const Scene scene({{5, 0.05, 0}}, query);
   const Conflicts found = scene.conflicts();
   REQUIRE(found.listed.size() == 1);
-  REQUIRE(found.listed[0].shift_left);
-  REQUIRE(found.listed[0].shift_right);
-  CHECK(*found.listed[0].shift_left == Approx(0.15).margin(1e-6));
-  CHECK(*found.listed[0].shift_right == Approx(0.05).margin(1e-6));
+  REQUIRE(found.listed[0].own_shift_left);
+  REQUIRE(found.listed[0].own_shift_right);
+  CHECK(*found.listed[0].own_shift_left == Approx(0.15).margin(1e-6));
+  CHECK(*found.listed[0].own_shift_right == Approx(0.05).margin(1e-6));
 }
 
 TEST_CASE("left and right of a shift are those of the side, whichever axis points ahead") {
@@ -214,8 +216,8 @@ TEST_CASE("left and right of a shift are those of the side, whichever axis point
   REQUIRE(found.listed.size() == 1);
   REQUIRE(found.listed[0].lateral);
   CHECK(*found.listed[0].lateral == Approx(-0.05));  // to the right
-  CHECK(found.listed[0].shift_left.value() == Approx(0.05).margin(1e-6));
-  CHECK(found.listed[0].shift_right.value() == Approx(0.15).margin(1e-6));
+  CHECK(found.listed[0].own_shift_left.value() == Approx(0.05).margin(1e-6));
+  CHECK(found.listed[0].own_shift_right.value() == Approx(0.15).margin(1e-6));
 }
 
 TEST_CASE("the station of an obstacle does not depend on where a body's own frame begins") {

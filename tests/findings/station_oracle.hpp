@@ -61,12 +61,21 @@ struct ExpectedRow {
   Least least, left, right, above;
 };
 
-/// Sorts the clearances of a result into rows by the definition.
+/// Sorts the profile and the clearances of a result into rows by the definition.
 inline std::vector<ExpectedRow> expected_rows(const Result& result, const Query& query,
                                               double every) {
   const std::vector<std::size_t> row_of = rows_of(query.poses, every);
   std::vector<ExpectedRow> out(row_of.back() + 1);
-  const Clearances rows = result.clearance();
+  if (query.profile > 0) {
+    const Profile profile = result.profile();
+    for (std::size_t i = 0; i < profile.size(); ++i) {
+      if (profile.source[i] == Profile::kNoPoint) continue;
+      Least& least = out[row_of[i]].least;
+      const std::pair found(profile.distance[i], profile.source[i]);
+      if (!least || found < *least) least = found;
+    }
+  }
+  const Clearances rows = query.clearance > 0 ? result.clearance() : Clearances();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::pair found(rows.distance[i], rows.source[i]);
     const auto keep = [&](Least& least) {
@@ -98,12 +107,16 @@ inline void check_place(const std::optional<FoundPlace>& place, const Least& exp
   CHECK(place->source == expected->second);
 }
 
-/// Checks the distances of all rows of a table.
-inline void check_distances(const StationTable& table, const std::vector<ExpectedRow>& expected) {
+/// Checks the distances of all rows of a table. radius: that of the query.
+inline void check_distances(const StationTable& table, const std::vector<ExpectedRow>& expected,
+                            double radius) {
   REQUIRE(table.rows.size() == expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     CAPTURE(i);
-    check_place(table.rows[i].least, expected[i].least);
+    const bool conflict = table.rows[i].verdict == Verdict::kConflict;
+    const bool known = expected[i].least && (!conflict || expected[i].least->first < radius);
+    check_place(table.rows[i].least, known ? expected[i].least : std::nullopt);
+    CHECK(table.rows[i].least_below == (conflict && !known ? std::optional(radius) : std::nullopt));
     check_place(table.rows[i].left, expected[i].left);
     check_place(table.rows[i].right, expected[i].right);
     check_place(table.rows[i].above, expected[i].above);

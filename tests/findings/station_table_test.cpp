@@ -80,7 +80,7 @@ Verdict worst_of(const StationTable& table) {
 void check_scene(const Searched& scene, double every) {
   CAPTURE(every);
   const StationTable table = scene.table(every);
-  check_distances(table, expected_rows(scene.result(), scene.query, every));
+  check_distances(table, expected_rows(scene.result(), scene.query, every), scene.query.radius);
   const std::vector<bool> touched = touched_rows(scene, every),
                           between = rows_between(scene, every);
   REQUIRE(table.rows.size() == touched.size());
@@ -88,6 +88,12 @@ void check_scene(const Searched& scene, double every) {
     CAPTURE(i);
     if (touched[i]) CHECK(table.rows[i].verdict == Verdict::kConflict);
     if (!between[i]) CHECK(table.rows[i].verdict != Verdict::kConflict);
+    if (scene.query.profile > 0) {
+      CHECK((table.rows[i].verdict == Verdict::kConflict) == touched[i]);
+      if (table.rows[i].verdict == Verdict::kClear && table.rows[i].is_searched) {
+        CHECK(table.rows[i].least_above.has_value() != table.rows[i].least.has_value());
+      }
+    }
   }
   const bool any = scene.result().size() > 0;
   CHECK((worst_of(table) == Verdict::kConflict) == any);
@@ -105,6 +111,8 @@ TEST_CASE("rows of random scenes have the distances of all clearances, and every
     std::vector<Vec3> model = random_points(random, {{-0.6, -0.4, 0}, {0.6, 0.4, 0.8}}, 40);
     QueryParameters asked{.radius = 0.12, .clearance = 0.5};
     if (seed % 3 == 0) asked = {.radius = 0.12, .between_poses = true};
+    if (seed % 4 == 1) asked = {.radius = 0.12, .clearance = 0.2, .profile = 0.4};
+    if (seed % 4 == 2) asked = {.radius = 0.12, .profile = 0.4};
     Query query(std::move(model), smooth_path(random, room, 50), asked);
     const Searched scene(random_points(random, room, seed % 2 == 0 ? 60 : 600), query);
     for (const double every : {0.3, 1.0, 2.7, 100.0}) check_scene(scene, every);
@@ -552,13 +560,13 @@ TEST_CASE("a CSV and a JSON of the table have the fixed columns") {
   write_stations(file, StationFormat::kJson, scene.folder / "s.json");
   const auto least = nlohmann::json(table.rows[0].least->distance).dump();
   CHECK(bytes_of(scene.folder / "s.csv") ==
-        "chainage_from,chainage_to,station_from,station_to,least,least_source,left,left_source,"
-        "right,right_source,above,above_source,verdict,\"a,b_overthrow_end\","
+        "chainage_from,chainage_to,station_from,station_to,least,least_source,least_below,left,"
+        "left_source,right,right_source,above,above_source,verdict,\"a,b_overthrow_end\","
         "\"a,b_overthrow_middle\",\"'=1+1_overthrow_end\",\"'=1+1_overthrow_middle\",doubts\n"
         "0,2.5,,," +
-            least + ",0," + least +
+            least + ",0,," + least +
             ",0,,,,,clear,0,0,0,0,\n"
-            "2.5,4,,,,,,,,,,,clear,0,0,0,0,\n");
+            "2.5,4,,,,,,,,,,,,clear,0,0,0,0,\n");
   const auto parsed = nlohmann::json::parse(bytes_of(scene.folder / "s.json"));
   CHECK(parsed["kind"] == "stations");
   check_equal(parsed["stations"].size(), 2);

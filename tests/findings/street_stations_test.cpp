@@ -23,7 +23,7 @@ TEST_CASE("the station table of the street is that of its clearances and contact
     StationOptions options;
     options.every = every;
     const StationTable table = station_table(result, query.poses, options);
-    check_distances(table, expected_rows(result, query, every));
+    check_distances(table, expected_rows(result, query, every), query.radius);
     const std::vector<std::size_t> row_of = rows_of(query.poses, every);
     std::vector<bool> at_ends(table.rows.size()), between(table.rows.size());
     for (std::size_t i = 0; i < first.size(); ++i) {

@@ -375,11 +375,11 @@ class FindsWhatBruteForceFinds(SceneTest):
             of = found.conflict_of == conflict.id
             self.assertEqual(conflict.first_pose, result.first_pose()[of].min())
             self.assertEqual(conflict.last_pose, result.last_pose()[of].max())
-            self.assertIsNone(conflict.shift_left)
+            self.assertIsNone(conflict.own_shift_left)
             self.assertIsNotNone(conflict.obstacle_chainage)
         shifted = clearway.find_conflicts(result, self.poses, min_points=5, model=self.model)
         for conflict in shifted.listed:
-            for shift in (conflict.shift_left, conflict.shift_right):
+            for shift in (conflict.own_shift_left, conflict.own_shift_right):
                 self.assertTrue(shift is None or 0 < shift <= 2)
         with self.assertRaises(clearway.InputError):
             clearway.find_conflicts(result, self.poses[1:])

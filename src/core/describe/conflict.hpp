@@ -7,16 +7,24 @@
 
 namespace clearway {
 
-/// The columns of a conflict, in the order of its files. `certain` and `body` are written by hand
-/// there, because what they mean depends on the result.
+/// The columns of a conflict, in the order of its files. `certain` and the bodies are written by
+/// hand there, because what they mean depends on the result.
 inline constexpr std::tuple kConflictColumns = std::tuple_cat(
     std::tuple{
         FindingColumn{.member = &Conflict::id,
                       .key = "id",
                       .doc = "The number of the conflict, from 1, in the order of the path."},
+        FindingColumn{.member = &Conflict::rank,
+                      .key = "rank",
+                      .doc = "1 for the worst conflict, 2 for the next, and so on."},
         FindingColumn{.member = &Conflict::points,
                       .key = "points",
-                      .doc = "How many colliding points the conflict has."},
+                      .doc = "How many points the conflict has."},
+        FindingColumn{.member = &Conflict::colliding,
+                      .key = "colliding",
+                      .doc = "How many of its points collide; with an error budget the others are "
+                             "near.",
+                      .is_in_files = false},
         FindingColumn{.member = &Conflict::source,
                       .key = "source",
                       .doc = "The smallest source index of the conflict's points."},
@@ -58,11 +66,35 @@ inline constexpr std::tuple kConflictColumns = std::tuple_cat(
                       .key = "encroachment",
                       .doc = "By how much the conflict is closer than allowed: the radius less "
                              "least_distance, in metres; only where the result has clearances."},
+        FindingColumn{.member = &Conflict::encroachment_is,
+                      .key = "encroachment_is",
+                      .doc = "'exact' if exactly so much is missing, or 'at-least', because a "
+                             "surface and points have no inside; only where there is an "
+                             "encroachment."},
+        FindingColumn{.member = &Conflict::side,
+                      .key = "side",
+                      .doc = "The side from which the least trim is taken: 'left', 'right', "
+                             "'above' or 'below'. Where there is no trim, 'around' for what stands "
+                             "on both sides, or otherwise first_touch; 'unknown' without the "
+                             "model's box."},
+        FindingColumn{.member = &Conflict::first_touch,
+                      .key = "first_touch",
+                      .doc = "The side of the model on which the points lie that are touched "
+                             "first: 'left', 'right', 'above', 'below', 'front', 'behind' or "
+                             "'unknown'."},
+        FindingColumn{.member = &Conflict::trim_left,
+                      .key = "trim_left",
+                      .doc = "How much taken off the left side of the body that is touched first "
+                             "is enough to free it from the conflict, in metres; less may do. It "
+                             "has no value where it would be more than half of the body."},
+        FindingColumn{.member = &Conflict::trim_right,
+                      .key = "trim_right",
+                      .doc = "The same for the right side."},
         FindingColumn{
-            .member = &Conflict::side,
-            .key = "side",
-            .doc = "The side of the model on which the points lie that are touched first: 'left', "
-                   "'right', 'above', 'below', 'front', 'behind' or 'unknown'."},
+            .member = &Conflict::trim_above, .key = "trim_above", .doc = "The same from above."},
+        FindingColumn{.member = &Conflict::trim_below,
+                      .key = "trim_below",
+                      .doc = "The same from below, from the floor of the search up."},
         FindingColumn{.member = &Conflict::lateral,
                       .key = "lateral",
                       .doc = "How far the nearest point, or without clearances the first one that "
@@ -91,16 +123,17 @@ inline constexpr std::tuple kConflictColumns = std::tuple_cat(
             .key = "obstacle_chainage",
             .doc = "How far along the path the nearest point of the obstacle itself stands, in "
                    "metres, whichever part of the vehicle meets it and whichever way it faces."},
-        FindingColumn{.member = &Conflict::shift_left,
-                      .key = "shift_left",
-                      .doc = "How far the vehicle has to be shifted to the left so that the "
-                             "conflict's own points are free, in metres. It has no value where 2 m "
-                             "are not enough, or where no model was given."},
+        FindingColumn{.member = &Conflict::own_shift_left,
+                      .key = "own_shift_left",
+                      .doc = "How far the vehicle has to be shifted to the left at least, so that "
+                             "the conflict's own points are free, in metres. It has no value where "
+                             "2 m are not enough, or where no model was given."},
         FindingColumn{
-            .member = &Conflict::shift_right,
-            .key = "shift_right",
-            .doc = "How far the vehicle has to be shifted to the right so that the conflict's own "
-                   "points are free, in metres, or no value as for shift_left."},
+            .member = &Conflict::own_shift_right,
+            .key = "own_shift_right",
+            .doc =
+                "How far the vehicle has to be shifted to the right at least, or no value as for "
+                "own_shift_left."},
         FindingColumn{
             .member = &Conflict::certain,
             .key = "certain",
@@ -113,6 +146,12 @@ inline constexpr std::tuple kConflictColumns = std::tuple_cat(
             .key = "body",
             .doc = "The body of the vehicle that comes closest, or without clearances touches "
                    "first, as an index of Result.bodies(). None where there is one model.",
+            .is_in_files = false},
+        FindingColumn{
+            .member = &Conflict::first_body,
+            .key = "first_body",
+            .doc = "The body that is touched first, which the trims are taken from, as an index of "
+                   "Result.bodies(). None where there is one model.",
             .is_in_files = false}});
 
 /// The columns of a group that is too small to be a conflict.

@@ -14,11 +14,22 @@ inline constexpr std::tuple kStationColumns = std::tuple_cat(
     std::tuple{
         FindingColumn{.member = &StationRow::least,
                       .key = "least",
-                      .doc = "The point that is nearest to the vehicle, of all whose nearest pose "
-                             "is on the stretch."},
+                      .doc = "The point that is nearest to the vehicle on the stretch, by the "
+                             "profile of its poses and the clearances of the points whose nearest "
+                             "pose is on it."},
+        FindingColumn{.member = &StationRow::least_below,
+                      .key = "least_below",
+                      .doc = "The radius, where the stretch has a conflict whose least distance is "
+                             "not known: it is below this."},
+        FindingColumn{.member = &StationRow::least_above,
+                      .key = "least_above",
+                      .doc = "The distance that the profile was asked for, where the stretch is "
+                             "clear and no pose of it found anything closer.",
+                      .is_in_files = false},
         FindingColumn{.member = &StationRow::left,
                       .key = "left",
-                      .doc = "The nearest of those to the left of their body's box."},
+                      .doc = "The nearest of the points whose nearest pose is on the stretch and "
+                             "that lie to the left of their body's box."},
         FindingColumn{.member = &StationRow::right,
                       .key = "right",
                       .doc = "The nearest of those to the right of their body's box."},

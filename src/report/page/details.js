@@ -36,18 +36,19 @@ function conflictFacts(conflict) {
   ].filter(Boolean);
   if (conflict.least_distance !== null) {
     rows.push(["Distance", `${words.symbol} ${words.name}: ${detailedDistance(conflict)}`],
-              ["Missing", missingWords(conflict.encroachment, conflict.least_distance)]);
+              ["Missing", missingWords(conflict.encroachment, conflict.least_distance, conflict.encroachment_is)]);
   } else {
     rows.push(["Distance", `closer than ${shortLength(query.radius)}; run with --clearance to know it`]);
   }
   if (conflict.points_inside > 0) {
     rows.push(["Inside", `${count(conflict.points_inside)} of its points`]);
   }
-  const shifts = [["left", conflict.shift_left], ["right", conflict.shift_right]]
+  if (conflict.remedy) rows.push(["To pass", conflict.remedy]);
+  const shifts = [["left", conflict.own_shift_left], ["right", conflict.own_shift_right]]
       .filter(([, shift]) => shift !== null)
-      .map(([side, shift]) => `${(Math.ceil(shift * 1000) / 1000).toFixed(3)} ${unitSymbol} to the ${side}`);
+      .map(([side, shift]) => `${roundedUp(shift)} ${unitSymbol} to the ${side}`);
   if (shifts.length > 0) {
-    rows.push(["Shift", `at least ${shifts.join(" or ")} frees its own points`]);
+    rows.push(["Own shift", `at least ${shifts.join(" or ")}, which frees its own points`]);
   }
   if (page.facts.shifts) rows.push(["Frees it", freedWords(conflict)]);
   rows.push(["Points", `${count(conflict.points)} in ${sizeOf(conflict).map((s) => s.toFixed(2)).join(" × ")} ${unitSymbol}`],

@@ -110,6 +110,36 @@ function profileCurve() {
           make("path", { d: line, class: "curve" })];
 }
 
+const kSideLines = { left: "5 3", right: "1.5 2.5", above: "9 3 2 3" };
+
+/** For left, right and above, the least clearance of each stretch as a line over it; a gap where none is known. */
+function profileSides() {
+  const list = page.facts.stations?.list ?? [], out = [];
+  for (const [side, dash] of Object.entries(kSideLines)) {
+    const known = list.filter((r) => r[side] !== null && r.chainage_to >= profile.from && r.chainage_from <= profile.to);
+    if (known.length === 0) continue;
+    const line = known.map((r) => {
+      const [x1, x2] = [r.chainage_from, r.chainage_to].map((c) =>
+          clamp(profileX(c), profile.left, profile.width - profile.right).toFixed(1));
+      return `M${x1} ${profileY(r[side]).toFixed(1)}H${x2}`;
+    }).join("");
+    out.push(make("path", { d: line, class: `side ${side}`, fill: "none", stroke: "#3b4450", "stroke-width": 1.6,
+                            "stroke-dasharray": dash }, make("title", {}, `least clearance ${side}, by stretch`)));
+  }
+  return out;
+}
+
+/** Which line of the profile is which. */
+function profileKeys() {
+  const list = page.facts.stations?.list ?? [];
+  const sides = Object.keys(kSideLines).filter((side) => list.some((r) => r[side] !== null));
+  if (sides.length === 0) return "";
+  const sample = (dash) => make("svg", { width: 34, height: 10, "aria-hidden": "true" },
+      make("line", { x1: 1, x2: 33, y1: 5, y2: 5, stroke: "#3b4450", "stroke-width": 1.6, "stroke-dasharray": dash }));
+  return make("ul", { class: "legend", id: "profile-keys" }, sides.map((side) =>
+      make("li", {}, sample(kSideLines[side]), ` least clearance ${side}, by stretch`)));
+}
+
 /** What a gap of the curve means where the vehicle was searched. */
 function profileBeyond() {
   const { no_distance: none } = page.facts.page;
@@ -196,7 +226,7 @@ function drawProfile() {
     make("defs", {}, hatch, unsearchedPatterns(), notScannedPattern()),
     make("rect", { x: left, y: top, width: width - left - right, height: height - top - bottom,
                    class: "field" }),
-    profileAxes(), profileMargins().slice(0, 1), profileUnsearched(), profileNotScanned(), profileCurve(),
+    profileAxes(), profileMargins().slice(0, 1), profileUnsearched(), profileNotScanned(), profileSides(), profileCurve(),
     profileSurface(), profileMargins().slice(1), profileRequired(), profileBeyond(), profileConflicts(),
     make("line", { id: "profile-cursor", class: "cursor", y1: top, y2: height - bottom }));
   if (!(query.profile > 0)) {
@@ -205,7 +235,7 @@ function drawProfile() {
                         : "The result has no profile: clearway run --profile D adds this curve."));
   }
   const focused = holder.contains(document.activeElement);
-  holder.replaceChildren(svg);
+  holder.replaceChildren(svg, profileKeys());
   watchProfile(svg);
   if (focused) svg.focus();
   moveProfileCursor();

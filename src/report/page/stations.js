@@ -33,9 +33,12 @@ const overthrowCell = (v) => v === null ? "" : (Math.abs(v) < 0.0005 ? 0 : v).to
 
 function stationColumns() {
   const { list, bodies } = page.facts.stations;
-  const places = ["least", "left", "right", "above"].filter((k) => list.some((r) => r[k] !== null));
+  const places = ["least", "left", "right", "above"].filter((k) => list.some((r) => r[k] !== null) ||
+      (k === "least" && list.some((r) => r.least_below !== null || r.least_above !== null)));
   const digits = digitsFor(list.flatMap((r) => places.map((k) => r[k])));
-  const distance = (key) => (r) => r[key] === null ? ""
+  const limit = (r) => r.least_below !== null ? `< ${+r.least_below.toPrecision(4)}`
+      : r.least_above !== null ? `> ${+r.least_above.toPrecision(4)}` : "";
+  const distance = (key) => (r) => r[key] === null ? (key === "least" ? limit(r) : "")
       : isInside(r[key]) ? `inside, ${fixed(-r[key], digits)}` : fixed(r[key], digits);
   const columns = [[`Chainage (${unitSymbol})`, chainageCell]];
   if (list.some((r) => r.station_from !== undefined)) columns.push(["Station (m)", stationsCell]);
@@ -66,9 +69,10 @@ function stationsNote() {
   const of = (verdict) => list.filter((r) => r.verdict === verdict).length;
   const counts = ["conflict", "undecided", "clear"].map((v) => `${count(of(v))} ${v}`).join(", ");
   const remarks = notes.map((note) => ` ${note}.`).join("");
-  return `${plural(list.length, "stretch", "stretches")} of ${shortLength(every)}: ${counts}. A point counts on ` +
-      "the stretch where the vehicle is nearest to it, to the left, to the right or above the box of the body " +
-      "that is nearest. The overthrow is how far the centre line of a body leaves the path in curves: its ends " +
+  return `${plural(list.length, "stretch", "stretches")} of ${shortLength(every)}: ${counts}. The least distance is that of ` +
+      "the profile of its poses and of the points that the vehicle is nearest to there; < and > say below or above " +
+      "what it is where no more is known. A point counts to the left, to the right or above on the stretch where " +
+      "the vehicle is nearest to it, by the box of the body that is nearest. The overthrow is how far the centre line of a body leaves the path in curves: its ends " +
       `outwards, its middle inwards.${remarks}`;
 }
 

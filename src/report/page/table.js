@@ -20,10 +20,11 @@ function tableColumns() {
   const lengths = (key) => (c) => c[key] === null ? "" : fixed(c[key], digits);
   const deep = list.some((c) => isInside(c.least_distance));
   const outside = (c) => isInside(c.least_distance) ? "inside" : lengths("least_distance")(c);
-  const shifted = list.some((c) => c.shift_left !== null || c.shift_right !== null);
+  const shifted = list.some((c) => c.own_shift_left !== null || c.own_shift_right !== null);
   const offset = (key) => [(c) => c[key] ?? 0, (c) => c[key] === null ? "" : signed(c[key])];
   return [
     ["No.", (c) => c.id, (c) => String(c.id)],
+    ["Rank", (c) => c.rank, (c) => String(c.rank)],
     ["Chainage", (c) => c.chainage_from, chainageCell],
     list.some((c) => c.station_from !== undefined) && ["Station", (c) => c.station_from, stationsCell],
     list.some((c) => c.obstacle_chainage !== null) &&
@@ -36,9 +37,10 @@ function tableColumns() {
     measured && classesDiffer() && ["Class", (c) => c.least_distance ?? Infinity, classCell],
     measured && ["Least distance", (c) => c.least_distance ?? Infinity, outside],
     deep && ["Depth", (c) => c.depth ?? 0, (c) => c.depth ? fixed(c.depth, digits) : ""],
-    measured && ["Missing", (c) => c.encroachment ?? -1, lengths("encroachment")],
-    shifted && ["Shift left", (c) => c.shift_left ?? Infinity, shiftCell("shift_left")],
-    shifted && ["Shift right", (c) => c.shift_right ?? Infinity, shiftCell("shift_right")],
+    measured && ["Missing", (c) => c.encroachment ?? -1, missingCell],
+    list.some((c) => leastTrim(c) !== null) && ["Trim", (c) => leastTrim(c) ?? Infinity, (c) => roundedUp(leastTrim(c))],
+    shifted && ["Own shift left", (c) => c.own_shift_left ?? Infinity, (c) => roundedUp(c.own_shift_left)],
+    shifted && ["Own shift right", (c) => c.own_shift_right ?? Infinity, (c) => roundedUp(c.own_shift_right)],
     page.facts.shifts && ["Frees it", freedRank, freedCell],
     ["Points", (c) => c.points, (c) => count(c.points)],
     deep && ["Inside", (c) => c.points_inside ?? 0, (c) => count(c.points_inside ?? 0)],
@@ -64,8 +66,14 @@ function stationsCell({ station_from: from, station_to: to }) {
 
 const stationCell = (c) => c.obstacle_chainage === null ? "" : c.obstacle_chainage.toFixed(2);
 
-/** Empty where no shift to that side that was tried frees the conflict. Never rounded down. */
-const shiftCell = (key) => (c) => c[key] === null ? "" : (Math.ceil(c[key] * 1000) / 1000).toFixed(3);
+/** A shift or a trim, never rounded down; empty where there is none. */
+const roundedUp = (length) => length === null ? "" : (Math.ceil(length * 1000 - 1e-6) / 1000).toFixed(3);
+
+/** The trim on the conflict's side; null where none is known. */
+const leastTrim = (c) => c[`trim_${c.side}`] ?? null;
+
+const missingCell = (c) => c.encroachment === null ? ""
+    : missingWords(c.encroachment, c.least_distance, c.encroachment_is, "");
 
 const certaintyCell = (conflict) => isPossible(conflict) ? "○ possible" : "● certain";
 
@@ -78,7 +86,7 @@ function classCell(conflict) {
 /** Column titles with the unit, where all of its numbers have one. */
 function titleWithUnit(title) {
   const has = ["Chainage", "Obstacle at", "Lateral", "Height", "Least distance", "Depth", "Missing",
-               "Shift left", "Shift right", "Frees it", "Size", "Place x, y, z"].includes(title);
+               "Trim", "Own shift left", "Own shift right", "Frees it", "Size", "Place x, y, z"].includes(title);
   return title === "Station" ? "Station (m)" : has ? `${title} (${unitSymbol})` : title;
 }
 
@@ -99,7 +107,7 @@ function sortedConflicts(columns, list = filteredConflicts()) {
 }
 
 function sortBy(title) {
-  const numbers = !["No.", "Chainage", "Station", "Obstacle at", "Body", "Side", "Lateral", "Height", "Least distance", "Class", "Certainty", "Frees it", "Pose"].includes(title);
+  const numbers = !["No.", "Rank", "Chainage", "Station", "Obstacle at", "Body", "Side", "Lateral", "Height", "Least distance", "Class", "Certainty", "Frees it", "Pose"].includes(title);
   table.down = table.title === title ? !table.down : numbers;
   table.title = title;
   table.first = 0;
@@ -235,8 +243,8 @@ function buildTable() {
   const { conflicts } = page.facts;
   byId("conflicts-note").append(make("p", {}, conflictsNote(conflicts)));
   if (conflictList().length === 0) return;
-  const measured = conflictList().some((c) => c.encroachment !== null);
-  table.title = measured ? "Missing" : "Points";
+  table.title = "Rank";
+  table.down = false;
   buildFilters();
   drawTable();
   on("conflict", markRow);
@@ -249,7 +257,8 @@ function conflictsNote(found) {
           "clearway run --first-pose adds them, and this table.";
   }
   if (found.count === 0 && found.small_points === 0) return "There are none: nothing collides.";
-  let text = `Colliding points at most ${shortLength(found.gap)} apart are one conflict`;
+  let text = `Colliding points at most ${shortLength(found.gap)} apart are one conflict, from ` +
+      `${plural(found.min_points, "point")} on`;
   text += found.split > 0 ? `, cut every ${shortLength(found.split)} along the path.` : ".";
   if (found.list.some((c) => c.lateral !== null)) {
     const place = found.list.some((c) => c.nearest_point) ? "nearest point" : "centre of its points";
@@ -264,6 +273,9 @@ function conflictsNote(found) {
         : " A conflict is certain where ten or more of its points that hang together are too close even with " +
           `the errors (${sure < 0 ? `more than ${shortLength(-sure)} inside` : `closer than ${shortLength(sure)}`}); ` +
         "the others are possible.";
+    if (found.min_points !== 10 || found.gap !== page.facts.query.gap) {
+      text += ` The verdict itself groups points that are at most ${shortLength(page.facts.query.gap)} apart, from 10 on.`;
+    }
   }
   if (found.small_groups > 0) {
     text += ` ${plural(found.small_groups, "group")} of fewer than ${count(found.min_points)} points ` +

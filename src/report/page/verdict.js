@@ -50,24 +50,20 @@ function certaintyTiles() {
                () => goTo(worst))];
 }
 
-/** How bad the worst conflict is. */
-function worstTile({ points, encroachment: listed, least_distance: nearest }) {
-  const { least_distance: least, query } = page.facts;
-  // The nearest point of all may belong to a group that is too small for the list.
-  const elsewhere = listed !== null && least && least.distance < nearest;
-  const distance = elsewhere ? least.distance : nearest;
-  const missing = elsewhere ? query.radius - least.distance : listed;
-  if (missing === null) return tile(plural(points, "point"), "most in one conflict");
-  if (isInside(distance)) return tile(metres(-distance), "deepest inside the vehicle");
-  return tile(missingWords(missing, distance),
-              distance < kTouching && !isSolid() ? "missing at least: it touches"
-                                                 : "missing at the worst place");
+/** How bad the worst conflict is, and on which side. */
+function worstTile({ points, encroachment, encroachment_is: bound, least_distance: distance, side }) {
+  const where = after(sideWords(side));
+  if (encroachment === null) return tile(plural(points, "point"), `in the worst conflict${where}`);
+  if (isInside(distance)) return tile(metres(-distance), `deepest inside the vehicle${where}`);
+  const words = missingWords(encroachment, distance, bound);
+  return words === "touches" ? tile("touches", `the vehicle at the worst place${where}`)
+                             : tile(words, `missing at the worst place${where}`);
 }
 
 function clearTiles() {
   const { least_distance: least, query, inputs } = page.facts, tiles = [];
   if (least) {
-    tiles.push(tile(metres(least.distance), "least distance found"));
+    tiles.push(tile(metres(least.distance), `least distance found${after(sideWords(least.side))}`));
     tiles.push(tile(station(least.chainage), `chainage of it${besideChainage(least.chainage)}`, () => {
       selectPose(shownPose(least.pose));
       byId("view").scrollIntoView();
@@ -100,10 +96,21 @@ function placesText({ count: listed, small_groups: small, first_small: first }) 
   return ` at ${plural(listed, "place")}${more}`;
 }
 
-/** The least distance of a conflict. How deep it is inside is known of a solid vehicle only. */
-function nearnessText(distance, radius) {
-  if (isInside(distance)) return `${depthWords(distance)} inside the vehicle`;
-  return distance < kTouching ? "it touches the vehicle" : `${metres(distance)} instead of ${radius}`;
+/** What is missing at a conflict, as the end of a sentence; nothing where it is not known. */
+function nearnessText({ encroachment, encroachment_is: bound, least_distance: distance }, radius) {
+  if (encroachment === null) return "";
+  if (isInside(distance)) return `: ${depthWords(distance)} inside the vehicle`;
+  const words = missingWords(encroachment, distance, bound);
+  return words === "touches" ? ": it touches the vehicle" : `: ${words} of ${radius} are missing`;
+}
+
+/** Where the worst conflict is, and what can be done about it. */
+function worstSentence(worst, radius) {
+  const place = worst.least_distance === null ? "" :
+      nearestPointSentence({ ...worst, point: worst.nearest_point, side: "unknown" }, worst.least_distance);
+  return `The worst place is conflict ${worst.id}, at chainage ${placeWords(stationOf(worst))}` +
+      `${after(sideWords(worst.side))}${bodyWords(worst)}${nearnessText(worst, radius)}.${place}` +
+      (worst.remedy ? ` To pass: ${worst.remedy}.` : "");
 }
 
 const isSolid = () => page.facts.inputs.model.solids > 0;
@@ -271,7 +278,10 @@ function budgetTable() {
 
 function verdictSentences() {
   const { facts } = page, radius = shortLength(facts.query.radius), worst = worstConflict();
-  if (facts.budget) return [budgetSentence(facts), leastSentence()];
+  if (facts.budget) {
+    const named = facts.verdict === "conflict" && worst;
+    return [budgetSentence(facts), named ? worstSentence(worst, radius) : leastSentence()];
+  }
   if (facts.verdict === "clear") {
     const points = facts.ignored === null ? "point of the environment" : "searched point";
     const vehicle = facts.inputs.model.spacing === null ? "the vehicle" : "the points of the model";
@@ -288,18 +298,7 @@ function verdictSentences() {
   }
   const where = facts.conflicts ? placesText(facts.conflicts) : "";
   const first = `The environment is closer than ${radius} to the vehicle${where}.${insideText()}`;
-  if (!worst) return [first, leastSentence()];
-  const worstText = worst.least_distance === null
-      ? `Conflict ${worst.id} has the most points. It begins at chainage ` +
-        `${placeWords(worst.chainage_from)}${after(sideWords(worst.side))}${bodyWords(worst)}.`
-      : `The worst place is conflict ${worst.id}, at chainage ${placeWords(stationOf(worst))}` +
-        `${after(sideWords(worst.side))}${bodyWords(worst)}: ` +
-        `${nearnessText(worst.least_distance, radius)}.` +
-        nearestPointSentence({ ...worst, point: worst.nearest_point, side: "unknown" },
-                             worst.least_distance);
-  const least = facts.least_distance;  // of a group that is too small for the list, perhaps
-  const nearer = least && worst.least_distance !== null && least.distance < worst.least_distance;
-  return [first, nearer ? `${worstText} ${leastSentence()}` : worstText];
+  return [first, worst ? worstSentence(worst, radius) : leastSentence()];
 }
 
 /** Whether the vehicle touches points that the search ignored. */

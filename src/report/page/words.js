@@ -24,8 +24,15 @@ const metres = (v, digits = digitsFor([v])) => v === null || v === undefined ? "
     : `${fixed(v, digits)} ${unitSymbol}`;
 /** Below it the surfaces meet, as far as scans can show. */
 const kTouching = 0.001;
-/** With the digits of the distance, so that both add up to what is required. */
-const missingWords = (missing, distance) => metres(missing, digitsFor([distance]));
+/**
+ * What is missing, with the digits of the distance, so that both add up to what is required. A
+ * surface and points have no inside, so there it is at least so much. unit: left out in tables.
+ */
+function missingWords(missing, distance, bound = isSolid() ? "exact" : "at-least", unit = ` ${unitSymbol}`) {
+  if (bound === "at-least" && distance < kTouching) return "touches";
+  return `${bound === "at-least" ? "at least " : ""}${fixed(missing, digitsFor([distance]))}${unit}`;
+}
+const missingClause = (words) => words === "touches" ? "it touches the vehicle" : `${words} missing`;
 const station = (v) => metres(v, 2);
 /** The station along the alignment at a chainage, between those of the shown poses; null without stations. */
 function stationAt(at) {
@@ -49,9 +56,10 @@ const shortLength = (v) => `${+v.toPrecision(4)} ${unitSymbol}`;
 const coordinates = (p) => p.map((v) => v.toFixed(2)).join(", ");
 
 const kSides = { left: "left", right: "right", above: "above", below: "below", front: "in front",
-                 behind: "behind", unknown: "" };
+                 behind: "behind", around: "around", unknown: "" };
 const sideWords = (side) => ({ left: "on the left", right: "on the right", above: "above it",
-                               below: "below it", front: "in front of it", behind: "behind it" })[side]
+                               below: "below it", front: "in front of it", behind: "behind it",
+                               around: "around it" })[side]
     ?? "";
 
 /** Left is positive. Without "-0.00". */

@@ -28,6 +28,7 @@
 #include "io/files/pending_file.hpp"
 #include "io/files/text_writer.hpp"
 #include "io/result/answer.hpp"
+#include "io/result/conflicts/conflict_words.hpp"
 #include "io/result/result.hpp"
 #include "io/scans/scan_crs.hpp"
 
@@ -38,7 +39,7 @@ namespace {
 struct ComparedSide {
   ComparedSide(ConflictComparison& options, const std::filesystem::path& file,
                const std::filesystem::path& trajectory, const std::filesystem::path& model,
-               const std::filesystem::path& vehicle)
+               const std::filesystem::path& vehicle, const Conflicts* grouped_as = nullptr)
       : result(file), has_shifts(!model.empty() || !vehicle.empty()) {
     check_kind_of_model(result, model, vehicle);
     check_axes(result, options);
@@ -54,6 +55,10 @@ struct ComparedSide {
     }
     ConflictOptions find = options.find;
     find.bodies = bodies;
+    if (grouped_as != nullptr) {
+      find.gap = grouped_as->gap;
+      find.min_points = grouped_as->min_points;
+    }
     Model shape;
     if (!model.empty()) {
       shape = read_model_of(model, options.model_options, result);
@@ -136,7 +141,7 @@ Worse worse(const ComparedConflicts& found, const Conflict& a, const Conflict& b
   }
   if (found.questions.empty() && are_same(a, b)) return Worse::kNo;
   if (!found.a.has_shifts || !found.b.has_shifts) return Worse::kUnknown;
-  const double before = ranked_shift(a, true), now = ranked_shift(b, true);
+  const double before = least_own_shift(a), now = least_own_shift(b);
   if (std::isinf(before) && std::isinf(now)) return Worse::kUnknown;
   return now > before + found.worse_by ? Worse::kYes : Worse::kNo;
 }
@@ -163,7 +168,7 @@ std::string worsening_text(const ComparedConflicts& found, const Conflict& a, co
                       (!a.least_distance || *b.least_distance < *a.least_distance - found.worse_by);
   if (nearer) return change(a.least_distance, b.least_distance, "unknown");
   const auto shift = [](const Conflict& c) {
-    const double least = ranked_shift(c, true);
+    const double least = least_own_shift(c);
     return std::isinf(least) ? std::nullopt : std::optional(least);
   };
   return "freed by a shift of " + change(shift(a), shift(b), "more than 2");
@@ -219,7 +224,9 @@ std::string side_text(const char* name, const ComparedResult& side) {
 
 std::string text_of(const ComparedConflicts& found, std::uint64_t show) {
   const Conflicts &a = found.a.conflicts, &b = found.b.conflicts;
-  std::string text = side_text("a", found.a) + side_text("b", found.b);
+  std::string text = side_text("a", found.a) + side_text("b", found.b) +
+                     fmt::format("both are grouped with a gap of {} {} and at least {}\n",
+                                 format_brief(a.gap), found.a.unit, counted(a.min_points, "point"));
   for (const QueryDifference& query : found.questions) {
     text += "queries differ: " + query.what + ": " + query.a + " / " + query.b + "\n";
   }
@@ -353,13 +360,15 @@ int compare_conflicts(ConflictComparison& options, const std::filesystem::path& 
   options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
   options.find.stop = &stop_flag();
   ComparedSide in_a(options, a, options.trajectory, options.model, options.vehicle);
-  ComparedSide in_b(options, b, path_b, model_b, vehicle_b);
+  // Both are grouped as a is, so that a scan of another density has the same groups.
+  ComparedSide in_b(options, b, path_b, model_b, vehicle_b, &in_a.conflicts);
   ComparedConflicts found;
   found.questions =
       question_differences(in_a.result.reader().header(), in_b.result.reader().header());
   found.other_question_allowed = options.allow_other_question;
   found.worse_by = options.worse_by;
-  found.match = match_conflicts(in_a.grouped(), in_b.grouped(), options.find.gap, options.worse_by);
+  found.match =
+      match_conflicts(in_a.grouped(), in_b.grouped(), in_a.conflicts.gap, options.worse_by);
   found.same_points = have_same_points(in_a.result, in_b.result);
   found.is_older = found.same_points ? false : is_older(in_b.result, in_a.result);
   found.a = in_a.compared();
@@ -393,13 +402,13 @@ ordered_json json_of_conflict(const Conflict& c) {
                    {"chainage_to", c.chainage_to},
                    {"obstacle_chainage", nullptr},
                    {"least_distance", nullptr},
-                   {"shift_left", nullptr},
-                   {"shift_right", nullptr},
+                   {"own_shift_left", nullptr},
+                   {"own_shift_right", nullptr},
                    {"side", name_of(c.side)}};
   if (c.obstacle_chainage) out["obstacle_chainage"] = *c.obstacle_chainage;
   if (c.least_distance) out["least_distance"] = *c.least_distance;
-  if (c.shift_left) out["shift_left"] = *c.shift_left;
-  if (c.shift_right) out["shift_right"] = *c.shift_right;
+  if (c.own_shift_left) out["own_shift_left"] = *c.own_shift_left;
+  if (c.own_shift_right) out["own_shift_right"] = *c.own_shift_right;
   return out;
 }
 
@@ -669,6 +678,8 @@ std::string json_of(const ComparedConflicts& found) {
                          {"worse", json_of_pairs(found, found.worse)},
                          {"unknown_worse", json_of_pairs(found, found.unknown_worse)},
                          {"worse_by", found.worse_by},
+                         {"gap", found.a.conflicts.gap},
+                         {"min_points", found.a.conflicts.min_points},
                          {"distances_known", found.distances_known},
                          {"not_searched", not_searched},
                          {"too_small", json_of_list(found.a.conflicts, found.match.shrunk)},

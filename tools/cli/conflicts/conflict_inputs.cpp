@@ -20,10 +20,15 @@
 namespace clearway::tool {
 void add_conflict_options(CLI::App& command, ConflictCommand& options) {
   const GroupScope group(command, OptionGroup::kConflicts);
-  options.lengths.add(command, "--gap", options.find.gap,
-                      "Points at most this far apart belong together (default: 0.3)");
-  add_count_option(command, "--min-points", options.find.min_points, 1, 1'000'000'000'000'000,
-                   "Groups of fewer points are counted, not listed");
+  options.lengths.add(
+      command, "--gap", options.find.gap,
+      "Points at most this far apart belong together (default: 0.3, or three times the distance "
+      "between colliding points where that is more)");
+  add_count_option(
+      command, "--min-points", options.find.min_points, 1, 1'000'000'000'000'000,
+      "Groups of fewer points are counted, not listed (default: as many as lie on 10 x "
+      "10 cm, at least 1 and at most 10)")
+      ->default_str("");
   options.lengths.add(command, "--split", options.find.split,
                       "Cut groups that are longer than this along the path at multiples of it; 0: "
                       "never (default: 25)",

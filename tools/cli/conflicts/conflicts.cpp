@@ -26,6 +26,7 @@
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "cli/verdict.hpp"
 #include "core/geometry/point_box.hpp"
+#include "core/query/error_budget.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "findings/check_conflicts.hpp"
@@ -35,6 +36,7 @@
 #include "io/result/answer.hpp"
 #include "io/result/conflicts/conflict_fields.hpp"
 #include "io/result/conflicts/conflict_file.hpp"
+#include "io/result/conflicts/conflict_words.hpp"
 #include "io/result/conflicts/write_conflicts.hpp"
 #include "io/result/result.hpp"
 
@@ -51,15 +53,9 @@ bool has_depths(const Conflicts& conflicts) {
                              [](const Conflict& c) { return c.points_inside.value_or(0) > 0; });
 }
 
-/// The worst conflicts, at most `most`: by least distance, or along the path where distances are
-/// not known.
-std::vector<Conflict> worst_of(const Conflicts& conflicts, std::size_t most) {
-  std::vector<Conflict> out = conflicts.listed;
-  const bool shifts = has_shifts(conflicts);
-  if (has_distances(conflicts)) {
-    std::ranges::stable_sort(
-        out, [&](const Conflict& a, const Conflict& b) { return is_worse(a, b, shifts); });
-  }
+/// The worst conflicts, at most `most`.
+std::vector<const Conflict*> worst_of(const Conflicts& conflicts, std::size_t most) {
+  std::vector<const Conflict*> out = by_rank(conflicts);
   if (out.size() > most) out.resize(most);
   return out;
 }
@@ -74,23 +70,33 @@ std::string station_cell(const Conflict& c) {
   return fmt::format("  {:>23}", fmt::format("{:.2f} - {:.2f}", *c.station_from, *c.station_to));
 }
 
-std::string row_text(const Conflict& c, bool distances, bool depths, bool shifts) {
+/// The least trim; none where the side has none.
+std::optional<double> least_trim(const Conflict& c) {
+  std::optional<double> least;
+  for (const auto& trim : {c.trim_left, c.trim_right, c.trim_above, c.trim_below}) {
+    if (trim && (!least || *trim < *least)) least = trim;
+  }
+  return least;
+}
+
+std::string row_text(const Conflict& c, bool distances, bool depths, bool trims, bool shifts) {
   std::string row = fmt::format("{:>5}  {:>19}", c.id,
                                 fmt::format("{:.2f} - {:.2f}", c.chainage_from, c.chainage_to)) +
                     station_cell(c) + length_cell(c.obstacle_chainage, 12, 2) +
                     fmt::format("  {:>11}  {:>7}", format_count(c.points), name_of(c.side));
   if (distances) {
-    row += c.least_distance
-               ? fmt::format("  {:>12.3f}  {:>16.3f}", *c.least_distance, *c.encroachment)
-               : fmt::format("  {:>12}  {:>16}", "-", "-");
+    const std::string missing = missing_words(c, "");
+    row += length_cell(c.least_distance, 12, 3) +
+           fmt::format("  {:>14}", missing.empty() ? "-" : missing);
   }
   if (depths) {
     row += fmt::format("  {:>9.3f}  {:>11}", c.depth.value_or(0),
                        format_count(c.points_inside.value_or(0)));
   }
+  if (trims) row += length_cell(rounded_up(least_trim(c)), 8, 3);
   if (shifts)
-    row += length_cell(rounded_up(c.shift_left), 14, 3) +
-           length_cell(rounded_up(c.shift_right), 15, 3);
+    row += length_cell(rounded_up(c.own_shift_left), 14, 3) +
+           length_cell(rounded_up(c.own_shift_right), 15, 3);
   if (c.certain) row += fmt::format("  {:>8}", *c.certain ? "certain" : "possible");
   return row + fmt::format("  {:.3f} {:.3f} {:.3f}\n", c.centroid.x, c.centroid.y, c.centroid.z);
 }
@@ -107,7 +113,7 @@ std::string small_text(const ConflictFile& file) {
   if (c.small_groups == 0) return "";
   const SmallGroup& first = c.small.front();
   return (c.listed.empty() ? "" : "not listed: ") + counted(c.small_groups, "group") +
-         " of fewer than " + counted(file.options.min_points, "point") + ", together " +
+         " of fewer than " + counted(c.min_points, "point") + ", together " +
          counted(c.small_points, "point") + "; " +
          (c.small_groups == 1 ? "it is" : "the first is") +
          fmt::format(
@@ -133,36 +139,67 @@ std::string totals_text(const ConflictFile& file) {
          path + small_text(file);
 }
 
-/// A table of the worst conflicts, ordered by least distance where that is known and otherwise
-/// along the path. At most `most` are shown; the others are counted.
+/// What could be done about the worst conflict, as a line; empty where nothing is known.
+std::string worst_text(const ConflictFile& file, const Conflict& worst) {
+  RemedyWords how{file.conflicts, symbol_of(file.unit()), file.metres_per_unit()};
+  if (worst.first_body) how.body = file.header.bodies.at(*worst.first_body);
+  const std::string words = remedy_words(worst, how);
+  if (words.empty()) return "";
+  return fmt::format("the worst is conflict {}: {}\n", worst.id, words);
+}
+
+/// How the points were grouped, and how far apart they are.
+std::string grouping_text(const ConflictFile& file) {
+  const Conflicts& c = file.conflicts;
+  const std::string unit = symbol_of(file.unit());
+  std::string text = "points at most " + format_brief(c.gap) + " " + unit +
+                     " apart are one conflict, from " + counted(c.min_points, "point") + " on";
+  if (c.spacing) {
+    text += "; colliding points are " + format_brief(*c.spacing) + " " + unit + " apart";
+  }
+  if (file.header.budget) {
+    if (file.header.gap != c.gap || c.min_points != kLeastCertainGroup) {
+      text += "; the verdict groups by " + format_brief(file.header.gap) + " " + unit + " and " +
+              counted(kLeastCertainGroup, "point");
+    }
+  }
+  return text + "\n";
+}
+
+/// A table of the worst conflicts, from the worst on. At most `most` are shown; the others are
+/// counted.
 std::string conflict_text(const ConflictFile& file, std::size_t most) {
   const Conflicts& conflicts = file.conflicts;
   std::string text = totals_text(file);
+  if (conflicts.colliding_points + conflicts.near_points > 0) text += grouping_text(file);
   if (conflicts.listed.empty() || most == 0) return text;
   const bool distances = has_distances(conflicts), depths = has_depths(conflicts);
-  const bool shifts = has_shifts(conflicts);
+  const bool trims = conflicts.knows_trims, shifts = conflicts.knows_shifts;
   const char* const unit = symbol_of(file.unit());
-  const std::vector<Conflict> rows = worst_of(conflicts, most);
+  const std::vector<const Conflict*> rows = worst_of(conflicts, most);
   if (rows.size() < conflicts.listed.size()) {
-    text += fmt::format("the {} {}:\n", distances ? "worst" : "first", rows.size());
+    text += fmt::format("the worst {}:\n", rows.size());
   }
   text +=
       fmt::format("{:>5}  {:>19}", "id", fmt::format("chainage ({})", unit)) +
-      (rows.front().station_from ? fmt::format("  {:>23}", "station (m)") : "") +
+      (rows.front()->station_from ? fmt::format("  {:>23}", "station (m)") : "") +
       fmt::format("  {:>12}  {:>11}  {:>7}", fmt::format("obstacle ({})", unit), "points", "side");
   if (distances) {
-    text += fmt::format("  {:>12}  {:>16}", fmt::format("distance ({})", unit),
-                        fmt::format("encroachment ({})", unit));
+    text += fmt::format("  {:>12}  {:>14}", fmt::format("distance ({})", unit),
+                        fmt::format("missing ({})", unit));
   }
   if (depths) text += fmt::format("  {:>9}  {:>11}", fmt::format("depth ({})", unit), "inside");
+  if (trims) text += fmt::format("  {:>8}", fmt::format("trim ({})", unit));
   if (shifts) {
     text += fmt::format("  {:>14}  {:>15}", fmt::format("shift left ({})", unit),
                         fmt::format("shift right ({})", unit));
   }
-  if (rows.front().certain) text += fmt::format("  {:>8}", "class");
+  if (rows.front()->certain) text += fmt::format("  {:>8}", "class");
   text += "  centroid\n";
-  for (const Conflict& conflict : rows) text += row_text(conflict, distances, depths, shifts);
-  return text;
+  for (const Conflict* conflict : rows) {
+    text += row_text(*conflict, distances, depths, trims, shifts);
+  }
+  return text + worst_text(file, *rows.front());
 }
 
 /// An output that does not exist yet.
@@ -358,8 +395,8 @@ void add_conflicts(CLI::App& program) {
   command->footer(
       "Points at most the gap apart belong to one conflict, also through other points. Conflicts "
       "are\n"
-      "numbered along the path. Those of a result with clearances have their least distance; the\n"
-      "table then begins with the worst.\n"
+      "numbered along the path, and the table begins with the worst. Those of a result with\n"
+      "clearances have their least distance.\n"
       "Example: clearway conflicts out.h5 --trajectory path.txt -o conflicts.csv");
   command->callback([options, command] {
     run_stoppable(options->result, kStartsAgain, [&] {

@@ -146,7 +146,7 @@ std::string small_text(const ShiftFile& file) {
   const Conflicts& found = file.conflicts;
   if (found.small_groups == 0) return "";
   return counted(found.small_groups, "group") + " of fewer than " +
-         counted(file.options.min_points, "point") + (found.small_groups == 1 ? " is" : " are") +
+         counted(file.conflicts.min_points, "point") + (found.small_groups == 1 ? " is" : " are") +
          " no conflict, and " + (found.small_groups == 1 ? "counts" : "count") +
          " for the whole path alone; --min-points 1 lists " +
          (found.small_groups == 1 ? "it" : "them") + "\n";

@@ -70,6 +70,13 @@ std::string cell(const std::optional<FoundPlace>& place) {
   return cell(place ? std::optional(place->distance) : std::nullopt);
 }
 
+/// The least distance, or below or above what it is, where that is all that is known.
+std::string least_cell(const StationRow& row) {
+  if (row.least_below) return fmt::format("  {:>8}", "< " + format_brief(*row.least_below));
+  if (row.least_above) return fmt::format("  {:>8}", "> " + format_brief(*row.least_above));
+  return cell(row.least);
+}
+
 std::string range_text(double from, double to) { return fmt::format("{:.2f} - {:.2f}", from, to); }
 
 /// Why a row is not clear, in a few words.
@@ -100,7 +107,8 @@ std::string row_text(const StationRow& row) {
   if (row.station_from) {
     text += fmt::format("  {:>23}", range_text(*row.station_from, *row.station_to));
   }
-  for (const auto* place : {&row.least, &row.left, &row.right, &row.above}) text += cell(*place);
+  text += least_cell(row);
+  for (const auto* place : {&row.left, &row.right, &row.above}) text += cell(*place);
   const Overthrow overthrow = greatest(row);
   text += cell(overthrow.end, 13) + cell(overthrow.middle, 16);
   return text + "  " + name_of(row.verdict) + why(row) + "\n";
@@ -241,7 +249,7 @@ void add_stations(CLI::App& program) {
   command->footer(
       "For each stretch: the least distance, and those to the left, to the right and above, with\n"
       "their points; how far the ends and the middle of each body leave the path in curves; and\n"
-      "the verdict. Distances need a result with clearances.\n"
+      "the verdict. Distances need a result with clearances or a profile.\n"
       "Example: clearway stations out.h5 --trajectory path.txt --every 5 -o stations.csv");
   command->callback([options, command] {
     run_stoppable(options->result, kStartsAgain, [&] {

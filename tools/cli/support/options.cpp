@@ -207,9 +207,10 @@ CLI::Option* add_angle_option(CLI::App& command, const std::string& name,
       ->type_name("ANGLE");
 }
 
-void add_count_option(CLI::App& command, const std::string& name, std::uint64_t& count,
-                      std::uint64_t least, std::uint64_t most, const std::string& description) {
-  command
+CLI::Option* add_count_option(CLI::App& command, const std::string& name, std::uint64_t& count,
+                              std::uint64_t least, std::uint64_t most,
+                              const std::string& description) {
+  return command
       .add_option_function<std::string>(
           name,
           [&count, least, most, name](const std::string& text) {

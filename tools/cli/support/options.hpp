@@ -59,8 +59,9 @@ CLI::Option* add_angle_option(CLI::App& command, const std::string& name,
                               std::optional<double>& angle, const std::string& description);
 
 /// Adds an option that takes a whole number from `least` to `most`.
-void add_count_option(CLI::App& command, const std::string& name, std::uint64_t& count,
-                      std::uint64_t least, std::uint64_t most, const std::string& description);
+CLI::Option* add_count_option(CLI::App& command, const std::string& name, std::uint64_t& count,
+                              std::uint64_t least, std::uint64_t most,
+                              const std::string& description);
 
 /// Adds --memory, in bytes.
 void add_memory_option(CLI::App& command, std::uint64_t& bytes);

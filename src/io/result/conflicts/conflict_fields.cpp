@@ -28,7 +28,8 @@ std::vector<ConflictField> fields_of(const Conflict& c, const ResultHeader& head
 }
 
 std::optional<double> rounded_up(std::optional<double> shift) {
-  if (shift) *shift = std::ceil(*shift * 1000) / 1000;
+  // What is a whole number but for roundings is taken for it.
+  if (shift) *shift = std::ceil(*shift * 1000 - 1e-6) / 1000;
   return shift;
 }
 
@@ -81,8 +82,11 @@ Json small_json(const std::vector<SmallGroup>& groups) {
 Json json_of(const FieldValue& value) {
   return std::visit(
       [](const auto& of) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(of)>, std::monostate>) {
+        using Value = std::decay_t<decltype(of)>;
+        if constexpr (std::is_same_v<Value, std::monostate>) {
           return Json();
+        } else if constexpr (std::is_same_v<Value, std::string_view>) {
+          return of.empty() ? Json() : Json(of);
         } else {
           return Json(of);
         }
@@ -143,8 +147,9 @@ Json summary_of(const ConflictFile& file) {
     out["ignored"] = ignored_text(header);
   }
   if (file.answer.floor_colliding) out["floor"] = floor_json(file.answer);
-  out["gap"] = file.options.gap;
-  out["min_points"] = file.options.min_points;
+  out["gap"] = conflicts.gap;
+  out["min_points"] = conflicts.min_points;
+  out["spacing"] = or_null(conflicts.spacing);
   out["split"] = file.options.split;
   out["environment_points"] = header.environment_points;
   out["model_points"] = header.model_points;

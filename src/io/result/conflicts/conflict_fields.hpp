@@ -58,6 +58,9 @@ void add_fields(std::vector<ConflictField>& fields, const std::tuple<Columns...>
       fields.push_back({key + "_source", value ? FieldValue(value->source) : FieldValue()});
     } else if constexpr (std::is_enum_v<Value>) {
       fields.push_back({key, std::string_view(name_of(value))});
+    } else if constexpr (requires { name_of(*value); }) {
+      // An empty word says that the column has words.
+      fields.push_back({key, std::string_view(value ? name_of(*value) : "")});
     } else if constexpr (std::is_same_v<Value, double>) {
       fields.push_back({key, value, true});
     } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
@@ -77,7 +80,7 @@ void add_fields(std::vector<ConflictField>& fields, const std::tuple<Columns...>
 /// bodies, station_from and station_to only where the conflict has stations.
 std::vector<ConflictField> fields_of(const Conflict& conflict, const ResultHeader& header);
 
-/// A shift rounded up to a thousandth of the unit, so that it is never less than needed.
+/// A shift or trim rounded up to a thousandth of the unit, so that it is never less than needed.
 std::optional<double> rounded_up(std::optional<double> shift);
 
 /// A group that is too small to be listed, in the form of a conflict. Its id is 0, and its centroid

@@ -54,7 +54,8 @@ Insert& Insert::add(const FieldValue& value) {
   if (const auto* count = std::get_if<std::uint64_t>(&value)) {
     return add_integer(static_cast<std::int64_t>(*count));
   }
-  if (const auto* word = std::get_if<std::string_view>(&value)) return add_text(*word);
+  const auto* word = std::get_if<std::string_view>(&value);
+  if (word != nullptr && !word->empty()) return add_text(*word);
   const auto* number = std::get_if<double>(&value);
   database_.check(number != nullptr ? sqlite3_bind_double(statement_, next_, *number)
                                     : sqlite3_bind_null(statement_, next_),

@@ -219,7 +219,7 @@ def conflicts_are_those_of_a_single_run(test):
     table = (folder / "conflicts.csv").read_bytes()
     expect(table == (test.work / "single.csv").read_bytes(), "other conflicts")
     head, first = [line.split(",") for line in table.decode().splitlines()[:2]]
-    expect(any(dict(zip(head, first))[name] for name in ("shift_left", "shift_right")), f"{first}")
+    expect(any(dict(zip(head, first))[name] for name in ("own_shift_left", "own_shift_right")), f"{first}")
 
 
 def boxes_need_no_file(test):

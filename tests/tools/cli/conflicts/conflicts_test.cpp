@@ -86,8 +86,8 @@ TEST_CASE("conflicts are listed in JSON and CSV, and no point is lost") {
   CHECK(rows[0] ==
         "id,points,source,lo_x,lo_y,lo_z,hi_x,hi_y,hi_z,centroid_x,centroid_y,centroid_z,first_"
         "pose,last_pose,chainage_from,chainage_to,least_distance,nearest_pose,nearest_source,"
-        "encroachment,side,lateral,height,group,depth,points_inside,obstacle_chainage,shift_left,"
-        "shift_right,small_groups,small_points");
+        "encroachment,side,lateral,height,group,depth,points_inside,obstacle_chainage,own_shift_left,"
+        "own_shift_right,small_groups,small_points");
   CHECK_THAT(rows[1], Catch::StartsWith("1," + all["conflicts"][0]["points"].dump() + "," +
                                         all["conflicts"][0]["source"].dump() + ","));
 }

@@ -7,6 +7,7 @@
 #include "io/files/json.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/conflicts/conflict_fields.hpp"
+#include "io/result/conflicts/conflict_words.hpp"
 #include "io/result/conflicts/markup_text.hpp"
 
 namespace clearway {
@@ -91,13 +92,13 @@ std::string offset_text(const ConflictFile& file, const Conflict& c) {
 /// The lateral shifts, in words, that free the conflict's own points; empty where they are not
 /// known.
 std::string shift_text(const ConflictFile& file, const Conflict& c) {
-  if (!c.shift_left && !c.shift_right) return "";
+  if (!c.own_shift_left && !c.own_shift_right) return "";
   std::string out = " Its points are free where the vehicle runs at least";
-  if (c.shift_left)
-    out += " " + length_text(file, format_number(*rounded_up(c.shift_left))) + " farther left";
-  if (c.shift_left && c.shift_right) out += " or";
-  if (c.shift_right)
-    out += " " + length_text(file, format_number(*rounded_up(c.shift_right))) + " farther right";
+  if (c.own_shift_left)
+    out += " " + length_text(file, format_number(*rounded_up(c.own_shift_left))) + " farther left";
+  if (c.own_shift_left && c.own_shift_right) out += " or";
+  if (c.own_shift_right)
+    out += " " + length_text(file, format_number(*rounded_up(c.own_shift_right))) + " farther right";
   return out + ".";
 }
 
@@ -106,9 +107,25 @@ std::string small_text(const ConflictFile& file) {
   const Conflicts& found = file.conflicts;
   if (found.small_groups == 0) return "";
   return " In all, " + counted(found.small_groups, "group") + " of fewer than " +
-         counted(file.options.min_points, "point") +
+         counted(file.conflicts.min_points, "point") +
          (found.small_groups == 1 ? " collides" : " collide") + " too, with " +
          counted(found.small_points, "point") + " together.";
+}
+
+/// What is missing: "0.1 m are missing", "at least 0.1 m are missing" or "it touches the model".
+std::string missing_text(const ConflictFile& file, const Conflict& c) {
+  const bool exact = c.encroachment_is == Bound::kExact;
+  if (!exact && *c.least_distance < kTouching) return "it touches the model";
+  return (exact ? "" : "at least ") + length_text(file, format_brief(*c.encroachment)) +
+         " are missing";
+}
+
+/// What frees the vehicle from the conflict, as a sentence; empty where nothing is known.
+std::string remedy_text(const ConflictFile& file, const Conflict& c) {
+  RemedyWords how{file.conflicts, symbol_of(file.unit()), file.metres_per_unit()};
+  if (c.first_body) how.body = file.header.bodies.at(*c.first_body);
+  const std::string words = remedy_words(c, how);
+  return words.empty() ? "" : " To pass: " + markup_text(words) + ".";
 }
 
 std::string description_of(const ConflictFile& file, const Conflict& c) {
@@ -122,8 +139,7 @@ std::string description_of(const ConflictFile& file, const Conflict& c) {
            (*c.points_inside == 1 ? " point is inside." : " points are inside.");
   } else if (c.least_distance) {
     out += " The least distance is " + length_text(file, format_brief(*c.least_distance)) +
-           ", at pose " + std::to_string(*c.nearest_pose) + "; " +
-           length_text(file, format_brief(*c.encroachment)) + " are missing.";
+           ", at pose " + std::to_string(*c.nearest_pose) + "; " + missing_text(file, c) + ".";
   }
   if (c.lateral && c.height) {
     out += std::string(!c.nearest_point          ? " The point that is touched first"
@@ -135,7 +151,7 @@ std::string description_of(const ConflictFile& file, const Conflict& c) {
     out += " The obstacle stands at chainage " +
            length_text(file, format_brief(*c.obstacle_chainage)) + ".";
   }
-  out += shift_text(file, c);
+  out += remedy_text(file, c) + shift_text(file, c);
   out += " Poses " + std::to_string(c.first_pose) + " to " + std::to_string(c.last_pose) +
          ", counted from 0, touch it.";
   return out + small_text(file);
@@ -159,7 +175,7 @@ std::string conflict_uuid(const ConflictFile& file, const Conflict& conflict,
        {header.environment_hash, header.model_hash, header.trajectory_hash}) {
     text += " " + hash_text(hash);
   }
-  for (const double length : {header.radius, file.options.gap, file.options.split}) {
+  for (const double length : {header.radius, file.conflicts.gap, file.options.split}) {
     text += " " + json_number(length);
   }
   return uuid_of(text + (header.between_poses ? " between " : " at ") +

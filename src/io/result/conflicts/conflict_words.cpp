@@ -1,0 +1,104 @@
+#include "io/result/conflicts/conflict_words.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <span>
+
+#include "core/util/format.hpp"
+#include "io/result/conflicts/conflict_fields.hpp"
+
+namespace clearway {
+namespace {
+
+std::string length_words(double length, const std::string& unit) {
+  return format_number(*rounded_up(length)) + " " + unit;
+}
+
+/// A length with three digits behind the point.
+std::string millimetres(double length) {
+  std::array<char, 64> text{};
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), length, std::chars_format::fixed, 3);
+  return {text.data(), end.ptr};
+}
+
+/// The least trim, on the conflict's side; empty where there is none.
+std::string trim_words(const Conflict& c, const RemedyWords& how) {
+  const struct {
+    Side side;
+    const char* where;
+    std::optional<double> trim;
+  } sides[] = {{Side::kLeft, "on the left", c.trim_left},
+               {Side::kRight, "on the right", c.trim_right},
+               {Side::kAbove, "at the top", c.trim_above},
+               {Side::kBelow, "at the bottom", c.trim_below}};
+  for (const auto& [side, where, trim] : sides) {
+    if (side != c.side || !trim) continue;
+    const std::string cut = "a trim of " + length_words(*trim, how.unit) + " " + where;
+    return how.body.empty() ? cut + " is enough"
+                            : cut + " of body " + how.body + " frees that body";
+  }
+  return "";
+}
+
+const StretchShift* confirmed(const Conflict& c, const RemedyWords& how) {
+  if (how.shifts == nullptr) return nullptr;
+  const auto& rows = how.shifts->conflicts;
+  const auto row = std::ranges::find(rows, c.id, &StretchShift::conflict);
+  return row == rows.end() ? nullptr : &*row;
+}
+
+std::string shift_words(const Conflict& c, const RemedyWords& how) {
+  const auto to = [](bool left) { return left ? " to the left" : " to the right"; };
+  if (const StretchShift* row = confirmed(c, how)) {
+    if (!row->shift) return "";
+    return "a shift of " + format_number(std::abs(*row->shift)) + " " + how.unit +
+           to(*row->shift > 0) + " frees it";
+  }
+  if (!c.own_shift_left && !c.own_shift_right) return "";
+  const bool left =
+      c.own_shift_left && (!c.own_shift_right || *c.own_shift_left <= *c.own_shift_right);
+  return "a shift of at least " +
+         length_words(left ? *c.own_shift_left : *c.own_shift_right, how.unit) + to(left);
+}
+
+/// The shifts that were tried: "a shift of up to 2 m".
+std::string tried_words(const Conflict& c, const RemedyWords& how) {
+  constexpr double kMostShift = 2;  // metres
+  if (confirmed(c, how) == nullptr) {
+    return "a shift of up to " + format_brief(kMostShift / how.metre) + " " + how.unit;
+  }
+  const ShiftTable& table = *how.shifts;
+  if (table.lateral_to == -table.lateral_from) {
+    return "a shift of up to " + format_number(table.lateral_to) + " " + how.unit;
+  }
+  return "a shift of up to " + format_number(table.lateral_to) + " " + how.unit +
+         " to the left or " + format_number(-table.lateral_from) + " " + how.unit + " to the right";
+}
+
+}  // namespace
+
+std::string missing_words(const Conflict& conflict, const std::string& unit) {
+  if (!conflict.encroachment) return "";
+  const bool exact = conflict.encroachment_is == Bound::kExact;
+  if (!exact && *conflict.least_distance < kTouching) return "touches";
+  return (exact ? "" : "at least ") + millimetres(*conflict.encroachment) +
+         (unit.empty() ? "" : " " + unit);
+}
+
+std::string remedy_words(const Conflict& conflict, const RemedyWords& how) {
+  if (conflict.colliding == 0) return "";
+  const bool knows_trims = how.conflicts.knows_trims;
+  const bool knows_shifts = how.conflicts.knows_shifts || confirmed(conflict, how) != nullptr;
+  const std::string trim = trim_words(conflict, how), shift = shift_words(conflict, how);
+  if (!trim.empty() && !shift.empty()) return trim + ", or " + shift;
+  if (!trim.empty() || !shift.empty()) return trim + shift;
+  const std::string tried = tried_words(conflict, how);
+  if (knows_trims && knows_shifts) return "neither a trim nor " + tried + " is known to free it";
+  if (knows_trims) return "no trim is known to free it";
+  return knows_shifts ? "no" + tried.substr(1) + " is known to free it" : "";
+}
+
+}  // namespace clearway

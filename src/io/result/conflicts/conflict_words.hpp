@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "clearway/conflicts.hpp"
+#include "clearway/shift.hpp"
+
+namespace clearway {
+
+/// Distances below this, in metres, say only that the surfaces touch, because a scan can show no
+/// more.
+inline constexpr double kTouching = 0.001;
+
+/// What is missing at a conflict, in digits of a millimetre: "0.099 m" of a solid, and otherwise
+/// "at least 0.099 m" or "touches". Empty without an encroachment. unit: the symbol of lengths; an
+/// empty one is left out.
+std::string missing_words(const Conflict& conflict, const std::string& unit);
+
+/// How conflicts are put in words.
+struct RemedyWords {
+  const Conflicts& conflicts;
+  std::string unit;                    ///< symbol of lengths
+  double metre = 1;                    ///< metres per unit of length
+  std::string body = {};               ///< name of the conflict's first_body, for a vehicle
+  const ShiftTable* shifts = nullptr;  ///< confirmed shifts, where they are known
+};
+
+/// What frees a vehicle from a conflict, such as "a trim of 0.15 m on the left is enough, or a
+/// shift of at least 0.12 m to the right"; a shift that a search has confirmed "frees it". Says so
+/// where nothing of what was tried does. Empty where nothing is known, and for points that are only
+/// near.
+std::string remedy_words(const Conflict& conflict, const RemedyWords& how);
+
+}  // namespace clearway

@@ -1,0 +1,111 @@
+// Which conflict is the worst, and that everybody names the same one.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "clearway/clearway.hpp"
+#include "findings/conflict_rank.hpp"
+#include "findings/searched_scene.hpp"
+#include "io/result/answer.hpp"
+#include "io/result/conflicts/conflict_fields.hpp"
+#include "io/result/conflicts/conflict_words.hpp"
+#include "support/compare.hpp"
+#include "support/solid_scene.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+
+namespace {
+
+/// Conflicts with ids in their order, ranked. Returns the ids from the worst on.
+std::vector<std::uint32_t> order_of(std::vector<Conflict> listed, bool shifts = true,
+                                    bool trims = true) {
+  Conflicts conflicts;
+  conflicts.knows_shifts = shifts;
+  conflicts.knows_trims = trims;
+  for (Conflict& conflict : listed) {
+    conflict.id = static_cast<std::uint32_t>(conflicts.listed.size() + 1);
+    conflicts.listed.push_back(conflict);
+  }
+  rank(conflicts);
+  std::vector<std::uint32_t> out;
+  for (const Conflict* conflict : by_rank(conflicts)) out.push_back(conflict->id);
+  return out;
+}
+
+Conflict deep(double depth) { return {.points = 5, .colliding = 5, .depth = depth}; }
+
+Conflict freed(std::optional<double> shift, std::optional<double> trim, std::uint64_t points = 5) {
+  return {.points = points, .colliding = points, .own_shift_right = shift, .trim_above = trim};
+}
+
+Conflict near(double distance) { return {.points = 5, .least_distance = distance}; }
+
+using Ids = std::vector<std::uint32_t>;
+
+}  // namespace
+
+TEST_CASE("conflicts are ranked by depth, then by what frees them, then by distance") {
+  CHECK(order_of({near(0.2), freed(0.1, {}), deep(0.01), near(0.15), freed(0.3, 0.2), deep(0.5),
+                  freed({}, {})}) == Ids{6, 3, 7, 5, 2, 4, 1});
+  // The least of shift and trim counts; what is empty is infinite.
+  CHECK(order_of({freed(0.1, 0.5), freed(0.4, 0.3), freed({}, 0.2)}) == Ids{2, 3, 1});
+  CHECK(order_of({freed(0.1, 0.5), freed(0.4, 0.3), freed({}, 0.2)}, false) == Ids{1, 2, 3});
+  CHECK(order_of({freed(0.1, 0.5), freed(0.4, 0.3), freed({}, 0.2)}, true, false) == Ids{3, 2, 1});
+  // Where nothing is known, and of equal ones, the most points, and then the first.
+  CHECK(order_of({freed({}, {}, 4), freed({}, {}, 9), freed({}, {}, 4)}, false, false) ==
+        Ids{2, 1, 3});
+  CHECK(order_of({freed(0.1, {}, 4), freed(0.1, {}, 9), freed(0.1, {}, 4)}) == Ids{2, 1, 3});
+}
+
+TEST_CASE("a headline says what can be done") {
+  Conflicts all;
+  all.knows_shifts = all.knows_trims = true;
+  Conflict c{.id = 3,
+             .points = 9,
+             .colliding = 9,
+             .own_shift_left = 0.2,
+             .own_shift_right = 0.1199,
+             .trim_left = 0.15,
+             .side = Side::kLeft};
+  const RemedyWords how{all, "m"};
+  CHECK(remedy_words(c, how) ==
+        "a trim of 0.15 m on the left is enough, or a shift of at least 0.12 m to the right");
+  ShiftTable shifts{.lateral_from = -2, .lateral_to = 2, .step = 0.01};
+  shifts.conflicts.push_back({.conflict = 3, .shift = -0.12});
+  RemedyWords confirmed{all, "m", 1, "", &shifts};
+  CHECK(remedy_words(c, confirmed) ==
+        "a trim of 0.15 m on the left is enough, or a shift of 0.12 m to the right frees it");
+  c.trim_left.reset();
+  CHECK(remedy_words(c, how) == "a shift of at least 0.12 m to the right");
+  shifts.conflicts[0].shift.reset();
+  CHECK(remedy_words(c, confirmed) ==
+        "neither a trim nor a shift of up to 2 m is known to free it");
+  c.own_shift_left = c.own_shift_right = std::nullopt;
+  CHECK(remedy_words(c, how) == "neither a trim nor a shift of up to 2 m is known to free it");
+  all.knows_shifts = false;
+  CHECK(remedy_words(c, how) == "no trim is known to free it");
+  all.knows_trims = false;
+  CHECK(remedy_words(c, how).empty());
+  all.knows_shifts = true;
+  CHECK(remedy_words(c, {all, "ft", 0.3048}) == "no shift of up to 6.562 ft is known to free it");
+  all.knows_trims = true;
+  c.side = Side::kAbove;
+  c.trim_above = 0.0301;
+  CHECK(remedy_words(c, {all, "m", 1, "cab"}) ==
+        "a trim of 0.031 m at the top of body cab frees that body");
+  c.colliding = 0;
+  CHECK(remedy_words(c, how).empty());
+}
+
+TEST_CASE("what is missing is said as exactly as it is known") {
+  Conflict c{.least_distance = 0.001, .encroachment = 0.099, .encroachment_is = Bound::kExact};
+  CHECK(missing_words(c, "m") == "0.099 m");
+  c.encroachment_is = Bound::kAtLeast;
+  CHECK(missing_words(c, "m") == "at least 0.099 m");
+  CHECK(missing_words(c, "") == "at least 0.099");
+  c.least_distance = 0.0009;
+  CHECK(missing_words(c, "m") == "touches");
+  CHECK(missing_words({}, "m").empty());
+}
