@@ -101,8 +101,8 @@ struct Conflict {
   std::optional<double> station_from = {}, station_to = {};
   /// Station of the obstacle itself, metres: the chainage of the pose that it is seen from, plus
   /// how far ahead of that pose, in the direction in which the path continues, the nearest point
-  /// lies (docs/design/findings.md, "Stations and sides"). It is seen from the pose where it is
-  /// nearest; without clearances, from its first pose, by the first point that is touched there.
+  /// lies (docs/design/findings.md, "Stations and first touch"). It is seen from the pose where it
+  /// is nearest; without clearances, from its first pose, by the first point that is touched there.
   /// None if the pose's rotation cannot be inverted.
   std::optional<double> obstacle_chainage = {};
   /// Least shift of the vehicle to the left, or to the right, along the Y axis of the path's poses,

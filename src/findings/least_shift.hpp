@@ -20,7 +20,7 @@ struct SideShifts {
 
 /// How far a vehicle has to be shifted to one side so that given points no longer collide with it.
 /// A shift by l moves every body at pose i of the path by l times the axis of that pose that points
-/// to the left (docs/design/findings.md, "Shifts"). Thread safe once constructed.
+/// to the left (docs/design/findings.md, "Own shifts"). Thread safe once constructed.
 class LeastShift {
  public:
   /// left: the direction to the left in the frame of the path's poses, +Y for a vehicle whose front

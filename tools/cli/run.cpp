@@ -317,8 +317,9 @@ RunOutcome perform(RunOptions& options) {
   log_report(report, options, symbol_of_unit(store.length_unit()), program.total_seconds);
   program.peak_host_bytes = memory.peak_bytes();
   const std::string unit = symbol_of_unit(store.length_unit());
-  const std::string sentence = verdict_text(report, path, unit, caveat_of(report.warnings.size())) +
-                               unseen_sentences(report, query, options, unit);
+  const std::string sentence =
+      verdict_text(report, path, unit, caveat_of(report.warnings.size()), options.names_nearest) +
+      unseen_sentences(report, query, options, unit);
   RunOutcome outcome;
   outcome.sentence = sentence;
   if (options.json) outcome.json = json_of(report, options, path, program);

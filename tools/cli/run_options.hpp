@@ -26,6 +26,7 @@ struct RunOptions {
   LengthOptions lengths;
   bool fail_on_collision = false;
   bool json = false;
+  bool names_nearest = true;  ///< whether the sentence of a conflict names the nearest place
 };
 
 /// The options by which the model of a run is read. Throws UsageError for options that contradict

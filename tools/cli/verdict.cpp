@@ -302,10 +302,12 @@ std::string caveat_of(std::size_t warnings) {
 }
 
 std::string verdict_text(const Answer& answer, const PathWords& path, const std::string& unit,
-                         const std::string& caveat) {
+                         const std::string& caveat, bool names_nearest) {
   std::string text = answer.shard ? in_words(*answer.shard) + ": " : "";
-  text += finding_text(answer, path, unit) + seen_clause(answer, path, unit) +
-          nearest_text(answer, path, unit);
+  text += finding_text(answer, path, unit) + seen_clause(answer, path, unit);
+  if (names_nearest || answer.verdict() != Verdict::kConflict) {
+    text += nearest_text(answer, path, unit);
+  }
   if (answer.verdict() != Verdict::kConflict) {
     text += spacing_text(answer.model_spacing, answer.parameters.radius, unit);
   }

@@ -28,8 +28,9 @@ std::string found_text(std::uint64_t colliding_points, std::uint64_t environment
 std::string caveat_of(std::size_t warnings);
 
 /// The verdict in one sentence, with `caveat` before its end. unit: the symbol of lengths, "m".
+/// names_nearest: whether a conflict is named by its nearest place, which need not be the worst.
 std::string verdict_text(const Answer& answer, const PathWords& path, const std::string& unit,
-                         const std::string& caveat);
+                         const std::string& caveat, bool names_nearest = true);
 
 /// Sentences about the places that were not scanned, each with a blank before it: which are behind
 /// a conflict, and which is probably the ground. Empty where there is nothing to say.

@@ -153,7 +153,7 @@ class Check {
     fill_path();
     const RunOutcome found = search();
     made_for_ = question();
-    const std::string conflicts = make_table<ConflictsCommand>(kConflictsName, plan_.conflicts());
+    const ordered_json conflicts = make_table<ConflictsCommand>(kConflictsName, plan_.conflicts());
     make_table<StationsCommand>(kStationsName, plan_.stations());
     write_page();
     record_->write();
@@ -356,6 +356,7 @@ class Check {
       if (!defaults.empty()) spdlog::info("{}", defaults);
       Step<RunOptions> step(plan_.run(false));
       step.options().json = options_.json;
+      step.options().names_nearest = false;
       step.options().search.resume = has_begun();
       try {
         RunOutcome outcome = perform(step.options());
@@ -366,6 +367,7 @@ class Check {
       }
       Step<RunOptions> replacing(plan_.run(true));
       replacing.options().json = options_.json;
+      replacing.options().names_nearest = false;
       RunOutcome outcome = perform(replacing.options());
       note_step(kResultName, replacing.words(), false);
       return outcome;
@@ -405,18 +407,21 @@ class Check {
     return what;
   }
 
-  /// Makes the table that a step writes, unless it is there. Returns what the step says of it.
+  /// Makes the table that a step writes, unless it is there. Returns what the step says of it: its
+  /// text, and of conflicts a sentence about the worst.
   template <typename Command>
-  std::string make_table(const char* name, const Words& words) {
+  ordered_json make_table(const char* name, const Words& words) {
     Step<Command> step(words);
     const ordered_json what = made_for(step.essence());
     const ordered_json known = record_->find(name, what);
-    note_step(name, step.words(), known.is_string());
-    if (known.is_string()) return known.get<std::string>();
+    note_step(name, step.words(), known.is_object());
+    if (known.is_object()) return known;
     const auto outcome = in_terms_of_check([&] { return perform(step.options()); });
     spdlog::info("{}: written", plan_.file(name).string());
-    record_->note(name, what, outcome.text);
-    return outcome.text;
+    ordered_json said{{"text", outcome.text}};
+    if constexpr (requires { outcome.worst; }) said["worst"] = outcome.worst;
+    record_->note(name, what, said);
+    return said;
   }
 
   void write_page() {
@@ -439,29 +444,32 @@ class Check {
     nothing_done_ = nothing_done_ && was_there;
   }
 
-  void print_answer(const RunOutcome& found, const std::string& conflicts) const {
+  void print_answer(const RunOutcome& found, const ordered_json& conflicts) const {
+    const std::string worst = conflicts.value("worst", "");
+    const std::string sentence = found.sentence + (worst.empty() ? "" : " " + worst);
     if (nothing_done_) {
       spdlog::info("{}: has the answer to this question already; nothing was to be done",
                    options_.folder.string());
     }
     if (options_.json) {
-      spdlog::info("{}", found.sentence);
-      print(indented_text(json_of(found)));
+      spdlog::info("{}", sentence);
+      print(indented_text(json_of(found, sentence)));
       return;
     }
-    std::string text = conflicts + "these commands did it, and each can be given again by hand:\n";
+    std::string text = conflicts.value("text", "") +
+                       "these commands did it, and each can be given again by hand:\n";
     for (const std::string& command : commands_) text += "  " + command + "\n";
-    print(text + found.sentence + "\n");
+    print(text + sentence + "\n");
   }
 
-  ordered_json json_of(const RunOutcome& found) const {
+  ordered_json json_of(const RunOutcome& found, const std::string& sentence) const {
     ordered_json out = program_json({{"env", plan_.environment()},
                                      {"result", plan_.file(kResultName)},
                                      {"conflicts", plan_.file(kConflictsName)},
                                      {"stations", plan_.file(kStationsName)},
                                      {"report", plan_.file(kReportName)}});
     out["verdict"] = name_of(found.report.verdict());
-    out["sentence"] = found.sentence;
+    out["sentence"] = sentence;
     out["nothing_done"] = nothing_done_;
     out["reused"] = reused_;
     out["commands"] = commands_;

@@ -139,13 +139,13 @@ std::string totals_text(const ConflictFile& file) {
          path + small_text(file);
 }
 
-/// What could be done about the worst conflict, as a line; empty where nothing is known.
-std::string worst_text(const ConflictFile& file, const Conflict& worst) {
+/// Where the worst conflict is and what could be done about it; empty where none is listed.
+std::string worst_text(const ConflictFile& file) {
+  if (file.conflicts.listed.empty()) return "";
+  const Conflict& worst = *worst_of(file.conflicts, 1).front();
   RemedyWords how{file.conflicts, symbol_of(file.unit()), file.metres_per_unit()};
   if (worst.first_body) how.body = file.header.bodies.at(*worst.first_body);
-  const std::string words = remedy_words(worst, how);
-  if (words.empty()) return "";
-  return fmt::format("the worst is conflict {}: {}\n", worst.id, words);
+  return "The worst place is " + conflict_words(worst, how);
 }
 
 /// How the points were grouped, and how far apart they are.
@@ -199,7 +199,7 @@ std::string conflict_text(const ConflictFile& file, std::size_t most) {
   for (const Conflict* conflict : rows) {
     text += row_text(*conflict, distances, depths, trims, shifts);
   }
-  return text + worst_text(file, *rows.front());
+  return text;
 }
 
 /// An output that does not exist yet.
@@ -355,7 +355,8 @@ ConflictsOutcome perform(ConflictsCommand& options) {
   for (const auto& output : outputs) output->pending.publish();
   for (const Message& warning : file.warnings) log_message(warning);
   tell_of_unknown_sides(options, result, conflicts);
-  return {conflict_text(file, options.show), "{\n" + member_lines(summary_of(file)) + "\n}\n",
+  return {conflict_text(file, options.show), worst_text(file),
+          "{\n" + member_lines(summary_of(file)) + "\n}\n",
           verdict_to_repeat(result.reader(), {{.station = labels.station}, chainage_of(poses)},
                             symbol_of(file.unit()))};
 }
@@ -401,12 +402,13 @@ void add_conflicts(CLI::App& program) {
   command->callback([options, command] {
     run_stoppable(options->result, kStartsAgain, [&] {
       advising_to_run_again(*command, {{options->result, options->trajectory}}, [&] {
-        const auto [text, json, verdict] = perform(*options);
+        const auto [text, worst, json, verdict] = perform(*options);
         if (options->json) {
           if (!verdict.empty()) spdlog::info("the verdict of this result is {}", verdict);
           print(json);
         } else {
-          print(text + (verdict.empty() ? "" : "the verdict of this result is " + verdict + "\n"));
+          print(text + (worst.empty() ? "" : worst + "\n") +
+                (verdict.empty() ? "" : "the verdict of this result is " + verdict + "\n"));
         }
       });
     });

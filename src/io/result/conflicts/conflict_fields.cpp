@@ -160,6 +160,8 @@ Json summary_of(const ConflictFile& file) {
   out["path_length"] = conflicts.path_length;
   out["colliding_points"] = conflicts.colliding_points;
   out["conflict_count"] = conflicts.listed.size();
+  const auto worst = std::ranges::min_element(conflicts.listed, {}, &Conflict::rank);
+  out["worst"] = worst == conflicts.listed.end() ? Json() : Json(worst->id);
   out["groups"] = conflicts.groups;
   out["small_groups"] = conflicts.small_groups;
   out["small_points"] = conflicts.small_points;

@@ -16,11 +16,11 @@ std::string length_words(double length, const std::string& unit) {
   return format_number(*rounded_up(length)) + " " + unit;
 }
 
-/// A length with three digits behind the point.
-std::string millimetres(double length) {
-  std::array<char, 64> text{};
-  const auto end =
-      std::to_chars(text.data(), text.data() + text.size(), length, std::chars_format::fixed, 3);
+/// A length with so many digits behind the point.
+std::string fixed_digits(double length, int digits) {
+  std::array<char, 400> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), length,
+                                 std::chars_format::fixed, digits);
   return {text.data(), end.ptr};
 }
 
@@ -84,8 +84,30 @@ std::string missing_words(const Conflict& conflict, const std::string& unit) {
   if (!conflict.encroachment) return "";
   const bool exact = conflict.encroachment_is == Bound::kExact;
   if (!exact && *conflict.least_distance < kTouching) return "touches";
-  return (exact ? "" : "at least ") + millimetres(*conflict.encroachment) +
+  return (exact ? "" : "at least ") + fixed_digits(*conflict.encroachment, 3) +
          (unit.empty() ? "" : " " + unit);
+}
+
+const char* side_words(Side side) {
+  switch (side) {
+    case Side::kUnknown:
+      return "";
+    case Side::kLeft:
+      return "on the left";
+    case Side::kRight:
+      return "on the right";
+    case Side::kAbove:
+      return "above it";
+    case Side::kBelow:
+      return "below it";
+    case Side::kFront:
+      return "in front of it";
+    case Side::kBehind:
+      return "behind it";
+    case Side::kAround:
+      return "around it";
+  }
+  return "";
 }
 
 std::string remedy_words(const Conflict& conflict, const RemedyWords& how) {
@@ -99,6 +121,21 @@ std::string remedy_words(const Conflict& conflict, const RemedyWords& how) {
   if (knows_trims && knows_shifts) return "neither a trim nor " + tried + " is known to free it";
   if (knows_trims) return "no trim is known to free it";
   return knows_shifts ? "no" + tried.substr(1) + " is known to free it" : "";
+}
+
+std::string conflict_words(const Conflict& conflict, const RemedyWords& how) {
+  const double at = conflict.obstacle_chainage.value_or(conflict.chainage_from);
+  std::string text = "conflict " + std::to_string(conflict.id) + ", " + fixed_digits(at, 2) + " " +
+                     how.unit + " along the path";
+  if (const std::string side = side_words(conflict.side); !side.empty()) text += ", " + side;
+  const std::string missing = missing_words(conflict, how.unit);
+  if (conflict.least_distance && *conflict.least_distance < 0) {
+    text += ": " + fixed_digits(-*conflict.least_distance, 3) + " " + how.unit + " deep inside it";
+  } else if (!missing.empty()) {
+    text += missing == "touches" ? ": it touches" : ": " + missing + " are missing";
+  }
+  const std::string remedy = remedy_words(conflict, how);
+  return text + (remedy.empty() ? "" : ". To pass: " + remedy) + ".";
 }
 
 }  // namespace clearway

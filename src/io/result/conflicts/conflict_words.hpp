@@ -17,6 +17,10 @@ inline constexpr double kTouching = 0.001;
 /// empty one is left out.
 std::string missing_words(const Conflict& conflict, const std::string& unit);
 
+/// Where something lies, seen from the vehicle: "on the left", "above it"; empty where that is not
+/// known.
+const char* side_words(Side side);
+
 /// How conflicts are put in words.
 struct RemedyWords {
   const Conflicts& conflicts;
@@ -31,5 +35,9 @@ struct RemedyWords {
 /// where nothing of what was tried does. Empty where nothing is known, and for points that are only
 /// near.
 std::string remedy_words(const Conflict& conflict, const RemedyWords& how);
+
+/// Where a conflict is, what is missing there, and what frees the vehicle from it: "conflict
+/// 1, 64.1 m along the path, on the left: at least 0.093 m are missing. To pass: ...".
+std::string conflict_words(const Conflict& conflict, const RemedyWords& how);
 
 }  // namespace clearway

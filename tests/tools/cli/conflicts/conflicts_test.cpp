@@ -74,7 +74,9 @@ TEST_CASE("conflicts are listed in JSON and CSV, and no point is lost") {
     CHECK(c["first_pose"] <= c["last_pose"]);
     CHECK(c["least_distance"].get<double>() < 0.1);
     CHECK(c["encroachment"] == 0.1 - c["least_distance"].get<double>());
+    CHECK(c["encroachment_is"] == "at-least");
     CHECK(c["side"] != "unknown");
+    CHECK(c["first_touch"] != "unknown");
   }
   CHECK(points == all["colliding_points"]);
   CHECK(all["conflict_count"] == all["conflicts"].size());
@@ -84,18 +86,21 @@ TEST_CASE("conflicts are listed in JSON and CSV, and no point is lost") {
   const auto rows = lines_of(work.bytes("listed.csv"));
   REQUIRE(rows.size() == 1 + all["conflicts"].size());
   CHECK(rows[0] ==
-        "id,points,source,lo_x,lo_y,lo_z,hi_x,hi_y,hi_z,centroid_x,centroid_y,centroid_z,first_"
-        "pose,last_pose,chainage_from,chainage_to,least_distance,nearest_pose,nearest_source,"
-        "encroachment,side,lateral,height,group,depth,points_inside,obstacle_chainage,own_shift_left,"
-        "own_shift_right,small_groups,small_points");
-  CHECK_THAT(rows[1], Catch::StartsWith("1," + all["conflicts"][0]["points"].dump() + "," +
+        "id,rank,points,source,lo_x,lo_y,lo_z,hi_x,hi_y,hi_z,centroid_x,centroid_y,centroid_z,"
+        "first_pose,last_pose,chainage_from,chainage_to,least_distance,nearest_pose,nearest_source,"
+        "encroachment,encroachment_is,side,first_touch,trim_left,trim_right,trim_above,trim_below,"
+        "lateral,height,group,depth,points_inside,obstacle_chainage,own_shift_left,own_shift_right,"
+        "small_groups,small_points");
+  CHECK_THAT(rows[1], Catch::StartsWith("1," + all["conflicts"][0]["rank"].dump() + "," +
+                                        all["conflicts"][0]["points"].dump() + "," +
                                         all["conflicts"][0]["source"].dump() + ","));
 }
 
 TEST_CASE("a table and a summary are printed") {
   const HallResult work;
   check_outcome(work.conflicts("--show 2 --min-points 3"), 0, kAnything,
-                "conflicts of ... along ... not listed:  ... the worst 2 ... encroachment (m)");
+                "conflicts of ... along ... not listed:  ... the worst 2 ... missing (m) ... The "
+                "worst place is conflict");
   const json summary = json_of(work.conflicts("--json"));
   check_json(summary, R"({"kind": "conflicts"})");
   CHECK(!summary.contains("conflicts"));
@@ -146,7 +151,10 @@ TEST_CASE("GeoJSON and GeoPackage open in GDAL") {
       package,
       "Layer name: conflicts ... Geometry: 3D Point ... Layer name: footprints ... Geometry: 3D "
       "Polygon ... Layer name: stretches ... Geometry: 3D Line String ... Feature Count: " +
-          count + " ... encroachment: Real ... lateral: Real ... height: Real ... side: String");
+          count +
+          " ... encroachment: Real ... encroachment_is: String ... side: String ... first_touch: "
+          "String "
+          "... trim_left: Real ... lateral: Real ... height: Real ... own_shift_left: Real");
   check_says(json_text, "Feature Count: " + std::to_string(features["features"].size()));
   check_lacks(json_text, "WGS 84");
   const std::string first = said_by("ogrinfo", "c.gpkg conflicts -fid 1", work);
