@@ -89,12 +89,15 @@ inline constexpr std::tuple kConflictColumns = std::tuple_cat(
                              "has no value where it would be more than half of the body."},
         FindingColumn{.member = &Conflict::trim_right,
                       .key = "trim_right",
-                      .doc = "The same for the right side."},
+                      .doc = "How much taken off its right side is enough, as for trim_left."},
+        FindingColumn{.member = &Conflict::trim_above,
+                      .key = "trim_above",
+                      .doc = "How much taken off it from above is enough, as for trim_left."},
         FindingColumn{
-            .member = &Conflict::trim_above, .key = "trim_above", .doc = "The same from above."},
-        FindingColumn{.member = &Conflict::trim_below,
-                      .key = "trim_below",
-                      .doc = "The same from below, from the floor of the search up."},
+            .member = &Conflict::trim_below,
+            .key = "trim_below",
+            .doc = "How much taken off it from below is enough, as for trim_left; it is measured "
+                   "from the floor of the search up."},
         FindingColumn{.member = &Conflict::lateral,
                       .key = "lateral",
                       .doc = "How far the nearest point, or without clearances the first one that "
