@@ -387,7 +387,8 @@ TEST_CASE("conflicts of a few points are told by the headline and by every outpu
   for (const char* ending : {"csv", "json", "geojson", "gpkg", "bcf"}) {
     outputs += " -o " + std::string("c.") + ending;
   }
-  const Outcome outcome = street.run("conflicts cable.h5 --trajectory path.txt" + outputs);
+  const Outcome outcome =
+      street.run("conflicts cable.h5 --trajectory path.txt --min-points 10" + outputs);
   INFO(outcome.out + outcome.err);
   check_outcome(outcome, 0, kAnything,
                 "3 points collide ... 1 group of fewer than 10 ... 5.000 0.560 0.500 ... "

@@ -34,6 +34,7 @@ struct Epoch {
   /// Another number gives other noise of up to 5 mm; that of scan b is 1 where none is given.
   std::optional<int> noise = {};
   unsigned year = 0;     ///< year in the file's header; 0: none
+  double step = 0.05;    ///< metres between the points of things
   std::string run = {};  ///< options of the search
   std::string path = "path.txt";
 };
@@ -111,8 +112,8 @@ struct Road : Workplace {
       }
     }
     for (const Kerb& thing : epoch.things) {
-      for (double x = thing.x_from; x <= thing.x_to + 1e-9; x += 0.05) {
-        for (double z = thing.z_from; z <= thing.z_to + 1e-9; z += 0.05) {
+      for (double x = thing.x_from; x <= thing.x_to + 1e-9; x += epoch.step) {
+        for (double z = thing.z_from; z <= thing.z_to + 1e-9; z += epoch.step) {
           add(x, thing.y, z, thing.withheld ? kThing | kWithheld : kThing);
         }
       }
@@ -310,4 +311,27 @@ TEST_CASE("compare --conflicts reads a model as run did") {
   const std::string model = "--model car.obj";
   check_outcome(road.compare(epoch, epoch, model), 3);
   check_outcome(road.compare(epoch, epoch, model + " --model-above 0.5"), 0);
+}
+
+TEST_CASE("both scans are grouped as the first one, whose points may be farther apart") {
+  // Two things that are 0.55 m apart: in a thin scan they hang together, and in a dense one not.
+  const Road road;
+  const std::vector<Kerb> two{{20, 20.75, 0.4, 1.4}, {21.3, 22.05, 0.4, 1.4}};
+  road.search("a", {.things = two, .step = 0.25});
+  road.search("b", {.things = two});
+  const auto alone = [&](const std::string& name) {
+    return json_of(road.run("conflicts " + name + ".h5 --trajectory path.txt --json"));
+  };
+  const json thin = alone("a"), dense = alone("b");
+  CHECK(thin["conflict_count"] == 1);
+  CHECK(dense["conflict_count"] == 2);
+  CHECK(thin["gap"].get<double>() > 0.7);
+  check_json(dense, R"({"gap": 0.3})");
+  const json both = json_of(road.run("compare a.h5 b.h5 --conflicts --trajectory path.txt --json"));
+  CHECK(both["gap"] == thin["gap"]);
+  CHECK(both["min_points"] == thin["min_points"]);
+  CHECK(both["b"]["conflicts"] == 1);
+  check_equal(lists_of(both), "same 1");
+  check_outcome(road.run("compare b.h5 a.h5 --conflicts --trajectory path.txt"), 0, kAnything,
+                "both are grouped with a gap of 0.3 m and at least");
 }
