@@ -428,6 +428,7 @@ ordered_json task_facts(const std::filesystem::path& run_json) {
                        {"colliding_points", run.at("colliding_points")},
                        {"ignored", ignored_of(run.at("ignored"))},
                        {"least", place_of(profile.is_null() ? run.at("least_clearance") : profile)},
+                       {"least_side", run.value("least_side", ordered_json())},
                        {"first", place_of(run.at("first_place"))},
                        {"warnings", std::move(warnings)},
                        {"warning_texts", std::move(texts)}};

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -33,10 +34,12 @@
 #include "cli/support/program_json.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "cli/verdict.hpp"
+#include "core/geometry/point_box.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
+#include "findings/touched_first.hpp"
 #include "io/files/file.hpp"
 #include "io/files/json.hpp"
 #include "io/files/pending_file.hpp"
@@ -168,9 +171,30 @@ nlohmann::ordered_json device_estimate_of(const SearchReport& report) {
   return {{"cpu", report.estimate->cpu}, {"cuda", report.estimate->cuda}};
 }
 
+/// On which side of the vehicle the least distance of the profile is, or without one that of the
+/// clearances. Unknown of a vehicle where only the profile has it, which does not know the body.
+Side least_side(const SearchReport& report, const Query& query) {
+  const auto& profile = report.least_profile;
+  const auto& clearance = report.least_clearance;
+  const auto& least = profile ? profile : clearance;
+  const bool has_body =
+      clearance && least->source == clearance->source && least->pose == clearance->pose;
+  if (!least || (query.bodies.size() > 1 && !has_body)) return Side::kUnknown;
+  const std::vector<MovingBody> bodies = moving_bodies(query);
+  const MovingBody& body = bodies[query.bodies.size() > 1 ? clearance->body : 0];
+  const Pose* pose = body.pose_at(least->pose);
+  if (pose == nullptr || body.model.vertices.empty()) return Side::kUnknown;
+  const Vec3 there = ahead_left_up(least->xyz, *pose, Axis::kPlusX, Axis::kPlusZ);
+  if (!std::isfinite(there.x) || !std::isfinite(there.y) || !std::isfinite(there.z)) {
+    return Side::kUnknown;
+  }
+  return side_of({there, there}, box_of(body.model.vertices), Axis::kPlusX, Axis::kPlusZ);
+}
+
 /// The report as JSON. What only a search knows is null for a result that already existed.
 nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& options,
-                               const PathWords& path, const ProgramReport& program) {
+                               const Query& query, const PathWords& path,
+                               const ProgramReport& program) {
   const bool searched = !report.was_finished;
   const bool vehicle = !options.vehicle.empty();
   nlohmann::ordered_json out =
@@ -186,6 +210,9 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["model_triangles"] = report.model_triangles;
   out["model_solids"] = report.model_solids;
   add_answer(report, path, out);
+  const Side side = least_side(report, query);
+  out["least_side"] = nullptr;
+  if (side != Side::kUnknown) out["least_side"] = name_of(side);
   out["ignored"]["looked_at"] = known(searched, report.ignored_looked_at);
   out["shard_share"] = nullptr;
   if (report.shard_share) out["shard_share"] = *report.shard_share;
@@ -322,7 +349,7 @@ RunOutcome perform(RunOptions& options) {
       unseen_sentences(report, query, options, unit);
   RunOutcome outcome;
   outcome.sentence = sentence;
-  if (options.json) outcome.json = json_of(report, options, path, program);
+  if (options.json) outcome.json = json_of(report, options, query, path, program);
   outcome.report = std::move(report);
   return outcome;
 }

@@ -127,9 +127,15 @@ std::string cell_word(const TaskLook& look) {
   }
 }
 
-/// The least distance in a cell, for example "0.032 m"; where it is not known, a bound such as "<
-/// 0.1 m". Empty where nothing is known, because the task is not done or its search could not have
-/// found anything.
+/// The side on which the least distance is, such as ", left"; empty where that is not known.
+std::string cell_side(const ordered_json& facts) {
+  const ordered_json side = facts.value("least_side", ordered_json());
+  return side.is_string() ? ", " + side.get<std::string>() : "";
+}
+
+/// The least distance in a cell, for example "0.032 m, left"; where it is not known, a bound such
+/// as "< 0.1 m". Empty where nothing is known, because the task is not done or its search could not
+/// have found anything.
 std::string cell_distance(const Task& task, const TaskLook& look) {
   const Outcome outcome = outcome_of(look);
   if (look.status != TaskStatus::kDone) return "";
@@ -139,7 +145,8 @@ std::string cell_distance(const Task& task, const TaskLook& look) {
   if (!least.is_null()) {
     const auto distance = least["distance"].get<double>();
     const std::string length = format_brief(std::abs(distance)) + " " + task.unit;
-    return length.starts_with("0 ") || distance >= 0 ? length : length + " deep inside";
+    return length + (length.starts_with("0 ") || distance >= 0 ? "" : " deep inside") +
+           cell_side(facts);
   }
   const auto radius = task.question["radius"].get<double>();
   const double asked = std::max(
