@@ -85,7 +85,9 @@ void write_result(const std::filesystem::path& path, const ResultHeader& header,
   append_in_steps(writer, header, rows, step);
   append_in_steps(writer, header, clearances, step);
   append_in_steps(writer, header, profile, step);
-  writer.finish();
+  ResultFindings findings;
+  if (header.floor) findings.floor_colliding = 0;
+  writer.finish(findings);
 }
 
 bool same_rows(const Collisions& a, const Collisions& b) {
