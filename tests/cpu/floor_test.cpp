@@ -83,13 +83,23 @@ void check_random_floor(std::uint64_t seed, Counted& counted) {
     query = bodies.query(poses, radius);
     if (kind == 1) query.model.solid_of.clear();
   }
-  std::vector<Vec3> places = random_points(random, room, 60);
-  for (std::size_t i = 0; i < 110; ++i) {  // the ground, and what is near the path
+  std::vector<Vec3> places = random_points(random, room, 30);
+  for (std::size_t i = 0; i < 60; ++i) {  // the ground, and what is near the path
     Vec3 p = random_point(random, room);
     p.z = part.lo.z + 0.01 * size * uniform(random, -1, 1);
     places.push_back(p);
     const Pose& pose = poses[below(random, poses.size())];
     places.push_back(transform(pose, random_point(random, part.grown(radius))));
+  }
+  // Clumps that are small beside the radius, so that blocks are accepted and bounded as a whole.
+  for (std::size_t clump = 0; clump < 4; ++clump) {
+    const Vec3 middle =
+        transform(poses[below(random, poses.size())], random_point(random, part.grown(radius)));
+    const double half = radius * uniform(random, 0.05, 0.8);
+    for (std::size_t i = 0; i < 64; ++i) {
+      places.push_back(
+          plus(middle, 1, random_point(random, {{-half, -half, -half}, {half, half, half}})));
+    }
   }
   const double scale = size * 1e-6;
   Quantisation quantisation{{scale, scale, 2 * scale}, {0, 0, 0}};
