@@ -83,9 +83,9 @@ struct ConflictsCommand : ConflictCommand {
 
 /// The conflicts in words.
 struct ConflictsOutcome {
-  std::string text;   ///< a table of the worst conflicts
-  std::string worst;  ///< a sentence about the worst one; empty where none is listed
-  std::string json;   ///< the summary as one JSON object
+  std::string text;     ///< a table of the worst conflicts
+  std::string worst;    ///< a sentence about the worst one; empty where none is listed
+  std::string json;     ///< the summary as one JSON object
   std::string verdict;  ///< the verdict of the result, where the table alone does not show it
 };
 

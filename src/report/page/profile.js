@@ -123,7 +123,7 @@ function profileSides() {
           clamp(profileX(c), profile.left, profile.width - profile.right).toFixed(1));
       return `M${x1} ${profileY(r[side]).toFixed(1)}H${x2}`;
     }).join("");
-    out.push(make("path", { d: line, class: `side ${side}`, fill: "none", stroke: "#3b4450", "stroke-width": 1.6,
+    out.push(make("path", { d: line, class: `side ${side}`, fill: "none", stroke: "#3b4450", "stroke-width": 2.2,
                             "stroke-dasharray": dash }, make("title", {}, `least clearance ${side}, by stretch`)));
   }
   return out;
@@ -134,9 +134,9 @@ function profileKeys() {
   const list = page.facts.stations?.list ?? [];
   const sides = Object.keys(kSideLines).filter((side) => list.some((r) => r[side] !== null));
   if (sides.length === 0) return "";
-  const sample = (dash) => make("svg", { width: 34, height: 10, "aria-hidden": "true" },
+  const sample = (dash) => make("svg", { width: 34, height: 10, style: "display:inline;width:34px;height:10px", "aria-hidden": "true" },
       make("line", { x1: 1, x2: 33, y1: 5, y2: 5, stroke: "#3b4450", "stroke-width": 1.6, "stroke-dasharray": dash }));
-  return make("ul", { class: "legend", id: "profile-keys" }, sides.map((side) =>
+  return make("ul", { class: "legend", id: "profile-keys", style: "display:flex;flex-wrap:wrap;gap:0 1.5em" }, sides.map((side) =>
       make("li", {}, sample(kSideLines[side]), ` least clearance ${side}, by stretch`)));
 }
 

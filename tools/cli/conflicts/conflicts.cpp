@@ -95,8 +95,8 @@ std::string row_text(const Conflict& c, bool distances, bool depths, bool trims,
   }
   if (trims) row += length_cell(rounded_up(least_trim(c)), 8, 3);
   if (shifts)
-    row += length_cell(rounded_up(c.own_shift_left), 14, 3) +
-           length_cell(rounded_up(c.own_shift_right), 15, 3);
+    row += length_cell(rounded_up(c.own_shift_left), 18, 3) +
+           length_cell(rounded_up(c.own_shift_right), 19, 3);
   if (c.certain) row += fmt::format("  {:>8}", *c.certain ? "certain" : "possible");
   return row + fmt::format("  {:.3f} {:.3f} {:.3f}\n", c.centroid.x, c.centroid.y, c.centroid.z);
 }
@@ -191,8 +191,8 @@ std::string conflict_text(const ConflictFile& file, std::size_t most) {
   if (depths) text += fmt::format("  {:>9}  {:>11}", fmt::format("depth ({})", unit), "inside");
   if (trims) text += fmt::format("  {:>8}", fmt::format("trim ({})", unit));
   if (shifts) {
-    text += fmt::format("  {:>14}  {:>15}", fmt::format("shift left ({})", unit),
-                        fmt::format("shift right ({})", unit));
+    text += fmt::format("  {:>18}  {:>19}", fmt::format("own shift left ({})", unit),
+                        fmt::format("own shift right ({})", unit));
   }
   if (rows.front()->certain) text += fmt::format("  {:>8}", "class");
   text += "  centroid\n";

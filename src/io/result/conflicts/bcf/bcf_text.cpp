@@ -98,7 +98,8 @@ std::string shift_text(const ConflictFile& file, const Conflict& c) {
     out += " " + length_text(file, format_number(*rounded_up(c.own_shift_left))) + " farther left";
   if (c.own_shift_left && c.own_shift_right) out += " or";
   if (c.own_shift_right)
-    out += " " + length_text(file, format_number(*rounded_up(c.own_shift_right))) + " farther right";
+    out +=
+        " " + length_text(file, format_number(*rounded_up(c.own_shift_right))) + " farther right";
   return out + ".";
 }
 
