@@ -369,6 +369,22 @@ class FindsWhatBruteForceFinds(SceneTest):
             self.assertEqual(of.sum(), conflict.points)
             np.testing.assert_allclose(result.xyz()[of].mean(axis=0), conflict.centroid)
             np.testing.assert_array_equal(result.xyz()[of].min(axis=0), conflict.box.lo)
+            self.assertIsNone(conflict.encroachment_is)
+            self.assertEqual(conflict.colliding, conflict.points)
+            self.assertIn(conflict.first_touch, ("left", "right", "above", "below", "front", "behind"))
+            trims = {side: getattr(conflict, f"trim_{side}")
+                     for side in ("left", "right", "above", "below")}
+            known = [trim for trim in trims.values() if trim is not None]
+            if known:
+                self.assertEqual(trims[conflict.side], min(known))
+            else:
+                self.assertIn(conflict.side, ("around", conflict.first_touch))
+        self.assertEqual((found.gap, found.min_points), (0.3, 5))
+        self.assertGreater(found.spacing, 0)
+        self.assertEqual(sorted(c.rank for c in found.listed), list(range(1, len(found.listed) + 1)))
+        usual = clearway.find_conflicts(result, self.poses)
+        self.assertGreaterEqual(usual.gap, 0.3)
+        self.assertTrue(1 <= usual.min_points <= 10)
         self.assertEqual(sum(c.points for c in found.listed) + found.small_points, len(result))
         self.assertEqual(sum(g.points for g in found.small), found.small_points)
         for conflict in found.listed:

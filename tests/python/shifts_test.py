@@ -93,7 +93,8 @@ class ShiftTest(SceneTest):
                          [row.shift for row in table.conflicts])
         with self.assertRaisesRegex(clearway.InputError, "not those of the table of shifts"):
             clearway.write_report(result, self.store, self.model, self.poses,
-                                  self.folder / "page.html", shifts=table, overwrite=True)
+                                  self.folder / "page.html", shifts=table, min_points=10**6,
+                                  overwrite=True)
 
     def test_what_is_refused(self):
         result = self.result()
