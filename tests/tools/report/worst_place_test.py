@@ -42,7 +42,7 @@ def make_scene(folder, seed):
     with open(f"{folder}/scan.xyz", "w") as file:
         file.writelines(f"{x:.3f} {y:.3f} {z:.3f}\n" for x, y, z in points)
     with open(f"{folder}/path.txt", "w") as file:
-        file.writelines(f"1 0 0 {x / 5} 0 1 0 0 0 0 1 0\n" for x in range(301))
+        file.writelines(f"1 0 0 {x / 10} 0 1 0 0 0 0 1 0\n" for x in range(601))
     model = f"{folder}/box.off"
     corners = [(x, y, z) for x in (-4, 4) for y in (-1.2, 1.2) for z in (0.3, 3.3)]
     faces = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6),
