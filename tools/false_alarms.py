@@ -2,7 +2,7 @@
 """Counts which warnings Clearway gives for inputs in which nothing is wrong.
 
 - All scenes of `clearway scene`, each with its own model and path: as they are, with poses only,
-  with the lowest part of the model left out, with every tenth pose and as a vehicle of one body.
+  with a floor, with every tenth pose and as a vehicle of one body.
 - With --data, a folder of real data: street (scan, model, path), trajectories and alignments. Each
   trajectory is asked about points around its positions, with a box as its model.
 
@@ -28,7 +28,7 @@ SCENES = {"hall": "--points 300000 --model-points 20000 --poses 2000",
           "road": "--points 300000 --model-points 20000 --poses 1000"}
 MODEL = "--model model.ply"
 VARIANTS = {"poses": MODEL, "between": MODEL + " --between-poses",
-            "cut": MODEL + " --model-above {cut}", "few poses": MODEL + " --trajectory few.txt",
+            "floor": MODEL + " --floor {cut}", "few poses": MODEL + " --trajectory few.txt",
             "coarse": MODEL + " --radius 0.5", "vehicle": "--vehicle vehicle.json"}
 SEEDS = (1, 2, 3)
 
@@ -76,7 +76,7 @@ class Trial:
     def street(self, data):
         with tempfile.TemporaryDirectory() as folder:
             self.call(folder, f"convert {data}/street.las -o site.h5")
-            for variant, words in {"beetle": "", "beetle, cut": "--model-above 0.3",
+            for variant, words in {"beetle": "", "beetle, floor": "--floor 0.3",
                                    "beetle, between": "--between-poses"}.items():
                 self.count(f"street, {variant}", self.call(
                     folder, f"run --env site.h5 --model {data}/beetle.ply --trajectory "

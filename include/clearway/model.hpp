@@ -94,9 +94,6 @@ struct ModelOptions {
   Axis forward = Axis::kPlusX, up = Axis::kPlusZ;
   /// Takes only the vertices of a mesh, without its surface.
   bool vertices_only = false;
-  /// Height in the model's frame, metres: points whose z is below it are left out, for example
-  /// wheels, which stand on the ground. Triangles are cut at this height.
-  std::optional<double> above = {};
   /// Radius of the search in metres, if it is known. It sets the default of `spacing`, and whether
   /// the bent faces of a mesh are worth a warning. 0: not known; then a mesh that is to become
   /// points needs a spacing.
@@ -115,10 +112,10 @@ inline double default_spacing(double radius) { return radius / 4; }
 /// Reads a model from points, in the formats of scans, or from a mesh (STL, OBJ, PLY with faces,
 /// OFF). options.as says what a mesh becomes. The corners of a surface are the vertices from which
 /// kPoints draws its samples, without those that no face uses. For kSolid, corners at the same
-/// place become one; a height in options.above would leave solids open and throws UsageError.
-/// Throws InputError for malformed files, for a model without points, for coordinates that are not
-/// finite, and for a mesh that is to become points without a spacing; UsageError for options that
-/// contradict each other. messages: where given, notes and warnings are appended
+/// place become one. Throws InputError for malformed files, for a model without points, for
+/// coordinates that are not finite, and for a mesh that is to become points without a spacing;
+/// UsageError for options that contradict each other. messages: where given, notes and warnings are
+/// appended
 /// ("mesh-bent-faces", "mesh-crossing-faces", "loose-vertices").
 Model read_model(const std::filesystem::path& path, const ModelOptions& options = {},
                  std::vector<Message>* messages = nullptr);

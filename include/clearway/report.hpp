@@ -32,10 +32,6 @@ struct PageTexts {
 struct ReportOptions : PageTexts {
   /// Names of the files for the reader; empty ones are left out.
   std::string result_name = {}, environment_name = {}, model_name = {}, trajectory_name = {};
-  /// Height of ModelOptions::above, and how many points below it were left out of the model's file,
-  /// for the page to say. `model` is already without them.
-  std::optional<double> model_above = {};
-  std::uint64_t model_left_out = 0;
   /// Distances in metres, ascending, one to three, below which a point counts as hit, near or
   /// watch. The last is at least the radius, and none above it exceeds the clearance asked for.
   /// Empty: the radius, and the clearance if that is larger.

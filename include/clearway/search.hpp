@@ -40,10 +40,6 @@ struct SearchOptions {
   /// the result hold them too, and `strict` counts them. They must be given again to resume a
   /// search.
   std::vector<Message> input_warnings = {};
-  /// Whether the model lacks its lowest part, as with ModelOptions::above. Such a model does not
-  /// stand on the ground, so a large number of ignored points that collide is then no reason for a
-  /// warning.
-  bool model_is_cut = false;
   /// From start_devices(); null: the search starts them
   std::shared_ptr<const DeviceStart> started = nullptr;
   /// Whether the process uses CUDA for nothing else; the GPUs' contexts then end while the result

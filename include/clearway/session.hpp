@@ -28,7 +28,6 @@ struct QuestionOptions {
   Engine engine = Engine::kAuto;
   bool strict = false;                       ///< any warning ends with InputError
   std::vector<Message> input_warnings = {};  ///< as in SearchOptions
-  bool model_is_cut = false;                 ///< as in SearchOptions
   ProgressCallback progress = nullptr;
   MessageCallback message = nullptr;  ///< receives notes, and the warnings that the answer holds
   StopFlag stop = nullptr;

@@ -226,7 +226,7 @@ Returns a list of Body, in the file's order, for Query(poses=poses, bodies=...).
 file: the same as for clearway run --vehicle.
 poses: the path that the vehicle follows, n x 4 x 4: that of the query.
 )DOC" + lines_of(kKindOfModel) +
-       R"DOC(spacing, vertices_only, above, forward, up: of all models, as read_model() takes them.
+       R"DOC(spacing, vertices_only, forward, up: of all models, as read_model() takes them.
 unit: of models without a model_unit, as read_model() takes it.
 environment_unit: into which lengths with a unit are converted, as read_model() takes it.
 format, allow_non_rigid, angle_unit, angle_frame, crs, default_crs, datum, metres_per_unit,

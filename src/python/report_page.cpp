@@ -36,7 +36,7 @@ void add_summary(py::module_& module) {
 }
 
 constexpr const char* kWriteReport =
-    R"(write_report(result, store, model, poses, output, *, title='', project='', client='', author='', date='', result_name='', environment_name='', model_name='', trajectory_name='', model_above=None, model_left_out=0, classes=(), max_points=1000000, gap=0.0, min_points=0, split=25.0, chainage_start=0.0, forward='+x', up='+z', memory_bytes=4294967296, threads=0, labels=None, every=0.0, shifts=None, warnings=(), bodies=(), overwrite=False, progress=None, stop=None)
+    R"(write_report(result, store, model, poses, output, *, title='', project='', client='', author='', date='', result_name='', environment_name='', model_name='', trajectory_name='', classes=(), max_points=1000000, gap=0.0, min_points=0, split=25.0, chainage_start=0.0, forward='+x', up='+z', memory_bytes=4294967296, threads=0, labels=None, every=0.0, shifts=None, warnings=(), bodies=(), overwrite=False, progress=None, stop=None)
 --
 
 Write one HTML file that needs nothing else: verdict, profile, plan, conflicts, 3-D view.
@@ -49,7 +49,6 @@ title, project, client, author, date: texts for the head of the page, where noth
     on the time.
 result_name, environment_name, model_name, trajectory_name: names of the files, for the page to
     show.
-model_above, model_left_out: what read_model() left out of the model's file, for the page to say.
 classes: one to three distances, metres, ascending: below these a point is hit, near, or to watch.
 max_points: how many environment points the page shows at the most.
 gap, min_points, split, chainage_start, forward, up: as find_conflicts() takes them.
@@ -72,7 +71,6 @@ void add_write_report(py::module_& module) {
          const py::object& output, std::string title, std::string project, std::string client,
          std::string author, std::string date, std::string result_name,
          std::string environment_name, std::string model_name, std::string trajectory_name,
-         std::optional<double> model_above, std::uint64_t model_left_out,
          std::vector<double> classes, std::uint64_t max_points, double gap,
          std::uint64_t min_points, double split, double chainage_start, const std::string& forward,
          const std::string& up, std::uint64_t memory_bytes, int threads, const PoseLabels* labels,
@@ -85,8 +83,6 @@ void add_write_report(py::module_& module) {
                               std::move(environment_name),
                               std::move(model_name),
                               std::move(trajectory_name),
-                              model_above,
-                              model_left_out,
                               std::move(classes),
                               max_points,
                               conflict_options(gap, min_points, split, chainage_start, forward, up,
@@ -114,12 +110,11 @@ void add_write_report(py::module_& module) {
       "result"_a, "store"_a, "model"_a, "poses"_a, "output"_a, py::kw_only(), "title"_a = "",
       "project"_a = "", "client"_a = "", "author"_a = "", "date"_a = "", "result_name"_a = "",
       "environment_name"_a = "", "model_name"_a = "", "trajectory_name"_a = "",
-      "model_above"_a = py::none(), "model_left_out"_a = 0, "classes"_a = std::vector<double>{},
-      "max_points"_a = ReportOptions{}.max_points, "gap"_a = ConflictOptions{}.gap,
-      "min_points"_a = ConflictOptions{}.min_points, "split"_a = ConflictOptions{}.split,
-      "chainage_start"_a = 0.0, "forward"_a = "+x", "up"_a = "+z",
-      "memory_bytes"_a = ConflictOptions{}.memory_bytes, "threads"_a = 0, "labels"_a = py::none(),
-      "every"_a = 0.0, "shifts"_a = py::none(), "warnings"_a = py::tuple(),
+      "classes"_a = std::vector<double>{}, "max_points"_a = ReportOptions{}.max_points,
+      "gap"_a = ConflictOptions{}.gap, "min_points"_a = ConflictOptions{}.min_points,
+      "split"_a = ConflictOptions{}.split, "chainage_start"_a = 0.0, "forward"_a = "+x",
+      "up"_a = "+z", "memory_bytes"_a = ConflictOptions{}.memory_bytes, "threads"_a = 0,
+      "labels"_a = py::none(), "every"_a = 0.0, "shifts"_a = py::none(), "warnings"_a = py::tuple(),
       "bodies"_a = py::tuple(), "overwrite"_a = false, "progress"_a = py::none(),
       "stop"_a = py::none(), kWriteReport);
 }

@@ -26,8 +26,7 @@ namespace {
 using namespace py::literals;
 
 /// How one question of a session is asked.
-constexpr std::tuple kQuestionFields{kEngine<QuestionOptions>, kStrict<QuestionOptions>,
-                                     kModelIsCut<QuestionOptions>};
+constexpr std::tuple kQuestionFields{kEngine<QuestionOptions>, kStrict<QuestionOptions>};
 
 /// Queries that still hold the copy of a Model, so that further questions about the same Model need
 /// not copy it. A Model cannot be changed from Python, which arrays can, so arrays are copied for

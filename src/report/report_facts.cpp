@@ -86,8 +86,6 @@ Json json_of_inputs(const ReportFacts& facts) {
   if (const ModelAxes axes = header.notes.model_axes; axes.need_turn()) {
     model["axes"] = Json::array({name_of(axes.forward), name_of(axes.up)});
   }
-  model["above"] = or_null(options.model_above);
-  model["left_out"] = options.model_left_out;
   if (!header.bodies.empty()) model["bodies"] = json_of_bodies(facts);
   return {{"result",
            {{"name", options.result_name},

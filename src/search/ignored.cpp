@@ -247,23 +247,23 @@ CollidingIgnored count_colliding_ignored(const StoreReader& store, const Query& 
   return {points, high, taken.needed_host_bytes, taken.peak_device_bytes};
 }
 
-void warn_of_colliding_ignored(const Answer& answer, bool model_is_cut, LengthUnit unit,
-                               MessageLog& log) {
+void warn_of_colliding_ignored(const Answer& answer, LengthUnit unit, MessageLog& log) {
   if (answer.shard) return;
   const std::uint64_t colliding = answer.ignored_colliding, high = answer.ignored_colliding_high;
   const auto warn = [&](WarningCode code, std::string text, double points) {
     log.warn(code, std::move(text), {{"colliding", points}});
   };
   const std::string of_ignored = " of the " + ignored_text(answer.parameters, answer.ignored);
-  if (colliding > answer.colliding_points && !model_is_cut) {
+  if (colliding > answer.colliding_points && !answer.floor_colliding) {
     const std::uint64_t others = answer.colliding_points;
     const std::string searched = others == 0 ? "and no searched point does"
                                              : "but only " + counted(others, "searched point") +
                                                    (others == 1 ? " does" : " do");
     warn("ignored-collide",
          format_count(colliding) + of_ignored + " would collide, " + searched +
-             ": the answer may be what was ignored. If they are the ground below the wheels, leave "
-             "the lowest part of the model out instead of the ground",
+             ": the answer may be what was ignored. If they are the ground below the wheels, give "
+             "the "
+             "vehicle a floor instead of leaving out the ground",
          static_cast<double>(colliding));
   }
   if (high > 0) {

@@ -58,8 +58,7 @@ CollidingIgnored count_colliding_ignored(const StoreReader& store, const Query& 
 /// Warns where ignoring points may have made the answer: "ignored-collide" where more ignored
 /// points would collide than searched ones do, and "ignored-high" where some would collide well
 /// above the ground. Both are known only after the search, so strict calls do not refuse them.
-/// model_is_cut: the member of SearchOptions. unit: the environment's.
-void warn_of_colliding_ignored(const Answer& answer, bool model_is_cut, LengthUnit unit,
-                               MessageLog& log);
+/// With a floor the number alone is no reason. unit: the environment's.
+void warn_of_colliding_ignored(const Answer& answer, LengthUnit unit, MessageLog& log);
 
 }  // namespace clearway

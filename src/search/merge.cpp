@@ -44,8 +44,7 @@ void warn_of_all(const PartSet& set, const MergeOptions& options, MergeReport& r
   std::vector<Message> warnings;
   MessageLog log(options.message, warnings);
   if (report.seen) warn_of_small_groups(*report.seen, set.header(), log);
-  warn_of_colliding_ignored(report, first.notes.model_is_cut,
-                            length_unit_of(first.part->length_unit), log);
+  warn_of_colliding_ignored(report, length_unit_of(first.part->length_unit), log);
   add_warnings(warnings, report.warnings);
   for (Message& warning : warnings) {
     report.part_warnings.push_back({std::move(warning), report.parts});

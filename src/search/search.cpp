@@ -191,7 +191,7 @@ class Search {
     }
     if (query_.ignores_points()) {
       report_.colliding_points = found.result.hits.count();
-      warn_of_colliding_ignored(report_, options_.model_is_cut, store_.metadata().unit, log_);
+      warn_of_colliding_ignored(report_, store_.metadata().unit, log_);
     }
     return found;
   }
@@ -596,7 +596,6 @@ class Search {
 
   void publish(const Found& found) {
     const Stopwatch write;
-    header_.notes.model_is_cut = options_.model_is_cut;
     try {
       static_cast<TableSummary&>(report_) =
           write_result(store_, found.result, header_, file_->pending.partial(), found.write_bytes,

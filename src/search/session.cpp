@@ -97,7 +97,6 @@ SessionAnswer Session::search(const Query& query, const QuestionOptions& asked) 
   options.engine = asked.engine;
   options.strict = asked.strict;
   options.input_warnings = asked.input_warnings;
-  options.model_is_cut = asked.model_is_cut;
   options.progress = asked.progress;
   options.message = asked.message;
   options.stop = asked.stop;

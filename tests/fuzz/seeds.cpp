@@ -326,7 +326,7 @@ void write_json_seeds(Seeds seeds) {
                       R"({"name": "own", "model": "c.xyz", "trajectory": "path.txt"}]})");
   seeds.add(campaign +
             R"({"name": "a", "environments": {"e": "."}, "vehicles": {"v": {"model": ".",)"
-            R"("as": "solid", "unit": "mm", "spacing": 0.1, "above": "1cm", "vertices": true,)"
+            R"("as": "solid", "unit": "mm", "spacing": 0.1, "vertices": true,)"
             R"("forward": "-x", "up": "+z"}}, "routes": {"r": {"trajectory": ".",)"
             R"("environment": "e", "angles": ["deg", "ned"], "lever_arm": [0, 1, 2],)"
             R"("chainage_start": 5}}, "radii": [0.1, "25cm"],)"

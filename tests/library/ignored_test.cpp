@@ -227,7 +227,7 @@ TEST_CASE("a query that ignores nothing has no ignored points that collide") {
   cloud.check(cloud.run("none.h5"), {});
 }
 
-TEST_CASE("a cut model may touch the ground that is ignored, but nothing above it") {
+TEST_CASE("a vehicle with a floor may touch the ground that is ignored, but nothing above it") {
   const auto codes_of = [](const SearchReport& report) {
     std::string codes;
     for (const Message& warning : report.warnings) codes += warning.code + " ";
@@ -237,8 +237,9 @@ TEST_CASE("a cut model may touch the ground that is ignored, but nothing above i
   const SearchReport plain = cloud.run("a.h5");
   CHECK(plain.ignored_colliding > plain.colliding_points);
   CHECK_THAT(codes_of(plain), Contains("ignored-collide") && Contains("ignored-high"));
-  const SearchReport cut = cloud.run("b.h5", {.model_is_cut = true});
-  CHECK_THAT(codes_of(cut), !Contains("ignored-collide") && Contains("ignored-high"));
+  cloud.query.floor = -1e3;  // below everything
+  const SearchReport above = cloud.run("b.h5");
+  CHECK_THAT(codes_of(above), !Contains("ignored-collide") && Contains("ignored-high"));
   CHECK(Result(cloud.folder / "a.h5").source() == Result(cloud.folder / "b.h5").source());
 }
 

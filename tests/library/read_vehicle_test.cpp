@@ -75,14 +75,15 @@ TEST_CASE("messages about a body's model name the body") {
   const Files files;
   std::vector<Message> told;
   VehicleOptions options;
-  options.model.above = 0.5;
-  files.read(R"({"name": "a", "model": "line.xyz"}, {"name": "b", "model": "line.xyz", "at": 1})",
+  files.read(R"({"name": "a", "model": "fin.off"}, {"name": "b", "model": "fin.off", "at": 1})",
              options, &told);
-  std::vector<std::string> cut;
+  std::vector<std::string> surfaces;
   for (const Message& message : told) {
-    if (message.code == "model-cut") cut.push_back(message.body);
+    if (message.text.find("searched as a surface") != std::string::npos) {
+      surfaces.push_back(message.body);
+    }
   }
-  CHECK(cut == std::vector<std::string>{"a", "b"});
+  CHECK(surfaces == std::vector<std::string>{"a", "b"});
 }
 
 TEST_CASE("options hold for all bodies, and threads change none") {

@@ -148,7 +148,6 @@ class Arguments(SceneTest):
                             ("cell_points", -1), ("memory_bytes", -1)):
             self.refused(clearway.UsageError, name, clearway.convert, scan, store, **{name: value})
         self.refused(clearway.UsageError, "unit", clearway.read_model_points, scan, unit=-1)
-        self.refused(clearway.UsageError, "above", clearway.read_model_points, scan, above=np.nan)
         self.refused(clearway.UsageError, "environment_unit", clearway.read_trajectory, scan,
                      environment_unit=0)
         self.refused(clearway.UsageError, r"lever_arm\[1\]", clearway.read_trajectory, scan,

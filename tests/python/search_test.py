@@ -516,8 +516,6 @@ class Inputs(SceneTest):
     def test_model_and_trajectory(self):
         np.savetxt(self.folder / "model.xyz", self.model, "%.17g")
         np.testing.assert_array_equal(clearway.read_model_points(self.folder / "model.xyz"), self.model)
-        above = clearway.read_model_points(self.folder / "model.xyz", above=0.0)
-        np.testing.assert_array_equal(above, self.model[self.model[:, 2] >= 0])
         np.savetxt(self.folder / "path.txt", self.poses[:, :3].reshape(-1, 12), "%.17g")
         read = clearway.read_trajectory(self.folder / "path.txt")
         np.testing.assert_array_equal(read, self.poses)

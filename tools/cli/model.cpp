@@ -285,8 +285,6 @@ void add_model(CLI::App& program) {
       ->add_flag("--vertices,--model-vertices", options->how.vertices_only,
                  "Take the vertices of a mesh alone, not its surface")
       ->excludes(spacing);
-  options->lengths.add(*command, "--above,--model-above", options->how.above,
-                       "Leave out the points whose z is below this", FieldRange::kAny);
   command->add_flag("--force", options->force, "Overwrite an existing output");
   command->footer(
       "clearway run searches the mesh itself. With --model-as points it makes such points.\n"

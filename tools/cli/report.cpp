@@ -55,16 +55,6 @@ void name_files(ReportCommand& options) {
   if (options.report.date.empty()) options.report.date = now_in_utc();
 }
 
-/// Takes the number of points that --model-above left out from the note of the model's reader.
-void note_left_out(ReportCommand& options, const std::vector<Message>& messages) {
-  options.report.model_above = options.model_options.above;
-  for (const Message& message : messages) {
-    for (const auto& [name, value] : message.numbers) {
-      if (name == "left_out") options.report.model_left_out = static_cast<std::uint64_t>(value);
-    }
-  }
-}
-
 void read_model_again(ReportCommand& options, const Result& result, Query& query) {
   std::vector<Message>& warnings = options.report.warnings;
   if (options.vehicle.empty()) {
@@ -89,7 +79,6 @@ Query read_query_again(ReportCommand& options, const Result& result, const Store
                                 &options.report.labels);
   const std::size_t of_path = warnings.size();
   read_model_again(options, result, query);
-  note_left_out(options, warnings);
   const std::span<const Message> read(warnings);
   const bool all_named =
       options.vehicle.empty() && options.lengths.all_have_units() &&

@@ -321,7 +321,6 @@ RunOutcome perform(RunOptions& options) {
   refuse_overwriting(options.output, inputs);
   if (!options.vehicle.empty()) check_vehicle_search(options.search);
   model_options_of(options);
-  options.search.model_is_cut = options.model_options.above.has_value();
   check_search(options.query, options.output, options.search);
   options.search.end_gpus = true;
   prepare_device(options.search);

@@ -333,10 +333,9 @@ std::string unseen_text(const UnseenGroups& unseen, const Answer& answer, const 
            fmt::format(
                " The place that was not scanned from {:.1f} to {:.1f} {} of the path reaches "
                "down to the lowest part of the model, so it is probably the ground: run "
-               "again with --model-above {} above the ground, or a little more where it is "
-               "rough.",
+               "again with --floor {} above the ground, or a little more where it is rough.",
                group.chainage_from, group.chainage_to, unit,
-               format_brief(radius + answer.seen->cube / 2));
+               format_brief(radius - answer.parameters.radius + answer.seen->cube / 2));
   }
   return text;
 }

@@ -31,7 +31,8 @@ inline constexpr std::tuple kKindOfModel{Field{
     .value_name = "KIND",
     .help = "surface: search the triangles of a mesh as they are. solid: and what its closed parts "
             "enclose. points: search points on its surface; the answer says how far they are "
-            "apart. auto: solid for a mesh whose parts are all closed, surface for other meshes, points "
+            "apart. auto: solid for a mesh whose parts are all closed, surface for other meshes, "
+            "points "
             "for other files (default)",
     .doc =
         "'auto': a mesh whose parts are all closed as a solid, another mesh as its surface, any\n"
@@ -68,16 +69,7 @@ inline constexpr std::tuple kShapeOfModel{
           .option = "--model-vertices",
           .group = OptionGroup::kModel,
           .help = "Take the vertices of a mesh alone as the model, not its surface",
-          .doc = "Takes the vertices of a mesh alone, and not its surface."},
-    Field{
-        .member = &ModelOptions::above,
-        .key = "above",
-        .option = "--model-above",
-        .group = OptionGroup::kModel,
-        .help = "Leave out the model's points whose z is below this, such as wheels on the ground",
-        .doc = "Leaves out points whose z is below it, and cuts triangles at this height, "
-               "metres; for\n    example wheels on the ground. Not for 'solid'.",
-        .range = FieldRange::kAny}};
+          .doc = "Takes the vertices of a mesh alone, and not its surface."}};
 
 /// The unit of a model's file for commands that have no environment.
 inline constexpr Field kUnitWithoutEnvironment{

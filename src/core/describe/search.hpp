@@ -26,15 +26,6 @@ inline constexpr Field kEngine{
         "'auto', 'sweep', 'grid' or 'kdtree'; 'auto' takes 'kdtree' for few\n"
         "    poses and a small radius, otherwise 'sweep'."};
 
-template <typename Options>
-inline constexpr Field kModelIsCut{
-    .member = &Options::model_is_cut,
-    .key = "model_is_cut",
-    .doc =
-        "Says that the model lacks its lowest part, as with above= of read_model(), so that it\n"
-        "    does not stand on the ground: ignored points that collide cause no warning for "
-        "their number\n    alone."};
-
 /// How a query is searched, and where.
 inline constexpr std::tuple kEngineFields =
     std::tuple_cat(std::tuple{kEngine<SearchOptions>}, kMachineFields<SearchOptions>);
@@ -77,13 +68,10 @@ inline constexpr Field kStrict{
     .doc = "Treats warnings as errors: raises InputError, and searches nothing."};
 
 /// What only programs say, which have read the inputs themselves.
-inline constexpr std::tuple kCallerFields{
-    kModelIsCut<SearchOptions>,
-    Field{
-        .member = &SearchOptions::end_gpus,
-        .key = "end_gpus",
-        .doc =
-            "Says that nothing else in this process uses CUDA, so that it ends with the search."}};
+inline constexpr std::tuple kCallerFields{Field{
+    .member = &SearchOptions::end_gpus,
+    .key = "end_gpus",
+    .doc = "Says that nothing else in this process uses CUDA, so that it ends with the search."}};
 
 /// All that the command line and Python may choose about a search.
 inline constexpr std::tuple kSearchFields =

@@ -170,7 +170,6 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
      "Faces with more than three corners are not flat, but bend by more than the spacing."},
     {"mesh-crossing-faces", kWarning, kModels,
      "The outline of a face crosses itself, so it is not certain what it means."},
-    {"model-cut", kNote, kModels, "The lowest part of the model is left out."},
     {"two-feet", kWarning, kModels,
      "The model or the path is in the international foot and the environment in the US survey "
      "foot, or the reverse. If the file is in the environment's foot, give its unit as `ft`."},
@@ -340,10 +339,9 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
     {"below-ground",
      kWarning,
      kQueries,
-     "On most of the path the model reaches more than 0.3 m below the ground, also with a part "
-     "that `--model-above` leaves out. Its file may have y up, or its origin in its middle, or "
-     "the path may be too low. Without the ground or the lowest part of the model, the answer "
-     "can be clear although no vehicle stands there.",
+     "On most of the path the model reaches more than 0.3 m below the ground. Its file may have y "
+     "up, or its origin in its middle, or the path may be too low. Without the ground, or with a "
+     "floor, the answer can be clear although no vehicle stands there.",
      {.missing = Missing::kPlace}},
     {"coarse-scan",
      kWarning,
@@ -379,7 +377,7 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
      "the `--floor` that leaves them out."},
     {"ignored-collide", kWarning, kQueries,
      "More ignored points would collide than searched ones do. There is no such warning if the "
-     "lowest part of the model was left out. This is known only after the search, so `--strict` "
+     "vehicle has a floor. This is known only after the search, so `--strict` "
      "does not count it. Of a section it is about cells that ignored points alone would block, "
      "and `--strict` counts it."},
     {"ignored-high", kWarning, kQueries,
@@ -492,8 +490,8 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
      "The path is none that a body can follow, for example because it mirrors the model by "
      "turns, so overthrow is not known."},
     {"one-long-conflict", kWarning, kFindings,
-     "One group spans at least half of the path, as wheels on the ground do. `--model-above` "
-     "leaves them out."},
+     "One group spans at least half of the path, as wheels on the ground do. `--floor` "
+     "leaves the ground out."},
     {"searched-unknown", kWarning, kFindings,
      "Some bodies have no pose on a part of the path, and without `--vehicle` it is not known "
      "where, so no stretch is called clear."},

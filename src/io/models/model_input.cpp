@@ -217,7 +217,7 @@ Model sampled(const ModelInput& input, const ModelOptions& options,
            "a mesh of " + contents_of(input) + "; expected a spacing for the points of its surface",
            Remedy::kModelSpacing, 0);
   }
-  const TriangleMesh surface = kept_surface(input, options, messages);
+  const TriangleMesh surface = kept_surface(input, messages);
   Model shape = sample_mesh(surface, spacing, input.path.string());
   shape.spacing = spacing;
   tell_bend(input, spacing, "the spacing", messages);
@@ -232,66 +232,24 @@ Model sampled(const ModelInput& input, const ModelOptions& options,
   return shape;
 }
 
-/// The lowest height of points, without the lowest thousandth of them, which may be noise.
-double bottom_of(std::span<const Vec3> points) {
-  constexpr std::size_t kNoise = 1000;
-  std::vector<double> heights;
-  for (const Vec3& p : points) heights.push_back(p.z);
-  const auto bottom = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / kNoise);
-  std::nth_element(heights.begin(), bottom, heights.end());
-  return *bottom;
-}
-
-void leave_out_below(const ModelInput& input, double above, std::vector<Vec3>& points,
-                     std::vector<Message>& messages) {
-  const std::size_t all = points.size();
-  if (!std::isfinite(above)) {
-    throw UsageError(input.path.string() + ": " + format_number(above) +
-                     " m as the lowest height of the model; expected a finite number");
-  }
-  const double highest = std::ranges::max_element(points, {}, [](const Vec3& p) { return p.z; })->z;
-  const double bottom = bottom_of(points);
-  std::erase_if(points, [above](const Vec3& p) { return p.z < above; });
-  if (points.empty()) {
-    refuse(input.path.string(), "all " + format_count(all) +
-                                    " points of the model are below z = " + format_number(above) +
-                                    " m, the highest at " + format_number(highest) +
-                                    " m; expected one at least that is not left out");
-  }
-  const std::size_t left_out = all - points.size();
-  messages.push_back(cut_note(input,
-                              format_count(left_out) + " of " + format_count(all) +
-                                  " model points are below z = " + format_number(above) +
-                                  " m, and are left out",
-                              left_out, above, bottom));
-}
-
 /// A model of all vertices of a mesh, or of all points of another file.
-Model vertices_of(const ModelInput& input, const ModelOptions& options,
-                  std::vector<Message>& messages) {
+Model vertices_of(const ModelInput& input, std::vector<Message>& messages) {
   Model shape = input.mesh.vertices;
   shape.spacing = input.sampled_spacing;
   if (shape.spacing > 0) {
-    if (options.above) {
-      throw UsageError(input.path.string() +
-                       ": samples of a mesh, whose spacing would not hold beside a cut; cut the "
-                       "mesh at the height first, and sample it then");
-    }
     add_note(messages, input,
              "samples of a mesh; no place of its surface is farther than " +
                  format_number(shape.spacing) + " m from one",
              {{"spacing", shape.spacing}});
   }
   if (!input.between_vertices.empty()) {
-    shape.spacing =
-        distance_to_vertices({input.mesh.vertices, input.between_vertices}, options.above);
+    shape.spacing = distance_to_vertices({input.mesh.vertices, input.between_vertices});
     add_note(messages, input,
              "the model is the vertices of a mesh, " + format_count(input.mesh.vertices.size()) +
                  ", and its faces are left out; places of its surface are up to " +
                  format_brief(shape.spacing) + " m from the nearest vertex",
              {{"spacing", shape.spacing}});
   }
-  if (options.above) leave_out_below(input, *options.above, shape.vertices, messages);
   return shape;
 }
 
@@ -352,12 +310,6 @@ std::string contents_of(const ModelInput& input) {
   return text;
 }
 
-Message cut_note(const ModelInput& input, const std::string& text, std::uint64_t left_out,
-                 double above, double bottom) {
-  return note("model-cut", input.path.string() + ": " + text,
-              {{"left_out", static_cast<double>(left_out)}, {"above", above}, {"bottom", bottom}});
-}
-
 Message loose_vertices_warning(const ModelInput& input, std::uint64_t vertices) {
   return warning(
       "loose-vertices",
@@ -412,8 +364,7 @@ void check_model_options(const ModelOptions& options) {
 Model points_of(const ModelInput& input, const ModelOptions& options,
                 std::vector<Message>& messages) {
   messages.insert(messages.end(), input.messages.begin(), input.messages.end());
-  return input.is_mesh() ? sampled(input, options, messages)
-                         : vertices_of(input, options, messages);
+  return input.is_mesh() ? sampled(input, options, messages) : vertices_of(input, messages);
 }
 
 namespace {
@@ -425,11 +376,6 @@ Model model_of(MeshParts parts) {
 
 Model solids_of(const ModelInput& input, const ModelOptions& options,
                 std::vector<Message>& messages) {
-  if (options.above) {
-    throw UsageError(input.path.string() +
-                     ": cut at a height, parts of the model are open and no longer solid; search "
-                     "its surface, or take a file without what is to be left out");
-  }
   MeshParts parts = parts_with_solids(surface_of(input, options, messages), input.path.string());
   add_note(messages, input, summary_of(parts));
   const std::string faults = faults_of(parts);
@@ -444,17 +390,15 @@ Model closed_or_surface_of(const ModelInput& input, const ModelOptions& options,
                            std::vector<Message>& messages) {
   TriangleMesh surface = surface_of(input, options, messages);
   MeshParts parts = find_parts(surface);
-  if (all_closed(parts) && !options.above) {
+  if (all_closed(parts)) {
     add_note(messages, input,
              (parts.solids == 1 ? std::string("it is")
                                 : "all of its " + format_count(parts.solids) + " parts are") +
                  " closed, so it is searched as a solid: points inside it collide too");
     return model_of(std::move(parts));
   }
-  add_note(
-      messages, input,
-      "searched as a surface, which has no inside, because " +
-          (all_closed(parts) ? std::string("its lowest part is cut off") : why_not_closed(parts)));
+  add_note(messages, input,
+           "searched as a surface, which has no inside, because " + why_not_closed(parts));
   return {std::move(surface.vertices), std::move(surface.triangles)};
 }
 

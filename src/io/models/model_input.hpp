@@ -45,12 +45,6 @@ void tell_bend(const ModelInput& input, double allowed, const std::string& of_wh
 /// The contents of a mesh's file in words: "12 triangles, 3 line segments and 1 single point".
 std::string contents_of(const ModelInput& input);
 
-/// The note that a model's lowest part is left out. text: says how much of it, without the file's
-/// name. bottom: the lowest height of the whole model, which the checks of a query compare with the
-/// ground.
-Message cut_note(const ModelInput& input, const std::string& text, std::uint64_t left_out,
-                 double above, double bottom);
-
 /// The warning that a mesh has vertices which nothing refers to.
 Message loose_vertices_warning(const ModelInput& input, std::uint64_t vertices);
 

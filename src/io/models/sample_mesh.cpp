@@ -390,18 +390,11 @@ std::vector<Vec3> sample_mesh(const TriangleMesh& mesh, double spacing, const st
   return cover.samples().take_points();
 }
 
-double distance_to_vertices(const TriangleMesh& mesh, std::optional<double> above) {
+double distance_to_vertices(const TriangleMesh& mesh) {
   double farthest = 0;
-  for (const auto& triangle : mesh.triangles) {
-    const auto below = std::ranges::count_if(
-        triangle, [&](std::uint32_t i) { return above && mesh.vertices[i].z < *above; });
-    if (below == 3) continue;
-    const auto& [a, b, c] = triangle;
+  for (const auto& [a, b, c] : mesh.triangles) {
     const TriangleFrame frame(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
-    const bool is_whole = below == 0;  // otherwise the nearest vertex may be left out
-    farthest = std::max(farthest, !is_whole          ? frame.length
-                                  : frame.height > 0 ? frame.corner_distance()
-                                                     : frame.length / 2);
+    farthest = std::max(farthest, frame.height > 0 ? frame.corner_distance() : frame.length / 2);
   }
   return farthest;
 }

@@ -105,8 +105,8 @@ inline constexpr double kLeastSpacing = 1e-9, kLargestSpacing = 1e9;  // metres
 std::vector<Vec3> sample_mesh(const TriangleMesh& mesh, double spacing, const std::string& name);
 
 /// Greatest distance of a place of the triangles from the nearest vertex of its own triangle,
-/// metres. above: counts only places and vertices that are not below this height.
-double distance_to_vertices(const TriangleMesh& mesh, std::optional<double> above);
+/// metres.
+double distance_to_vertices(const TriangleMesh& mesh);
 
 /// A spacing that gives about this many samples besides the vertices, and is never refused.
 double spacing_for(const TriangleMesh& mesh, double samples);

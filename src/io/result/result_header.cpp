@@ -244,7 +244,6 @@ constexpr std::tuple kQuantisation{Field{&Quantisation::scale, "scale"},
                                    Field{&Quantisation::offset, "offset"}};
 constexpr std::tuple kNotes{Field{&ResultNotes::model_spacing, "model_spacing"},
                             Field{&ResultNotes::model_axes, "model_axes"}};
-constexpr std::tuple kNotesOfPart{Field{&ResultNotes::model_is_cut, "model_is_cut"}};
 constexpr std::tuple kPart{
     Field{&ResultPart::shard, "shard"}, Field{&ResultPart::division, "division"},
     Field{&ResultPart::store, "store"}, Field{&ResultPart::length_unit, "length_unit"}};
@@ -409,7 +408,6 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   if (header.ignores_points()) write_ignored(file, header);
   if (!header.part) return;
   write_all(file, kPart, *header.part);
-  write_all(file, kNotesOfPart, header.notes);
 }
 
 ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
@@ -427,7 +425,6 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
   if (hdf5::has_attribute(file, names::kIgnoredPoints, name)) read_ignored(file, name, header);
   if (is_part) {
     read_all(file, name, kPart, header.part.emplace());
-    read_all(file, name, kNotesOfPart, header.notes);
   }
   check_header(header, name);
   return header;

@@ -63,8 +63,6 @@ struct ResultNotes {
   /// The axes of the model's file that pointed ahead and up before the model was turned
   /// (file_axes() of the query). The question is about the turned model.
   ModelAxes model_axes = {};
-  /// See SearchOptions::model_is_cut. Kept in parts alone.
-  bool model_is_cut = false;
 };
 
 /// Which part of a result a file is.

@@ -85,7 +85,7 @@ function groupColumns() {
 
 /** What most probably explains a group, and what would decide it. */
 function groupAdvice(group) {
-  if (group.is_ground) return "the ground? --model-above";
+  if (group.is_ground) return "the ground? --floor";
   if (group.is_sky) return "open sky? --ignore-box";
   if (group.behind_conflict) return "clear the conflict, scan again";
   return "scan it from another place";
@@ -137,13 +137,13 @@ function adviceSentences() {
   const others = groups.filter((g) => !g.behind_conflict && !g.is_ground && !g.is_sky);
   const goes = (list) => list.length === 1 ? "goes" : "go";
   if (ground.length > 0) {
-    const least = shortLength(+(page.facts.query.radius + (page.facts.margins?.clear ?? 0) +
-                                seen.cube / 2).toPrecision(3));
+    const least = shortLength(+((page.facts.margins?.clear ?? 0) + seen.cube / 2).toPrecision(3));
     out.push(["The ground", `${names(ground)} ${goes(ground)} along more than half of the path and ` +
         `${ground.length === 1 ? "reaches" : "reach"} down to the lowest part of the vehicle. That is usually ` +
         "the ground it stands on, into which no beam can look, perhaps joined with other places. " +
-        `Run again with --model-above ${least} above the ground, which is the distance to keep ` +
-        "and half a cube, and a little more where the ground is rough. Then none of the ground is left."]);
+        `Run again with --floor ${least} above the ground, which is half a cube` +
+        `${page.facts.margins ? " and the errors" : ""}, and a little more where the ground is rough. ` +
+        "Then none of the ground is judged."]);
   }
   if (sky.length > 0) {
     out.push(["The open sky", `${names(sky)} ${goes(sky)} along more than half of the path in the upper ` +

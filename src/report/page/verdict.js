@@ -355,7 +355,6 @@ function questionTable() {
     inputs.model.bodies ? factRow("Vehicle (bodies)", bodyList(inputs.model), hash(inputs.model.hash))
         : factRow("Vehicle (model)", `${inputs.model.name}: ${modelParts(inputs.model)}, ` +
                   `${size} ${unitSymbol}.${solidText(inputs.model)} `, hash(inputs.model.hash)),
-    inputs.model.above === null ? "" : factRow("Left out", leftOut(inputs.model), optionName("--model-above")),
     factRow("Path", `${inputs.trajectory.name}: ${count(inputs.trajectory.poses)} poses, ` +
             `${station(inputs.trajectory.length)} long. `, hash(inputs.trajectory.hash)),
     factRow("Result", `${inputs.result.name}. `, hash(inputs.result.hash)),
@@ -397,15 +396,6 @@ function ignoredText({ classes, boxes }) {
                                  plural(b.points, "point")));
   return `${parts.join("; ")}.`;
 }
-
-/** What --model-above took from the model's file. */
-function leftOut({ above, left_out: left }) {
-  return `points or triangles of the model below z = ${shortLength(above)} in its own frame` +
-      (left > 0 ? `, ${count(left)} of them: ` : ": ");
-}
-
-/** Without line breaks at its hyphens. */
-const optionName = (name) => make("code", { class: "option" }, name);
 
 function askedFor(query) {
   const parts = [`required distance ${shortLength(query.radius)}`];

@@ -415,22 +415,21 @@ bool check_depth(const Question& question, const PathLooks& looks, MessageLog& l
   if (!(share > kMostDeep)) return false;
   const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
   std::nth_element(depths.begin(), middle, depths.end());
-  const bool is_cut = question.bottom < question.model.lo.z;
-  const double height = question.model.hi.z - question.bottom;
+  const double height = question.model.hi.z - question.model.lo.z;
   std::vector<std::pair<std::string, double>> numbers{{"depth", *middle}, {"share", share}};
   if (!question.is_load()) numbers.push_back({"model_height", height});
   const std::string causes =
       question.is_load()
           ? ". The path is too low"
           : ". The model is " + length_text(height, question.unit) +
-                " high. Where the ground or its lowest part is left out, the answer can be clear "
+                " high. Where the ground or what is below a floor is left out, the answer can be "
+                "clear "
                 "although the vehicle does not stand there. Either y points up in the model's "
                 "file, or its origin is in its middle, or the path is too low";
   log.warn("below-ground",
            "on " + share_text(share) + " of the path the " + question.words().mover +
                " reaches below the ground, by " + length_text(*middle, question.unit) +
-               " on the median" +
-               (is_cut ? ", with its lowest part, which is left out of the search" : "") + causes,
+               " on the median" + causes,
            std::move(numbers));
   return true;
 }

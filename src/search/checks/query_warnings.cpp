@@ -227,15 +227,6 @@ void check_question(const Question& question, bool of_body, std::span<const Mess
   check_heading(question, of_inputs, log);
 }
 
-/// The lowest height of the whole model where reading it left out its lowest part. body: the name
-/// of the body; empty for a single model.
-std::optional<double> bottom_before_cut(std::span<const Message> of_inputs, std::string_view body) {
-  const auto cut = std::ranges::find_if(of_inputs, [&](const Message& message) {
-    return message.code == "model-cut" && message.body == body;
-  });
-  return cut == of_inputs.end() ? std::nullopt : number_in(*cut, "bottom");
-}
-
 /// The longest side of a vehicle where it first has most of its bodies; 0 if none has a pose.
 double longest_side(std::span<const Body> bodies, const LooksOf& looks_of) {
   std::uint32_t at = 0;
@@ -291,9 +282,6 @@ void warn_of_body(const StoreReader& store, const Body& body, const Query& query
   const Query own(body.model, body.poses, query);
   Question question(store, store.metadata().unit, own, looks, body.path_pose, chainage);
   question.longest = std::max(question.longest, vehicle_longest);
-  if (const auto bottom = bottom_before_cut(of_inputs, body.name)) {
-    question.bottom = std::min(question.bottom, *bottom);
-  }
   note_sizes(question, log);
   check_question(question, true, of_inputs, steps, log);
 }
@@ -406,9 +394,6 @@ void check_motion(const StoreReader& store, const Query& query, const LooksOf& l
   }
   const std::shared_ptr<const ModelLooks> looks = looks_of(query.model);
   Question question(store, unit, query, *looks);
-  if (const auto bottom = bottom_before_cut(of_inputs, "")) {
-    question.bottom = std::min(question.bottom, *bottom);
-  }
   note_sizes(question, log);
   warn_of_flat_scan(question, log);
   StepChecks steps;

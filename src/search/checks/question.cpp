@@ -33,7 +33,6 @@ Question::Question(const PackedCloud& environment_points, LengthUnit length_unit
       section(of_section),
       environment(position_box(cloud.quantisation(), cloud.tree()[0].box)),
       model(of_model.box()),
-      bottom(model.lo.z),
       longest(Sides(model).longest),
       // An international foot also stands for a US survey foot: the checks need no more digits.
       metre(unit == LengthUnit::kFoot || unit == LengthUnit::kUsSurveyFoot ? 1 / kMetresPerFoot

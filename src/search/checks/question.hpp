@@ -68,9 +68,6 @@ struct Question {
   Box environment;
   /// The box of `points`, in the model's own frame.
   Box model;
-  /// The lowest height of the whole model in its own frame. It is below the box where the lowest
-  /// part of the model was left out.
-  double bottom;
   /// The longest side of the model; for a body, that of the whole vehicle.
   double longest;
   /// The length of a metre in the environment's unit.

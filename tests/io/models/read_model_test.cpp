@@ -99,21 +99,7 @@ TEST_CASE("a mesh is its surface unless points are asked for, and then has a spa
   check_equal(model_spacing(query), 0.75);
 }
 
-TEST_CASE("samples above a height cover the surface up to its cut") {
-  ScratchFolder scratch;
-  const auto wall =
-      scratch.write("wall.off", "OFF\n4 2 0\n0 0 0\n4 0 0\n4 0 3\n0 0 3\n3 0 1 2\n3 0 2 3\n");
-  const Model shape = read_model(wall, {.spacing = 0.5, .above = 1.0});
-  for (double x = 0; x <= 4; x += 0.01) {
-    double nearest = 9;
-    for (const Vec3& p : shape.vertices) nearest = std::min(nearest, std::hypot(p.x - x, p.z - 1));
-    if (nearest > 0.5) FAIL(x << " is " << nearest << " from a sample");
-  }
-  for (const Vec3& p : shape.vertices) CHECK(p.z >= 1);
-  check_equal(read_model(wall, {.vertices_only = true, .above = 1.0}).spacing, 5);
-}
-
-TEST_CASE("samples of a mesh keep their spacing, and are not cut") {
+TEST_CASE("samples of a mesh keep their spacing") {
   ScratchFolder scratch;
   const auto file = scratch.write("samples.ply",
                                   "ply\nformat ascii 1.0\ncomment clearway model spacing 0.5\n"
@@ -121,7 +107,6 @@ TEST_CASE("samples of a mesh keep their spacing, and are not cut") {
                                   "property double z\nend_header\n1 2 3\n");
   check_equal(read_model(file).spacing, 0.5);
   CHECK(read_model(file, {.unit = 0.001}).spacing == Approx(0.0005));
-  CHECK_THROWS_AS(read_model(file, {.above = 0.0}), UsageError);
 }
 
 TEST_CASE("lines and single points of a mesh are part of every kind of model") {
@@ -146,9 +131,6 @@ TEST_CASE("lines and single points of a mesh are part of every kind of model") {
   }
   check_equal(read_model(file, {.vertices_only = true}).vertices.size(), 6);
   CHECK(read_model(file, {.vertices_only = true}).spacing == Approx(2.5));
-  const Model above = read_model(file, {.above = 2.0});
-  check_equal(above.triangles.size(), 2);  // the upper part of the mast, and the point
-  CHECK(reaches(above, {1, 1, 2}, 0));
   const auto lines = scratch.write("lines.obj", mast + "l 4 5 6\n");
   told.clear();
   check_equal(read_model(lines, {}, &told).triangles.size(), 2);

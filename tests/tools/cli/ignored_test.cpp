@@ -169,7 +169,7 @@ TEST_CASE("what ignoring points hides is warned of, and what is sound is not") {
   for (std::int32_t i = 0; i < 5; ++i) garden.add({3000 + i, 0, 1000}, 14);
   garden.put("all.las", garden.las.build());
   garden.succeed("convert all.las -o lamp.h5");
-  const Outcome lamp = warned("--ignore-class 14 --model-above -1 ", "lamp.h5");
+  const Outcome lamp = warned("--ignore-class 14 --floor -1 ", "lamp.h5");
   check_says(lamp.err,
              "5 of the 5 points ignored (class 14) would collide more than 0.5 m above the model's "
              "lowest point");

@@ -194,8 +194,6 @@ TEST_CASE("run of a solid finds what is inside") {
   CHECK(json_of(merged)["points_inside"] == inside);
   CHECK(json_of(merged)["greatest_depth"] == depth);
   check_same(meshes.work.bytes("merged.h5"), meshes.work.bytes("solid.h5"));
-  check_refused(meshes.run("car.stl", "no.h5", "--model-as solid --model-unit mm --model-above 0"),
-                2, "no longer solid");
 }
 
 TEST_CASE("conflicts of a solid tell its depth") {
@@ -359,29 +357,6 @@ TEST_CASE("a mast that is drawn as a line, or as points, collides") {
   check_json(loose, R"({"colliding_points": 0})");
   const auto& warnings = loose["warnings"];
   CHECK(std::ranges::any_of(warnings, [](const json& w) { return w["code"] == "loose-vertices"; }));
-}
-
-TEST_CASE("the surface below a height is cut off") {
-  const Meshes meshes;
-  check_says(
-      require_success(meshes.run("car.stl", "above.h5", "--model-unit mm --model-above 0.5 --json"))
-          .err,
-      "2 of 12 triangles are below z = 0.5 m, and are left out; 8 are cut there");
-  Model cut = read_model(meshes.work.folder / "car.stl",
-                         {.as = ModelAs::kSurface, .unit = kMetresPerMillimetre, .above = 0.5});
-  double lowest = 1e9, area = 0;
-  for (const auto& [i, j, k] : cut.triangles) {
-    const Vec3 &a = cut.vertices[i], &b = cut.vertices[j], &c = cut.vertices[k];
-    for (const Vec3& p : {a, b, c}) lowest = std::min(lowest, p.z);
-    const Vec3 u{b.x - a.x, b.y - a.y, b.z - a.z}, v{c.x - a.x, c.y - a.y, c.z - a.z};
-    area += std::sqrt(std::pow(u.y * v.z - u.z * v.y, 2) + std::pow(u.z * v.x - u.x * v.z, 2) +
-                      std::pow(u.x * v.y - u.y * v.x, 2)) /
-            2;
-  }
-  CHECK(lowest == 0.5);
-  CHECK(area == Approx(4 * 1.8 + 2 * 0.9 * (4 + 1.8)));
-  check_refused(meshes.run("car.stl", "none.h5", "--model-unit mm --model-above 9"), 3,
-                "all of the model (12 triangles) is below z = 9 m");
 }
 
 TEST_CASE("the vertices alone are the model when asked, in the unit of the file") {

@@ -109,7 +109,7 @@ class Minus(Site):
 
     def test_lengths_and_boxes(self):
         run = "run --env site.h5 --model model.ply --trajectory trajectory.txt --force -o m.h5 "
-        for value in ("--model-above -0.5", "--model-above -.5", "--model-above -50cm",
+        for value in ("--floor -0.5", "--floor -.5", "--floor -50cm",
                       "--lever-arm -.1,-0.2,0", "--ignore-box -.1,-2,-3,1,2,3"):
             self.do(run + "--radius 0.1 " + value)
             name, given = value.split()
@@ -141,7 +141,7 @@ class RunAgain(Site):
         self.do(f"compare out.h5 {result}")
 
     def test_how_the_inputs_were_read_is_repeated(self):
-        run = "--trajectory trajectory.txt --model model.ply --model-above 0.2 " \
+        run = "--trajectory trajectory.txt --model model.ply --model-vertices " \
               "--trajectory-format matrix --lever-arm -.1,0,0"
         self.do(f"run --env site.h5 --radius 0.1 {run} --clearance 0.2 -o read.h5 --force")
         words = self.advised(f"conflicts read.h5 {run}")

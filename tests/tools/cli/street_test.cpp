@@ -264,7 +264,7 @@ TEST_CASE("a car along y is turned into the street, as the car that was turned b
     const Outcome done = require_success(run_program(
         folder, "run --env street.h5 --model " + quoted(model) + " --trajectory " +
                     quoted(street("trajectory.txt")) +
-                    " --radius 0.1 --model-above 0.3 --first-pose -o " + output + " " + options));
+                    " --radius 0.1 --floor 0.3 --first-pose -o " + output + " " + options));
     return done.err;
   };
   run(folder / "turned.obj", "hand.h5", "");
@@ -273,11 +273,10 @@ TEST_CASE("a car along y is turned into the street, as the car that was turned b
              "it drives sideways ... --forward and --up turn the model");
   check_outcome(run_program(folder, "compare hand.h5 turned.h5"), 0);
   check_outcome(run_program(folder, "compare hand.h5 across.h5"), 1);
-  check_outcome(
-      run_program(folder, "report turned.h5 --env street.h5 --model " +
-                              quoted(street("prius.obj")) + " --model-above 0.3 --trajectory " +
-                              quoted(street("trajectory.txt")) + " -o page.html"),
-      0);
+  check_outcome(run_program(folder, "report turned.h5 --env street.h5 --model " +
+                                        quoted(street("prius.obj")) + " --trajectory " +
+                                        quoted(street("trajectory.txt")) + " -o page.html"),
+                0);
 }
 
 TEST_CASE("one command goes from the street's files to the known answer and its page") {

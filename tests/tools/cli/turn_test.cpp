@@ -158,12 +158,12 @@ TEST_CASE("axes along one line are refused before anything is read") {
   check_outcome(turned.run("upright.obj", "out.h5", "--forward w"), 2);
 }
 
-TEST_CASE("the height of --model-above and the points of clearway model are of the turned model") {
+TEST_CASE("the floor and the points of clearway model are of the turned model") {
   const Turned turned;
   const Work& work = turned.work;
   turned.write_turned("turned.obj", "+z", "+y");
   for (const std::string& options :
-       {std::string("--model-above 0.8"), std::string("--model-as points --model-above 0.8"),
+       {std::string("--floor 0.8"), std::string("--model-as points --floor 0.8"),
         std::string("--model-vertices")}) {
     CAPTURE(options);
     require_success(turned.run("upright.obj", "upright.h5", options));

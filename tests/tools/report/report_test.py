@@ -91,25 +91,6 @@ class ReportTest(PageChecks, unittest.TestCase):
         page.pdf(f"{self.hall.folder}/head.pdf")
         self.check_quiet(page)
 
-    def test_what_was_left_out_of_the_model(self):
-        above = ("--model-above", 0.25)
-        result = self.hall.search("above", "--radius", 0.1, "--first-pose", *above)
-        self.assertIn("--model", self.hall.report(result, "bad", code=3)[1])
-        self.assertIn("--model", self.hall.report(result, "bad", "--model-above", 0.3, code=3)[1])
-        path, facts = self.hall.report(result, "above", *above)
-        model = facts["inputs"]["model"]
-        self.assertEqual(model["above"], 0.25)
-        self.assertEqual(model["left_out"], 5000 - model["points"])
-        self.assertGreaterEqual(model["box"]["lo"][2], 0.25)
-        self.assertIsNone(self.hall.report(self.found, "all")[1]["inputs"]["model"]["above"])
-        page = self.open(path)
-        self.check_words(page, facts)
-        self.assertIn(f"below z = 0.25 m in its own frame, {model['left_out']:,} of them",
-                      page.run("byId('verdict').innerText"))
-        self.assertIn("middle of its points", page.run("byId('conflict-details').innerText"))
-        self.assertNotIn("nearest point", page.run("byId('conflict-details').innerText"))
-        self.check_quiet(page)
-
     def test_what_to_check_on_site(self):
         """A lorry that drives east, then a quarter of a circle of 12 m to the left; its front is behind."""
         folder = self.hall.folder
@@ -545,7 +526,7 @@ class ReportTest(PageChecks, unittest.TestCase):
         self.assertLessEqual(facts["page"]["environment_points"], 200000)
         page = self.open(path)
         self.check_words(page, facts)
-        self.assertIn("--model-above", page.run("byId('verdict').innerText"))
+        self.assertIn("--floor", page.run("byId('verdict').innerText"))
         self.check_quiet(page)
 
 

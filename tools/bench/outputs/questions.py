@@ -172,9 +172,9 @@ def models():
         *(f"run {BOX}/sphere.obj --radius 0.2 {options} -o @.h5" for options in (
             "--model-as points", "--model-as points --first-pose --between-poses",
             "--model-spacing 0.1 --engine kdtree", "--model-spacing 5cm --engine grid --first-pose",
-            "--model-vertices", "--model-above 0.5 --clearance 0.4", "--model-as points --model-above 50cm",
+            "--model-vertices", "--floor 0.5 --clearance 0.4", "--model-as points --floor 50cm",
             "--model-as surface --first-pose --json")),
-        f"run {CELLS} --radius 0.2 --model-above 0.7 --first-pose -o @.h5",
+        f"run {CELLS} --radius 0.2 --floor 0.7 --first-pose -o @.h5",
         f"run {BOX}/few.xyz --radius 1.5 {ALL_TABLES} -o @.h5",
         f"run {BOX}/box_mm.stl --model-unit mm --radius 0.2 {ALL_TABLES} -o mesh.h5",
         f"run {BOX}/box_mm.stl --radius 0.2 -o @.h5",

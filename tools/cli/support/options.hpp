@@ -85,7 +85,7 @@ CLI::Option* add_axis_option(CLI::App& command, const std::string& name, Axis& a
 /// Adds --forward and --up, which turn the model when it is read.
 void add_turn_options(CLI::App& command, Axis& forward, Axis& up);
 
-/// Adds --model-spacing, --model-unit, --model-vertices and --model-above.
+/// Adds --model-spacing, --model-unit and --model-vertices.
 void add_model_options(CLI::App& command, ModelOptions& options, LengthOptions& lengths);
 
 /// Adds --title, --project, --client, --author and --date, the texts in the head of a page.

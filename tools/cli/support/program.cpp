@@ -110,7 +110,7 @@ std::string advice_on(const Message& message) {
     return of_model ? ". clearway run --forward and --up turn the model when it is read" : "";
   }
   if (message.code == "one-long-conflict") {
-    return ". clearway run --model-above leaves out the lowest part of the model";
+    return ". clearway run --floor judges only what lies at that height of the vehicle or above";
   }
   return "";
 }

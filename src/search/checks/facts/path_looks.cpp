@@ -140,8 +140,8 @@ class Looking {
     constexpr double kUpright = 0.7;  // the cosine of 45 degrees
     if (!(pose.rotation[8] >= kUpright * scale_of(pose))) return std::nullopt;
     Box under = below(pose);
-    under.lo.z = question_.bottom - kUnder * metre(pose);
-    under.hi.z = question_.bottom + kDeepest * metre(pose);
+    under.lo.z = question_.model.lo.z - kUnder * metre(pose);
+    under.hi.z = question_.model.lo.z + kDeepest * metre(pose);
     Box inside = inner_;
     inside.lo.z = under.hi.z;
     inside.hi.z = question_.model.hi.z;
@@ -157,7 +157,7 @@ class Looking {
     const auto surface =
         heights.begin() + static_cast<std::ptrdiff_t>((heights.size() - 1) / kLowest);
     std::nth_element(heights.begin(), surface, heights.end());
-    return (*surface - question_.bottom) * scale_of(pose);
+    return (*surface - question_.model.lo.z) * scale_of(pose);
   }
 
   /// Whether the scan has points beside the model at a pose. side: 1 for the left of a model whose

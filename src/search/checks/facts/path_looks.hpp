@@ -22,9 +22,9 @@ struct Look {
   /// Height of the model above the highest point below its inner part: 0 where it touches a point,
   /// and nothing where there is no point below.
   std::optional<double> height = {};
-  /// How far the whole model reaches below the lowest surface that was scanned under or inside it,
-  /// its lowest part included even if that is not searched; nothing where that is at most
-  /// kDeepest, or where no surface was scanned there.
+  /// How far the model reaches below the lowest surface that was scanned under or inside it, with
+  /// what is below a floor; nothing where that is at most kDeepest, or where no surface was scanned
+  /// there.
   std::optional<double> depth = {};
 };
 

@@ -74,8 +74,8 @@ def errors_name_the_key(test):
                                                                     "unit": "parsec"}})
     test.refused("vehicles.truck.spacing: -1", vehicles={"truck": {"model": model,
                                                                    "spacing": -1}})
-    test.refused("vehicles.truck.above: expected a length",
-                 vehicles={"truck": {"model": model, "above": True}})
+    test.refused("vehicles.truck.spacing: expected a length",
+                 vehicles={"truck": {"model": model, "spacing": True}})
     test.refused("vehicles.all: the name v00 is that of vehicles.v00 too",
                  vehicles={"v00": model, "all": "vehicles/*.ply"})
     test.refused("vehicles.a/b: \"a/b\" cannot name a folder", vehicles={"a/b": model})

@@ -159,7 +159,7 @@ class Finding(Site):
         self.addCleanup((self.master / "it's a car.ply").unlink)
         output = "the $HOME; site"
         done = clearway(["check", "scans", "--model", "it's a car.ply", "--trajectory",
-                         "trajectory.txt", "--radius", "10", "cm", "--model-above", "-0.5",
+                         "trajectory.txt", "--radius", "10", "cm", "--floor", "-0.5",
                          "--title", 'A "site" & more', "--ignore-box", "-1,-2.5,-3,-0.5,9,9",
                          "--ignore-box=1,2,3,4,5,6", "-o", output], self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)

@@ -217,31 +217,6 @@ TEST_CASE("what conflicts cannot do is refused, and no output is left") {
   check_refused(work.conflicts("--force -o out.h5"), 2, "out.h5");
 }
 
-TEST_CASE("model-above leaves out the lowest part of the model, and says how much") {
-  const Work work;
-  const std::string model =
-      " --trajectory hall/trajectory.txt --env hall/site.h5 --model hall/model.ply --radius 0.1 "
-      "--force -o above.h5 --model-above ";
-  const auto info = [&] { return json_of(work.run("info --json above.h5")); };
-  check_says(work.succeed("run" + model + "0.5").err,
-             "of 300 model points are below z = 0.5 m, and are left out");
-  const json kept = info();
-  CHECK(kept["model_points"] < 300);
-  CHECK(kept["model_points"] > 0);
-  work.succeed("run" + model + "50cm");
-  CHECK(info()["model_hash"] == kept["model_hash"]);
-  work.succeed("run" + model + "-1e3");
-  CHECK(info()["model_points"] == 300);
-  check_refused(work.run("run" + model + "1000"), 3, "all 300 points of the model are below");
-  // The result is the same as with a file that holds only those points.
-  work.succeed("model hall/model.ply --above 0.5 -o top.ply");
-  work.succeed(
-      "run --env hall/site.h5 --model top.ply --trajectory hall/trajectory.txt --radius 0.1 -o "
-      "top.h5");
-  work.succeed("run" + model + "0.5");
-  check_same(work.bytes("top.h5"), work.bytes("above.h5"));
-}
-
 TEST_CASE("compare --conflicts tells new, gone and the same, and exits with 1 on new ones") {
   const HallResult work;
   work.succeed(

@@ -305,12 +305,12 @@ TEST_CASE("a run notes few points that the store left out as withheld") {
 
 TEST_CASE("compare --conflicts reads a model as run did") {
   const Road road;
-  const Epoch epoch{.things = kPoles, .run = "--radius 0.1 --model-above 0.5"};
+  const Epoch epoch{.things = kPoles, .run = "--radius 0.1 --model-vertices"};
   road.search("a", epoch);
   road.search("b", {.things = kPoles, .run = epoch.run});
   const std::string model = "--model car.obj";
   check_outcome(road.compare(epoch, epoch, model), 3);
-  check_outcome(road.compare(epoch, epoch, model + " --model-above 0.5"), 0);
+  check_outcome(road.compare(epoch, epoch, model + " --model-vertices"), 0);
 }
 
 TEST_CASE("both scans are grouped as the first one, whose points may be farther apart") {
