@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -412,6 +413,20 @@ void write_state(const std::filesystem::path& folder, const TaskState& state) {
                           {"inputs", json_of(state.inputs)},
                           {"facts", state.facts}};
   replace_file(folder / kStateName, indented_text(json, 1));
+}
+
+void add_conflicts(ordered_json& facts, const fs::path& folder,
+                   const std::vector<std::string>& outputs) {
+  const auto table = std::ranges::find(outputs, "conflicts.csv");
+  if (table == outputs.end()) return;
+  std::ifstream file(folder / *table);
+  std::string line;
+  if (!std::getline(file, line) || !line.starts_with("id,")) return;
+  std::uint64_t count = 0;
+  while (std::getline(file, line)) {
+    if (!line.starts_with("0,")) ++count;  // groups that are too small to be listed have no number
+  }
+  facts["conflicts"] = {{"count", count}};
 }
 
 ordered_json task_facts(const std::filesystem::path& run_json) {

@@ -71,6 +71,11 @@ void write_state(const std::filesystem::path& folder, const TaskState& state);
 /// file is cut short.
 nlohmann::ordered_json task_facts(const std::filesystem::path& run_json);
 
+/// Adds the number of conflicts to the facts, where one of the outputs in the folder is their table
+/// in CSV.
+void add_conflicts(nlohmann::ordered_json& facts, const std::filesystem::path& folder,
+                   const std::vector<std::string>& outputs);
+
 /// What can be said about a task. kBegun: another process works on it, or it was interrupted; the
 /// file system has no locks that show which. kOutdated: it finished, but a file that it read has
 /// changed since, so its verdict is about an earlier file.

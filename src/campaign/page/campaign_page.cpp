@@ -35,9 +35,10 @@ section { background: #fff; border: 1px solid var(--line); border-radius: 8px;
 h2 { font-size: 1.15rem; margin: 0 0 0.5rem; }
 :focus-visible { outline: 3px solid var(--focus); outline-offset: 2px; }
 .answer { font-size: 1.5rem; font-weight: 600; margin: 0 0 0.6rem; line-height: 1.25; }
-.legend { list-style: none; display: flex; flex-wrap: wrap; gap: 0.5rem; margin: 0; padding: 0; }
-.legend li { padding: 0.25rem 0.7rem; border-radius: 5px; font-size: 0.92rem; }
-.legend b { font-size: 1.15rem; }
+.legend { list-style: none; display: flex; flex-wrap: wrap; gap: 0.3rem 0.5rem; margin: 0; padding: 0; }
+.legend li { padding: 0.1rem 0.6rem; border-radius: 5px; font-size: 0.88rem; }
+details.note summary { cursor: pointer; }
+details.note ul { margin: 0.2rem 0 0; padding-left: 1.2rem; }
 .sign { display: inline-block; width: 1.1em; text-align: center; font-weight: 700; }
 .conflict { --back: #fbdccf; --front: #8a2404; --edge: #b4330a; }
 .doubtful { --back: #fff3cd; --front: #6b4700; --edge: #a16207; }
@@ -52,7 +53,7 @@ h2 { font-size: 1.15rem; margin: 0 0 0.5rem; }
 .scroll { overflow: auto; max-height: 85vh; }
 table { border-collapse: separate; border-spacing: 3px; font-variant-numeric: tabular-nums; }
 .matrix th { background: #fff; text-align: left; padding: 0.25rem 0.6rem; font-weight: 600;
-  max-width: 16rem; overflow-wrap: anywhere; }
+  min-width: 6rem; max-width: 16rem; overflow-wrap: break-word; hyphens: auto; }
 .matrix thead th { position: sticky; top: 0; z-index: 2; vertical-align: bottom; }
 .matrix th:first-child { position: sticky; left: 0; z-index: 1; }
 .matrix thead th:first-child { z-index: 3; }
@@ -66,10 +67,20 @@ table { border-collapse: separate; border-spacing: 3px; font-variant-numeric: ta
 .list { border-spacing: 0; width: 100%; }
 .list th { text-align: left; background: #e5e9ef; padding: 0.2rem 0.5rem; }
 .list td { padding: 0.2rem 0.5rem; border-top: 1px solid #e5e7eb; vertical-align: top;
-  overflow-wrap: anywhere; }
+  overflow-wrap: break-word; }
 .list td:first-child { width: 4rem; }
 .list td:nth-child(2) { width: 22%; }
 .list a { color: var(--focus); }
+@media (max-width: 600px) {
+  main { padding: 0.5rem; }
+  section { padding: 0.6rem 0.7rem; }
+  .answer { font-size: 1.2rem; }
+  .matrix th:first-child { max-width: 7.5rem; font-size: 0.88rem; padding: 0.25rem 0.3rem; }
+  .matrix td small { min-width: 0; padding-left: 0; }
+  .list thead { display: none; }
+  .list tr { display: block; border-top: 2px solid var(--line); padding: 0.3rem 0; }
+  .list td, .list td:first-child, .list td:nth-child(2) { display: block; width: auto; border: 0; padding: 0.05rem 0; }
+}
 @page { size: A4 landscape; margin: 12mm; }
 @media print {
   :root { font-size: 8.5pt; }
@@ -133,6 +144,17 @@ std::string cell_side(const ordered_json& facts) {
   return side.is_string() ? ", " + side.get<std::string>() : "";
 }
 
+constexpr std::string_view kTouches = "touches";
+
+/// A least distance to 0.1 mm, for example "0.032 m"; below 1 mm the surfaces meet, as far as a
+/// scan can show. A distance below 0 is a depth inside a solid.
+std::string distance_words(double distance, const std::string& unit) {
+  constexpr double kTouching = 0.001;
+  if (std::abs(distance) < kTouching) return std::string(kTouches);
+  const std::string length = format_number(std::round(std::abs(distance) * 1e4) / 1e4) + " " + unit;
+  return distance >= 0 ? length : length + " deep inside";
+}
+
 /// The least distance in a cell, for example "0.032 m, left"; where it is not known, a bound such
 /// as "< 0.1 m". Empty where nothing is known, because the task is not done or its search could not
 /// have found anything.
@@ -143,10 +165,7 @@ std::string cell_distance(const Task& task, const TaskLook& look) {
   if (outcome == Outcome::kUndecided && is_in_doubt(facts)) return "";
   const ordered_json& least = facts["least"];
   if (!least.is_null()) {
-    const auto distance = least["distance"].get<double>();
-    const std::string length = format_brief(std::abs(distance)) + " " + task.unit;
-    return length + (length.starts_with("0 ") || distance >= 0 ? "" : " deep inside") +
-           cell_side(facts);
+    return distance_words(least["distance"].get<double>(), task.unit) + cell_side(facts);
   }
   const auto radius = task.question["radius"].get<double>();
   const double asked = std::max(
@@ -154,6 +173,28 @@ std::string cell_distance(const Task& task, const TaskLook& look) {
   return (outcome != Outcome::kConflict ? "≥ " + format_number(asked)
                                         : "< " + format_number(radius)) +
          " " + task.unit;
+}
+
+/// How many conflicts a run lists, and the chainage of its least distance or, without distances, of
+/// its first place, such as "3 conflicts, at 31.02 m". Empty where nothing is known.
+std::string cell_place(const Task& task, const TaskLook& look) {
+  if (look.status != TaskStatus::kDone) return "";
+  const ordered_json& facts = look.state->facts;
+  std::vector<std::string> parts;
+  if (const ordered_json conflicts = facts.value("conflicts", ordered_json());
+      !conflicts.is_null()) {
+    const auto count = conflicts["count"].get<std::uint64_t>();
+    if (count > 0) parts.push_back(counted(count, "conflict"));
+  }
+  const bool in_doubt = outcome_of(look) == Outcome::kUndecided && is_in_doubt(facts);
+  const ordered_json& at = facts["least"].is_null() ? facts["first"] : facts["least"];
+  if (!at.is_null() && !in_doubt) {
+    const double chainage = std::round(at["chainage"].get<double>() * 100) / 100;
+    parts.push_back("at " + format_number(chainage) + " " + task.unit);
+  }
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
+  return text;
 }
 
 /// The details of a cell, as a line of text.
@@ -169,7 +210,9 @@ std::string cell_details(const Task& task, const TaskLook& look) {
   const ordered_json& facts = look.state->facts;
   std::string text = words_of(outcome_of(look)).word;
   const std::string distance = cell_distance(task, look), caveats = caveats_of(facts, task.unit);
-  if (!distance.empty()) text += ", least distance " + distance;
+  if (!distance.empty())
+    text += (distance.starts_with(kTouches) ? ", " : ", least distance ") + distance;
+  if (const std::string where = cell_place(task, look); !where.empty()) text += ", " + where;
   const auto points = facts["colliding_points"].get<std::uint64_t>();
   if (points > 0) {
     text += ", " + counted(points, "colliding point");
@@ -247,16 +290,21 @@ class CampaignPage {
   void summary() {
     text_ += "<section aria-label=\"Summary\">\n<p class=\"answer\">" + answer() +
              "</p>\n<ul class=\"legend\">\n";
+    std::string meanings;
     for (const Outcome outcome : kOutcomes) {
       const OutcomeWords& words = words_of(outcome);
-      text_ += std::string("<li class=\"") + words.name + "\"><b>" +
-               format_count(counts_.of(outcome)) +
-               R"(</b> <span class="sign" aria-hidden="true">)" + words.sign + "</span> " +
-               words.words + "</li>\n";
+      if (counts_.of(outcome) == 0) continue;
+      text_ += std::string("<li class=\"") + words.name +
+               R"("><span class="sign" aria-hidden="true">)" + words.sign + "</span> <b>" +
+               format_count(counts_.of(outcome)) + "</b> " + words.word + "</li>\n";
+      meanings += std::string("<li>") + words.words + "</li>\n";
     }
     text_ +=
-        "</ul>\n<p class='note'>A cell of the tables below gives the verdict and the least "
-        "distance that is known. It links to the report of its run.</p>\n</section>\n";
+        "</ul>\n<details class=\"note\"><summary>What the cells say</summary>\n<ul>\n" + meanings +
+        "<li>the verdict, the least distance that is known, how many conflicts are listed, the "
+        "side "
+        "and the chainage of the least distance or of the first place; a link to the report of the "
+        "run</li>\n</ul>\n</details>\n</section>\n";
   }
 
   /// One sentence that counts every run once, and one about runs that left points out of the
@@ -334,6 +382,9 @@ class CampaignPage {
     text_ += std::string(R"(<span class="sign" aria-hidden="true">)") + kind.sign +
              R"(</span> <span class="word">)" + cell_word(look) + "</span>";
     if (!distance.empty()) text_ += "<br><b>" + distance + "</b>";
+    if (const std::string where = cell_place(task, look); !where.empty()) {
+      text_ += "<small>" + where + "</small>";
+    }
     if (look.status == TaskStatus::kDone) text_ += cell_caveats(look.state->facts, task.unit);
     text_ += link.empty() ? "</td>" : "</a></td>";
   }

@@ -59,6 +59,7 @@ table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
   padding: 0 0.4rem; white-space: nowrap; }
 .list tr:target { outline: 3px solid #1d4ed8; }
 svg { display: block; width: 100%; height: auto; max-height: 80vh; }
+.scroll { overflow-x: auto; }
 svg text { font: 600 12px system-ui, "DejaVu Sans", Arial, sans-serif; fill: var(--ink);
   paint-order: stroke; stroke: #fff; stroke-width: 3px; }
 .mark circle { fill: var(--back); stroke: var(--edge); stroke-width: 2; }
@@ -71,6 +72,7 @@ svg text { font: 600 12px system-ui, "DejaVu Sans", Arial, sans-serif; fill: var
   .list td:empty { display: none; }
   .list td::before { content: attr(data-name); flex: 0 0 7.5rem; color: var(--soft); }
   .facts th, .facts td { display: block; }
+  svg { min-width: 46rem; max-height: none; }
 }
 @page { size: A4; margin: 12mm; }
 @media print {
@@ -339,7 +341,8 @@ class ComparisonPage {
       return height / 2 - (p.y - (box.lo.y + box.hi.y) / 2) * scale;
     };
     out_ += fmt::format(
-        "<section>\n<h2>Plan</h2>\n<svg viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" "
+        "<section>\n<h2>Plan</h2>\n<div class=\"scroll\">\n<svg viewBox=\"0 0 {:.0f} {:.0f}\" "
+        "role=\"img\" "
         "aria-label=\"The path from above, and the conflicts\">\n<path fill=\"none\" "
         "stroke=\"#374151\" stroke-width=\"2\" d=\"",
         kWidth, height);
@@ -370,7 +373,7 @@ class ComparisonPage {
     }
     out_ += fmt::format(
         "<path stroke=\"#111827\" stroke-width=\"3\" d=\"M16 {0:.1f}h{1:.1f}\"/>"
-        "<text x=\"{2:.1f}\" y=\"{3:.1f}\">{4} {5}</text>\n</svg>\n",
+        "<text x=\"{2:.1f}\" y=\"{3:.1f}\">{4} {5}</text>\n</svg>\n</div>\n",
         height - 14, bar * scale, 24 + bar * scale, height - 10, format_brief(bar), found_.b.unit);
     out_ +=
         "<p class=\"note\">The numbers are those of the rows below; a mark without one is the "
@@ -436,7 +439,7 @@ class ComparisonPage {
               text + "</td>";
     };
     out_ += fmt::format("<tr id=\"row{}\" class=\"{}\">", number, words_of(o.fate).colour);
-    cell("", std::to_string(number));
+    cell("Row", std::to_string(number));
     cell("What", std::string("<span class=\"word\">") + words_of(o.fate).word + "</span>", false);
     cell("No. in a", o.small != nullptr ? "" : ids(o.in_a));
     cell("No. in b", o.small != nullptr ? "" : ids(o.in_b));

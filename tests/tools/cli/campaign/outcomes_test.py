@@ -87,8 +87,8 @@ def told_alike(path, expected):
     for name in OUTCOMES:
         cells = page.count(f'<td class="{name}"')
         expect(cells == expected[name], f"page: {cells} cells are {name}")
-        legend = re.search(rf'<li class="{name}"><b>(\d+)</b>', page)
-        expect(int(legend[1]) == expected[name], f"page: the legend of {name}")
+        legend = re.search(rf'<li class="{name}"><span class="sign" aria-hidden="true">.</span> <b>(\d+)</b>', page)
+        expect((int(legend[1]) if legend else 0) == expected[name], f"page: the legend of {name}")
     answer = re.search(r'<p class="answer">(.*)</p>', page)[1]
     counted = [int(n) for n in re.findall(r"\b(\d+)\b", answer.split(". In ")[0])]
     expect(counted[0] == runs and sum(counted[1:]) == runs, answer)
@@ -172,7 +172,9 @@ def lengths_are_rounded(work):
     program("campaign", "run", path, "--all")
     told_alike(path, status(path)["outcomes"])
     page = (path / "index.html").read_text()
-    expect(not re.search(r"\de-\d", page.split('id="facts"')[0]), "an exponent on the page")
+    shown = page.split('id="facts"')[0]
+    expect(not re.search(r"\de-\d", shown), "an exponent on the page")
+    expect("<b>touches</b>" in shown, "what touches is said in a word")
 
 
 def put_back(work):
