@@ -102,7 +102,7 @@ def errors_name_the_key(test):
             "outputs": "an object", "limits": "an object",
             "vehicles.truck": "an object", "vehicles.truck.model": "a text",
             "vehicles.truck.unit": "a text", "vehicles.truck.spacing": "a length",
-            "vehicles.truck.vertices": "true or false", "vehicles.truck.above": "a length",
+            "vehicles.truck.vertices": "true or false",
             "vehicles.truck.as": "a text", "vehicles.truck.forward": "a text",
             "vehicles.truck.turn": "true or false",
             "routes.north.trajectory": "a text", "routes.north.format": "a text",
