@@ -591,7 +591,11 @@ class Exports(Sections):
                          [tuple(c) for c in cells])
         bands = self.rows("bands")
         self.assertEqual(bands[0][:2] + bands[0][-1:], ["z_from", "z_to", "symmetric_width"])
-        boxes = self.rows("boxes")
+        boxes = self.rows("boxes", f"--band 0.5 --base={bands[1][0]}")
+        lifted = self.rows("boxes")  # from the lowest band whose middle is free
+        self.assertLess(len(lifted), len(boxes))
+        self.assertEqual([box[0] for box in lifted[1:]], [box[0] for box in boxes[-len(lifted) + 1:]])
+        self.assertNotEqual(lifted[1][1], "0")
         least = 10**6
         for band, box in zip(bands[1:], boxes[1:], strict=True):
             low, high = round(float(band[0]) / 0.05), round(float(band[1]) / 0.05)
