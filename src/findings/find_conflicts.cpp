@@ -69,8 +69,10 @@ constexpr std::uint64_t kBytesOfSortedPoint = CellGrid::kBytesOfPoint + sizeof(s
                                               3 * sizeof(std::uint32_t) + 1 + kJoinBytesOfPoint;
 constexpr std::uint64_t kBytesOfUnsortedPoint =
     CollidingPoints::kBytesOfPoint + CellGrid::kBytesOfPoint;
-/// Bytes of a part and its conflict, which counts twice because vectors grow to twice their size.
-constexpr std::uint64_t kBytesOfPart = sizeof(Tally) + 2 * sizeof(Conflict) + 32;
+/// Bytes of a part, with where it lies across its body, and its conflict, which counts twice
+/// because vectors grow to twice their size.
+constexpr std::uint64_t kBytesOfPart =
+    sizeof(Tally) + sizeof(PartAcross) + 2 * sizeof(Conflict) + 32;
 
 std::uint64_t ConflictMemory::fixed() const {
   return kProgram + poses_ * (sizeof(Pose) + sizeof(double) + sizeof(std::uint32_t));
