@@ -130,8 +130,7 @@ std::vector<BodyEntry> read_vehicle_file(const std::filesystem::path& path,
   std::set<std::string> names;
   const std::filesystem::path folder = path.parent_path();
   for (const KeyReader& body : bodies) {
-    body.allow({"name", "model", "model_unit", "at", "pivots", "towed", "trajectory",
-                "floor"});
+    body.allow({"name", "model", "model_unit", "at", "pivots", "towed", "trajectory", "floor"});
     const std::string model = body.at("model").text();
     BodyEntry entry{.at = body,
                     .name = name_of(body.at("name"), names),
