@@ -86,18 +86,22 @@ inline constexpr std::tuple kConflictColumns = std::tuple_cat(
                       .key = "trim_left",
                       .doc = "How much taken off the left side of the body that is touched first "
                              "is enough to free it from the conflict, in metres; less may do. It "
-                             "has no value where it would be more than half of the body."},
+                             "has no value where it would be more than half of the body.",
+                      .rounds_up = true},
         FindingColumn{.member = &Conflict::trim_right,
                       .key = "trim_right",
-                      .doc = "How much taken off its right side is enough, as for trim_left."},
+                      .doc = "How much taken off its right side is enough, as for trim_left.",
+                      .rounds_up = true},
         FindingColumn{.member = &Conflict::trim_above,
                       .key = "trim_above",
-                      .doc = "How much taken off it from above is enough, as for trim_left."},
+                      .doc = "How much taken off it from above is enough, as for trim_left.",
+                      .rounds_up = true},
         FindingColumn{
             .member = &Conflict::trim_below,
             .key = "trim_below",
             .doc = "How much taken off it from below is enough, as for trim_left; it is measured "
-                   "from the floor of the search up."},
+                   "from the floor of the search up.",
+            .rounds_up = true},
         FindingColumn{.member = &Conflict::lateral,
                       .key = "lateral",
                       .doc = "How far the nearest point, or without clearances the first one that "

@@ -19,6 +19,8 @@ struct FindingColumn {
   /// Whether these leave it out where a row has no value, instead of saying that it has
   /// none. Then either all rows of a table have a value or none has.
   bool is_left_out = false;
+  /// Whether tables for people round it up, because less than the length would not be enough.
+  bool rounds_up = false;
 
   const Type& of(const Row& row) const { return row.*member; }
   Type& of(Row& row) const { return row.*member; }

@@ -69,10 +69,12 @@ class TextWriter {
 std::string csv_cell(std::string_view text);
 
 /// A length of a table that people read, to 0.1 mm: the digits after that are no more than
-/// roundings, and JSON and HDF5 keep them.
-inline double readable_length(double length) {
-  constexpr double kTenthsOfMillimetres = 1e4;
-  return std::round(length * kTenthsOfMillimetres) / kTenthsOfMillimetres + 0.0;  // 0 instead of -0
+/// roundings, and JSON and HDF5 keep them. up: rounds up what is more than a roundoff above.
+inline double readable_length(double length, bool up = false) {
+  constexpr double kTenthsOfMillimetres = 1e4, kRoundoff = 1e-6;
+  const double tenths = length * kTenthsOfMillimetres;
+  const double whole = up ? std::ceil(tenths - kRoundoff) : std::round(tenths);
+  return whole / kTenthsOfMillimetres + 0.0;  // 0 instead of -0
 }
 
 /// A label of a pose as a cell of a CSV file.

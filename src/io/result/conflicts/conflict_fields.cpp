@@ -8,6 +8,7 @@
 
 #include "core/describe/conflict.hpp"
 #include "core/query/ignored_points.hpp"
+#include "core/util/format.hpp"
 #include "io/files/text_writer.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/floor_json.hpp"
@@ -109,10 +110,11 @@ Json json_of(const std::vector<ConflictField>& fields) {
   return out;
 }
 
-std::string csv_value(const FieldValue& value) {
+std::string csv_value(const ConflictField& field) {
+  const FieldValue& value = field.value;
   if (std::holds_alternative<std::monostate>(value)) return "";
   if (const double* length = std::get_if<double>(&value)) {
-    return line_text(Json(readable_length(*length)));
+    return format_number(readable_length(*length, field.rounds_up));
   }
   const auto* word = std::get_if<std::string_view>(&value);
   return word != nullptr ? csv_cell(*word) : line_text(json_of(value));

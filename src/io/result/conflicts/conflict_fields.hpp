@@ -30,7 +30,8 @@ FieldValue value_of(const std::optional<Number>& number) {
 struct ConflictField {
   std::string name;
   FieldValue value;
-  bool is_real = false;  ///< whether the values of the column are numbers other than counts
+  bool is_real = false;    ///< whether the values of the column are numbers other than counts
+  bool rounds_up = false;  ///< as of FindingColumn
 };
 
 /// Adds the fields of a row, by the list of its columns. A box has the corners lo and hi, a vector
@@ -64,7 +65,8 @@ void add_fields(std::vector<ConflictField>& fields, const std::tuple<Columns...>
     } else if constexpr (std::is_same_v<Value, double>) {
       fields.push_back({key, value, true});
     } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
-      if (value || !column.is_left_out) fields.push_back({key, value_of(value), true});
+      if (value || !column.is_left_out)
+        fields.push_back({key, value_of(value), true, column.rounds_up});
     } else if constexpr (std::is_unsigned_v<Value>) {
       fields.push_back({key, std::uint64_t{value}});
     } else if constexpr (requires { std::uint64_t{*value}; }) {
@@ -99,7 +101,7 @@ Json json_of(const FieldValue& value);
 /// A row as a JSON object. The three fields of a vector's coordinates become one, an array.
 Json json_of(const std::vector<ConflictField>& fields);
 /// A field's value as a cell of a CSV file, empty where it is absent.
-std::string csv_value(const FieldValue& value);
+std::string csv_value(const ConflictField& field);
 
 /// Adds the hashes of what was searched to an object.
 void add_hashes(Json& json, const ResultHeader& header);

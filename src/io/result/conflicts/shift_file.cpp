@@ -43,7 +43,7 @@ void write_csv(const ShiftTable& table, const File& file) {
   write({}, [](const ConflictField& field) { return field.name; });
   out << kWarnedOf << "\n";
   const auto value = [&](const StretchShift& row) {
-    write(row, [](const ConflictField& field) { return csv_value(field.value); });
+    write(row, [](const ConflictField& field) { return csv_value(field); });
     const char* between = "";
     for (const std::string& code : row.warned_of) {
       out << between << code;

@@ -52,7 +52,7 @@ void write_csv(const StationFile& stations, const File& file) {
   for (const StationRow& row : stations.table.rows) {
     std::string doubts;  // codes have no blanks
     for (const std::string& code : row.doubts) doubts += (doubts.empty() ? "" : " ") + code;
-    write(row, doubts, [](const ConflictField& field) { return csv_value(field.value); });
+    write(row, doubts, [](const ConflictField& field) { return csv_value(field); });
   }
   out.flush();
 }

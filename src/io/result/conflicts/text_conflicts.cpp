@@ -16,7 +16,7 @@ void write_csv(const ConflictFile& conflicts, const File& file) {
   out << "small_groups,small_points\n";
   const auto write_row = [&](const Conflict& conflict) {
     for (const ConflictField& field : fields_of(conflict, conflicts.header)) {
-      out << csv_value(field.value) << ",";
+      out << csv_value(field) << ",";
     }
     out << found.small_groups << "," << found.small_points << "\n";
   };
