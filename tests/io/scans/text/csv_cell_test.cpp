@@ -23,9 +23,6 @@ TEST_CASE("a text becomes a cell of CSV that no spreadsheet runs as a formula", 
   }
 }
 
-}  // namespace
-}  // namespace clearway
-
 TEST_CASE("lengths for people are rounded to 0.1 mm, and up where less would not be enough") {
   CHECK(readable_length(0.46412) == 0.4641);
   CHECK(readable_length(0.46412, true) == 0.4642);
@@ -33,3 +30,6 @@ TEST_CASE("lengths for people are rounded to 0.1 mm, and up where less would not
   CHECK(readable_length(2.15 + 1e-13, true) == 2.15);
   CHECK(!std::signbit(readable_length(-0.00001)));
 }
+
+}  // namespace
+}  // namespace clearway
