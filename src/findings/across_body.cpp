@@ -42,10 +42,12 @@ double squared_distance(const Vec3& a, const Vec3& b, const Box& box) {
   for (int k = 0; k < 3; ++k) {
     for (const double side : {box.lo[k], box.hi[k]}) {
       const double s = (side - a[k]) / way[k];
-      if (s > 0 && s < 1) cuts[count++] = s;
+      if (!(s > 0 && s < 1)) continue;
+      std::size_t i = count++;
+      for (; cuts[i - 1] > s; --i) cuts[i] = cuts[i - 1];  // the first one is 0
+      cuts[i] = s;
     }
   }
-  std::sort(cuts.begin(), cuts.begin() + static_cast<std::ptrdiff_t>(count));
   double least = std::min(squared_distance(a, box), squared_distance(b, box));
   for (std::size_t i = 0; i + 1 < count; ++i) {
     const Vec3 middle = at((cuts[i] + cuts[i + 1]) / 2);
@@ -206,6 +208,10 @@ void AcrossBody::add(const AcrossBody& other) {
   in_middle = in_middle || other.in_middle;
 }
 
+Box BodiesAcross::whole_box(std::uint32_t body) const {
+  return turned(boxes[body], axes.forward, axes.up);
+}
+
 Box BodiesAcross::box_from_floor(std::uint32_t body) const {
   Box box = boxes[body];
   if (const auto floor = bodies[body].floor) box.lo.z = std::clamp(*floor, box.lo.z, box.hi.z);
@@ -260,7 +266,8 @@ void find_across_bodies(const CellGrid& grid, const PointGroups& groups,
   throw_if_stopped(progress);
 }
 
-void set_trims(const AcrossBody& found, const Box& body, double radius, Conflict& conflict) {
+void set_trims(const AcrossBody& found, const Box& body, const Box& whole, double radius,
+               Conflict& conflict) {
   conflict.side = conflict.first_touch;
   if (found.is_empty()) return;
   const double width = body.hi.y - body.lo.y, height = body.hi.z - body.lo.z;
@@ -270,7 +277,8 @@ void set_trims(const AcrossBody& found, const Box& body, double radius, Conflict
   conflict.trim_left = trim(body.hi.y - found.left_from + radius, width);
   conflict.trim_right = trim(found.left_to - body.lo.y + radius, width);
   conflict.trim_above = trim(body.hi.z - found.up_from + radius, height);
-  conflict.trim_below = trim(found.up_to - body.lo.z + radius, height);
+  // What is below the floor comes near points above it too.
+  conflict.trim_below = trim(found.up_to - whole.lo.z + radius, whole.hi.z - whole.lo.z);
   const std::pair<Side, std::optional<double>> trims[] = {{Side::kLeft, conflict.trim_left},
                                                           {Side::kRight, conflict.trim_right},
                                                           {Side::kAbove, conflict.trim_above},

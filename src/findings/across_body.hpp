@@ -48,6 +48,8 @@ struct BodiesAcross {
   double radius;
   bool ways;  ///< whether bodies are followed from pose to pose
 
+  /// The box of a body along the axes of ahead_left_up().
+  Box whole_box(std::uint32_t body) const;
   /// The box of a body from its floor up, along the axes of ahead_left_up().
   Box box_from_floor(std::uint32_t body) const;
 };
@@ -62,7 +64,8 @@ void find_across_bodies(const CellGrid& grid, const PointGroups& groups,
                         std::vector<PartAcross>& parts, Progress& progress);
 
 /// Sets the trims and the side of a conflict, whose first_touch is known. body: the body's box from
-/// its floor up, along the axes of ahead_left_up().
-void set_trims(const AcrossBody& found, const Box& body, double radius, Conflict& conflict);
+/// its floor up, and whole: its box, both along the axes of ahead_left_up().
+void set_trims(const AcrossBody& found, const Box& body, const Box& whole, double radius,
+               Conflict& conflict);
 
 }  // namespace clearway

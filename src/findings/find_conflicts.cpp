@@ -255,7 +255,7 @@ class ConflictSearch {
   }
 
   static double metres_per_unit(const ResultHeader& header) {
-    const double metre = metres_of(unit_of_crs(header.crs_wkt));
+    const double metre = metres_of(unit_of(header));
     return metre > 0 ? metre : 1;
   }
 
@@ -475,7 +475,8 @@ class ConflictSearch {
     find_across_bodies(*grid_, groups_, part_of_row, header.quantisation, how, parts, progress_);
     for (Conflict& conflict : out_.listed) {
       const PartAcross& part = parts[conflict.id - 1];
-      set_trims(part.found, how.box_from_floor(part.body), header.radius, conflict);
+      set_trims(part.found, how.box_from_floor(part.body), how.whole_box(part.body), header.radius,
+                conflict);
     }
   }
 
@@ -579,8 +580,13 @@ class ConflictSearch {
       if (conflict.colliding == 0) return progress_.advance(1);
       const std::uint32_t last = end_of(conflict.last_pose);
       const SideShifts free = shifts.least(points[i], conflict.first_pose, last, most);
-      conflict.own_shift_left = free.left;
-      conflict.own_shift_right = free.right;
+      // The points collide as it is, so a shift of 0 says only that the steps between poses, at
+      // which shifts are tried, missed it.
+      const auto known = [](std::optional<double> shift) {
+        return shift && *shift > 0 ? shift : std::nullopt;
+      };
+      conflict.own_shift_left = known(free.left);
+      conflict.own_shift_right = known(free.right);
       progress_.advance(1);
     });
     scope.begin();

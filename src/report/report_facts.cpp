@@ -199,9 +199,10 @@ void add_finding(Json& json, const Column& column, const Row& row) {
 
 /// What frees the vehicle from a conflict, in words.
 std::string remedy_of(const Conflict& conflict, const ReportFacts& facts) {
-  const LengthUnit unit = unit_of_crs(facts.result.reader().header().crs_wkt);
+  const LengthUnit unit = unit_of(facts.result.reader().header());
   RemedyWords how{*facts.conflicts, symbol_of(unit)};
   if (metres_of(unit) > 0) how.metre = metres_of(unit);
+  how.has_budget = facts.result.reader().header().budget.has_value();
   if (conflict.first_body) how.body = facts.bodies[*conflict.first_body].name;
   if (facts.options.shifts) how.shifts = &*facts.options.shifts;
   return remedy_words(conflict, how);

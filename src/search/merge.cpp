@@ -31,7 +31,7 @@ bool is_merged(const PartSet& set, const std::filesystem::path& output, Progress
 MergeReport report_of(const PartSet& set) {
   MergeReport report;
   static_cast<Answer&>(report) = set.answer();
-  report.length_unit = set.parts().front().header().part->length_unit;
+  report.length_unit = set.parts().front().header().notes.length_unit;
   report.parts = static_cast<std::uint32_t>(set.parts().size());
   report.part_warnings = set.warnings();
   return report;
@@ -44,7 +44,7 @@ void warn_of_all(const PartSet& set, const MergeOptions& options, MergeReport& r
   std::vector<Message> warnings;
   MessageLog log(options.message, warnings);
   if (report.seen) warn_of_small_groups(*report.seen, set.header(), log);
-  warn_of_colliding_ignored(report, length_unit_of(first.part->length_unit), log);
+  warn_of_colliding_ignored(report, length_unit_of(first.notes.length_unit), log);
   add_warnings(warnings, report.warnings);
   for (Message& warning : warnings) {
     report.part_warnings.push_back({std::move(warning), report.parts});

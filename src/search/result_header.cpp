@@ -79,7 +79,9 @@ ResultHeader result_header(
   header.ignored = std::move(ignored);
   if (!header.ignore_classes.empty()) header.classes_hash = metadata.classes->hash;
   header.budget = error_budget_of(query, metadata.quantisation);
-  header.notes = {.model_spacing = model_spacing(query), .model_axes = file_axes(query)};
+  header.notes = {.model_spacing = model_spacing(query),
+                  .model_axes = file_axes(query),
+                  .length_unit = to_string(metadata.unit)};
   return header;
 }
 

@@ -179,7 +179,7 @@ ShardCells::ShardCells(const StoreReader& store, const Query& query, const Shard
     if (own_[cell]) own += static_cast<double>(work[cell]);
   }
   if (all > 0) share_ = own * shard.count / all;
-  part_ = {shard, division_of(store, parts), store.fingerprint(), to_string(store.metadata().unit)};
+  part_ = {shard, division_of(store, parts), store.fingerprint()};
 }
 
 }  // namespace clearway

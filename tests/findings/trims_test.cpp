@@ -42,10 +42,10 @@ double distance_to(const Box& box, const Vec3& a, const Vec3& b) {
 struct Oracle {
   double y0 = kNone, y1 = -kNone, z0 = kNone, z1 = -kNone;
   bool in_middle = false;
-  Box from_floor;
+  Box from_floor, whole;
 
   Oracle(const Found& found, const Box& box, const Conflict& c, const std::vector<Vec3>& points)
-      : from_floor(box) {
+      : from_floor(box), whole(box) {
     if (found.floor) from_floor.lo.z = std::clamp(*found.floor, box.lo.z, box.hi.z);
     const double radius = found.header().radius;
     const auto counts = [&](const Vec3& x) { return !found.floor || x.z >= *found.floor; };
@@ -81,10 +81,10 @@ struct Oracle {
   std::array<std::optional<double>, 4> trims(double radius) const {
     const Box& b = from_floor;
     const std::array<double, 4> all{b.hi.y - y0 + radius, y1 - b.lo.y + radius,
-                                    b.hi.z - z0 + radius, z1 - b.lo.z + radius};
+                                    b.hi.z - z0 + radius, z1 - whole.lo.z + radius};
     std::array<std::optional<double>, 4> out;
     for (std::size_t k = 0; k < 4; ++k) {
-      const double half = (k < 2 ? b.size().y : b.size().z) / 2;
+      const double half = (k < 2 ? b.size().y : k == 2 ? b.size().z : whole.size().z) / 2;
       if (std::isfinite(all[k]) && all[k] > 0 && all[k] <= half) out[k] = all[k];
     }
     return out;
@@ -160,7 +160,7 @@ TEST_CASE("trims and sides of random groups are those of every point at every po
       // What is left of the box is free of the conflict's points at all of its poses.
       for (std::size_t k = 0; k < 4; ++k) {
         if (!trims_of(c)[k]) continue;
-        Box rest = oracle.from_floor;
+        Box rest = box;  // with all that is below the floor
         if (k == 0) rest.hi.y -= *trims_of(c)[k];
         if (k == 1) rest.lo.y += *trims_of(c)[k];
         if (k == 2) rest.hi.z -= *trims_of(c)[k];

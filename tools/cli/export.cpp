@@ -109,8 +109,7 @@ void run_export(ExportOptions& options) {
   const Exported exported = export_table(result, options);
   spdlog::info("{}: {}", options.output.string(), counted(exported.rows, exported.row));
   repeat_warnings(result);
-  const std::string verdict =
-      verdict_to_repeat(result, {}, symbol_of(unit_of_crs(result.header().crs_wkt)));
+  const std::string verdict = verdict_to_repeat(result, {}, symbol_of(unit_of(result.header())));
   if (!verdict.empty()) spdlog::info("the verdict of this result is {}", verdict);
   if (!options.json) return;
   nlohmann::ordered_json out =

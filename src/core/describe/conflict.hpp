@@ -100,7 +100,7 @@ inline constexpr std::tuple kConflictColumns = std::tuple_cat(
             .member = &Conflict::trim_below,
             .key = "trim_below",
             .doc = "How much taken off it from below is enough, as for trim_left; it is measured "
-                   "from the floor of the search up.",
+                   "from the lowest part of the body on, also where a floor is above it.",
             .rounds_up = true},
         FindingColumn{.member = &Conflict::lateral,
                       .key = "lateral",

@@ -243,10 +243,11 @@ constexpr std::tuple kQuestion{Field{&Q::environment_points, "environment_points
 constexpr std::tuple kQuantisation{Field{&Quantisation::scale, "scale"},
                                    Field{&Quantisation::offset, "offset"}};
 constexpr std::tuple kNotes{Field{&ResultNotes::model_spacing, "model_spacing"},
-                            Field{&ResultNotes::model_axes, "model_axes"}};
-constexpr std::tuple kPart{
-    Field{&ResultPart::shard, "shard"}, Field{&ResultPart::division, "division"},
-    Field{&ResultPart::store, "store"}, Field{&ResultPart::length_unit, "length_unit"}};
+                            Field{&ResultNotes::model_axes, "model_axes"},
+                            Field{&ResultNotes::length_unit, "length_unit"}};
+constexpr std::tuple kPart{Field{&ResultPart::shard, "shard"},
+                           Field{&ResultPart::division, "division"},
+                           Field{&ResultPart::store, "store"}};
 /// What a budget has besides the parameters of the query.
 constexpr std::tuple kBudget{
     Field{&ErrorBudget::step, "budget_step"}, Field{&ErrorBudget::lever, "budget_lever"},
@@ -383,6 +384,8 @@ void check_header(const ResultHeader& header, const std::string& name) {
 }
 
 }  // namespace
+
+LengthUnit unit_of(const ResultHeader& header) { return length_unit_of(header.notes.length_unit); }
 
 std::string environment_text(const ResultHeader& header) {
   return std::to_string(header.environment_points) + " points, hash " +

@@ -17,6 +17,7 @@
 #include "clearway/unsearched.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "io/files/hdf5.hpp"
+#include "io/scans/length_unit.hpp"
 #include "io/scans/scan_dates.hpp"
 
 namespace clearway {
@@ -63,6 +64,7 @@ struct ResultNotes {
   /// The axes of the model's file that pointed ahead and up before the model was turned
   /// (file_axes() of the query). The question is about the turned model.
   ModelAxes model_axes = {};
+  std::string length_unit = {};  ///< unit of the store, as in Store::length_unit()
 };
 
 /// Which part of a result a file is.
@@ -70,7 +72,6 @@ struct ResultPart {
   Shard shard;
   std::uint64_t division = 0;  ///< hash of how the cells of the store are divided among the parts
   std::uint64_t store = 0;     ///< fingerprint of the store
-  std::string length_unit;     ///< unit of the store, for the messages of merge()
 
   friend bool operator==(const ResultPart&, const ResultPart&) = default;
 };
@@ -88,6 +89,9 @@ struct ResultHeader : ResultQuestion {
 inline bool same_answer(const ResultHeader& a, const ResultHeader& b) {
   return a.question() == b.question() && a.part == b.part;
 }
+
+/// The unit of all lengths of a result: that of the store.
+LengthUnit unit_of(const ResultHeader& header);
 
 /// The environment in words, by its number of points and its hash.
 std::string environment_text(const ResultHeader& header);

@@ -36,7 +36,8 @@ function conflictFacts(conflict) {
   ].filter(Boolean);
   if (conflict.least_distance !== null) {
     rows.push(["Distance", `${words.symbol} ${words.name}: ${detailedDistance(conflict)}`],
-              ["Missing", missingWords(conflict.encroachment, conflict.least_distance, conflict.encroachment_is)]);
+              ["Missing", missingWords(conflict.encroachment, conflict.least_distance, conflict.encroachment_is) ||
+                          "nothing, but with the errors it may be too close"]);
   } else {
     rows.push(["Distance", `closer than ${shortLength(query.radius)}; run with --clearance to know it`]);
   }

@@ -11,7 +11,7 @@ function distanceWords(i) {
   if (d === null) return `: beyond ${shortLength(query.profile)}, nothing is closer`;
   const missing = query.radius - d;
   const distance = isInside(d) ? `${depthWords(d)} inside the vehicle` : metres(d);
-  return `: ${distance}` + (missing > 0 ? `, ${missingClause(missingWords(missing, d))}` : ", enough");
+  return `: ${distance}` + (missing > 0 ? `, ${missingClause(missingWords(missing, d, isAllSolid() ? "exact" : "at-least"))}` : ", enough");
 }
 
 function showProfileValue(i) {

@@ -56,6 +56,7 @@ function worstTile({ points, encroachment, encroachment_is: bound, least_distanc
   if (encroachment === null) return tile(plural(points, "point"), `in the worst conflict${where}`);
   if (isInside(distance)) return tile(metres(-distance), `deepest inside the vehicle${where}`);
   const words = missingWords(encroachment, distance, bound);
+  if (words === "") return tile(metres(distance), `away at the worst place${where}`);
   return words === "touches" ? tile("touches", `the vehicle at the worst place${where}`)
                              : tile(words, `missing at the worst place${where}`);
 }
@@ -101,6 +102,7 @@ function nearnessText({ encroachment, encroachment_is: bound, least_distance: di
   if (encroachment === null) return "";
   if (isInside(distance)) return `: ${depthWords(distance)} inside the vehicle`;
   const words = missingWords(encroachment, distance, bound);
+  if (words === "") return `: ${metres(distance)} away, which is too close only with the errors`;
   return words === "touches" ? ": it touches the vehicle" : `: ${words} of ${radius} are missing`;
 }
 
@@ -114,6 +116,8 @@ function worstSentence(worst, radius) {
 }
 
 const isSolid = () => page.facts.inputs.model.solids > 0;
+/** Whether every body has an inside. */
+const isAllSolid = () => page.facts.inputs.model.bodies?.every((b) => b.solids > 0) ?? isSolid();
 
 /** How many points were inside the vehicle at any pose; null where that is not known. */
 const insidePoints = () => page.facts.inside === null ? null : page.facts.inside.points;

@@ -28,7 +28,8 @@ const kTouching = 0.001;
  * What is missing, with the digits of the distance, so that both add up to what is required. A
  * surface and points have no inside, so there it is at least so much. unit: left out in tables.
  */
-function missingWords(missing, distance, bound = isSolid() ? "exact" : "at-least", unit = ` ${unitSymbol}`) {
+function missingWords(missing, distance, bound, unit = ` ${unitSymbol}`) {
+  if (!(missing > 0)) return "";  // the points are only near
   if (bound === "at-least" && distance < kTouching) return "touches";
   return `${bound === "at-least" ? "at least " : ""}${fixed(missing, digitsFor([distance]))}${unit}`;
 }

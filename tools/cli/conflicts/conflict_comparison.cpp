@@ -75,7 +75,7 @@ struct ComparedSide {
     ComparedResult out;
     out.file = result.reader().name();
     out.radius = header.radius;
-    out.unit = symbol_of(unit_of_crs(header.crs_wkt));
+    out.unit = symbol_of(unit_of(header));
     out.conflicts = std::move(conflicts);
     out.verdict = answer.verdict();
     out.doubts = answer.doubts();

@@ -144,7 +144,9 @@ std::string worst_text(const ConflictFile& file) {
   if (file.conflicts.listed.empty()) return "";
   const Conflict& worst = *worst_of(file.conflicts, 1).front();
   RemedyWords how{file.conflicts, symbol_of(file.unit()), file.metres_per_unit()};
+  how.has_budget = file.header.budget.has_value();
   if (worst.first_body) how.body = file.header.bodies.at(*worst.first_body);
+  if (worst.body) how.nearest = file.header.bodies.at(*worst.body);
   return "The worst place is " + conflict_words(worst, how);
 }
 

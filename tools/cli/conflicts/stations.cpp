@@ -218,7 +218,7 @@ StationsOutcome perform(StationsCommand& command) {
   }
   for (const auto& output : outputs) output->pending.publish();
   for (const Message& warning : table.warnings) log_message(warning);
-  const std::string unit = symbol_of(unit_of_crs(header.crs_wkt));
+  const std::string unit = symbol_of(unit_of(header));
   return {
       totals_text(table, command, path_length(poses), unit) + table_text(table, command.show, unit),
       "{\n" + member_lines(summary_of(file)) + "\n}\n"};

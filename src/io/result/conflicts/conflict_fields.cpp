@@ -25,12 +25,16 @@ std::vector<ConflictField> fields_of(const Conflict& c, const ResultHeader& head
     fields.push_back({"body", std::uint64_t{*c.body}});
     fields.push_back({"body_name", std::string_view(header.bodies.at(*c.body))});
   }
+  if (c.first_body) {  // that of the trims and the side
+    fields.push_back({"first_body", std::uint64_t{*c.first_body}});
+    fields.push_back({"first_body_name", std::string_view(header.bodies.at(*c.first_body))});
+  }
   return fields;
 }
 
 std::optional<double> rounded_up(std::optional<double> shift) {
   // What is a whole number but for roundings is taken for it.
-  if (shift) *shift = std::ceil(*shift * 1000 - 1e-6) / 1000;
+  if (shift) *shift = std::ceil(*shift * 1000 - 1e-6) / 1000 + 0.0;  // 0 instead of -0
   return shift;
 }
 

@@ -31,7 +31,7 @@ struct ConflictFile {
     return all;
   }
   /// Unit of all lengths, which the scan's coordinate reference system names.
-  LengthUnit unit() const { return unit_of_crs(header.crs_wkt); }
+  LengthUnit unit() const { return unit_of(header); }
   /// Metres per unit of length; 1 where the unit is not known.
   double metres_per_unit() const { return metres_of(unit()) > 0 ? metres_of(unit()) : 1; }
 

@@ -37,8 +37,9 @@ std::string trim_words(const Conflict& c, const RemedyWords& how) {
   for (const auto& [side, where, trim] : sides) {
     if (side != c.side || !trim) continue;
     const std::string cut = "a trim of " + length_words(*trim, how.unit) + " " + where;
-    return how.body.empty() ? cut + " is enough"
-                            : cut + " of body " + how.body + " frees that body";
+    const std::string of = how.has_budget ? " for what is closer than the margin" : "";
+    return how.body.empty() ? cut + " is enough" + of
+                            : cut + " of body " + how.body + " is enough for that body" + of;
   }
   return "";
 }
@@ -71,19 +72,22 @@ std::string tried_words(const Conflict& c, const RemedyWords& how) {
     return "a shift of up to " + format_brief(kMostShift / how.metre) + " " + how.unit;
   }
   const ShiftTable& table = *how.shifts;
-  if (table.lateral_to == -table.lateral_from) {
-    return "a shift of up to " + format_number(table.lateral_to) + " " + how.unit;
-  }
-  return "a shift of up to " + format_number(table.lateral_to) + " " + how.unit +
-         " to the left or " + format_number(-table.lateral_from) + " " + how.unit + " to the right";
+  const auto up_to = [&](double most) { return format_number(most) + " " + how.unit; };
+  const double left = table.lateral_to, right = -table.lateral_from;
+  if (left == right) return "a shift of up to " + up_to(left);
+  std::string text = "a shift of up to ";
+  if (left > 0) text += up_to(left) + " to the left";
+  if (left > 0 && right > 0) text += " or ";
+  if (right > 0) text += up_to(right) + " to the right";
+  return text;
 }
 
 }  // namespace
 
-std::string missing_words(const Conflict& conflict, const std::string& unit) {
-  if (!conflict.encroachment) return "";
+std::string missing_words(const Conflict& conflict, const std::string& unit, double metre) {
+  if (!conflict.encroachment || !(*conflict.encroachment > 0)) return "";
   const bool exact = conflict.encroachment_is == Bound::kExact;
-  if (!exact && *conflict.least_distance < kTouching) return "touches";
+  if (!exact && *conflict.least_distance * metre < kTouching) return "touches";
   return (exact ? "" : "at least ") + fixed_digits(*conflict.encroachment, 3) +
          (unit.empty() ? "" : " " + unit);
 }
@@ -128,9 +132,13 @@ std::string conflict_words(const Conflict& conflict, const RemedyWords& how) {
   std::string text = "conflict " + std::to_string(conflict.id) + ", " + fixed_digits(at, 2) + " " +
                      how.unit + " along the path";
   if (const std::string side = side_words(conflict.side); !side.empty()) text += ", " + side;
-  const std::string missing = missing_words(conflict, how.unit);
+  const std::string missing = missing_words(conflict, how.unit, how.metre);
   if (conflict.least_distance && *conflict.least_distance < 0) {
-    text += ": " + fixed_digits(-*conflict.least_distance, 3) + " " + how.unit + " deep inside it";
+    text += ": " + fixed_digits(-*conflict.least_distance, 3) + " " + how.unit + " deep inside " +
+            (how.nearest.empty() ? "it" : "body " + how.nearest);
+  } else if (conflict.colliding == 0 && conflict.least_distance) {
+    text += ": " + fixed_digits(*conflict.least_distance, 3) + " " + how.unit +
+            " away, which is too close only with the errors";
   } else if (!missing.empty()) {
     text += missing == "touches" ? ": it touches" : ": " + missing + " are missing";
   }

@@ -13,9 +13,9 @@ namespace clearway {
 inline constexpr double kTouching = 0.001;
 
 /// What is missing at a conflict, in digits of a millimetre: "0.099 m" of a solid, and otherwise
-/// "at least 0.099 m" or "touches". Empty without an encroachment. unit: the symbol of lengths; an
-/// empty one is left out.
-std::string missing_words(const Conflict& conflict, const std::string& unit);
+/// "at least 0.099 m" or "touches". Empty without an encroachment, and for points that are only
+/// near. unit: the symbol of lengths; an empty one is left out. metre: metres per unit.
+std::string missing_words(const Conflict& conflict, const std::string& unit, double metre = 1);
 
 /// Where something lies, seen from the vehicle: "on the left", "above it"; empty where that is not
 /// known.
@@ -27,6 +27,8 @@ struct RemedyWords {
   std::string unit;                    ///< symbol of lengths
   double metre = 1;                    ///< metres per unit of length
   std::string body = {};               ///< name of the conflict's first_body, for a vehicle
+  std::string nearest = {};            ///< name of its nearest body, for a vehicle
+  bool has_budget = false;             ///< whether the search has an error budget
   const ShiftTable* shifts = nullptr;  ///< confirmed shifts, where they are known
 };
 

@@ -89,7 +89,7 @@ StationFormat station_format_of(const std::filesystem::path& output) {
 Json summary_of(const StationFile& file) {
   const ResultHeader& header = file.header;
   Json out{{"kind", "stations"},
-           {"unit", symbol_of(unit_of_crs(header.crs_wkt))},
+           {"unit", symbol_of(unit_of(header))},
            {"radius", header.radius},
            {"clearance", header.clearance},
            {"between_poses", header.between_poses},

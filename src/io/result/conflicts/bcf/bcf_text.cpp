@@ -89,20 +89,6 @@ std::string offset_text(const ConflictFile& file, const Conflict& c) {
          (*c.height < 0 ? " below it" : " above it");
 }
 
-/// The lateral shifts, in words, that free the conflict's own points; empty where they are not
-/// known.
-std::string shift_text(const ConflictFile& file, const Conflict& c) {
-  if (!c.own_shift_left && !c.own_shift_right) return "";
-  std::string out = " Its points are free where the vehicle runs at least";
-  if (c.own_shift_left)
-    out += " " + length_text(file, format_number(*rounded_up(c.own_shift_left))) + " farther left";
-  if (c.own_shift_left && c.own_shift_right) out += " or";
-  if (c.own_shift_right)
-    out +=
-        " " + length_text(file, format_number(*rounded_up(c.own_shift_right))) + " farther right";
-  return out + ".";
-}
-
 /// A sentence on small groups, which have no topic in the archive.
 std::string small_text(const ConflictFile& file) {
   const Conflicts& found = file.conflicts;
@@ -113,26 +99,33 @@ std::string small_text(const ConflictFile& file) {
          counted(found.small_points, "point") + " together.";
 }
 
-/// What is missing: "0.1 m are missing", "at least 0.1 m are missing" or "it touches the model".
+/// What is missing: "; 0.1 m are missing", "; at least 0.1 m are missing" or "; it touches the
+/// model". Empty where the points are only near.
 std::string missing_text(const ConflictFile& file, const Conflict& c) {
+  if (!(*c.encroachment > 0)) return "";
   const bool exact = c.encroachment_is == Bound::kExact;
-  if (!exact && *c.least_distance < kTouching) return "it touches the model";
-  return (exact ? "" : "at least ") + length_text(file, format_brief(*c.encroachment)) +
-         " are missing";
+  if (!exact && *c.least_distance * file.metres_per_unit() < kTouching) {
+    return "; it touches the model";
+  }
+  return std::string(exact ? "; " : "; at least ") +
+         length_text(file, format_brief(*c.encroachment)) + " are missing";
 }
 
 /// What frees the vehicle from the conflict, as a sentence; empty where nothing is known.
 std::string remedy_text(const ConflictFile& file, const Conflict& c) {
   RemedyWords how{file.conflicts, symbol_of(file.unit()), file.metres_per_unit()};
+  how.has_budget = file.header.budget.has_value();
   if (c.first_body) how.body = file.header.bodies.at(*c.first_body);
   const std::string words = remedy_words(c, how);
   return words.empty() ? "" : " To pass: " + markup_text(words) + ".";
 }
 
 std::string description_of(const ConflictFile& file, const Conflict& c) {
-  std::string out = format_count(c.points) + (c.points == 1 ? " point is" : " points are") +
+  const std::uint64_t near = c.points - c.colliding;
+  std::string out = format_count(c.colliding) + (c.colliding == 1 ? " point is" : " points are") +
                     " closer than " + length_text(file, format_number(file.header.radius)) +
-                    " to the moving model.";
+                    " to the moving model" +
+                    (near > 0 ? ", and " + counted(near, "point") + " may be by the errors." : ".");
   if (c.least_distance && *c.least_distance < 0) {
     out += " The deepest point is " + length_text(file, format_brief(-*c.least_distance)) +
            " inside the model, at pose " + std::to_string(*c.nearest_pose) + "; " +
@@ -140,7 +133,7 @@ std::string description_of(const ConflictFile& file, const Conflict& c) {
            (*c.points_inside == 1 ? " point is inside." : " points are inside.");
   } else if (c.least_distance) {
     out += " The least distance is " + length_text(file, format_brief(*c.least_distance)) +
-           ", at pose " + std::to_string(*c.nearest_pose) + "; " + missing_text(file, c) + ".";
+           ", at pose " + std::to_string(*c.nearest_pose) + missing_text(file, c) + ".";
   }
   if (c.lateral && c.height) {
     out += std::string(!c.nearest_point          ? " The point that is touched first"
@@ -152,7 +145,7 @@ std::string description_of(const ConflictFile& file, const Conflict& c) {
     out += " The obstacle stands at chainage " +
            length_text(file, format_brief(*c.obstacle_chainage)) + ".";
   }
-  out += remedy_text(file, c) + shift_text(file, c);
+  out += remedy_text(file, c);
   out += " Poses " + std::to_string(c.first_pose) + " to " + std::to_string(c.last_pose) +
          ", counted from 0, touch it.";
   return out + small_text(file);
