@@ -217,10 +217,18 @@ std::string open_words(const ordered_json& facts, const std::string& unit) {
   return text;
 }
 
+std::string floor_words(const ordered_json& facts, const std::string& unit) {
+  const ordered_json floor = facts.value("floor", ordered_json());
+  if (floor.is_null()) return "";
+  const std::string text = format_count(floor["colliding"].get<std::uint64_t>()) + " below ";
+  if (floor["height"].is_null()) return text + "the floors of the bodies not judged";
+  return text + format_brief(floor["height"].get<double>()) + " " + unit + " not judged";
+}
+
 std::string caveats_of(const ordered_json& facts, const std::string& unit) {
   std::string text;
-  for (const std::string& one :
-       {warning_words(facts), ignored_words(facts), open_words(facts, unit)}) {
+  for (const std::string& one : {warning_words(facts), ignored_words(facts),
+                                 floor_words(facts, unit), open_words(facts, unit)}) {
     if (!one.empty()) text += (text.empty() ? "" : "; ") + one;
   }
   return text;
@@ -442,6 +450,7 @@ ordered_json task_facts(const std::filesystem::path& run_json) {
                        {"reasons", run.value("reasons", ordered_json::array())},
                        {"colliding_points", run.at("colliding_points")},
                        {"ignored", ignored_of(run.at("ignored"))},
+                       {"floor", run.value("floor", ordered_json())},
                        {"least", place_of(profile.is_null() ? run.at("least_clearance") : profile)},
                        {"least_side", run.value("least_side", ordered_json())},
                        {"first", place_of(run.at("first_place"))},

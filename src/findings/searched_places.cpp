@@ -63,6 +63,10 @@ SearchedPlaces::SearchedPlaces(const Result& a, const std::vector<Pose>& poses_a
                  a_.environment_hash == b_.environment_hash) {
   compare_questions(poses_a, poses_b);
   const ResultFindings &in_a = a.reader().findings(), &in_b = b.reader().findings();
+  // Floors of bodies are known by the hash of the vehicle alone.
+  if (!b_.bodies.empty() && in_b.floor_colliding && a_.model_hash != b_.model_hash) {
+    everywhere_.insert("floor");
+  }
   compare_ignored(in_b);
   const bool more_withheld = in_b.withheld_points > in_a.withheld_points;
   if (!same_scan_ && more_withheld) everywhere_.insert("withheld");

@@ -26,11 +26,12 @@ class SearchedPlaces {
 
   /// Adds the reasons why b has not searched the place of a point of a, none where it has: "radius"
   /// where that of b is smaller, "model", "motion" or "path" where these are others than in a,
-  /// "floor" where that of b is higher, "ignored" where b left out points there, "withheld" where
-  /// the scans of b have more points that were left out as deleted, and the code of each warning of
-  /// b that says so. If both are about the same scan, the point is known to be there still, and
-  /// another vehicle or path that does not touch it has freed it, so that these are no reasons.
-  /// first, last: the first and the last pose at which the point collides in a.
+  /// "floor" where that of b is higher or, for another vehicle, may be, "ignored" where b left out
+  /// points there, "withheld" where the scans of b have more points that were left out as deleted,
+  /// and the code of each warning of b that says so. If both are about the same scan, the point is
+  /// known to be there still, and another vehicle or path that does not touch it has freed it, so
+  /// that these are no reasons. first, last: the first and the last pose at which the point
+  /// collides in a.
   void add_reasons(const Vec3& place, std::uint32_t first, std::uint32_t last,
                    std::set<std::string>& reasons) const;
 

@@ -209,7 +209,9 @@ class Search {
       };
       warn_of_query(store_, query_, header_.ignored, looks_of, options_.input_warnings, log_);
     });
-    for (const MovingBody& body : moving_bodies(query_)) check_floor_axis(body, log_);
+    for (const MovingBody& body : moving_bodies(query_)) {
+      check_floor(body, swept_radius(), store_.metadata().unit, metre_of(store_), log_);
+    }
     note_large_errors();
     if (query_.seen) warn_of_large_cubes(store_, query_, swept_radius(), log_);
     if (options_.strict) refuse_warnings(report_.warnings);
@@ -218,10 +220,13 @@ class Search {
   /// Tells before the search where the ground will collide.
   void look_at_ground() {
     if (!options_.message) return;  // nobody would see the note
+    const double cube = query_.seen ? 0.5 * side_of_cubes(store_, query_.seen_cube) : 0;
+    const double more = swept_radius() - query_.radius + cube;
     for (const MovingBody& body : moving_bodies(query_)) {
       const auto index =
           session_.models().index_of(body.model, hash_of(body.model), options_.threads);
-      look_for_ground(store_, store_.metadata().unit, metre_of(store_), query_, body, *index, log_);
+      look_for_ground(store_, store_.metadata().unit, metre_of(store_), query_, more, body, *index,
+                      log_);
     }
   }
 

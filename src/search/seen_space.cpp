@@ -287,8 +287,12 @@ struct Unseen {
 
 }  // namespace
 
+double side_of_cubes(const StoreReader& store, double asked) {
+  return asked > 0 ? asked : kUsualCube * metre_of(store);
+}
+
 CubeLattice cube_lattice(const StoreReader& store, double asked) {
-  const double side = asked > 0 ? asked : kUsualCube * metre_of(store);
+  const double side = side_of_cubes(store, asked);
   CubeLattice lattice{};
   for (int k = 0; k < 3; ++k) {
     const double scale = store.quantisation().scale[k];

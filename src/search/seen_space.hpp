@@ -32,6 +32,9 @@ struct SeenSpace {
   double sweep_seconds = 0, beam_seconds = 0;
 };
 
+/// The side of the cubes that was asked for, or the usual one; in the environment's unit.
+double side_of_cubes(const StoreReader& store, double asked);
+
 /// The cubes in which seen space is judged in a store. asked: side of a cube in the environment's
 /// unit; 0: 0.2 m. Throws UsageError where it is too small or too large for the store's integers.
 CubeLattice cube_lattice(const StoreReader& store, double asked);

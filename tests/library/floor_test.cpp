@@ -67,7 +67,9 @@ std::vector<Message> told_about(const Query& query, std::vector<Quantum> points 
   std::vector<Message> told;
   SearchOptions options{.device = Device::kCpu, .threads = 2};
   options.message = [&](const Message& message) {
-    if (message.code == "ground-collides" || message.code == "floor-axis") told.push_back(message);
+    for (const char* code : {"ground-collides", "floor-axis", "floor-high"}) {
+      if (message.code == code) told.push_back(message);
+    }
   };
   search(Store(folder / "scan.h5"), query, folder / "out.h5", options);
   return told;
@@ -234,4 +236,20 @@ TEST_CASE("a floor along an axis that does not point up is warned of") {
   const auto told = told_about(query);
   REQUIRE(told.size() == 1);
   CHECK_THAT(told[0].text, Contains("at 20 of 20 poses the z axis is more than 45 degrees"));
+}
+
+TEST_CASE("a floor above the model is refused, and one that leaves out much of it is warned of") {
+  Query query = box_at(kLorry, drive(0));
+  query.floor = 3.2;
+  CHECK_THROWS_WITH(told_about(query),
+                    "a floor of 3.2 m leaves nothing to judge: the model reaches from 0 to 3 m of "
+                    "its frame");
+  query.floor = 0.9;
+  CHECK(told_about(query).empty());
+  // The origin of the model's file is in its middle.
+  query = box_at({{-4, -1.2, -1.5}, {4, 1.2, 1.5}}, drive(1.5));
+  query.floor = 0.25;
+  const auto told = told_about(query);
+  REQUIRE(told.size() == 1);
+  CHECK_THAT(told[0].text, Contains("the floor is 1.75 m above the lowest part of the model"));
 }

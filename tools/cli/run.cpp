@@ -255,6 +255,9 @@ void log_report(const SearchReport& report, const RunOptions& options, const std
                  ignored_text(options.query, report.ignored),
                  format_count(report.ignored_looked_at));
   }
+  if (report.seconds.below > 0) {
+    spdlog::info("{:.2f} s more to count what is below the floor", report.seconds.below);
+  }
   if (options.query.clearance > 0) {
     spdlog::info("{} within the clearance of {} {}",
                  counted(report.clearance_points, "point is", "points are"),

@@ -91,9 +91,12 @@ std::string ignored_clause(const Answer& answer) {
 /// vehicle that are not judged"; empty without a floor.
 std::string floor_clause(const Answer& answer, const std::string& unit) {
   if (!answer.floor_colliding) return "";
-  const std::string floor = answer.parameters.floor ? format_brief(*answer.parameters.floor) + " " +
-                                                          unit + " of the vehicle"
-                                                    : "the floors of its bodies";
+  const auto& height = answer.parameters.floor;
+  const double lower = answer.budget ? answer.budget->clear() : 0;
+  const std::string floor =
+      !height ? "the floors of its bodies"
+              : format_brief(*height - lower) + " " + unit + " of the vehicle" +
+                    (answer.bodies.empty() ? "" : ", or below its bodies' own floors,");
   return ", with " + counted(*answer.floor_colliding, "point") + " within the radius below " +
          floor + " not judged";
 }
@@ -333,7 +336,8 @@ std::string unseen_text(const UnseenGroups& unseen, const Answer& answer, const 
            fmt::format(
                " The place that was not scanned from {:.1f} to {:.1f} {} of the path reaches "
                "down to the lowest part of the model, so it is probably the ground: run "
-               "again with --floor {} above the ground, or a little more where it is rough.",
+               "again with a --floor that is {} above the model's lowest part, or a little more "
+               "where the ground is rough.",
                group.chainage_from, group.chainage_to, unit,
                format_brief(radius - answer.parameters.radius + answer.seen->cube / 2));
   }

@@ -395,6 +395,9 @@ class CampaignPage {
     if (const std::size_t warnings = facts["warnings"].size(); warnings > 0) {
       text = counted(warnings, "warning");
     }
+    if (const std::string floor = floor_words(facts, unit); !floor.empty()) {
+      text += (text.empty() ? "" : ", ") + floor;
+    }
     if (!ignored_words(facts).empty()) {
       const auto points = facts["ignored"]["points"].get<std::uint64_t>();
       text += (text.empty() ? "" : ", ") + format_count(points) + " ignored";

@@ -371,6 +371,10 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
     {"floor-axis", kWarning, kQueries,
      "The model's z axis is more than 45 degrees from the scan's up at most poses, so a floor does "
      "not leave out the ground."},
+    {"floor-high", kWarning, kQueries,
+     "The floor is more than 0.5 m and a third of the model's height above its lowest part, as "
+     "where "
+     "the model's origin is in its middle. A floor above the whole model is refused."},
     {"ground-collides", kNote, kQueries,
      "At more than half of 16 poses points under the model, in its lowest 0.3 m, are within the "
      "radius, as the ground is under wheels. It is looked for before the search; the message names "

@@ -139,7 +139,7 @@ double MotionTree::height_rounding(double reach) const {
   double least = 1;
   for (const InversePose& pose : inverse_poses_) least = std::min(least, pose.least);
   // Infinite where a rotation may have no inverse, so that nothing is decided by the bound.
-  return 256 * kUnitRoundoff * (reach + magnitude_) * (1 + condition_) * (1 + condition_) / least;
+  return 1024 * kUnitRoundoff * (reach + magnitude_) * (1 + condition_) * (1 + condition_) / least;
 }
 
 std::uint64_t MotionTree::allocated_bytes() const {

@@ -141,7 +141,7 @@ function adviceSentences() {
     out.push(["The ground", `${names(ground)} ${goes(ground)} along more than half of the path and ` +
         `${ground.length === 1 ? "reaches" : "reach"} down to the lowest part of the vehicle. That is usually ` +
         "the ground it stands on, into which no beam can look, perhaps joined with other places. " +
-        `Run again with --floor ${least} above the ground, which is half a cube` +
+        `Run again with a --floor that is ${least} above the vehicle's lowest part, which is half a cube` +
         `${page.facts.margins ? " and the errors" : ""}, and a little more where the ground is rough. ` +
         "Then none of the ground is judged."]);
   }

@@ -313,8 +313,9 @@ function collidingIgnored({ colliding }) {
 }
 
 /** Where the floor is. */
-function floorWords({ height }) {
-  return height === null ? "the floors of the vehicle's bodies" : `${shortLength(height)} of the vehicle`;
+function floorWords({ height, near_height: near }) {
+  return near !== undefined ? `${shortLength(height)} of the vehicle, with the errors ${shortLength(near)}` :
+      height === null ? "the floors of the vehicle's bodies" : `${shortLength(height)} of the vehicle`;
 }
 
 function cautions() {

@@ -7,6 +7,7 @@
 
 #include "clearway/error.hpp"
 #include "core/cloud/scan_points.hpp"
+#include "core/geometry/point_box.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/util/format.hpp"
 #include "search/checks/question.hpp"
@@ -37,10 +38,38 @@ bool is_near(const ModelIndex& index, const Vec3& x, double radius) {
   return squared_distance(x, index.points.element(index.points.nearest(x).element)) < squared;
 }
 
+/// Warns where the floor leaves out much of the body.
+void check_height(const MovingBody& body, double radius, LengthUnit unit, double metre,
+                  MessageLog& log) {
+  constexpr double kHigh = 0.5, kShare = 1.0 / 3;  // metres; of the body's height
+  if (body.model.vertices.empty()) return;
+  const Box box = box_of(body.model.vertices);
+  const std::string what = body.name.empty() ? "the model" : "the body";
+  const std::string range = what + " reaches from " + format_digits(box.lo.z, 6) + " to " +
+                            format_digits(box.hi.z, 6) + " " + unit_name(unit) + " of its frame";
+  if (*body.floor >= box.hi.z + radius) {
+    throw UsageError(who(body) + "a floor of " + format_digits(*body.floor, 6) + " " +
+                     unit_name(unit) + " leaves nothing to judge: " + range);
+  }
+  const double cut = *body.floor - box.lo.z;
+  if (cut <= std::max(kHigh * metre, kShare * (box.hi.z - box.lo.z))) return;
+  Message message =
+      warning("floor-high",
+              who(body) + "the floor is " + length_text(cut, unit) + " above the lowest part of " +
+                  what + ", and nothing below it is judged: " + range +
+                  ". A floor is a height of that frame, whose z = 0 need not be the ground",
+              {{"height", cut}, {"lowest", box.lo.z}});
+  message.body = body.name;
+  log.add(std::move(message));
+}
+
 }  // namespace
 
-void check_floor_axis(const MovingBody& body, MessageLog& log) {
-  if (!body.floor || body.poses.empty()) return;
+void check_floor(const MovingBody& body, double radius, LengthUnit unit, double metre,
+                 MessageLog& log) {
+  if (!body.floor) return;
+  check_height(body, radius, unit, metre, log);
+  if (body.poses.empty()) return;
   const auto leans = static_cast<std::size_t>(std::ranges::count_if(body.poses, [](const Pose& p) {
     const double* r = p.rotation;
     return !(r[8] > std::sqrt(0.5 * squared_length(r[2], r[5], r[8])));
@@ -57,8 +86,8 @@ void check_floor_axis(const MovingBody& body, MessageLog& log) {
 }
 
 void look_for_ground(const PackedCloud& cloud, LengthUnit unit, double metre,
-                     const QueryParameters& query, const MovingBody& body, const ModelIndex& index,
-                     MessageLog& log) {
+                     const QueryParameters& query, double more, const MovingBody& body,
+                     const ModelIndex& index, MessageLog& log) {
   if (body.floor || query.ignores_points() || body.poses.empty() || cloud.tree().empty()) return;
   Box under = index.box();
   const double bottom = under.lo.z;
@@ -87,7 +116,7 @@ void look_for_ground(const PackedCloud& cloud, LengthUnit unit, double metre,
   }
   if (2 * with_ground <= looks) return;
   const double step = kFloorStep * metre;
-  const double floor = (std::floor(highest / step) + 1) * step;
+  const double floor = (std::floor((highest + more) / step) + 1) * step;
   const std::string length = length_text(kLowest * metre, unit);
   Message message = note(
       "ground-collides",
@@ -97,8 +126,9 @@ void look_for_ground(const PackedCloud& cloud, LengthUnit unit, double metre,
           ", as the ground is under wheels: they will collide. If that is not the question, " +
           (body.name.empty()
                ? "--floor " + format_digits(floor, 6)
-               : "\"floor\": " + format_digits(floor, 6) + " in the vehicle's file, or --floor,") +
-          " leaves them out",
+               : "\"floor\": " + format_digits(floor, 6) + " in the vehicle's file, or --floor") +
+          " leaves them out: it is " + length_text(floor - bottom, unit) +
+          " above the lowest part of the " + (body.name.empty() ? "model" : "body"),
       {{"floor", floor}, {"poses", static_cast<double>(with_ground)}});
   message.body = body.name;
   log.add(std::move(message));

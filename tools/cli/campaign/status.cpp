@@ -73,7 +73,8 @@ nlohmann::ordered_json status_json(const campaign::Plan& plan, const std::vector
       one["time"] = state->time;
     }
     if (looks[i].status == TaskStatus::kDone && !state_is_empty(looks[i])) {
-      for (const char* key : {"verdict", "reasons", "colliding_points", "ignored", "warnings"}) {
+      for (const char* key :
+           {"verdict", "reasons", "colliding_points", "ignored", "floor", "warnings"}) {
         one[key] = looks[i].state->facts.value(key, nlohmann::ordered_json());
       }
     }

@@ -36,6 +36,7 @@
 #include "io/models/model_input.hpp"
 #include "io/result/journal.hpp"
 #include "io/result/result.hpp"
+#include "io/scans/length_unit.hpp"
 #include "io/store/convert/convert.hpp"
 #include "io/store/file_kind.hpp"
 #include "search/check_query.hpp"
@@ -333,7 +334,11 @@ class Check {
           "of "
           "this path",
           path.string(), motion, step.options().unit);
-      plan_.take_denser_path();
+      const LengthUnit of_store = length_unit_of(Store(plan_.environment()).length_unit());
+      plan_.take_denser_path(of_store == LengthUnit::kFoot           ? "ift"
+                             : of_store == LengthUnit::kUsSurveyFoot ? "us-ft"
+                             : of_store == LengthUnit::kMetre        ? "m"
+                                                                     : "");
       note_step(kPathName, words, was_there);
     } catch (const InputError& error) {
       spdlog::info("no poses are put between those of the path: {}", error.what());

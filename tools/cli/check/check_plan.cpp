@@ -144,14 +144,13 @@ Words CheckPlan::resample() const {
 /// what says how the file of the user is read goes.
 Words CheckPlan::with_path(Words words) const {
   if (!has_denser_path_) return words;
-  constexpr std::array kReading{
-      "--trajectory-format", "--allow-non-rigid",  "--lever-arm",      "--angles",
-      "--trajectory-crs",    "--trajectory-datum", "--trajectory-unit"};
+  constexpr std::array kReading{"--trajectory-format", "--lever-arm",        "--angles",
+                                "--trajectory-crs",    "--trajectory-datum", "--trajectory-unit"};
   Words out;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::size_t equals = words[i].find('=');
     const std::string name = words[i].substr(0, equals);
-    const bool takes_value = equals == std::string::npos && name != "--allow-non-rigid";
+    const bool takes_value = equals == std::string::npos;
     if (name == "--trajectory") {
       out.insert(out.end(), {name, file(kPathName).string()});
     } else if (std::ranges::find(kReading, name) == kReading.end()) {
@@ -160,6 +159,7 @@ Words CheckPlan::with_path(Words words) const {
     }
     if (takes_value) ++i;
   }
+  if (!unit_of_path_.empty()) out.insert(out.end(), {"--trajectory-unit", unit_of_path_});
   return out;
 }
 

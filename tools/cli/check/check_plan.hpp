@@ -50,7 +50,11 @@ class CheckPlan {
   /// next; no words where the question needs none, or the path is not that of one model.
   Words resample() const;
   /// From here on the steps take the output of resample() as the path.
-  void take_denser_path() { has_denser_path_ = true; }
+  /// unit: the environment's, as options name it; empty where it is not known.
+  void take_denser_path(std::string unit) {
+    has_denser_path_ = true;
+    unit_of_path_ = std::move(unit);
+  }
 
   Words run(bool replacing) const;
   Words conflicts() const;
@@ -73,6 +77,7 @@ class CheckPlan {
   const CLI::App& check_;
   bool has_store_;
   bool has_denser_path_ = false;
+  std::string unit_of_path_;
 };
 
 }  // namespace clearway::tool

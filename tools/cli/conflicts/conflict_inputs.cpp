@@ -94,6 +94,7 @@ std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOption
 ModelOptions model_options_of(const Result& result, ModelOptions options) {
   const ResultHeader& header = result.reader().header();
   options.radius = header.radius;
+  if (const double metre = metres_of(unit_of(header)); metre > 0) options.environment_unit = metre;
   options.forward = header.notes.model_axes.forward;
   options.up = header.notes.model_axes.up;
   if (header.model_solids > 0) {

@@ -110,7 +110,8 @@ std::string advice_on(const Message& message) {
     return of_model ? ". clearway run --forward and --up turn the model when it is read" : "";
   }
   if (message.code == "one-long-conflict") {
-    return ". clearway run --floor judges only what lies at that height of the vehicle or above";
+    return ". clearway run --floor, or a higher one, judges only what lies at that height of the "
+           "vehicle or above";
   }
   return "";
 }
