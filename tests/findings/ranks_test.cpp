@@ -72,9 +72,13 @@ TEST_CASE("a headline says what can be done") {
   const RemedyWords how{all, "m"};
   CHECK(remedy_words(c, how) ==
         "a trim of 0.15 m on the left is enough, or a shift of at least 0.12 m to the right");
-  ShiftTable shifts{.lateral_from = -2, .lateral_to = 2, .step = 0.01};
+  ShiftTable shifts;
+  shifts.lateral_from = -2;
+  shifts.lateral_to = 2;
+  shifts.step = 0.01;
   shifts.conflicts.push_back({.conflict = 3, .shift = -0.12});
-  RemedyWords confirmed{all, "m", 1, "", &shifts};
+  RemedyWords confirmed{all, "m"};
+  confirmed.shifts = &shifts;
   CHECK(remedy_words(c, confirmed) ==
         "a trim of 0.15 m on the left is enough, or a shift of 0.12 m to the right frees it");
   c.trim_left.reset();
@@ -82,6 +86,9 @@ TEST_CASE("a headline says what can be done") {
   shifts.conflicts[0].shift.reset();
   CHECK(remedy_words(c, confirmed) ==
         "neither a trim nor a shift of up to 2 m is known to free it");
+  shifts.lateral_from = 0;
+  CHECK(remedy_words(c, confirmed) ==
+        "neither a trim nor a shift of up to 2 m to the left is known to free it");
   c.own_shift_left = c.own_shift_right = std::nullopt;
   CHECK(remedy_words(c, how) == "neither a trim nor a shift of up to 2 m is known to free it");
   all.knows_shifts = false;
@@ -94,7 +101,11 @@ TEST_CASE("a headline says what can be done") {
   c.side = Side::kAbove;
   c.trim_above = 0.0301;
   CHECK(remedy_words(c, {all, "m", 1, "cab"}) ==
-        "a trim of 0.031 m at the top of body cab frees that body");
+        "a trim of 0.031 m at the top of body cab is enough for that body");
+  RemedyWords with_errors{all, "m"};
+  with_errors.has_budget = true;
+  CHECK(remedy_words(c, with_errors) ==
+        "a trim of 0.031 m at the top is enough for what is closer than the margin");
   c.colliding = 0;
   CHECK(remedy_words(c, how).empty());
 }
@@ -107,5 +118,7 @@ TEST_CASE("what is missing is said as exactly as it is known") {
   CHECK(missing_words(c, "") == "at least 0.099");
   c.least_distance = 0.0009;
   CHECK(missing_words(c, "m") == "touches");
+  c.encroachment = -0.02;  // of points that are only near
+  CHECK(missing_words(c, "m").empty());
   CHECK(missing_words({}, "m").empty());
 }
