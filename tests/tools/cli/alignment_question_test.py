@@ -161,7 +161,7 @@ def check_overthrow(rows):
             on_arc += 1
             for name, expected in (("middle", middle), ("end", end)):
                 found = float(row[f"wagon_overthrow_{name}"])
-                assert abs(found - expected) < 1e-6, (begin, name, found, expected)
+                assert abs(found - expected) < 0.5e-4 + 1e-9, (begin, name, found, expected)  # to 0.1 mm
     assert on_arc > 20, on_arc
     print(f"{on_arc} stretches on the arc: overthrow {middle:.6f} m inside, {end:.6f} m outside")
 
