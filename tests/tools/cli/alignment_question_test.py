@@ -20,6 +20,7 @@ ELEMENTS = [(180, 0, 0), (60, 0, 1 / BEND), (320, 1 / BEND, 1 / BEND), (60, 1 / 
 CANT, RAIL_DISTANCE = 0.08, 1.5
 FROM, TO, STEP, EVERY = 150.0, 420.0, 0.5, 5.0
 HALF_PIVOTS, HALF_LENGTH = 10.0, 12.5
+ROUNDED = 0.5e-4 + 1e-9  # the table has tenths of millimetres
 LOW, HIGH = np.array([-HALF_LENGTH, -1.4, 0.95]), np.array([HALF_LENGTH, 1.4, 3.9])
 RADIUS, CLEARANCE = 0.1, 0.6
 
@@ -161,7 +162,7 @@ def check_overthrow(rows):
             on_arc += 1
             for name, expected in (("middle", middle), ("end", end)):
                 found = float(row[f"wagon_overthrow_{name}"])
-                assert abs(found - expected) < 0.5e-4 + 1e-9, (begin, name, found, expected)  # to 0.1 mm
+                assert abs(found - expected) < ROUNDED, (begin, name, found, expected)
     assert on_arc > 20, on_arc
     print(f"{on_arc} stretches on the arc: overthrow {middle:.6f} m inside, {end:.6f} m outside")
 
@@ -172,10 +173,14 @@ def check_distances(rows, found):
         expected = found.get(number, {})
         for name in ("least", "left", "right", "above"):
             text, value = row[name], expected.get(name)
+            if name == "least" and row["verdict"] == "conflict" and (value or 1) >= RADIUS:
+                # Something is closer there, and nearest at another place.
+                assert text == "" and float(row["least_below"]) == RADIUS, (number, row)
+                continue
             assert (text == "") == (value is None), (number, name, text, value)
             if value is not None:
                 compared += 1
-                assert abs(float(text) - value) < 1e-9, (number, name, text, value)
+                assert abs(float(text) - value) < ROUNDED, (number, name, text, value)
     assert compared > 60, compared
     print(f"{compared} distances of {len(rows)} stretches equal brute force")
 

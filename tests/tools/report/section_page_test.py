@@ -5,6 +5,7 @@ Usage: section_page_test.py PROGRAM. Standard library only. Where chromium is no
 pages are made and not opened; the test says so.
 """
 
+import csv
 import json
 import os
 import re
@@ -288,10 +289,12 @@ class SectionPageTest(unittest.TestCase):
         self.assertIn("another environment", self.report(
             "bad.html", *tall, "--env", self.file("other.h5"), "--trajectory",
             self.street.trajectory, code=3))
-        with open(self.file("conflicts.csv")) as file:
-            moved = re.sub(r"(?m)^(\d+,\d+,\d+),[^,]+,", r"\1,-900,", file.read())
-        with open(self.file("moved.csv"), "w") as file:
-            file.write(moved)
+        with open(self.file("conflicts.csv"), newline="") as file:
+            rows = list(csv.DictReader(file))
+        with open(self.file("moved.csv"), "w", newline="") as file:
+            moved = csv.DictWriter(file, rows[0])
+            moved.writeheader()
+            moved.writerows({**row, "lo_x": -900} for row in rows)
         self.assertIn("outside of the environment", self.report(
             "bad.html", *tall, *self.site(), "--conflicts", self.file("moved.csv"), code=3))
         self.assertFalse(os.path.exists(self.file("bad.html")))
