@@ -48,7 +48,7 @@ FLOOR = [
     f"run {CELLS} --radius 0.2 --floor 0.3 --engine grid -o @.h5",
     f"run {CELLS} --radius 0.2 --floor 0.3 --engine kdtree -o @.h5",
     f"run {CELLS} --radius 0.2 --floor 0.3 --error-scan 0.01 --json -o @.h5",
-    "conflicts floor.h5 --env hall.h5 --model hall/model.ply --trajectory hall/trajectory.txt -o @.csv",
+    "conflicts floor.h5 --model hall/model.ply --trajectory hall/trajectory.txt -o @.csv",
 ]
 
 STORES = [
