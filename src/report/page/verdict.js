@@ -151,7 +151,7 @@ function budgetSentence({ verdict, margins, query, reasons, ...facts }) {
   const radius = shortLength(query.radius), all = shortLength(query.radius + margins.clear);
   const sure = `${shortLength(margins.clear)} of errors`;
   if (verdict === "clear") {
-    return `Nothing was found closer than ${all} to the vehicle, which is the margin of ${radius} ` +
+    return `Nothing${aboveFloor()} was found closer than ${all} to the vehicle, which is the margin of ${radius} ` +
            `and ${sure}.`;
   }
   const none = facts.colliding_points + facts.near_points === 0;
@@ -287,7 +287,8 @@ function verdictSentences() {
     return [budgetSentence(facts), named ? worstSentence(worst, radius) : leastSentence()];
   }
   if (facts.verdict === "clear") {
-    const points = facts.ignored === null ? "point of the environment" : "searched point";
+    const points = facts.floor !== null ? `point${aboveFloor()}`
+        : facts.ignored === null ? "point of the environment" : "searched point";
     const vehicle = facts.inputs.model.spacing === null ? "the vehicle" : "the points of the model";
     return [`Every ${points} keeps at least ${radius} from ${vehicle}, ` +
             (facts.unsearched.length > 0 ? "at all poses that it has."
@@ -297,7 +298,7 @@ function verdictSentences() {
   if (facts.verdict === "undecided") {
     const why = facts.reasons.map((r) => kReasonWords[r] +
         (r === "question-in-doubt" ? ` (${facts.doubts.join(", ")})` : ""));
-    return [`No point was found closer than ${radius} to the vehicle, but ${joined(why)}, so that ` +
+    return [`No point${aboveFloor()} was found closer than ${radius} to the vehicle, but ${joined(why)}, so that ` +
             "is no answer.", leastSentence()];
   }
   const where = facts.conflicts ? placesText(facts.conflicts) : "";
@@ -311,6 +312,9 @@ function collidingIgnored({ colliding }) {
   if (colliding === 0) return "The vehicle touches none of them.";
   return `${count(colliding)} of them would collide if they were searched.`;
 }
+
+/** What is judged where there is a floor: " at 0.3 m of the vehicle or above"; empty without one. */
+const aboveFloor = () => page.facts.floor === null ? "" : ` at ${floorWords(page.facts.floor)} or above`;
 
 /** Where the floor is. */
 function floorWords({ height, near_height: near }) {
@@ -366,7 +370,7 @@ function questionTable() {
     factRow("Asked for", askedFor(query)),
     page.facts.floor === null ? ""
         : factRow("Floor", `Only what lies at ${floorWords(page.facts.floor)} or above is judged. `,
-                  optionName("--floor")),
+                  make("code", {}, "--floor")),
     page.facts.ignored === null ? "" : factRow("Ignored", ignoredText(page.facts.ignored)));
 }
 

@@ -140,7 +140,7 @@ function leastSentence() {
         : `The least distance is ${metres(least.distance)}, ${where}`;
   }
   const looked = Math.max(query.clearance, query.profile);
-  if (looked > 0) return `Nothing${scannedOnly()} is closer than ${shortLength(looked)}.`;
+  if (looked > 0) return `Nothing${scannedOnly()}${aboveFloor()} is closer than ${shortLength(looked)}.`;
   return query.between_poses
       ? "How close it comes is not known: a run between poses has no distances."
       : "How close it comes is not known: run again with --profile or --clearance.";

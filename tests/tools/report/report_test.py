@@ -321,6 +321,27 @@ class ReportTest(PageChecks, unittest.TestCase):
         self.assertIsNone(facts["inside"])
         self.check_words(self.open(path), facts)
 
+    def test_a_floor(self):
+        asked = ("--radius", 0.1, "--first-pose", "--clearance", 0.3, "--floor", 0.3)
+        for name, more, words in (
+                ("floor", (), "0.3 m of the vehicle"),
+                ("floor_errors", ("--error-pose", 0.01), "0.3 m of the vehicle, with the errors")):
+            path, facts = self.hall.report(self.hall.search(name, *asked, *more), name)
+            below = facts["floor"]["colliding"]
+            self.assertGreater(below, 10)
+            page = self.open(path)
+            self.check_words(page, facts)
+            text = page.run("byId('verdict').innerText")
+            self.assertIn(f"{below:,} points within the radius lie below {words}", text)
+            self.assertIn(f"Only what lies at {words}", text)
+            self.check_quiet(page)
+        self.assertIn("Nothing at 0.3 m of the vehicle, with the errors",
+                      page.run("""(() => { const { verdict } = page.facts;
+            page.facts.verdict = "clear";
+            const sentence = verdictSentences()[0];
+            page.facts.verdict = verdict;
+            return sentence; })()"""))
+
     def test_empty_answer(self):
         result = self.empty.search("out", "--radius", 0.1, "--first-pose", "--clearance", 2)
         path, facts = self.empty.report(result, "empty")
