@@ -322,6 +322,14 @@ function floorWords({ height, near_height: near }) {
       height === null ? "the floors of the vehicle's bodies" : `${shortLength(height)} of the vehicle`;
 }
 
+/** How many points the floor leaves out; null without one. */
+function floorSentence() {
+  const { floor } = page.facts;
+  return floor && `${plural(floor.colliding, "point")} within the radius ` +
+      `${floor.colliding === 1 ? "lies" : "lie"} below ${floorWords(floor)}, such as points of the ground, ` +
+      "and nothing is said about them.";
+}
+
 function cautions() {
   const { facts } = page;
   const out = facts.warnings.map((w) => `${capital(w.message)}.`);
@@ -329,11 +337,6 @@ function cautions() {
   if (facts.ignored !== null) {
     out.push(`The search ignored ${plural(facts.ignored.points, "point")} of the environment ` +
              `(${facts.ignored.what}). ${collidingIgnored(facts.ignored)}`);
-  }
-  if (facts.floor !== null) {
-    out.push(`${plural(facts.floor.colliding, "point")} within the radius ` +
-             `${facts.floor.colliding === 1 ? "lies" : "lie"} below ${floorWords(facts.floor)}, such as ` +
-             "points of the ground, and nothing is said about them.");
   }
   if (conflicts && inputs.trajectory.length > 0 && conflicts.longest_group > 5 &&
       conflicts.longest_group > 0.5 * inputs.trajectory.length) {
@@ -439,13 +442,14 @@ function legend() {
 function buildVerdict() {
   const { facts } = page, clear = facts.verdict === "clear", conflict = facts.verdict === "conflict";
   const [first, second] = verdictSentences(), warned = cautions(), missing = missingParts();
-  const searched = searchedSentence(), scanned = scannedSentence();
+  const searched = searchedSentence(), scanned = scannedSentence(), below = floorSentence();
   const doubtful = clear && warned.length > 0;
   byId("verdict-body").append(
     answerBanner({ kind: facts.verdict, word: kVerdictWords[facts.verdict], doubtful, lines: [
           make("p", {}, first), make("p", {}, second),
           scanned && make("p", { id: "scanned" }, scanned),
           searched && make("p", { id: "searched" }, searched),
+          below && make("p", { id: "below-floor" }, below),
           seeWarnings(conflict ? "See also" : clear ? "But see" : "See", warned)] }),
     make("div", { class: "tiles" }, scannedTiles(), conflict ? conflictTiles() : clearTiles()),
     warningsList(warned),
