@@ -330,8 +330,8 @@ class ComparisonPage {
     for (const Vec3& p : path) take(p);
     for (const Obstacle& o : obstacles_) take(place_of(o));
     constexpr double kWidth = 1200, kMostHeight = 560, kEdge = 40;
-    const double wide = std::max(box.hi.x - box.lo.x, 1e-6);
-    const double high = std::max(box.hi.y - box.lo.y, 1e-6);
+    const double wide = std::max(box.hi.x - box.lo.x, 1.0);
+    const double high = std::max(box.hi.y - box.lo.y, 1.0);
     const double scale = std::min((kWidth - 2 * kEdge) / wide, (kMostHeight - 2 * kEdge) / high);
     const double height = std::max(scale * high + 2 * kEdge, 120.0);
     const auto x_of = [&](const Vec3& p) {
