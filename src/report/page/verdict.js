@@ -77,7 +77,8 @@ function clearTiles() {
     tiles.push(tile("not known", "least distance, see below"));
   }
   if (page.facts.verdict === "undecided" && conflictList().length > 0) {
-    tiles.push(tile(count(conflictList().length), "possible conflicts", () => goTo(worstConflict())));
+    const possible = conflictList().length;
+    tiles.push(tile(count(possible), possible === 1 ? "possible conflict" : "possible conflicts", () => goTo(worstConflict())));
   }
   const { length, searched_length: searched } = inputs.trajectory;
   tiles.push(tile(station(searched), searched < length ? `of ${station(length)} of path searched`
