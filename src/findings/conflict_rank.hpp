@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,15 @@ namespace clearway {
 inline double least_own_shift(const Conflict& c) {
   const double none = std::numeric_limits<double>::infinity();
   return std::min(c.own_shift_left.value_or(none), c.own_shift_right.value_or(none));
+}
+
+/// The least of the conflict's trims; none where it has none.
+inline std::optional<double> least_trim(const Conflict& c) {
+  std::optional<double> least;
+  for (const auto& trim : {c.trim_left, c.trim_right, c.trim_above, c.trim_below}) {
+    if (trim && (!least || *trim < *least)) least = trim;
+  }
+  return least;
 }
 
 /// Orders conflicts from the worst on: first those with points inside a solid, the deepest first;
@@ -45,12 +55,8 @@ class WorseFirst {
   /// known.
   double least_that_frees(const Conflict& c) const {
     if (!knows_shifts_ && !knows_trims_) return 0;
-    double least = knows_shifts_ ? least_own_shift(c) : kNone;
-    if (!knows_trims_) return least;
-    for (const auto& trim : {c.trim_left, c.trim_right, c.trim_above, c.trim_below}) {
-      least = std::min(least, trim.value_or(kNone));
-    }
-    return least;
+    const double shift = knows_shifts_ ? least_own_shift(c) : kNone;
+    return knows_trims_ ? std::min(shift, least_trim(c).value_or(kNone)) : shift;
   }
 
   static constexpr double kNone = std::numeric_limits<double>::infinity();

@@ -30,8 +30,8 @@
 #include "findings/tally_points.hpp"
 #include "findings/touched_first.hpp"
 #include "io/files/thread_limit.hpp"
+#include "io/result/conflicts/conflict_words.hpp"
 #include "io/result/result.hpp"
-#include "io/scans/scan_crs.hpp"
 
 namespace clearway {
 namespace {
@@ -161,7 +161,6 @@ std::vector<ConflictDistance> least_distances(const ResultReader& result,
 /// One call of find_conflicts(), step by step.
 class ConflictSearch {
  public:
-  static constexpr double kMostShift = 2;  ///< metres
   /// The most pairs of a point and a pose from which shifts are found, in one conflict and in all
   /// conflicts together. A pair takes some 50 ns, and in one conflict 24 bytes.
   static constexpr std::uint64_t kMostPairs = 4'000'000, kMostPairsOfAll = 200'000'000;
@@ -568,7 +567,7 @@ class ConflictSearch {
     const std::vector<MovingBody> bodies =
         moving_bodies(model, poses_, options_.bodies, reader_.header().floor);
     const std::vector<std::vector<Vec3>> points = points_to_free(conflict_of_row);
-    const double most = kMostShift / metre_;
+    const double most = kMostOwnShift / metre_;
     const LeastShift shifts(bodies, poses_, direction_to_left(options_.forward, options_.up),
                             reader_.header().radius, reader_.header().between_poses,
                             options_.threads);

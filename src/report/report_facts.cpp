@@ -23,7 +23,6 @@
 #include "io/result/conflicts/conflict_words.hpp"
 #include "io/result/floor_json.hpp"
 #include "io/result/result.hpp"
-#include "io/scans/scan_crs.hpp"
 #include "io/store/store_metadata.hpp"
 #include "io/store/store_reader.hpp"
 #include "report/on_site.hpp"
@@ -463,11 +462,6 @@ Json json_of_warnings(const std::vector<Message>& warnings) {
 }
 
 }  // namespace
-
-const Conflict* worst_of(const Conflicts& conflicts) {
-  const auto worst = std::ranges::min_element(conflicts.listed, {}, &Conflict::rank);
-  return worst == conflicts.listed.end() ? nullptr : &*worst;
-}
 
 std::uint64_t shown_cubes(const UnseenGroups& unseen, const UnseenGroup& group) {
   if (unseen.middles.size() <= kMostShownCubes) return group.cubes;

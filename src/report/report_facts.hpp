@@ -62,9 +62,6 @@ struct ReportFacts {
 
 inline constexpr std::size_t kMostListedConflicts = 5'000;
 
-/// The conflict with rank 1. Null where there are none.
-const Conflict* worst_of(const Conflicts& conflicts);
-
 /// The most cubes of listed groups that the page draws; each group keeps its share, and at least
 /// one.
 inline constexpr std::size_t kMostShownCubes = 1'000'000;

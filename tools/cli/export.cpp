@@ -23,7 +23,6 @@
 #include "io/result/answer.hpp"
 #include "io/result/export/export_result.hpp"
 #include "io/result/export/export_scan_records.hpp"
-#include "io/scans/scan_crs.hpp"
 
 namespace clearway::tool {
 namespace {

@@ -61,7 +61,7 @@ std::string model_words(const ResultHeader& header, const CLI::App& command) {
   if (const ModelAxes axes = header.notes.model_axes; axes.need_turn()) {
     text += std::string(" --forward ") + name_of(axes.forward) + " --up " + name_of(axes.up);
   }
-  // Of a vehicle, each body may be another kind by itself.
+  // No single kind holds for a vehicle, whose bodies may differ.
   if (!one) return text;
   return text + " --model-as " +
          (header.model_solids > 0      ? "solid"

@@ -11,6 +11,7 @@
 #include "campaign/plan.hpp"
 #include "campaign/task_state.hpp"
 #include "core/util/format.hpp"
+#include "io/result/conflicts/conflict_words.hpp"
 #include "io/result/conflicts/markup_text.hpp"
 
 namespace clearway::campaign {
@@ -149,7 +150,6 @@ constexpr std::string_view kTouches = "touches";
 /// A least distance to 0.1 mm, for example "0.032 m"; below 1 mm the surfaces meet, as far as a
 /// scan can show. A distance below 0 is a depth inside a solid.
 std::string distance_words(double distance, const std::string& unit) {
-  constexpr double kTouching = 0.001;
   if (std::abs(distance) < kTouching) return std::string(kTouches);
   const std::string length = format_number(std::round(std::abs(distance) * 1e4) / 1e4) + " " + unit;
   return distance >= 0 ? length : length + " deep inside";

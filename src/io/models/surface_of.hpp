@@ -87,7 +87,8 @@ class FlatPolygon {
 /// warnings, except those of the input.
 TriangleMesh kept_surface(const ModelInput& input, std::vector<Message>& messages);
 
-/// The same, with all notes and warnings. Throws InputError for a file without triangles.
+/// The mesh that kept_surface() gives, with all notes and warnings about the input too. Throws
+/// InputError for a file without triangles.
 TriangleMesh surface_of(const ModelInput& input, const ModelOptions& options,
                         std::vector<Message>& messages);
 

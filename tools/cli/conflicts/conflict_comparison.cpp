@@ -30,7 +30,6 @@
 #include "io/result/answer.hpp"
 #include "io/result/conflicts/conflict_words.hpp"
 #include "io/result/result.hpp"
-#include "io/scans/scan_crs.hpp"
 
 namespace clearway::tool {
 namespace {

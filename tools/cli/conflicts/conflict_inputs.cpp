@@ -125,8 +125,8 @@ std::vector<Body> read_bodies_of(const std::filesystem::path& vehicle, const Mod
   VehicleOptions all{model_options_of(result, model), options.trajectory_options,
                      options.find.threads};
   all.trajectory.default_crs = result.reader().header().crs_wkt;
-  // Of the bodies, some may be solids, surfaces or points by themselves, or all of them what the
-  // run was told to take them for; which it was, only the hash says.
+  // The run took each body for what its file holds, or all bodies for what it was told. Only the
+  // hash says which it was.
   const ModelAs told = all.model.as;
   std::vector<Message> of_auto;
   all.model.as = told == ModelAs::kPoints ? told : ModelAs::kAuto;

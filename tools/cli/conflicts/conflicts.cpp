@@ -53,8 +53,8 @@ bool has_depths(const Conflicts& conflicts) {
                              [](const Conflict& c) { return c.points_inside.value_or(0) > 0; });
 }
 
-/// The worst conflicts, at most `most`.
-std::vector<const Conflict*> worst_of(const Conflicts& conflicts, std::size_t most) {
+/// The conflicts from the worst on, at most `most`.
+std::vector<const Conflict*> worst_first(const Conflicts& conflicts, std::size_t most) {
   std::vector<const Conflict*> out = by_rank(conflicts);
   if (out.size() > most) out.resize(most);
   return out;
@@ -68,15 +68,6 @@ std::string length_cell(const std::optional<double>& length, int width, int digi
 std::string station_cell(const Conflict& c) {
   if (!c.station_from || !c.station_to) return "";
   return fmt::format("  {:>23}", fmt::format("{:.2f} - {:.2f}", *c.station_from, *c.station_to));
-}
-
-/// The least trim; none where the side has none.
-std::optional<double> least_trim(const Conflict& c) {
-  std::optional<double> least;
-  for (const auto& trim : {c.trim_left, c.trim_right, c.trim_above, c.trim_below}) {
-    if (trim && (!least || *trim < *least)) least = trim;
-  }
-  return least;
 }
 
 std::string row_text(const Conflict& c, bool distances, bool depths, bool trims, bool shifts) {
@@ -141,13 +132,10 @@ std::string totals_text(const ConflictFile& file) {
 
 /// Where the worst conflict is and what could be done about it; empty where none is listed.
 std::string worst_text(const ConflictFile& file) {
-  if (file.conflicts.listed.empty()) return "";
-  const Conflict& worst = *worst_of(file.conflicts, 1).front();
-  RemedyWords how{file.conflicts, symbol_of(file.unit()), file.metres_per_unit()};
-  how.has_budget = file.header.budget.has_value();
-  if (worst.first_body) how.body = file.header.bodies.at(*worst.first_body);
-  if (worst.body) how.nearest = file.header.bodies.at(*worst.body);
-  return "The worst place is " + conflict_words(worst, how);
+  const Conflict* const worst = worst_of(file.conflicts);
+  return worst == nullptr
+             ? ""
+             : "The worst place is " + conflict_words(*worst, words_about(*worst, file));
 }
 
 /// How the points were grouped, and how far apart they are.
@@ -178,7 +166,7 @@ std::string conflict_text(const ConflictFile& file, std::size_t most) {
   const bool distances = has_distances(conflicts), depths = has_depths(conflicts);
   const bool trims = conflicts.knows_trims, shifts = conflicts.knows_shifts;
   const char* const unit = symbol_of(file.unit());
-  const std::vector<const Conflict*> rows = worst_of(conflicts, most);
+  const std::vector<const Conflict*> rows = worst_first(conflicts, most);
   if (rows.size() < conflicts.listed.size()) {
     text += fmt::format("the worst {}:\n", rows.size());
   }

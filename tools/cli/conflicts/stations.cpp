@@ -33,7 +33,6 @@
 #include "io/result/answer.hpp"
 #include "io/result/conflicts/station_file.hpp"
 #include "io/result/result.hpp"
-#include "io/scans/scan_crs.hpp"
 
 namespace clearway::tool {
 namespace {

@@ -11,6 +11,7 @@
 #include "core/util/format.hpp"
 #include "io/files/text_writer.hpp"
 #include "io/files/xxh64.hpp"
+#include "io/result/conflicts/conflict_words.hpp"
 #include "io/result/floor_json.hpp"
 
 namespace clearway {
@@ -166,8 +167,8 @@ Json summary_of(const ConflictFile& file) {
   out["path_length"] = conflicts.path_length;
   out["colliding_points"] = conflicts.colliding_points;
   out["conflict_count"] = conflicts.listed.size();
-  const auto worst = std::ranges::min_element(conflicts.listed, {}, &Conflict::rank);
-  out["worst"] = worst == conflicts.listed.end() ? Json() : Json(worst->id);
+  const Conflict* const worst = worst_of(conflicts);
+  out["worst"] = worst == nullptr ? Json() : Json(worst->id);
   out["groups"] = conflicts.groups;
   out["small_groups"] = conflicts.small_groups;
   out["small_points"] = conflicts.small_points;

@@ -9,7 +9,6 @@
 #include "clearway/conflicts.hpp"
 #include "clearway/pose.hpp"
 #include "io/result/result.hpp"
-#include "io/scans/scan_crs.hpp"
 
 namespace clearway {
 

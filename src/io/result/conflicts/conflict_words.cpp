@@ -67,9 +67,8 @@ std::string shift_words(const Conflict& c, const RemedyWords& how) {
 
 /// The shifts that were tried: "a shift of up to 2 m".
 std::string tried_words(const Conflict& c, const RemedyWords& how) {
-  constexpr double kMostShift = 2;  // metres
   if (confirmed(c, how) == nullptr) {
-    return "a shift of up to " + format_brief(kMostShift / how.metre) + " " + how.unit;
+    return "a shift of up to " + format_brief(kMostOwnShift / how.metre) + " " + how.unit;
   }
   const ShiftTable& table = *how.shifts;
   const auto up_to = [&](double most) { return format_number(most) + " " + how.unit; };
@@ -83,6 +82,19 @@ std::string tried_words(const Conflict& c, const RemedyWords& how) {
 }
 
 }  // namespace
+
+const Conflict* worst_of(const Conflicts& conflicts) {
+  const auto worst = std::ranges::min_element(conflicts.listed, {}, &Conflict::rank);
+  return worst == conflicts.listed.end() ? nullptr : &*worst;
+}
+
+RemedyWords words_about(const Conflict& conflict, const ConflictFile& file) {
+  RemedyWords how{file.conflicts, symbol_of(file.unit()), file.metres_per_unit()};
+  how.has_budget = file.header.budget.has_value();
+  if (conflict.first_body) how.body = file.header.bodies.at(*conflict.first_body);
+  if (conflict.body) how.nearest = file.header.bodies.at(*conflict.body);
+  return how;
+}
 
 std::string missing_words(const Conflict& conflict, const std::string& unit, double metre) {
   if (!conflict.encroachment || !(*conflict.encroachment > 0)) return "";

@@ -5,12 +5,19 @@
 
 #include "clearway/conflicts.hpp"
 #include "clearway/shift.hpp"
+#include "io/result/conflicts/conflict_file.hpp"
 
 namespace clearway {
 
 /// Distances below this, in metres, say only that the surfaces touch, because a scan can show no
 /// more.
 inline constexpr double kTouching = 0.001;
+
+/// The longest own shift of a conflict that is tried, metres.
+inline constexpr double kMostOwnShift = 2;
+
+/// The conflict with rank 1. Null where there are none.
+const Conflict* worst_of(const Conflicts& conflicts);
 
 /// What is missing at a conflict, in digits of a millimetre: "0.099 m" of a solid, and otherwise
 /// "at least 0.099 m" or "touches". Empty without an encroachment, and for points that are only
@@ -31,6 +38,9 @@ struct RemedyWords {
   bool has_budget = false;             ///< whether the search has an error budget
   const ShiftTable* shifts = nullptr;  ///< confirmed shifts, where they are known
 };
+
+/// How a conflict of a file is put in words.
+RemedyWords words_about(const Conflict& conflict, const ConflictFile& file);
 
 /// What frees a vehicle from a conflict, such as "a trim of 0.15 m on the left is enough, or a
 /// shift of at least 0.12 m to the right"; a shift that a search has confirmed "frees it". Says so

@@ -11,7 +11,6 @@
 #include "io/files/file.hpp"
 #include "io/files/text_writer.hpp"
 #include "io/result/conflicts/conflict_fields.hpp"
-#include "io/scans/scan_crs.hpp"
 
 namespace clearway {
 namespace {

@@ -113,10 +113,7 @@ std::string missing_text(const ConflictFile& file, const Conflict& c) {
 
 /// What frees the vehicle from the conflict, as a sentence; empty where nothing is known.
 std::string remedy_text(const ConflictFile& file, const Conflict& c) {
-  RemedyWords how{file.conflicts, symbol_of(file.unit()), file.metres_per_unit()};
-  how.has_budget = file.header.budget.has_value();
-  if (c.first_body) how.body = file.header.bodies.at(*c.first_body);
-  const std::string words = remedy_words(c, how);
+  const std::string words = remedy_words(c, words_about(c, file));
   return words.empty() ? "" : " To pass: " + markup_text(words) + ".";
 }
 
