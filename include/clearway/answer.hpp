@@ -98,6 +98,9 @@ struct Answer : TableSummary {
   /// are not judged. nullopt without a floor.
   std::optional<std::uint64_t> floor_colliding;
   std::vector<std::string> bodies;  ///< names of the bodies, if the query has several
+  /// The floor of each body in metres of its frame, its own or that of the query; empty where no
+  /// body has one
+  std::vector<std::optional<double>> body_floors;
   std::optional<Shard> shard;  ///< the shard that this answer is about; nullopt for a whole query
   /// Warnings about the question and its inputs, in the order in which they were given. Results
   /// keep them, and those of the machine that searched are not among them.

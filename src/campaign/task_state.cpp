@@ -20,6 +20,7 @@
 #include "io/files/input_error.hpp"
 #include "io/files/json.hpp"
 #include "io/models/vehicle_file.hpp"
+#include "io/result/floor_facts.hpp"
 
 namespace clearway::campaign {
 namespace {
@@ -217,18 +218,17 @@ std::string open_words(const ordered_json& facts, const std::string& unit) {
   return text;
 }
 
-std::string floor_words(const ordered_json& facts, const std::string& unit) {
+std::string floor_clause(const ordered_json& facts, const std::string& unit) {
   const ordered_json floor = facts.value("floor", ordered_json());
   if (floor.is_null()) return "";
-  const std::string text = format_count(floor["colliding"].get<std::uint64_t>()) + " below ";
-  if (floor["height"].is_null()) return text + "the floors of the bodies not judged";
-  return text + format_brief(floor["height"].get<double>()) + " " + unit + " not judged";
+  return format_count(floor["colliding"].get<std::uint64_t>()) + " below " +
+         floor_words(floor, unit) + " not judged";
 }
 
 std::string caveats_of(const ordered_json& facts, const std::string& unit) {
   std::string text;
   for (const std::string& one : {warning_words(facts), ignored_words(facts),
-                                 floor_words(facts, unit), open_words(facts, unit)}) {
+                                 floor_clause(facts, unit), open_words(facts, unit)}) {
     if (!one.empty()) text += (text.empty() ? "" : "; ") + one;
   }
   return text;

@@ -184,6 +184,6 @@ std::string open_words(const nlohmann::ordered_json& facts, const std::string& u
 /// For example "1,234 points ignored, of which 56 would collide"; empty where none is ignored.
 std::string ignored_words(const nlohmann::ordered_json& facts);
 /// For example "1,234 below 0.3 m not judged"; empty without a floor.
-std::string floor_words(const nlohmann::ordered_json& facts, const std::string& unit);
+std::string floor_clause(const nlohmann::ordered_json& facts, const std::string& unit);
 
 }  // namespace clearway::campaign

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -93,6 +94,34 @@ bool overlap(const Box& a, const Box& b) {
   return true;
 }
 
+/// How a body turns on the straight ways of its points from one pose to the next. Seen from the
+/// body, a point of the environment then moves on a curve beside the line between its two places,
+/// and the body is a little smaller than at its poses (docs/design/findings.md, "Between poses").
+class Turn {
+ public:
+  Turn(const Pose& from, const Pose& to, double radius) {
+    double square = 0;
+    for (int k = 0; k < 9; ++k) {
+      const double d = to.rotation[k] - from.rotation[k];
+      square += d * d;
+    }
+    const double sine = std::sqrt(square / 8);  // of half the angle
+    const double cosine = std::sqrt(std::max(0.0, 1 - sine * sine));
+    share_ = sine / (2 * cosine);
+    shrinks_ = radius / cosine - radius;
+  }
+
+  /// How far beyond its two places, `way` apart, a point may be taken to lie on the way between
+  /// them; infinity where the body turns by half a turn. Never below 0, nor NaN.
+  double beyond(double way) const {
+    const double sum = share_ * way + shrinks_;
+    return sum >= 0 ? sum : std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  double share_, shrinks_;
+};
+
 /// A body as points are seen from it.
 class Viewer {
  public:
@@ -103,7 +132,7 @@ class Viewer {
         axes_(how.axes),
         left_(direction_to_left(axes_.forward, axes_.up)),
         up_(direction_of(axes_.up)),
-        squared_radius_(how.radius * how.radius),
+        radius_(how.radius),
         ways_(how.ways) {
     const Box from_floor = how.box_from_floor(body);
     middle_ = from_floor.centre();
@@ -130,7 +159,7 @@ class Viewer {
     if (!may_add(seen_box(back, bunch), found)) return;
     for (const Vec3& place : bunch.places) {
       const Vec3 x = back.apply(place);
-      if (is_at_floor(x) && squared_distance(x, box_) < squared_radius_) add_place(x, found);
+      if (is_at_floor(x) && squared_distance(x, box_) < radius_ * radius_) add_place(x, 0, found);
     }
   }
 
@@ -140,13 +169,15 @@ class Viewer {
     Box both = a;
     both.extend(b.lo);
     both.extend(b.hi);
-    if (!may_add(both, found)) return;
+    const Turn turn(from, to, radius_);
+    if (!may_add(both.grown(turn.beyond(length(both.size()))), found)) return;
     for (const Vec3& place : bunch.places) {
       const Vec3 x = first.apply(place), y = second.apply(place);
       if (!is_at_floor(x) && !is_at_floor(y)) continue;
-      if (!(squared_distance(x, y, box_) < squared_radius_)) continue;
-      add_place(x, found);
-      add_place(y, found);
+      const double beyond = turn.beyond(length(y - x)), reach = radius_ + beyond;
+      if (!(squared_distance(x, y, box_) < reach * reach)) continue;
+      add_place(x, beyond, found);
+      add_place(y, beyond, found);
     }
   }
 
@@ -166,12 +197,13 @@ class Viewer {
            across.lo.z < found.up_from || across.hi.z > found.up_to;
   }
 
-  void add_place(const Vec3& x, AcrossBody& found) const {
+  /// beyond: how far to all sides the point may lie as well.
+  void add_place(const Vec3& x, double beyond, AcrossBody& found) const {
     const double left = dot(x, left_), up = dot(x, up_);
-    found.left_from = std::min(found.left_from, left);
-    found.left_to = std::max(found.left_to, left);
-    found.up_from = std::min(found.up_from, up);
-    found.up_to = std::max(found.up_to, up);
+    found.left_from = std::min(found.left_from, left - beyond);
+    found.left_to = std::max(found.left_to, left + beyond);
+    found.up_from = std::min(found.up_from, up - beyond);
+    found.up_to = std::max(found.up_to, up + beyond);
     found.in_middle = found.in_middle || (std::abs(left - middle_.y) < quarter_.y &&
                                           std::abs(up - middle_.z) < quarter_.z);
   }
@@ -181,7 +213,7 @@ class Viewer {
   AheadLeftUp axes_;
   Vec3 left_, up_;
   Vec3 middle_{}, quarter_{};
-  double squared_radius_;
+  double radius_;
   bool ways_;
 };
 

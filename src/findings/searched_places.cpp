@@ -48,9 +48,29 @@ double reach_of(const ResultHeader& header) {
   return header.budget ? header.budget->near_radius(header.radius) : header.radius;
 }
 
-/// The height in the model's frame from which on a result has points.
-double lowest_of(const ResultHeader& header) {
-  return header.floor ? *header.floor - (reach_of(header) - header.radius) : kNoFloor;
+/// For each body, or for the model, the height in its frame from which on a result has points.
+std::vector<double> lowest_of(const ResultHeader& header) {
+  const double lower = reach_of(header) - header.radius;
+  std::vector<double> out;
+  for (const std::optional<double>& floor : header.body_floors) {
+    out.push_back(floor ? *floor - lower : kNoFloor);
+  }
+  if (out.empty()) {
+    out.assign(std::max<std::size_t>(1, header.bodies.size()),
+               header.floor ? *header.floor - lower : kNoFloor);
+  }
+  return out;
+}
+
+/// Whether b may leave out below a floor what a judged. Bodies of one name are compared, and all
+/// with all where the names differ.
+bool has_higher_floor(const ResultHeader& b, const ResultHeader& a) {
+  const std::vector<double> in_a = lowest_of(a), in_b = lowest_of(b);
+  if (a.bodies != b.bodies) return std::ranges::max(in_b) > std::ranges::min(in_a);
+  for (std::size_t i = 0; i < in_b.size(); ++i) {
+    if (in_b[i] > in_a[i]) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -63,10 +83,6 @@ SearchedPlaces::SearchedPlaces(const Result& a, const std::vector<Pose>& poses_a
                  a_.environment_hash == b_.environment_hash) {
   compare_questions(poses_a, poses_b);
   const ResultFindings &in_a = a.reader().findings(), &in_b = b.reader().findings();
-  // Floors of bodies are known by the hash of the vehicle alone.
-  if (!b_.bodies.empty() && in_b.floor_colliding && a_.model_hash != b_.model_hash) {
-    everywhere_.insert("floor");
-  }
   compare_ignored(in_b);
   const bool more_withheld = in_b.withheld_points > in_a.withheld_points;
   if (!same_scan_ && more_withheld) everywhere_.insert("withheld");
@@ -79,7 +95,7 @@ void SearchedPlaces::compare_questions(const std::vector<Pose>& poses_a,
                           a_.model_triangles == b_.model_triangles && a_.bodies == b_.bodies &&
                           a_.model_solids <= b_.model_solids;
   if (reach_of(b_) < reach_of(a_)) everywhere_.insert("radius");
-  if (lowest_of(b_) > lowest_of(a_)) everywhere_.insert("floor");
+  if (has_higher_floor(b_, a_)) everywhere_.insert("floor");
   const bool same_path = a_.poses == b_.poses && a_.trajectory_hash == b_.trajectory_hash;
   if (!same_scan_) {
     if (!same_model) everywhere_.insert("model");

@@ -144,6 +144,9 @@ void add_counts_of(py::class_<Answer>& answer) {
           "At how many poses something is closer than the profile's distance that was asked for.")
       .def_readonly("ignored", &Answer::ignored,
                     "How many points of the environment the query left out: IgnoredPointCounts.")
+      .def_readonly("body_floors", &Answer::body_floors,
+                    "The floor of each body in metres of its frame, its own or that of the query, "
+                    "None for a body without one; empty where no body has a floor.")
       .def_readonly("floor_colliding", &Answer::floor_colliding,
                     "How many points would collide without the floor and are not judged because of "
                     "it. None without a floor.")

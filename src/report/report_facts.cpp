@@ -21,7 +21,7 @@
 #include "io/files/json.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/conflicts/conflict_words.hpp"
-#include "io/result/floor_json.hpp"
+#include "io/result/floor_facts.hpp"
 #include "io/result/result.hpp"
 #include "io/store/store_metadata.hpp"
 #include "io/store/store_reader.hpp"
@@ -486,6 +486,9 @@ std::string json_of(const ReportFacts& facts) {
   out["query"] = json_of_query(facts);
   out["ignored"] = json_of_ignored_points(facts.result.reader().header(), answer);
   out["floor"] = floor_json(answer);
+  if (answer.floor_colliding) {
+    out["floor"]["words"] = floor_words(out["floor"], symbol_of(unit_of(facts.result.reader().header())));
+  }
   out["inputs"] = json_of_inputs(facts);
   out["unsearched"] = json_of_unsearched(facts);
   out["on_site"] = on_site(facts);

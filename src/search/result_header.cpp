@@ -47,6 +47,14 @@ std::vector<std::string> names_of(const Query& query) {
   return names;
 }
 
+/// The floor of each body; nothing where none has one.
+std::vector<std::optional<double>> body_floors(const Query& query) {
+  std::vector<std::optional<double>> floors;
+  if (query.bodies.empty() || !has_floor(query)) return floors;
+  for (const MovingBody& body : moving_bodies(query)) floors.push_back(body.floor);
+  return floors;
+}
+
 }  // namespace
 
 void choose_gap(QueryParameters& query, double metre) {
@@ -76,6 +84,7 @@ ResultHeader result_header(
   header.quantisation = metadata.quantisation;
   header.crs_wkt = metadata.crs_wkt;
   header.bodies = names_of(query);
+  header.body_floors = body_floors(query);
   header.ignored = std::move(ignored);
   if (!header.ignore_classes.empty()) header.classes_hash = metadata.classes->hash;
   header.budget = error_budget_of(query, metadata.quantisation);

@@ -18,14 +18,13 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-double distance_to(const Box& box, const Vec3& x) {
-  double sum = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double nearest = std::min(std::max(x[k], box.lo[k]), box.hi[k]);
-    sum += (x[k] - nearest) * (x[k] - nearest);
-  }
-  return std::sqrt(sum);
+Vec3 nearest_place(const Box& box, const Vec3& x) {
+  Vec3 out{};
+  for (int k = 0; k < 3; ++k) out[k] = std::clamp(x[k], box.lo[k], box.hi[k]);
+  return out;
 }
+
+double distance_to(const Box& box, const Vec3& x) { return length(x - nearest_place(box, x)); }
 
 /// The distance of a box to a segment, which has one least value along it.
 double distance_to(const Box& box, const Vec3& a, const Vec3& b) {
@@ -36,6 +35,25 @@ double distance_to(const Box& box, const Vec3& a, const Vec3& b) {
     (at(lower) <= at(upper) ? to : from) = at(lower) <= at(upper) ? upper : lower;
   }
   return std::min({at(from), at(0), at(1)});
+}
+
+/// The angle by which a body turns from one pose to another, by the trace of its rotation.
+double turn_between(const Pose& from, const Pose& to) {
+  double trace = 0;
+  for (int k = 0; k < 9; ++k) trace += from.rotation[k] * to.rotation[k];
+  return std::acos(std::clamp((trace - 1) / 2, -1.0, 1.0));
+}
+
+/// The pose on the way of model points on straight segments; its matrix also shrinks.
+Pose on_way(const Pose& from, const Pose& to, double part) {
+  Pose out{};
+  for (int k = 0; k < 9; ++k) {
+    out.rotation[k] = from.rotation[k] + part * (to.rotation[k] - from.rotation[k]);
+  }
+  for (int k = 0; k < 3; ++k) {
+    out.translation[k] = from.translation[k] + part * (to.translation[k] - from.translation[k]);
+  }
+  return out;
 }
 
 /// Where the points of a conflict lie across the vehicle, pose by pose and point by point.
@@ -60,20 +78,23 @@ struct Oracle {
         continue;
       }
       for (std::size_t i = c.first_pose; i < end; ++i) {
-        const Vec3 x = pulled_back(found.poses[i], e), y = pulled_back(found.poses[i + 1], e);
-        if (!(counts(x) || counts(y)) || !(distance_to(box, x, y) < radius)) continue;
-        add(x);
-        add(y);
+        const Pose &from = found.poses[i], &to = found.poses[i + 1];
+        const Vec3 x = pulled_back(from, e), y = pulled_back(to, e);
+        const double half = turn_between(from, to) / 2;
+        const double beyond = std::tan(half) * length(y - x) / 2 + radius / std::cos(half) - radius;
+        if (!(counts(x) || counts(y)) || !(distance_to(box, x, y) < radius + beyond)) continue;
+        add(x, beyond);
+        add(y, beyond);
       }
     }
   }
 
-  void add(const Vec3& x) {
+  void add(const Vec3& x, double beyond = 0) {
     const Vec3 middle = from_floor.centre(), size = from_floor.size();
-    y0 = std::min(y0, x.y);
-    y1 = std::max(y1, x.y);
-    z0 = std::min(z0, x.z);
-    z1 = std::max(z1, x.z);
+    y0 = std::min(y0, x.y - beyond);
+    y1 = std::max(y1, x.y + beyond);
+    z0 = std::min(z0, x.z - beyond);
+    z1 = std::max(z1, x.z + beyond);
     in_middle = in_middle ||
                 (std::abs(x.y - middle.y) < size.y / 4 && std::abs(x.z - middle.z) < size.z / 4);
   }
@@ -104,6 +125,49 @@ struct Oracle {
   }
 };
 
+/// Whether a box keeps the radius from the conflict's points at all of its poses; between poses, at
+/// 30 places of each way.
+bool is_free(const Found& found, const Box& box, const Conflict& c,
+             const std::vector<Vec3>& points) {
+  const double radius = found.header().radius;
+  const auto counts = [&](const Pose& pose, const Vec3& e) {
+    return !found.floor || pulled_back(pose, e).z >= *found.floor;
+  };
+  const auto collides = [&](const Pose& pose, const Vec3& e) {
+    const Vec3 x = pulled_back(pose, e), off = x - nearest_place(box, x);
+    Vec3 apart{};
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < 3; ++j) apart[k] += pose.rotation[3 * k + j] * off[j];
+    }
+    return length(apart) < radius - 1e-9;
+  };
+  const std::size_t last =
+      std::min<std::size_t>(c.last_pose + (found.between_poses ? 1u : 0u), found.poses.size() - 1);
+  for (const Vec3& e : points) {
+    for (std::size_t i = c.first_pose; i <= last; ++i) {
+      const Pose& pose = found.poses[i];
+      if (!found.between_poses) {
+        if (counts(pose, e) && collides(pose, e)) return false;
+        continue;
+      }
+      if (i == last || !(counts(pose, e) || counts(found.poses[i + 1], e))) continue;
+      for (int step = 0; step <= 30; ++step) {
+        if (collides(on_way(pose, found.poses[i + 1], step / 30.0), e)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool are_equal(const std::array<std::optional<double>, 4>& a,
+               const std::array<std::optional<double>, 4>& b) {
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (a[k].has_value() != b[k].has_value()) return false;
+    if (a[k] && std::abs(*a[k] - *b[k]) > 1e-6) return false;
+  }
+  return true;
+}
+
 std::array<std::optional<double>, 4> trims_of(const Conflict& c) {
   return {c.trim_left, c.trim_right, c.trim_above, c.trim_below};
 }
@@ -117,7 +181,8 @@ TEST_CASE("trims and sides of random groups are those of every point at every po
     CAPTURE(seed);
     Random random(seed);
     Found found;
-    found.poses = smooth_path(random, {{0, -3, -1}, {8, 3, 1}}, 30);
+    // With few poses the vehicle turns by up to 20 degrees from one to the next.
+    found.poses = smooth_path(random, {{0, -3, -1}, {8, 3, 1}}, seed % 4 == 0 ? 6 : 30);
     found.between_poses = seed % 2 == 0;
     if (seed % 3 == 0) found.floor = -0.9 + 0.3 * static_cast<double>(below(random, 6));
     const std::size_t groups = 1 + below(random, 6);
@@ -153,11 +218,9 @@ TEST_CASE("trims and sides of random groups are those of every point at every po
         if (conflict_of[row] == c.id) points.push_back(rows.xyz[row]);
       }
       const Oracle oracle(found, box, c, points);
-      CHECK(trims_of(c) == oracle.trims(radius));
+      CHECK(are_equal(trims_of(c), oracle.trims(radius)));
       CHECK(c.side == oracle.side(radius, c.first_touch));
       ++sides[static_cast<std::size_t>(c.side)];
-      if (found.between_poses) continue;
-      // What is left of the box is free of the conflict's points at all of its poses.
       for (std::size_t k = 0; k < 4; ++k) {
         if (!trims_of(c)[k]) continue;
         Box rest = box;  // with all that is below the floor
@@ -165,13 +228,7 @@ TEST_CASE("trims and sides of random groups are those of every point at every po
         if (k == 1) rest.lo.y += *trims_of(c)[k];
         if (k == 2) rest.hi.z -= *trims_of(c)[k];
         if (k == 3) rest.lo.z += *trims_of(c)[k];
-        for (std::size_t i = c.first_pose; i <= c.last_pose; ++i) {
-          for (const Vec3& e : points) {
-            const Vec3 x = pulled_back(found.poses[i], e);
-            if (found.floor && x.z < *found.floor) continue;
-            if (distance_to(rest, x) < radius - 1e-9) FAIL("trim " << k << " is not enough");
-          }
-        }
+        CHECK(is_free(found, rest, c, points));
       }
     }
   }

@@ -212,6 +212,39 @@ TEST_CASE("the ground under a vehicle is told before the search, with the floor 
   CHECK(floor_of(told_about(box_at(kLorry, drive(0, std::atan(0.1))), ramp)) > 0);
 }
 
+TEST_CASE("a wagon on rails is told of the rails, and one that hangs from a rail is not") {
+  // Rails whose heads are at height 0, and ballast 0.2 m below them.
+  std::vector<Quantum> track;
+  for (int x = -3000; x <= 13000; x += 50) {
+    for (const int y : {-2720, -2690, -1310, -1280}) track.push_back({x, y, 0});
+    for (int y = -4000; y <= 0; y += 100) track.push_back({x, y, -200});
+  }
+  std::vector<Pose> path = drive(0);
+  for (Pose& pose : path) pose.translation[1] -= 2;
+  Bodies wagon;
+  wagon.add(box_surface({{-6, -1.4, 0.4}, {6, 1.4, 3.8}}));  // the body, above the wheels
+  for (const double x : {-5.0, -3.2, 3.2, 5.0}) {
+    for (const double y : {-0.75, 0.67}) {  // wheels with flanges
+      wagon.add(box_surface({{x - 0.4, y, -0.03}, {x + 0.4, y + 0.08, 0.9}}));
+    }
+  }
+  const std::vector<Message> told = told_about(wagon.query(path, 0.1), track);
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].code == "ground-collides");
+  Query with = wagon.query(path, 0.1);
+  for (const auto& [name, value] : told[0].numbers) {
+    if (std::string(name) == "floor") with.floor = value;
+  }
+  REQUIRE(with.floor);
+  CHECK(*with.floor == Approx(0.05));
+  CHECK(told_about(with, track).empty());
+
+  // The same track as the runway of a crane, far above its load.
+  Bodies load;
+  load.add(box_surface({{-1, -1, -4}, {1, 1, -2}}));
+  CHECK(told_about(load.query(path, 0.1), track).empty());
+}
+
 TEST_CASE("sound questions hear nothing about the ground") {
   Query query = box_at(kLorry, drive(0));
   SECTION("with a floor") { query.floor = 0.3; }

@@ -20,7 +20,7 @@
 #include "io/files/xxh64.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/conflicts/conflict_fields.hpp"
-#include "io/result/floor_json.hpp"
+#include "io/result/floor_facts.hpp"
 #include "io/result/journal.hpp"
 #include "io/result/result.hpp"
 #include "io/section/section_file.hpp"

@@ -16,7 +16,7 @@
 #include "core/util/format.hpp"
 #include "io/files/json.hpp"
 #include "io/result/answer.hpp"
-#include "io/result/floor_json.hpp"
+#include "io/result/floor_facts.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -87,18 +87,12 @@ std::string ignored_clause(const Answer& answer) {
   return text + format_count(answer.ignored_colliding) + " of which would collide";
 }
 
-/// A clause about what lies below the floor, such as ", with 1,190 points below 0.25 m of the
-/// vehicle that are not judged"; empty without a floor.
+/// A clause about what lies below the floor, such as ", with 1,190 points within the radius below
+/// 0.25 m of the vehicle not judged"; empty without a floor.
 std::string floor_clause(const Answer& answer, const std::string& unit) {
   if (!answer.floor_colliding) return "";
-  const auto& height = answer.parameters.floor;
-  const double lower = answer.budget ? answer.budget->clear() : 0;
-  const std::string floor =
-      !height ? "the floors of its bodies"
-              : format_brief(*height - lower) + " " + unit + " of the vehicle" +
-                    (answer.bodies.empty() ? "" : ", or below its bodies' own floors,");
   return ", with " + counted(*answer.floor_colliding, "point") + " within the radius below " +
-         floor + " not judged";
+         floor_words(floor_json(answer), unit) + " not judged";
 }
 
 /// " on 3.2 of 68.0 m", or " on 3.2 m of the path" where its length is not known. What would round

@@ -395,7 +395,7 @@ class CampaignPage {
     if (const std::size_t warnings = facts["warnings"].size(); warnings > 0) {
       text = counted(warnings, "warning");
     }
-    if (const std::string floor = floor_words(facts, unit); !floor.empty()) {
+    if (const std::string floor = floor_clause(facts, unit); !floor.empty()) {
       text += (text.empty() ? "" : ", ") + floor;
     }
     if (!ignored_words(facts).empty()) {

@@ -87,6 +87,7 @@ Answer answer_of(const ResultHeader& header) {
   answer.ignored = header.ignored;
   answer.budget = header.budget;
   answer.bodies = header.bodies;
+  answer.body_floors = header.body_floors;
   if (header.part) answer.shard = header.part->shard;
   return answer;
 }

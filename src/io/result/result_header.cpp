@@ -13,6 +13,7 @@
 #include "clearway/error.hpp"
 #include "core/describe/query.hpp"
 #include "core/geometry/axes.hpp"
+#include "core/geometry/floor.hpp"
 #include "core/query/error_budget.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/util/format.hpp"
@@ -370,6 +371,24 @@ void check_at_most(std::uint64_t count, std::uint64_t most, const char* attribut
                    ", expected at most " + std::to_string(most));
 }
 
+void write_body_floors(const hdf5::Id& file, const ResultHeader& header) {
+  std::vector<double> floors;
+  for (const auto& floor : header.body_floors) floors.push_back(floor.value_or(kNoFloor));
+  hdf5::write_attribute(file, names::kBodyFloors, std::span<const double>(floors));
+}
+
+void read_body_floors(const hdf5::Id& file, const std::string& name, ResultHeader& header) {
+  if (!hdf5::has_attribute(file, names::kBodyFloors, name)) return;
+  for (const double floor :
+       hdf5::read_attribute<double>(file, names::kBodyFloors, header.bodies.size(), name)) {
+    if (!std::isfinite(floor) && floor != kNoFloor) {
+      refuse(name, std::string("attribute '") + names::kBodyFloors +
+                       "': expected finite heights, or -inf for a body without a floor");
+    }
+    header.body_floors.push_back(floor == kNoFloor ? std::nullopt : std::optional(floor));
+  }
+}
+
 void check_header(const ResultHeader& header, const std::string& name) {
   check_length(header.profile, "attribute 'profile'", name);
   check_length(header.notes.model_spacing, "attribute 'model_spacing'", name);
@@ -406,6 +425,7 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   write_all(file, kNotes, header.notes);
   if (!header.bodies.empty()) {
     hdf5::write_attribute(file, names::kBodies, lines_of(header.bodies));
+    if (!header.body_floors.empty()) write_body_floors(file, header);
   }
   if (header.budget) write_all(file, kBudget, *header.budget);
   if (header.ignores_points()) write_ignored(file, header);
@@ -422,6 +442,7 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
   read_all(file, name, kNotes, header.notes);
   if (hdf5::has_attribute(file, names::kBodies, name)) {
     header.bodies = read_lines(file, name, names::kBodies, "names", kMostBodies);
+    read_body_floors(file, name, header);
   }
   header.budget = given_errors(header);
   if (header.budget) read_all(file, name, kBudget, *header.budget);
@@ -471,7 +492,7 @@ ResultFindings read_result_findings(const hdf5::Id& file, const std::string& nam
     read_value(file, names::kFloorColliding, name, findings.floor_colliding.emplace());
     check_at_most(*findings.floor_colliding, header.environment_points, names::kFloorColliding,
                   name);
-  } else if (header.floor) {
+  } else if (header.floor || !header.body_floors.empty()) {
     refuse(name, std::string("attribute '") + names::kFloorColliding + "' is missing");
   }
   if (header.seen) {

@@ -44,6 +44,8 @@ struct ResultQuestion : QueryParameters {
   std::string crs_wkt = {};
   /// Names of the bodies; empty unless the query has several.
   std::vector<std::string> bodies = {};
+  /// The floor of each body, its own or that of the query; empty where no body has one.
+  std::vector<std::optional<double>> body_floors = {};
   /// Numbers of points for ignore_classes and ignore_boxes, whose order is that of sort_ignored().
   IgnoredPointCounts ignored{};
   /// Hash of the classes of all points; 0 where no class is ignored.

@@ -56,6 +56,7 @@ inline constexpr const char* kClassesHash = "classes_hash";
 
 inline constexpr const char* kFloorColliding = "floor_colliding";
 inline constexpr const char* kBodies = "bodies";  // names, one per line
+inline constexpr const char* kBodyFloors = "body_floors";
 inline constexpr const char* kRunsWithoutBodies = "runs_without_bodies";
 inline constexpr const char* kPosesWithoutBodies = "poses_without_bodies";
 

@@ -315,19 +315,13 @@ function collidingIgnored({ colliding }) {
 }
 
 /** What is judged where there is a floor: " at 0.3 m of the vehicle or above"; empty without one. */
-const aboveFloor = () => page.facts.floor === null ? "" : ` at ${floorWords(page.facts.floor)} or above`;
-
-/** Where the floor is. */
-function floorWords({ height, near_height: near }) {
-  return near !== undefined ? `${shortLength(height)} of the vehicle, with the errors ${shortLength(near)}` :
-      height === null ? "the floors of the vehicle's bodies" : `${shortLength(height)} of the vehicle`;
-}
+const aboveFloor = () => page.facts.floor === null ? "" : ` at ${page.facts.floor.words} or above`;
 
 /** How many points the floor leaves out; null without one. */
 function floorSentence() {
   const { floor } = page.facts;
   return floor && `${plural(floor.colliding, "point")} within the radius ` +
-      `${floor.colliding === 1 ? "lies" : "lie"} below ${floorWords(floor)}, such as points of the ground, ` +
+      `${floor.colliding === 1 ? "lies" : "lie"} below ${floor.words}, such as points of the ground, ` +
       "and nothing is said about them.";
 }
 
@@ -373,7 +367,7 @@ function questionTable() {
     factRow("Result", `${inputs.result.name}. `, hash(inputs.result.hash)),
     factRow("Asked for", askedFor(query)),
     page.facts.floor === null ? ""
-        : factRow("Floor", `Only what lies at ${floorWords(page.facts.floor)} or above is judged. `,
+        : factRow("Floor", `Only what lies at ${page.facts.floor.words} or above is judged. `,
                   make("code", {}, "--floor")),
     page.facts.ignored === null ? "" : factRow("Ignored", ignoredText(page.facts.ignored)));
 }

@@ -6,8 +6,11 @@
 
 #include "clearway/error.hpp"
 #include "clearway/result.hpp"
+#include "core/util/format.hpp"
 #include "io/files/hdf5.hpp"
+#include "io/result/answer.hpp"
 #include "io/result/check_results.hpp"
+#include "io/result/floor_facts.hpp"
 #include "support/compare.hpp"
 #include "support/result_fixture.hpp"
 
@@ -84,6 +87,41 @@ TEST_CASE("a vehicle's result may ignore points too") {
   const ResultReader result(vehicle.folder / "out.h5");
   CHECK(same_answer(result.header(), vehicle.header));
   CHECK_FALSE(vehicle.fault("out.h5"));
+}
+
+TEST_CASE("a vehicle's result keeps the floor of each body") {
+  Vehicle vehicle;
+  vehicle.header.body_floors = {0.25, std::nullopt, -0.5};
+  ResultFindings findings;
+  findings.floor_colliding = 12;
+  ResultWriter writer(vehicle.folder / "out.h5", vehicle.header, vehicle.rows.size(),
+                      vehicle.near.size());
+  writer.append(vehicle.rows);
+  writer.append(vehicle.near);
+  writer.finish(findings);
+  const ResultReader result(vehicle.folder / "out.h5");
+  CHECK(same_answer(result.header(), vehicle.header));
+  Answer answer = counted_answer(result);
+  CHECK(answer.body_floors == vehicle.header.body_floors);
+  const auto words = [&] { return floor_words(floor_json(answer), "m"); };
+  CHECK(words() ==
+        "the floors of the vehicle's bodies (front bogie 0.25 m, body none, back -0.5 m)");
+  answer.body_floors = {0.25, 0.25, 0.25};
+  CHECK(words() == "0.25 m of the vehicle");
+  answer.budget = ErrorBudget{.scan = 0.01, .sigmas = 3};
+  CHECK(words() == "0.25 m of the vehicle (" + format_brief(0.25 - answer.budget->clear()) +
+                       " m with the errors)");
+  answer.body_floors.back() = 0.3;
+  CHECK(words() ==
+        "the floors of the vehicle's bodies (front bogie 0.25 m, body 0.25 m, back 0.3 "
+        "m; with the errors " +
+            format_brief(answer.budget->clear()) + " m lower)");
+  answer.budget.reset();
+  for (int i = 0; i < 5; ++i) {
+    answer.bodies.push_back("wagon " + std::to_string(i));
+    answer.body_floors.push_back(i < 3 ? std::optional(0.1 * (i + 1)) : std::nullopt);
+  }
+  CHECK(words() == "the floors of the vehicle's bodies (0.1 m to 0.3 m, 2 bodies without)");
 }
 
 TEST_CASE("bodies without first poses are only those of clearances") {

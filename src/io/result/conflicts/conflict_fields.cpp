@@ -12,7 +12,7 @@
 #include "io/files/text_writer.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/conflicts/conflict_words.hpp"
-#include "io/result/floor_json.hpp"
+#include "io/result/floor_facts.hpp"
 
 namespace clearway {
 std::vector<ConflictField> fields_of(const Conflict& c, const ResultHeader& header) {

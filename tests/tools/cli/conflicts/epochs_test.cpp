@@ -37,6 +37,7 @@ struct Epoch {
   double step = 0.05;    ///< metres between the points of things
   std::string run = {};  ///< options of the search
   std::string path = "path.txt";
+  std::string model = "--model car.obj";
 };
 
 constexpr int kSurface = 2, kThing = 5;  // classes
@@ -126,13 +127,13 @@ struct Road : Workplace {
       put_bytes(folder / (name + ".las"), las);
     }
     succeed("convert " + name + ".las --force --unit m -o " + name + "_site.h5");
-    succeed("run --env " + name + "_site.h5 --model car.obj --trajectory " + epoch.path +
+    succeed("run --env " + name + "_site.h5 " + epoch.model + " --trajectory " + epoch.path +
             " --first-pose --force -o " + name + ".h5 " +
             (epoch.run.empty() ? "--radius 0.1 --clearance 0.3" : epoch.run));
   }
 
   Outcome compare(const Epoch& a, const Epoch& b, const std::string& more) const {
-    const bool same_question = b.run == a.run && b.path == a.path;
+    const bool same_question = b.run == a.run && b.path == a.path && b.model == a.model;
     return run("compare a.h5 b.h5 --conflicts --trajectory " + a.path + " --trajectory-b " +
                b.path + " " + (same_question ? "" : "--allow-other-question ") + more);
   }
@@ -237,6 +238,35 @@ TEST_CASE("two epochs are told apart as a person would") {
                   "not_searched 2", "b has not searched 2 places", "path");
   road.check_pair("shorter path", {kPoles}, {.things = {}, .path = "half.txt"}, 6,
                   "gone 1, not_searched 1", "b has not searched 1 place", "path");
+}
+
+TEST_CASE("the floors of a vehicle's bodies are compared body by body") {
+  const Road road;
+  const auto vehicle = [&](const std::string& name, const std::string& cab,
+                           const std::string& box) {
+    road.put(name, R"({"bodies": [{"name": "cab", "model": "car.obj")" + cab +
+                       R"(}, {"name": "box", "model": "car.obj", "at": -5)" + box + "}]}");
+    return Epoch{.things = {pole(20), {45, 45.1, 0.4, 0.7}}, .model = "--vehicle " + name};
+  };
+  const Epoch low = vehicle("low.json", R"(, "floor": 0.35)", R"(, "floor": 0.4)");
+  const Epoch high = vehicle("high.json", R"(, "floor": 0.85)", R"(, "floor": 0.9)");
+  const Epoch none = vehicle("none.json", "", "");
+  road.check_pair("the same floors", low, low, 0, "same 2", "no new conflicts");
+  road.check_pair("higher floors", low, high, 6, "not_searched 1, same 1",
+                  "b has not searched 1 place", "floor, model");
+  road.check_pair("floors that were not there before", none, high, 6, "not_searched 1, same 1",
+                  "b has not searched 1 place", "floor, model");
+  // In one scan a vehicle is searched wherever its floors are not higher.
+  const auto in_one_scan = [&](const Epoch& a, Epoch b) {
+    b.noise = 0;
+    road.search("a", a);
+    road.search("b", b);
+    return lists_of(json_of(road.compare(a, b, "--json")));
+  };
+  CHECK(in_one_scan(high, low) == "new 1, same 1");
+  CHECK(in_one_scan(low, high) == "not_searched 1, same 1");
+  check_json(json_of(road.run("info b.h5 --json")),
+             R"({"floor": {"height": null, "bodies": {"cab": 0.85, "box": 0.9}}})");
 }
 
 TEST_CASE("what a search of a shorter scan warns of is in all that is made of its result") {
