@@ -112,13 +112,13 @@ TEST_CASE("a headline says what can be done") {
 
 TEST_CASE("what is missing is said as exactly as it is known") {
   Conflict c{.least_distance = 0.001, .encroachment = 0.099, .encroachment_is = Bound::kExact};
-  CHECK(missing_words(c, "m") == "0.099 m");
+  CHECK(missing_words(c, "m", 1) == "0.099 m");
   c.encroachment_is = Bound::kAtLeast;
-  CHECK(missing_words(c, "m") == "at least 0.099 m");
-  CHECK(missing_words(c, "") == "at least 0.099");
+  CHECK(missing_words(c, "m", 1) == "at least 0.099 m");
+  CHECK(missing_words(c, "", 1) == "at least 0.099");
   c.least_distance = 0.0009;
-  CHECK(missing_words(c, "m") == "touches");
+  CHECK(missing_words(c, "m", 1) == "touches");
   c.encroachment = -0.02;  // of points that are only near
-  CHECK(missing_words(c, "m").empty());
+  CHECK(missing_words(c, "m", 1).empty());
   CHECK(missing_words({}, "m").empty());
 }

@@ -91,6 +91,9 @@ std::string ignored_clause(const Answer& answer) {
 /// 0.25 m of the vehicle not judged"; empty without a floor.
 std::string floor_clause(const Answer& answer, const std::string& unit) {
   if (!answer.floor_colliding) return "";
+  if (*answer.floor_colliding == 0) {
+    return ", with no point within the radius below " + floor_words(floor_json(answer), unit);
+  }
   return ", with " + counted(*answer.floor_colliding, "point") + " within the radius below " +
          floor_words(floor_json(answer), unit) + " not judged";
 }

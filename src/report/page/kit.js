@@ -57,7 +57,8 @@ const chosenBy = (choose) => ({ tabindex: 0, onclick: choose, onkeydown: (event)
 
 /** The cells of a row. columns: {title, cell, number}, where cell(item) is a text or an element. */
 const cellsOf = (columns, item) =>
-    columns.map(({ cell, number }) => make("td", { class: number ? "number" : null }, cell(item)));
+    columns.map(({ cell, number, text }) =>
+        make("td", { class: number ? "number" : text ? "text" : null }, cell(item)));
 
 /** A table with a row of titles. */
 const listTable = (label, columns, rows) => make("table", { class: "list", "aria-label": label },

@@ -63,8 +63,8 @@ function placesTable() {
     { title: "Stretches", cell: ({ stops }) => numberRanges(stops) },
     { title: `Deepest at (${unitSymbol})`, cell: ({ chainage }) => chainage.toFixed(2), number: true },
     { title: `z (${unitSymbol})`, cell: (p) => `${signed(p.z_from)} – ${signed(p.z_to)}`, number: true },
-    known && { title: "What is there", cell: (p) => [obstacleWords(p), othersAt(p)].filter(Boolean).join("; ") },
-    { title: "What lets the load pass", cell: ({ remedy }) => remedy },
+    known && { title: "What is there", cell: (p) => [obstacleWords(p), othersAt(p)].filter(Boolean).join("; "), text: true },
+    { title: "What lets the load pass", cell: ({ remedy }) => remedy, text: true },
   ].filter(Boolean);
   const rows = places.map((place) => {
     const show = () => showStretch(section.facts.check.stops[deepestStop(place)].bin);

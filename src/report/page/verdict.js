@@ -320,9 +320,11 @@ const aboveFloor = () => page.facts.floor === null ? "" : ` at ${page.facts.floo
 /** How many points the floor leaves out; null without one. */
 function floorSentence() {
   const { floor } = page.facts;
-  return floor && `${plural(floor.colliding, "point")} within the radius ` +
-      `${floor.colliding === 1 ? "lies" : "lie"} below ${floor.words}, such as points of the ground, ` +
-      "and nothing is said about them.";
+  if (floor === null) return null;
+  if (floor.colliding === 0) return `No point within the radius lies below ${floor.words}.`;
+  const one = floor.colliding === 1;
+  return `${plural(floor.colliding, "point")} within the radius ${one ? "lies" : "lie"} below ` +
+      `${floor.words}, such as points of the ground, and ${one ? "is" : "are"} not judged.`;
 }
 
 function cautions() {

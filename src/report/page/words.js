@@ -22,8 +22,8 @@ const isInside = (distance) => distance !== null && distance !== undefined && di
 const depthWords = (distance) => `${metres(-distance)} deep`;
 const metres = (v, digits = digitsFor([v])) => v === null || v === undefined ? "unknown"
     : `${fixed(v, digits)} ${unitSymbol}`;
-/** Below it the surfaces meet, as far as scans can show. */
-const kTouching = 0.001;
+/** Below it the surfaces meet, as far as scans can show; only pages of results have it. */
+const kTouching = page.facts.touching;
 /**
  * What is missing, with the digits of the distance, so that both add up to what is required. A
  * surface and points have no inside, so there it is at least so much. unit: left out in tables.

@@ -74,6 +74,8 @@ TEST_CASE("a verdict says what lies below the floor, and so does every output") 
   const Outcome listed = garden.run("conflicts c.h5 --trajectory path.txt --json");
   check_json(json_of(listed), R"({"floor": {"height": 0.01, "colliding": 10}})");
   check_says(garden.search("--floor 0.01 -o e.h5").out, verdict);
+  check_says(garden.search("--floor -50 -o f.h5").out,
+             "conflict, with no point within the radius below -50 m of the vehicle: 40 points");
   CHECK(json_of(garden.search("--json -o d.h5"))["floor"].is_null());
 }
 

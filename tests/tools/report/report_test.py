@@ -325,7 +325,7 @@ class ReportTest(PageChecks, unittest.TestCase):
         asked = ("--radius", 0.1, "--first-pose", "--clearance", 0.3, "--floor", 0.3)
         for name, more, words in (
                 ("floor", (), "0.3 m of the vehicle"),
-                ("floor_errors", ("--error-pose", 0.01), "0.3 m of the vehicle, with the errors")):
+                ("floor_errors", ("--error-pose", 0.01), "0.3 m of the vehicle (0.1621 m with the errors)")):
             path, facts = self.hall.report(self.hall.search(name, *asked, *more), name)
             below = facts["floor"]["colliding"]
             self.assertGreater(below, 10)
@@ -335,7 +335,7 @@ class ReportTest(PageChecks, unittest.TestCase):
             self.assertIn(f"{below:,} points within the radius lie below {words}", text)
             self.assertIn(f"Only what lies at {words}", text)
             self.check_quiet(page)
-        self.assertIn("Nothing at 0.3 m of the vehicle, with the errors",
+        self.assertIn("Nothing at 0.3 m of the vehicle (0.1621 m with the errors)",
                       page.run("""(() => { const { verdict } = page.facts;
             page.facts.verdict = "clear";
             const sentence = verdictSentences()[0];

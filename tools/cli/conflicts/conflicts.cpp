@@ -70,24 +70,38 @@ std::string station_cell(const Conflict& c) {
   return fmt::format("  {:>23}", fmt::format("{:.2f} - {:.2f}", *c.station_from, *c.station_to));
 }
 
-std::string row_text(const Conflict& c, bool distances, bool depths, bool trims, bool shifts) {
+/// The columns of the table, and the length of the environment's unit in metres.
+struct ConflictColumns {
+  explicit ConflictColumns(const ConflictFile& file)
+      : distances(has_distances(file.conflicts)),
+        depths(has_depths(file.conflicts)),
+        trims(file.conflicts.knows_trims),
+        shifts(file.conflicts.knows_shifts),
+        metre(file.metres_per_unit()) {}
+
+  bool distances, depths, trims, shifts;
+  double metre;
+};
+
+std::string row_text(const Conflict& c, const ConflictColumns& columns) {
   std::string row = fmt::format("{:>5}  {:>19}", c.id,
                                 fmt::format("{:.2f} - {:.2f}", c.chainage_from, c.chainage_to)) +
                     station_cell(c) + length_cell(c.obstacle_chainage, 12, 2) +
                     fmt::format("  {:>11}  {:>7}", format_count(c.points), name_of(c.side));
-  if (distances) {
-    const std::string missing = missing_words(c, "");
+  if (columns.distances) {
+    const std::string missing = missing_words(c, "", columns.metre);
     row += length_cell(c.least_distance, 12, 3) +
            fmt::format("  {:>14}", missing.empty() ? "-" : missing);
   }
-  if (depths) {
+  if (columns.depths) {
     row += fmt::format("  {:>9.3f}  {:>11}", c.depth.value_or(0),
                        format_count(c.points_inside.value_or(0)));
   }
-  if (trims) row += length_cell(rounded_up(least_trim(c)), 8, 3);
-  if (shifts)
+  if (columns.trims) row += length_cell(rounded_up(least_trim(c)), 8, 3);
+  if (columns.shifts) {
     row += length_cell(rounded_up(c.own_shift_left), 18, 3) +
            length_cell(rounded_up(c.own_shift_right), 19, 3);
+  }
   if (c.certain) row += fmt::format("  {:>8}", *c.certain ? "certain" : "possible");
   return row + fmt::format("  {:.3f} {:.3f} {:.3f}\n", c.centroid.x, c.centroid.y, c.centroid.z);
 }
@@ -163,8 +177,7 @@ std::string conflict_text(const ConflictFile& file, std::size_t most) {
   std::string text = totals_text(file);
   if (conflicts.colliding_points + conflicts.near_points > 0) text += grouping_text(file);
   if (conflicts.listed.empty() || most == 0) return text;
-  const bool distances = has_distances(conflicts), depths = has_depths(conflicts);
-  const bool trims = conflicts.knows_trims, shifts = conflicts.knows_shifts;
+  const ConflictColumns columns(file);
   const char* const unit = symbol_of(file.unit());
   const std::vector<const Conflict*> rows = worst_first(conflicts, most);
   if (rows.size() < conflicts.listed.size()) {
@@ -174,21 +187,19 @@ std::string conflict_text(const ConflictFile& file, std::size_t most) {
       fmt::format("{:>5}  {:>19}", "id", fmt::format("chainage ({})", unit)) +
       (rows.front()->station_from ? fmt::format("  {:>23}", "station (m)") : "") +
       fmt::format("  {:>12}  {:>11}  {:>7}", fmt::format("obstacle ({})", unit), "points", "side");
-  if (distances) {
+  if (columns.distances) {
     text += fmt::format("  {:>12}  {:>14}", fmt::format("distance ({})", unit),
                         fmt::format("missing ({})", unit));
   }
-  if (depths) text += fmt::format("  {:>9}  {:>11}", fmt::format("depth ({})", unit), "inside");
-  if (trims) text += fmt::format("  {:>8}", fmt::format("trim ({})", unit));
-  if (shifts) {
+  if (columns.depths) text += fmt::format("  {:>9}  {:>11}", fmt::format("depth ({})", unit), "inside");
+  if (columns.trims) text += fmt::format("  {:>8}", fmt::format("trim ({})", unit));
+  if (columns.shifts) {
     text += fmt::format("  {:>18}  {:>19}", fmt::format("own shift left ({})", unit),
                         fmt::format("own shift right ({})", unit));
   }
   if (rows.front()->certain) text += fmt::format("  {:>8}", "class");
   text += "  centroid\n";
-  for (const Conflict* conflict : rows) {
-    text += row_text(*conflict, distances, depths, trims, shifts);
-  }
+  for (const Conflict* conflict : rows) text += row_text(*conflict, columns);
   return text;
 }
 

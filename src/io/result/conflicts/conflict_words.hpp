@@ -22,7 +22,7 @@ const Conflict* worst_of(const Conflicts& conflicts);
 /// What is missing at a conflict, in digits of a millimetre: "0.099 m" of a solid, and otherwise
 /// "at least 0.099 m" or "touches". Empty without an encroachment, and for points that are only
 /// near. unit: the symbol of lengths; an empty one is left out. metre: metres per unit.
-std::string missing_words(const Conflict& conflict, const std::string& unit, double metre = 1);
+std::string missing_words(const Conflict& conflict, const std::string& unit, double metre);
 
 /// Where something lies, seen from the vehicle: "on the left", "above it"; empty where that is not
 /// known.
