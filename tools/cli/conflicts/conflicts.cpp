@@ -191,7 +191,8 @@ std::string conflict_text(const ConflictFile& file, std::size_t most) {
     text += fmt::format("  {:>12}  {:>14}", fmt::format("distance ({})", unit),
                         fmt::format("missing ({})", unit));
   }
-  if (columns.depths) text += fmt::format("  {:>9}  {:>11}", fmt::format("depth ({})", unit), "inside");
+  if (columns.depths)
+    text += fmt::format("  {:>9}  {:>11}", fmt::format("depth ({})", unit), "inside");
   if (columns.trims) text += fmt::format("  {:>8}", fmt::format("trim ({})", unit));
   if (columns.shifts) {
     text += fmt::format("  {:>18}  {:>19}", fmt::format("own shift left ({})", unit),
