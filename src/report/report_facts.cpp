@@ -493,7 +493,8 @@ std::string json_of(const ReportFacts& facts) {
   out["ignored"] = json_of_ignored_points(facts.result.reader().header(), answer);
   out["floor"] = floor_json(answer);
   if (answer.floor_colliding) {
-    out["floor"]["words"] = floor_words(out["floor"], symbol_of(unit_of(facts.result.reader().header())));
+    out["floor"]["words"] =
+        floor_words(out["floor"], symbol_of(unit_of(facts.result.reader().header())));
   }
   out["inputs"] = json_of_inputs(facts);
   out["unsearched"] = json_of_unsearched(facts);

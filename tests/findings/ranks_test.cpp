@@ -120,5 +120,5 @@ TEST_CASE("what is missing is said as exactly as it is known") {
   CHECK(missing_words(c, "m", 1) == "touches");
   c.encroachment = -0.02;  // of points that are only near
   CHECK(missing_words(c, "m", 1).empty());
-  CHECK(missing_words({}, "m").empty());
+  CHECK(missing_words({}, "m", 1).empty());
 }

@@ -56,8 +56,7 @@ std::string floor_words(const Json& floor, const std::string& unit) {
            (lower > 0 ? "; with the errors " + format_brief(lower) + " " + unit + " lower" : "") +
            ")";
   }
-  const std::string text =
-      format_brief(height.get<double>()) + " " + unit + " of the vehicle";
+  const std::string text = format_brief(height.get<double>()) + " " + unit + " of the vehicle";
   if (!(lower > 0)) return text;
   return text + " (" + format_brief(height.get<double>() - lower) + " " + unit +
          " with the errors)";
