@@ -1,10 +1,11 @@
+#include "report/write_report.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "clearway/error.hpp"
-#include "clearway/report.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/messages/messages.hpp"
 #include "core/trajectory/chainage.hpp"
@@ -114,8 +115,9 @@ class Report {
   static constexpr std::size_t kMostStationRowsOfPage = 5000;
 
   Report(const Result& result, const Store& store, const Model& model,
-         const std::vector<Pose>& poses, const ReportOptions& options)
-      : result_(result),
+         const std::vector<Pose>& poses, const ReportOptions& options, const FoundConflicts* found)
+      : found_(found),
+        result_(result),
         answer_(judged(result, options.warnings)),
         store_(store),
         model_(model),
@@ -167,17 +169,23 @@ class Report {
   }
 
   void find_conflicts_and_points(Conflicts& conflicts) {
-    std::vector<std::uint32_t> conflict_of;
+    std::vector<std::uint32_t> found_here;
+    const std::vector<std::uint32_t>* conflict_of = &found_here;
     if (result_.parameters().first_pose) {
       ConflictOptions find = options_.conflicts;
       find.bodies = options_.bodies;
       find.station = options_.labels.station;
       if (options_.bodies.empty()) find.model = &model_;
-      conflicts = find_conflicts(result_, poses_, find, &conflict_of);
+      if (found_ != nullptr && found_->are_of(result_.reader().header(), find)) {
+        conflicts = found_->conflicts;
+        conflict_of = &found_->conflict_of;
+      } else {
+        conflicts = find_conflicts(result_, poses_, find, &found_here);
+      }
     }
     if (options_.shifts) check_shifts(*options_.shifts, conflicts, result_.reader());
     PointSelection selection{
-        .classes = classes_, .conflicts = &conflicts, .conflict_of = &conflict_of, .wanted = {}};
+        .classes = classes_, .conflicts = &conflicts, .conflict_of = conflict_of, .wanted = {}};
     for (const Conflict& conflict : conflicts.listed) {
       if (conflict.nearest_source) selection.wanted.push_back(*conflict.nearest_source);
     }
@@ -337,6 +345,7 @@ class Report {
         .model_lattice = model_lattice_});
   }
 
+  const FoundConflicts* found_;  ///< may be null
   const Result& result_;
   Answer answer_;
   const Store& store_;
@@ -369,6 +378,12 @@ class Report {
 ReportSummary write_report(const Result& result, const Store& store, const Model& model,
                            const std::vector<Pose>& poses, const std::filesystem::path& output,
                            const ReportOptions& options) {
+  return write_report(result, store, model, poses, output, options, nullptr);
+}
+
+ReportSummary write_report(const Result& result, const Store& store, const Model& model,
+                           const std::vector<Pose>& poses, const std::filesystem::path& output,
+                           const ReportOptions& options, const FoundConflicts* found) {
   check_axes(result.reader(), options.conflicts);
   check_searched(result.reader(), store.reader(), {model, options.bodies, poses});
   if (options.section != nullptr) {
@@ -376,8 +391,9 @@ ReportSummary write_report(const Result& result, const Store& store, const Model
   }
   PendingFile file(output, options.overwrite);
   ReportSummary summary;
-  in_threads(options.conflicts.threads,
-             [&] { summary = Report(result, store, model, poses, options).write(file.partial()); });
+  in_threads(options.conflicts.threads, [&] {
+    summary = Report(result, store, model, poses, options, found).write(file.partial());
+  });
   file.publish();
   return summary;
 }

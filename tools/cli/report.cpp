@@ -32,6 +32,7 @@
 #include "io/models/vehicle_file.hpp"
 #include "io/result/conflicts/shift_file.hpp"
 #include "io/store/file_kind.hpp"
+#include "report/write_report.hpp"
 
 namespace clearway::tool {
 
@@ -233,7 +234,7 @@ void add_options_of_result(CLI::App& command, ReportCommand& options) {
 
 }  // namespace
 
-ReportSummary perform(ReportCommand& options) {
+ReportSummary perform(ReportCommand& options, const FoundConflicts* found) {
   ConsoleProgress progress;
   options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
   options.find.stop = &stop_flag();
@@ -264,7 +265,7 @@ ReportSummary perform(ReportCommand& options) {
     options.report.section_name = file_name(options.section);
   }
   ReportSummary summary = write_report(result, store, query.model, query.poses,
-                                       options.outputs.front(), options.report);
+                                       options.outputs.front(), options.report, found);
   log_summary(options, summary, result);
   return summary;
 }

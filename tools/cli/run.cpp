@@ -327,7 +327,7 @@ RunOutcome perform(RunOptions& options) {
   check_search(options.query, options.output, options.search);
   options.search.end_gpus = true;
   prepare_device(options.search);
-  options.search.started = start_devices(options.search);
+  if (!options.search.started) options.search.started = start_devices(options.search);
   if (options.vehicle.empty()) check_is_model(options.model);
   check_is_trajectory(options.trajectory);
   const Store store = open_environment(options.environment);

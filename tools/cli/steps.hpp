@@ -12,6 +12,7 @@
 #include "cli/conflicts/conflict_inputs.hpp"
 #include "cli/run_options.hpp"
 #include "cli/support/lengths.hpp"
+#include "findings/found_conflicts.hpp"
 #include "io/result/conflicts/conflict_file.hpp"
 
 namespace CLI {
@@ -90,7 +91,8 @@ struct ConflictsOutcome {
 };
 
 void add_options(CLI::App& command, ConflictsCommand& options);
-ConflictsOutcome perform(ConflictsCommand& options);
+/// found: gets the conflicts, for later steps; or null.
+ConflictsOutcome perform(ConflictsCommand& options, FoundConflicts* found = nullptr);
 
 /// The options of `clearway stations`.
 struct StationsCommand : ConflictCommand {
@@ -127,6 +129,8 @@ struct ReportCommand : ConflictCommand {
 std::string now_in_utc();
 
 void add_options(CLI::App& command, ReportCommand& options);
-ReportSummary perform(ReportCommand& options);
+/// found: conflicts that an earlier step found, which are taken where they are those of the page;
+/// or null.
+ReportSummary perform(ReportCommand& options, const FoundConflicts* found = nullptr);
 
 }  // namespace clearway::tool

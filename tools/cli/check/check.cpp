@@ -15,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -32,7 +33,9 @@
 #include "cli/support/program_json.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "core/util/shell_words.hpp"
+#include "core/util/stopwatch.hpp"
 #include "io/files/json.hpp"
+#include "io/files/thread_limit.hpp"
 #include "io/models/model_input.hpp"
 #include "io/result/journal.hpp"
 #include "io/result/result.hpp"
@@ -40,6 +43,8 @@
 #include "io/store/convert/convert.hpp"
 #include "io/store/file_kind.hpp"
 #include "search/check_query.hpp"
+#include "search/choose_engine.hpp"
+#include "search/devices.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -47,6 +52,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 using Words = std::vector<std::string>;
+
+/// Scans have hardly ever more bytes for a point.
+constexpr std::uint64_t kMostBytesOfPoint = 64;
 
 constexpr const char* kGoesOn = "the same command goes on from what was finished";
 
@@ -140,6 +148,23 @@ void open_page(const fs::path& page) {
                page.string());
 }
 
+/// The seconds of each step, in their order.
+using StepSeconds = std::vector<std::pair<std::string, double>>;
+
+/// Notes the seconds from its beginning to its end.
+class StepClock {
+ public:
+  StepClock(const char* step, StepSeconds& seconds) : step_(step), seconds_(seconds) {}
+  ~StepClock() { seconds_.emplace_back(step_, clock_.seconds()); }
+  StepClock(const StepClock&) = delete;
+  StepClock& operator=(const StepClock&) = delete;
+
+ private:
+  const char* step_;
+  StepSeconds& seconds_;
+  Stopwatch clock_;
+};
+
 class Check {
  public:
   explicit Check(const CheckCommand& options) : options_(options), plan_(options) {}
@@ -150,13 +175,16 @@ class Check {
     prepare_folder();
     record_.emplace(options_.folder);
     claim_folder();
-    if (!plan_.has_store()) convert_scans();
-    fill_path();
-    const RunOutcome found = search();
-    made_for_ = question();
-    const ordered_json conflicts = make_table<ConflictsCommand>(kConflictsName, plan_.conflicts());
-    make_table<StationsCommand>(kStationsName, plan_.stations());
-    write_page();
+    start_gpus();
+    if (!plan_.has_store()) timed("convert", [&] { convert_scans(); });
+    timed("path", [&] { fill_path(); });
+    const RunOutcome found = timed("run", [&] { return search(); });
+    const ordered_json conflicts = timed("conflicts", [&] {
+      made_for_ = question();
+      return make_table<ConflictsCommand>(kConflictsName, plan_.conflicts());
+    });
+    timed("stations", [&] { return make_table<StationsCommand>(kStationsName, plan_.stations()); });
+    timed("report", [&] { write_page(); });
     record_->write();
     print_answer(found, conflicts);
     if (options_.open) open_page(plan_.file(kReportName));
@@ -164,6 +192,13 @@ class Check {
   }
 
  private:
+  /// Does a step and notes its seconds.
+  template <typename Call>
+  std::invoke_result_t<Call> timed(const char* step, const Call& call) {
+    const StepClock clock(step, seconds_);
+    return call();
+  }
+
   /// Parses the options of all steps, so that every mistake in them is found before the first step.
   void parse_all() {
     if (options_.command->get_option("--model")->empty() &&
@@ -275,6 +310,37 @@ class Check {
     }
   }
 
+  /// Starts the GPUs beside the conversion, where the search surely takes them: where options name
+  /// them, or where the scans are so large that they have very many points.
+  void start_gpus() {
+    const SearchOptions machine = Step<RunOptions>(plan_.run(false)).options().search;
+    if (has_begun() || plan_.has_store() || machine.engine == Engine::kGrid) return;
+    started_ = start_devices(machine);
+    const std::uint64_t points = bytes_of_inputs() / kMostBytesOfPoint;
+    const bool many = points >= surely_many_points(threads_or_all(machine.threads));
+    if (!started_ && many) started_ = std::make_shared<const DeviceStart>(machine);
+  }
+
+  /// The bytes of the scans, also of those in folders; of what cannot be read, nothing.
+  std::uint64_t bytes_of_inputs() const {
+    std::uint64_t bytes = 0;
+    const auto add = [&bytes](const fs::path& file) {
+      std::error_code failed;
+      const std::uint64_t size =
+          fs::is_regular_file(file, failed) ? fs::file_size(file, failed) : 0;
+      if (!failed) bytes += size;
+    };
+    for (const fs::path& input : options_.inputs) {
+      add(input);
+      std::error_code failed;
+      fs::recursive_directory_iterator entry(input, failed);
+      for (; !failed && entry != fs::recursive_directory_iterator(); entry.increment(failed)) {
+        add(entry->path());
+      }
+    }
+    return bytes;
+  }
+
   void convert_scans() {
     Step<ConvertCommand> step(plan_.convert(false));
     if (is_store_of_record(step)) {
@@ -363,6 +429,7 @@ class Check {
       step.options().json = options_.json;
       step.options().names_nearest = false;
       step.options().search.resume = has_begun();
+      step.options().search.started = started_;
       try {
         RunOutcome outcome = perform(step.options());
         note_step(kResultName, step.words(), outcome.report.was_finished);
@@ -421,7 +488,13 @@ class Check {
     const ordered_json known = record_->find(name, what);
     note_step(name, step.words(), known.is_object());
     if (known.is_object()) return known;
-    const auto outcome = in_terms_of_check([&] { return perform(step.options()); });
+    const auto outcome = in_terms_of_check([&] {
+      if constexpr (std::is_same_v<Command, ConflictsCommand>) {
+        return perform(step.options(), &found_.emplace());
+      } else {
+        return perform(step.options());
+      }
+    });
     spdlog::info("{}: written", plan_.file(name).string());
     ordered_json said{{"text", outcome.text}};
     if constexpr (requires { outcome.worst; }) said["worst"] = outcome.worst;
@@ -437,7 +510,7 @@ class Check {
     }
     const std::string date = now_in_utc();
     Step<ReportCommand> step(plan_.report(date));
-    in_terms_of_check([&] { return perform(step.options()); });
+    in_terms_of_check([&] { return perform(step.options(), found_ ? &*found_ : nullptr); });
     record_->note(kReportName, what, date);
     note_step(kReportName, step.words(), false);
   }
@@ -461,10 +534,23 @@ class Check {
       print(indented_text(json_of(found, sentence)));
       return;
     }
+    spdlog::info("seconds: {}", seconds_text());
     std::string text = conflicts.value("text", "") +
                        "these commands did it, and each can be given again by hand:\n";
     for (const std::string& command : commands_) text += "  " + command + "\n";
     print(text + sentence + "\n");
+  }
+
+  /// "convert 1.42, run 1.90, conflicts 0.61; 3.93 in all", without steps of no time.
+  std::string seconds_text() const {
+    std::string text;
+    double all = 0;
+    for (const auto& [step, seconds] : seconds_) {
+      all += seconds;
+      if (seconds < 0.005) continue;
+      text += fmt::format("{}{} {:.2f}", text.empty() ? "" : ", ", step, seconds);
+    }
+    return text + fmt::format("{}{:.2f} in all", text.empty() ? "" : "; ", all);
   }
 
   ordered_json json_of(const RunOutcome& found, const std::string& sentence) const {
@@ -478,6 +564,7 @@ class Check {
     out["nothing_done"] = nothing_done_;
     out["reused"] = reused_;
     out["commands"] = commands_;
+    for (const auto& [step, seconds] : seconds_) out["seconds"][step] = seconds;
     out["run"] = found.json;
     return out;
   }
@@ -488,6 +575,9 @@ class Check {
   ordered_json made_for_;
   std::vector<std::string> commands_;
   ordered_json reused_ = ordered_json::object();
+  std::shared_ptr<const DeviceStart> started_;  ///< null where no GPU was started early
+  std::optional<FoundConflicts> found_;         ///< where the table of conflicts was made anew
+  StepSeconds seconds_;
   bool nothing_done_ = true;
 };
 

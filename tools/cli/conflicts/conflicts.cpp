@@ -317,7 +317,7 @@ void add_sides(CLI::App& command, ConflictsCommand& options) {
 
 }  // namespace
 
-ConflictsOutcome perform(ConflictsCommand& options) {
+ConflictsOutcome perform(ConflictsCommand& options, FoundConflicts* found) {
   const Outputs outputs = open_outputs(options);
   check_is_trajectory(options.trajectory);
   const Result result(options.result);
@@ -341,8 +341,9 @@ ConflictsOutcome perform(ConflictsCommand& options) {
   const bool has_pictures = std::ranges::any_of(
       outputs, [](const auto& output) { return output->format == ConflictFormat::kBcf; });
   std::vector<std::uint32_t> conflict_of;
-  const Conflicts conflicts =
-      find_conflicts(result, poses, options.find, has_pictures ? &conflict_of : nullptr);
+  const bool wants_rows = has_pictures || found != nullptr;
+  Conflicts conflicts =
+      find_conflicts(result, poses, options.find, wants_rows ? &conflict_of : nullptr);
   ConflictPictures pictures;
   if (has_pictures) {
     pictures = {conflict_points(result.reader(), conflicts, conflict_of), from.drawn_models()};
@@ -357,10 +358,15 @@ ConflictsOutcome perform(ConflictsCommand& options) {
   for (const auto& output : outputs) output->pending.publish();
   for (const Message& warning : file.warnings) log_message(warning);
   tell_of_unknown_sides(options, result, conflicts);
-  return {conflict_text(file, options.show), worst_text(file),
-          "{\n" + member_lines(summary_of(file)) + "\n}\n",
-          verdict_to_repeat(result.reader(), {{.station = labels.station}, chainage_of(poses)},
-                            symbol_of(file.unit()))};
+  ConflictsOutcome outcome{
+      conflict_text(file, options.show), worst_text(file),
+      "{\n" + member_lines(summary_of(file)) + "\n}\n",
+      verdict_to_repeat(result.reader(), {{.station = labels.station}, chainage_of(poses)},
+                        symbol_of(file.unit()))};
+  if (found != nullptr) {
+    *found = {std::move(conflicts), std::move(conflict_of), result.reader().header(), options.find};
+  }
+  return outcome;
 }
 
 void add_options(CLI::App& command, ConflictsCommand& options) {

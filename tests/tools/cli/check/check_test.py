@@ -176,6 +176,9 @@ class Finding(Site):
         self.assertEqual(len(answer["commands"]), 5)
         self.assertFalse(answer["nothing_done"])
         self.assertEqual(answer["files"]["result"], "site/result.h5")
+        self.assertEqual(list(answer["seconds"]),
+                         ["convert", "path", "run", "conflicts", "stations", "report"])
+        self.assertTrue(all(seconds >= 0 for seconds in answer["seconds"].values()))
         again = json.loads(self.asked("--json").stdout)
         self.assertTrue(again["nothing_done"])
         self.assertEqual(again["commands"], answer["commands"])
