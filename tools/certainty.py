@@ -12,15 +12,13 @@ tools/charts.py draws the file. The exit code is 1 where Clearway differs from t
 
 import argparse
 import json
-import os
-import platform
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
 import numpy as np
 
+from trials.header import header
 from trials.scans import Scene
 from trials.seen_space import Ground, look
 from trials.verdicts import ERRORS, SHAPES, Places, Program, monte_carlo, wrong
@@ -107,25 +105,6 @@ def differs(findings):
                                          for name, value in formulas.items())
 
 
-def processor():
-    """The name of this machine's processor."""
-    names = [line.split(":", 1)[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines()
-             if line.startswith("model name")]
-    return names[0] if names else platform.machine()
-
-
-def header(program, size):
-    """Machine and program, as clearway-bench writes them."""
-    version = subprocess.run([program, "--version"], capture_output=True, text=True,
-                             check=True).stdout.strip()
-    return {"experiment": "certainty", "size": size,
-            "machine": {"processor": processor(),
-                        "cores": len(os.sched_getaffinity(0)),
-                        "memory_bytes": os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGESIZE"),
-                        "gpus": [], "system": platform.freedesktop_os_release()["PRETTY_NAME"]},
-            "clearway": {"version": version}, "parameters": {}}
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -137,7 +116,7 @@ def main():
                         help="measure this part alone; may be given several times")
     options = parser.parse_args()
     trials, places, scenes, rays = SIZES[options.size]
-    record = {**header(options.program, options.size), "cases": []}
+    record = {**header("certainty", options.program, options.size), "cases": []}
     wanted = options.only or ("place", "program", "noise")
     if "place" in wanted:
         record["cases"] += place_cases(trials)

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Draws the JSON files of `clearway-bench` and tools/certainty.py, each as SVG and PNG named as its experiment.
+"""Draws the JSON files of `clearway-bench`, tools/certainty.py and tools/check_cost.py, each as
+SVG and PNG named as its experiment.
 
 Reads *.json, and *.json.gz as `gzip` makes them. Other JSON files are left out.
 Needs matplotlib and numpy (Debian: python3-matplotlib).
@@ -10,13 +11,14 @@ import argparse
 import sys
 from pathlib import Path
 
-from charting import (accuracy, certainty, datasets, grid, points, scaling, section, seen,
+from charting import (accuracy, certainty, check, datasets, grid, points, scaling, section, seen,
                       stability, surfaces, table, threads)
 from charting.record import read_record
 
 FIGURES = {"table": table, "threads": threads, "grid": grid, "datasets": datasets,
            "points": points, "accuracy": accuracy, "stability": stability, "scaling": scaling,
-           "surfaces": surfaces, "seen": seen, "section": section, "certainty": certainty}
+           "surfaces": surfaces, "seen": seen, "section": section, "certainty": certainty,
+           "check": check}
 
 
 def files_in(folder):

@@ -22,6 +22,7 @@ NOT_RUN = {
     ("docs/guide/measuring.md", "tools/evaluate.sh"): "measures for minutes",
     ("docs/guide/measuring.md", "clearway-bench datasets"): "makes scenes of 800 million points",
     ("docs/guide/measuring.md", "PYTHONPATH=build/release/python tools/certainty.py"): "measures for minutes",
+    ("docs/guide/measuring.md", "tools/check_cost.py"): "measures for minutes",
     ("docs/guide/python.md", "(cd build/release && cpack)"): "makes the package; tools/test_package.sh does",
     ("docs/guide/python.md", "sudo"): "installs the package; tools/test_package.sh does",
     ("docs/guide/python.md", "cmake"): "builds the program",

@@ -238,8 +238,19 @@ def certainty():
                "findings": {"inside": 10**6, "seen": count, "skin": 10**5, "skin_seen": count}}
 
 
+def check():
+    steps = {"convert": 0.2, "path": 0, "run": 0.5, "conflicts": 0.1, "stations": 0.05, "report": 0.15}
+    for points, (way, share) in itertools.product((10**6, 10**7, 10**8),
+                                                  (("2 cores", 8), ("16 cores", 1), ("GPU", 0.5))):
+        seconds = {step: part * share * points / 10**6 for step, part in steps.items()}
+        yield {"key": f"hall/{points}/{way}",
+               "parameters": {"scene": "hall", "points": points, "way": way},
+               "runs": [{"seconds": {**seconds, "total": sum(seconds.values())}}] * 3,
+               "findings": {"colliding_points": points // 20}}
+
+
 EXPERIMENTS = (table, threads, grid, datasets, points, accuracy, stability, scaling, surfaces, seen,
-               section, certainty)
+               section, certainty, check)
 
 
 def write_records(folder):
