@@ -102,6 +102,8 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
      "they do not lie where the map is."},
     {"mesh-faces", kWarning, kScans,
      "The file is a mesh, and only its vertices are taken as a scan."},
+    {"model-among-scans", kNote, kScans,
+     "`clearway check` leaves a file of the vehicle out of the scans, among which it lies."},
     {"more-warnings", kWarning, kScans,
      "The conversion gave more warnings than the 64 that a store keeps."},
     {"named-otherwise", kNote, kScans,

@@ -348,6 +348,7 @@ class Check {
                    plan_.environment().string());
       return note_step(kStoreName, step.words(), true);
     }
+    for (const Message& remark : plan_.remarks()) log_message(remark);
     std::error_code unknown;
     in_terms_of_check([&] {
       if (!fs::exists(plan_.environment(), unknown)) try_inputs();

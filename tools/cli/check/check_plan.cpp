@@ -5,14 +5,20 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <iterator>
 #include <system_error>
 #include <utility>
 
 #include "clearway/error.hpp"
 #include "cli/check/step_options.hpp"
 #include "cli/steps.hpp"
+#include "cli/vehicle/vehicle_inputs.hpp"
+#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/text_number.hpp"
+#include "io/models/model_input.hpp"
+#include "io/scans/point_reader.hpp"
 #include "io/store/file_kind.hpp"
 
 namespace clearway::tool {
@@ -113,7 +119,63 @@ void offer_options_of_steps(CLI::App& check) {
 }
 
 CheckPlan::CheckPlan(const CheckCommand& options)
-    : options_(options), check_(*options.command), has_store_(is_one_store(options.inputs)) {}
+    : options_(options),
+      check_(*options.command),
+      scans_(options.inputs),
+      has_store_(is_one_store(options.inputs)) {
+  if (!has_store_) leave_out_models();
+}
+
+/// The files of the vehicle; none where they cannot be found out, which the search reports.
+std::vector<std::filesystem::path> CheckPlan::models() const {
+  if (is_given("--vehicle")) {
+    try {
+      return vehicle_inputs(value_of("--vehicle"), {});
+    } catch (const Error&) {
+      return {};
+    }
+  }
+  if (!is_given("--model") || names_box(value_of("--model"))) return {};
+  return {value_of("--model")};
+}
+
+/// Takes the files of the vehicle from the scans, because the vehicle would collide with itself.
+/// Everything for a check may lie in one folder.
+void CheckPlan::leave_out_models() {
+  const std::vector<std::filesystem::path> all_models = models();
+  const auto is_model = [&](const std::filesystem::path& file) {
+    return std::ranges::any_of(all_models, [&](const std::filesystem::path& model) {
+      std::error_code unknown;
+      return std::filesystem::equivalent(file, model, unknown);
+    });
+  };
+  std::vector<std::filesystem::path> scans;
+  for (const std::filesystem::path& input : scans_) {
+    std::error_code unknown;
+    std::vector<std::filesystem::path> files{input};
+    std::vector<Message> of_folder;
+    if (std::filesystem::is_directory(input, unknown)) {
+      files = list_point_files({input}, &of_folder);
+    }
+    const auto kept = std::stable_partition(files.begin(), files.end(), std::not_fn(is_model));
+    if (kept == files.end()) {
+      scans.push_back(input);
+      continue;
+    }
+    for (auto model = kept; model != files.end(); ++model) {
+      remarks_.push_back(
+          note("model-among-scans",
+               model->string() + ": belongs to the vehicle, so it is not taken as a scan"));
+    }
+    std::ranges::move(of_folder, std::back_inserter(remarks_));
+    scans.insert(scans.end(), files.begin(), kept);
+  }
+  if (scans.empty() && !scans_.empty()) {
+    throw UsageError(scans_.front().string() +
+                     ": is no scan but belongs to the vehicle; expected scans as inputs");
+  }
+  scans_ = std::move(scans);
+}
 
 std::filesystem::path CheckPlan::environment() const {
   return has_store_ ? options_.inputs.front() : file(kStoreName);
@@ -121,7 +183,7 @@ std::filesystem::path CheckPlan::environment() const {
 
 Words CheckPlan::convert(bool replacing) const {
   Words words{"convert"};
-  for (const std::filesystem::path& input : options_.inputs) words.push_back(input.string());
+  for (const std::filesystem::path& input : scans_) words.push_back(input.string());
   return words + Words{"-o", file(kStoreName).string()} +
          given<ConvertCommand>(check_, kConvertOptions) + again(replacing);
 }

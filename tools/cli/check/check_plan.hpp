@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "clearway/progress.hpp"
+
 namespace CLI {
 class App;
 }
@@ -41,6 +43,8 @@ class CheckPlan {
   /// Whether the input is a store already, so that nothing is converted.
   bool has_store() const { return has_store_; }
   std::filesystem::path environment() const;
+  /// What there is to say of the inputs that are not taken as scans, because they are the vehicle.
+  const std::vector<Message>& remarks() const { return remarks_; }
   std::filesystem::path file(const char* name) const { return options_.folder / name; }
 
   /// replacing: in the place of what is there and does not agree. Otherwise the step goes on with
@@ -67,6 +71,8 @@ class CheckPlan {
   std::string about_distances() const;
 
  private:
+  std::vector<std::filesystem::path> models() const;
+  void leave_out_models();
   bool is_given(const char* name) const;
   std::string value_of(const char* name) const;
   bool has_budget() const;
@@ -75,6 +81,8 @@ class CheckPlan {
 
   const CheckCommand& options_;
   const CLI::App& check_;
+  std::vector<std::filesystem::path> scans_;  ///< files, and folders that hold no model
+  std::vector<Message> remarks_;
   bool has_store_;
   bool has_denser_path_ = false;
   std::string unit_of_path_;

@@ -227,6 +227,27 @@ class Finding(Site):
                          {"environment.las", "post.ply"})
         self.assertTrue(mixed.stdout)
 
+    def test_the_vehicle_may_lie_among_the_scans(self):
+        whole = self.asked("")
+        for name in ("model.ply", "trajectory.txt"):
+            shutil.copy(self.folder / name, self.folder / "scans")
+        words = "--model scans/model.ply --trajectory scans/trajectory.txt --radius 0.1"
+        for number, scans in enumerate(("scans", "scans/environment.las scans/model.ply")):
+            mixed = self.check(f"{scans} {words} -o mixed{number}")
+            self.assertIn("scans/model.ply: belongs to the vehicle, so it is not taken as a scan",
+                          mixed.stderr)
+            self.assertEqual(mixed.stdout.splitlines()[-1], whole.stdout.splitlines()[-1])
+            commands = printed_commands(mixed.stdout)
+            self.assertIn("clearway convert scans/environment.las -o", commands[0])
+        self.check("scans/model.ply --model scans/model.ply --trajectory trajectory.txt "
+                   "--radius 0.1 -o none", 2)
+        (self.folder / "scans/wagon.json").write_text(json.dumps(
+            {"bodies": [{"name": "front", "model": "model.ply"},
+                        {"name": "rear", "model": "model.ply", "at": -4}]}))
+        wagon = self.check("scans --vehicle scans/wagon.json --trajectory trajectory.txt "
+                           "--radius 0.1 -o wagon")
+        self.assertIn("scans/model.ply: belongs to the vehicle", wagon.stderr)
+
     def test_other_questions(self):
         wagon = {"bodies": [{"name": "front", "model": "model.ply"},
                             {"name": "rear", "model": "model.ply", "at": -4}]}
