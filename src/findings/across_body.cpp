@@ -65,10 +65,49 @@ double squared_distance(const Vec3& a, const Vec3& b, const Box& box) {
   return least;
 }
 
-/// The points of one part in a cell, with a box around them.
+/// Some points of one part, with a box around them.
 struct Bunch {
-  std::vector<Vec3> places;
+  std::span<Vec3> places;
   Vec3 centre{}, half{};
+  std::uint32_t halves = 0;  ///< the index of its first half, which the other follows; 0: not cut
+
+  explicit Bunch(std::span<Vec3> of) : places(of) {
+    const Box box = box_of(places);
+    centre = box.centre();
+    half = 0.5 * box.size();
+  }
+};
+
+/// The points of one part in a cell, cut into ever smaller bunches where that is asked for.
+class Bunches {
+ public:
+  /// A bunch of so few points is not cut.
+  static constexpr std::size_t kFew = 8;
+
+  explicit Bunches(std::span<Vec3> places) { bunches_.emplace_back(places); }
+
+  /// The whole is at index 0.
+  const Bunch& operator[](std::uint32_t i) const { return bunches_[i]; }
+  bool can_cut(std::uint32_t i) const { return bunches_[i].places.size() > kFew; }
+
+  /// The index of the first half of a bunch that can be cut.
+  std::uint32_t halves(std::uint32_t i) {
+    if (bunches_[i].halves != 0) return bunches_[i].halves;
+    const std::span<Vec3> places = bunches_[i].places;
+    const Vec3& half = bunches_[i].half;
+    const int axis = half.x >= half.y && half.x >= half.z ? 0 : half.y >= half.z ? 1 : 2;
+    const std::size_t middle = places.size() / 2;
+    std::nth_element(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(middle),
+                     places.end(),
+                     [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
+    const auto first = static_cast<std::uint32_t>(bunches_.size());
+    bunches_.emplace_back(places.first(middle));
+    bunches_.emplace_back(places.subspan(middle));
+    return bunches_[i].halves = first;
+  }
+
+ private:
+  std::vector<Bunch> bunches_;
 };
 
 /// A box of the body's frame that surely holds all of a bunch.
@@ -94,11 +133,19 @@ bool overlap(const Box& a, const Box& b) {
   return true;
 }
 
+/// Keeps the greater of two numbers, of which `greatest` is none below 0; infinity for NaN.
+void keep_greatest(double value, double& greatest) {
+  if (value <= greatest) return;
+  greatest = std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
+}
+
 /// How a body turns on the straight ways of its points from one pose to the next. Seen from the
 /// body, a point of the environment then moves on a curve beside the line between its two places,
 /// and the body is a little smaller than at its poses (docs/design/findings.md, "Between poses").
 class Turn {
  public:
+  /// No turn.
+  Turn() = default;
   Turn(const Pose& from, const Pose& to, double radius) {
     double square = 0;
     for (int k = 0; k < 9; ++k) {
@@ -118,8 +165,95 @@ class Turn {
     return sum >= 0 ? sum : std::numeric_limits<double>::infinity();
   }
 
+  /// Makes beyond() not less than that of another turn.
+  void keep_greatest(const Turn& other) {
+    clearway::keep_greatest(other.share_, share_);
+    clearway::keep_greatest(other.shrinks_, shrinks_);
+  }
+
  private:
-  double share_, shrinks_;
+  double share_ = 0, shrinks_ = 0;
+};
+
+/// Bounds of how places move, seen from a body, while it goes through ranges of its poses. Most
+/// ranges are of no account to most points, and a bound dismisses all of their poses at once.
+class BodyMotion {
+ public:
+  /// The numbers of poses in ranges of level 0 and of the last level; those between double.
+  static constexpr std::size_t kLeastPoses = 8, kMostPoses = 1024;
+
+  /// Which of the ranges.
+  struct Place {
+    std::size_t level, i;
+
+    std::size_t first() const { return i * (kLeastPoses << level); }
+    std::size_t end() const { return (i + 1) * (kLeastPoses << level); }
+    Place half(std::size_t number) const { return {level - 1, 2 * i + number}; }
+  };
+
+  BodyMotion(const MovingBody& body, double radius, bool ways)
+      : poses_(body.poses), radius_(radius), ways_(ways) {
+    for (std::size_t size = kLeastPoses; size <= kMostPoses; size *= 2) {
+      auto& ranges = levels_.emplace_back((poses_.size() + size - 1) / size);
+      const ParallelScope scope;
+      const auto bound = piece_of(scope, [&](std::size_t i) { ranges[i] = range_of(i, size); });
+      scope.begin();
+      tbb::parallel_for(std::size_t{0}, ranges.size(), bound);
+    }
+  }
+
+  std::size_t last_level() const { return levels_.size() - 1; }
+  static std::size_t size_of(std::size_t level) { return kLeastPoses << level; }
+  const Pose& middle(const Place& at) const { return middle_of(at.i, size_of(at.level)); }
+
+  /// How far places at most `distance` from the middle pose of a range move along each axis of the
+  /// body, from where they are then to where they are at any other pose of the range.
+  Vec3 most_moves(const Place& at, double distance) const {
+    const Range& range = levels_[at.level][at.i];
+    Vec3 out{};
+    for (int k = 0; k < 3; ++k) {
+      out[k] = (range.shift[k] + range.turn[k] * distance) * (1 + kBoxShare) + kBoxRounding;
+    }
+    return out;
+  }
+
+  /// The greatest turn of any way that begins in a range.
+  const Turn& most_turn(const Place& at) const { return levels_[at.level][at.i].most; }
+
+ private:
+  /// Seen from the body, no place is farther along an axis from where it is at the middle pose than
+  /// `shift`, plus `turn` times its distance from that pose.
+  struct Range {
+    Vec3 shift{}, turn{};
+    Turn most;  ///< the greatest turn of any way
+  };
+
+  const Pose& middle_of(std::size_t i, std::size_t size) const {
+    return poses_[i * size + std::min(size, poses_.size() - i * size) / 2];
+  }
+
+  Range range_of(std::size_t i, std::size_t size) const {
+    Range out;
+    const PullBack middle(middle_of(i, size));
+    const std::size_t first = i * size, end = std::min(first + size + (ways_ ? 1 : 0), poses_.size());
+    for (std::size_t k = first; k < end; ++k) {
+      const PullBack back(poses_[k]);
+      const Vec3 moved = back.position - middle.position;
+      for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 row = (1 / back.determinant) * back.rows[axis];
+        const Vec3 row_of_middle = (1 / middle.determinant) * middle.rows[axis];
+        keep_greatest(std::abs(dot(row, moved)), out.shift[axis]);
+        keep_greatest(length(row - row_of_middle), out.turn[axis]);
+      }
+      if (ways_ && k > first) out.most.keep_greatest(Turn(poses_[k - 1], poses_[k], radius_));
+    }
+    return out;
+  }
+
+  std::span<const Pose> poses_;
+  double radius_;
+  bool ways_;
+  std::vector<std::vector<Range>> levels_;
 };
 
 /// A body as points are seen from it.
@@ -127,6 +261,7 @@ class Viewer {
  public:
   Viewer(const BodiesAcross& how, std::uint32_t body)
       : body_(how.bodies[body]),
+        motion_(body_, how.radius, how.ways),
         box_(how.boxes[body]),
         grown_(box_.grown(how.radius)),
         axes_(how.axes),
@@ -140,38 +275,97 @@ class Viewer {
                 (from_floor.hi.z - from_floor.lo.z) / 4};
   }
 
-  /// Adds where a bunch lies at the poses of a range. Of a bunch that lies within what is found
-  /// already, no point is looked at.
-  void add(const Bunch& bunch, const PartAcross& part, AcrossBody& found) const {
+  /// Adds where points lie at the poses of a part's range. Points that surely lie within what is
+  /// found already are not looked at one by one.
+  void add(Bunches& bunches, const PartAcross& part, AcrossBody& found) const {
     const bool ways = ways_ && part.first_pose < part.last_pose;
-    const Pose* before = nullptr;
-    for (std::uint32_t i = part.first_pose; i <= part.last_pose; ++i) {
-      const Pose* pose = body_.pose_at(i);
-      if (ways && pose != nullptr && before != nullptr) add_way(bunch, *before, *pose, found);
-      if (!ways && pose != nullptr) add_pose(bunch, *pose, found);
-      before = pose;
+    const std::size_t first = index_of(part.first_pose);
+    const std::size_t end = index_of(std::uint64_t{part.last_pose} + 1);
+    // A way is numbered by the pose at which it begins.
+    const Moments moments{first, ways && end > first ? end - 1 : end, ways};
+    const std::size_t level = motion_.last_level(), size = BodyMotion::size_of(level);
+    for (std::size_t i = first / size; i * size < moments.end; ++i) {
+      add_range(bunches, 0, {level, i}, moments, found);
     }
   }
 
  private:
-  void add_pose(const Bunch& bunch, const Pose& pose, AcrossBody& found) const {
+  /// Poses or ways of the body from `first` to `end`, which is not included.
+  struct Moments {
+    std::size_t first, end;
+    bool are_ways;
+  };
+
+  /// The index of the body's first pose that is not before a pose of the path.
+  std::size_t index_of(std::uint64_t path_pose) const {
+    const auto& all = body_.path_pose;
+    if (all.empty()) return std::min<std::uint64_t>(path_pose, body_.poses.size());
+    return static_cast<std::size_t>(std::ranges::lower_bound(all, path_pose) - all.begin());
+  }
+
+  /// Whether the body has a pose at both ends of a way.
+  bool is_way(std::size_t i) const {
+    return body_.path_pose.empty() || body_.path_pose[i] + 1 == body_.path_pose[i + 1];
+  }
+
+  /// Adds a bunch at those of the moments that lie in a range of the body's motion. Of bunch and
+  /// range, the one that makes the place of the points less certain is cut first.
+  void add_range(Bunches& bunches, std::uint32_t b, const BodyMotion::Place& at,
+                 const Moments& moments, AcrossBody& found) const {
+    const std::size_t first = std::max(at.first(), moments.first);
+    const std::size_t end = std::min(at.end(), moments.end);
+    if (first >= end) return;
+    const Bunch& bunch = bunches[b];
+    const PullBack middle(motion_.middle(at));
+    const double distance = length(bunch.centre - middle.position) + length(bunch.half);
+    const Vec3 moves = motion_.most_moves(at, distance);
+    if (!may_add_in(seen_box(middle, bunch), moves, motion_.most_turn(at), moments, found)) return;
+    if (at.level > 0 && !(bunches.can_cut(b) && longest(moves) < longest(bunch.half))) {
+      add_range(bunches, b, at.half(0), moments, found);
+      add_range(bunches, b, at.half(1), moments, found);
+    } else if (bunches.can_cut(b)) {
+      const std::uint32_t halves = bunches.halves(b);
+      add_range(bunches, halves, at, moments, found);
+      add_range(bunches, halves + 1, at, moments, found);
+    } else {
+      for (std::size_t k = first; k < end; ++k) add_moment(bunch.places, k, moments, found);
+    }
+  }
+
+  static double longest(const Vec3& v) { return std::max({v.x, v.y, v.z}); }
+
+  void add_moment(std::span<const Vec3> places, std::size_t k, const Moments& moments,
+                  AcrossBody& found) const {
+    if (!moments.are_ways) return add_pose(places, body_.poses[k], found);
+    if (is_way(k)) add_way(places, body_.poses[k], body_.poses[k + 1], found);
+  }
+
+  /// Whether places in a box at one of some poses, or that move from there as far as `moves`, may
+  /// change what is found at any of the poses or on any of the ways between them.
+  bool may_add_in(Box seen, const Vec3& moves, const Turn& turn, const Moments& moments,
+                  const AcrossBody& found) const {
+    for (int k = 0; k < 3; ++k) {
+      seen.lo[k] -= moves[k];
+      seen.hi[k] += moves[k];
+      if (!std::isfinite(seen.lo[k]) || !std::isfinite(seen.hi[k])) return true;
+    }
+    if (moments.are_ways) seen = seen.grown(turn.beyond(length(seen.size())));
+    return may_add(seen, found);
+  }
+
+  void add_pose(std::span<const Vec3> places, const Pose& pose, AcrossBody& found) const {
     const PullBack back(pose);
-    if (!may_add(seen_box(back, bunch), found)) return;
-    for (const Vec3& place : bunch.places) {
+    for (const Vec3& place : places) {
       const Vec3 x = back.apply(place);
       if (is_at_floor(x) && squared_distance(x, box_) < radius_ * radius_) add_place(x, 0, found);
     }
   }
 
-  void add_way(const Bunch& bunch, const Pose& from, const Pose& to, AcrossBody& found) const {
+  void add_way(std::span<const Vec3> places, const Pose& from, const Pose& to,
+               AcrossBody& found) const {
     const PullBack first(from), second(to);
-    const Box a = seen_box(first, bunch), b = seen_box(second, bunch);
-    Box both = a;
-    both.extend(b.lo);
-    both.extend(b.hi);
     const Turn turn(from, to, radius_);
-    if (!may_add(both.grown(turn.beyond(length(both.size()))), found)) return;
-    for (const Vec3& place : bunch.places) {
+    for (const Vec3& place : places) {
       const Vec3 x = first.apply(place), y = second.apply(place);
       if (!is_at_floor(x) && !is_at_floor(y)) continue;
       const double beyond = turn.beyond(length(y - x)), reach = radius_ + beyond;
@@ -209,6 +403,7 @@ class Viewer {
   }
 
   const MovingBody& body_;
+  BodyMotion motion_;
   Box box_, grown_;
   AheadLeftUp axes_;
   Vec3 left_, up_;
@@ -266,30 +461,28 @@ void find_across_bodies(const CellGrid& grid, const PointGroups& groups,
     found = parts[number].found;
     release(&lock);
   };
-  const auto add = [&](std::uint32_t number, const Bunch& bunch) {
+  const auto add = [&](std::uint32_t number, std::span<Vec3> places) {
     const PartAcross part{parts[number].body, parts[number].first_pose, parts[number].last_pose};
     AcrossBody found;
     exchange(number, found);
-    viewers[part.body].add(bunch, part, found);
+    Bunches bunches(places);
+    viewers[part.body].add(bunches, part, found);
     exchange(number, found);
   };
   const ParallelScope scope;
   const auto add_cells = piece_of(scope, [&](const Range& range) {
-    Bunch bunch;
+    std::vector<Vec3> places;
     for (std::uint32_t cell = range.begin(); cell != range.end(); ++cell) {
       if (progress.stop_requested()) return;
       if (PointGroups::is_small(groups.of_cell[cell])) continue;
       const auto points = points_of_parts(grid.points(cell), part_of_row, quantisation);
       for (std::size_t i = 0; i < points.size();) {
         const std::uint32_t number = points[i].first;
-        bunch.places.clear();
+        places.clear();
         for (; i < points.size() && points[i].first == number; ++i) {
-          bunch.places.push_back(points[i].second);
+          places.push_back(points[i].second);
         }
-        const Box box = box_of(bunch.places);
-        bunch.centre = box.centre();
-        bunch.half = 0.5 * box.size();
-        add(number, bunch);
+        add(number, places);
       }
     }
   });
