@@ -235,7 +235,8 @@ class BodyMotion {
   Range range_of(std::size_t i, std::size_t size) const {
     Range out;
     const PullBack middle(middle_of(i, size));
-    const std::size_t first = i * size, end = std::min(first + size + (ways_ ? 1 : 0), poses_.size());
+    const std::size_t first = i * size;
+    const std::size_t end = std::min(first + size + (ways_ ? 1 : 0), poses_.size());
     for (std::size_t k = first; k < end; ++k) {
       const PullBack back(poses_[k]);
       const Vec3 moved = back.position - middle.position;
@@ -328,16 +329,16 @@ class Viewer {
       add_range(bunches, halves, at, moments, found);
       add_range(bunches, halves + 1, at, moments, found);
     } else {
-      for (std::size_t k = first; k < end; ++k) add_moment(bunch.places, k, moments, found);
+      for (std::size_t k = first; k < end; ++k) add_moment(bunch, k, moments, found);
     }
   }
 
   static double longest(const Vec3& v) { return std::max({v.x, v.y, v.z}); }
 
-  void add_moment(std::span<const Vec3> places, std::size_t k, const Moments& moments,
+  void add_moment(const Bunch& bunch, std::size_t k, const Moments& moments,
                   AcrossBody& found) const {
-    if (!moments.are_ways) return add_pose(places, body_.poses[k], found);
-    if (is_way(k)) add_way(places, body_.poses[k], body_.poses[k + 1], found);
+    if (!moments.are_ways) return add_pose(bunch.places, body_.poses[k], found);
+    if (is_way(k)) add_way(bunch, body_.poses[k], body_.poses[k + 1], found);
   }
 
   /// Whether places in a box at one of some poses, or that move from there as far as `moves`, may
@@ -361,11 +362,15 @@ class Viewer {
     }
   }
 
-  void add_way(std::span<const Vec3> places, const Pose& from, const Pose& to,
-               AcrossBody& found) const {
+  void add_way(const Bunch& bunch, const Pose& from, const Pose& to, AcrossBody& found) const {
     const PullBack first(from), second(to);
+    const Box a = seen_box(first, bunch), b = seen_box(second, bunch);
+    Box both = a;
+    both.extend(b.lo);
+    both.extend(b.hi);
     const Turn turn(from, to, radius_);
-    for (const Vec3& place : places) {
+    if (!may_add(both.grown(turn.beyond(length(both.size()))), found)) return;
+    for (const Vec3& place : bunch.places) {
       const Vec3 x = first.apply(place), y = second.apply(place);
       if (!is_at_floor(x) && !is_at_floor(y)) continue;
       const double beyond = turn.beyond(length(y - x)), reach = radius_ + beyond;

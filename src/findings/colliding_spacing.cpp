@@ -110,12 +110,12 @@ class PlaceTree {
 
 /// The distances from places to the nearest point at another place, found in one pass over all
 /// points. Each place has a ball about it, and each point is compared with the places whose balls
-/// reach its cube. Where one size of cubes leaves too many places in a cube, balls have cubes by
-/// their size.
+/// reach into its cube. Where one size of cubes leaves too many places in a cube, each ball has
+/// cubes of its own size.
 class NearestToPlaces {
  public:
-  /// places: no two the same; they must outlive this object. squared_radii: of their balls; for each
-  /// the squared distance to some point at another place, or less.
+  /// places: no two the same; they must outlive this object. squared_radii: of their balls, each
+  /// at most the squared distance to some point at another place.
   NearestToPlaces(std::span<const QuantumPoint> places, std::span<const double> squared_radii,
                   const Distances& distances)
       : places_(places), distances_(distances), squared_(places.size()) {

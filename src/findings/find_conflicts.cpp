@@ -1,8 +1,12 @@
 #include <tbb/parallel_for.h>
+#include <tbb/spin_mutex.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -27,6 +31,7 @@
 #include "findings/group/cell_grid.hpp"
 #include "findings/group/point_groups.hpp"
 #include "findings/least_shift.hpp"
+#include "findings/row_pieces.hpp"
 #include "findings/tally_points.hpp"
 #include "findings/touched_first.hpp"
 #include "io/files/thread_limit.hpp"
@@ -124,6 +129,45 @@ struct ConflictDistance {
   std::uint64_t inside = 0;  ///< number of points with a distance below 0
 };
 
+/// The nearest points of conflicts, which several threads may offer at the same time. Most points
+/// are no nearer than what is known, and need no lock.
+class NearestPoints {
+ public:
+  /// For conflicts with the numbers 1 to `conflicts`.
+  explicit NearestPoints(std::size_t conflicts)
+      : nearest_(conflicts + 1), known_(conflicts + 1), inside_(conflicts + 1) {
+    for (auto& known : known_) known = std::numeric_limits<double>::infinity();
+  }
+
+  void offer(std::uint32_t conflict, const Clearances& rows, std::size_t i) {
+    const double distance = rows.distance[i];
+    if (distance < 0) inside_[conflict].fetch_add(1, std::memory_order_relaxed);
+    if (distance > known_[conflict].load(std::memory_order_relaxed)) return;
+    tbb::spin_mutex& lock = locks_[conflict % locks_.size()];
+    const tbb::spin_mutex::scoped_lock held(lock);
+    acquire(&lock);
+    ConflictDistance& nearest = nearest_[conflict];
+    if (nearest.source == ConflictDistance::kNone || distance < nearest.distance ||
+        (distance == nearest.distance && rows.source[i] < nearest.source)) {
+      nearest = {distance, rows.source[i], rows.pose[i], rows.xyz[i],
+                 rows.body.empty() ? std::nullopt : std::optional(rows.body[i])};
+      known_[conflict].store(distance, std::memory_order_relaxed);
+    }
+    release(&lock);
+  }
+
+  std::vector<ConflictDistance> take() {
+    for (std::size_t i = 0; i < nearest_.size(); ++i) nearest_[i].inside = inside_[i];
+    return std::move(nearest_);
+  }
+
+ private:
+  std::vector<ConflictDistance> nearest_;
+  std::vector<std::atomic<double>> known_;
+  std::vector<std::atomic<std::uint64_t>> inside_;
+  std::array<tbb::spin_mutex, 64> locks_;
+};
+
 /// Joins the clearances with the colliding points; both are in ascending order of their source.
 /// Returns the nearest point of each conflict at the conflict's number, from 1 to `conflicts`.
 /// conflict_of: the conflict of each row, 0 for none.
@@ -131,31 +175,29 @@ std::vector<ConflictDistance> least_distances(const ResultReader& result,
                                               std::span<const std::uint64_t> source,
                                               std::span<const std::uint32_t> conflict_of,
                                               std::size_t conflicts, Progress& progress) {
-  std::vector<ConflictDistance> out(conflicts + 1);
+  NearestPoints nearest(conflicts);
   progress.begin("distances", result.clearances(), "points");
   RowStream<Clearances> stream(result);
-  std::size_t row = 0;
+  std::size_t first_row = 0;  // below it, no source is among those of later clearances
   for (Clearances rows; stream.read(rows);) {
     throw_if_stopped(progress);
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      while (row < source.size() && source[row] < rows.source[i]) ++row;
-      if (row == source.size() || source[row] != rows.source[i]) continue;
-      if (conflict_of[row] == 0) continue;
-      ConflictDistance& least = out[conflict_of[row]];
-      if (rows.distance[i] < 0) ++least.inside;
-      if (least.source == ConflictDistance::kNone || rows.distance[i] < least.distance) {
-        least = {rows.distance[i],
-                 rows.source[i],
-                 rows.pose[i],
-                 rows.xyz[i],
-                 rows.body.empty() ? std::nullopt : std::optional(rows.body[i]),
-                 least.inside};
+    const std::span<const std::uint64_t> left = source.subspan(first_row);
+    in_pieces(rows.size(), [&](std::size_t first, std::size_t end) {
+      auto at = std::ranges::lower_bound(left, rows.source[first]);
+      for (std::size_t i = first; i < end; ++i) {
+        while (at != left.end() && *at < rows.source[i]) ++at;
+        if (at == left.end()) return;
+        if (*at != rows.source[i]) continue;
+        const std::uint32_t conflict = conflict_of[static_cast<std::size_t>(&*at - source.data())];
+        if (conflict != 0) nearest.offer(conflict, rows, i);
       }
-    }
+    });
+    first_row +=
+        static_cast<std::size_t>(std::ranges::upper_bound(left, rows.source.back()) - left.begin());
     progress.advance(rows.size());
   }
   progress.end();
-  return out;
+  return nearest.take();
 }
 
 /// One call of find_conflicts(), step by step.

@@ -11,6 +11,7 @@
 
 #include "clearway/vec3.hpp"
 #include "core/geometry/predicate.hpp"
+#include "findings/row_pieces.hpp"
 #include "findings/touched_first.hpp"
 
 namespace clearway {
@@ -37,15 +38,21 @@ class FootFinder {
   FootFinder(const PathStations& path, std::span<const Vec3> directions, Axis up)
       : path_(path), directions_(directions), up_(up) {}
 
-  std::optional<Foot> find(const Vec3& place) {
+  /// The way of the path on which the next place may have its foot.
+  std::size_t next_way(const Vec3& place) {
     if (!way_) way_ = nearest(place);
     std::size_t way = *way_;
     const std::size_t last = directions_.size() - 1;
     while (way < last && ahead(place, way + 1) >= 0) ++way;
     while (way > 0 && ahead(place, way) < 0) --way;
     way_ = way;
+    return way;
+  }
+
+  /// The foot of a place on the way that next_way() gave for it. Thread safe.
+  std::optional<Foot> foot_on(const Vec3& place, std::size_t way) const {
     const double here = ahead(place, way);
-    if (way == last || here < 0) {
+    if (way + 1 == directions_.size() || here < 0) {
       return std::abs(here) <= kInSection ? foot(place, {way, 0}) : std::nullopt;
     }
     return foot(place, {way, root(place, way)});
@@ -163,24 +170,30 @@ std::vector<Overthrow> overthrow_of(const PathStations& path, const MovingBody& 
   std::array<FootFinder, 3> finders{FootFinder(path, directions, up),
                                     FootFinder(path, directions, up),
                                     FootFinder(path, directions, up)};
+  const auto place_at = [&](std::size_t i, std::size_t k) {
+    return body.poses[i].position() + places[k] * direction_ahead(body.poses[i], forward);
+  };
+  std::vector<std::array<std::size_t, 3>> ways(out.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const Pose& pose = body.poses[i];
-    const Vec3 axis = direction_ahead(pose, forward);
+    for (std::size_t k = 0; k < 3; ++k) ways[i][k] = finders[k].next_way(place_at(i, k));
+  }
+  const auto measure = [&](std::size_t i) {
     std::array<std::optional<Foot>, 3> feet;
-    for (std::size_t k = 0; k < 3; ++k) {
-      feet[k] = finders[k].find(pose.position() + places[k] * axis);
-    }
+    for (std::size_t k = 0; k < 3; ++k) feet[k] = finders[k].foot_on(place_at(i, k), ways[i][k]);
     const std::optional<double> turn = turn_between(feet);
-    if (!turn) continue;
+    if (!turn) return;
     const bool straight = std::abs(*turn) <= kStraight;
     const auto inwards = [&](const Foot& foot) { return *turn > 0 ? foot.lateral : -foot.lateral; };
     for (const std::size_t end : {std::size_t{0}, std::size_t{2}}) {
       if (!feet[end]) continue;
       keep_greatest(straight ? std::abs(feet[end]->lateral) : -inwards(*feet[end]), out[i].end);
     }
-    if (!feet[1]) continue;
+    if (!feet[1]) return;
     out[i].middle = straight ? std::abs(feet[1]->lateral) : inwards(*feet[1]);
-  }
+  };
+  in_pieces(out.size(), [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) measure(i);
+  });
   return out;
 }
 

@@ -1,8 +1,16 @@
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/spin_mutex.h>
+
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <deque>
+#include <limits>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "clearway/error.hpp"
 #include "clearway/stations.hpp"
@@ -14,10 +22,12 @@
 #include "core/trajectory/follow/path_stations.hpp"
 #include "core/util/format.hpp"
 #include "core/util/progress.hpp"
+#include "core/util/tsan_annotations.hpp"
 #include "findings/certain_points.hpp"
 #include "findings/check_conflicts.hpp"
 #include "findings/overthrow.hpp"
 #include "findings/path_rows.hpp"
+#include "findings/row_pieces.hpp"
 #include "findings/touched_first.hpp"
 #include "findings/unseen_lattice.hpp"
 #include "io/files/input_error.hpp"
@@ -28,6 +38,48 @@
 
 namespace clearway {
 namespace {
+
+/// Keeps the nearer of two places, or of equally near ones that with the smaller source.
+void keep_least(const FoundPlace& found, std::optional<FoundPlace>& least) {
+  const auto key = [](const FoundPlace& of) { return std::pair(of.distance, of.source); };
+  if (!least || key(found) < key(*least)) least = found;
+}
+
+/// The least distances of one stretch, which several threads may lower at the same time. Most
+/// places are no nearer than what is known, and need no lock.
+class SharedLeast {
+ public:
+  enum Which : std::uint8_t { kLeast, kLeft, kRight, kAbove };
+
+  explicit SharedLeast(StationRow& row) : places_{&row.least, &row.left, &row.right, &row.above} {
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      if (*places_[k]) known_[k] = (*places_[k])->distance;
+    }
+  }
+
+  /// Whether a place at this distance may be kept as one of these.
+  bool may_keep(double distance, Which which) const {
+    return distance <= known_[which].load(std::memory_order_relaxed);
+  }
+  bool may_keep_side(double distance) const {
+    return may_keep(distance, kLeft) || may_keep(distance, kRight) || may_keep(distance, kAbove);
+  }
+
+  void keep(const FoundPlace& found, Which which) {
+    if (!may_keep(found.distance, which)) return;
+    const tbb::spin_mutex::scoped_lock held(lock_);
+    acquire(&lock_);
+    keep_least(found, *places_[which]);
+    known_[which].store((*places_[which])->distance, std::memory_order_relaxed);
+    release(&lock_);
+  }
+
+ private:
+  static constexpr double kMost = std::numeric_limits<double>::infinity();
+  std::array<std::optional<FoundPlace>*, 4> places_;
+  std::array<std::atomic<double>, 4> known_{kMost, kMost, kMost, kMost};
+  tbb::spin_mutex lock_;
+};
 
 /// One call of station_table(), step by step.
 class TableMaker {
@@ -145,39 +197,40 @@ class TableMaker {
                       ": without the bodies of the vehicle the table cannot say which points are "
                       "to the left, to the right or above"));
     }
+    std::deque<SharedLeast> leasts;
+    for (StationRow& row : table_.rows) leasts.emplace_back(row);
+    std::vector<Box> boxes;
+    for (const Box& box : boxes_) boxes.push_back(turned(box, options_.forward, options_.up));
     progress_.begin("distances", reader_.clearances(), "points");
     RowStream<Clearances> stream(reader_);
     for (Clearances rows; stream.read(rows);) {
       throw_if_stopped(progress_);
-      for (std::size_t i = 0; i < rows.size(); ++i) {
-        FoundPlace found{rows.source[i], rows.pose[i], {}, rows.distance[i]};
-        found.xyz = rows.xyz[i];
-        if (!rows.body.empty()) found.body = rows.body[i];
-        StationRow& row = table_.rows[rows_.of_pose(found.pose)];
-        keep_least(found, row.least);
-        if (sides) keep_side(found, row);
-      }
+      in_pieces(rows.size(), [&](std::size_t first, std::size_t end) {
+        for (std::size_t i = first; i < end; ++i) {
+          SharedLeast& least = leasts[rows_.of_pose(rows.pose[i])];
+          FoundPlace found{rows.source[i], rows.pose[i], rows.xyz[i], rows.distance[i]};
+          if (!rows.body.empty()) found.body = rows.body[i];
+          least.keep(found, SharedLeast::kLeast);
+          if (sides && least.may_keep_side(found.distance)) keep_side(found, boxes, least);
+        }
+      });
       progress_.advance(rows.size());
     }
     progress_.end();
   }
 
-  static void keep_least(const FoundPlace& found, std::optional<FoundPlace>& least) {
-    const auto key = [](const FoundPlace& of) { return std::pair(of.distance, of.source); };
-    if (!least || key(found) < key(*least)) least = found;
-  }
-
-  void keep_side(const FoundPlace& found, StationRow& row) const {
+  /// boxes: of the bodies, along the axes of ahead_left_up().
+  void keep_side(const FoundPlace& found, std::span<const Box> boxes, SharedLeast& least) const {
     const Pose* pose = bodies_[found.body].pose_at(found.pose);
     if (pose == nullptr) return;
     const Vec3 there = ahead_left_up(found.xyz, *pose, options_.forward, options_.up);
-    const Box box = turned(boxes_[found.body], options_.forward, options_.up);
+    const Box& box = boxes[found.body];
     if (there.y > box.hi.y) {
-      keep_least(found, row.left);
+      least.keep(found, SharedLeast::kLeft);
     } else if (there.y < box.lo.y) {
-      keep_least(found, row.right);
+      least.keep(found, SharedLeast::kRight);
     } else if (there.z > box.hi.z) {
-      keep_least(found, row.above);
+      least.keep(found, SharedLeast::kAbove);
     }
   }
 
@@ -219,16 +272,44 @@ class TableMaker {
 
   /// Adds the rows in a range on which a body may come within `distance` of a place; all of them
   /// where the boxes of the bodies are not known.
-  void add_near(const Vec3& place, double distance, std::size_t from, std::size_t to, RowSet& set) {
+  void add_near(const Vec3& place, double distance, std::size_t from, std::size_t to,
+                RowSet& set) const {
     if (from >= to || set.next_outside(from) >= to) return;
     if (!knows_bodies()) return add({from, to}, set);
-    if (!reach_) reach_.emplace(bodies_, boxes_, rows_, header_.between_poses);
     reach_->add_near(place, distance, from, to, set);
+  }
+
+  /// Calls visit(rows, i, row of the table, sets) for every row of a table of the result, by many
+  /// threads, and adds what they put into their sets to these.
+  template <typename Rows, std::size_t kSets, typename Visit>
+  void add_rows(const std::array<RowSet*, kSets>& sets, const Visit& visit) {
+    std::array<RowSet, kSets> none = [&]<std::size_t... K>(std::index_sequence<K...>) {
+      return std::array<RowSet, kSets>{((void)K, RowSet(rows_.size()))...};
+    }
+    (std::make_index_sequence<kSets>());
+    tbb::enumerable_thread_specific<std::array<RowSet, kSets>> of_threads(none);
+    RowStream<Rows> stream(reader_);
+    std::size_t before = 0;
+    for (Rows rows; stream.read(rows); before += rows.size()) {
+      throw_if_stopped(progress_);
+      in_pieces(rows.size(), [&](std::size_t first, std::size_t end) {
+        auto& own = of_threads.local();
+        for (std::size_t i = first; i < end; ++i) visit(rows, i, before + i, own);
+      });
+      progress_.advance(rows.size());
+    }
+    for (const auto& own : of_threads) {
+      for (std::size_t k = 0; k < kSets; ++k) {
+        for (std::size_t row = 0; row < rows_.size(); ++row) {
+          if (own[k].contains(row)) sets[k]->add(row);
+        }
+      }
+    }
   }
 
   /// Adds the rows on which a point collides: those of its first and its last pose, and of those
   /// between them the ones on which a body may touch it.
-  void add_touched(const Collisions& rows, std::size_t i, RowSet& set) {
+  void add_touched(const Collisions& rows, std::size_t i, RowSet& set) const {
     const auto first = rows_of(rows.first_pose[i]);
     add(first, set);
     const auto last = rows_of(rows.last_pose[i]);
@@ -283,6 +364,7 @@ class TableMaker {
 
   void judge() {
     RowSet conflict(rows_.size()), near(rows_.size()), unseen(rows_.size());
+    if (knows_bodies()) reach_.emplace(bodies_, boxes_, rows_, header_.between_poses);
     find_touched(conflict, near);
     find_near(near);
     find_unseen(unseen);
@@ -336,17 +418,12 @@ class TableMaker {
 
   void find_touched(RowSet& conflict, RowSet& near) {
     const std::vector<bool> certain = header_.budget ? find_certain() : std::vector<bool>();
-    progress_.begin("contacts", reader_.collisions() + reader_.near(), "points");
-    RowStream<Collisions> stream(reader_);
-    std::uint64_t row = 0;
-    for (Collisions rows; stream.read(rows);) {
-      throw_if_stopped(progress_);
-      for (std::size_t i = 0; i < rows.size(); ++i, ++row) {
-        const bool counts = !header_.budget || certain[row];
-        add_touched(rows, i, counts ? conflict : near);
-      }
-      progress_.advance(rows.size());
-    }
+    progress_.begin("contacts", reader_.collisions(), "points");
+    add_rows<Collisions, 2>({&conflict, &near}, [&](const Collisions& rows, std::size_t i,
+                                                    std::size_t row, auto& sets) {
+      add_touched(rows, i, sets[!header_.budget || certain[row] ? 0 : 1]);
+    });
+    progress_.end();
   }
 
   /// Adds the rows on which near points are near: that of their first pose, and later ones on which
@@ -356,23 +433,17 @@ class TableMaker {
   void find_near(RowSet& near) {
     if (!header_.budget) return;
     const double distance = header_.budget->near_radius(header_.radius);
-    RowStream<Collisions> colliding(reader_);
-    for (Collisions rows; colliding.read(rows);) {
-      throw_if_stopped(progress_);
-      for (std::size_t i = 0; i < rows.size(); ++i) {
-        add_near(rows.xyz[i], distance, 0, rows_.size(), near);
-      }
-    }
-    RowStream<Nearby> stream(reader_);
-    for (Nearby rows; stream.read(rows);) {
-      throw_if_stopped(progress_);
-      for (std::size_t i = 0; i < rows.size(); ++i) {
-        const auto first = rows_of(rows.first_pose[i]);
-        add(first, near);
-        add_near(rows.xyz[i], distance, first[1], rows_.size(), near);
-      }
-      progress_.advance(rows.size());
-    }
+    progress_.begin("near points", reader_.collisions() + reader_.near(), "points");
+    add_rows<Collisions, 1>({&near},
+                            [&](const Collisions& rows, std::size_t i, std::size_t, auto& sets) {
+                              add_near(rows.xyz[i], distance, 0, rows_.size(), sets[0]);
+                            });
+    add_rows<Nearby, 1>({&near}, [&](const Nearby& rows, std::size_t i, std::size_t, auto& sets) {
+      const auto first = rows_of(rows.first_pose[i]);
+      add(first, sets[0]);
+      add_near(rows.xyz[i], distance, first[1], rows_.size(), sets[0]);
+    });
+    progress_.end();
   }
 
   void find_unseen(RowSet& unseen) {

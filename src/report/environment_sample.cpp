@@ -1,12 +1,13 @@
 #include "report/environment_sample.hpp"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 
+#include "core/util/tsan_annotations.hpp"
 #include "io/store/store_reader.hpp"
 
 namespace clearway {
@@ -49,18 +50,30 @@ class Sampler {
   /// Counts the points near the path, and their blocks by surface.
   void count(Progress& progress) {
     progress.begin("environment near the path", store_.cells().size(), "cells");
-    tbb::parallel_for(std::size_t{0}, store_.cells().size(), [&](std::size_t cell) {
+    places_.resize(store_.cells().size());
+    tbb::enumerable_thread_specific<Counts> of_threads;
+    const ParallelScope scope;
+    const auto count_cell = piece_of(scope, [&](std::size_t i) {
       throw_if_stopped(progress);
-      visit(static_cast<std::uint32_t>(cell), [this](const NearBlock& block, auto&) {
-        near_points_.fetch_add(block.count, std::memory_order_relaxed);
-        bins_[bin_of(block.surface)].fetch_add(1, std::memory_order_relaxed);
+      const auto cell = static_cast<std::uint32_t>(i);
+      find_places(cell);
+      Counts& counts = of_threads.local();
+      visit(cell, [&](const NearBlock& block) {
+        counts.points += block.count;
+        ++counts.bins[bin_of(block.surface)];
       });
       progress.advance(1);
     });
+    scope.begin();
+    tbb::parallel_for(std::size_t{0}, store_.cells().size(), count_cell);
+    for (const Counts& counts : of_threads) {
+      counts_.points += counts.points;
+      for (std::size_t bin = 0; bin < kBins; ++bin) counts_.bins[bin] += counts.bins[bin];
+    }
     progress.end();
   }
 
-  std::uint64_t near_points() const { return near_points_; }
+  std::uint64_t near_points() const { return counts_.points; }
 
   /// The area that a point stands for if about `most` points are to be picked.
   double area_for(std::uint64_t most) const {
@@ -76,42 +89,71 @@ class Sampler {
   std::vector<PagePoint> pick(double area, Progress& progress) const {
     std::vector<std::vector<PagePoint>> of_cell(store_.cells().size());
     progress.begin("environment points of the page", of_cell.size(), "cells");
-    tbb::parallel_for(std::size_t{0}, of_cell.size(), [&](std::size_t cell) {
+    const ParallelScope scope;
+    const auto pick_points = piece_of(scope, [&](std::size_t cell) {
       throw_if_stopped(progress);
       pick_cell(static_cast<std::uint32_t>(cell), area, of_cell[cell]);
       progress.advance(1);
     });
+    scope.begin();
+    tbb::parallel_for(std::size_t{0}, of_cell.size(), pick_points);
     progress.end();
-    std::vector<PagePoint> points;
-    for (const auto& cell : of_cell) points.insert(points.end(), cell.begin(), cell.end());
-    return points;
+    return joined(of_cell);
   }
 
  private:
-  /// Calls visit(block, places near the cell) for each block of a cell that is near the path.
+  /// The numbers of points near the path, and of their blocks in each bin.
+  struct Counts {
+    std::uint64_t points = 0;
+    std::array<std::uint64_t, kBins> bins{};
+  };
+
+  static std::vector<PagePoint> joined(const std::vector<std::vector<PagePoint>>& parts) {
+    std::vector<std::size_t> first{0};
+    for (const auto& part : parts) first.push_back(first.back() + part.size());
+    std::vector<PagePoint> out(first.back());
+    const ParallelScope scope;
+    const auto copy = piece_of(scope, [&](std::size_t i) {
+      std::ranges::copy(parts[i], out.begin() + static_cast<std::ptrdiff_t>(first[i]));
+    });
+    scope.begin();
+    tbb::parallel_for(std::size_t{0}, parts.size(), copy);
+    return out;
+  }
+
+  Box box_of(std::uint32_t cell) const {
+    return position_box(store_.quantisation(), store_.cells()[cell].box);
+  }
+
+  /// Finds the places of the path that a cell is near to and that something in it may be nearest
+  /// to.
+  void find_places(std::uint32_t cell) {
+    path_.near(box_of(cell), places_[cell]);
+    path_.keep_nearest(box_of(cell), places_[cell]);
+    places_[cell].shrink_to_fit();
+  }
+
+  /// Calls visit(block) for each block of a cell that is near the path.
   template <typename Visit>
   void visit(std::uint32_t cell, const Visit& visit) const {
     const Cell& info = store_.cells()[cell];
-    std::vector<std::uint32_t> places;
-    path_.near(position_box(store_.quantisation(), info.box), places);
-    if (places.empty()) return;
+    if (places_[cell].empty()) return;
     const std::uint64_t first_block = std::uint64_t{cell} * store_.blocks_per_cell();
     for (std::uint32_t first = 0; first < info.count; first += kBlockPoints) {
       const BlockBox& packed = store_.blocks()[first_block + first / kBlockPoints];
       const Box box = position_box(store_.quantisation(), decode_block_box(info.box, packed));
-      const double distance = path_.distance(box, places);
+      const double distance = path_.distance(box, places_[cell]);
       if (distance > path_.reach()) continue;
       const double far = std::max(1.0, distance / path_.dense_reach());
       visit(NearBlock{first, std::min(kBlockPoints, info.count - first),
-                      surface_of(box) / (far * far)},
-            places);
+                      surface_of(box) / (far * far)});
     }
   }
 
   double picked_at(double area) const {
     double sum = 0;
     for (std::size_t bin = 0; bin < kBins; ++bin) {
-      const auto blocks = static_cast<double>(bins_[bin].load());
+      const auto blocks = static_cast<double>(counts_.bins[bin]);
       sum += blocks * std::min<double>(kBlockPoints, surface_of_bin(bin) / area);
     }
     return sum;
@@ -121,7 +163,7 @@ class Sampler {
     double owed = 0.5;  // fractions of points, carried from block to block
     std::array<PackedChunk<std::int32_t>, 3> chunks;
     bool decoded = false;
-    visit(cell, [&](const NearBlock& block, const std::vector<std::uint32_t>& places) {
+    visit(cell, [&](const NearBlock& block) {
       std::uint32_t picked = block.count;
       if (area > 0) {
         owed += std::min<double>(block.count, block.surface / area);
@@ -133,7 +175,8 @@ class Sampler {
       decoded = true;
       for (std::uint32_t j = 0; j < picked; ++j) {
         const std::uint32_t i = block.first + (2 * j + 1) * block.count / (2 * picked);
-        add(position(store_.quantisation(), chunks[0][i], chunks[1][i], chunks[2][i]), places, out);
+        add(position(store_.quantisation(), chunks[0][i], chunks[1][i], chunks[2][i]),
+            places_[cell], out);
       }
     });
   }
@@ -148,8 +191,8 @@ class Sampler {
   const StoreReader& store_;
   const PathPlaces& path_;
   const PageLattice& lattice_;
-  std::atomic<std::uint64_t> near_points_ = 0;
-  std::array<std::atomic<std::uint64_t>, kBins> bins_{};  ///< number of blocks in each bin
+  std::vector<std::vector<std::uint32_t>> places_;  ///< of each cell, by find_places()
+  Counts counts_;
 };
 
 }  // namespace

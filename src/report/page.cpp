@@ -1,6 +1,7 @@
 #include "report/page.hpp"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <tuple>
 #include <utility>
 
+#include "findings/row_pieces.hpp"
 #include "io/files/deflate.hpp"
 #include "io/files/file.hpp"
 #include "io/result/conflicts/markup_text.hpp"
@@ -43,6 +45,37 @@ struct Placed {
   }
 };
 
+/// The least and the greatest integers of some points on each axis.
+struct Extent {
+  std::int32_t lo[3], hi[3];
+
+  void extend(const Extent& other) {
+    for (int k = 0; k < 3; ++k) {
+      lo[k] = std::min(lo[k], other.lo[k]);
+      hi[k] = std::max(hi[k], other.hi[k]);
+    }
+  }
+};
+
+/// points: at least one.
+Extent extent_of(const std::vector<PagePoint>& points) {
+  const auto of = [&](std::size_t i) {
+    const std::int32_t* const q = points[i].q;
+    return Extent{{q[0], q[1], q[2]}, {q[0], q[1], q[2]}};
+  };
+  using Range = tbb::blocked_range<std::size_t>;
+  return tbb::parallel_reduce(
+      Range(0, points.size(), 1 << 14), of(0),
+      [&](const Range& range, Extent extent) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) extent.extend(of(i));
+        return extent;
+      },
+      [](Extent a, const Extent& b) {
+        a.extend(b);
+        return a;
+      });
+}
+
 }  // namespace
 
 PageLattice lattice_for(const Box& box, double finest) {
@@ -67,12 +100,11 @@ PagePoint page_point(const PageLattice& lattice, const Vec3& xyz, std::uint8_t t
 
 void sort_along_curve(std::vector<PagePoint>& points) {
   if (points.empty()) return;
-  std::int64_t lo[3], extent = 1;
+  const Extent whole = extent_of(points);
+  const std::int32_t* const lo = whole.lo;
+  std::int64_t extent = 1;
   for (int k = 0; k < 3; ++k) {
-    const auto [least, most] =
-        std::ranges::minmax(points, {}, [k](const PagePoint& point) { return point.q[k]; });
-    lo[k] = least.q[k];
-    extent = std::max<std::int64_t>(extent, std::int64_t{most.q[k]} - lo[k]);
+    extent = std::max<std::int64_t>(extent, std::int64_t{whole.hi[k]} - lo[k]);
   }
   int shift = 0;
   while (extent >> shift >= std::int64_t{1} << kCurveBits) ++shift;
@@ -80,12 +112,14 @@ void sort_along_curve(std::vector<PagePoint>& points) {
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
     std::uint64_t key = 0;
     for (int k = 0; k < 3; ++k) {
-      key |= spread_bits(static_cast<std::uint64_t>(points[i].q[k] - lo[k]) >> shift) << k;
+      key |= spread_bits(static_cast<std::uint64_t>(std::int64_t{points[i].q[k]} - lo[k]) >> shift)
+             << k;
     }
     placed[i] = {key, points[i]};
   });
   tbb::parallel_sort(placed.begin(), placed.end());
-  for (std::size_t i = 0; i < points.size(); ++i) points[i] = placed[i].point;
+  tbb::parallel_for(std::size_t{0}, points.size(),
+                    [&](std::size_t i) { points[i] = placed[i].point; });
 }
 
 std::string delta_planes(std::span<const std::int32_t> values) {
@@ -108,19 +142,19 @@ std::string delta_planes(std::span<const std::int32_t> values) {
 std::string deflated_base64(std::string_view bytes) {
   static constexpr char kDigits[] =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  const std::string deflated = clearway::deflated(bytes, DeflateForm::kZlib, kDeflateLevel);
-  std::string out;
-  out.reserve((deflated.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < deflated.size(); i += 3) {
+  const std::string deflated = deflated_in_blocks(bytes, kDeflateLevel);
+  std::string out((deflated.size() + 2) / 3 * 4, '=');
+  const auto encode = [&](std::size_t i) {
+    const std::size_t here = std::min<std::size_t>(3, deflated.size() - 3 * i);
     std::uint32_t three = 0;
-    const std::size_t here = std::min<std::size_t>(3, deflated.size() - i);
     for (std::size_t k = 0; k < 3; ++k) {
-      three = three << 8 | (k < here ? static_cast<unsigned char>(deflated[i + k]) : 0U);
+      three = three << 8 | (k < here ? static_cast<unsigned char>(deflated[3 * i + k]) : 0U);
     }
-    for (std::size_t k = 0; k < 4; ++k) {
-      out += k <= here ? kDigits[three >> (18 - 6 * k) & 63] : '=';
-    }
-  }
+    for (std::size_t k = 0; k <= here; ++k) out[4 * i + k] = kDigits[three >> (18 - 6 * k) & 63];
+  };
+  in_pieces(out.size() / 4, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) encode(i);
+  });
   return out;
 }
 

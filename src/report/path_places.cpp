@@ -15,6 +15,8 @@ constexpr double kDiagonalsInMargin = 3;
 constexpr double kDenseMargin = 2;
 constexpr std::size_t kMostPlaces = 5'000;
 
+constexpr double kRounding = 1e-9;  // share of a squared distance
+
 double length(const Vec3& a, const Vec3& b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); }
 
 double top_at(const Box& model, const Pose& pose) {
@@ -61,6 +63,18 @@ void PathPlaces::near(const Box& box, std::vector<std::uint32_t>& out) const {
   for (std::uint32_t i = 0; i < places_.size(); ++i) {
     if (least_squared_distance(box, places_[i].centre) <= reach_ * reach_) out.push_back(i);
   }
+}
+
+void PathPlaces::keep_nearest(const Box& box, std::vector<std::uint32_t>& places) const {
+  // Every place of the box is as near to one of the places as this.
+  double near = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t i : places) {
+    near = std::min(near, greatest_squared_distance(box, places_[i].centre));
+  }
+  near *= 1 + kRounding;
+  std::erase_if(places, [&](std::uint32_t i) {
+    return least_squared_distance(box, places_[i].centre) > near;
+  });
 }
 
 double PathPlaces::distance(const Box& box, std::span<const std::uint32_t> among) const {

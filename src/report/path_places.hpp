@@ -33,6 +33,8 @@ class PathPlaces {
   std::span<const Place> places() const { return places_; }
   /// Sets `out` to the indices of the places that are at most reach() from the box.
   void near(const Box& box, std::vector<std::uint32_t>& out) const;
+  /// Removes from `places` those that are nearest to no place of the box. They are in their order.
+  void keep_nearest(const Box& box, std::vector<std::uint32_t>& places) const;
   /// The distance of the box to the nearest of the places in `among`; infinity where there are
   /// none.
   double distance(const Box& box, std::span<const std::uint32_t> among) const;

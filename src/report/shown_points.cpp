@@ -1,7 +1,10 @@
 #include "report/shown_points.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <span>
 
+#include "findings/row_pieces.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/result.hpp"
 
@@ -45,6 +48,38 @@ std::vector<EvenPick> picks_of(const PointSelection& selection, std::uint64_t co
   return out;
 }
 
+/// The rows of a table of points that are at hand, some of which were looked at already.
+template <typename Rows>
+class RowsAtHand {
+ public:
+  explicit RowsAtHand(const ResultReader& result) : stream_(result) {}
+
+  /// Reads the next rows once all of those at hand were looked at. Returns whether it read any.
+  bool read_on() {
+    if (begin_ < rows_.size()) return false;
+    begin_ = 0;
+    stream_.read(rows_);
+    return rows_.size() > 0;
+  }
+
+  bool at_end() const { return begin_ == rows_.size(); }
+  const Rows& rows() const { return rows_; }
+  std::size_t begin() const { return begin_; }
+  std::uint64_t last_source() const { return rows_.source.back(); }
+  /// The index of the first row, of those that were not looked at, whose source is above a source.
+  std::size_t above(std::uint64_t source) const {
+    const auto from = rows_.source.begin() + static_cast<std::ptrdiff_t>(begin_);
+    return static_cast<std::size_t>(std::upper_bound(from, rows_.source.end(), source) -
+                                    rows_.source.begin());
+  }
+  void look_up_to(std::size_t end) { begin_ = end; }
+
+ private:
+  RowStream<Rows> stream_;
+  Rows rows_;
+  std::size_t begin_ = 0;
+};
+
 class PointReader {
  public:
   PointReader(const Result& result, const PageLattice& lattice, const PointSelection& selection)
@@ -53,29 +88,22 @@ class PointReader {
         lattice_(lattice),
         selection_(selection),
         picks_(picks_of(selection, result.size())),
-        other_pick_(selection.most_others, result_.clearances()) {}
+        other_pick_(selection.most_others, result_.clearances()),
+        colliding_(result_),
+        measured_(result_) {}
 
   ShownPoints read(Progress& progress) {
-    const std::uint64_t rows = result_.collisions() + result_.clearances();
-    progress.begin("points of the result", rows, "rows");
-    CollisionCursor row(result_);
-    ClearanceCursor clearance(result_);
-    std::uint64_t done = 0;
-    while (!row.at_end() || !clearance.at_end()) {
-      const bool collides =
-          !row.at_end() && (clearance.at_end() || row.source() <= clearance.source());
-      const bool measured =
-          !clearance.at_end() && (!collides || row.source() == clearance.source());
-      if (collides) summarise_batch(row);
-      if (measured) summarise_batch(clearance);
-      if (collides) add_colliding(row, measured ? clearance.get(&Clearances::distance) : radius_);
-      if (measured && !collides) add_other(clearance);
-      if (collides) row.advance();
-      if (measured) clearance.advance();
-      if ((++done & 0xffff) == 0) {
-        throw_if_stopped(progress);
-        progress.advance(0x10000);
-      }
+    progress.begin("points of the result", result_.collisions() + result_.clearances(), "rows");
+    while (true) {
+      throw_if_stopped(progress);
+      if (colliding_.read_on()) summarise(colliding_.rows(), out_.summary);
+      if (measured_.read_on()) summarise(measured_.rows(), out_.summary);
+      if (colliding_.at_end() && measured_.at_end()) break;
+      // The rows of both tables up to a source that both have at hand, or are past.
+      std::uint64_t last = std::numeric_limits<std::uint64_t>::max();
+      if (!colliding_.at_end()) last = std::min(last, colliding_.last_source());
+      if (!measured_.at_end()) last = std::min(last, measured_.last_source());
+      progress.advance(look_up_to(colliding_.above(last), measured_.above(last)));
     }
     progress.end();
     sort_along_curve(out_.points);
@@ -83,6 +111,9 @@ class PointReader {
   }
 
  private:
+  /// The class of what is not shown among the others.
+  static constexpr std::uint8_t kNone = 255;
+
   /// The class of a distance. A colliding point is at most in the class of the radius; one that has
   /// no distance is given the radius as its distance.
   std::uint8_t class_of(double distance, bool collides) const {
@@ -94,36 +125,106 @@ class PointReader {
     return k;
   }
 
-  /// Summarises the rows around a cursor when it comes to the first of them.
+  /// Takes the rows up to these indices, which have the same last source. Returns their number.
+  std::size_t look_up_to(std::size_t colliding_end, std::size_t measured_end) {
+    classify_colliding(colliding_end, measured_end);
+    classify_others(colliding_end, measured_end);
+    note_wanted(colliding_end);
+    const std::size_t colliding = colliding_end - colliding_.begin();
+    const std::size_t measured = measured_end - measured_.begin();
+    pick_colliding(colliding);
+    pick_others(measured);
+    colliding_.look_up_to(colliding_end);
+    measured_.look_up_to(measured_end);
+    return colliding + measured;
+  }
+
+  /// The part of a column from the first row that was not looked at to `end`.
   template <typename Rows>
-  void summarise_batch(const RowCursor<Rows>& cursor) {
-    if (!cursor.at_end() && cursor.index() == 0) summarise(cursor.rows(), out_.summary);
+  static std::span<const std::uint64_t> sources(const RowsAtHand<Rows>& of, std::size_t end) {
+    return std::span(of.rows().source).subspan(of.begin(), end - of.begin());
   }
 
-  void add_colliding(const CollisionCursor& row, double distance) {
-    const std::uint8_t k = class_of(distance, true);
-    const std::size_t at = row_++;
-    ++out_.of_class[k];
-    while (wanted_ < selection_.wanted.size() && selection_.wanted[wanted_] < row.source()) {
-      ++wanted_;
-    }
-    if (wanted_ < selection_.wanted.size() && selection_.wanted[wanted_] == row.source()) {
-      out_.places[row.source()] = row.get(&Collisions::xyz);
-    }
-    const std::size_t conflict = picks_.size() > 1 ? (*selection_.conflict_of)[at] : 0;
-    if (!picks_[conflict].next()) return;
-    ++out_.shown_class[k];
-    out_.points.push_back(page_point(lattice_, row.get(&Collisions::xyz), k));
+  void classify_colliding(std::size_t colliding_end, std::size_t measured_end) {
+    const auto source = sources(colliding_, colliding_end);
+    const auto measured = sources(measured_, measured_end);
+    const auto distance = std::span(measured_.rows().distance).subspan(measured_.begin());
+    class_of_colliding_.resize(source.size());
+    in_pieces(source.size(), [&](std::size_t first, std::size_t end) {
+      auto at = std::ranges::lower_bound(measured, source[first]);
+      for (std::size_t i = first; i < end; ++i) {
+        while (at != measured.end() && *at < source[i]) ++at;
+        const bool is_measured = at != measured.end() && *at == source[i];
+        class_of_colliding_[i] = class_of(
+            is_measured ? distance[static_cast<std::size_t>(at - measured.begin())] : radius_,
+            true);
+      }
+    });
   }
 
-  void add_other(const ClearanceCursor& clearance) {
-    if (clearance.get(&Clearances::distance) >= selection_.classes.back()) return;
-    const std::uint8_t k = class_of(clearance.get(&Clearances::distance), false);
-    ++out_.of_class[k];
-    if (other_pick_.next()) {
+  void classify_others(std::size_t colliding_end, std::size_t measured_end) {
+    const auto source = sources(measured_, measured_end);
+    const auto colliding = sources(colliding_, colliding_end);
+    const auto distance = std::span(measured_.rows().distance).subspan(measured_.begin());
+    class_of_other_.resize(source.size());
+    in_pieces(source.size(), [&](std::size_t first, std::size_t end) {
+      auto at = std::ranges::lower_bound(colliding, source[first]);
+      for (std::size_t i = first; i < end; ++i) {
+        while (at != colliding.end() && *at < source[i]) ++at;
+        const bool collides = at != colliding.end() && *at == source[i];
+        const bool is_shown = !collides && distance[i] < selection_.classes.back();
+        class_of_other_[i] = is_shown ? class_of(distance[i], false) : kNone;
+      }
+    });
+  }
+
+  /// Notes the places of the points that are asked for.
+  void note_wanted(std::size_t colliding_end) {
+    const auto source = sources(colliding_, colliding_end);
+    if (source.empty()) return;
+    for (; wanted_ < selection_.wanted.size() && selection_.wanted[wanted_] <= source.back();
+         ++wanted_) {
+      const auto at = std::ranges::lower_bound(source, selection_.wanted[wanted_]);
+      if (*at != selection_.wanted[wanted_]) continue;
+      const auto i = static_cast<std::size_t>(at - source.begin());
+      out_.places[*at] = colliding_.rows().xyz[colliding_.begin() + i];
+    }
+  }
+
+  void pick_colliding(std::size_t count) {
+    picked_.clear();
+    for (std::size_t i = 0; i < count; ++i, ++row_) {
+      const std::uint8_t k = class_of_colliding_[i];
+      ++out_.of_class[k];
+      const std::size_t conflict = picks_.size() > 1 ? (*selection_.conflict_of)[row_] : 0;
+      if (!picks_[conflict].next()) continue;
       ++out_.shown_class[k];
-      out_.points.push_back(page_point(lattice_, clearance.get(&Clearances::xyz), k));
+      picked_.push_back(static_cast<std::uint32_t>(i));
     }
+    add_picked(std::span(colliding_.rows().xyz).subspan(colliding_.begin()), class_of_colliding_);
+  }
+
+  void pick_others(std::size_t count) {
+    picked_.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint8_t k = class_of_other_[i];
+      if (k == kNone) continue;
+      ++out_.of_class[k];
+      if (!other_pick_.next()) continue;
+      ++out_.shown_class[k];
+      picked_.push_back(static_cast<std::uint32_t>(i));
+    }
+    add_picked(std::span(measured_.rows().xyz).subspan(measured_.begin()), class_of_other_);
+  }
+
+  void add_picked(std::span<const Vec3> xyz, std::span<const std::uint8_t> classes) {
+    const std::size_t before = out_.points.size();
+    out_.points.resize(before + picked_.size());
+    in_pieces(picked_.size(), [&](std::size_t first, std::size_t end) {
+      for (std::size_t i = first; i < end; ++i) {
+        out_.points[before + i] = page_point(lattice_, xyz[picked_[i]], classes[picked_[i]]);
+      }
+    });
   }
 
   const ResultReader& result_;
@@ -132,6 +233,10 @@ class PointReader {
   const PointSelection& selection_;
   std::vector<EvenPick> picks_;
   EvenPick other_pick_;
+  RowsAtHand<Collisions> colliding_;
+  RowsAtHand<Clearances> measured_;
+  std::vector<std::uint8_t> class_of_colliding_, class_of_other_;
+  std::vector<std::uint32_t> picked_;  ///< of the rows that are looked at
   std::size_t row_ = 0, wanted_ = 0;
   ShownPoints out_;
 };

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <utility>
 
+#include "findings/colliding_spacing.hpp"
 #include "findings/conflict_fixture.hpp"
 #include "findings/match_conflicts.hpp"
 #include "support/compare.hpp"
@@ -380,4 +381,40 @@ TEST_CASE("with few places, or where nothing collides, the grouping is fixed") {
   const Conflicts asked = grouped_as_usual(few, options);
   check_equal(asked.gap, 1);
   check_equal(asked.min_points, 1);
+}
+
+TEST_CASE("the spacing of many points is that of every place to its nearest, however they lie") {
+  // Lattices, whose spacing is known: sparse points beside dense ones, and points at one place.
+  struct Part {
+    std::int32_t edge, step;  ///< points on each edge of a cube, and steps from one to the next
+    int copies = 1;
+  };
+  struct Row {
+    std::vector<Part> parts;
+    double spacing;  ///< in steps
+  };
+  const Quantisation millimetres{{0.001, 0.001, 0.001}, {0, 0, 0}};
+  for (const Row& row : {Row{{{60, 7}}, 7}, Row{{{40, 5, 4}}, 5}, Row{{{50, 1}, {44, 900}}, 1},
+                         Row{{{44, 1}, {50, 900}}, 900}, Row{{{30, 1, 3}, {52, 2000}}, 2000}}) {
+    CAPTURE(row.spacing);
+    std::vector<QuantumPoint> points;
+    std::int32_t from = -70'000;
+    for (const Part& part : row.parts) {
+      for (std::int32_t i = 0; i < part.edge * part.edge * part.edge * part.copies; ++i) {
+        const std::int32_t at = i / part.copies;
+        points.push_back(
+            {{from + at % part.edge * part.step, at / part.edge % part.edge * part.step,
+              at / part.edge / part.edge * part.step}});
+      }
+      from += 200'000;
+    }
+    Random random(1);
+    for (std::size_t i = points.size(); i > 1; --i)
+      std::swap(points[i - 1], points[below(random, i)]);
+    REQUIRE(points.size() > 2 * kSpacingSample);
+    NoProgress progress;
+    const std::optional<double> spacing = colliding_spacing(points, millimetres, progress);
+    REQUIRE(spacing);
+    CHECK(*spacing == Approx(0.001 * row.spacing).epsilon(1e-12));
+  }
 }

@@ -15,7 +15,7 @@ using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 /// A pose's matrix as a rotation times a symmetric stretch, which is negative definite if the pose
 /// mirrors.
 struct Polar {
-  Eigen::Quaterniond rotation;
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Eigen::Matrix3d stretch;
   bool mirrors;
 };
@@ -61,10 +61,16 @@ Eigen::Vector3d shortened(const Eigen::Vector3d& v, double most) {
 PoseSpline::PoseSpline(std::span<const Pose> poses, std::span<const double> motions)
     : poses_(poses), spans_(motions.size()), velocities_(poses.size()) {
   std::vector<Leg> legs;
+  // The rotation of the pose at which the last leg ended.
+  std::size_t known = poses.size();
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   for (std::size_t i = 0; i < motions.size(); ++i) {
     if (!(motions[i] > 0)) continue;
     spans_[i] = std::sqrt(motions[i]);
-    const auto turn = polar_of(poses[i]).rotation.conjugate() * polar_of(poses[i + 1]).rotation;
+    const Eigen::Quaterniond from = known == i ? rotation : polar_of(poses[i]).rotation;
+    known = i + 1;
+    rotation = polar_of(poses[known]).rotation;
+    const auto turn = from.conjugate() * rotation;
     legs.push_back({i,
                     spans_[i],
                     {(position_of(poses[i + 1]) - position_of(poses[i])) / spans_[i],

@@ -147,6 +147,12 @@ Rows<Number> Rows<Number>::open(const Id& parent, const std::string& name, std::
   rows.columns_ = columns;
   rows.name_ = name;
   rows.file_ = file;
+  const Id list(H5Dget_create_plist(rows.dataset_.get()), H5Pclose, name);
+  std::array<hsize_t, 2> chunk{};
+  const int dimensions = columns == 0 ? 1 : 2;
+  rows.has_usual_chunks_ = rows.rows_ > 0 &&
+                           H5Pget_chunk(list.get(), dimensions, chunk.data()) == dimensions &&
+                           chunk[0] == rows.chunk_rows() && chunk[1] == columns;
   return rows;
 }
 
@@ -207,24 +213,31 @@ std::uint64_t Rows<Number>::chunk_rows() const {
   return rows_of_chunk(rows_, std::max<std::uint64_t>(columns_, 1) * sizeof(Number));
 }
 
+void StoredChunks::resize(std::size_t count, std::size_t chunk_bytes) {
+  if (count * chunk_bytes > allocated_) {
+    memory_ = std::make_unique_for_overwrite<std::byte[]>(count * chunk_bytes);
+    allocated_ = count * chunk_bytes;
+  }
+  count_ = count;
+  chunk_bytes_ = chunk_bytes;
+}
+
 template <typename Number>
 bool Rows<Number>::read_chunks(std::uint64_t first_row, std::uint64_t row_count,
-                               std::vector<std::vector<std::byte>>& chunks) const {
-  const Id list(H5Dget_create_plist(dataset_.get()), H5Pclose, name_);
-  std::array<hsize_t, 2> chunk{};
-  const int dimensions = columns_ == 0 ? 1 : 2;
-  if (H5Pget_chunk(list.get(), dimensions, chunk.data()) != dimensions) return false;
-  if (chunk[0] != chunk_rows() || chunk[1] != columns_) return false;
+                               StoredChunks& chunks) const {
+  if (!has_usual_chunks_) return false;
   const std::uint64_t row_bytes = std::max<std::uint64_t>(columns_, 1) * sizeof(Number);
   const std::uint64_t bytes = chunk_rows() * row_bytes + kChecksumBytes;
-  for (std::uint64_t row = first_row; row < first_row + row_count; row += chunk_rows()) {
-    const std::array<hsize_t, 2> at{row, 0};
+  const std::uint64_t count = (row_count + chunk_rows() - 1) / chunk_rows();
+  chunks.resize(count, bytes);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::array<hsize_t, 2> at{first_row + i * chunk_rows(), 0};
     hsize_t stored = 0;
     if (H5Dget_chunk_storage_size(dataset_.get(), at.data(), &stored) < 0) return false;
     if (stored != bytes) return false;
-    std::vector<std::byte>& into = chunks.emplace_back(bytes);
     std::uint32_t filters_left_out = 0;
-    if (H5Dread_chunk(dataset_.get(), H5P_DEFAULT, at.data(), &filters_left_out, into.data()) < 0) {
+    if (H5Dread_chunk(dataset_.get(), H5P_DEFAULT, at.data(), &filters_left_out, chunks.data(i)) <
+        0) {
       return false;
     }
     if (filters_left_out != kAllFilters) return false;

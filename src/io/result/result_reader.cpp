@@ -1,11 +1,11 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <deque>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -37,27 +37,27 @@ namespace {
 /// the same.
 class ParallelRead {
  public:
-  /// Reads the chunks of rows from `first`, which begins a chunk, as many as `out` has. check(first
-  /// row, values) throws InputError for rows that are wrong and is thread safe. Returns false where
-  /// the chunks cannot be read.
+  /// Reads the chunks of rows from `first`, which begins a chunk, as many as `out` has. chunks:
+  /// holds them, and must outlive this object. check(first row, values) throws InputError for rows
+  /// that are wrong and is thread safe. Returns false where the chunks cannot be read.
   template <typename Number, typename Value, typename Check>
   bool add(const hdf5::Rows<Number>& dataset, std::uint64_t first, std::span<Value> out,
-           Xxh64Stream& hash, Check check) {
-    Chunks& chunks = chunks_.emplace_back();
+           hdf5::StoredChunks& chunks, Xxh64Stream& hash, Check check) {
     if (!dataset.read_chunks(first, out.size(), chunks)) return false;
     const std::uint64_t rows = dataset.chunk_rows();
     columns_.emplace_back([&chunks, out, &hash] {
       std::size_t left = out.size_bytes();
-      for (const std::vector<std::byte>& chunk : chunks) {
+      for (std::size_t i = 0; i < chunks.size(); ++i) {
+        const std::span<const std::byte> chunk = chunks[i];
         const std::size_t used = std::min(left, chunk.size() - hdf5::kChecksumBytes);
-        hash.update(std::span(chunk).first(used));
+        hash.update(chunk.first(used));
         left -= used;
       }
     });
     for (std::size_t i = 0; i < chunks.size(); ++i) {
       const std::size_t from = i * rows;
       const std::span<Value> part = out.subspan(from, std::min(rows, out.size() - from));
-      pieces_.emplace_back([&chunk = chunks[i], part, check, row = first + from] {
+      pieces_.emplace_back([chunk = chunks[i], part, check, row = first + from] {
         if (!hdf5::is_sealed(chunk)) return false;
         std::memcpy(part.data(), chunk.data(), part.size_bytes());
         return passes(check, row, std::span<const Value>(part));
@@ -71,8 +71,6 @@ class ParallelRead {
   bool run() const;
 
  private:
-  using Chunks = std::vector<std::vector<std::byte>>;
-
   template <typename Check, typename Value>
   static bool passes(const Check& check, std::uint64_t row, std::span<const Value> values) {
     try {
@@ -83,7 +81,6 @@ class ParallelRead {
     return true;
   }
 
-  std::deque<Chunks> chunks_;  // a deque, because the tasks keep references to its elements
   std::vector<std::function<bool()>> pieces_;
   // Tasks that hash one column each, run once all pieces are intact.
   std::vector<std::function<void()>> columns_;
@@ -130,6 +127,9 @@ void check_range(std::uint64_t first, std::size_t count, std::uint64_t rows) {
 /// A dataset that is read, or nothing where the result does not have the column.
 template <typename Value>
 using OptionalRead = std::optional<hdf5::Rows<typename StoredValue<Value>::Number>>;
+
+/// The most rows that are read at a time and whose chunks' memory is kept for the next ones.
+constexpr std::size_t kMostKeptRows = 4 * kEncodedRows;
 
 /// The datasets of a table, which are read together.
 template <typename Rows>
@@ -225,15 +225,18 @@ class TableReader {
     const bool whole =
         first % kEncodedRows == 0 && (count % kEncodedRows == 0 || first + count == rows());
     if (!whole) return false;
+    std::array<hdf5::StoredChunks, kColumnsOf<Rows>> of_this_call;
+    auto& chunks = count <= kMostKeptRows ? chunks_ : of_this_call;
     ParallelRead read;
     bool readable = true;
     as_input(name_, [&] {
       std::size_t i = 0;
       for_each_column<Rows>(datasets_, [&](const auto& column, const auto& dataset) {
+        hdf5::StoredChunks& of_column = chunks[i];
         Xxh64Stream& hash = hashes[i++];
         if (!dataset || !readable) return;
         using Value = typename std::decay_t<decltype(column)>::Value;
-        readable = read.add(*dataset, first, std::span(out.*column.values), hash,
+        readable = read.add(*dataset, first, std::span(out.*column.values), of_column, hash,
                             [this, &column](std::uint64_t row, std::span<const Value> values) {
                               column.check(read_from(row), column.dataset, values);
                             });
@@ -255,6 +258,8 @@ class TableReader {
   const std::string& name_;
   const ResultHeader& header_;
   PerColumn<Rows, OptionalRead> datasets_;
+  /// Memory for the chunks of each column. As with HDF5 itself, one thread at a time reads.
+  mutable std::array<hdf5::StoredChunks, kColumnsOf<Rows>> chunks_;
   std::optional<std::uint64_t> rows_;  ///< nullopt where the result does not have the table
   std::uint64_t hash_ = 0;
 };
