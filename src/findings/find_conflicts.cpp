@@ -1,3 +1,4 @@
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/spin_mutex.h>
 
@@ -11,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clearway/conflicts.hpp"
@@ -74,10 +76,15 @@ constexpr std::uint64_t kBytesOfSortedPoint = CellGrid::kBytesOfPoint + sizeof(s
                                               3 * sizeof(std::uint32_t) + 1 + kJoinBytesOfPoint;
 constexpr std::uint64_t kBytesOfUnsortedPoint =
     CollidingPoints::kBytesOfPoint + CellGrid::kBytesOfPoint;
-/// Bytes of a part, with where it lies across its body, and its conflict, which counts twice
-/// because vectors grow to twice their size.
-constexpr std::uint64_t kBytesOfPart =
-    sizeof(Tally) + sizeof(PartAcross) + 2 * sizeof(Conflict) + 32;
+/// Bytes of a part, with where it lies across its body, its conflict, which counts twice because
+/// vectors grow to twice their size, and what finding its shifts takes.
+constexpr std::uint64_t kBytesOfPart = sizeof(Tally) + sizeof(PartAcross) + 2 * sizeof(Conflict) +
+                                       32 + LeastShift::kBytesOfSet + sizeof(PointsToFree);
+// Shifts are found when the memory of joining points is free again, and their trees are made when
+// that of the grid is, too.
+static_assert(sizeof(QuantumPoint) <= kJoinBytesOfPoint);
+static_assert(sizeof(QuantumPoint) + LeastShift::kBytesOfPoint <=
+              kJoinBytesOfPoint + CellGrid::kBytesOfPoint);
 
 std::uint64_t ConflictMemory::fixed() const {
   return kProgram + poses_ * (sizeof(Pose) + sizeof(double) + sizeof(std::uint32_t));
@@ -200,14 +207,20 @@ std::vector<ConflictDistance> least_distances(const ResultReader& result,
   return nearest.take();
 }
 
+/// Points in the order of their conflicts.
+struct PointsOfConflicts {
+  std::vector<QuantumPoint> points;
+  /// The first point of each conflict, by its number - 1, and at the end the number of all points.
+  std::vector<std::size_t> first;
+
+  std::span<QuantumPoint> of(std::uint32_t id) {
+    return std::span(points).subspan(first[id - 1], first[id] - first[id - 1]);
+  }
+};
+
 /// One call of find_conflicts(), step by step.
 class ConflictSearch {
  public:
-  /// The most pairs of a point and a pose from which shifts are found, in one conflict and in all
-  /// conflicts together. A pair takes some 50 ns, and in one conflict 24 bytes.
-  static constexpr std::uint64_t kMostPairs = 4'000'000, kMostPairsOfAll = 200'000'000;
-  /// The most points of all conflicts from which shifts are found, of 24 bytes each.
-  static constexpr std::uint64_t kMostPointsOfAll = 5'000'000;
   inline static const Model kNoModel{};
   /// The cosine of 45 degrees: the model moves along its forward axis up to this angle.
   static constexpr double kAlong = 0.7071067811865476;
@@ -350,12 +363,13 @@ class ConflictSearch {
     make_conflicts(groups, parts, tallies);
     add_touched_first(tallies, part_of_row);
     add_trims(tallies, part_of_row);
-    grid_.reset();
     number(part_of_row, tallies.size());
+    PointsOfConflicts to_free = points_to_free(part_of_row);
+    grid_.reset();
     add_distances(part_of_row);
     for (Conflict& conflict : out_.listed) complete(conflict);
     count_colliding(part_of_row);
-    add_shifts(part_of_row);
+    add_shifts(std::move(to_free));
     rank(out_);
     return part_of_row;
   }
@@ -601,65 +615,79 @@ class ConflictSearch {
     return body ? pose_at(options_.bodies[*body], at) : nullptr;
   }
 
-  /// Finds the shifts that free each conflict, from its points; of very many points, from every
-  /// n-th.
-  void add_shifts(std::span<const std::uint32_t> conflict_of_row) {
+  /// Finds the shifts that free each conflict from all of its points.
+  void add_shifts(PointsOfConflicts points) {
     if (!out_.knows_shifts) return;
     const Model& model = options_.model != nullptr ? *options_.model : kNoModel;
     const std::vector<MovingBody> bodies =
         moving_bodies(model, poses_, options_.bodies, reader_.header().floor);
-    const std::vector<std::vector<Vec3>> points = points_to_free(conflict_of_row);
     const double most = kMostOwnShift / metre_;
-    const LeastShift shifts(bodies, poses_, direction_to_left(options_.forward, options_.up),
-                            reader_.header().radius, reader_.header().between_poses,
-                            options_.threads);
     progress_.begin("shifts", out_.listed.size(), "conflicts");
-    const ParallelScope scope;
-    const auto free_conflict = piece_of(scope, [&](std::size_t i) {
-      if (progress_.stop_requested()) return;
+    std::vector<PointsToFree> sets;
+    std::uint64_t pairs = 0;
+    for (const Conflict& conflict : out_.listed) {
+      sets.push_back({points.of(conflict.id), conflict.first_pose, end_of(conflict.last_pose)});
+      const std::uint64_t poses = conflict.last_pose - conflict.first_pose + std::uint64_t{1};
+      pairs += sets.back().points.size() * poses;
+    }
+    const LeastShift shifts(bodies, poses_, direction_to_left(options_.forward, options_.up),
+                            reader_.header().radius, reader_.header().between_poses, pairs,
+                            options_.threads);
+    const std::vector<SideShifts> free =
+        shifts.least(reader_.header().quantisation, sets, most, progress_);
+    for (std::size_t i = 0; i < free.size(); ++i) {
       Conflict& conflict = out_.listed[i];
-      if (conflict.colliding == 0) return progress_.advance(1);
-      const std::uint32_t last = end_of(conflict.last_pose);
-      const SideShifts free = shifts.least(points[i], conflict.first_pose, last, most);
+      if (conflict.colliding == 0) continue;
       // The points collide as it is, so a shift of 0 says only that the steps between poses, at
       // which shifts are tried, missed it.
       const auto known = [](std::optional<double> shift) {
         return shift && *shift > 0 ? shift : std::nullopt;
       };
-      conflict.own_shift_left = known(free.left);
-      conflict.own_shift_right = known(free.right);
-      progress_.advance(1);
-    });
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, out_.listed.size(), free_conflict);
-    throw_if_stopped(progress_);
+      conflict.own_shift_left = known(free[i].left);
+      conflict.own_shift_right = known(free[i].right);
+    }
     progress_.end();
   }
 
-  /// The points of each conflict from which its shifts are found. The number of pairs of a point
-  /// and a pose is bounded because of the time that they take.
-  std::vector<std::vector<Vec3>> points_to_free(std::span<const std::uint32_t> conflict_of_row) {
-    std::vector<std::uint64_t> every, met(out_.listed.size());
-    const std::size_t conflicts = std::max<std::size_t>(1, out_.listed.size());
-    const std::uint64_t most_pairs = std::min(kMostPairs, kMostPairsOfAll / conflicts);
-    for (const Conflict& conflict : out_.listed) {
-      const std::uint64_t poses = conflict.last_pose - conflict.first_pose + std::uint64_t{1};
-      const std::uint64_t most =
-          std::max<std::uint64_t>(1, std::min(most_pairs / poses, kMostPointsOfAll / conflicts));
-      every.push_back((conflict.points + most - 1) / most);
+  /// The colliding points of each conflict, which have to be freed, in no particular order. Near
+  /// points need no shift.
+  PointsOfConflicts points_to_free(std::span<const std::uint32_t> conflict_of_row) const {
+    PointsOfConflicts out;
+    if (!out_.knows_shifts) return out;
+    const auto conflict_of = [&](const GroupedPoint& p) {
+      const bool is_near = !points_.kind.empty() && points_.kind[p.row] == CollidingPoints::kNear;
+      return is_near ? 0 : conflict_of_row[p.row];
+    };
+    // Visits the points of each cell that belong to one conflict and follow one another, in no
+    // particular order.
+    const auto for_runs = [&](auto visit) {
+      using Range = tbb::blocked_range<std::uint32_t>;
+      const ParallelScope scope;
+      const auto visit_cells = piece_of(scope, [&](const Range& cells) {
+        for (std::uint32_t cell = cells.begin(); cell != cells.end(); ++cell) {
+          if (PointGroups::is_small(groups_.of_cell[cell])) continue;
+          const std::span<const GroupedPoint> all = std::as_const(*grid_).points(cell);
+          for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
+            const std::uint32_t id = conflict_of(all[begin]);
+            while (end < all.size() && conflict_of(all[end]) == id) ++end;
+            if (id != 0) visit(id - 1, all.subspan(begin, end - begin));
+          }
+        }
+      });
+      scope.begin();
+      tbb::parallel_for(Range(0, grid_->cells(), 64), visit_cells);
+    };
+    std::vector<std::atomic<std::size_t>> next(out_.listed.size());
+    for_runs([&](std::uint32_t i, std::span<const GroupedPoint> run) { next[i] += run.size(); });
+    out.first.push_back(0);
+    for (std::atomic<std::size_t>& count : next) {
+      out.first.push_back(out.first.back() + count.exchange(out.first.back()));
     }
-    std::vector<std::vector<Vec3>> out(out_.listed.size());
-    RowStream<Collisions> stream(reader_);
-    std::size_t row = 0;
-    for (Collisions rows; stream.read(rows);) {
-      throw_if_stopped(progress_);
-      for (std::size_t i = 0; i < rows.size(); ++i, ++row) {
-        while (points_.source[row] != rows.source[i]) ++row;  // near points need no shift
-        const std::uint32_t id = conflict_of_row[row];
-        if (id == 0 || met[id - 1]++ % every[id - 1] != 0) continue;
-        out[id - 1].push_back(rows.xyz[i]);
-      }
-    }
+    out.points.resize(out.first.back());
+    for_runs([&](std::uint32_t i, std::span<const GroupedPoint> run) {
+      std::size_t at = next[i].fetch_add(run.size());
+      for (const GroupedPoint& p : run) std::ranges::copy(p.q, out.points[at++].q);
+    });
     return out;
   }
 

@@ -9,6 +9,10 @@
 #include "clearway/pose.hpp"
 #include "clearway/query.hpp"
 #include "clearway/vec3.hpp"
+#include "core/geometry/quantisation.hpp"
+#include "core/util/progress.hpp"
+#include "findings/group/cell_grid.hpp"
+#include "findings/shift/point_blocks.hpp"
 
 namespace clearway {
 
@@ -16,39 +20,62 @@ namespace clearway {
 /// longest shift does not free the points.
 struct SideShifts {
   std::optional<double> left, right;
+  friend bool operator==(const SideShifts&, const SideShifts&) = default;
+};
+
+/// Points that a shift has to free at the poses from `first` to `last`.
+struct PointsToFree {
+  std::span<QuantumPoint> points;  ///< their order may be changed
+  std::uint32_t first = 0, last = 0;
 };
 
 /// How far a vehicle has to be shifted to one side so that given points no longer collide with it.
 /// A shift by l moves every body at pose i of the path by l times the axis of that pose that points
-/// to the left (docs/design/findings.md, "Own shifts"). Thread safe once constructed.
+/// to the left (docs/design/findings.md, "Own shifts").
 class LeastShift {
  public:
+  /// The bytes that a point, and each set of points, take beside the points themselves.
+  static constexpr std::uint64_t kBytesOfPoint = PointBlocks::kBytesOfPoint;
+  static constexpr std::uint64_t kBytesOfSet = PointBlocks::kBytesOfTree + 64;
+
   /// left: the direction to the left in the frame of the path's poses, +Y for a vehicle whose front
   /// points along +X. ways: whether model points move on straight segments from pose to pose, which
   /// are looked at in steps of half the radius. A point below a body's floor does not collide with
-  /// it. All references outlive it.
+  /// it. pairs: about how many pairs of a point and a pose will be asked about; more of them are
+  /// worth more preparation. All references outlive it. Runs in the caller's arena of oneTBB.
   LeastShift(std::span<const MovingBody> bodies, const std::vector<Pose>& path, const Vec3& left,
-             double radius, bool ways, int threads);
+             double radius, bool ways, std::uint64_t pairs, int threads);
   ~LeastShift();
   LeastShift(const LeastShift&) = delete;
   LeastShift& operator=(const LeastShift&) = delete;
 
-  /// The least shifts, of at most `most` metres, at which none of the points collides at any pose
-  /// from `first` to `last`.
-  SideShifts least(std::span<const Vec3> points, std::uint32_t first, std::uint32_t last,
-                   double most) const;
+  /// For each set of points, the least shifts of at most `most` metres at which none of them
+  /// collides at any of its poses. The same for any order of the points and any number of threads.
+  /// Progress advances by one for each set. Runs in the caller's arena of oneTBB. Throws
+  /// Interrupted.
+  std::vector<SideShifts> least(const Quantisation& quantisation,
+                                std::span<const PointsToFree> sets, double most,
+                                Progress& progress) const;
 
  private:
   class Shape;
-  struct Run;
-  void add_runs(std::size_t body, const Pose& pose, const Pose& of_path,
-                std::span<const Vec3> points, double most, std::vector<Run>& runs,
-                std::vector<Vec3>& seen) const;
+  struct Instant;
+  struct Bounds;
+  struct Unit;
+  class Round;
+  class UnitSearch;
+
+  void add_instants(std::size_t body, std::uint32_t pose, bool with_way, double direction,
+                    std::vector<Instant>& out) const;
+  void add_instant(const Pose& pose, const Pose& of_path, double direction,
+                   std::vector<Instant>& out) const;
+
   std::span<const MovingBody> bodies_;
   const std::vector<Pose>& path_;
   const Vec3 left_;
   const double radius_;
   const bool ways_;
+  double longest_left_ = 0;                     ///< the greatest length of the left axis of a pose
   std::vector<std::unique_ptr<Shape>> shapes_;  ///< one for each body
 };
 

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/geometry/quantisation.hpp"
+#include "findings/group/cell_grid.hpp"
+
+namespace clearway {
+
+/// A balanced tree of boxes over points, whose leaves are blocks of a few neighbouring points. It
+/// is the same for any order of the points and any number of threads.
+class PointBlocks {
+ public:
+  /// The most points of a block.
+  static constexpr std::size_t kBlock = 32;
+
+  struct Node {
+    QuantumBox box;
+    /// A direction in which the points are thin, and where they lie along it, counted from the
+    /// lower corner of the box; the zero vector where it is not known.
+    float thin[3];
+    std::uint32_t begin, end;  ///< range of its points
+    double thin_from, thin_to;
+
+    bool has_thin() const { return thin_from <= thin_to; }
+  };
+  /// The most bytes that the nodes take for a point, and for one tree more.
+  static constexpr std::uint64_t kBytesOfPoint = 2 * sizeof(Node) / (kBlock / 2);
+  static constexpr std::uint64_t kBytesOfTree = 2 * sizeof(Node);
+
+  /// Sorts the points, of which there must be at least one, and refers to them. Runs in the
+  /// caller's arena of oneTBB.
+  PointBlocks(const Quantisation& quantisation, std::span<QuantumPoint> points);
+
+  const Node& node(std::uint32_t index) const { return nodes_[index]; }
+  /// Whether a node is a block. The children of any other node i are 2 i + 1 and 2 i + 2.
+  bool is_block(std::uint32_t index) const { return index >= first_block_; }
+  Vec3 place(std::uint32_t point) const {
+    const std::int32_t* q = points_[point].q;
+    return position(quantisation_, q[0], q[1], q[2]);
+  }
+  /// The box of all points.
+  Box box() const { return position_box(quantisation_, nodes_[0].box); }
+  const Quantisation& quantisation() const { return quantisation_; }
+
+ private:
+  void build(std::uint32_t index, std::uint32_t begin, std::uint32_t end);
+  void find_thin(Node& node) const;
+
+  const Quantisation& quantisation_;
+  std::span<QuantumPoint> points_;
+  std::uint32_t first_block_ = 0;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace clearway
