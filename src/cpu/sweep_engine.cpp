@@ -32,14 +32,14 @@ void SweepEngineOf<Element>::start(std::uint32_t slot, const PageShape& shape) {
   const Clock::time_point begin = Clock::now();
   const PageRef page{pool_.page(slot).data(), shape};
   const std::size_t blocks = cloud_.blocks_per_cell(), slots = cloud_.cell_entries();
-  std::unique_ptr<CellSearchOf<Element>> search = take_search();
+  std::unique_ptr<CellSearchOf<Element>> search = take(idle_);
   for (std::uint32_t i = 0; i < shape.cells; ++i) {
     search->run(
         page, i,
         {part_of_cell(pool_.hits(slot), i, blocks), part_of_cell(pool_.first_poses(slot), i, slots),
          part_of_cell(pool_.clearances(slot), i, slots)});
   }
-  give_back(std::move(search));
+  give_back(std::move(search), idle_);
   results_[slot] = pool_.result(slot, shape.cells);
   if (bests_) search_profile(slot, page);
   results_[slot].compute = {begin, Clock::now()};
@@ -59,11 +59,10 @@ void SweepEngineOf<Element>::search_profile(std::uint32_t slot, const PageRef& p
   facts.clear();
   if (facts.capacity() < most) facts = {};
   facts.reserve(most);
-  HostProfileOf<Element> search(cloud_, filter_.ref());
-  search.search(page, bests_->ref(), facts);
+  std::unique_ptr<ProfileWalkOf<Element>> walk = take(idle_walks_);
+  walk->search(page, bests_->ref(), facts);
+  give_back(std::move(walk), idle_walks_);
   results_[slot].profile = facts;
-  const std::lock_guard lock(mutex_);
-  statistics_.add(search.take_statistics());
 }
 
 template <typename Element>
@@ -79,19 +78,26 @@ std::uint64_t SweepEngineOf<Element>::profile_bytes(const PackedCloud& cloud, co
 }
 
 template <typename Element>
-std::unique_ptr<CellSearchOf<Element>> SweepEngineOf<Element>::take_search() {
-  const std::lock_guard lock(mutex_);
-  if (idle_.empty()) return std::make_unique<CellSearchOf<Element>>(cloud_, filter_);
-  std::unique_ptr<CellSearchOf<Element>> search = std::move(idle_.back());
-  idle_.pop_back();
-  return search;
+template <typename Search>
+std::unique_ptr<Search> SweepEngineOf<Element>::take(std::vector<std::unique_ptr<Search>>& idle) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!idle.empty()) {
+      std::unique_ptr<Search> search = std::move(idle.back());
+      idle.pop_back();
+      return search;
+    }
+  }
+  return std::make_unique<Search>(cloud_, filter_);
 }
 
 template <typename Element>
-void SweepEngineOf<Element>::give_back(std::unique_ptr<CellSearchOf<Element>> search) {
+template <typename Search>
+void SweepEngineOf<Element>::give_back(std::unique_ptr<Search> search,
+                                       std::vector<std::unique_ptr<Search>>& idle) {
   const std::lock_guard lock(mutex_);
   statistics_.add(search->take_statistics());
-  idle_.push_back(std::move(search));
+  idle.push_back(std::move(search));
 }
 
 template class SweepEngineOf<Vec3>;

@@ -7,7 +7,7 @@
 
 #include "core/page/page_engine.hpp"
 #include "core/page/page_pool.hpp"
-#include "core/sweep/profile/host_profile.hpp"
+#include "core/sweep/profile/profile_walk.hpp"
 #include "cpu/cell_search.hpp"
 
 namespace clearway {
@@ -18,7 +18,8 @@ template <typename Element>
 class SweepEngineOf final : public PageEngine {
  public:
   /// Cloud and filter must outlive the engine. It allocates its slots; in addition it takes at most
-  /// CellSearchOf::most_bytes for each thread that is in `start` at a time, and profile_bytes().
+  /// CellSearchOf::most_bytes and ProfileWalkOf::most_bytes for each thread that is in `start` at a
+  /// time, and profile_bytes().
   /// in_place: whether coordinates are searched where the cloud has them, without a copy, which
   /// pays where they were read before.
   SweepEngineOf(const PackedCloud& cloud, const SweepFilterOf<Element>& filter,
@@ -40,8 +41,10 @@ class SweepEngineOf final : public PageEngine {
 
  private:
   void search_profile(std::uint32_t slot, const PageRef& page);
-  std::unique_ptr<CellSearchOf<Element>> take_search();
-  void give_back(std::unique_ptr<CellSearchOf<Element>> search);
+  template <typename Search>
+  std::unique_ptr<Search> take(std::vector<std::unique_ptr<Search>>& idle);
+  template <typename Search>
+  void give_back(std::unique_ptr<Search> search, std::vector<std::unique_ptr<Search>>& idle);
 
   const PackedCloud& cloud_;
   const SweepFilterOf<Element>& filter_;
@@ -53,6 +56,7 @@ class SweepEngineOf final : public PageEngine {
   std::mutex mutex_;
   /// Searches not in use; at most as many as threads were ever in start() at once
   std::vector<std::unique_ptr<CellSearchOf<Element>>> idle_;
+  std::vector<std::unique_ptr<ProfileWalkOf<Element>>> idle_walks_;  ///< only with a profile
   SweepStatistics statistics_;
 };
 

@@ -1,6 +1,8 @@
 // Profiles against brute force, where they are hard: ties, distances of any size, roundings.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <optional>
+#include <string>
 
 #include "core/geometry/predicate.hpp"
 #include "cpu/brute_force.hpp"
@@ -118,6 +120,132 @@ TEST_CASE("profiles of stops, jumps and ways back") {
     }
   }
   CHECK(scene.check_profile(3) == scene.poses.size());
+}
+
+namespace {
+
+/// A pose that rolls the model about its x axis and then turns it about the z axis.
+Pose tilted(double turn, double roll, const Vec3& at) {
+  Pose pose = rotation({0, 0, 1}, turn, at);
+  const Pose rolled = rotation({1, 0, 0}, roll, {0, 0, 0});
+  Pose out = pose;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      double sum = 0;
+      for (int k = 0; k < 3; ++k) sum += pose.rotation[3 * i + k] * rolled.rotation[3 * k + j];
+      out.rotation[3 * i + j] = sum;
+    }
+  }
+  return out;
+}
+
+/// Paths of small steps, on which what was proven at one pose holds at many more.
+struct SlowPath {
+  const char* name;
+  Pose (*at)(int);
+};
+
+constexpr int kSlowPoses = 240;
+
+const SlowPath kSlowPaths[] = {
+    {"straight on",
+     [](int i) {
+       return tilted(0, 0, {-3 + 0.025 * i, 0.2, 0.4});
+     }},
+    {"steps of all sizes",
+     [](int i) {
+       return tilted(0, 0, {-3 + 0.015 * (i - i % 20) + 4e-7 * i * i, 0.2, 0.4});
+     }},
+    {"a bend",
+     [](int i) {
+       return tilted(0.01 * i, 0, {2 * std::cos(0.01 * i), 1, 0.3});
+     }},
+    {"turning on the spot",
+     [](int i) {
+       return tilted(0.02 * i, 0, {0.5, 0.4, 0.3});
+     }},
+    {"turning about a far point of the model",
+     [](int i) {
+       return tilted(0.01 * i, 0, {0.7 * std::cos(0.01 * i), 0.7 * std::sin(0.01 * i), 0.3});
+     }},
+    {"to and fro",
+     [](int i) {
+       return tilted(0, 0, {1.5 * std::sin(0.1 * i), 0.2, 0.4});
+     }},
+    {"trembling",
+     [](int i) {
+       return tilted(0, 0.001 * (i % 3), {0.004 * (i % 7), 0, 0.3});
+     }},
+    {"standing still between steps",
+     [](int i) {
+       return tilted(0.001 * (i - i % 50), 0, {0.006 * (i - i % 50) - 1, 0.2, 0.4});
+     }},
+    {"jumps, there and back",
+     [](int i) {
+       return tilted(0, 0, {-2 + 0.01 * i + (i % 74 < 37 ? 0 : 1.5), 0.2, 0.4});
+     }},
+    {"jumps of a kilometre",
+     [](int i) {
+       return tilted(0, 0, {-2 + 0.01 * i + (i % 180 < 90 ? 0 : 1000), 0.2, 0.4});
+     }},
+    {"up and down",
+     [](int i) {
+       return tilted(0, 0, {0.2, 0.4, 0.9 * std::sin(0.05 * i)});
+     }},
+    {"rolling",
+     [](int i) {
+       return tilted(0.004 * i, 0.5 * std::sin(0.03 * i), {-2 + 0.01 * i, 0.2, 0.4});
+     }},
+    {"climbing, turning, rolling",
+     [](int i) {
+       return tilted(0.01 * i, 0.2 * std::sin(0.2 * i), {0.3, 0.2, -0.9 + 0.01 * i});
+     }},
+};
+
+/// A room with two levels of even ground, along which many points are nearly the nearest at every
+/// pose.
+struct SlowScene : ProfileScene {
+  explicit SlowScene(const SlowPath& path) {
+    points.resize(500);
+    for (const double height : {-0.35, 0.02}) {
+      for (const Vec3& e : random_points(random, {{-4, -1, height}, {4, 1, height + 0.01}}, 700)) {
+        points.push_back(quantise(std::vector<Vec3>{e}, quantisation)[0]);
+      }
+    }
+    model.resize(25);
+    poses.clear();
+    for (int i = 0; i < kSlowPoses; ++i) poses.push_back(path.at(i));
+  }
+
+  std::uint64_t check_slow(double distance, std::optional<double> floor) const {
+    Query query{model, poses, {radius}};
+    query.profile = distance;
+    query.floor = floor;
+    return clearway::check_profile(points, quantisation, query);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("profiles of slow paths, on which bounds last") {
+  for (const SlowPath& path : kSlowPaths) {
+    CAPTURE(path.name);
+    SlowScene scene(path);
+    SECTION(std::string(path.name) + ", near") { scene.check_slow(0.05, std::nullopt); }
+    SECTION(std::string(path.name) + ", far") { CHECK(scene.check_slow(2, std::nullopt) > 0); }
+    SECTION(std::string(path.name) + ", above a floor") {
+      for (const double floor : {-0.3, 0.25}) CHECK(scene.check_slow(2, floor) > 0);
+    }
+    SECTION(std::string(path.name) + ", far from the origin, above a floor") {
+      scene.move_far_away({5e6, 2e6, 1e3});
+      CHECK(scene.check_slow(1, -0.3) > 0);
+    }
+    SECTION(std::string(path.name) + ", stretched") {
+      stretch(scene.poses, {2.5, 0.3, 1.7});
+      CHECK(scene.check_slow(1, std::nullopt) > 0);
+      CHECK(scene.check_slow(1, -0.3) > 0);
+    }
+  }
 }
 
 TEST_CASE("profiles for which many points tie") {

@@ -82,6 +82,9 @@ SweepFilterOf<Element>::SweepFilterOf(const Query& query, const MotionTree& moti
     wide_ = WideTreeOf<StoredElement<Element>>(model);
     ref_.wide = wide_.ref();
   }
+  if (query.profile > 0) {
+    travel_ = ProfileTravel(ref_.motion, field.ref().model, query.floor.has_value(), threads);
+  }
   for_plan_ = ref_;
   for_plan_.field = field.ref_as_made();
 }

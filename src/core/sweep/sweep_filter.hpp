@@ -12,6 +12,7 @@
 #include "core/page/pose_reach.hpp"
 #include "core/sweep/field/model_field.hpp"
 #include "core/sweep/hit_runs.hpp"
+#include "core/sweep/profile/profile_travel.hpp"
 #include "core/sweep/sweep_ref.hpp"
 #include "core/trajectory/motion_curves.hpp"
 #include "core/trajectory/motion_floors.hpp"
@@ -35,9 +36,11 @@ class SweepFilterOf final : public PoseReach {
   const SweepRefOf<Element>& ref() const { return ref_; }
   const MotionTree& motion() const override { return motion_; }
   const ModelTreeOf<StoredElement<Element>>& model() const { return model_; }
+  /// Only with a profile.
+  const ProfileTravel& travel() const { return travel_; }
   std::uint64_t allocated_bytes() const {
     return curves_.allocated_bytes() + floors_.allocated_bytes() + wide_.allocated_bytes() +
-           runs_.most_bytes();
+           travel_.allocated_bytes() + runs_.most_bytes();
   }
 
   /// Replaces `out` with those of `nodes` and the nodes below them that may touch a point of the
@@ -107,6 +110,7 @@ class SweepFilterOf final : public PoseReach {
   MotionCurves curves_;                      ///< made only with a clearance
   MotionFloors floors_;                      ///< made only with a floor
   WideTreeOf<StoredElement<Element>> wide_;  ///< made only with a clearance
+  ProfileTravel travel_;                     ///< made only with a profile
   HitRuns<Element> runs_;
   SweepRefOf<Element> for_plan_;  ///< makes no bricks, because cells are too large to need them
 };

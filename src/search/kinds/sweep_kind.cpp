@@ -19,7 +19,7 @@ constexpr PageEngineKind::IndexSize size_of(std::uint64_t mebibytes) {
 
 /// Fineness of the field on the CPU for a profile. A profile examines all points near the model at
 /// every pose, and the field decides which of them need a search of the model.
-constexpr double kProfileFineness = 2;
+constexpr double kProfileFineness = 3;
 
 /// The least number of poses for which the model field gets its full fineness, the one that pays
 /// for many poses (docs/design/sweep.md, "Field by need").
@@ -99,7 +99,8 @@ std::uint64_t CpuSweepKindOf<Element>::host_bytes(const SlotLayout& layout,
   const auto threads = static_cast<std::uint32_t>(options_.threads);
   return layout.slots * PagePool::slot_bytes(cloud_, query_, layout) +
          std::min(layout.slots, threads) *
-             CellSearchOf<Element>::most_bytes(cloud_, query_, most_poses) +
+             (CellSearchOf<Element>::most_bytes(cloud_, query_, most_poses) +
+              ProfileWalkOf<Element>::most_bytes(cloud_, query_, most_poses)) +
          SweepEngineOf<Element>::profile_bytes(cloud_, query_, layout, most_poses);
 }
 

@@ -48,13 +48,18 @@ struct ModelFieldRef {
 
   CLEARWAY_HD std::size_t coarse_nodes() const { return std::size_t{size[0]} * size[1] * size[2]; }
 
-  CLEARWAY_HD Bounds bounds(const Vec3& x) const;
+  CLEARWAY_HD Bounds bounds(const Vec3& x) const { return look_up<true>(x); }
+
+  /// The bound alone; that saves reading the elements.
+  CLEARWAY_HD double squared_lower(const Vec3& x) const { return look_up<false>(x).squared_lower; }
 
   /// Whether a solid contains x, if bounds() proves x to be farther from the surface than the
   /// roundings of this question (docs/design/numerics.md, "Solids"). squared_lower: from bounds().
   CLEARWAY_HD bool contains(const Vec3& x, double squared_lower) const;
 
  private:
+  template <bool kNames>
+  CLEARWAY_HD Bounds look_up(const Vec3& x) const;
   CLEARWAY_HD std::uint32_t brick_at(std::size_t cell) const;
   CLEARWAY_HD std::uint32_t made_brick_at(std::size_t cell) const;
   CLEARWAY_HD std::uint32_t near_coarse_node(const double (&place)[3]) const;
@@ -126,13 +131,15 @@ CLEARWAY_HD inline std::uint32_t ModelFieldRef::brick_at(std::size_t cell) const
 #endif
 }
 
-CLEARWAY_HD inline ModelFieldRef::Bounds ModelFieldRef::bounds(const Vec3& x) const {
+/// kNames: whether to name a near element.
+template <bool kNames>
+CLEARWAY_HD inline ModelFieldRef::Bounds ModelFieldRef::look_up(const Vec3& x) const {
   using namespace field_detail;
   const double whole[3] = {(x.x - origin.x) * per_metre, (x.y - origin.y) * per_metre,
                            (x.z - origin.z) * per_metre};
   for (int k = 0; k < 3; ++k) {
     if (!(whole[k] >= 0 && whole[k] < size[k] - 1)) {
-      return {least_squared_distance(model, x), near_coarse_node(whole)};
+      return {least_squared_distance(model, x), kNames ? near_coarse_node(whole) : kNone};
     }
   }
   std::uint32_t cell[3];
@@ -146,7 +153,7 @@ CLEARWAY_HD inline ModelFieldRef::Bounds ModelFieldRef::bounds(const Vec3& x) co
   if (brick == kNoBrick) {
     load_corners(coarse_squared + at, size[0], std::size_t{size[0]} * size[1], corner);
     return {concave_bound(interpolated(place, corner), place, coarse, coarse_slack),
-            near_coarse_node(whole)};
+            kNames ? near_coarse_node(whole) : kNone};
   }
   std::uint32_t fine[3], round[3];
   for (int k = 0; k < 3; ++k) {
@@ -160,7 +167,7 @@ CLEARWAY_HD inline ModelFieldRef::Bounds ModelFieldRef::bounds(const Vec3& x) co
   load_corners(distances + first + (fine[2] * kRow + fine[1]) * kRow + fine[0], kRow, kRow * kRow,
                corner);
   return {concave_bound(interpolated(place, corner), place, voxel, fine_slack),
-          nearest[first + (round[2] * kRow + round[1]) * kRow + round[0]]};
+          kNames ? nearest[first + (round[2] * kRow + round[1]) * kRow + round[0]] : kNone};
 }
 
 CLEARWAY_HD inline std::uint32_t ModelFieldRef::made_brick_at(std::size_t cell) const {

@@ -20,6 +20,29 @@ void SmallestSource::add(std::uint32_t first, std::uint32_t bits) {
   }
 }
 
+void keep_least_facts(const PackedCloud& cloud, const PageRef& page, bool one_each,
+                      std::vector<ProfileFact>& facts) {
+  std::sort(facts.begin(), facts.end(), [](const ProfileFact& a, const ProfileFact& b) {
+    return std::tie(a.pose, a.squared, a.point) < std::tie(b.pose, b.squared, b.point);
+  });
+  const auto source_of = [&](const ProfileFact& fact) {
+    const std::uint32_t entries = cloud.cell_entries();
+    return cloud.source_of(page.cell(fact.point / entries).cell, fact.point % entries);
+  };
+  std::size_t kept = 0;
+  for (const ProfileFact& fact : facts) {
+    ProfileFact* const best = kept > 0 ? &facts[kept - 1] : nullptr;
+    const bool is_first = best == nullptr || best->pose != fact.pose;
+    if (!is_first && best->squared < fact.squared) continue;
+    if (is_first || !one_each) {
+      facts[kept++] = fact;
+    } else if (source_of(fact) < source_of(*best)) {
+      *best = fact;
+    }
+  }
+  facts.resize(kept);
+}
+
 template <typename Element>
 void HostProfileOf<Element>::search(const PageRef& page, const ProfileBests& bests,
                                     std::vector<ProfileFact>& found) {
@@ -35,32 +58,8 @@ void HostProfileOf<Element>::search(const PageRef& page, const ProfileBests& bes
         search.search(page.nodes(cell)[node]);
       }
     }
-    if (page.shape.cells > 1) keep_least(page, true, found);
+    if (page.shape.cells > 1) keep_least_facts(cloud_, page, true, found);
   }
-}
-
-template <typename Element>
-void HostProfileOf<Element>::keep_least(const PageRef& page, bool one_each,
-                                        std::vector<ProfileFact>& facts) const {
-  std::sort(facts.begin(), facts.end(), [](const ProfileFact& a, const ProfileFact& b) {
-    return std::tie(a.pose, a.squared, a.point) < std::tie(b.pose, b.squared, b.point);
-  });
-  const auto source_of = [&](const ProfileFact& fact) {
-    const std::uint32_t entries = cloud_.cell_entries();
-    return cloud_.source_of(page.cell(fact.point / entries).cell, fact.point % entries);
-  };
-  std::size_t kept = 0;
-  for (const ProfileFact& fact : facts) {
-    ProfileFact* const best = kept > 0 ? &facts[kept - 1] : nullptr;
-    const bool is_first = best == nullptr || best->pose != fact.pose;
-    if (!is_first && best->squared < fact.squared) continue;
-    if (is_first || !one_each) {
-      facts[kept++] = fact;
-    } else if (source_of(fact) < source_of(*best)) {
-      *best = fact;
-    }
-  }
-  facts.resize(kept);
 }
 
 template <typename Element>
@@ -80,7 +79,7 @@ void HostProfileOf<Element>::resolve(const PageRef& page, double limit, ProfileF
 
 template <typename Element>
 void HostProfileOf<Element>::complete(const PageRef& page, std::vector<ProfileFact>& facts) {
-  keep_least(page, false, facts);
+  keep_least_facts(cloud_, page, false, facts);
   const double limit = rounded_product(sweep_.profile, sweep_.profile);
   for (ProfileFact& fact : facts) {
     if (fact.tied != 0) resolve(page, limit, fact);

@@ -49,7 +49,13 @@ class SmallestSource {
   std::uint64_t source_ = ~std::uint64_t{0};
 };
 
-/// The profile's search on the host; the lanes of a warp are a loop.
+/// Keeps, for each pose, the facts of a page that no other fact betters. one_each: keeps only the
+/// fact with the smallest source index.
+void keep_least_facts(const PackedCloud& cloud, const PageRef& page, bool one_each,
+                      std::vector<ProfileFact>& facts);
+
+/// On the host the search that a GPU makes for a profile, for what does not fit there; the lanes of
+/// a warp are a loop. A search on the CPU alone is ProfileWalkOf.
 template <typename Element>
 class HostProfileOf {
  public:
@@ -78,10 +84,6 @@ class HostProfileOf {
 
  private:
   using Search = ProfileSearch<HostWarp, SmallestSource, Element>;
-
-  /// Keeps, for each pose, the facts that no other fact betters. one_each: keeps only the fact with
-  /// the smallest source index.
-  void keep_least(const PageRef& page, bool one_each, std::vector<ProfileFact>& facts) const;
 
   const PackedCloud& cloud_;
   const SweepRefOf<Element>& sweep_;
