@@ -61,8 +61,8 @@ def cases(options, folder):
         subprocess.run([options.program, "scene", options.scene, "--points", str(points), "-o",
                         scene], check=True, capture_output=True)
         for way, how in ways(options):
-            more = ["--floor", options.floor] if options.floor else []
-            answers = [check(options.program, scene, [*how, *more]) for _ in range(options.runs)]
+            answers = [check(options.program, scene, [*how, *options.more])
+                       for _ in range(options.runs)]
             runs = [run_of(*answer) for answer in answers]
             print(points, way, *(f"{run['seconds']['total']:.2f}" for run in runs),
                   file=sys.stderr)
@@ -91,7 +91,8 @@ def main():
                         help="numbers of environment points")
     parser.add_argument("--threads", type=numbers, default=[2], help="numbers of threads")
     parser.add_argument("--gpu", action="store_true", help="measure on a GPU too")
-    parser.add_argument("--floor", help="as clearway check takes it")
+    parser.add_argument("--with", dest="more", type=str.split, default=[],
+                        help='more options of clearway check, for example "--memory 24G"')
     parser.add_argument("--runs", type=int, default=3, help="runs of each case")
     parser.add_argument("--work", type=Path, help="folder for the scenes (default: a temporary one)")
     options = parser.parse_args()

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from charting.plot import handle_of, legend_in, line, log_axis, panels, seconds_axis
+from charting.plot import handle_of, legend_in, line, log_axis, panels, seconds_axis, short
 from charting.sheet import Sheet
 from charting.style import styles_of
 
@@ -26,7 +26,7 @@ def draw(record):
     whole.set(title="a  the whole check", xlabel="environment points", ylabel="seconds")
     largest = [max(record.where(way=way), key=lambda case: case["points"]) for way in ways]
     draw_steps(steps, largest)
-    steps.set_title("b  the steps of the largest scene")
+    steps.set_title("b  the steps of the largest scene of each")
     legend_in(place, [handle_of(style) for style in styles.values()], ways, 4)
     sheet.say(f"Scenes: {', '.join(scenes)}, as clearway scene makes them, with the radius of 0.1 m, "
               "clearances up to 0.3 m, and the profile up to 0.5 m that check asks for by itself. "
@@ -43,6 +43,7 @@ def draw_steps(axes, cases):
                  color=str(0.25 + 0.12 * number), edgecolor="black", linewidth=0.4,
                  hatch=("", "", "///", "...", "", "xxx")[number])
         bottom += heights
-    axes.set_xticks(range(len(cases)), [case["way"] for case in cases])
+    axes.set_xticks(range(len(cases)),
+                    [f"{case['way']},\n{short(case['points'])} points" for case in cases])
     axes.set(ylabel="seconds", ylim=(0, 1.4 * max(bottom.max(), 1e-3)))
     axes.legend(loc="upper right", ncols=2)
