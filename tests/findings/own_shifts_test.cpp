@@ -8,7 +8,7 @@
 
 #include "core/geometry/triangle.hpp"
 #include "core/util/progress.hpp"
-#include "findings/least_shift.hpp"
+#include "findings/shift/least_shift.hpp"
 #include "io/files/thread_limit.hpp"
 #include "support/scenes.hpp"
 #include "support/solid_scene.hpp"

@@ -1,4 +1,4 @@
-#include "findings/least_shift.hpp"
+#include "findings/shift/least_shift.hpp"
 
 #include <tbb/parallel_for.h>
 
