@@ -350,8 +350,9 @@ class Viewer {
       seen.hi[k] += moves[k];
       if (!std::isfinite(seen.lo[k]) || !std::isfinite(seen.hi[k])) return true;
     }
-    if (moments.are_ways) seen = seen.grown(turn.beyond(length(seen.size())));
-    return may_add(seen, found);
+    if (!moments.are_ways) return may_add(seen, found);
+    const double beyond = turn.beyond(length(seen.size()));
+    return !std::isfinite(beyond) || may_add(seen.grown(beyond), found);
   }
 
   void add_pose(std::span<const Vec3> places, const Pose& pose, AcrossBody& found) const {
@@ -369,7 +370,9 @@ class Viewer {
     both.extend(b.lo);
     both.extend(b.hi);
     const Turn turn(from, to, radius_);
-    if (!may_add(both.grown(turn.beyond(length(both.size()))), found)) return;
+    // After half a turn a point may lie anywhere, and its places are looked at one by one.
+    const double most = turn.beyond(length(both.size()));
+    if (std::isfinite(most) && !may_add(both.grown(most), found)) return;
     for (const Vec3& place : bunch.places) {
       const Vec3 x = first.apply(place), y = second.apply(place);
       if (!is_at_floor(x) && !is_at_floor(y)) continue;

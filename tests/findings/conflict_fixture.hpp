@@ -51,6 +51,7 @@ struct Found {
     out.model_box = {{-1, -1, -1}, {1, 1, 1}};
     for (const Body& one : bodies) out.bodies.push_back(one.name);
     if (!bodies.empty()) out.model_hash = hash_of_bodies(bodies);
+    if (floor) out.body_floors.assign(bodies.size(), floor);
     return out;
   }
 

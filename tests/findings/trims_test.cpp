@@ -3,6 +3,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 
 #include "clearway/clearway.hpp"
 #include "core/geometry/inside.hpp"
@@ -236,6 +237,36 @@ TEST_CASE("trims and sides of random groups are those of every point at every po
   for (const Side side : {Side::kLeft, Side::kRight, Side::kAbove, Side::kBelow}) {
     CHECK(sides[static_cast<std::size_t>(side)] > 5);
   }
+}
+
+TEST_CASE("a half turn takes the trims of no conflict but its own") {
+  Found found;
+  found.poses.clear();
+  for (int i = 0; i < 40; ++i) found.poses.push_back(translation({0.25 * i, 0, 0}));
+  found.between_poses = true;
+  for (int i = 0; i < 30; ++i) {  // a rail that reaches 0.1 m into the vehicle from the left
+    found.quanta.push_back({2000 + 20 * i, 900, 10 * i});
+    found.first_pose.push_back(4);
+    found.last_pose.push_back(8);
+  }
+  const auto found_on = [&](const std::vector<Pose>& poses) {
+    Found with = found;
+    with.poses = poses;
+    const ScratchFolder folder;
+    ConflictOptions options;
+    options.min_points = 1;
+    const Conflicts conflicts = find_conflicts(with.write(folder), poses, options);
+    REQUIRE(conflicts.listed.size() == 1);
+    return conflicts.listed.front();
+  };
+  const Conflict straight = found_on(found.poses);
+  std::vector<Pose> turning = found.poses;
+  turning.push_back(rotation({0, 0, 1}, std::numbers::pi, {10, 0, 0}));
+  const Conflict before_turn = found_on(turning);
+  CHECK(straight.side == Side::kLeft);
+  CHECK(straight.trim_left == Approx(0.6));
+  CHECK(before_turn.side == straight.side);
+  CHECK(are_equal(trims_of(before_turn), trims_of(straight)));
 }
 
 namespace {

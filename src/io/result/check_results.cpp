@@ -138,6 +138,15 @@ std::string asked_to_ignore_text(const ResultHeader& header) {
   return ignored_text(header) + boxes;
 }
 
+/// "0.25, none" for two bodies; "none" where no body has a floor.
+std::string body_floors_text(const ResultHeader& header) {
+  std::string text;
+  for (const std::optional<double>& floor : header.body_floors) {
+    text += (text.empty() ? "" : ", ") + (floor ? format_number(*floor) : "none");
+  }
+  return text.empty() ? "none" : text;
+}
+
 std::string crs_text(const ResultHeader& header) {
   return header.crs_wkt.empty() ? "none" : header.crs_wkt;
 }
@@ -171,6 +180,7 @@ class Differences {
 void add_question(const ResultHeader& a, const ResultHeader& b, Differences& out) {
   out.add("model", model_text(a), model_text(b));
   out.add("bodies", bodies_text(a), bodies_text(b));
+  out.add("floors of bodies", body_floors_text(a), body_floors_text(b));
   out.add("trajectory", content_text(a.poses, "poses", a.trajectory_hash),
           content_text(b.poses, "poses", b.trajectory_hash));
   for_each_field(kQueryValues, [&](const auto& field) {

@@ -492,6 +492,9 @@ ResultFindings read_result_findings(const hdf5::Id& file, const std::string& nam
     read_value(file, names::kFloorColliding, name, findings.floor_colliding.emplace());
     check_at_most(*findings.floor_colliding, header.environment_points, names::kFloorColliding,
                   name);
+    if (!header.bodies.empty() && header.body_floors.empty()) {
+      refuse(name, std::string("attribute '") + names::kBodyFloors + "' is missing; run it again");
+    }
   } else if (header.floor || !header.body_floors.empty()) {
     refuse(name, std::string("attribute '") + names::kFloorColliding + "' is missing");
   }

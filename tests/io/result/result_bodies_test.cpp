@@ -124,6 +124,20 @@ TEST_CASE("a vehicle's result keeps the floor of each body") {
   CHECK(words() == "the floors of the vehicle's bodies (0.1 m to 0.3 m, 2 bodies without)");
 }
 
+TEST_CASE("a vehicle's result with a floor but without those of its bodies is refused") {
+  Vehicle vehicle;
+  vehicle.header.floor = 0.2;
+  ResultFindings findings;
+  findings.floor_colliding = 3;
+  ResultWriter writer(vehicle.folder / "out.h5", vehicle.header, vehicle.rows.size(),
+                      vehicle.near.size());
+  writer.append(vehicle.rows);
+  writer.append(vehicle.near);
+  writer.finish(findings);
+  CHECK_THROWS_WITH(vehicle.fault("out.h5"),
+                    Catch::Contains("attribute 'body_floors' is missing; run it again"));
+}
+
 TEST_CASE("bodies without first poses are only those of clearances") {
   Vehicle vehicle;
   vehicle.header.first_pose = false;

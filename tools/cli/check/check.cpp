@@ -40,6 +40,7 @@
 #include "io/result/journal.hpp"
 #include "io/result/result.hpp"
 #include "io/scans/length_unit.hpp"
+#include "io/scans/point_reader.hpp"
 #include "io/store/convert/convert.hpp"
 #include "io/store/file_kind.hpp"
 #include "search/check_query.hpp"
@@ -316,27 +317,22 @@ class Check {
     const SearchOptions machine = Step<RunOptions>(plan_.run(false)).options().search;
     if (has_begun() || plan_.has_store() || machine.engine == Engine::kGrid) return;
     started_ = start_devices(machine);
-    const std::uint64_t points = bytes_of_inputs() / kMostBytesOfPoint;
+    const std::uint64_t points = bytes_of_scans() / kMostBytesOfPoint;
     const bool many = points >= surely_many_points(threads_or_all(machine.threads));
     if (!started_ && many) started_ = std::make_shared<const DeviceStart>(machine);
   }
 
-  /// The bytes of the scans, also of those in folders; of what cannot be read, nothing.
-  std::uint64_t bytes_of_inputs() const {
+  /// The bytes of the scans; of what cannot be read, nothing.
+  std::uint64_t bytes_of_scans() const {
     std::uint64_t bytes = 0;
-    const auto add = [&bytes](const fs::path& file) {
-      std::error_code failed;
-      const std::uint64_t size =
-          fs::is_regular_file(file, failed) ? fs::file_size(file, failed) : 0;
-      if (!failed) bytes += size;
-    };
-    for (const fs::path& input : options_.inputs) {
-      add(input);
-      std::error_code failed;
-      fs::recursive_directory_iterator entry(input, failed);
-      for (; !failed && entry != fs::recursive_directory_iterator(); entry.increment(failed)) {
-        add(entry->path());
+    try {
+      for (const fs::path& scan : list_point_files(plan_.scans())) {
+        std::error_code failed;
+        const std::uint64_t size = fs::file_size(scan, failed);
+        if (!failed) bytes += size;
       }
+    } catch (const Error&) {
+      return 0;  // the conversion reports it
     }
     return bytes;
   }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -153,10 +152,8 @@ void CheckPlan::leave_out_models() {
   for (const std::filesystem::path& input : scans_) {
     std::error_code unknown;
     std::vector<std::filesystem::path> files{input};
-    std::vector<Message> of_folder;
-    if (std::filesystem::is_directory(input, unknown)) {
-      files = list_point_files({input}, &of_folder);
-    }
+    const bool is_folder = std::filesystem::is_directory(input, unknown);
+    if (is_folder && !all_models.empty()) files = list_point_files({input});
     const auto kept = std::stable_partition(files.begin(), files.end(), std::not_fn(is_model));
     if (kept == files.end()) {
       scans.push_back(input);
@@ -167,12 +164,16 @@ void CheckPlan::leave_out_models() {
           note("model-among-scans",
                model->string() + ": belongs to the vehicle, so it is not taken as a scan"));
     }
-    std::ranges::move(of_folder, std::back_inserter(remarks_));
+    if (is_folder) list_point_files({input}, &remarks_);
     scans.insert(scans.end(), files.begin(), kept);
   }
   if (scans.empty() && !scans_.empty()) {
+    std::error_code unknown;
+    const bool is_folder = std::filesystem::is_directory(scans_.front(), unknown);
     throw UsageError(scans_.front().string() +
-                     ": is no scan but belongs to the vehicle; expected scans as inputs");
+                     (is_folder ? ": holds no scan beside the files of the vehicle"
+                                : ": is no scan but belongs to the vehicle") +
+                     "; expected scans as inputs");
   }
   scans_ = std::move(scans);
 }

@@ -43,6 +43,8 @@ class CheckPlan {
   /// Whether the input is a store already, so that nothing is converted.
   bool has_store() const { return has_store_; }
   std::filesystem::path environment() const;
+  /// The inputs without the files of the vehicle.
+  const std::vector<std::filesystem::path>& scans() const { return scans_; }
   /// What there is to say of the inputs that are not taken as scans, because they are the vehicle.
   const std::vector<Message>& remarks() const { return remarks_; }
   std::filesystem::path file(const char* name) const { return options_.folder / name; }
