@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/sweep/tolerance.hpp"
+#include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "cpu/sweep_engine.hpp"
 
@@ -17,9 +18,16 @@ constexpr PageEngineKind::IndexSize size_of(std::uint64_t mebibytes) {
   return {bytes, bytes + bytes / 4};
 }
 
-/// Fineness of the field on the CPU for a profile. A profile examines all points near the model at
-/// every pose, and the field decides which of them need a search of the model.
-constexpr double kProfileFineness = 3;
+/// Fineness of the field on the CPU. A profile examines all points near the model at every pose,
+/// and the field decides which of them need a search of the model. The less the model moves from
+/// pose to pose, the longer its bounds last, and a finer field pays.
+template <typename Element>
+double cpu_fineness(const Query& query) {
+  if (!(query.profile > 0) || kIsTriangle<Element>) return 1;
+  const bool is_slow =
+      path_length(query.poses) <= query.profile * static_cast<double>(query.poses.size());
+  return is_slow ? 3 : 2;
+}
 
 /// The least number of poses for which the model field gets its full fineness, the one that pays
 /// for many poses (docs/design/sweep.md, "Field by need").
@@ -89,9 +97,7 @@ CpuSweepKindOf<Element>::CpuSweepKindOf(const PackedCloud& cloud, const Query& q
                                         const EngineSettings& settings)
     : SweepKindOf<Element>({.most_slots = static_cast<std::uint32_t>(options.threads) + kSlotsAhead,
                             .threads = options.threads},
-                           cloud, query, options,
-                           query.profile > 0 && !kIsTriangle<Element> ? kProfileFineness : 1,
-                           settings) {}
+                           cloud, query, options, cpu_fineness<Element>(query), settings) {}
 
 template <typename Element>
 std::uint64_t CpuSweepKindOf<Element>::host_bytes(const SlotLayout& layout,

@@ -162,9 +162,12 @@ class ProfileWalkOf<Element>::OfPage {
     return ((proven > 0 ? proven : 0) + moved_) / kRoundedUp;
   }
 
+  /// The root of a squared distance. One that is too great for a double proves only so much.
+  static double root_of(double squared) { return std::min(std::sqrt(squared), 1e154); }
+
   /// A distance from the model at the pose under search, from a bound of the field.
   double distance_of(double squared_lower) const {
-    return sweep_.motion.inverse_poses[pose_].least * std::sqrt(squared_lower) / kRoundedUp;
+    return sweep_.motion.inverse_poses[pose_].least * root_of(squared_lower) / kRoundedUp;
   }
 
   void search_pose(std::uint32_t pose) {
@@ -281,7 +284,7 @@ class ProfileWalkOf<Element>::OfPage {
       ++statistics().exact_tests;
       search_point(candidate);
       // Every pair has a computed d2 of at least this.
-      key = std::max(key, key_of(std::sqrt(candidate.least) / kRoundedUp));
+      key = std::max(key, key_of(root_of(candidate.least) / kRoundedUp));
       take(index, candidate);
     }
   }
@@ -478,18 +481,42 @@ ProfileWalkOf<Element>::ProfileWalkOf(const PackedCloud& cloud,
 template <typename Element>
 void ProfileWalkOf<Element>::search(const PageRef& page, const ProfileBests& bests,
                                     std::vector<ProfileFact>& found) {
+  using Descent = ProfileSearch<HostWarp, SmallestSource, Element>;
   OfPage walk(*this, page, bests, found);
+  typename Descent::Shared shared;
+  Descent descent(filter_.ref(), page, cloud_.quantisation(), bests, SmallestSource(cloud_, found),
+                  shared, statistics_);
   const std::uint32_t parts =
       static_cast<std::uint32_t>(divide_up(page.shape.blocks_per_cell, Blocks::kPartBlocks));
   for (std::uint32_t i = 0; i < page.shape.cells; ++i) {
     const PageCell& cell = page.cell(i);
     for (std::uint32_t part = 0; part < parts && walk.enter(i, part); ++part) {
+      bool entered = false;
       for (std::uint32_t node = 0; node < cell.node_count; ++node) {
-        walk.search(page.nodes(cell)[node]);
+        const std::uint32_t top = page.nodes(cell)[node];
+        if (!is_far_apart(cell, top)) {
+          walk.search(top);
+          continue;
+        }
+        entered = entered || descent.enter(i, part);
+        if (entered) descent.search(top);
       }
     }
     if (page.shape.cells > 1) keep_least_facts(cloud_, page, true, found);
   }
+}
+
+/// Whether the model moves so far from pose to pose of a node that bounds do not last: all blocks
+/// of a cell would be looked at again at each pose. Then the motion tree is descended as on a GPU.
+template <typename Element>
+bool ProfileWalkOf<Element>::is_far_apart(const PageCell& cell, std::uint32_t top) const {
+  const MotionNode& node = filter_.ref().motion.nodes[top];
+  const ProfileTravel& travel = filter_.travel();
+  // With the step to its first pose, since a node may have one pose alone.
+  const std::uint32_t before = node.first - (node.first > 0 ? 1 : 0);
+  const double way = travel.moved(node.first + node.count - 1) - travel.moved(before);
+  const double size = half_diagonal(position_box(cloud_.quantisation(), cell.box));
+  return !(kFarSteps * way < size * node.count);
 }
 
 template <typename Element>

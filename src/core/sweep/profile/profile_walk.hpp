@@ -41,6 +41,11 @@ class ProfileWalkOf {
                                     ProfileDepths<HostWarp, SmallestSource, Element>, NoDepths>;
   class OfPage;
 
+  /// So many steps from pose to pose are at least half the diagonal of a cell where poses are far
+  /// apart.
+  static constexpr double kFarSteps = 4;
+  bool is_far_apart(const PageCell& cell, std::uint32_t top) const;
+
   /// A block of the part of a cell under search. A key is a proven distance from the model plus the
   /// way moved until it was proven: what has it cannot matter before a pose's reach plus the way
   /// moved until there exceed it.
