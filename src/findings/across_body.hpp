@@ -57,8 +57,8 @@ struct BodiesAcross {
 /// Finds for each part where its points lie across its body, at all poses of its range at which
 /// they are closer than the radius to the body's box and at its floor or above; between poses, at
 /// both ends of each way that may come so near, and as far beyond as the body's turn may take them.
-/// part_of_row: the index of each row's part + 1, 0 for
-/// rows of no part. Runs in the caller's arena of oneTBB. Throws Interrupted.
+/// part_of_row: the index of each row's part + 1, 0 for rows of no part. Runs in the caller's arena
+/// of oneTBB. Throws Interrupted.
 void find_across_bodies(const CellGrid& grid, const PointGroups& groups,
                         std::span<const std::uint32_t> part_of_row,
                         const Quantisation& quantisation, const BodiesAcross& how,

@@ -144,7 +144,7 @@ class NearestToPlaces {
   struct Entry {
     std::uint32_t bucket, place;
   };
-  /// Of the cubes: a power of two.
+  /// The size of cubes: their edges are 2 to the power of the exponent, in metres.
   struct Size {
     int exponent;
     double per_metre;
@@ -234,7 +234,7 @@ class NearestToPlaces {
     while (value < known && !least.compare_exchange_weak(known, value)) continue;
   }
 
-  /// Of coordinates, as a share of a radius and of a step.
+  /// Coordinates are rounded by less than this share of a radius and of a step.
   static constexpr double kRounding = 1e-6;
 
   std::span<const QuantumPoint> places_;

@@ -196,17 +196,12 @@ void add_finding(Json& json, const Column& column, const Row& row) {
   }
 }
 
-/// How many metres the unit of lengths is; 1 where it is not known.
-double metres_per_unit(const ReportFacts& facts) {
-  const double metres = metres_of(unit_of(facts.result.reader().header()));
-  return metres > 0 ? metres : 1;
-}
-
 /// What frees the vehicle from a conflict, in words.
 std::string remedy_of(const Conflict& conflict, const ReportFacts& facts) {
-  RemedyWords how{*facts.conflicts, symbol_of(unit_of(facts.result.reader().header()))};
-  how.metre = metres_per_unit(facts);
-  how.has_budget = facts.result.reader().header().budget.has_value();
+  const ResultHeader& header = facts.result.reader().header();
+  RemedyWords how{*facts.conflicts, symbol_of(unit_of(header))};
+  how.metre = metres_per_unit(header);
+  how.has_budget = header.budget.has_value();
   if (conflict.first_body) how.body = facts.bodies[*conflict.first_body].name;
   if (facts.options.shifts) how.shifts = &*facts.options.shifts;
   return remedy_words(conflict, how);
@@ -486,7 +481,7 @@ std::string json_of(const ReportFacts& facts) {
   if (answer.seen) out["seen"] = json_of(*answer.seen, facts);
   out["colliding_points"] = facts.result.size();
   out["unit"] = facts.store.length_unit();
-  out["touching"] = kTouching / metres_per_unit(facts);
+  out["touching"] = kTouching / metres_per_unit(facts.result.reader().header());
   out["least_distance"] = json_of_least(facts);
   out["inside"] = json_of_inside(facts);
   out["query"] = json_of_query(facts);

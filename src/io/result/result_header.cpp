@@ -406,6 +406,11 @@ void check_header(const ResultHeader& header, const std::string& name) {
 
 LengthUnit unit_of(const ResultHeader& header) { return length_unit_of(header.notes.length_unit); }
 
+double metres_per_unit(const ResultHeader& header) {
+  const double metres = metres_of(unit_of(header));
+  return metres > 0 ? metres : 1;
+}
+
 std::string environment_text(const ResultHeader& header) {
   return std::to_string(header.environment_points) + " points, hash " +
          hash_text(header.environment_hash);

@@ -95,6 +95,9 @@ inline bool same_answer(const ResultHeader& a, const ResultHeader& b) {
 /// The unit of all lengths of a result: that of the store.
 LengthUnit unit_of(const ResultHeader& header);
 
+/// Metres per unit of length; 1 where the unit is not known.
+double metres_per_unit(const ResultHeader& header);
+
 /// The environment in words, by its number of points and its hash.
 std::string environment_text(const ResultHeader& header);
 

@@ -29,11 +29,11 @@ struct Vehicle {
     for (std::uint32_t i = 0; i < near.size(); ++i) near.body.push_back(i * 5 % 3);
   }
 
-  void write(const std::string& name) const {
+  void write(const std::string& name, const ResultFindings& findings = {}) const {
     ResultWriter writer(folder / name, header, rows.size(), near.size());
     writer.append(rows);
     writer.append(near);
-    writer.finish();
+    writer.finish(findings);
   }
   std::optional<std::string> fault(const std::string& name) const {
     NoProgress progress;
@@ -94,11 +94,7 @@ TEST_CASE("a vehicle's result keeps the floor of each body") {
   vehicle.header.body_floors = {0.25, std::nullopt, -0.5};
   ResultFindings findings;
   findings.floor_colliding = 12;
-  ResultWriter writer(vehicle.folder / "out.h5", vehicle.header, vehicle.rows.size(),
-                      vehicle.near.size());
-  writer.append(vehicle.rows);
-  writer.append(vehicle.near);
-  writer.finish(findings);
+  vehicle.write("out.h5", findings);
   const ResultReader result(vehicle.folder / "out.h5");
   CHECK(same_answer(result.header(), vehicle.header));
   Answer answer = counted_answer(result);
@@ -129,11 +125,7 @@ TEST_CASE("a vehicle's result with a floor but without those of its bodies is re
   vehicle.header.floor = 0.2;
   ResultFindings findings;
   findings.floor_colliding = 3;
-  ResultWriter writer(vehicle.folder / "out.h5", vehicle.header, vehicle.rows.size(),
-                      vehicle.near.size());
-  writer.append(vehicle.rows);
-  writer.append(vehicle.near);
-  writer.finish(findings);
+  vehicle.write("out.h5", findings);
   CHECK_THROWS_WITH(vehicle.fault("out.h5"),
                     Catch::Contains("attribute 'body_floors' is missing; run it again"));
 }

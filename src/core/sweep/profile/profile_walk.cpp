@@ -486,8 +486,7 @@ void ProfileWalkOf<Element>::search(const PageRef& page, const ProfileBests& bes
   typename Descent::Shared shared;
   Descent descent(filter_.ref(), page, cloud_.quantisation(), bests, SmallestSource(cloud_, found),
                   shared, statistics_);
-  const std::uint32_t parts =
-      static_cast<std::uint32_t>(divide_up(page.shape.blocks_per_cell, Blocks::kPartBlocks));
+  const std::uint32_t parts = Descent::parts_of_cell(page.shape.blocks_per_cell);
   for (std::uint32_t i = 0; i < page.shape.cells; ++i) {
     const PageCell& cell = page.cell(i);
     for (std::uint32_t part = 0; part < parts && walk.enter(i, part); ++part) {

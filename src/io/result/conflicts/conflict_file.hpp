@@ -32,7 +32,7 @@ struct ConflictFile {
   /// Unit of all lengths, which the scan's coordinate reference system names.
   LengthUnit unit() const { return unit_of(header); }
   /// Metres per unit of length; 1 where the unit is not known.
-  double metres_per_unit() const { return metres_of(unit()) > 0 ? metres_of(unit()) : 1; }
+  double metres_per_unit() const { return clearway::metres_per_unit(header); }
 
   static constexpr const char* kNoDate = "2000-01-01T00:00:00Z";
 };
