@@ -78,17 +78,16 @@ bool SessionState::has_gpus() const {
 DeviceChoice SessionState::gpus(const SearchOptions& options, const MessageLog& log,
                                 double& waited) {
   const std::lock_guard lock(mutex_);
-  if (gpus_ && !still_works(*gpus_)) {
+  if (gpus_ && still_works(*gpus_)) return *gpus_;
+  if (gpus_) {
     kept_on_gpus_.forget_all();
     gpus_.reset();
   }
-  if (!gpus_) {
-    const Stopwatch waiting;
-    started_->wait();
-    gpus_ = choose_device(options, log);
-    waited = waiting.seconds();
-  }
-  return *gpus_;
+  const Stopwatch waiting;
+  started_->wait();
+  const DeviceChoice& chosen = gpus_.emplace(choose_device(options, log));
+  waited = waiting.seconds();
+  return chosen;
 }
 
 IgnoredPointCounts SessionState::ignored(const QueryParameters& query, int threads) {

@@ -1,10 +1,10 @@
-#include <catch2/catch.hpp>
 #include <map>
 #include <optional>
 #include <vector>
 
 #include "core/seen/beams.hpp"
 #include "support/beam_scenes.hpp"
+#include "support/catch.hpp"
 #include "support/engines/beam_runs.hpp"
 #include "support/engines/section_runs.hpp"
 #include "support/memory_cloud.hpp"

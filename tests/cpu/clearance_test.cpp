@@ -1,8 +1,8 @@
 // Clearances against brute force, where they are hard: ties, clearances of any size, roundings.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/geometry/predicate.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/engines/scene_checks.hpp"
 #include "support/scenes.hpp"

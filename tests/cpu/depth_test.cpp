@@ -1,8 +1,8 @@
 // Penetration depths of bodies whose depth is known, through walls of points.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/engines/engines.hpp"
 #include "support/solid_scene.hpp"

@@ -1,10 +1,10 @@
 // Every engine against brute force on the way from a pose to the next.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/geometry/predicate.hpp"
 #include "cpu/brute_force.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/engines/engines.hpp"
 #include "support/scenes.hpp"

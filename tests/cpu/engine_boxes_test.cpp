@@ -1,9 +1,9 @@
 // Boxes that are accepted as a whole, because every point is within the radius of one model point,
 // and boxes that just miss that.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "cpu/random_scene.hpp"
+#include "support/catch.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

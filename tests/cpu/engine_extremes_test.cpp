@@ -1,9 +1,9 @@
 // Every engine against brute force: radii, coordinates and matrices at their ends.
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <limits>
 
 #include "random_scene.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

@@ -1,8 +1,7 @@
 // Every engine against brute force on points of which some are ignored: the answer is that of the
 // others alone.
-#include <catch2/catch.hpp>
-
 #include "random_scene.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

@@ -1,9 +1,9 @@
 // Every engine against brute force where rounding decides: points at the radius and a few units in
 // the last place to either side, near the origin and far from it.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/geometry/predicate.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/engines/engines.hpp"
 #include "support/scenes.hpp"

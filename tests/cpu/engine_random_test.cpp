@@ -1,7 +1,7 @@
 // Every engine against brute force on several hundred small random scenes.
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/catch.hpp"
 #include "support/engines/engines.hpp"
 #include "support/scenes.hpp"
 

@@ -1,7 +1,6 @@
 // Every engine against brute force: the shapes that a cloud, a model and a path can have.
-#include <catch2/catch.hpp>
-
 #include "random_scene.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

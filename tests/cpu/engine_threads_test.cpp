@@ -1,6 +1,5 @@
 // Every engine where threads get in each other's way.
-#include <catch2/catch.hpp>
-
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/engines/engines.hpp"
 #include "support/scenes.hpp"

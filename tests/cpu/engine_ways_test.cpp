@@ -1,8 +1,8 @@
 // First poses between poses: every engine and brute force against definitions of their own.
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "core/geometry/predicate.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/engines/engines.hpp"
 #include "support/exact_way.hpp"

@@ -1,10 +1,10 @@
 // Queries with a floor: every engine against brute force.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
 #include "core/geometry/inside.hpp"
 #include "cpu/brute_force.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/engines/engines.hpp"
 #include "support/solid_scene.hpp"

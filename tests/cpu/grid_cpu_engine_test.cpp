@@ -1,5 +1,4 @@
 // Tests of what only the grid engine has: its options, its work list, its pages, its statistics.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "clearway/error.hpp"
@@ -7,6 +6,7 @@
 #include "core/grid/grid_search.hpp"
 #include "core/grid/grid_size.hpp"
 #include "cpu/brute_force.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/engines/grid_runs.hpp"
 #include "support/memory_cloud.hpp"

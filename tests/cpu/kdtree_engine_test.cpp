@@ -2,9 +2,9 @@
 #include "cpu/kdtree_engine.hpp"
 
 #include <atomic>
-#include <catch2/catch.hpp>
 
 #include "clearway/error.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/memory_cloud.hpp"
 #include "support/scenes.hpp"

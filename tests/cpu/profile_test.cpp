@@ -1,5 +1,4 @@
 // Profiles against brute force, where they are hard: ties, distances of any size, roundings.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -7,6 +6,7 @@
 #include "core/geometry/predicate.hpp"
 #include "cpu/brute_force.hpp"
 #include "random_scene.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

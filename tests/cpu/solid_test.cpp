@@ -1,7 +1,7 @@
 // Models with solids: the sweep against brute force, bit for bit, in all modes.
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/catch.hpp"
 #include "support/engines/scene_checks.hpp"
 #include "support/solid_scene.hpp"
 

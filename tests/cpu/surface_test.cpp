@@ -1,9 +1,9 @@
 // Models of triangles: the sweep against brute force, bit for bit, in all modes.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/geometry/triangle_box.hpp"
 #include "core/sweep/sweep_filter.hpp"
+#include "support/catch.hpp"
 #include "support/engines/scene_checks.hpp"
 #include "support/engines/tolerance_runs.hpp"
 #include "support/surface_scene.hpp"

@@ -1,7 +1,7 @@
 // Answers within a tolerance: wrong only where the exact distance is that near to the radius.
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/engines/tolerance_runs.hpp"
 #include "support/scenes.hpp"

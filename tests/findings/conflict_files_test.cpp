@@ -86,7 +86,7 @@ TEST_CASE("GeoJSON names the coordinate reference system of the scans") {
   check_equal(name(kUtm), "urn:ogc:def:crs:EPSG::25832");
   check_says(name(kOwn), "PROJCS[\"Site");
   check_equal(name("no \"text\" \\ that\nPROJ knows"), "no \"text\" \\ that\nPROJ knows");
-  CHECK_THAT(name(""), Catch::StartsWith("LOCAL_CS"));
+  CHECK_THAT(name(""), StartsWith("LOCAL_CS"));
 }
 
 TEST_CASE("a GeoPackage has the scans' system, its layers and its marks") {
@@ -120,7 +120,7 @@ TEST_CASE("a GeoPackage keeps systems that have no number, and goes without any"
   check_equal(value_of(own.folder / "out", "SELECT srs_id FROM gpkg_contents"), "100000");
   CHECK_THAT(value_of(own.folder / "out",
                       "SELECT definition FROM gpkg_spatial_ref_sys WHERE srs_id = 100000"),
-             Catch::StartsWith("PROJCS[\"Site"));
+             StartsWith("PROJCS[\"Site"));
   Written odd("it's no WKT");
   odd.write(ConflictFormat::kGeoPackage);
   CHECK(value_of(odd.folder / "out",

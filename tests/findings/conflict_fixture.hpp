@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <map>
 #include <numeric>
@@ -11,6 +10,7 @@
 
 #include "clearway/conflicts.hpp"
 #include "io/paths/content_hash.hpp"
+#include "support/catch.hpp"
 #include "support/result_fixture.hpp"
 #include "support/scenes.hpp"
 

@@ -1,10 +1,10 @@
 // Groups of colliding points, against all pairs.
-#include <catch2/catch.hpp>
 #include <utility>
 
 #include "findings/colliding_spacing.hpp"
 #include "findings/conflict_fixture.hpp"
 #include "findings/match_conflicts.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

@@ -1,7 +1,6 @@
 // Own shifts of conflicts against a brute force over all points, poses and candidates, which has
 // nothing in common with the search but the squared distance.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,6 +9,7 @@
 #include "core/util/progress.hpp"
 #include "findings/shift/least_shift.hpp"
 #include "io/files/thread_limit.hpp"
+#include "support/catch.hpp"
 #include "support/scenes.hpp"
 #include "support/solid_scene.hpp"
 

@@ -1,6 +1,5 @@
 // Which conflict is the worst, and that everybody names the same one.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -10,6 +9,7 @@
 #include "io/result/answer.hpp"
 #include "io/result/conflicts/conflict_fields.hpp"
 #include "io/result/conflicts/conflict_words.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/solid_scene.hpp"
 

@@ -1,5 +1,4 @@
 // Conflicts of real searches: their poses, stations, sides and shifts, against brute force.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "clearway/clearway.hpp"
@@ -7,6 +6,7 @@
 #include "core/query/search_result.hpp"
 #include "cpu/brute_force.hpp"
 #include "findings/searched_scene.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/scenes.hpp"
 #include "support/solid_scene.hpp"

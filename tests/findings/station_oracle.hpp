@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "clearway/clearway.hpp"
+#include "support/catch.hpp"
 
 /// What a station table must say, from its definition alone.
 namespace clearway::test {

@@ -1,7 +1,6 @@
 // Seen space of a real scan, against the answers of an independent program.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "clearway/clearway.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/store_fixture.hpp"
 #include "support/test_data.hpp"

@@ -1,7 +1,6 @@
 // What has to be taken off a vehicle, and on which side: against brute force, and as a person would
 // say it.
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
@@ -9,6 +8,7 @@
 #include "core/geometry/inside.hpp"
 #include "findings/conflict_fixture.hpp"
 #include "findings/searched_scene.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/solid_scene.hpp"
 

@@ -1,13 +1,13 @@
 // Groups of unseen cubes and the vehicle's cross-section, against their definitions.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 #include <string>
 #include <utility>
 
 #include "clearway/clearway.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/scenes.hpp"
 #include "support/store_fixture.hpp"

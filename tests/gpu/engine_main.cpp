@@ -1,6 +1,4 @@
 // The engines' suite with the CUDA engines in place of the CPU's. Skips where there is no device.
-#include <catch2/catch.hpp>
-
 #include "catch_session.hpp"
 #include "gpu/beam_engine.hpp"
 #include "gpu/devices.hpp"
@@ -10,6 +8,7 @@
 #include "gpu/sweep_engine.hpp"
 #include "stream/plan.hpp"
 #include "stream/run_pages.hpp"
+#include "support/catch.hpp"
 #include "support/engines/beam_runs.hpp"
 #include "support/engines/engines.hpp"
 #include "support/engines/grid_runs.hpp"

@@ -3,7 +3,6 @@
 #include "fault.hpp"
 
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <string>
 #include <thread>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "clearway/clearway.hpp"
 #include "gpu/devices.hpp"
 #include "library/api_scene.hpp"
+#include "support/catch.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

@@ -1,10 +1,9 @@
 // Budgets of device memory, and how much of it the CUDA grid engine takes. Runs on a device only.
 #include "gpu/grid_engine.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "clearway/error.hpp"
 #include "cpu/brute_force.hpp"
+#include "support/catch.hpp"
 #include "support/engines/grid_runs.hpp"
 #include "support/memory_cloud.hpp"
 #include "support/scenes.hpp"

@@ -1,13 +1,13 @@
 #include "predicate_check.hpp"
 
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <iostream>
 #include <random>
 
 #include "clearway/error.hpp"
 #include "gpu/devices.hpp"
+#include "support/catch.hpp"
 
 using namespace clearway;
 

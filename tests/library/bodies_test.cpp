@@ -1,8 +1,8 @@
 // Vehicles of several bodies against brute force, body by body, merged by hand.
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "library/vehicle_truth.hpp"
+#include "support/catch.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

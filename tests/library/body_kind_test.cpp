@@ -1,13 +1,13 @@
 // Bodies searched by the kernels' bodies on the host, as two GPUs would, against the CPU's sweep.
 #include "search/kinds/body_kind.hpp"
 
-#include <catch2/catch.hpp>
 #include <optional>
 
 #include "library/vehicle_scene.hpp"
 #include "search/body_queries.hpp"
 #include "search/kinds/sweep_kind.hpp"
 #include "search/page_search.hpp"
+#include "support/catch.hpp"
 #include "support/engines/host_sweep.hpp"
 
 using namespace clearway;

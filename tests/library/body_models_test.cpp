@@ -1,14 +1,13 @@
 // Vehicles whose bodies are surfaces, beside points, and vehicles whose search ignores points.
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "clearway/error.hpp"
 #include "io/result/result.hpp"
 #include "library/vehicle_truth.hpp"
+#include "support/catch.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 

@@ -1,15 +1,14 @@
 // Runs of vehicles: shards, journals, memory, and what is refused.
 #include <algorithm>
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "clearway/error.hpp"
 #include "library/vehicle_scene.hpp"
+#include "support/catch.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 TEST_CASE("merged shards of a vehicle have the bytes of the search of everything") {
   Vehicle vehicle(79);

@@ -1,16 +1,15 @@
 // Vehicles whose bodies are solids, beside surfaces and points, against brute force.
 #include <algorithm>
 #include <atomic>
-#include <catch2/catch.hpp>
 
 #include "clearway/error.hpp"
 #include "io/result/result.hpp"
 #include "library/vehicle_truth.hpp"
+#include "support/catch.hpp"
 #include "support/solid_scene.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 

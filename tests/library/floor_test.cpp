@@ -1,7 +1,6 @@
 // Searches with a floor against brute force: vehicles, what is left out, parts, sessions, and the
 // look for the ground before a search.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -10,11 +9,11 @@
 #include "core/geometry/inside.hpp"
 #include "library/vehicle_scene.hpp"
 #include "library/vehicle_truth.hpp"
+#include "support/catch.hpp"
 #include "support/solid_scene.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 

@@ -1,6 +1,5 @@
 // How many ignored points would collide, against brute force, whichever engine searches.
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -15,13 +14,13 @@
 #include "cpu/brute_force.hpp"
 #include "io/files/hdf5.hpp"
 #include "io/store/store_reader.hpp"
+#include "support/catch.hpp"
 #include "support/classed_scans.hpp"
 #include "support/solid_scene.hpp"
 #include "support/store_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 

@@ -1,7 +1,6 @@
 // The last pose that touches each point, against brute force, which asks every pose or way alone.
-#include <catch2/catch.hpp>
-
 #include "library/vehicle_truth.hpp"
+#include "support/catch.hpp"
 #include "support/solid_scene.hpp"
 
 using namespace clearway;

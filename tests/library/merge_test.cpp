@@ -1,14 +1,13 @@
 // Parts that shards search, and the result that they make.
 #include <algorithm>
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <functional>
 
 #include "library/shards.hpp"
+#include "support/catch.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 

@@ -2,16 +2,15 @@
 #include <sys/resource.h>
 
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <functional>
 #include <optional>
 
 #include "io/result/result.hpp"
 #include "library/shards.hpp"
+#include "support/catch.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 

@@ -1,14 +1,13 @@
 // read_vehicle: a vehicle's file and those that it names.
-#include <catch2/catch.hpp>
 #include <numbers>
 
 #include "clearway/clearway.hpp"
 #include "io/paths/content_hash.hpp"
+#include "support/catch.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 

@@ -1,8 +1,8 @@
 #include "clearway/result.hpp"
 
-#include <catch2/catch.hpp>
 #include <cstring>
 
+#include "support/catch.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;

@@ -1,13 +1,12 @@
 // The calls of the library as a program that embeds it sees them.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <map>
 
 #include "library/api_scene.hpp"
+#include "support/catch.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 
@@ -196,7 +195,7 @@ TEST_CASE("warnings are values") {
   CHECK(read_model_points(scene.folder / "mesh.ply", {.spacing = 1}, &warnings).size() == 3);
   REQUIRE(warnings.size() == 1);
   CHECK(warnings[0].severity == Message::Severity::kNote);
-  CHECK_THAT(warnings[0].text, Catch::Contains("1 triangle,"));
+  CHECK_THAT(warnings[0].text, Contains("1 triangle,"));
   std::vector<Message> told;
   const ConvertReport converted =
       convert({scene.folder / "mesh.ply"}, scene.folder / "mesh.h5",

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "clearway/clearway.hpp"
 #include "clearway/section.hpp"
+#include "support/catch.hpp"
 #include "support/result_fixture.hpp"
 #include "support/scenes.hpp"
 

@@ -1,5 +1,4 @@
 // What stops a load on each stretch, the points that block cells, and the pages that show them.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -9,13 +8,13 @@
 #include "clearway/error.hpp"
 #include "clearway/report.hpp"
 #include "clearway/section.hpp"
+#include "support/catch.hpp"
 #include "support/result_fixture.hpp"
 #include "support/scenes.hpp"
 #include "support/store_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 

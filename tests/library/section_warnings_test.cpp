@@ -1,7 +1,6 @@
 // What a section warns of: the checks that a run makes of its path, its place and the scan, and
 // what ignored points would block.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <map>
 #include <set>
 
@@ -9,6 +8,7 @@
 #include "core/util/progress.hpp"
 #include "scene/scene.hpp"
 #include "scene/write.hpp"
+#include "support/catch.hpp"
 #include "support/result_fixture.hpp"
 #include "support/road_scene.hpp"
 #include "support/section_scene.hpp"

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -12,12 +11,12 @@
 #include "library/vehicle_scene.hpp"
 #include "search/check_query.hpp"
 #include "search/devices.hpp"
+#include "support/catch.hpp"
 #include "support/classed_scans.hpp"
 #include "support/solid_scene.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "library/api_scene.hpp"
+#include "support/catch.hpp"
 
 namespace clearway::test {
 

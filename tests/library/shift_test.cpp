@@ -1,6 +1,5 @@
 // The shifts that free a path and its conflicts, against brute force over all shifts.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -10,6 +9,7 @@
 #include "core/query/search_result.hpp"
 #include "cpu/brute_force.hpp"
 #include "io/result/conflicts/shift_file.hpp"
+#include "support/catch.hpp"
 #include "support/result_fixture.hpp"
 #include "support/scenes.hpp"
 #include "support/solid_scene.hpp"
@@ -17,7 +17,6 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 

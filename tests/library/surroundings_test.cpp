@@ -7,12 +7,12 @@
 #include <unistd.h>
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cstdio>
 #include <iostream>
 #include <locale>
 
 #include "library/api_scene.hpp"
+#include "support/catch.hpp"
 #include "support/leaks_of_hdf5.hpp"
 
 using namespace clearway;

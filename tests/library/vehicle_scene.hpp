@@ -1,13 +1,13 @@
 #pragma once
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>
 
 #include "clearway/clearway.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "search/devices.hpp"
+#include "support/catch.hpp"
 #include "support/result_fixture.hpp"
 #include "support/scenes.hpp"
 #include "support/store_fixture.hpp"

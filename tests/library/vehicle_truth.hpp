@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
@@ -9,6 +8,7 @@
 #include "core/query/search_result.hpp"
 #include "cpu/brute_force.hpp"
 #include "library/vehicle_scene.hpp"
+#include "support/catch.hpp"
 
 /// Runs of vehicles against brute force, body by body, merged by hand.
 namespace clearway::test {

@@ -1,10 +1,10 @@
 // What a vehicle of several bodies warns of.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <functional>
 #include <set>
 
 #include "clearway/clearway.hpp"
+#include "support/catch.hpp"
 #include "support/result_fixture.hpp"
 #include "support/road_scene.hpp"
 

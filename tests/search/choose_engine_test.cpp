@@ -1,11 +1,11 @@
 #include "search/choose_engine.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <optional>
 #include <random>
 
 #include "search/query_trees.hpp"
+#include "support/catch.hpp"
 #include "support/store_fixture.hpp"
 
 using namespace clearway;

@@ -1,11 +1,11 @@
 // The choice of a device among GPUs that are made up.
 #include "search/devices.hpp"
 
-#include <catch2/catch.hpp>
 #include <vector>
 
 #include "clearway/error.hpp"
 #include "search/choose_engine.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

@@ -1,19 +1,18 @@
 // Budgets of engines that work on pages, with memory on a device that is made up.
 #include "search/page_search.hpp"
 
-#include <catch2/catch.hpp>
 #include <functional>
 #include <optional>
 
 #include "clearway/error.hpp"
 #include "search/kinds/sweep_kind.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/result_fixture.hpp"
 #include "support/store_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 

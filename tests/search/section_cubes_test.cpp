@@ -3,13 +3,13 @@
 #include "cpu/section_cubes.hpp"
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <tuple>
 
 #include "core/trajectory/chainage.hpp"
 #include "search/section.hpp"
+#include "support/catch.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;

@@ -2,11 +2,11 @@
 // docs/design/section.md alone.
 #include "search/section.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <tuple>
 
 #include "search/block_cells.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/section_scene.hpp"
 

@@ -1,12 +1,12 @@
 #include "stream/gather_rows.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <numeric>
 #include <random>
 #include <vector>
 
 #include "clearway/error.hpp"
+#include "support/catch.hpp"
 #include "support/clouds.hpp"
 #include "support/store_fixture.hpp"
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <set>
 
@@ -9,6 +8,7 @@
 #include "cpu/brute_force.hpp"
 #include "planned_scene.hpp"
 #include "stream/plan.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

@@ -1,10 +1,10 @@
 // The pipeline of pages: its answer against brute force, and how its stages share the work.
-#include <catch2/catch.hpp>
 #include <new>
 
 #include "clearway/error.hpp"
 #include "cpu/brute_force.hpp"
 #include "run_fixture.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

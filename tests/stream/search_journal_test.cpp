@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <limits>
 #include <optional>
 
@@ -11,6 +10,7 @@
 #include "cpu/sweep_engine.hpp"
 #include "planned_scene.hpp"
 #include "stream/run_pages.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/file_size_limit.hpp"
 #include "support/result_fixture.hpp"

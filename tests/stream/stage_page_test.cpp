@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <cstring>
 
 #include "clearway/error.hpp"
@@ -6,6 +5,7 @@
 #include "planned_scene.hpp"
 #include "stream/plan.hpp"
 #include "stream/run_pages.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

@@ -1,10 +1,10 @@
 // A store that is read by calls, cell by cell, without its map.
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <thread>
 
 #include "clearway/error.hpp"
+#include "support/catch.hpp"
 #include "support/clouds.hpp"
 #include "support/compare.hpp"
 #include "support/store_fixture.hpp"

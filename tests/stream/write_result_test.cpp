@@ -1,10 +1,10 @@
 #include "stream/write_result.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <optional>
 
 #include "io/result/check_results.hpp"
+#include "support/catch.hpp"
 #include "support/clouds.hpp"
 #include "support/compare.hpp"
 #include "support/result_fixture.hpp"

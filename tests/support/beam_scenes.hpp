@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <random>
 #include <span>
@@ -10,6 +9,7 @@
 
 #include "core/seen/brick_map.hpp"
 #include "core/seen/cubes.hpp"
+#include "support/catch.hpp"
 
 /// Random scenes of bricks and beams, and what beams see in them by the definition alone.
 namespace clearway {

@@ -14,7 +14,8 @@ constexpr std::string_view kGap = " ... ";
 void report(bool holds, const std::string& text, const Caller& caller) {
   const Catch::SourceLineInfo line(caller.file_name(), caller.line());
   Catch::AssertionHandler handler("check", line, "", Catch::ResultDisposition::ContinueOnFailure);
-  handler.handleMessage(holds ? Catch::ResultWas::Ok : Catch::ResultWas::ExplicitFailure, text);
+  handler.handleMessage(holds ? Catch::ResultWas::Ok : Catch::ResultWas::ExplicitFailure,
+                        std::string(text));
   handler.complete();
 }
 

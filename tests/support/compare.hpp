@@ -1,6 +1,5 @@
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <concepts>
 #include <cstdint>
 #include <exception>
@@ -14,6 +13,7 @@
 #include "clearway/error.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/vec3.hpp"
+#include "support/catch.hpp"
 
 /// Checks that are compiled once: a call takes a tenth of the compile time of a CHECK. Each of them
 /// counts as one assertion, goes on after a failure as CHECK does, and prints the line of the call,

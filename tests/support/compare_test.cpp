@@ -1,11 +1,11 @@
 // The checks of compare.hpp hold where they should, and fail where they should.
 #include "support/compare.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "support/catch.hpp"
 #include "support/compare_json.hpp"
 
 using namespace clearway;

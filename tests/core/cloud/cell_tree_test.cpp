@@ -1,7 +1,6 @@
-#include <catch2/catch.hpp>
-
 #include "clearway/error.hpp"
 #include "core/cloud/packed_cloud.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/scenes.hpp"
 

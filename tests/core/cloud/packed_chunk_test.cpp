@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <memory>
 
 #include "core/cloud/packed_cloud.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/packed_values.hpp"
 

@@ -1,11 +1,11 @@
 #include "core/geometry/box.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
 #include "core/geometry/quantisation.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/scenes.hpp"
 

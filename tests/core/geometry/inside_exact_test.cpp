@@ -4,11 +4,11 @@
 #include <CGAL/Side_of_triangle_mesh.h>
 #include <CGAL/Surface_mesh.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/geometry/point_box.hpp"
 #include "core/geometry/solid_parts.hpp"
+#include "support/catch.hpp"
 #include "support/solid_scene.hpp"
 
 using namespace clearway;

@@ -1,11 +1,10 @@
 // Which places lie inside a solid, with bodies whose inside is known.
 #include "core/geometry/inside.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/geometry/point_box.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/geometry/solid_parts.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/solid_scene.hpp"
 

@@ -1,12 +1,12 @@
 #include "core/geometry/outline.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <random>
 #include <vector>
 
 #include "clearway/error.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

@@ -1,9 +1,9 @@
 #include "core/geometry/predicate.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

@@ -3,11 +3,11 @@
 #include <CGAL/Exact_rational.h>
 #include <CGAL/Simple_cartesian.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/geometry/triangle.hpp"
 #include "core/geometry/triangle_packet.hpp"
+#include "support/catch.hpp"
 #include "support/random_triangles.hpp"
 
 using namespace clearway;

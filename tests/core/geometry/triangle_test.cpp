@@ -1,12 +1,12 @@
 #include "core/geometry/triangle.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/geometry/model_element.hpp"
 #include "core/geometry/model_tree.hpp"
 #include "core/geometry/triangle_packet.hpp"
 #include "core/sweep/field/model_field.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/random_triangles.hpp"
 #include "support/surface_scene.hpp"

@@ -1,8 +1,8 @@
 // The predicate on a way, both ends included, against whole numbers.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/geometry/predicate.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/exact_way.hpp"
 #include "support/scenes.hpp"

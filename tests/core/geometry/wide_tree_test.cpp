@@ -1,7 +1,6 @@
 #include "core/geometry/wide_tree.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "core/geometry/triangle_box.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/random_triangles.hpp"
 

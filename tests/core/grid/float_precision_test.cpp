@@ -1,10 +1,10 @@
 // `--precision float` against brute force in floats alone, which gives the same wrong answers
 // everywhere.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/grid/float_predicate.hpp"
 #include "cpu/brute_force.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/engines/grid_runs.hpp"
 #include "support/memory_cloud.hpp"

@@ -1,11 +1,11 @@
 // The bounds of a cell's filters, attacked by pairs at the radius: docs/design/numerics.md, "Grid".
 #include "core/grid/grid_cell.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/geometry/predicate.hpp"
 #include "core/grid/grid_search.hpp"
+#include "support/catch.hpp"
 #include "support/memory_cloud.hpp"
 #include "support/scenes.hpp"
 

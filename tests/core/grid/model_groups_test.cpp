@@ -1,11 +1,11 @@
 #include "core/grid/model_groups.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <tuple>
 
 #include "core/geometry/predicate.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/scenes.hpp"
 

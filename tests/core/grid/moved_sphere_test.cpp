@@ -1,10 +1,10 @@
 // Spheres of groups, at a pose and over a run of poses, against single points where their bound is
 // tight.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/grid/grid_scene.hpp"
 #include "core/grid/grid_search.hpp"
+#include "support/catch.hpp"
 #include "support/memory_cloud.hpp"
 #include "support/scenes.hpp"
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "core/describe/stations.hpp"
 #include "core/messages/message_table.hpp"
 #include "core/messages/remedies.hpp"
+#include "support/catch.hpp"
 #include "support/generated_text.hpp"
 
 namespace clearway {

@@ -1,8 +1,7 @@
 #include "core/messages/messages.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "clearway/error.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 namespace clearway {

@@ -1,9 +1,9 @@
 #include "core/query/error_budget.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "clearway/answer.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

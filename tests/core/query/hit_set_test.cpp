@@ -1,8 +1,8 @@
 #include <barrier>
-#include <catch2/catch.hpp>
 #include <thread>
 
 #include "core/query/search_result.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

@@ -1,9 +1,9 @@
 #include "core/query/ignored_points.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 #include <random>
 
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/memory_cloud.hpp"
 

@@ -1,6 +1,5 @@
 // What follows from the cells of a section: verdicts on outlines, free cells, widths.
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 
@@ -8,6 +7,7 @@
 #include "clearway/section.hpp"
 #include "core/section/section_lattice.hpp"
 #include "core/section/section_tables.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/scenes.hpp"
 

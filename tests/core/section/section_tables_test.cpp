@@ -2,7 +2,6 @@
 #include "core/section/section_tables.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "clearway/error.hpp"
 #include "clearway/section.hpp"
 #include "core/section/section_map.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/scenes.hpp"
 

@@ -1,12 +1,12 @@
 #include "core/seen/brick_cloud.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <random>
 #include <set>
 #include <vector>
 
 #include "clearway/error.hpp"
+#include "support/catch.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;

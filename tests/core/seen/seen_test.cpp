@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <map>
 #include <random>
 #include <set>
@@ -8,6 +7,7 @@
 #include "core/seen/brick_map.hpp"
 #include "core/seen/cubes.hpp"
 #include "support/beam_scenes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

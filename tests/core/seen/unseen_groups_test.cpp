@@ -1,7 +1,6 @@
 #include "core/seen/unseen_groups.hpp"
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "core/seen/cross_sections.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

@@ -1,6 +1,5 @@
 #include "core/sweep/point_curve.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -10,6 +9,7 @@
 #include "core/geometry/predicate.hpp"
 #include "core/sweep/triangle_curve.hpp"
 #include "core/trajectory/motion_curves.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/random_triangles.hpp"
 

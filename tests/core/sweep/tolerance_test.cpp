@@ -1,10 +1,10 @@
 #include "core/sweep/tolerance.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/geometry/point_box.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/scenes.hpp"
 

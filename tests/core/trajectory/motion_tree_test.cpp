@@ -1,10 +1,10 @@
 #include "core/trajectory/motion_tree.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
 #include "core/geometry/predicate.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

@@ -1,13 +1,13 @@
 #include "core/trajectory/pose_spline.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "clearway/error.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/trajectory/trajectory_summary.hpp"
+#include "support/catch.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;

@@ -1,11 +1,11 @@
 #include "core/trajectory/resample_trajectory.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/geometry/predicate.hpp"
 #include "core/trajectory/trajectory_summary.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/scenes.hpp"
 

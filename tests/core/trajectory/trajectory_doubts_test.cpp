@@ -1,6 +1,5 @@
 #include "core/trajectory/trajectory_doubts.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -8,11 +7,11 @@
 
 #include "core/geometry/angle.hpp"
 #include "support/attitudes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::EndsWith;
 
 namespace {
 

@@ -1,11 +1,11 @@
 #include "core/trajectory/trajectory_summary.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "core/trajectory/chainage.hpp"
 #include "support/attitudes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

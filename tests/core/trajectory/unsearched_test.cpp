@@ -1,7 +1,6 @@
 #include "clearway/unsearched.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
 #include <set>
@@ -9,6 +8,7 @@
 #include "clearway/follow.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
 #include "core/trajectory/pose_ranges.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/scenes.hpp"
 

@@ -1,8 +1,8 @@
 #include "core/util/format.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 namespace clearway {

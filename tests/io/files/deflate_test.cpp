@@ -3,11 +3,11 @@
 
 #include <zlib.h>
 
-#include <catch2/catch.hpp>
 #include <random>
 #include <string>
 
 #include "io/files/thread_limit.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

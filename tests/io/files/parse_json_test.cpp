@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "clearway/error.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/files/json.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 namespace clearway {
@@ -122,8 +122,9 @@ TEST_CASE("a reader of keys keeps its file's text alive, and counts before it re
   CHECK_THROWS_WITH(file.at("bodies").elements(2),
                     "vehicle.json: bodies: has 3 entries, expected at most 2");
   CHECK_THROWS_WITH(file.at("name"), "vehicle.json: name: is missing");
-  CHECK_THROWS_WITH(KeyReader::parse("vehicle.json", repeated("[", 100'000)),
-                    Catch::StartsWith("vehicle.json: line 1, column 65: lists and objects"));
+  CHECK_THROWS_WITH(
+      KeyReader::parse("vehicle.json", repeated("[", 100'000)),
+      clearway::test::StartsWith("vehicle.json: line 1, column 65: lists and objects"));
 }
 
 }  // namespace

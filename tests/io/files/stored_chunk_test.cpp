@@ -1,11 +1,11 @@
 #include "io/files/stored_chunk.hpp"
 
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <random>
 #include <vector>
 
 #include "io/files/hdf5.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/result_fixture.hpp"
 

@@ -1,10 +1,9 @@
 // Which parts of a mesh are solid (docs/design/solids.md).
-#include <catch2/catch.hpp>
-
 #include "io/files/input_error.hpp"
 #include "io/models/mesh_facts.hpp"
 #include "io/models/sample_mesh.hpp"
 #include "support/bytes/mesh_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

@@ -1,5 +1,4 @@
 // The meshes of real vehicles.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
@@ -7,6 +6,7 @@
 #include "core/geometry/model_tree.hpp"
 #include "core/geometry/predicate.hpp"
 #include "io/models/model_input.hpp"
+#include "support/catch.hpp"
 #include "support/surface_places.hpp"
 #include "support/test_data.hpp"
 #include "support/triangle_distance.hpp"

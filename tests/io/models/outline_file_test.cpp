@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "clearway/error.hpp"
 #include "clearway/outline.hpp"
 #include "clearway/query.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "clearway/error.hpp"
@@ -7,6 +6,7 @@
 #include "clearway/query.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/bytes/mesh_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 

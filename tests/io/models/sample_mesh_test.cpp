@@ -2,7 +2,6 @@
 #include "io/models/sample_mesh.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
@@ -11,6 +10,7 @@
 #include "core/geometry/predicate.hpp"
 #include "core/geometry/rigid.hpp"
 #include "support/bytes/mesh_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/surface_places.hpp"
 #include "support/triangle_distance.hpp"

@@ -1,8 +1,8 @@
 #include "io/paths/content_hash.hpp"
 
-#include <catch2/catch.hpp>
 #include <vector>
 
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "clearway/trajectory.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 

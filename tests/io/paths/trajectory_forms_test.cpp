@@ -1,10 +1,10 @@
 // Forms of poses beyond the plain text formats: unit, lever arm, quaternions without time, 3DTK.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "clearway/error.hpp"
 #include "clearway/trajectory.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 

@@ -1,9 +1,9 @@
 #include "clearway/trajectory.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "clearway/error.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 

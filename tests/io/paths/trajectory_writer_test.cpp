@@ -1,7 +1,6 @@
-#include <catch2/catch.hpp>
-
 #include "clearway/trajectory.hpp"
 #include "io/paths/trajectory_file.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/result_fixture.hpp"
 #include "support/scenes.hpp"

@@ -1,10 +1,10 @@
 #include "io/result/journal.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <thread>
 
 #include "clearway/error.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/result_fixture.hpp"
 

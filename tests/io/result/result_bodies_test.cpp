@@ -1,6 +1,5 @@
 // Results of vehicles: names of bodies, and the columns that name one.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 
@@ -11,6 +10,7 @@
 #include "io/result/answer.hpp"
 #include "io/result/check_results.hpp"
 #include "io/result/floor_facts.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/result_fixture.hpp"
 
@@ -127,7 +127,7 @@ TEST_CASE("a vehicle's result with a floor but without those of its bodies is re
   findings.floor_colliding = 3;
   vehicle.write("out.h5", findings);
   CHECK_THROWS_WITH(vehicle.fault("out.h5"),
-                    Catch::Contains("attribute 'body_floors' is missing; run it again"));
+                    Contains("attribute 'body_floors' is missing; run it again"));
 }
 
 TEST_CASE("bodies without first poses are only those of clearances") {

@@ -1,10 +1,9 @@
 #include <hdf5.h>
 
-#include <catch2/catch.hpp>
-
 #include "clearway/error.hpp"
 #include "io/files/hdf5.hpp"
 #include "io/result/result.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/leaks_of_hdf5.hpp"
 #include "support/result_fixture.hpp"

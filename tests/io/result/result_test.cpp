@@ -2,7 +2,6 @@
 
 #include <hdf5.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "io/files/hdf5.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/check_results.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/leaks_of_hdf5.hpp"
 #include "support/result_fixture.hpp"

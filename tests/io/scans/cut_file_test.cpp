@@ -1,10 +1,10 @@
 // A file that declares how much it holds is refused wherever it is cut.
-#include <catch2/catch.hpp>
 #include <fstream>
 
 #include "support/bytes/e57_bytes.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/bytes/pcd_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 

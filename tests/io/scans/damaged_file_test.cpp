@@ -1,5 +1,4 @@
 // Whatever the bytes of a file are, reading it ends with points or with an Error.
-#include <catch2/catch.hpp>
 #include <random>
 
 #include "clearway/model.hpp"
@@ -10,6 +9,7 @@
 #include "support/bytes/mesh_bytes.hpp"
 #include "support/bytes/pcd_bytes.hpp"
 #include "support/bytes/sbet_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;

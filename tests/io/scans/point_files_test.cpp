@@ -1,9 +1,8 @@
-#include <catch2/catch.hpp>
-
 #include "io/scans/point_reader.hpp"
 #include "support/bytes/e57_bytes.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/bytes/laz/laz_samples.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 

@@ -1,7 +1,6 @@
-#include <catch2/catch.hpp>
-
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 #include "support/test_data.hpp"

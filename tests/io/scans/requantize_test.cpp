@@ -1,10 +1,10 @@
 #include "io/scans/requantize.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
 
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

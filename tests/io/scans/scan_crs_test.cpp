@@ -1,12 +1,12 @@
 #include "io/scans/scan_crs.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <string>
 #include <vector>
 
 #include "io/scans/map_scale.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

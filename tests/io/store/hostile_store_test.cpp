@@ -1,10 +1,9 @@
 // Stores and results whose checksums hold, but which no Clearway wrote.
 #include <hdf5.h>
 
-#include <catch2/catch.hpp>
-
 #include "clearway/error.hpp"
 #include "io/files/hdf5.hpp"
+#include "support/catch.hpp"
 #include "support/classed_scans.hpp"
 #include "support/clouds.hpp"
 #include "support/compare.hpp"
@@ -14,7 +13,6 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 

@@ -2,10 +2,10 @@
 #include <hdf5.h>
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "io/files/hdf5.hpp"
+#include "support/catch.hpp"
 #include "support/packed_values.hpp"
 
 using namespace clearway;

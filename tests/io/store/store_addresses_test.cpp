@@ -1,7 +1,6 @@
-#include <catch2/catch.hpp>
-
 #include "core/cloud/packed_cloud.hpp"
 #include "io/store/store_writer.hpp"
+#include "support/catch.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;

@@ -1,13 +1,13 @@
 #include <hdf5.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <tuple>
 
 #include "clearway/error.hpp"
 #include "io/files/hdf5.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/store/store_writer.hpp"
+#include "support/catch.hpp"
 #include "support/clouds.hpp"
 #include "support/compare.hpp"
 #include "support/leaks_of_hdf5.hpp"

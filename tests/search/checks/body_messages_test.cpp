@@ -1,7 +1,6 @@
 // What the checks of several bodies together tell about the vehicle.
-#include <catch2/catch.hpp>
-
 #include "search/checks/query_warnings.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

@@ -1,8 +1,7 @@
 #include "search/checks/facts/model_views.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/geometry/point_box.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -6,6 +5,7 @@
 #include "clearway/error.hpp"
 #include "search/checks/facts/scan_facts.hpp"
 #include "search/checks/single_floats.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/memory_cloud.hpp"
 

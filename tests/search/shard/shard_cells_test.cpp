@@ -1,12 +1,12 @@
 #include "search/shard_cells.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <memory>
 #include <numeric>
 #include <random>
 
 #include "clearway/error.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/result_fixture.hpp"
 #include "support/store_fixture.hpp"

@@ -1,9 +1,9 @@
 #include "support/engines/check_profile.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "core/geometry/predicate.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/engines/engines.hpp"
 

@@ -1,13 +1,13 @@
 #include "support/engines/engines.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <utility>
 
 #include "core/query/search_result.hpp"
 #include "cpu/brute_force.hpp"
 #include "cpu/kdtree_engine.hpp"
 #include "cpu/sweep_engine.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/engines/check_profile.hpp"
 #include "support/engines/grid_runs.hpp"

@@ -1,11 +1,11 @@
 #include "support/engines/tolerance_runs.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "cpu/brute_force.hpp"
+#include "support/catch.hpp"
 #include "support/engines/engines.hpp"
 
 namespace clearway {

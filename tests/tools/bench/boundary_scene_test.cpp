@@ -1,12 +1,12 @@
 #include "bench/variants/boundary_scene.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
 #include "core/geometry/predicate.hpp"
 #include "io/scans/las/las_reader.hpp"
+#include "support/catch.hpp"
 #include "support/compare_json.hpp"
 #include "support/result_fixture.hpp"
 

@@ -1,8 +1,8 @@
 // The built program clearway-bench: its options, its files, and how it continues an experiment.
-#include <catch2/catch.hpp>
 #include <fstream>
 
 #include "bench/measure/work_folder.hpp"
+#include "support/catch.hpp"
 #include "tools/bench/experiment.hpp"
 
 using namespace clearway::test;

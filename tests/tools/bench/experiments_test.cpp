@@ -1,9 +1,9 @@
 // What the experiments of the built program clearway-bench find, on scenes of a few thousand
 // points.
-#include <catch2/catch.hpp>
 #include <map>
 #include <set>
 
+#include "support/catch.hpp"
 #include "tools/bench/experiment.hpp"
 
 using namespace clearway::test;

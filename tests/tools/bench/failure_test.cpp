@@ -1,6 +1,6 @@
 #include "bench/measure/failure.hpp"
 
-#include <catch2/catch.hpp>
+#include "support/catch.hpp"
 
 using namespace clearway::bench;
 

@@ -1,16 +1,15 @@
 #include "bench/measure/misclassified.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "clearway/error.hpp"
+#include "support/catch.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 using namespace clearway::bench;
-using Catch::Contains;
 
 namespace {
 

@@ -1,7 +1,6 @@
 // Models that are thinned, and trajectories that are thinned, moved or disturbed.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -14,6 +13,7 @@
 #include "core/geometry/rigid.hpp"
 #include "io/scans/ply/ply_writer.hpp"
 #include "scene/random.hpp"
+#include "support/catch.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;

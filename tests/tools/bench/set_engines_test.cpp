@@ -1,5 +1,4 @@
 // `clearway-bench search`: engines that are set as no `clearway run` sets them.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -7,6 +6,7 @@
 #include "clearway/trajectory.hpp"
 #include "cpu/brute_force.hpp"
 #include "io/result/result.hpp"
+#include "support/catch.hpp"
 #include "support/result_fixture.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/hall.hpp"

@@ -1,6 +1,5 @@
-#include <catch2/catch.hpp>
-
 #include "bench/experiments/thread_counts.hpp"
+#include "support/catch.hpp"
 
 using namespace clearway::bench;
 

@@ -2,7 +2,6 @@
 #include "bench/variants/variants.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <set>
@@ -12,13 +11,13 @@
 #include "io/scans/point_reader.hpp"
 #include "scene/random.hpp"
 #include "support/bytes/las_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/compare_json.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 using namespace clearway::bench;
-using Catch::Contains;
 
 namespace {
 

@@ -1,16 +1,15 @@
 #include "bench/measure/work_folder.hpp"
 
-#include <catch2/catch.hpp>
 #include <fstream>
 
 #include "clearway/error.hpp"
+#include "support/catch.hpp"
 #include "support/compare_json.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 using namespace clearway::bench;
-using Catch::Contains;
 
 namespace {
 

@@ -1,5 +1,4 @@
 // The built program, from a scan to a result.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include "clearway/model.hpp"
@@ -7,6 +6,7 @@
 #include "core/query/search_result.hpp"
 #include "cpu/brute_force.hpp"
 #include "support/bytes/las_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/clouds.hpp"
 #include "support/result_fixture.hpp"
 #include "tools/cli/support/hall.hpp"
@@ -14,8 +14,6 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
-using Catch::StartsWith;
 using nlohmann::json;
 
 TEST_CASE("from a scan to an exported result") {

@@ -1,7 +1,6 @@
 // The built program on LAZ, and on LAS whose writer crashed: as files and from standard input.
-#include <catch2/catch.hpp>
-
 #include "support/bytes/laz/laz_samples.hpp"
+#include "support/catch.hpp"
 #include "support/clouds.hpp"
 #include "tools/cli/support/hall.hpp"
 #include "tools/cli/support/spawned.hpp"

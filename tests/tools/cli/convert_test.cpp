@@ -1,8 +1,8 @@
 // The options of `convert` on faulty inputs.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include "support/bytes/las_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/clouds.hpp"
 #include "tools/cli/support/hall.hpp"
 

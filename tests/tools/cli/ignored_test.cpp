@@ -1,8 +1,8 @@
 // Ignored classes and boxes as a user sees them.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include "support/bytes/las_bytes.hpp"
+#include "support/catch.hpp"
 #include "tools/cli/support/program.hpp"
 
 using namespace clearway;

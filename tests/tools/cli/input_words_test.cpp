@@ -1,9 +1,9 @@
 // What the program says about a file in the wrong place, about lengths with units, and about
 // mistyped words.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include "io/store/store_reader.hpp"
+#include "support/catch.hpp"
 #include "support/result_fixture.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/program.hpp"

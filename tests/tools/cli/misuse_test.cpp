@@ -1,11 +1,11 @@
 #include <sys/stat.h>
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include "clearway/error.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/store/store_reader.hpp"
+#include "support/catch.hpp"
 #include "tools/cli/support/program.hpp"
 
 using namespace clearway;

@@ -1,11 +1,11 @@
 #include "clearway/model.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "support/bytes/mesh_bytes.hpp"
+#include "support/catch.hpp"
 #include "tools/cli/support/hall.hpp"
 
 using namespace clearway;

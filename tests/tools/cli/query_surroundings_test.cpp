@@ -2,11 +2,11 @@
 // lacks what could be met, or the model has gaps.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "support/catch.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/asked.hpp"
 

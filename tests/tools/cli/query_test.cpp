@@ -1,5 +1,4 @@
 // The built program's answers to the queries beyond the set, and their export.
-#include <catch2/catch.hpp>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -9,6 +8,7 @@
 #include "clearway/trajectory.hpp"
 #include "core/query/search_result.hpp"
 #include "cpu/brute_force.hpp"
+#include "support/catch.hpp"
 #include "support/result_fixture.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/hall.hpp"
@@ -167,7 +167,7 @@ TEST_CASE("export --what chooses the table") {
   const std::string clearances = "export --what clearance out.h5 -o ";
   check_refused(work.run(clearances + "near.csv"), 0, " clearances");
   CHECK(without_places(work.bytes("near.csv")) == csv_of(clearances_of(work.folder / "out.h5")));
-  CHECK_THAT(work.bytes("near.csv"), Catch::StartsWith("source,x,y,z,distance,pose\n"));
+  CHECK_THAT(work.bytes("near.csv"), StartsWith("source,x,y,z,distance,pose\n"));
   check_refused(work.run(clearances + "near.csv"), 2, "--force");
   check_outcome(work.run(clearances + "near.csv --force"), 0);
   for (const char* ending : {"las", "ply", "xyz"}) {
@@ -178,7 +178,7 @@ TEST_CASE("export --what chooses the table") {
   work.succeed(collisions + "a.csv");
   work.succeed(collisions + "b.csv --what collisions");
   check_same(work.bytes("a.csv"), work.bytes("b.csv"));
-  CHECK_THAT(work.bytes("a.csv"), Catch::StartsWith("source,x,y,z\n"));
+  CHECK_THAT(work.bytes("a.csv"), StartsWith("source,x,y,z\n"));
   check_refused(work.run(collisions + "c.csv --what distances"), 2, "--what");
 
   require_success(work.run_hall("hall/site.h5", "set.h5"));

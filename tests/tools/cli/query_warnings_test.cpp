@@ -1,6 +1,5 @@
 // Questions that may be misread, as users ask them. With --strict the program refuses to search.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 #include "clearway/model.hpp"
 #include "core/geometry/angle.hpp"
 #include "io/scans/point_reader.hpp"
+#include "support/catch.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/asked.hpp"
 #include "tools/cli/support/program.hpp"

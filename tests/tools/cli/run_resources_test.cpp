@@ -1,7 +1,7 @@
 // The memory and devices that a run may use, and how it reports them.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "support/catch.hpp"
 #include "tools/cli/support/program.hpp"
 
 using namespace clearway;

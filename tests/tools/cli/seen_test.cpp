@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "clearway/result.hpp"
+#include "support/catch.hpp"
 #include "tools/cli/support/program.hpp"
 
 using namespace clearway;

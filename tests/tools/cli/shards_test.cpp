@@ -1,7 +1,7 @@
 // `clearway run --shard` and `clearway merge` as a user sees them.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "support/catch.hpp"
 #include "tools/cli/support/program.hpp"
 
 using namespace clearway;

@@ -1,5 +1,4 @@
 // Warnings of a conversion, repeated by the commands that read its store.
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -7,12 +6,12 @@
 #include "io/store/convert/convert.hpp"
 #include "io/store/store_reader.hpp"
 #include "support/bytes/las_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/program.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 using nlohmann::json;
 
 namespace {

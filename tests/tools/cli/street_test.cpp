@@ -1,6 +1,5 @@
 // Real scans through the built program: the known answer for the street, and what is refused.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -11,6 +10,7 @@
 #include "core/query/search_result.hpp"
 #include "cpu/brute_force.hpp"
 #include "io/scans/point_reader.hpp"
+#include "support/catch.hpp"
 #include "support/result_fixture.hpp"
 #include "support/store_fixture.hpp"
 #include "support/test_data.hpp"

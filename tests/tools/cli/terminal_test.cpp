@@ -4,9 +4,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <string>
 
+#include "support/catch.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway::test;

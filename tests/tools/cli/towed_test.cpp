@@ -1,11 +1,11 @@
 // Towed bodies as a user runs them: in a run, in shards, and in all that comes after.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "clearway/result.hpp"
 #include "clearway/trajectory.hpp"
+#include "support/catch.hpp"
 #include "tools/cli/support/program.hpp"
 
 using namespace clearway;
@@ -105,7 +105,7 @@ TEST_CASE("trajectory follow writes the poses that a towed body has in a run") {
   check_json(report, R"({
     "poses_in": 736, "poses_out": 698, "off_path": [[698, 735]], "transient": {"0": {"0": 0}}})");
   const std::string table = turn.bytes("trailer.csv");
-  CHECK_THAT(table, Catch::StartsWith("path_pose,x,y,z,r00,r01,r02,r10,r11,r12,r20,r21,r22\n0,"));
+  CHECK_THAT(table, StartsWith("path_pose,x,y,z,r00,r01,r02,r10,r11,r12,r20,r21,r22\n0,"));
   check_says(table, "\n697,");
   const std::vector<Pose> poses = read_trajectory(turn.folder / "trailer.csv");
   require_success(turn.follow("trailer", "-o trailer.txt"));

@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -6,6 +5,7 @@
 
 #include "clearway/alignment.hpp"
 #include "clearway/trajectory.hpp"
+#include "support/catch.hpp"
 #include "support/land_xml.hpp"
 #include "tools/cli/support/program.hpp"
 

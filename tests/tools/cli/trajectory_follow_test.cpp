@@ -1,11 +1,11 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "clearway/trajectory.hpp"
 #include "core/util/progress.hpp"
 #include "io/paths/trajectory_file.hpp"
+#include "support/catch.hpp"
 #include "support/scenes.hpp"
 #include "tools/cli/support/program.hpp"
 

@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -6,6 +5,7 @@
 
 #include "clearway/trajectory.hpp"
 #include "support/bytes/sbet_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/scenes.hpp"
 #include "tools/cli/support/program.hpp"
 

@@ -1,12 +1,12 @@
 #include "clearway/trajectory.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/trajectory/trajectory_summary.hpp"
 #include "io/paths/trajectory_file.hpp"
+#include "support/catch.hpp"
 #include "support/scenes.hpp"
 #include "tools/cli/support/program.hpp"
 

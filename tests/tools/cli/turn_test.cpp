@@ -1,11 +1,11 @@
 // run --forward and --up: a model whose file has other axes gives the answer of the model that was
 // turned by hand, and what reads the result turns the file in the same way.
 #include <array>
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <random>
 
 #include "clearway/result.hpp"
+#include "support/catch.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/hall.hpp"
 

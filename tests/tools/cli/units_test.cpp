@@ -1,11 +1,11 @@
 // Scans, paths, models and lengths in feet, and units that nobody named.
-#include <catch2/catch.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "clearway/file_unit.hpp"
 #include "io/store/convert/convert.hpp"
 #include "support/bytes/las_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/program.hpp"
 

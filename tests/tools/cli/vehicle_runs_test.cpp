@@ -1,9 +1,9 @@
 // Vehicles as a user runs them: devices, shards, ignored points, and warnings.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "clearway/result.hpp"
+#include "support/catch.hpp"
 #include "tools/cli/support/program.hpp"
 
 using namespace clearway;

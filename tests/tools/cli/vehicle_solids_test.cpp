@@ -1,8 +1,8 @@
 // run --vehicle --model-as solid: what conflicts and report tell about points inside a body.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "support/catch.hpp"
 #include "tools/cli/support/program.hpp"
 
 using namespace clearway;

@@ -1,12 +1,12 @@
 // clearway run --vehicle: the file of bodies, and what a wagon finds in the tunnel's curve.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "clearway/result.hpp"
 #include "clearway/trajectory.hpp"
 #include "io/paths/trajectory_file.hpp"
+#include "support/catch.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/program.hpp"
 

@@ -1,10 +1,10 @@
 #include "scene/scanning/fan.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <optional>
 
 #include "scene/vector.hpp"
+#include "support/catch.hpp"
 
 using namespace clearway::scene;
 

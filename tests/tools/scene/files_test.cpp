@@ -1,10 +1,9 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-#include <catch2/catch.hpp>
-
 #include "clearway/error.hpp"
 #include "core/geometry/rigid.hpp"
+#include "support/catch.hpp"
 #include "tools/scene/made_scene.hpp"
 
 using namespace clearway;

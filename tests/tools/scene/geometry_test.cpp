@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/geometry/predicate.hpp"
@@ -7,6 +6,7 @@
 #include "scene/scene.hpp"
 #include "scene/vector.hpp"
 #include "scene/vehicles/mesh.hpp"
+#include "support/catch.hpp"
 
 using namespace clearway;
 using namespace clearway::scene;

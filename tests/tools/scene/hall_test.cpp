@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/catch.hpp"
 #include "tools/scene/made_scene.hpp"
 
 using namespace clearway;

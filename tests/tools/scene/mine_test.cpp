@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "scene/vector.hpp"
+#include "support/catch.hpp"
 #include "tools/scene/made_scene.hpp"
 
 using namespace clearway;

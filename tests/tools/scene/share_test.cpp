@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <unordered_map>
 #include <vector>
 
 #include "scene/vector.hpp"
+#include "support/catch.hpp"
 #include "tools/scene/made_scene.hpp"
 
 using namespace clearway;

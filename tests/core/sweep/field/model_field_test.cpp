@@ -1,7 +1,6 @@
 #include "core/sweep/field/model_field.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -11,6 +10,7 @@
 #include "core/geometry/predicate.hpp"
 #include "core/sweep/field/brick_nearest.hpp"
 #include "core/sweep/field/brick_triangles.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/surface_scene.hpp"
 

@@ -1,10 +1,10 @@
 #include "core/trajectory/alignment/alignment.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "core/geometry/rigid.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

@@ -1,10 +1,10 @@
 #include "core/trajectory/alignment/plan.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
 #include <numbers>
 
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

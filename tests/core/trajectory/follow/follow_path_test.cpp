@@ -1,9 +1,9 @@
 #include "core/trajectory/follow/follow_path.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "clearway/error.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/scenes.hpp"
 

@@ -1,11 +1,11 @@
 #include "core/trajectory/follow/path_stations.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "clearway/error.hpp"
 #include "core/trajectory/follow/arc_length.hpp"
 #include "core/trajectory/pose_spline.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/scenes.hpp"
 

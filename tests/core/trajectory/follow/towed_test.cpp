@@ -1,11 +1,11 @@
 // Towed bodies against the closed forms of a tractrix and against figures with 30 digits.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <numbers>
 
 #include "clearway/error.hpp"
 #include "clearway/follow.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/scenes.hpp"
 

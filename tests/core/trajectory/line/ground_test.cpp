@@ -1,7 +1,6 @@
 #include "core/trajectory/line/ground.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -11,6 +10,7 @@
 
 #include "clearway/error.hpp"
 #include "core/trajectory/line/line_path.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/memory_cloud.hpp"
 

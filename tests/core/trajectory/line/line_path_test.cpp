@@ -1,11 +1,11 @@
 #include "core/trajectory/line/line_path.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <random>
 #include <vector>
 
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

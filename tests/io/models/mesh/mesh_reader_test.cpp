@@ -1,10 +1,10 @@
 #include "io/models/mesh/mesh_reader.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "io/models/mesh/mesh_builder.hpp"
 #include "support/bytes/mesh_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 #include "support/triangle_distance.hpp"

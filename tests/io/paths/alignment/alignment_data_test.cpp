@@ -1,6 +1,5 @@
 // Public alignments, and poses of one of them that an independent program computed in 50 digits.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -10,6 +9,7 @@
 #include "clearway/alignment.hpp"
 #include "clearway/error.hpp"
 #include "clearway/file_unit.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/test_data.hpp"
 

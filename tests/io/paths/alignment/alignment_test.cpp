@@ -1,7 +1,6 @@
 #include "clearway/alignment.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -9,6 +8,7 @@
 
 #include "clearway/error.hpp"
 #include "clearway/file_unit.hpp"
+#include "support/catch.hpp"
 #include "support/land_xml.hpp"
 #include "support/made_path.hpp"
 #include "support/reader_fixture.hpp"

@@ -1,5 +1,4 @@
 // LandXML that was damaged, or made to do harm: it is read, or refused with what is wrong.
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <cmath>
 #include <string>
@@ -7,6 +6,7 @@
 
 #include "clearway/alignment.hpp"
 #include "clearway/error.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/land_xml.hpp"
 #include "support/reader_fixture.hpp"

@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -7,6 +6,7 @@
 #include "clearway/trajectory.hpp"
 #include "support/attitudes.hpp"
 #include "support/bytes/sbet_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 

@@ -1,19 +1,18 @@
 #include "clearway/line.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "clearway/error.hpp"
+#include "support/catch.hpp"
 #include "support/made_path.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 

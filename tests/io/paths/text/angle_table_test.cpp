@@ -1,10 +1,10 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "clearway/error.hpp"
 #include "clearway/trajectory.hpp"
 #include "support/attitudes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 

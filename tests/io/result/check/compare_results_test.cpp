@@ -1,7 +1,6 @@
-#include <catch2/catch.hpp>
-
 #include "clearway/error.hpp"
 #include "io/result/check_results.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/result_fixture.hpp"
 

@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -6,6 +5,7 @@
 #include <string>
 
 #include "io/result/export/position_text.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

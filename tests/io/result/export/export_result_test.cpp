@@ -2,7 +2,6 @@
 
 #include <array>
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <csignal>
 #include <cstring>
@@ -10,6 +9,7 @@
 
 #include "clearway/error.hpp"
 #include "io/scans/requantize.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/file_size_limit.hpp"
 #include "support/leaks_of_hdf5.hpp"

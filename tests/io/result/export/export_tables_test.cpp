@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <cstring>
 
 #include "clearway/error.hpp"
 #include "io/result/export/export_result.hpp"
 #include "io/scans/point_reader.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/result_fixture.hpp"
 

@@ -1,10 +1,10 @@
-#include <catch2/catch.hpp>
 #include <cstring>
 
 #include "clearway/error.hpp"
 #include "io/result/export/export_scan_records.hpp"
 #include "io/scans/point_reader.hpp"
 #include "support/bytes/las_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/result_fixture.hpp"
 

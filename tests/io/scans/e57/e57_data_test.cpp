@@ -1,8 +1,8 @@
 // Public E57 files. The expected values are what libE57Format reads, with poses applied in numpy.
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 #include "support/test_data.hpp"

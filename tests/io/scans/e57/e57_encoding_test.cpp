@@ -1,5 +1,4 @@
 // Every encoding of a number, in packets that are cut anywhere.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -7,6 +6,7 @@
 
 #include "io/scans/e57/e57_file.hpp"
 #include "support/bytes/e57_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 

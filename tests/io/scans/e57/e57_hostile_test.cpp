@@ -1,8 +1,8 @@
 // Damaged and hostile binary sections: refused with file and byte, or the same points.
-#include <catch2/catch.hpp>
 #include <functional>
 
 #include "support/bytes/e57_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 

@@ -1,8 +1,8 @@
 // Scans, poses, spherical coordinates, records without a point, and the remarks about them.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "support/bytes/e57_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 

@@ -1,8 +1,8 @@
 // XML sections that are malformed, hostile or of another kind.
-#include <catch2/catch.hpp>
 #include <chrono>
 
 #include "support/bytes/e57_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 
@@ -107,7 +107,7 @@ TEST_CASE("deep nesting and long lists are read or refused in time") {
       refusal_with("<prototype type=\"Structure\">",
                    "<prototype type=\"Structure\">" + repeated("<a type=\"Structure\">", 100'000) +
                        repeated("</a>", 100'000)),
-      Catch::Equals(""));
+      Equals(""));
   check_says(refusal_with("<cartesianX", repeated("<a type=\"Float\"/>", 32'765) + "<cartesianX"),
              "one field too many");
   CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(60));

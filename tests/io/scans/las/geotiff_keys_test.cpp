@@ -1,13 +1,13 @@
 #include "io/scans/las/geotiff_keys.hpp"
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "io/scans/map_scale.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

@@ -2,13 +2,13 @@
 
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
 #include "io/scans/scan_crs.hpp"
 #include "io/store/convert/spooled_reader.hpp"
 #include "support/bytes/las_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 

@@ -1,11 +1,11 @@
 #include "io/scans/las/las_writer.hpp"
 
-#include <catch2/catch.hpp>
 #include <stdexcept>
 #include <vector>
 
 #include "clearway/error.hpp"
 #include "support/bytes/written_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

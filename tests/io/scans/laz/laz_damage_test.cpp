@@ -1,8 +1,7 @@
 // LAZ has no checksums, so a flipped byte may give other points; but reading ends, with as many
 // points as declared or with a refusal that names the file.
-#include <catch2/catch.hpp>
-
 #include "support/bytes/laz/laz_samples.hpp"
+#include "support/catch.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;

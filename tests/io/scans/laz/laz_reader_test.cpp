@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <catch2/catch.hpp>
 #include <random>
 
 #include "io/files/thread_limit.hpp"
 #include "io/scans/laz/items/gps_time11.hpp"
 #include "support/bytes/laz/laz_samples.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 

@@ -1,14 +1,13 @@
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <limits>
 
 #include "support/bytes/laz/laz_samples.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Matchers::Contains;
 
 namespace {
 

@@ -1,17 +1,16 @@
 #include "io/scans/pcd/pcd_reader.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
 #include "io/scans/pcd/lzf_stream.hpp"
 #include "support/bytes/pcd_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Matchers::Contains;
 
 namespace {
 

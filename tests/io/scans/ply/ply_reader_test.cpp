@@ -1,11 +1,11 @@
 #include "io/scans/ply/ply_reader.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 

@@ -1,9 +1,9 @@
 #include "io/scans/ply/ply_writer.hpp"
 
-#include <catch2/catch.hpp>
 #include <stdexcept>
 
 #include "support/bytes/written_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

@@ -1,11 +1,11 @@
 // Text whose columns are named or chosen, or hold something other than points.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
 #include <functional>
 #include <random>
 
 #include "clearway/model.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 

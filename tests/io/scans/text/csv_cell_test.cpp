@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "io/files/text_writer.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 namespace clearway {

@@ -1,9 +1,8 @@
 // Lengths as people write them.
-#include <catch2/catch.hpp>
-
 #include "clearway/error.hpp"
 #include "io/files/text_number.hpp"
 #include "io/scans/length_unit.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

@@ -1,8 +1,8 @@
 #include "io/scans/text/xyz_reader.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 

@@ -1,9 +1,9 @@
 #include "io/scans/threedtk/threedtk_reader.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "io/scans/threedtk/threedtk_frame.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 

@@ -1,8 +1,8 @@
 #include "io/store/convert/bin_counter.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
+#include "support/catch.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;

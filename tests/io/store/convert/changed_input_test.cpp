@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <cstring>
 #include <functional>
@@ -6,6 +5,7 @@
 #include "io/files/xxh64.hpp"
 #include "io/store/convert/count.hpp"
 #include "io/store/convert/distribute.hpp"
+#include "support/catch.hpp"
 #include "support/clouds.hpp"
 #include "support/compare.hpp"
 

@@ -1,5 +1,4 @@
 // Classes on their way from scans into a store.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -8,6 +7,7 @@
 #include "io/store/convert/spooled_reader.hpp"
 #include "io/store/convert/withheld_cubes.hpp"
 #include "io/store/inspect_points.hpp"
+#include "support/catch.hpp"
 #include "support/classed_scans.hpp"
 #include "support/compare.hpp"
 #include "support/leaks_of_hdf5.hpp"

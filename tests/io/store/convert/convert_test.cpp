@@ -1,10 +1,9 @@
 #include "io/store/convert/convert.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "io/files/hdf5.hpp"
 #include "io/store/store_reader.hpp"
 #include "support/bytes/las_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/clouds.hpp"
 #include "support/compare.hpp"
 #include "support/store_order.hpp"
@@ -122,7 +121,7 @@ TEST_CASE("regular layouts keep to their cubes on both sides of the origin") {
     CHECK(structure_faults(store).empty());
     CHECK(faults_of(store).empty());
     CHECK(std::to_string(store.metadata().points_hash) == adaptive_hash);
-    CHECK_THAT(store.metadata().layout, Catch::StartsWith("regular:"));
+    CHECK_THAT(store.metadata().layout, StartsWith("regular:"));
   }
 }
 

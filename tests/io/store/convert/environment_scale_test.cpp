@@ -1,13 +1,12 @@
 // Which integers the points of an environment become: the scale, the offset and the rounding.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "read_environment.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 namespace {
 

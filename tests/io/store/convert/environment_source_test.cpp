@@ -1,11 +1,11 @@
 // The inputs of an environment: its files in order, points that are not finite, units.
 #include <sys/stat.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "read_environment.hpp"
 #include "support/bytes/las_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;

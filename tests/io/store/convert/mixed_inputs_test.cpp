@@ -1,11 +1,11 @@
 // Inputs of different kinds in one environment: integers with floating-point numbers, and the notes
 // on folders and on many files.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/messages/messages.hpp"
 #include "read_environment.hpp"
 #include "support/bytes/laz/laz_samples.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/store_fixture.hpp"
 

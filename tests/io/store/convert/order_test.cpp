@@ -1,11 +1,10 @@
 // The store's order of points, against a plain rewriting of the rule.
-#include <catch2/catch.hpp>
-
 #include "io/files/xxh64.hpp"
 #include "io/scans/point_reader.hpp"
 #include "io/store/convert/distribute.hpp"
 #include "io/store/convert/split_tree.hpp"
 #include "support/bytes/laz/laz_samples.hpp"
+#include "support/catch.hpp"
 #include "support/clouds.hpp"
 #include "support/compare.hpp"
 #include "support/store_order.hpp"

@@ -1,8 +1,8 @@
 // Origins of real scans against what their files say.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/origins.hpp"
 #include "support/test_data.hpp"

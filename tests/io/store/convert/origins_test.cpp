@@ -4,18 +4,17 @@
 #include <hdf5.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "io/store/convert/origin_table.hpp"
 #include "support/bytes/e57_bytes.hpp"
 #include "support/bytes/pcd_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/clouds.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Matchers::Contains;
 
 namespace {
 

@@ -1,6 +1,5 @@
 // Origins by the GPS times of points and the path of a moving scanner.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -8,13 +7,13 @@
 #include "io/store/convert/distribute.hpp"
 #include "io/store/convert/origin_table.hpp"
 #include "support/bytes/laz/laz_samples.hpp"
+#include "support/catch.hpp"
 #include "support/clouds.hpp"
 #include "support/compare.hpp"
 #include "support/origins.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Matchers::Contains;
 
 namespace {
 

@@ -1,7 +1,6 @@
 // What a conversion makes of the coordinate reference systems and units that scans name.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "io/store/convert/convert.hpp"
 #include "io/store/store_reader.hpp"
 #include "support/bytes/las_bytes.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/store_fixture.hpp"
 

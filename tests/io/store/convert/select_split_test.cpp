@@ -2,8 +2,8 @@
 #include "io/store/convert/select_split.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
+#include "support/catch.hpp"
 #include "support/clouds.hpp"
 
 using namespace clearway;

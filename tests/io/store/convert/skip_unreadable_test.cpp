@@ -1,7 +1,6 @@
 // Inputs that cannot be read among others that can, and texts whose columns are chosen.
-#include <catch2/catch.hpp>
-
 #include "io/store/convert/convert.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/store_fixture.hpp"
 

@@ -1,5 +1,4 @@
 // Conversions warn where something is wrong with the inputs, and only there.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <functional>
@@ -7,12 +6,12 @@
 
 #include "core/util/format.hpp"
 #include "io/store/convert/convert.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/store_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 namespace fs = std::filesystem;
 
 namespace {

@@ -1,6 +1,5 @@
 // A scan in whose lane withheld points lie.
-#include <catch2/catch.hpp>
-
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/store_fixture.hpp"
 #include "support/test_data.hpp"

@@ -1,14 +1,13 @@
 // clearway conflicts and compare --conflicts, through the built program.
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "support/catch.hpp"
 #include "tools/cli/support/hall.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 using nlohmann::json;
 
 namespace {
@@ -91,9 +90,9 @@ TEST_CASE("conflicts are listed in JSON and CSV, and no point is lost") {
         "encroachment,encroachment_is,side,first_touch,trim_left,trim_right,trim_above,trim_below,"
         "lateral,height,group,depth,points_inside,obstacle_chainage,own_shift_left,own_shift_right,"
         "small_groups,small_points");
-  CHECK_THAT(rows[1], Catch::StartsWith("1," + all["conflicts"][0]["rank"].dump() + "," +
-                                        all["conflicts"][0]["points"].dump() + "," +
-                                        all["conflicts"][0]["source"].dump() + ","));
+  CHECK_THAT(rows[1], StartsWith("1," + all["conflicts"][0]["rank"].dump() + "," +
+                                 all["conflicts"][0]["points"].dump() + "," +
+                                 all["conflicts"][0]["source"].dump() + ","));
 }
 
 TEST_CASE("a table and a summary are printed") {
@@ -370,7 +369,7 @@ TEST_CASE("conflicts of a few points are told by the headline and by every outpu
                 "--min-points 1 lists it");
   const auto rows = lines_of(street.bytes("c.csv"));
   REQUIRE(rows.size() == 2);
-  CHECK_THAT(rows[1], Catch::StartsWith("0,0,3,0,5,") && Catch::EndsWith(",1,3"));
+  CHECK_THAT(rows[1], StartsWith("0,0,3,0,5,") && EndsWith(",1,3"));
   check_json(json::parse(street.bytes("c.json")), R"({"small": {"0": {"points": 3}}})");
   const json features = json::parse(street.bytes("c.geojson"));
   REQUIRE(features["features"].size() == 1);

@@ -1,10 +1,10 @@
 // Two scans of a road, each driven by the same car: what is new, gone, the same and not known.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
+#include "support/catch.hpp"
 #include "support/classed_scans.hpp"
 #include "tools/cli/support/program.hpp"
 

@@ -1,8 +1,8 @@
 // clearway shift, and report --shifts, through the built program.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "support/catch.hpp"
 #include "tools/cli/conflicts/yard.hpp"
 
 using namespace clearway;
@@ -89,8 +89,8 @@ TEST_CASE("shift says what frees the path and each conflict, as a table, in JSON
   CHECK(rows[0] ==
         "conflict,chainage_from,chainage_to,station_from,station_to,first_pose,last_pose,shift,"
         "side,least_distance,searches,warned_of");
-  CHECK_THAT(rows[1], Catch::StartsWith("0,0,12,,,0,24,-0.81,right,"));
-  CHECK_THAT(rows[2], Catch::StartsWith("1,2,5,,,4,10,-0.11,right,0.0"));
+  CHECK_THAT(rows[1], StartsWith("0,0,12,,,0,24,-0.81,right,"));
+  CHECK_THAT(rows[2], StartsWith("1,2,5,,,4,10,-0.11,right,0.0"));
 }
 
 TEST_CASE("shift looks only where it is told, and says if nothing is found") {

@@ -1,7 +1,7 @@
 // clearway conflicts --vehicle: conflicts are seen from the bodies.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "support/catch.hpp"
 #include "tools/cli/conflicts/yard.hpp"
 
 using namespace clearway;

@@ -1,8 +1,8 @@
 // A flipped byte of a store or a result is named by verify, and never gives a wrong answer with
 // exit code 0.
-#include <catch2/catch.hpp>
 #include <map>
 
+#include "support/catch.hpp"
 #include "tools/cli/support/hall.hpp"
 
 using namespace clearway;

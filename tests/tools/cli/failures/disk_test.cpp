@@ -1,8 +1,7 @@
 // Disks that are really full or read-only: exit code 4, the file named, nothing that looks
 // finished, and finished work is used once there is room.
-#include <catch2/catch.hpp>
-
 #include "io/result/journal.hpp"
+#include "support/catch.hpp"
 #include "tools/cli/support/hall.hpp"
 #include "tools/cli/support/small_disk.hpp"
 

@@ -3,8 +3,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
+#include "support/catch.hpp"
 #include "tools/cli/support/hall.hpp"
 
 using namespace clearway;

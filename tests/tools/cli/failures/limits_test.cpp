@@ -1,9 +1,9 @@
 // The sizes and names that docs/guide/command-line.md promises under "Limits".
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include "core/cloud/packed_cloud.hpp"
 #include "io/store/store_writer.hpp"
+#include "support/catch.hpp"
 #include "support/result_fixture.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/program.hpp"

@@ -2,9 +2,9 @@
 // are not what their names say.
 #include <sys/stat.h>
 
-#include <catch2/catch.hpp>
 #include <string_view>
 
+#include "support/catch.hpp"
 #include "tools/cli/support/program.hpp"
 
 using namespace clearway;

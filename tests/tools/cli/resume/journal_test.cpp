@@ -1,11 +1,9 @@
 // Journals of the program that are refused, damaged, torn or in use.
-#include <catch2/catch.hpp>
-
+#include "support/catch.hpp"
 #include "tools/cli/resume/slow_hall.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using Catch::Contains;
 
 TEST_CASE("a run that is refused leaves no journal") {
   const Work work;

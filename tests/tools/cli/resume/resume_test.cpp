@@ -1,10 +1,10 @@
 // --resume and --force of the program, also after signals.
 #include <signal.h>
 
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "support/catch.hpp"
 #include "tools/cli/resume/slow_hall.hpp"
 
 using namespace clearway;

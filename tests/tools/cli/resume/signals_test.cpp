@@ -4,10 +4,10 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <thread>
 
+#include "support/catch.hpp"
 #include "tools/cli/support/process.hpp"
 #include "tools/cli/support/program.hpp"
 

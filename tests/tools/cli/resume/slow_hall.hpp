@@ -3,7 +3,6 @@
 #include <signal.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <filesystem>
 #include <stdexcept>
@@ -13,6 +12,7 @@
 
 #include "io/files/pending_file.hpp"
 #include "io/result/journal.hpp"
+#include "support/catch.hpp"
 #include "tools/cli/support/process.hpp"
 #include "tools/cli/support/program.hpp"
 

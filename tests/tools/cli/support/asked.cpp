@@ -1,6 +1,5 @@
 #include "tools/cli/support/asked.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -9,6 +8,7 @@
 #include "clearway/trajectory.hpp"
 #include "io/paths/trajectory_file.hpp"
 #include "io/scans/point_reader.hpp"
+#include "support/catch.hpp"
 #include "support/store_fixture.hpp"
 
 namespace clearway::test {

@@ -1,7 +1,8 @@
 #include "tools/cli/support/hall.hpp"
 
-#include <catch2/catch.hpp>
 #include <stdexcept>
+
+#include "support/catch.hpp"
 
 namespace clearway::test {
 

@@ -2,9 +2,10 @@
 
 #include <sys/wait.h>
 
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <stdexcept>
+
+#include "support/catch.hpp"
 
 namespace clearway::test {
 
