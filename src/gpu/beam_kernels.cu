@@ -1,3 +1,4 @@
+#include "core/util/warp.hpp"
 #include "gpu/beam_kernels.hpp"
 #include "gpu/cuda_objects.hpp"
 
@@ -7,7 +8,7 @@ namespace {
 constexpr unsigned kThreads = 128;
 
 __device__ void tally(unsigned long long* total, std::uint64_t of_thread) {
-  const unsigned sum = __reduce_add_sync(0xffffffff, static_cast<unsigned>(of_thread));
+  const std::uint32_t sum = sum_of_lanes(static_cast<std::uint32_t>(of_thread));
   if (threadIdx.x % 32 == 0 && sum != 0) atomicAdd(total, static_cast<unsigned long long>(sum));
 }
 

@@ -18,7 +18,7 @@ constexpr unsigned kBlocksPerProcessor = 8;
 constexpr unsigned kClearanceBlocks = 4;
 
 __device__ void tally(unsigned long long* total, std::uint64_t of_lane) {
-  const auto sum = __reduce_add_sync(0xffffffff, static_cast<unsigned>(of_lane));
+  const std::uint32_t sum = sum_of_lanes(static_cast<std::uint32_t>(of_lane));
   if (threadIdx.x % kWarpLanes == 0 && sum != 0) {
     atomicAdd(total, static_cast<unsigned long long>(sum));
   }

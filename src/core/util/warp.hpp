@@ -8,6 +8,32 @@ namespace clearway {
 
 inline constexpr std::uint32_t kWarpLanes = 32;
 
+#ifdef __CUDACC__
+/// The sum of the values of all lanes of a warp, and the least of them. All lanes must take part.
+/// GPUs from the compute capability 8.0 on have an instruction for each.
+__device__ inline std::uint32_t sum_of_lanes(std::uint32_t value) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_add_sync(0xffffffff, value);
+#else
+  for (int apart = kWarpLanes / 2; apart > 0; apart /= 2) {
+    value += __shfl_xor_sync(0xffffffff, value, apart);
+  }
+  return value;
+#endif
+}
+__device__ inline std::uint32_t least_of_lanes(std::uint32_t value) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_min_sync(0xffffffff, value);
+#else
+  for (int apart = kWarpLanes / 2; apart > 0; apart /= 2) {
+    const std::uint32_t other = __shfl_xor_sync(0xffffffff, value, apart);
+    if (other < value) value = other;
+  }
+  return value;
+#endif
+}
+#endif
+
 /// The lanes of a CUDA warp. Warp code is written once, as steps that all lanes take: `each` and
 /// `ballot` call a function with the lane's number, and values of a lane live in a PerLane. All
 /// threads of the warp must take part; everything between the steps is computed alike by all of
@@ -60,7 +86,7 @@ struct CudaWarp {
 
   CLEARWAY_HD static std::uint32_t least([[maybe_unused]] PerLane<std::uint32_t>& values) {
 #ifdef __CUDA_ARCH__
-    return __reduce_min_sync(0xffffffff, values.value);
+    return least_of_lanes(values.value);
 #else
     return 0;
 #endif
