@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds Clearway, makes the scan of a road through a village, and checks whether a lorry with a high
-# load passes, from the scan to a report for any browser. Installs missing packages (Debian 12).
+# load passes, from the scan to a report for any browser. Installs missing packages (Debian 12 or 13).
 # Output: the folder demo/.
 # Usage: tools/demo.sh [road|hall|plant|mine|tunnel] [POINTS]
 set -euo pipefail
@@ -8,9 +8,15 @@ cd "$(dirname "$0")/.."
 kind=${1:-road}
 points=${2:-2000000}
 source tools/setup.sh
-install_missing_packages
+install_missing_packages "${program_packages[@]}"
 
-configure_release
+# The program alone, with CUDA where there is a GPU. What the tests have configured stays as it is.
+if [ ! -e build/release/build.ninja ]; then
+  cuda=OFF
+  if nvidia-smi >/dev/null 2>&1; then cuda=AUTO; fi
+  configure_release -DCLEARWAY_TESTS=OFF -DCLEARWAY_BENCHMARKS=OFF -DCLEARWAY_PYTHON=OFF \
+    -DCLEARWAY_CUDA=$cuda
+fi
 cmake --build build/release --target clearway
 clearway=build/release/tools/clearway
 out=demo/$kind

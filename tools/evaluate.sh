@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Builds Clearway, measures the experiments of clearway-bench and tools/certainty.py, and draws their
-# charts: the whole evaluation of docs/design/evaluation.md. Installs missing packages (Debian 12). Run again, it goes on
-# where it was stopped; another commit needs another FOLDER, or --force, which removes the outputs
-# of before.
+# charts: the whole evaluation of docs/design/evaluation.md. Installs missing packages (Debian 12 or
+# 13). Run again, it goes on where it was stopped; another commit needs another FOLDER, or --force,
+# which removes the outputs of before.
 # Usage: tools/evaluate.sh [--force] [small|full] FOLDER
 # Output: FOLDER/EXPERIMENT.json, FOLDER/charts; scenes and stores stay in FOLDER/work.
 set -euo pipefail
@@ -28,7 +28,7 @@ cd "$(dirname "$0")/.."
 source tools/setup.sh
 install_missing_packages
 
-configure_release
+configure_release -DCLEARWAY_BENCHMARKS=ON -DCLEARWAY_PYTHON=ON -DCLEARWAY_CUDA=AUTO
 cmake --build build/release --target clearway-bench clearway_python
 
 if [ $force = yes ]; then (cd "$folder" && rm -rf work certainty.json "${experiments[@]/%/.json}"); fi

@@ -1,16 +1,27 @@
-# Sourced by the scripts beside it: installs what Clearway needs on Debian 12, where it is missing.
+# Sourced by the scripts beside it: installs the packages of Debian 12 or 13 that are missing, and
+# configures the build. Both releases give the packages the same names.
 
-clearway_packages=(
+# What the program `clearway` needs.
+program_packages=(
   cmake g++ ninja-build
   libhdf5-dev libeigen3-dev libtbb-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libxxhash-dev
-  libpugixml-dev libproj-dev libsqlite3-dev zlib1g-dev libnanoflann-dev catch2
-  pybind11-dev python3-dev python3-numpy
-  hdf5-tools python3-h5py python3-matplotlib python3-pil libcgal-dev
+  libpugixml-dev libproj-dev libsqlite3-dev zlib1g-dev
+)
+# What the Python module needs besides, and what makes packages.
+python_packages=(pybind11-dev python3-dev python3-numpy)
+packaging_packages=(libnanoflann-dev dpkg-dev file patchelf)
+# What everything needs: clearway-bench, the tests and the pictures too.
+clearway_packages=(
+  "${program_packages[@]}" "${python_packages[@]}" "${packaging_packages[@]}"
+  catch2 libcgal-dev hdf5-tools python3-h5py
+  python3-matplotlib python3-pil
 )
 
+# install_missing_packages [PACKAGE...]: without names, what everything needs.
 install_missing_packages() {
   local missing=() package
-  for package in "${clearway_packages[@]}"; do
+  [ $# -gt 0 ] || set -- "${clearway_packages[@]}"
+  for package in "$@"; do
     dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' ||
       missing+=("$package")
   done
@@ -29,11 +40,13 @@ install_missing_packages() {
     apt-get install -y -qq --no-install-recommends "${missing[@]}"
 }
 
-# One folder for the demo and the tests, with the same options: what one has built, the other keeps.
+# One folder for the demo and the tests: what one has built, the other keeps. Warnings are errors
+# where CLEARWAY_WERROR=ON, as in .ci/run: those of a newer compiler should not stop anybody else.
 # Kernels are compiled for the GPU that is here. Where there is none they become PTX, which the
 # driver of any GPU since the H100 translates when the program starts there; that takes half the time.
 configure_release() {
   local architecture=90-virtual
   if nvidia-smi >/dev/null 2>&1; then architecture=native; fi
-  cmake --preset release -DCLEARWAY_WERROR=ON "-DCMAKE_CUDA_ARCHITECTURES=$architecture" >/dev/null
+  cmake --preset release "-DCLEARWAY_WERROR=${CLEARWAY_WERROR:-OFF}" \
+    "-DCMAKE_CUDA_ARCHITECTURES=$architecture" "$@" >/dev/null
 }

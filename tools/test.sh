@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Builds Clearway and runs all tests, after installing missing packages (Debian 12).
+# Builds Clearway and runs all tests, after installing missing packages (Debian 12 or 13).
+# CLEARWAY_WERROR=ON treats warnings of the compiler as errors.
 # CLEARWAY_TEST_DATA=FOLDER adds the tests on real scans; without it they are skipped and say so.
 # --sanitize runs the fast tests under the address, undefined-behaviour and thread sanitizers instead.
 set -euo pipefail
@@ -22,7 +23,8 @@ case "${1:-}" in
 esac
 install_missing_packages
 
-configure_release
+configure_release -DCLEARWAY_TESTS=ON -DCLEARWAY_BENCHMARKS=ON -DCLEARWAY_PYTHON=AUTO \
+  -DCLEARWAY_CUDA=AUTO
 cmake --build build/release
 log=build/release/ctest.log
 status=0

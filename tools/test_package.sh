@@ -1,74 +1,120 @@
 #!/usr/bin/env bash
-# Installs the Debian package into a fresh chroot of this Debian release and asks it a question there.
-#   tools/test_package.sh [--library] [PACKAGE]
-# PACKAGE: a .deb; without one it is built. --library: also builds a C++ program against it.
-# It takes two minutes and 1 GB below TMPDIR, and removes that. The mirror is the one that apt of
-# this machine uses. Where root, debootstrap or a mirror is missing it says so and ends with 77.
-# CLEARWAY_TEST_DATA=FOLDER asks the question of the street, too.
+# Installs the packages of tools/package.sh into fresh systems and asks each the question of the demo.
+#   tools/test_package.sh [--library] [PACKAGE...]
+# PACKAGE: a .deb, which is installed in a fresh Debian of this release; a .tar.gz, which is unpacked in
+# a Debian of this release and in later ones, without any package; a .whl, which is installed in a
+# fresh virtual environment. Without one, all three are made and tested.
+# --library: also builds a C++ program against the .deb.
+# It takes some minutes and 1 GB below TMPDIR, and removes that. Where root, debootstrap or a mirror is
+# missing it says so and ends with 77. CLEARWAY_TEST_DATA=FOLDER asks the .deb about the street, too.
 set -euo pipefail
 source_folder=$(cd "$(dirname "$0")/.." && pwd)
-library=no package=
+name=test_package
+source "$source_folder/tools/chroot.sh"
+own_mounts "$0" "$@"
+
+library=no packages=()
 for word in "$@"; do
   case $word in
     --library) library=yes ;;
-    -*) echo "usage: tools/test_package.sh [--library] [PACKAGE]" >&2; exit 2 ;;
-    *) package=$(realpath "$word") ;;
+    *.deb | *.tar.gz | *.whl) packages+=("$(realpath "$word")") ;;
+    *) echo "usage: tools/test_package.sh [--library] [PACKAGE...]" >&2; exit 2 ;;
   esac
 done
-
-skip() { echo "package_chroot: skipped: $*"; exit 77; }
-fail() { echo "package_chroot: $*" >&2; exit 1; }
-
-release=$(. /etc/os-release && echo "${VERSION_CODENAME:-}")
-[ "$(. /etc/os-release && echo "$ID")" = debian ] || skip "this is not Debian"
-[ "$(id -u)" -eq 0 ] || skip "only root can make a chroot"
-PATH=$PATH:/usr/sbin:/sbin
-command -v debootstrap >/dev/null || skip "debootstrap is not installed"
-mirror=$(apt-get indextargets --format '$(SITE) $(CODENAME) $(COMPONENT)' 'Created-By: Packages' |
-  awk -v release="$release" '$2 == release && $3 == "main" { print $1; exit }')
-[ -n "$mirror" ] || skip "apt has no mirror of $release"
-
-if [ -z "$package" ]; then
-  cd "$source_folder"
-  source tools/setup.sh
-  install_missing_packages
-  configure_release
-  cmake --build build/release
-  (cd build/release && cpack >/dev/null)
-  package=$(ls -t "$source_folder"/build/release/clearway_*.deb | head -1)
+find_mirror
+if [ ${#packages[@]} -eq 0 ]; then
+  "$source_folder/tools/package.sh"
+  packages=("$source_folder"/dist/clearway*)
 fi
-echo "package_chroot: ${package##*/}, $(stat -c %s "$package") bytes"
 
-scratch=$(mktemp -d)
-root=$scratch/root
-trap 'rm -rf --one-file-system "$scratch"' EXIT
-debootstrap --variant=minbase "$release" "$root" "$mirror" >"$scratch/debootstrap.log" 2>&1 || {
-  tail -5 "$scratch/debootstrap.log" >&2
-  grep -qE "mknod|noexec|nodev|Couldn't download|Failed getting release file" \
-    "$scratch/debootstrap.log" && skip "debootstrap cannot work here"
-  fail "debootstrap failed"
+# check_code BINARY: it has machine code for every GPU of the preset `package`, and PTX of the last;
+# or no CUDA at all.
+check_code() {
+  local wanted architecture code
+  if ! grep -qa clearway.*_kernel "$1"; then
+    echo "$name: ${1##*/} was made without CUDA"
+    return
+  fi
+  if ! command -v cuobjdump >/dev/null; then
+    echo "$name: cuobjdump is not here: the machine code of ${1##*/} is not looked at"
+    return
+  fi
+  wanted=$(sed -n 's/.*"package".*"CMAKE_CUDA_ARCHITECTURES": "\([^"]*\)".*/\1/p' \
+    "$source_folder/CMakePresets.json" | tr ';' ' ')
+  code=$({ cuobjdump --list-elf "$1"; cuobjdump --list-ptx "$1"; } | grep -oE 'sm_[0-9]+[a-z]*\.(cubin|ptx)' |
+    sort -u)
+  for architecture in $wanted; do
+    grep -qx "sm_${architecture%-real}.cubin" <<<"$code" ||
+      fail "${1##*/} has no machine code for $architecture, but $code"
+  done
+  grep -qx "sm_${architecture%-real}.ptx" <<<"$code" || fail "${1##*/} has no PTX of $architecture"
+  echo "$name: ${1##*/} has machine code for $wanted, and PTX of the last"
 }
-echo "package_chroot: a fresh $release from apt's mirror"
-cp /etc/resolv.conf "$root/etc/resolv.conf"
 
-as_root() { DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 chroot "$root" "$@"; }
-as_user() { LC_ALL=C.UTF-8 HOME=/tmp/asked chroot --userspec=nobody:nogroup "$root" "$@"; }
-install_in_chroot() {
-  as_root apt-get install -y -qq --no-install-recommends "$@" >>"$scratch/apt.log" 2>&1 || {
-    tail -20 "$scratch/apt.log" >&2
-    fail "apt-get install $* failed"
-  }
+# What the user of the chroot writes lies in /tmp/asked. The places need the data of PROJ.
+make_workplace() {
+  mkdir -m 1777 "$root/tmp/asked"
+  cat >"$root/tmp/asked/places.csv" <<'END'
+latitude,longitude,height,roll_deg,pitch_deg,heading_deg
+48,9,0,0,0,0
+48.001,9,0,0,0,0
+END
 }
 
-cp "$package" "$root/tmp/clearway.deb"
-chmod 644 "$root/tmp/clearway.deb"
-as_root apt-get update -qq >"$scratch/apt.log" 2>&1
-install_in_chroot /tmp/clearway.deb
-echo "package_chroot: installed with $(as_root dpkg-query -W -f '${Status} ${Version}' clearway)"
+# check_road FOLDER: the conflicts of a check are those that the demo finds.
+check_road() {
+  local found
+  found=$(awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "points") column = i }
+    NR > 1 { print $column }' "$root$1/conflicts.csv" | sort -n | xargs)
+  [ "$found" = "83 6045" ] || fail "the conflicts of the road have $found points, not 83 and 6045"
+  echo "$name: the road has the demo's conflicts, of $found points"
+}
 
-mkdir -m 1777 "$root/tmp/asked"
-as_user clearway --version
-cat >"$root/tmp/asked/read.py" <<'EOF'
+# ask_road PROGRAM: the demo's question, and the distance of the places.
+ask_road() {
+  as_user env program="$1" sh -ec 'cd /tmp/asked
+    $program scene road --points 2000000 -o road 2>/dev/null
+    $program check road/environment.las --model road/model.ply --trajectory road/trajectory.txt \
+      --radius 0.1 -o road/site 2>/dev/null >road/check.txt
+    $program trajectory info places.csv --trajectory-crs EPSG:25832 2>/dev/null |
+      grep "^length  *111.146 m"' || fail "the program fails"
+  check_road /tmp/asked/road/site
+}
+
+# The .deb, in a Debian of this release.
+test_deb() {
+  local package=$1 suggested left file
+  make_root "$release"
+  cp "$package" "$root/tmp/clearway.deb"
+  chmod 644 "$root/tmp/clearway.deb"
+  install_in_chroot /tmp/clearway.deb
+  echo "$name: installed with $(as_root dpkg-query -W -f '${Status} ${Version}' clearway)"
+  check_code "$root/usr/bin/clearway"
+  make_workplace
+  ask_road clearway
+  ask_scans
+  for file in share/man/man1/clearway-run.1.gz share/bash-completion/completions/clearway \
+    share/doc/clearway/copyright lib/libclearway.a include/clearway/clearway.hpp; do
+    [ -e "$root/usr/$file" ] || fail "no /usr/$file"
+  done
+  if [ "$library" = yes ]; then
+    suggested=$(as_root dpkg-query -W -f '${Suggests}' clearway | tr -d ,)
+    install_in_chroot make $suggested
+    cp -r "$source_folder/examples" "$root/tmp/asked/examples"
+    chmod -R a+rwX "$root/tmp/asked/examples"
+    as_user sh -ec 'cd /tmp/asked/hall && cmake -S ../examples -B ../build >/dev/null
+      cmake --build ../build >/dev/null && rm site.h5 out.h5
+      ../build/find_collisions environment.las model.ply trajectory.txt 0.1 2>/dev/null'
+  fi
+  as_root apt-get remove -y -qq clearway >>"$scratch/apt.log" 2>&1
+  left=$(cd "$root" && find usr -ipath '*clearway*')
+  [ -z "$left" ] || fail "removing the package leaves $left"
+  echo "$name: removed without a trace"
+}
+
+# ask_scans: small scenes, read and asked again in Python; with real data the street, too.
+ask_scans() {
+  cat >"$root/tmp/asked/read.py" <<'END'
 import sys
 import clearway
 result = clearway.Result(sys.argv[1])
@@ -78,41 +124,77 @@ report = clearway.search(clearway.Store(sys.argv[4]), query, "/tmp/asked/python.
 assert (result.source() == clearway.Result("/tmp/asked/python.h5").source()).all()
 assert result.xyz().shape == (len(result), 3)
 print(f"clearway {clearway.__version__} of {clearway.__file__}: {len(result)} points")
-EOF
+END
+  mkdir -m 1777 "$root/tmp/asked/hall"
+  as_user clearway scene hall --points 200000 -o /tmp/asked/hall 2>/dev/null
+  ask_scan /tmp/asked/hall environment.las model.ply trajectory.txt
+  if [ -n "${CLEARWAY_TEST_DATA:-}" ]; then
+    mkdir -m 1777 "$root/tmp/asked/street"
+    cp "$CLEARWAY_TEST_DATA"/street/{street.las,beetle.ply,trajectory.txt} "$root/tmp/asked/street"
+    ask_scan /tmp/asked/street street.las beetle.ply trajectory.txt
+    grep -q ': 78439 points$' "$root/tmp/asked/street/read.txt" || fail "the street has 78439 points"
+  fi
+}
 
-# ask FOLDER SCAN MODEL TRAJECTORY: with the program, read and asked again in Python.
-ask() {
+# ask_scan FOLDER SCAN MODEL TRAJECTORY: with the program, read and asked again in Python.
+ask_scan() {
   as_user sh -ec 'cd "$1"
     clearway convert "$2" -o site.h5 2>/dev/null
     clearway run --env site.h5 --model "$3" --trajectory "$4" --radius 0.1 -o out.h5 2>/dev/null
     python3 /tmp/asked/read.py out.h5 "$4" "$3" site.h5 | tee read.txt' sh "$@"
 }
-mkdir -m 1777 "$root/tmp/asked/hall"
-as_user clearway scene hall --points 200000 -o /tmp/asked/hall 2>/dev/null
-ask /tmp/asked/hall environment.las model.ply trajectory.txt
-if [ -n "${CLEARWAY_TEST_DATA:-}" ]; then
-  mkdir -m 1777 "$root/tmp/asked/street"
-  cp "$CLEARWAY_TEST_DATA"/street/{street.las,beetle.ply,trajectory.txt} "$root/tmp/asked/street"
-  ask /tmp/asked/street street.las beetle.ply trajectory.txt
-  grep -q ': 78439 points$' "$root/tmp/asked/street/read.txt" || fail "the street has 78439 points"
-fi
 
-for file in share/man/man1/clearway-run.1.gz share/bash-completion/completions/clearway \
-  share/doc/clearway/copyright lib/libclearway.a include/clearway/clearway.hpp; do
-  [ -e "$root/usr/$file" ] || fail "no /usr/$file"
+# The .tar.gz, in bare systems of this release of Debian and of later ones.
+test_tar() {
+  local package=$1 tested folder
+  for tested in bookworm trixie; do
+    [ "$tested" != bookworm ] || [ "$release" = bookworm ] || continue
+    make_root "$tested"
+    make_workplace
+    tar -C "$root/tmp" -xzf "$package"
+    folder=/tmp/$(basename "$package" .tar.gz)
+    check_code "$root$folder/bin/clearway"
+    ask_road "$folder/bin/clearway"
+  done
+}
+
+# The .whl, in a fresh virtual environment. NumPy comes from where pip finds it, or where it finds
+# nothing from Debian.
+test_wheel() {
+  local package=$1 folder=$scratch/program python
+  make_root "$release"
+  install_in_chroot python3-venv ca-certificates
+  make_workplace
+  cp "$package" "$root/tmp"
+  as_user sh -ec 'mkdir -p /tmp/asked && cd /tmp/asked && python3 -m venv venv
+    venv/bin/pip install --quiet --disable-pip-version-check --no-cache-dir --retries 0 "$1"' \
+    sh "/tmp/${package##*/}" 2>"$scratch/pip.log" || {
+    echo "$name: pip finds no NumPy: $(tail -1 "$scratch/pip.log")"
+    install_in_chroot python3-numpy
+    as_user sh -ec 'cd /tmp/asked && python3 -m venv --clear --system-site-packages venv
+      venv/bin/pip install --quiet --no-index "$1"' sh "/tmp/${package##*/}" ||
+      fail "pip does not install the wheel"
+  }
+  check_code "$root"/tmp/asked/venv/lib/python3*/site-packages/clearway/_clearway*.so
+
+  # The question, with the path that check makes of the demo's.
+  mkdir "$folder" "$root/tmp/asked/road"
+  tar -C "$folder" -xzf "${package%/*}"/clearway-*-linux-*.tar.gz --strip-components 1 ||
+    fail "no .tar.gz beside the wheel, whose program makes the road"
+  "$folder/bin/clearway" scene road --points 2000000 -o "$scratch/road" 2>/dev/null
+  cp "$scratch"/road/* "$root/tmp/asked/road"
+  chmod -R a+rwX "$root/tmp/asked/road"
+  cp "$source_folder/tools/packaging/ask_wheel.py" "$root/tmp/asked"
+  as_user sh -ec 'cd /tmp/asked/road && ../venv/bin/python ../ask_wheel.py' ||
+    fail "the wheel's module fails"
+  check_road /tmp/asked/road
+}
+
+for package in "${packages[@]}"; do
+  echo "$name: ${package##*/}, $(stat -c %s "$package") bytes"
+  case $package in
+    *.deb) test_deb "$package" ;;
+    *.tar.gz) test_tar "$package" ;;
+    *.whl) test_wheel "$package" ;;
+  esac
 done
-
-if [ "$library" = yes ]; then
-  suggested=$(as_root dpkg-query -W -f '${Suggests}' clearway | tr -d ,)
-  install_in_chroot make $suggested
-  cp -r "$source_folder/examples" "$root/tmp/asked/examples"
-  chmod -R a+rwX "$root/tmp/asked/examples"
-  as_user sh -ec 'cd /tmp/asked/hall && cmake -S ../examples -B ../build >/dev/null
-    cmake --build ../build >/dev/null && rm site.h5 out.h5
-    ../build/find_collisions environment.las model.ply trajectory.txt 0.1 2>/dev/null'
-fi
-
-as_root apt-get remove -y -qq clearway >>"$scratch/apt.log" 2>&1
-left=$(cd "$root" && find usr -ipath '*clearway*')
-[ -z "$left" ] || fail "removing the package leaves $left"
-echo "package_chroot: removed without a trace"

@@ -6,7 +6,7 @@ build=$1
 scratch=$build/package
 fail() { echo "package: $*" >&2; exit 1; }
 
-for program in dpkg-deb dpkg-shlibdeps; do
+for program in dpkg-deb dpkg-shlibdeps file; do
   command -v "$program" >/dev/null || { echo "package: skipped: $program is not installed"; exit 77; }
 done
 rm -rf "$scratch" && mkdir -p "$scratch"
