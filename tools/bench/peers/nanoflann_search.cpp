@@ -4,6 +4,8 @@
 #include <atomic>
 #include <limits>
 #include <nanoflann.hpp>
+#include <utility>
+#include <vector>
 
 #include "core/geometry/predicate.hpp"
 
@@ -26,6 +28,15 @@ struct Adaptor {
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Adaptor>,
                                                  Adaptor, 3, std::uint32_t>;
 
+// Renamed in version 1.5.
+#if NANOFLANN_VERSION >= 0x150
+using SearchParameters = nanoflann::SearchParameters;
+using FoundPoint = nanoflann::ResultItem<std::uint32_t, double>;
+#else
+using SearchParameters = nanoflann::SearchParams;
+using FoundPoint = std::pair<std::uint32_t, double>;
+#endif
+
 }  // namespace
 
 struct NanoflannSearch::Index {
@@ -47,12 +58,12 @@ NanoflannSearch::SearchResult NanoflannSearch::run(const Query& query, int threa
   SearchResult answer;
   answer.words.resize((index_->adaptor.points.size() + 63) / 64);
   const double radius_squared = rounded_product(query.radius, query.radius);
-  nanoflann::SearchParams unsorted;
+  SearchParameters unsorted;
   unsorted.sorted = false;
   std::uint64_t empty = 0;
 #pragma omp parallel num_threads(threads) reduction(+ : empty)
   {
-    std::vector<std::pair<std::uint32_t, double>> found;
+    std::vector<FoundPoint> found;
 #pragma omp for schedule(dynamic, 1)
     for (std::size_t i = 0; i < query.poses.size(); ++i) {
       for (const Vec3& m : query.model.vertices) {
