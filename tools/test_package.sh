@@ -27,28 +27,25 @@ if [ ${#packages[@]} -eq 0 ]; then
   packages=("$source_folder"/dist/clearway*)
 fi
 
-# check_code BINARY: it has machine code for every GPU of the preset `package`, and PTX of the last;
-# or no CUDA at all.
+# check_code BINARY: every kernel has machine code for every GPU of the preset `package`, and PTX of
+# the last; or there is no CUDA at all.
 check_code() {
-  local wanted architecture code
-  if ! grep -qa clearway.*_kernel "$1"; then
+  local wanted architecture code expected
+  code=$("$source_folder/tools/packaging/gpu_code.py" "$1")
+  if [ -z "$code" ]; then
     echo "$name: ${1##*/} was made without CUDA"
-    return
-  fi
-  if ! command -v cuobjdump >/dev/null; then
-    echo "$name: cuobjdump is not here: the machine code of ${1##*/} is not looked at"
     return
   fi
   wanted=$(sed -n 's/.*"package".*"CMAKE_CUDA_ARCHITECTURES": "\([^"]*\)".*/\1/p' \
     "$source_folder/CMakePresets.json" | tr ';' ' ')
-  code=$({ cuobjdump --list-elf "$1"; cuobjdump --list-ptx "$1"; } | grep -oE 'sm_[0-9]+[a-z]*\.(cubin|ptx)' |
-    sort -u)
-  for architecture in $wanted; do
-    grep -qx "sm_${architecture%-real}.cubin" <<<"$code" ||
-      fail "${1##*/} has no machine code for $architecture, but $code"
-  done
-  grep -qx "sm_${architecture%-real}.ptx" <<<"$code" || fail "${1##*/} has no PTX of $architecture"
-  echo "$name: ${1##*/} has machine code for $wanted, and PTX of the last"
+  expected=$(for architecture in $wanted; do
+    echo "sm_${architecture%-real}.cubin"
+    [ "$architecture" != "${architecture%-real}" ] || echo "sm_$architecture.ptx"
+  done | sort)
+  [ "$(awk '{ print $1 }' <<<"$code" | sort)" = "$expected" ] &&
+    [ "$(awk '{ print $2 }' <<<"$code" | sort -u | wc -l)" = 1 ] ||
+    fail "${1##*/} has the code" $code ", expected" $expected
+  echo "$name: the kernels of ${1##*/} have" $expected
 }
 
 # What the user of the chroot writes lies in /tmp/asked. The places need the data of PROJ.
