@@ -26,6 +26,9 @@ install_missing_packages
 configure_release -DCLEARWAY_TESTS=ON -DCLEARWAY_BENCHMARKS=ON -DCLEARWAY_PYTHON=AUTO \
   -DCLEARWAY_CUDA=AUTO
 cmake --build build/release
+
+# Tests run side by side, so OpenMP's threads sleep while they wait, and do not spin.
+export OMP_WAIT_POLICY=passive
 log=build/release/ctest.log
 status=0
 ctest --test-dir build/release --output-on-failure -j "$(nproc)" 2>&1 | tee "$log" || status=$?

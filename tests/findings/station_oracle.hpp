@@ -76,14 +76,16 @@ inline std::vector<ExpectedRow> expected_rows(const Result& result, const Query&
     }
   }
   const Clearances rows = query.clearance > 0 ? result.clearance() : Clearances();
+  const auto bodies = moving_bodies(query);
+  std::vector<Box> boxes;
+  for (const auto& body : bodies) boxes.push_back(box_around(body.model.vertices));
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::pair found(rows.distance[i], rows.source[i]);
     const auto keep = [&](Least& least) {
       if (!least || found < *least) least = found;
     };
     const std::uint32_t body = rows.body.empty() ? 0 : rows.body[i];
-    const auto bodies = moving_bodies(query);
-    const Box box = box_around(bodies[body].model.vertices);
+    const Box& box = boxes[body];
     const Pose* pose = bodies[body].pose_at(rows.pose[i]);
     REQUIRE(pose != nullptr);
     const Vec3 there = seen_from(rows.xyz[i], *pose);

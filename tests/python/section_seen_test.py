@@ -1,5 +1,5 @@
 """Seen space of sections in random scenes is what its definition says: which cells are blocked, and
-which are not known because no beam crossed the cubes over them. Beams are followed with fractions,
+which are not known because no beam crossed the cubes over them. Beams are followed in exact integers,
 places are computed in double in the documented order of operations, and all pairs are looked at.
 
 Usage: PYTHONPATH=BUILD/python section_seen_test.py [SCENES]

@@ -1,5 +1,5 @@
 """Seen space in random scenes is what its definition says: which cubes are swept and unseen, their
-groups, and the length that was not scanned. Uses fractions and all pairs.
+groups, and the length that was not scanned. Uses exact integers and all pairs.
 
 Usage: PYTHONPATH=BUILD/python seen_test.py
 """
@@ -11,7 +11,6 @@ import random
 import struct
 import tempfile
 import unittest
-from fractions import Fraction
 
 import clearway
 import numpy as np
@@ -45,15 +44,19 @@ def write_las(path, quanta, scale, offset):
 
 
 def meet(origin, end, least, greatest):
-    """Whether the closed segment and the closed box share a point."""
-    enter, leave = Fraction(0), Fraction(1)
+    """Whether the closed segment and the closed box share a point. All are integers, and so are the
+    parts of a fraction (n, d), d > 0, so that the answer is exact."""
+    enter, leave = (0, 1), (1, 1)
     for o, e, lo, hi in zip(origin, end, least, greatest):
-        if max(o, e) < lo or min(o, e) > hi:
+        if o < lo and e < lo or o > hi and e > hi:
             return False
         if o != e:
-            a, b = sorted((Fraction(lo - o, e - o), Fraction(hi - o, e - o)))
-            enter, leave = max(enter, a), min(leave, b)
-    return enter <= leave
+            n, m, d = (lo - o, hi - o, e - o) if e > o else (o - hi, o - lo, o - e)
+            if n * enter[1] > enter[0] * d:
+                enter = (n, d)
+            if m * leave[1] < leave[0] * d:
+                leave = (m, d)
+    return enter[0] * leave[1] <= leave[0] * enter[1]
 
 
 class Scene:

@@ -42,7 +42,8 @@ class Browser:
              f"--user-data-dir={self._folder.name}", "--use-gl=angle",
              "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run",
              "--disable-background-networking", "--disable-component-update",
-             "--disable-extensions", "--hide-scrollbars", "about:blank"],
+             "--disable-extensions", "--hide-scrollbars",
+             "--disable-gpu-rasterization", "--disable-accelerated-2d-canvas", "about:blank"],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=connect,
             close_fds=False)
         os.close(to_browser)
