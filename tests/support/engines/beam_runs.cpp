@@ -1,25 +1,14 @@
 #include "support/engines/beam_runs.hpp"
 
 #include <algorithm>
-#include <array>
 #include <span>
 
 #include "stream/plan.hpp"
 #include "stream/run_pages.hpp"
+#include "support/engines/page_memory.hpp"
 
 namespace clearway {
 namespace {
-
-struct alignas(kPageAlignment) Line {
-  std::array<std::byte, kPageAlignment> bytes;
-};
-
-/// Memory with the alignment of pages.
-struct Lines {
-  explicit Lines(std::uint64_t bytes) : lines(divide_up(bytes, kPageAlignment)) {}
-  std::span<std::byte> bytes() { return std::as_writable_bytes(std::span(lines)); }
-  std::vector<Line> lines;
-};
 
 BeamRun follow_on_host(const PackedCloud& cloud, const Beams& beams) {
   BeamRun run{{beams.map.words().begin(), beams.map.words().end()}, {}};
@@ -28,8 +17,9 @@ BeamRun follow_on_host(const PackedCloud& cloud, const Beams& beams) {
   std::vector<PlannedCell> cells;
   for (std::uint32_t cell = 0; cell < cloud.cells().size(); ++cell) cells.push_back({cell, {}});
   for (const PlannedPage& planned : paginate(cloud, cells, 1 << 20, kBeamPageCells)) {
-    Lines page(planned.shape.bytes());
-    Lines origins(origin_bytes(planned.shape.cells, cloud.cell_points(), beams.origin_minbits));
+    test::PageMemory page(planned.shape.bytes());
+    test::PageMemory origins(
+        origin_bytes(planned.shape.cells, cloud.cell_points(), beams.origin_minbits));
     const PageRef staged{page.bytes().data(), stage_page(cloud, planned.of(cells), page.bytes())};
     stage_origins(staged, beams.origins_of, origins.bytes().data());
     const BeamPage follows{staged, {origins.bytes().data(), {}}};

@@ -1,27 +1,23 @@
 #include "support/engines/section_runs.hpp"
 
-#include <array>
 #include <span>
 #include <vector>
 
 #include "core/section/section_block.hpp"
 #include "stream/plan.hpp"
 #include "stream/run_pages.hpp"
+#include "support/engines/page_memory.hpp"
 
 namespace clearway {
 namespace {
-
-struct alignas(kPageAlignment) Line {
-  std::array<std::byte, kPageAlignment> bytes;
-};
 
 void block_on_host(const PackedCloud& cloud, const IgnoredPoints& ignored,
                    const SectionRef& section) {
   const std::vector<PlannedCell> cells = section_cells(cloud, section);
   for (const PlannedPage& planned :
        paginate(cloud, cells, 1 << 20, kSectionPageCells, ignored.any())) {
-    std::vector<Line> lines(divide_up(planned.shape.bytes(), kPageAlignment));
-    const auto bytes = std::as_writable_bytes(std::span(lines));
+    test::PageMemory memory(planned.shape.bytes());
+    const std::span<std::byte> bytes = memory.bytes();
     std::uint64_t left_out = 0;
     const PageShape shape = stage_page(cloud, planned.of(cells), bytes, ignored, left_out);
     const SectionPage page{section, {bytes.data(), shape}, cloud.quantisation()};
