@@ -50,7 +50,8 @@ test_release() {
   if [ -n "${CCACHE_DIR:-}" ]; then
     install_in_chroot ccache
     share "$CCACHE_DIR" /ccache
-    settings+=(CCACHE_DIR=/ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache)
+    settings+=(CCACHE_DIR=/ccache CCACHE_BASEDIR=/clearway CCACHE_NOHASHDIR=yes
+      CMAKE_CXX_COMPILER_LAUNCHER=ccache)
   fi
   if [ -n "${CLEARWAY_TEST_DATA:-}" ]; then
     share "$CLEARWAY_TEST_DATA" /data
