@@ -73,11 +73,9 @@ std::uint64_t CellSearchOf<Element>::most_bytes(const PackedCloud& cloud, const 
   const auto depths = static_cast<std::uint64_t>(std::bit_width(cloud.blocks_per_cell())) + 1;
   // A list for clearances may have grown to twice the size it needs.
   const std::uint64_t of_clearance = query.clearance > 0 ? 8 * most_poses : 0;
-  // Lists of runs may have grown to twice the size they need, too.
-  const std::uint64_t of_runs = kIsTriangle<Element> ? 8 * most_poses : 0;
   return sizeof(CellSearchOf) +
          depths * (sizeof(std::vector<std::uint32_t>) + most_poses * sizeof(std::uint32_t)) +
-         of_clearance + of_runs;
+         of_clearance + BlockDescentOf<Element>::most_bytes(most_poses);
 }
 
 template <typename Element>
@@ -137,45 +135,39 @@ void CellSearchOf<Element>::search_points(std::uint32_t block,
     const auto joined_count = static_cast<std::uint32_t>(nodes.size());
     joined_.resize(filter_.ref().motion.join_smooth(joined_.data(), joined_count));
   }
-  is_grazed_ = false;
-  std::int32_t q[3][kBlockPoints];
-  for (std::size_t k = 0; k < 3; ++k) chunks_[k].decode(begin, std::span(q[k], count));
-  const std::uint64_t searched = page_.searched(index_, block);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if ((searched >> i & 1) == 0) continue;
-    const Vec3 e = position(cloud_.quantisation(), q[0][i], q[1][i], q[2][i]);
-    const bool hit = clearance_search_ && filter_.ref().hits_follow_from_clearance()
-                         ? search_clearance(e, begin + i)
-                         : search_hit(e, begin + i, nodes);
-    output_.hits[block] |= std::uint64_t{hit} << i;
+  std::int32_t q[kBlockPoints];
+  BlockPositions& points = descent_.points();
+  for (std::size_t k = 0; k < 3; ++k) {
+    chunks_[k].decode(begin, std::span(q, count));
+    for (std::uint32_t i = 0; i < count; ++i) {
+      points.at[k][i] = coordinate(cloud_.quantisation(), static_cast<int>(k), q[i]);
+    }
   }
+  const std::uint64_t searched = page_.searched(index_, block);
+  std::uint64_t hits = 0;
+  const bool hits_follow = clearance_search_ && filter_.ref().hits_follow_from_clearance();
+  if (!hits_follow) hits = search_hits(searched, begin, nodes);
+  if (clearance_search_) {
+    // Every point within a clearance of at most the radius collides.
+    const Query& query = filter_.query();
+    std::uint64_t left = hits_follow || query.clearance > query.radius ? searched : hits;
+    for (; left != 0; left &= left - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+      const bool hit = search_clearance(points.point(i), begin + i);
+      if (hits_follow) hits |= std::uint64_t{hit} << i;
+    }
+  }
+  output_.hits[block] |= hits;
 }
 
-/// Searches whether the point collides, and its first pose and clearance if asked for. Returns
-/// whether it collides.
+/// Searches which points of a block collide, and their first poses if asked for. Returns the points
+/// that collide, as bits. begin: the first point of the block, in its cell.
 template <typename Element>
-bool CellSearchOf<Element>::search_hit(const Vec3& e, std::uint32_t index,
-                                       std::span<const std::uint32_t> nodes) {
-  const Query& query = filter_.query();
-  bool hit = false;
-  const SweepStatistics before = statistics_;
-  if (query.first_pose) {
-    const std::uint32_t pose = is_grazed_ ? filter_.first_pose_of_runs(e, runs_, statistics_)
-                                          : filter_.first_pose(e, nodes, statistics_);
-    output_.first_poses[index] = pose;
-    hit = pose != HitSet::kNever;
-  } else {
-    hit = is_grazed_ ? filter_.touches_runs(e, runs_, statistics_)
-                     : filter_.touches(e, nodes, statistics_);
-  }
-  if constexpr (kIsTriangle<Element>) {
-    is_grazed_ = is_grazed_ || filter_.join_runs(statistics_.since(before), nodes, runs_);
-  }
-  // Every point within a clearance of at most the radius collides.
-  if (clearance_search_ && (hit || query.clearance > query.radius)) {
-    search_clearance(e, index);
-  }
-  return hit;
+std::uint64_t CellSearchOf<Element>::search_hits(std::uint64_t searched, std::uint32_t begin,
+                                                 std::span<const std::uint32_t> nodes) {
+  if (!filter_.query().first_pose) return descent_.touches(searched, nodes, statistics_);
+  return descent_.find_first_poses(searched, nodes, output_.first_poses.subspan(begin),
+                                   statistics_);
 }
 
 /// Searches the clearance of the point. Returns whether its least d2 makes it collide.

@@ -8,6 +8,7 @@
 
 #include "core/cloud/packed_cloud.hpp"
 #include "core/page/page.hpp"
+#include "core/sweep/block_descent.hpp"
 #include "core/sweep/clearance_search.hpp"
 #include "core/sweep/sweep_filter.hpp"
 #include "cpu/range_kernels.hpp"
@@ -60,7 +61,7 @@ class CellSearchOf {
 
   /// Cloud and filter must outlive this object.
   CellSearchOf(const PackedCloud& cloud, const SweepFilterOf<Element>& filter)
-      : cloud_(cloud), filter_(filter) {}
+      : cloud_(cloud), filter_(filter), descent_(filter) {}
 
   void run(const PageRef& page, std::uint32_t index, const Output& output);
 
@@ -79,7 +80,8 @@ class CellSearchOf {
                      std::size_t depth);
   void mark_all(std::uint32_t block);
   void search_points(std::uint32_t block, std::span<const std::uint32_t> nodes);
-  bool search_hit(const Vec3& e, std::uint32_t index, std::span<const std::uint32_t> nodes);
+  std::uint64_t search_hits(std::uint64_t searched, std::uint32_t begin,
+                            std::span<const std::uint32_t> nodes);
   bool search_clearance(const Vec3& e, std::uint32_t index);
 
   const PackedCloud& cloud_;
@@ -93,9 +95,7 @@ class CellSearchOf {
   std::size_t poses_ = 0;  ///< number of poses that the cell's nodes have together
   std::vector<std::vector<std::uint32_t>> lists_;  ///< open motion nodes, one list for each depth
   std::vector<std::uint32_t> joined_;              ///< motion nodes for clearances
-  /// Runs of poses of the block, if one of its points grazes the model
-  std::vector<std::uint32_t> runs_;
-  bool is_grazed_ = false;  ///< whether a point of the block grazes the model
+  BlockDescentOf<Element> descent_;
   std::optional<ClearanceSearchOf<Element>> clearance_search_;
   SweepStatistics statistics_;
 };

@@ -14,6 +14,9 @@ inline constexpr double kUnitRoundoff = 0x1p-53;
 /// Factor that widens a product or sum of a few roundings to an upper bound.
 inline constexpr double kRoundedUp = 1 + 16 * kUnitRoundoff;
 
+/// Factor that lowers the product or quotient of a few roundings to a lower bound.
+inline constexpr double kRoundedDown = 1 - 16 * kUnitRoundoff;
+
 inline constexpr double kLargestDouble = std::numeric_limits<double>::max();
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 

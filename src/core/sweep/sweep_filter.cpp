@@ -37,11 +37,11 @@ double spacing_of(const ModelTreeOf<Element>& model, double clearance) {
   return std::min(model.spacing(), kSpacingOfClearance * clearance);
 }
 
-/// Number of tests beyond which a point grazes the model, so that its neighbours in the block are
-/// searched in runs of poses (measured).
-constexpr std::uint64_t kGrazingTests = 128;
+/// Cost beyond which a point grazes the model, so that its neighbours in the block are searched in
+/// runs of poses (measured).
+constexpr std::uint64_t kGrazingCost = 128;
 
-/// Number of other tests that take as long as one exact test.
+/// Number of look-ups that take as long as one exact test.
 constexpr std::uint64_t kTestsOfExact = 4;
 
 }  // namespace
@@ -210,57 +210,34 @@ typename SweepFilterOf<Element>::Step SweepFilterOf<Element>::search_run(
   return any && answer == Answer::kHit ? Step::kEnd : Step::kPast;
 }
 
-/// Visits all nodes first, those far apart first, because most points that collide do so at one of
-/// their middle poses; then descends into the nodes that stayed open.
 template <typename Element>
-bool SweepFilterOf<Element>::touches(const Vec3& e, std::span<const std::uint32_t> nodes,
-                                     SweepStatistics& statistics) const {
-  ++statistics.points_tested;
-  const auto visit = [&](std::uint32_t node, double& squared_lower) {
-    return find_any_pose(e, node, statistics, squared_lower);
-  };
-  while (!nodes.empty()) {
-    const std::span part =
-        nodes.first(std::min<std::size_t>(nodes.size(), BitReversalOrder::kMost));
-    nodes = nodes.subspan(part.size());
-    std::uint64_t open = 0;  // the nodes that stayed open, as bits
-    bool hit = false;
-    BitReversalOrder(static_cast<std::uint32_t>(part.size())).for_each([&](std::uint32_t i) {
-      double squared_lower;
-      const Step step = visit(part[i], squared_lower);
-      hit = step == Step::kEnd;
-      open |= std::uint64_t{step == Step::kHalves} << i;
-      return !hit;
-    });
-    if (hit) return true;
-    for (; open != 0; open &= open - 1) {
-      const std::uint32_t node = part[static_cast<std::size_t>(std::countr_zero(open))];
-      if (descend_nearer_first(node, visit)) return true;
-    }
-  }
-  return false;
+bool SweepFilterOf<Element>::touches_below(const Vec3& e, std::uint32_t node,
+                                           SweepStatistics& statistics) const {
+  return descend_nearer_first(node, [&](std::uint32_t half, double& squared_lower) {
+    return find_any_pose(e, half, statistics, squared_lower);
+  });
 }
 
 template <typename Element>
-std::uint32_t SweepFilterOf<Element>::first_pose(const Vec3& e,
-                                                 std::span<const std::uint32_t> nodes,
-                                                 SweepStatistics& statistics) const {
-  ++statistics.points_tested;
-  std::uint32_t best = HitSet::kNever;
-  descend_in_order(nodes,
-                   [&](std::uint32_t node) { return find_first_pose(e, node, best, statistics); });
-  return best;
+void SweepFilterOf<Element>::lower_first_pose(const Vec3& e, std::uint32_t node,
+                                              std::uint32_t& best,
+                                              SweepStatistics& statistics) const {
+  descend_in_order(halves(node),
+                   [&](std::uint32_t half) { return find_first_pose(e, half, best, statistics); });
 }
 
 template <typename Element>
-bool SweepFilterOf<Element>::join_runs(const SweepStatistics& of_point,
-                                       std::span<const std::uint32_t> nodes,
+std::uint64_t SweepFilterOf<Element>::cost_of(const SweepStatistics& tests) {
+  return tests.point_tests + kTestsOfExact * tests.exact_tests;
+}
+
+template <typename Element>
+void SweepFilterOf<Element>::join_runs(std::uint64_t cost, std::span<const std::uint32_t> nodes,
                                        std::vector<std::uint32_t>& runs) const {
-  const std::uint64_t tests = of_point.point_tests + kTestsOfExact * of_point.exact_tests;
-  if (tests <= kGrazingTests || !runs_.prepare()) return false;
+  runs.clear();
+  if (cost <= kGrazingCost || !runs_.prepare()) return;
   runs.assign(nodes.begin(), nodes.end());
   runs_.join(runs);
-  return true;
 }
 
 template <typename Element>

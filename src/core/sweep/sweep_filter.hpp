@@ -55,25 +55,33 @@ class SweepFilterOf final : public PoseReach {
   void narrow(const Box& box, std::span<const std::uint32_t> nodes,
               std::vector<std::uint32_t>& out) const override;
 
-  /// Whether the model touches e at a pose of `nodes` or, between poses, on the way from one of
-  /// them to the next.
-  bool touches(const Vec3& e, std::span<const std::uint32_t> nodes,
-               SweepStatistics& statistics) const;
+  /// The halves of a node of more than one pose, in the order of their poses.
+  std::array<std::uint32_t, 2> halves(std::uint32_t node) const {
+    return {node + 1, motion_.nodes()[node].later};
+  }
 
-  /// The first pose of e (clearway/query.hpp), or HitSet::kNever. nodes: what narrow() left of all
-  /// nodes for a box around e, in the order of their poses.
-  std::uint32_t first_pose(const Vec3& e, std::span<const std::uint32_t> nodes,
-                           SweepStatistics& statistics) const;
+  /// Whether the model touches e at a pose of a node, or between poses on the way from one of them
+  /// to the next. Does not look at the node itself, which was found open.
+  bool touches_below(const Vec3& e, std::uint32_t node, SweepStatistics& statistics) const;
+
+  /// Lowers `best` to the first pose of e (clearway/query.hpp) below a node, if that is less.
+  /// Does not look at the node itself.
+  void lower_first_pose(const Vec3& e, std::uint32_t node, std::uint32_t& best,
+                        SweepStatistics& statistics) const;
+
+  /// What tests cost, in look-ups of a point.
+  static std::uint64_t cost_of(const SweepStatistics& tests);
 
   /// Joins nodes that narrow() left for a block into runs of poses, if one of the block's points
-  /// took so many tests that its neighbours are better searched in runs. of_point: those tests.
-  /// Returns false, without runs, if the tests are few or if runs cannot be searched, or not yet.
-  bool join_runs(const SweepStatistics& of_point, std::span<const std::uint32_t> nodes,
+  /// has cost so much that its neighbours are better searched in runs. Leaves `runs` empty if it
+  /// has not, or if runs cannot be searched, or not yet.
+  void join_runs(std::uint64_t cost, std::span<const std::uint32_t> nodes,
                  std::vector<std::uint32_t>& runs) const;
 
-  /// touches() for nodes that join_runs() joined; first_pose_of_runs() is their first_pose().
+  /// Whether the model touches e at a pose of nodes that join_runs() joined.
   bool touches_runs(const Vec3& e, std::span<const std::uint32_t> nodes,
                     SweepStatistics& statistics) const;
+  /// The first pose of e, or HitSet::kNever.
   std::uint32_t first_pose_of_runs(const Vec3& e, std::span<const std::uint32_t> nodes,
                                    SweepStatistics& statistics) const;
 
@@ -85,9 +93,6 @@ class SweepFilterOf final : public PoseReach {
     kHalves,  ///< the halves of the node have to be visited
   };
 
-  std::array<std::uint32_t, 2> halves(std::uint32_t node) const {
-    return {node + 1, motion_.nodes()[node].later};
-  }
   template <typename Visit>
   bool descend_in_order(std::span<const std::uint32_t> nodes, const Visit& visit) const;
   template <typename Visit>

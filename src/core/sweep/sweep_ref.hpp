@@ -259,27 +259,53 @@ struct SweepRefOf {
 
   using Verdict = SweepVerdict;
 
+  /// Which pairs of e and the poses of a node may count: none (kBelow), at least the one with the
+  /// middle pose (kAbove), or others but not that one (kOpen).
+  CLEARWAY_HD FloorSide counting(const MotionNode& node, const Vec3& e) const {
+    const FloorSide side = floor_side(node, e);
+    if (side != FloorSide::kOpen) return side;
+    if (counts(e, node.mid)) return FloorSide::kAbove;
+    return node.count == 1 && !moves_on(node) ? FloorSide::kBelow : FloorSide::kOpen;
+  }
+
   /// Looks at a node for the point e without a search of the model. squared_lower: becomes the
   /// field's bound at the middle pose.
   CLEARWAY_HD Verdict look(const Vec3& e, const MotionNode& node, SweepStatistics& statistics,
                            double& squared_lower) const {
     ++statistics.point_tests;
     squared_lower = kInfinity;
-    const FloorSide side = floor_side(node, e);
+    const FloorSide side = counting(node, e);
     if (side == FloorSide::kBelow) return Verdict::kDismissed;
-    const bool counts_at_mid = side == FloorSide::kAbove || counts(e, node.mid);
-    if (!counts_at_mid && node.count == 1 && !moves_on(node)) return Verdict::kDismissed;
-    const InversePose& back = motion.inverse_poses[node.mid];
-    const ModelFieldRef::Bounds bounds = field.bounds(back.apply(e));
+    const Vec3 x = motion.inverse_poses[node.mid].apply(e);
+    const ModelFieldRef::Bounds bounds = field.bounds(x);
     squared_lower = bounds.squared_lower;
-    if (farther(back.least, squared_lower, radius + node.delta + rounding)) {
-      if (!is_inside(back.apply(e), squared_lower)) return Verdict::kDismissed;
+    return judge(
+        e, node, side, x, squared_lower, [&] { return bounds.near; }, statistics);
+  }
+
+  /// The distance from the model at the middle pose beyond which nothing collides at any of a
+  /// node's poses.
+  CLEARWAY_HD double reach_of(const MotionNode& node) const {
+    return radius + node.delta + rounding;
+  }
+
+  /// What look() says of a node at which some pair counts. side: from counting(); x: e pulled back
+  /// by the middle pose; squared_lower, near(): the field's bounds there.
+  template <typename Near>
+  CLEARWAY_HD Verdict judge(const Vec3& e, const MotionNode& node, FloorSide side, const Vec3& x,
+                            double squared_lower, Near near, SweepStatistics& statistics) const {
+    const bool counts_at_mid = side == FloorSide::kAbove;
+    const InversePose& back = motion.inverse_poses[node.mid];
+    if (farther(back.least, squared_lower, reach_of(node))) {
+      if (!is_inside(x, squared_lower)) return Verdict::kDismissed;
       return counts_at_mid ? Verdict::kHitAtMid : Verdict::kOpen;
     }
-    if (counts_at_mid && bounds.near != ModelFieldRef::kNone &&
-        may_hit_at_mid(back, squared_lower) &&
-        collides(e, transform(motion.poses[node.mid], model.elements[bounds.near]), radius)) {
-      return Verdict::kHitAtMid;
+    if (counts_at_mid && may_hit_at_mid(back, squared_lower)) {
+      const std::uint32_t element = near();
+      if (element != ModelFieldRef::kNone &&
+          collides(e, transform(motion.poses[node.mid], model.elements[element]), radius)) {
+        return Verdict::kHitAtMid;
+      }
     }
     // Only at single poses, because the answer must not depend on which nodes are looked at.
     if (resolved_from < radius && node.count == 1 &&
@@ -292,7 +318,6 @@ struct SweepRefOf {
 
   /// Whether to ask the predicate. For points always, because it costs no more than the test.
   CLEARWAY_HD bool may_hit_at_mid(const InversePose& back, double squared_lower) const {
-    if constexpr (!kIsTriangle<Element>) return true;
     return !farther(back.least, squared_lower, radius + rounding);
   }
 

@@ -19,10 +19,10 @@
 #define CLEARWAY_SIMD_CLONES
 #endif
 
-/// CLEARWAY_IN_CLONE marks a member function that clones consist of, so that it is compiled into
+/// CLEARWAY_IN_CLONE marks an inline function that clones consist of, so that it is compiled into
 /// each of them, whatever its size. On its own it would be compiled once, without their vectors.
 #if defined(__GNUC__) && !defined(__CUDACC__)
-#define CLEARWAY_IN_CLONE __attribute__((always_inline)) inline
+#define CLEARWAY_IN_CLONE __attribute__((always_inline))
 #else
 #define CLEARWAY_IN_CLONE
 #endif

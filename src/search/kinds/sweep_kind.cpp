@@ -18,15 +18,17 @@ constexpr PageEngineKind::IndexSize size_of(std::uint64_t mebibytes) {
   return {bytes, bytes + bytes / 4};
 }
 
-/// Fineness of the field on the CPU. A profile examines all points near the model at every pose,
-/// and the field decides which of them need a search of the model. The less the model moves from
-/// pose to pose, the longer its bounds last, and a finer field pays.
+/// Fineness of the field on the CPU, where the field decides which points need a search of the
+/// model at a pose. Clearances search the model once for many poses, so they gain nothing. A
+/// profile examines all points near the model at every pose; the less the model moves from pose to
+/// pose, the longer its bounds last, and a still finer field pays (measured).
 template <typename Element>
 double cpu_fineness(const Query& query) {
-  if (!(query.profile > 0) || kIsTriangle<Element>) return 1;
+  if (kIsTriangle<Element>) return 1;
+  if (query.clearance > 0 && !query.first_pose && !(query.profile > 0)) return 1;
   const bool is_slow =
       path_length(query.poses) <= query.profile * static_cast<double>(query.poses.size());
-  return is_slow ? 3 : 2;
+  return query.profile > 0 && is_slow ? 3 : 2;
 }
 
 /// The least number of poses for which the model field gets its full fineness, the one that pays

@@ -5,6 +5,7 @@
 #include "core/geometry/box.hpp"
 #include "core/geometry/sweep_bounds.hpp"
 #include "core/sweep/field/field_inside_ref.hpp"
+#include "core/util/macros.hpp"
 
 namespace clearway {
 
@@ -57,10 +58,12 @@ struct ModelFieldRef {
   /// roundings of this question (docs/design/numerics.md, "Solids"). squared_lower: from bounds().
   CLEARWAY_HD bool contains(const Vec3& x, double squared_lower) const;
 
+  /// The brick of a coarse cell, or kNoBrick. Makes it if that is still to be done.
+  CLEARWAY_HD std::uint32_t brick_at(std::size_t cell) const;
+
  private:
   template <bool kNames>
   CLEARWAY_HD Bounds look_up(const Vec3& x) const;
-  CLEARWAY_HD std::uint32_t brick_at(std::size_t cell) const;
   CLEARWAY_HD std::uint32_t made_brick_at(std::size_t cell) const;
   CLEARWAY_HD std::uint32_t near_coarse_node(const double (&place)[3]) const;
 };
@@ -70,7 +73,8 @@ struct ModelFieldRef {
 namespace field_detail {
 
 /// Trilinear interpolation: sum w_k f_k over the corners of a cell, in the order x, then y, then z.
-CLEARWAY_HD inline double interpolated(const double (&f)[3], const double (&corner)[8]) {
+CLEARWAY_IN_CLONE CLEARWAY_HD inline double interpolated(const double (&f)[3],
+                                                         const double (&corner)[8]) {
   double along_x[4];
   for (int i = 0; i < 4; ++i) {
     along_x[i] = (1 - f[0]) * corner[2 * i] + f[0] * corner[2 * i + 1];
@@ -94,8 +98,8 @@ CLEARWAY_HD inline void load_corners(const float* first, std::size_t row, std::s
 /// Lower bound on d_M^2 from an interpolated value. d_M^2(x) - |x|^2 is a minimum of linear
 /// functions of x, hence concave, so the interpolation of d^2 exceeds d^2 by at most step^2 sum f
 /// (1 - f). The last term covers the rounding of this computation and the errors of the nodes.
-CLEARWAY_HD inline double concave_bound(double mean, const double (&f)[3], double step,
-                                        double slack) {
+CLEARWAY_IN_CLONE CLEARWAY_HD inline double concave_bound(double mean, const double (&f)[3],
+                                                          double step, double slack) {
   const double bend = f[0] * (1 - f[0]) + f[1] * (1 - f[1]) + f[2] * (1 - f[2]);
   const double excess = step * step * bend;
   const double bound = mean - excess - (mean + step * step) * slack;

@@ -1,10 +1,15 @@
 #include "core/sweep/profile/profile_walk.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <functional>
 #include <utility>
+
+#include "core/sweep/field/field_lanes.hpp"
+#include "core/util/lane_bits.hpp"
+#include "core/util/macros.hpp"
 
 namespace clearway {
 namespace {
@@ -32,21 +37,26 @@ Item pop(std::vector<Item>& heap) {
   return item;
 }
 
+/// Marks the keys that are not above a limit.
+CLEARWAY_SIMD_CLONES
+void mark_not_above(const double* keys, double limit, std::uint8_t* marks) {
+  for (std::uint32_t i = 0; i < kBlockPoints; ++i) marks[i] = !(keys[i] > limit);
+}
+
 /// The keys that are not above a limit, as bits.
 std::uint64_t not_above(const double* keys, double limit) {
-  std::uint64_t bits = 0;
-  for (std::uint32_t i = 0; i < kBlockPoints; ++i) {
-    bits |= static_cast<std::uint64_t>(!(keys[i] > limit)) << i;
-  }
-  return bits;
+  std::uint8_t marks[kBlockPoints];
+  mark_not_above(keys, limit, marks);
+  return packed_bits(marks);
 }
 
 double least_of(const double* keys) {
-  double least[4] = {keys[0], keys[1], keys[2], keys[3]};
-  for (std::uint32_t i = 4; i < kBlockPoints; i += 4) {
-    for (std::uint32_t k = 0; k < 4; ++k) least[k] = std::min(least[k], keys[i + k]);
+  double least[8];
+  std::copy(keys, keys + 8, least);
+  for (std::uint32_t i = 8; i < kBlockPoints; i += 8) {
+    for (std::uint32_t k = 0; k < 8; ++k) least[k] = std::min(least[k], keys[i + k]);
   }
-  return std::min(std::min(least[0], least[1]), std::min(least[2], least[3]));
+  return *std::ranges::min_element(least);
 }
 
 }  // namespace
@@ -66,12 +76,16 @@ class ProfileWalkOf<Element>::OfPage {
         ties_(memory.cloud_, found),
         warp_blocks_(sweep_, page, memory.cloud_.quantisation(), shared_, memory.statistics_),
         depths_(sweep_, page, memory.cloud_.quantisation(), bests_, warp_blocks_, ties_,
-                memory.statistics_) {}
+                memory.statistics_),
+        lanes_(sweep_.field) {}
 
   /// Begins a part of a cell of the page. Returns whether the part has points.
   bool enter(std::uint32_t cell, std::uint32_t part) {
     cell_ = &page_.cell(cell);
     index_ = cell;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      chunks_[axis] = packed_chunk(page_, cell_->chunks[axis], m_.cloud_.cell_points());
+    }
     const std::uint32_t first_block = part * Blocks::kPartBlocks;
     const auto blocks = static_cast<std::uint32_t>(divide_up(cell_->count, kBlockPoints));
     if (first_block >= blocks) return false;
@@ -159,7 +173,7 @@ class ProfileWalkOf<Element>::OfPage {
   /// search.
   double key_of(double distance) const {
     const double proven = distance - sweep_.rounding;
-    return ((proven > 0 ? proven : 0) + moved_) / kRoundedUp;
+    return ((proven > 0 ? proven : 0) + moved_) * kRoundedDown;
   }
 
   /// The root of a squared distance. One that is too great for a double proves only so much.
@@ -167,7 +181,7 @@ class ProfileWalkOf<Element>::OfPage {
 
   /// A distance from the model at the pose under search, from a bound of the field.
   double distance_of(double squared_lower) const {
-    return sweep_.motion.inverse_poses[pose_].least * root_of(squared_lower) / kRoundedUp;
+    return sweep_.motion.inverse_poses[pose_].least * root_of(squared_lower) * kRoundedDown;
   }
 
   void search_pose(std::uint32_t pose) {
@@ -229,17 +243,30 @@ class ProfileWalkOf<Element>::OfPage {
       }
       return;
     }
-    if (!block.is_open) open(block, keys);
+    if (!block.is_open) open(index, keys);
     search_points(index, due);
     block.key = least_of(keys);
     m_.settled_.push_back(index);
   }
 
-  void open(Block& block, double* keys) {
+  /// Decodes the points of a block and gives them keys of their own.
+  void open(std::uint32_t index, double* keys) {
+    Block& block = m_.blocks_[index];
     block.is_open = true;
+    const std::uint32_t first = first_point_ + index * kBlockPoints;
+    const std::uint32_t count = std::min(kBlockPoints, cell_->count - first);
+    for (std::size_t k = 0; k < 3; ++k) {
+      chunks_[k].decode(first, std::span(m_.stored_[index].at[k], count));
+    }
     for (std::uint32_t i = 0; i < kBlockPoints; ++i) {
       keys[i] = (block.awake >> i & 1) != 0 ? -kInfinity : kInfinity;
     }
+  }
+
+  Vec3 position_of(std::uint32_t block, std::uint32_t point) const {
+    const StoredBlock& stored = m_.stored_[block];
+    return position(m_.cloud_.quantisation(), stored.at[0][point], stored.at[1][point],
+                    stored.at[2][point]);
   }
 
   double key_of_sphere(const Block& block) {
@@ -252,30 +279,35 @@ class ProfileWalkOf<Element>::OfPage {
   /// still open, against the model's tree.
   void search_points(std::uint32_t index, std::uint64_t due) {
     double* const keys = m_.keys_.data() + std::size_t{index} * kBlockPoints;
-    const InversePose& back = sweep_.motion.inverse_poses[pose_];
     std::uint32_t open = 0, wakes = kNever;
-    for (; due != 0; due &= due - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(due));
+    statistics().point_tests += static_cast<std::uint64_t>(std::popcount(due));
+    lanes_.clear();
+    for_each_bit(due, [&](std::uint32_t i) { lanes_.add(position_of(index, i)); });
+    if (due != 0) lanes_.look_up(sweep_.motion.inverse_poses[pose_]);
+    double proven[kBlockPoints];
+    for (std::uint32_t lane = 0; lane < lanes_.count(); ++lane) {
+      proven[lane] = key_of(distance_of(lanes_.squared_lower(lane)));
+    }
+    std::uint32_t next_lane = 0;
+    for_each_bit(due, [&](std::uint32_t i) {
+      const std::uint32_t lane = next_lane++;
+      keys[i] = std::max(keys[i], proven[lane]);
+      if (keys[i] > limit_) return;
       Candidate& candidate = candidates_[open];
-      ++statistics().point_tests;
-      candidate.e =
-          page_.position(m_.cloud_.quantisation(), *cell_, first_point_ + index * kBlockPoints + i);
-      const Vec3 x = back.apply(candidate.e);
-      keys[i] = std::max(keys[i], key_of(distance_of(sweep_.field.squared_lower(x))));
-      if (keys[i] > limit_) continue;
+      candidate.e = position_of(index, i);
       if (!sweep_.counts(candidate.e, pose_)) {
         wakes = std::min(wakes, send_to_sleep(index, i, candidate.e));
-        continue;
+        return;
       }
       candidate.point = i;
       candidate.least = kInfinity;
-      const std::uint32_t near = sweep_.field.bounds(x).near;
+      const std::uint32_t near = lanes_.near(lane);
       if (near != ModelFieldRef::kNone) {
         offer(candidate, sweep_.model.elements[near]);
         lower_bound(candidate.least);
       }
       ++open;
-    }
+    });
     sleep_until(index, wakes);
     for (std::uint32_t k = 0; k < open; ++k) {
       Candidate& candidate = candidates_[k];
@@ -284,7 +316,7 @@ class ProfileWalkOf<Element>::OfPage {
       ++statistics().exact_tests;
       search_point(candidate);
       // Every pair has a computed d2 of at least this.
-      key = std::max(key, key_of(root_of(candidate.least) / kRoundedUp));
+      key = std::max(key, key_of(root_of(candidate.least) * kRoundedDown));
       take(index, candidate);
     }
   }
@@ -444,12 +476,14 @@ class ProfileWalkOf<Element>::OfPage {
   Blocks warp_blocks_;
   Depths depths_;
 
+  FieldLanes lanes_;
   const PageCell* cell_ = nullptr;
-  std::uint32_t index_ = 0;        ///< index of the cell in the page
-  std::uint32_t first_point_ = 0;  ///< first point of the part, in its cell
-  std::uint32_t first_slot_ = 0;   ///< slot of the first point, in the page
-  std::uint32_t end_pose_ = 0;     ///< end of the poses of the motion node under search
-  double farthest_ = 0;            ///< how far any point is from the positions of its poses
+  std::array<PackedChunk<std::int32_t>, 3> chunks_;  ///< the coordinates of the cell
+  std::uint32_t index_ = 0;                          ///< index of the cell in the page
+  std::uint32_t first_point_ = 0;                    ///< first point of the part, in its cell
+  std::uint32_t first_slot_ = 0;                     ///< slot of the first point, in the page
+  std::uint32_t end_pose_ = 0;  ///< end of the poses of the motion node under search
+  double farthest_ = 0;         ///< how far any point is from the positions of its poses
 
   std::uint32_t pose_ = 0;            ///< the pose under search
   double moved_ = 0;                  ///< the way moved up to it
@@ -473,6 +507,7 @@ ProfileWalkOf<Element>::ProfileWalkOf(const PackedCloud& cloud,
   queue_.reserve(kEntries * blocks);
   settled_.reserve(blocks);
   keys_.resize(blocks * kBlockPoints);
+  stored_.resize(blocks);
   if (!filter.ref().has_floor()) return;
   sleepers_.reserve(kEntries * blocks);
   wakes_.resize(blocks * kBlockPoints);
@@ -532,7 +567,8 @@ std::uint64_t ProfileWalkOf<Element>::most_bytes(const PackedCloud& cloud, const
   const std::uint64_t blocks =
       std::min<std::uint64_t>(cloud.blocks_per_cell(), Blocks::kPartBlocks);
   return sizeof(ProfileWalkOf) +
-         blocks * (sizeof(Block) + kBlockPoints * (sizeof(double) + sizeof(std::uint32_t)) +
+         blocks * (sizeof(Block) + sizeof(StoredBlock) +
+                   kBlockPoints * (sizeof(double) + sizeof(std::uint32_t)) +
                    kEntries * (sizeof(Queued) + sizeof(Sleeper)) + 2 * sizeof(std::uint32_t)) +
          2 * most_poses * sizeof(std::uint32_t);  // the list may have grown to twice its size
 }

@@ -59,6 +59,10 @@ class ProfileWalkOf {
     std::uint32_t looked_at;  ///< the last pose at which the block's sphere was looked at
     bool is_open;             ///< whether its points have keys of their own
   };
+  /// The stored coordinates of an open block.
+  struct StoredBlock {
+    std::int32_t at[3][kBlockPoints];
+  };
   /// The poses and blocks at which points, or blocks as a whole, wake.
   struct Sleeper {
     std::uint32_t pose, block;
@@ -75,7 +79,8 @@ class ProfileWalkOf {
   HostWarp::PerLane<SweepStatistics> statistics_;
   // The memory of a part of a cell:
   std::vector<Block> blocks_;
-  std::vector<double> keys_;            ///< 64 for each block; infinite if not awake
+  std::vector<double> keys_;  ///< 64 for each block; infinite if not awake
+  std::vector<StoredBlock> stored_;
   std::vector<std::uint32_t> wakes_;    ///< 64 for each block; only with a floor
   std::vector<Queued> queue_;           ///< a heap, least key first; may hold outdated entries
   std::vector<Sleeper> sleepers_;       ///< a heap, first pose first
