@@ -10,7 +10,7 @@ CHECKER = Path(__file__).resolve().parents[2] / "tools" / "check_prose.py"
 
 PROGRAM = """#!/bin/sh
 case "$*" in
-"run --help") cat <<END
+"run --help-all") cat <<END
 Search
 Usage: toy run [OPTIONS]
 

@@ -15,7 +15,7 @@ PROGRAMS = []
 
 
 def help_of(words):
-    return subprocess.run([*words, "--help"], capture_output=True, text=True, check=True).stdout
+    return subprocess.run([*words, "--help-all"], capture_output=True, text=True, check=True).stdout
 
 
 def commands(words):

@@ -23,7 +23,7 @@ class Program:
     def _read(self, path, words):
         """The help of one command, then those of its subcommands."""
         command = " ".join([self.name, *words])
-        lines = subprocess.run([path, *words, "--help"], capture_output=True, text=True,
+        lines = subprocess.run([path, *words, "--help-all"], capture_output=True, text=True,
                                check=True).stdout.splitlines()
         entries, rest = self._split(lines)
         self.entries[command], self.rest[command] = entries, rest

@@ -25,7 +25,7 @@ def clearway(words, folder="."):
 def groups(command):
     """{title: [long name]} of a help, in its order."""
     found, title = {}, None
-    for line in clearway(f"{command} --help").stdout.splitlines():
+    for line in clearway(f"{command} --help-all").stdout.splitlines():
         if match := re.match(r"([A-Z][a-z][\w ]*):$", line):
             title = match[1]
         elif match := re.match(r"  (?:-\w,)?(--[\w-]+)", line):

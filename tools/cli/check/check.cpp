@@ -618,7 +618,7 @@ void add_check(CLI::App& program, int& exit_code) {
       "The same command again makes only what is missing, also after it was interrupted. Another\n"
       "question in the same folder needs --force, and uses the store again.\n"
       "Prints the conflicts, the commands that it consists of, and the verdict of clearway run.\n"
-      "Example: clearway check scans/ --model car.obj --trajectory path.txt --radius 0.1 -o site/");
+      "Example: clearway check scans --model car.obj --trajectory path.txt --radius 0.1 -o site");
   command->callback([options, &exit_code] {
     run_stoppable(options->folder, kGoesOn, [&] {
       const Verdict verdict = Check(*options).run();

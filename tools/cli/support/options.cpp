@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -46,7 +47,13 @@ constexpr std::string_view kNoGroup = "Options";  // CLI11's default group
 /// The number of options up to which a help text is one list without groups.
 constexpr std::size_t kShortHelp = 10;
 
-constexpr std::array<std::pair<std::string_view, OptionGroup>, 15> kCommonOptions{
+/// The number of options that --help shows at most, unless the first group alone has more.
+constexpr std::size_t kMostShown = 16;
+
+/// Columns of a help text, and the one in which the texts of options begin.
+constexpr std::size_t kHelpWidth = 80, kTextColumn = 30;
+
+constexpr std::array<std::pair<std::string_view, OptionGroup>, 16> kCommonOptions{
     {{"--env", OptionGroup::kInputs},
      {"--model", OptionGroup::kInputs},
      {"--trajectory", OptionGroup::kInputs},
@@ -61,7 +68,8 @@ constexpr std::array<std::pair<std::string_view, OptionGroup>, 15> kCommonOption
      {"--show", OptionGroup::kOutput},
      {"--strict", OptionGroup::kOutput},
      {"--fail-on-collision", OptionGroup::kOutput},
-     {"--help", OptionGroup::kOutput}}};
+     {"--help", OptionGroup::kOutput},
+     {"--help-all", OptionGroup::kOutput}}};
 
 /// The place of a group in a help text; CLI11's own group stands after the first.
 std::size_t place_of(const std::string& title) {
@@ -70,27 +78,90 @@ std::size_t place_of(const std::string& title) {
   return 2 * static_cast<std::size_t>(at - kTitles.begin());
 }
 
+/// Breaks a paragraph at blanks into lines of at most `width` columns; a longer word has a line of
+/// its own.
+std::string wrapped(std::string_view text, std::size_t width) {
+  std::string out;
+  std::size_t column = 0;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(text.size(), word.size() + 1));
+    if (column > 0 && column + 1 + word.size() > width) {
+      out += '\n';
+      column = 0;
+    }
+    if (column > 0) out += ' ', ++column;
+    out += word;
+    column += word.size();
+  }
+  return out;
+}
+
+/// Breaks the lines of a text, but not those that show what to type: they begin with a blank or
+/// with "Example".
+std::string wrapped_lines(const std::string& text) {
+  std::string out;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string line = text.substr(begin, end - begin);
+    const bool is_typed = line.starts_with(' ') || line.starts_with("Example");
+    out += is_typed ? line : wrapped(line, kHelpWidth);
+    if (end < text.size()) out += '\n';
+    begin = end + 1;
+  }
+  return out;
+}
+
+/// Help in groups. --help shows those that a first use needs, --help-all shows all.
 class HelpInOrder : public CLI::Formatter {
  public:
+  HelpInOrder() { column_width(kTextColumn); }
+
   std::string make_help(const CLI::App* app, std::string name,
                         CLI::AppFormatMode mode) const override {
     if (mode == CLI::AppFormatMode::Sub) return CLI::Formatter::make_help(app, name, mode);
-    return make_description(app) + make_usage(app, name) + make_positionals(app) + groups_of(*app) +
-           make_subcommands(app, mode) + "\n" + make_footer(app);
+    return make_description(app) + make_usage(app, name) + make_positionals(app) +
+           groups_of(*app, mode == CLI::AppFormatMode::All) +
+           make_subcommands(app, CLI::AppFormatMode::Normal) + "\n" + make_footer(app);
+  }
+
+  std::string make_description(const CLI::App* app) const override {
+    return wrapped_lines(CLI::Formatter::make_description(app));
+  }
+  std::string make_footer(const CLI::App* app) const override {
+    return wrapped_lines(CLI::Formatter::make_footer(app));
+  }
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return wrapped(CLI::Formatter::make_option_desc(option), kHelpWidth - kTextColumn);
+  }
+  std::string make_subcommand(const CLI::App* command) const override {
+    std::stringstream out;
+    const std::string text = command->get_description();
+    CLI::detail::format_help(out, command->get_display_name(true),
+                             wrapped(text, kHelpWidth - kTextColumn), kTextColumn);
+    return out.str();
   }
 
  private:
-  std::string groups_of(const CLI::App& app) const {
+  std::string groups_of(const CLI::App& app, bool all) const {
     std::vector<std::string> groups = app.get_groups();
     std::ranges::stable_sort(groups, {}, place_of);
     std::string text;
+    std::size_t shown = 0, left = 0;
     for (const std::string& group : groups) {
       const auto options = app.get_options([&group](const CLI::Option* option) {
         return option->get_group() == group && option->nonpositional();
       });
-      if (!group.empty() && !options.empty()) text += make_group(group, false, options);
+      if (group.empty() || options.empty()) continue;
+      if (all || (left == 0 && (shown == 0 || shown + options.size() <= kMostShown))) {
+        text += make_group(group, false, options);
+        shown += options.size();
+      } else {
+        left += options.size();
+      }
     }
-    return text;
+    if (left == 0) return text;
+    return text + "\n" + std::to_string(left) + " more options: --help-all\n";
   }
 };
 

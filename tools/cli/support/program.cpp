@@ -162,6 +162,8 @@ int finish(const CLI::App& program, const std::string& name, const CLI::ParseErr
 int run(const ProgramText& text, int argc, char** argv, AddCommands add_commands) {
   CLI::App program{text.description};
   program.set_version_flag("--version", CLEARWAY_VERSION);
+  program.set_help_flag("-h,--help", "Print what a first use needs, and exit");
+  program.set_help_all_flag("--help-all", "Print all options, and exit");
   program.require_subcommand(1);
   int exit_code = kDone;
   show_groups_in_order(program);

@@ -256,9 +256,9 @@ def options_of_run(work):
     refused = outcome("campaign", "plan", campaign_of(work, vehicles={"slim": {
         "model": "slim.off", "as": "cloud"}}), "-o", work / "none")
     expect(refused.returncode == 3 and "vehicles.slim.as: " in refused.stderr, refused.stderr)
-    known = set(re.findall(r"^  (?:-\w,)?(--[\w-]+)", program("run", "--help"), re.M))
+    known = set(re.findall(r"^  (?:-\w,)?(--[\w-]+)", program("run", "--help-all"), re.M))
     # What a campaign sets itself, or what makes no sense in one.
-    own = {"--help", "--env", "--model", "--vehicle", "--trajectory", "--radius", "--output",
+    own = {"--help", "--help-all", "--env", "--model", "--vehicle", "--trajectory", "--radius", "--output",
            "--shard", "--force", "--resume", "--json", "--fail-on-collision"}
     passed = set()
     source = pathlib.Path(__file__).parents[4] / "src"
