@@ -183,7 +183,7 @@ class Checker:
                 words.pop()
             heading = " ".join(words)
             for option in sorted(options - self.described[heading]):
-                if option == "--help" and option in self.described[""]:
+                if option in ("--help", "--help-all") and option in self.described[""]:
                     continue
                 place = f"below the heading {heading}" if heading else "anywhere"
                 self.problems.append(

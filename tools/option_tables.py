@@ -58,7 +58,11 @@ def row(name, text, options):
     if not re.match(r"[A-Z]{2}", meaning):
         meaning = meaning[:1].lower() + meaning[1:]
     choices = re.search(r":\{([^}]*)\}", rest)
-    if choices:
+    if choices is None and (choices := re.search(r": ([\w-]+(?:, [\w-]+){3,})$", meaning)):
+        # Choices too long for the left side end the text.
+        meaning = meaning[:choices.start()] + ": " + ", ".join(
+            f"`{name}`" for name in choices[1].split(", "))
+    elif choices:
         names = choices[1].split(",")
         named = [name for name in names if re.search(rf"(?<![\w-]){re.escape(name)}(?![\w-])", meaning)]
         if len(named) < min(4, len(names)):
@@ -103,7 +107,7 @@ def tables(program, page):
     def table(found):
         command, group = found[1], found[2]
         entries = [entry for entry in program.entries[command]
-                   if not entry[1].startswith("-h,") and entry[0] != "Subcommands"
+                   if not entry[1].startswith(("-h,", "--help-all")) and entry[0] != "Subcommands"
                    and (entry[0] == group if group else (command, entry[0]) not in placed)]
         if not entries:
             raise SystemExit(f"option_tables.py: {command} has no options of {group}")

@@ -8,6 +8,7 @@
 #include "core/geometry/predicate.hpp"
 #include "core/page/page.hpp"
 #include "core/query/search_result.hpp"
+#include "core/util/lane_bits.hpp"
 
 namespace clearway {
 
@@ -144,30 +145,24 @@ void CellSearchOf<Element>::search_points(std::uint32_t block,
     }
   }
   const std::uint64_t searched = page_.searched(index_, block);
-  std::uint64_t hits = 0;
+  const Query& query = filter_.query();
   const bool hits_follow = clearance_search_ && filter_.ref().hits_follow_from_clearance();
-  if (!hits_follow) hits = search_hits(searched, begin, nodes);
+  std::uint64_t hits = 0;
+  if (query.first_pose) {
+    hits =
+        descent_.find_first_poses(searched, nodes, output_.first_poses.subspan(begin), statistics_);
+  } else if (!hits_follow) {
+    hits = descent_.touches(searched, nodes, statistics_);
+  }
   if (clearance_search_) {
     // Every point within a clearance of at most the radius collides.
-    const Query& query = filter_.query();
-    std::uint64_t left = hits_follow || query.clearance > query.radius ? searched : hits;
-    for (; left != 0; left &= left - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+    const bool all = hits_follow || query.clearance > query.radius;
+    for_each_bit(all ? searched : hits, [&](std::uint32_t i) {
       const bool hit = search_clearance(points.point(i), begin + i);
       if (hits_follow) hits |= std::uint64_t{hit} << i;
-    }
+    });
   }
   output_.hits[block] |= hits;
-}
-
-/// Searches which points of a block collide, and their first poses if asked for. Returns the points
-/// that collide, as bits. begin: the first point of the block, in its cell.
-template <typename Element>
-std::uint64_t CellSearchOf<Element>::search_hits(std::uint64_t searched, std::uint32_t begin,
-                                                 std::span<const std::uint32_t> nodes) {
-  if (!filter_.query().first_pose) return descent_.touches(searched, nodes, statistics_);
-  return descent_.find_first_poses(searched, nodes, output_.first_poses.subspan(begin),
-                                   statistics_);
 }
 
 /// Searches the clearance of the point. Returns whether its least d2 makes it collide.

@@ -80,8 +80,6 @@ class CellSearchOf {
                      std::size_t depth);
   void mark_all(std::uint32_t block);
   void search_points(std::uint32_t block, std::span<const std::uint32_t> nodes);
-  std::uint64_t search_hits(std::uint64_t searched, std::uint32_t begin,
-                            std::span<const std::uint32_t> nodes);
   bool search_clearance(const Vec3& e, std::uint32_t index);
 
   const PackedCloud& cloud_;

@@ -33,11 +33,11 @@ struct SceneOptions {
 
 constexpr const char* kExamples = R"(
 Scenes (environment points, model points, poses; the defaults):
-  hall      55,872,714   214,489    17,234   a factory hall along a conveyor; a car body
-  plant    350,109,065   434,700   398,999   the same, larger, the path sampled every 2 mm
-  mine     806,183,400   100,000    17,795   galleries scanned stop and go; a front loader
-  tunnel    18,919,000    28,622    19,392   a railway tunnel with open ends; a wagon
-  road      20,000,000   100,000     4,000   a road through a village; a lorry with a high load
+  hall     55,872,714  214,489   17,234  a hall along a conveyor; a car body
+  plant   350,109,065  434,700  398,999  the same, larger, a pose every 2 mm
+  mine    806,183,400  100,000   17,795  galleries scanned stop and go
+  tunnel   18,919,000   28,622   19,392  a railway tunnel; a wagon
+  road     20,000,000  100,000    4,000  a road through a village; a lorry
 
 Examples:
   clearway scene hall -o hall --points 5000000

@@ -52,7 +52,9 @@ class Program:
                 entries[-1][2] = f"{entries[-1][2]} {line.strip()}".strip()
             elif section and line.startswith("  "):
                 names, _, text = line.strip().partition("  ")
-                if not text and len(line) > TEXT_COLUMN and not following.startswith(" " * 6):
+                # A name that ends one column before the texts has one blank behind it.
+                if not text and re.match(r" (?!Excludes:|Needs:|REQUIRED)[A-Z]",
+                                         line[TEXT_COLUMN - 1:]):
                     names, text = line[:TEXT_COLUMN].strip(), line[TEXT_COLUMN:]
                 entries.append([section, names, text.strip()])
             else:

@@ -55,17 +55,19 @@ std::uint64_t BlockDescentOf<Element>::touches(std::uint64_t which,
 }
 
 template <typename Element>
-std::uint64_t BlockDescentOf<Element>::find_first_poses(std::uint64_t which,
+std::uint64_t BlockDescentOf<Element>::find_first_poses(std::uint64_t searched,
                                                         std::span<const std::uint32_t> nodes,
                                                         std::span<std::uint32_t> first_poses,
                                                         SweepStatistics& statistics) {
-  begin(which, nodes, true, statistics);
+  begin(searched, nodes, true, statistics);
+  std::uint64_t which = searched;
   double squared_lower;
   for (const std::uint32_t node : nodes) {
-    if (wanted(node, which) == 0) break;  // nor is any point wanted at a node after it
+    which = wanted(node, which);  // what is not wanted here is not wanted at a later node either
+    if (which == 0) break;
     descend_in_order(node, look(node, which, squared_lower));
   }
-  for_each_bit(which, [&](std::uint32_t i) {
+  for_each_bit(searched, [&](std::uint32_t i) {
     first_poses[i] = best_[i];
     if (best_[i] != HitSet::kNever) hits_ |= bit(i);
   });
@@ -119,6 +121,7 @@ std::uint64_t BlockDescentOf<Element>::look(std::uint32_t index, std::uint64_t w
   lanes_.look_up(back);
   const std::uint64_t within = lanes_.within(back.least, sweep_.reach_of(node));
   if (!kIsSolid<Element> && within == 0) return 0;
+  const std::uint64_t may_touch = lanes_.within(back.least, sweep_.radius + sweep_.rounding);
   std::uint64_t open = 0;
   std::uint32_t lane = 0;
   for_each_bit(which, [&](std::uint32_t i) {
@@ -129,9 +132,11 @@ std::uint64_t BlockDescentOf<Element>::look(std::uint32_t index, std::uint64_t w
     const double lower = lanes_.squared_lower(of_point);
     squared_lower = std::min(squared_lower, lower);
     const FloorSide side = (at_mid & bit(i)) != 0 ? FloorSide::kAbove : FloorSide::kOpen;
-    const SweepVerdict verdict = sweep_.judge(
-        e, node, side, lanes_.place(of_point), lower, [&] { return lanes_.near(of_point); },
-        *statistics_);
+    const auto near = [&] {
+      return (may_touch & bit(of_point)) != 0 ? lanes_.near(of_point) : ModelFieldRef::kNone;
+    };
+    const SweepVerdict verdict =
+        sweep_.judge(e, node, side, lanes_.place(of_point), lower, near, *statistics_);
     if (verdict == SweepVerdict::kDismissed) return;
     if (verdict == SweepVerdict::kHitAtMid) keep_hit(i, sweep_.first_pose_of_hit(node.mid));
     if (node.count > 1) {
@@ -174,7 +179,7 @@ void BlockDescentOf<Element>::descend_in_order(std::uint32_t node, std::uint64_t
 
 /// Looks below a node for one point after the other. Exact tests of triangles are so costly that
 /// the points gain nothing from being looked at together, and a point that grazes the model says
-/// that its neighbours are better searched in runs of poses.
+/// that it and its neighbours are better searched in runs of poses.
 template <typename Element>
 void BlockDescentOf<Element>::descend_one_by_one(std::uint32_t node, std::uint64_t which) {
   for_each_bit(which, [&](std::uint32_t i) {

@@ -27,18 +27,17 @@ class BlockDescentOf {
 
   /// The points of the block, to be set before a search.
   BlockPositions& points() { return points_; }
-  const BlockPositions& points() const { return points_; }
 
   /// Those of `which`, as bits, that the model touches at a pose of `nodes` or, between poses, on
   /// the way from one of them to the next.
   std::uint64_t touches(std::uint64_t which, std::span<const std::uint32_t> nodes,
                         SweepStatistics& statistics);
 
-  /// Finds the first pose (clearway/query.hpp) of each point of `which`, or HitSet::kNever. nodes:
-  /// what SweepFilterOf::narrow() left of all nodes for the block, in the order of their poses.
-  /// first_poses: an entry for each point of the block; others stay as they are. Returns the points
-  /// that have a first pose, as bits.
-  std::uint64_t find_first_poses(std::uint64_t which, std::span<const std::uint32_t> nodes,
+  /// Finds the first pose (clearway/query.hpp) of each point of `searched`, as bits, or
+  /// HitSet::kNever. nodes: what SweepFilterOf::narrow() left of all nodes for the block, in the
+  /// order of their poses. first_poses: an entry for each point of the block; others stay as they
+  /// are. Returns the points that have a first pose, as bits.
+  std::uint64_t find_first_poses(std::uint64_t searched, std::span<const std::uint32_t> nodes,
                                  std::span<std::uint32_t> first_poses, SweepStatistics& statistics);
 
   /// Greatest memory that it allocates, bytes. most_poses: greatest number of poses that `nodes`
@@ -53,7 +52,6 @@ class BlockDescentOf {
              SweepStatistics& statistics);
   std::uint64_t look(std::uint32_t node, std::uint64_t which, double& squared_lower);
   void keep_hit(std::uint32_t point, std::uint32_t pose);
-  void descend(std::uint32_t node, std::uint64_t which);
   void descend_nearer_first(std::uint32_t node, std::uint64_t which);
   void descend_in_order(std::uint32_t node, std::uint64_t which);
   void descend_one_by_one(std::uint32_t node, std::uint64_t which);

@@ -243,7 +243,6 @@ void SweepFilterOf<Element>::join_runs(std::uint64_t cost, std::span<const std::
 template <typename Element>
 bool SweepFilterOf<Element>::touches_runs(const Vec3& e, std::span<const std::uint32_t> nodes,
                                           SweepStatistics& statistics) const {
-  ++statistics.points_tested;
   const auto visit = [&](std::uint32_t node, double& squared_lower) {
     return find_any_pose(e, node, statistics, squared_lower);
   };
@@ -259,7 +258,6 @@ template <typename Element>
 std::uint32_t SweepFilterOf<Element>::first_pose_of_runs(const Vec3& e,
                                                          std::span<const std::uint32_t> nodes,
                                                          SweepStatistics& statistics) const {
-  ++statistics.points_tested;
   std::uint32_t best = HitSet::kNever;
   const auto visit = [&](std::uint32_t node) { return find_first_pose(e, node, best, statistics); };
   std::ranges::any_of(nodes, [&](std::uint32_t node) {

@@ -73,8 +73,8 @@ class SweepFilterOf final : public PoseReach {
   static std::uint64_t cost_of(const SweepStatistics& tests);
 
   /// Joins nodes that narrow() left for a block into runs of poses, if one of the block's points
-  /// has cost so much that its neighbours are better searched in runs. Leaves `runs` empty if it
-  /// has not, or if runs cannot be searched, or not yet.
+  /// has cost so much that it and its neighbours are better searched in runs. Leaves `runs` empty
+  /// if it has not, or if runs cannot be searched, or not yet.
   void join_runs(std::uint64_t cost, std::span<const std::uint32_t> nodes,
                  std::vector<std::uint32_t>& runs) const;
 

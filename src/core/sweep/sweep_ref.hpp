@@ -318,6 +318,7 @@ struct SweepRefOf {
 
   /// Whether to ask the predicate. For points always, because it costs no more than the test.
   CLEARWAY_HD bool may_hit_at_mid(const InversePose& back, double squared_lower) const {
+    if constexpr (!kIsTriangle<Element>) return true;
     return !farther(back.least, squared_lower, radius + rounding);
   }
 

@@ -6,7 +6,6 @@
 #include "clearway/box.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/vec3.hpp"
-#include "core/util/macros.hpp"
 
 namespace clearway {
 
@@ -32,7 +31,7 @@ struct InversePose {
 
   /// Pulls e back: returns x with transform(pose, x) = e, up to the rounding that
   /// docs/design/numerics.md ("Sweep") bounds.
-  CLEARWAY_IN_CLONE CLEARWAY_HD Vec3 apply(const Vec3& e) const {
+  CLEARWAY_HD Vec3 apply(const Vec3& e) const {
     const double x = e.x - translation[0], y = e.y - translation[1], z = e.z - translation[2];
     return {inverse[0] * x + inverse[1] * y + inverse[2] * z,
             inverse[3] * x + inverse[4] * y + inverse[5] * z,

@@ -10,7 +10,7 @@
 #endif
 #endif
 
-/// CLEARWAY_SIMD_CLONES compiles a free function once per vector width and picks one at load time.
+/// CLEARWAY_SIMD_CLONES compiles a function once per vector width and picks one at load time.
 /// Contraction stays off in every clone, so all of them round alike.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__) && \
     !defined(CLEARWAY_SANITIZED)

@@ -25,10 +25,11 @@ constexpr PageEngineKind::IndexSize size_of(std::uint64_t mebibytes) {
 template <typename Element>
 double cpu_fineness(const Query& query) {
   if (kIsTriangle<Element>) return 1;
-  if (query.clearance > 0 && !query.first_pose && !(query.profile > 0)) return 1;
-  const bool is_slow =
-      path_length(query.poses) <= query.profile * static_cast<double>(query.poses.size());
-  return query.profile > 0 && is_slow ? 3 : 2;
+  if (query.profile > 0) {
+    const auto poses = static_cast<double>(query.poses.size());
+    return path_length(query.poses) <= query.profile * poses ? 3 : 2;
+  }
+  return query.clearance > 0 && !query.first_pose ? 1 : 2;
 }
 
 /// The least number of poses for which the model field gets its full fineness, the one that pays

@@ -118,7 +118,7 @@ TEST_CASE("a full disk ends both commands with 4") {
 TEST_CASE("both commands explain themselves") {
   const Pair pair;
   pair.check({
-      {"compare --help", 0, "", "--show ... --json ... Exit code 0 ... Example:"},
-      {"export --help", 0, "", "metres ... .las ... .ply ... .xyz ... .csv ... Example:"},
+      {"compare --help-all", 0, "", "--show ... --json ... Exit code 0 ... Example:"},
+      {"export --help-all", 0, "", "metres ... .las ... .ply ... .xyz ... .csv ... Example:"},
   });
 }

@@ -206,7 +206,7 @@ TEST_CASE("conflicts of a solid tell its depth") {
     return meshes.work.run(
         "conflicts solid.h5 --trajectory hall/trajectory.txt --min-points 1 -o " + output);
   };
-  check_says(require_success(conflicts("listed.json")).out, "depth (m) ... inside");
+  check_says(require_success(conflicts("listed.json")).out, "depth ... inside");
   std::uint64_t inside = 0;
   double deepest = 0;
   const json listed = json::parse(meshes.work.bytes("listed.json"));

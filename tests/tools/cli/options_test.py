@@ -55,8 +55,26 @@ class Help(unittest.TestCase):
                 self.assertLessEqual(len(names), 10, f"{command}: {title}")
 
     def test_the_first_example_asks_for_first_poses(self):
-        example = re.search(r"^Example: (.*)", clearway("run --help").stdout, re.M)[1]
+        example = re.search(r"^Example: ((?:.*\\\n)*.*)", clearway("run --help").stdout, re.M)[1]
         self.assertIn(" --first-pose ", example)
+
+    def test_what_a_first_use_needs_fits_a_terminal(self):
+        commands = ["", *re.findall(r"^  (\w+) ", clearway("--help").stdout, re.M)]
+        self.assertGreater(len(commands), 15)
+        for command in commands:
+            shown, all_of = (clearway(f"{command} {option}").stdout
+                             for option in ("--help", "--help-all"))
+            for line in (shown + all_of).splitlines():
+                if not line.startswith("Usage: "):  # which names the program's path
+                    self.assertLessEqual(len(line), 80, f"{command}: {line}")
+            options = re.findall(r"^  (?:-\w,)?(--[\w-]+)", shown, re.M)
+            self.assertLessEqual(len(options), 17, command)
+            more = re.search(r"^(\d+) more options: --help-all$", shown, re.M)
+            every = re.findall(r"^  (?:-\w,)?(--[\w-]+)", all_of, re.M)
+            self.assertEqual(len(options) + int(more[1] if more else 0), len(every), command)
+        check = clearway("check --help").stdout
+        for option in ("--model ", "--trajectory ", "--radius ", "--floor "):
+            self.assertIn(f"  {option}", check)
 
 
 class Site(unittest.TestCase):

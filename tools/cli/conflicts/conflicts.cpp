@@ -60,50 +60,86 @@ std::vector<const Conflict*> worst_first(const Conflicts& conflicts, std::size_t
   return out;
 }
 
-std::string length_cell(const std::optional<double>& length, int width, int digits) {
-  return length ? fmt::format("  {:>{}.{}f}", *length, width, digits)
-                : fmt::format("  {:>{}}", "-", width);
+std::string length_cell(const std::optional<double>& length, int digits) {
+  return length ? fmt::format("{:.{}f}", *length, digits) : "-";
 }
 
-std::string station_cell(const Conflict& c) {
-  if (!c.station_from || !c.station_to) return "";
-  return fmt::format("  {:>23}", fmt::format("{:.2f} - {:.2f}", *c.station_from, *c.station_to));
+std::string range_cell(double from, double to) { return fmt::format("{:.2f} - {:.2f}", from, to); }
+
+/// A length that is known to be at least so much.
+std::string bound_cell(const std::optional<double>& length) {
+  return length ? ">= " + length_cell(length, 3) : "-";
 }
 
-/// The columns of the table, and the length of the environment's unit in metres.
-struct ConflictColumns {
-  explicit ConflictColumns(const ConflictFile& file)
-      : distances(has_distances(file.conflicts)),
-        depths(has_depths(file.conflicts)),
-        trims(file.conflicts.knows_trims),
-        shifts(file.conflicts.knows_shifts),
-        metre(file.metres_per_unit()) {}
+std::string missing_cell(const Conflict& c, double metre) {
+  const std::string words = missing_words(c, "", metre);
+  constexpr std::string_view kAtLeast = "at least ";
+  if (words.starts_with(kAtLeast)) return ">= " + words.substr(kAtLeast.size());
+  return words.empty() ? "-" : words;
+}
 
-  bool distances, depths, trims, shifts;
-  double metre;
+/// A column of the table on the terminal: its title and its cells.
+struct TextColumn {
+  std::string title;
+  std::vector<std::string> cells;
+
+  std::size_t width() const {
+    std::size_t width = title.size();
+    for (const std::string& cell : cells) width = std::max(width, cell.size());
+    return width;
+  }
 };
 
-std::string row_text(const Conflict& c, const ConflictColumns& columns) {
-  std::string row = fmt::format("{:>5}  {:>19}", c.id,
-                                fmt::format("{:.2f} - {:.2f}", c.chainage_from, c.chainage_to)) +
-                    station_cell(c) + length_cell(c.obstacle_chainage, 12, 2) +
-                    fmt::format("  {:>11}  {:>7}", format_count(c.points), name_of(c.side));
-  if (columns.distances) {
-    const std::string missing = missing_words(c, "", columns.metre);
-    row += length_cell(c.least_distance, 12, 3) +
-           fmt::format("  {:>14}", missing.empty() ? "-" : missing);
+/// Columns of a terminal's line that the table takes at most.
+constexpr std::size_t kTableWidth = 100;
+
+/// The columns of some conflicts that their file knows. The centroid is left out where it does not
+/// fit; the files of conflicts have it.
+std::vector<TextColumn> columns_of(const ConflictFile& file,
+                                   const std::vector<const Conflict*>& rows) {
+  std::vector<TextColumn> columns;
+  const auto add = [&](const char* title, const auto& cell) {
+    TextColumn& column = columns.emplace_back(TextColumn{title, {}});
+    for (const Conflict* c : rows) column.cells.push_back(cell(*c));
+  };
+  const Conflicts& all = file.conflicts;
+  const double metre = file.metres_per_unit();
+  add("id", [](const Conflict& c) { return std::to_string(c.id); });
+  add("chainage", [](const Conflict& c) { return range_cell(c.chainage_from, c.chainage_to); });
+  if (rows.front()->station_from) {
+    add("station (m)", [](const Conflict& c) {
+      return c.station_from && c.station_to ? range_cell(*c.station_from, *c.station_to) : "-";
+    });
   }
-  if (columns.depths) {
-    row += fmt::format("  {:>9.3f}  {:>11}", c.depth.value_or(0),
-                       format_count(c.points_inside.value_or(0)));
+  add("obstacle", [](const Conflict& c) { return length_cell(c.obstacle_chainage, 2); });
+  add("points", [](const Conflict& c) { return format_count(c.points); });
+  add("side", [](const Conflict& c) { return std::string(name_of(c.side)); });
+  if (has_distances(all)) {
+    add("distance", [](const Conflict& c) { return length_cell(c.least_distance, 3); });
+    add("missing", [metre](const Conflict& c) { return missing_cell(c, metre); });
   }
-  if (columns.trims) row += length_cell(rounded_up(least_trim(c)), 8, 3);
-  if (columns.shifts) {
-    row += length_cell(rounded_up(c.own_shift_left), 18, 3) +
-           length_cell(rounded_up(c.own_shift_right), 19, 3);
+  if (has_depths(all)) {
+    add("depth", [](const Conflict& c) { return length_cell(c.depth.value_or(0), 3); });
+    add("inside", [](const Conflict& c) { return format_count(c.points_inside.value_or(0)); });
   }
-  if (c.certain) row += fmt::format("  {:>8}", *c.certain ? "certain" : "possible");
-  return row + fmt::format("  {:.3f} {:.3f} {:.3f}\n", c.centroid.x, c.centroid.y, c.centroid.z);
+  if (all.knows_trims) {
+    add("trim", [](const Conflict& c) { return length_cell(rounded_up(least_trim(c)), 3); });
+  }
+  if (all.knows_shifts) {
+    add("shift left", [](const Conflict& c) { return bound_cell(rounded_up(c.own_shift_left)); });
+    add("shift right", [](const Conflict& c) { return bound_cell(rounded_up(c.own_shift_right)); });
+  }
+  if (rows.front()->certain) {
+    add("class",
+        [](const Conflict& c) { return c.certain.value_or(false) ? "certain" : "possible"; });
+  }
+  std::size_t width = 0;
+  for (const TextColumn& column : columns) width += column.width() + 2;
+  add("centroid", [](const Conflict& c) {
+    return fmt::format("{:.3f} {:.3f} {:.3f}", c.centroid.x, c.centroid.y, c.centroid.z);
+  });
+  if (width + columns.back().width() > kTableWidth) columns.pop_back();
+  return columns;
 }
 
 /// A clause with the stations of a group, empty without stations.
@@ -177,30 +213,21 @@ std::string conflict_text(const ConflictFile& file, std::size_t most) {
   std::string text = totals_text(file);
   if (conflicts.colliding_points + conflicts.near_points > 0) text += grouping_text(file);
   if (conflicts.listed.empty() || most == 0) return text;
-  const ConflictColumns columns(file);
-  const char* const unit = symbol_of(file.unit());
   const std::vector<const Conflict*> rows = worst_first(conflicts, most);
-  if (rows.size() < conflicts.listed.size()) {
-    text += fmt::format("the worst {}:\n", rows.size());
+  if (rows.size() < conflicts.listed.size()) text += fmt::format("the worst {}, ", rows.size());
+  text += fmt::format("lengths in {}:\n", symbol_of(file.unit()));
+  const std::vector<TextColumn> columns = columns_of(file, rows);
+  const auto add_line = [&](const auto& cell) {
+    std::string line;
+    for (const TextColumn& column : columns) {
+      line += fmt::format("{}{:>{}}", line.empty() ? "" : "  ", cell(column), column.width());
+    }
+    text += line + "\n";
+  };
+  add_line([](const TextColumn& column) { return column.title; });
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    add_line([i](const TextColumn& column) { return column.cells[i]; });
   }
-  text +=
-      fmt::format("{:>5}  {:>19}", "id", fmt::format("chainage ({})", unit)) +
-      (rows.front()->station_from ? fmt::format("  {:>23}", "station (m)") : "") +
-      fmt::format("  {:>12}  {:>11}  {:>7}", fmt::format("obstacle ({})", unit), "points", "side");
-  if (columns.distances) {
-    text += fmt::format("  {:>12}  {:>14}", fmt::format("distance ({})", unit),
-                        fmt::format("missing ({})", unit));
-  }
-  if (columns.depths)
-    text += fmt::format("  {:>9}  {:>11}", fmt::format("depth ({})", unit), "inside");
-  if (columns.trims) text += fmt::format("  {:>8}", fmt::format("trim ({})", unit));
-  if (columns.shifts) {
-    text += fmt::format("  {:>18}  {:>19}", fmt::format("own shift left ({})", unit),
-                        fmt::format("own shift right ({})", unit));
-  }
-  if (rows.front()->certain) text += fmt::format("  {:>8}", "class");
-  text += "  centroid\n";
-  for (const Conflict* conflict : rows) text += row_text(*conflict, columns);
   return text;
 }
 

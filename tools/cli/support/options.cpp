@@ -45,7 +45,7 @@ constexpr std::array kTitles{"Inputs and output",
 constexpr std::string_view kNoGroup = "Options";  // CLI11's default group
 
 /// The number of options up to which a help text is one list without groups.
-constexpr std::size_t kShortHelp = 10;
+constexpr std::size_t kShortHelp = 11;
 
 /// The number of options that --help shows at most, unless the first group alone has more.
 constexpr std::size_t kMostShown = 16;
@@ -97,20 +97,69 @@ std::string wrapped(std::string_view text, std::size_t width) {
   return out;
 }
 
-/// Breaks the lines of a text, but not those that show what to type: they begin with a blank or
-/// with "Example".
-std::string wrapped_lines(const std::string& text) {
+/// Breaks a line that shows what to type, as a shell reads it, and leaves options and their values
+/// together.
+std::string wrapped_command(std::string line) {
+  constexpr char kTied = '\1';
+  for (std::size_t at = line.find(" -"); at != std::string::npos; at = line.find(" -", at + 1)) {
+    const std::size_t value = line.find(' ', at + 1);
+    if (value != std::string::npos && line[value + 1] != '-') line[value] = kTied;
+  }
   std::string out;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string line = text.substr(begin, end - begin);
-    const bool is_typed = line.starts_with(' ') || line.starts_with("Example");
-    out += is_typed ? line : wrapped(line, kHelpWidth);
-    if (end < text.size()) out += '\n';
-    begin = end + 1;
+  for (const char c : wrapped(line, kHelpWidth - 2)) {
+    c == '\n' ? out += " \\\n    " : out += c == kTied ? ' ' : c;
   }
   return out;
 }
+
+/// Breaks the paragraphs of a text. Lines that begin with a blank stay as they are, those that
+/// begin with "Example" show what to type.
+std::string wrapped_paragraphs(const std::string& text) {
+  std::string out, paragraph;
+  const auto end_paragraph = [&] {
+    if (!paragraph.empty()) out += wrapped(paragraph, kHelpWidth) + "\n";
+    paragraph.clear();
+  };
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const bool is_example = line.starts_with("Example");
+    if (is_example || line.empty() || line.starts_with(' ')) {
+      end_paragraph();
+      out += (is_example ? wrapped_command(line) : line) + "\n";
+    } else {
+      paragraph += (paragraph.empty() ? "" : " ") + line;
+    }
+  }
+  end_paragraph();
+  return out;
+}
+
+/// The choices of an option, with what stands before and after them on its left side in a help
+/// text, if that is too long for a line.
+struct LongChoices {
+  std::string before, choices, after;
+
+  static std::optional<LongChoices> in(const std::string& name, const std::string& values) {
+    const std::size_t begin = values.find(":{"), end = values.find('}', begin);
+    if (end == std::string::npos || name.size() + values.size() + 2 <= kHelpWidth) return {};
+    std::string choices = values.substr(begin + 2, end - begin - 2);
+    for (std::size_t at = 0; (at = choices.find(',', at)) != std::string::npos; at += 2) {
+      choices.replace(at, 1, ", ");
+    }
+    return LongChoices{values.substr(0, begin), choices, values.substr(end + 1)};
+  }
+
+  /// Whether a text names all of them.
+  bool are_named_in(const std::string& text) const {
+    std::istringstream names(choices);
+    bool all = true;
+    for (std::string name; names >> name;) {
+      if (name.ends_with(',')) name.pop_back();
+      all = all && text.find(name) != std::string::npos;
+    }
+    return all;
+  }
+};
 
 /// Help in groups. --help shows those that a first use needs, --help-all shows all.
 class HelpInOrder : public CLI::Formatter {
@@ -126,13 +175,22 @@ class HelpInOrder : public CLI::Formatter {
   }
 
   std::string make_description(const CLI::App* app) const override {
-    return wrapped_lines(CLI::Formatter::make_description(app));
+    return wrapped_paragraphs(CLI::Formatter::make_description(app));
   }
   std::string make_footer(const CLI::App* app) const override {
-    return wrapped_lines(CLI::Formatter::make_footer(app));
+    return wrapped_paragraphs(CLI::Formatter::make_footer(app));
+  }
+  std::string make_option_opts(const CLI::Option* option) const override {
+    const auto choices = choices_of(option);
+    return choices ? choices->before + choices->after : CLI::Formatter::make_option_opts(option);
   }
   std::string make_option_desc(const CLI::Option* option) const override {
-    return wrapped(CLI::Formatter::make_option_desc(option), kHelpWidth - kTextColumn);
+    std::string text = CLI::Formatter::make_option_desc(option);
+    const auto choices = choices_of(option);
+    if (choices && !choices->are_named_in(text)) {
+      text += ": " + choices->choices;
+    }
+    return wrapped(text, kHelpWidth - kTextColumn);
   }
   std::string make_subcommand(const CLI::App* command) const override {
     std::stringstream out;
@@ -143,6 +201,11 @@ class HelpInOrder : public CLI::Formatter {
   }
 
  private:
+  std::optional<LongChoices> choices_of(const CLI::Option* option) const {
+    return LongChoices::in(make_option_name(option, false),
+                           CLI::Formatter::make_option_opts(option));
+  }
+
   std::string groups_of(const CLI::App& app, bool all) const {
     std::vector<std::string> groups = app.get_groups();
     std::ranges::stable_sort(groups, {}, place_of);

@@ -1,7 +1,5 @@
 #include "core/sweep/field/field_lanes.hpp"
 
-#include <bit>
-
 #include "core/util/lane_bits.hpp"
 #include "core/util/macros.hpp"
 
@@ -107,15 +105,11 @@ void FieldLanes::look_up(const InversePose& back) {
   }
   if (valid >= 0) {
     for (std::uint32_t i = count_; i < filled; ++i) low_[i] = valid;
-    for (std::uint64_t left = others; left != 0; left &= left - 1) {
-      low_[std::countr_zero(left)] = valid;
-    }
+    for_each_bit(others, [&](std::uint32_t i) { low_[i] = valid; });
     bound_all(field_, filled, *this);
   }
-  for (; others != 0; others &= others - 1) {
-    const auto i = static_cast<std::uint32_t>(std::countr_zero(others));
-    squared_lower_[i] = field_.squared_lower(place(i));
-  }
+  for_each_bit(others,
+               [&](std::uint32_t i) { squared_lower_[i] = field_.squared_lower(place(i)); });
 }
 
 }  // namespace clearway

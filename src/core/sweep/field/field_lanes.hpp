@@ -45,9 +45,10 @@ class FieldLanes {
   /// Bricks up to this one have only nodes that 32 bits with a sign can number.
   static constexpr std::uint32_t kMostBricks = 0x7fffffff / ModelFieldRef::kBrickNodes - 1;
 
-  static void place_all(const ModelFieldRef& field, const InversePose& back, std::uint32_t count,
+  // `filled`: the lanes in use, rounded up to whole vectors.
+  static void place_all(const ModelFieldRef& field, const InversePose& back, std::uint32_t filled,
                         FieldLanes& lanes);
-  static void bound_all(const ModelFieldRef& field, std::uint32_t count, FieldLanes& lanes);
+  static void bound_all(const ModelFieldRef& field, std::uint32_t filled, FieldLanes& lanes);
 
   static void compare_all(double least, double squared_reach, FieldLanes& lanes);
 

@@ -97,9 +97,14 @@ TEST_CASE("conflicts are listed in JSON and CSV, and no point is lost") {
 
 TEST_CASE("a table and a summary are printed") {
   const HallResult work;
-  check_outcome(work.conflicts("--show 2 --min-points 3"), 0, kAnything,
-                "conflicts of ... along ... not listed:  ... the worst 2 ... missing (m) ... The "
-                "worst place is conflict");
+  check_outcome(
+      work.conflicts("--show 2 --min-points 3"), 0, kAnything,
+      "conflicts of ... along ... not listed:  ... the worst 2, lengths in m: ... missing ... The "
+      "worst place is conflict");
+  for (const std::string& line : lines_of(work.conflicts("--show 20 --min-points 3").out)) {
+    CAPTURE(line);
+    if (!line.empty() && (line.front() == ' ' || line.find(" - ") < 12)) CHECK(line.size() <= 100);
+  }
   const json summary = json_of(work.conflicts("--json"));
   check_json(summary, R"({"kind": "conflicts"})");
   CHECK(!summary.contains("conflicts"));
