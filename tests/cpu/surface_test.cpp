@@ -1,7 +1,9 @@
 // Models of triangles: the sweep against brute force, bit for bit, in all modes.
 #include <cmath>
 
+#include "core/geometry/point_box.hpp"
 #include "core/geometry/triangle_box.hpp"
+#include "core/sweep/block_descent.hpp"
 #include "core/sweep/sweep_filter.hpp"
 #include "support/catch.hpp"
 #include "support/engines/scene_checks.hpp"
@@ -264,4 +266,37 @@ TEST_CASE("runs of poses take a fraction of the tests that single poses do") {
   }
   CHECK(grazing > 40);
   CHECK(8 * by_runs.point_tests < by_poses.point_tests);
+}
+
+TEST_CASE("a point that is searched in runs is counted once") {
+  const GrazingScene scene(1e-3);
+  const Query query = scene.query();
+  const MemoryCloud cloud(scene.points, scene.quantisation);
+  const TriangleTree model(triangles_of(query.model));
+  const ModelField field(model, query.radius, {}, 1);
+  const MotionTree motion(query.poses, model.box());
+  const SweepFilterOf<Triangle> filter(query, motion, model, field, cloud);
+  BlockDescentOf<Triangle> descent(filter);
+  SweepStatistics narrowing, of_sets, of_first_poses;
+  std::uint64_t searched = 0;
+  for (std::size_t first = 0; first + kBlockPoints <= scene.points.size(); first += kBlockPoints) {
+    std::vector<Vec3> points;
+    for (std::uint32_t i = 0; i < kBlockPoints; ++i) {
+      const Quantum& point = scene.points[first + i];
+      const Vec3 e = position(scene.quantisation, point[0], point[1], point[2]);
+      for (int k = 0; k < 3; ++k) descent.points().at[k][i] = e[k];
+      points.push_back(e);
+    }
+    std::vector<std::uint32_t> nodes;
+    filter.narrow(box_of(std::span<const Vec3>(points)), std::vector<std::uint32_t>{0}, nodes,
+                  narrowing);
+    std::uint32_t first_poses[kBlockPoints];
+    const std::uint64_t all = ~std::uint64_t{0};
+    CHECK(descent.touches(all, nodes, of_sets) ==
+          descent.find_first_poses(all, nodes, first_poses, of_first_poses));
+    searched += kBlockPoints;
+  }
+  CHECK(searched > 0);
+  check_equal(of_sets.points_tested, searched);
+  check_equal(of_first_poses.points_tested, searched);
 }
