@@ -18,30 +18,23 @@ BlockCache::BlockCache(const PackedCloud& cloud)
 Columns BlockCache::block(std::uint32_t cell, std::uint32_t block, std::uint32_t count) {
   const std::uint64_t tag = std::uint64_t{cell} * cloud_.blocks_per_cell() + block;
   const std::size_t entry = tag % kEntries;
-  Positions& positions = entries_[entry];
+  BlockPositions& positions = entries_[entry];
   if (tags_[entry] != tag) {
     tags_[entry] = kNothing;
     decode(cell, block, count, positions);
     tags_[entry] = tag;
   }
-  return {positions.axes[0], positions.axes[1], positions.axes[2]};
+  return {positions.at[0], positions.at[1], positions.at[2]};
 }
 
 void BlockCache::decode(std::uint32_t cell, std::uint32_t block, std::uint32_t count,
-                        Positions& out) {
+                        BlockPositions& out) {
   if (cell != open_cell_) {
     open_cell_ = 0xffffffff;
     chunks_ = cloud_.coordinates(cell);
     open_cell_ = cell;
   }
-  const Quantisation& quantisation = cloud_.quantisation();
-  std::array<std::int32_t, kBlockPoints> values{};
-  for (int axis = 0; axis < 3; ++axis) {
-    chunks_[axis].decode(block * kBlockPoints, std::span(values.data(), count));
-    for (std::uint32_t i = 0; i < count; ++i) {
-      out.axes[axis][i] = coordinate(quantisation, axis, values[i]);
-    }
-  }
+  out.decode(chunks_, cloud_.quantisation(), block * kBlockPoints, count);
 }
 
 template <typename Element>
@@ -136,14 +129,8 @@ void CellSearchOf<Element>::search_points(std::uint32_t block,
     const auto joined_count = static_cast<std::uint32_t>(nodes.size());
     joined_.resize(filter_.ref().motion.join_smooth(joined_.data(), joined_count));
   }
-  std::int32_t q[kBlockPoints];
   BlockPositions& points = descent_.points();
-  for (std::size_t k = 0; k < 3; ++k) {
-    chunks_[k].decode(begin, std::span(q, count));
-    for (std::uint32_t i = 0; i < count; ++i) {
-      points.at[k][i] = coordinate(cloud_.quantisation(), static_cast<int>(k), q[i]);
-    }
-  }
+  points.decode(chunks_, cloud_.quantisation(), begin, count);
   const std::uint64_t searched = page_.searched(index_, block);
   const Query& query = filter_.query();
   const bool hits_follow = clearance_search_ && filter_.ref().hits_follow_from_clearance();

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/cloud/block_positions.hpp"
 #include "core/cloud/packed_cloud.hpp"
 #include "core/page/page.hpp"
 #include "core/sweep/block_descent.hpp"
@@ -28,21 +29,17 @@ class BlockCache {
   Columns block(std::uint32_t cell, std::uint32_t block, std::uint32_t count);
 
   std::uint64_t allocated_bytes() const {
-    return tags_.size() * sizeof(std::uint64_t) + entries_.size() * sizeof(Positions);
+    return tags_.size() * sizeof(std::uint64_t) + entries_.size() * sizeof(BlockPositions);
   }
 
  private:
-  struct Positions {
-    alignas(64) double axes[3][kBlockPoints];
-  };
-
-  void decode(std::uint32_t cell, std::uint32_t block, std::uint32_t count, Positions& out);
+  void decode(std::uint32_t cell, std::uint32_t block, std::uint32_t count, BlockPositions& out);
 
   static constexpr std::uint64_t kNothing = ~std::uint64_t{0};
 
   const PackedCloud& cloud_;
   std::vector<std::uint64_t> tags_;
-  std::vector<Positions> entries_;
+  std::vector<BlockPositions> entries_;
   std::uint32_t open_cell_ = 0xffffffff;  ///< the cell that chunks_ belong to
   std::array<PackedChunk<std::int32_t>, 3> chunks_;
 };

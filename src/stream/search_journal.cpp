@@ -7,6 +7,7 @@
 
 #include "core/geometry/predicate.hpp"
 #include "core/query/body_numbers.hpp"
+#include "core/util/lane_bits.hpp"
 #include "stream/run_pages.hpp"
 
 namespace clearway {
@@ -68,7 +69,7 @@ void put_words(JournalRecord& record, std::size_t words, WordAt word_at, PutPoin
     if (bits == 0) continue;
     record.put_count(word - next);
     record.put(bits);
-    for_each_bit(bits, [&](std::size_t i) { put_point(word * kBlockPoints + i); });
+    for_each_bit(bits, [&](std::uint32_t i) { put_point(word * kBlockPoints + i); });
     next = word + 1;
   }
 }
@@ -339,14 +340,14 @@ void SearchJournal::replay_cell(JournalPayload& payload, HitSet* hits,
   for_each_word([&](std::uint64_t word, std::uint64_t bits) {
     if (hits != nullptr) hits->mark_word(word, bits);
     if (!query_.first_pose) return;
-    for_each_bit(bits, [&](std::size_t i) {
+    for_each_bit(bits, [&](std::uint32_t i) {
       const std::uint32_t number = take_number(payload);
       if (hits != nullptr) hits->mark(word * kBlockPoints + i, number);
     });
   });
   if (!(query_.clearance > 0)) return;
   for_each_word([&](std::uint64_t word, std::uint64_t bits) {
-    for_each_bit(bits, [&](std::size_t i) {
+    for_each_bit(bits, [&](std::uint32_t i) {
       const auto squared = payload.take<double>();
       const Clearance clearance{squared, take_number(payload)};
       if (!(is_square(squared) && clearance.found())) payload.refuse("a distance that is none");
@@ -369,7 +370,7 @@ void SearchJournal::replay_marks(JournalPayload& payload, HitSet* hits) const {
     }
     const std::uint32_t pose = take_pose(payload);
     if (hits == nullptr) continue;
-    for_each_bit(bits, [&](std::size_t i) { hits->mark(word * kBlockPoints + i, pose); });
+    for_each_bit(bits, [&](std::uint32_t i) { hits->mark(word * kBlockPoints + i, pose); });
   }
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -17,12 +16,6 @@
 #include "io/result/journal.hpp"
 
 namespace clearway {
-
-/// Calls visit(i) for every set bit i, in ascending order.
-template <typename Visit>
-void for_each_bit(std::uint64_t bits, Visit visit) {
-  for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(std::countr_zero(bits)));
-}
 
 /// The kind of a record in a search's journal; its first byte.
 enum class JournalRecordKind : std::uint8_t {

@@ -218,6 +218,17 @@ TEST_CASE("surfaces that hundreds of poses graze") {
 
 namespace {
 
+/// A grazing scene with what a filter of it needs.
+struct GrazingFilter {
+  GrazingScene scene{1e-3};
+  Query query = scene.query();
+  MemoryCloud cloud{scene.points, scene.quantisation};
+  TriangleTree model{triangles_of(query.model)};
+  ModelField field{model, query.radius, {}, 1};
+  MotionTree motion{query.poses, model.box()};
+  SweepFilterOf<Triangle> filter{query, motion, model, field, cloud};
+};
+
 /// Searches a point by poses alone, without runs, and returns its first pose.
 std::uint32_t first_pose_by_poses(const SweepFilterOf<Triangle>& filter, const Vec3& e,
                                   const std::vector<std::uint32_t>& nodes, SweepStatistics& tests) {
@@ -239,13 +250,9 @@ std::uint32_t first_pose_by_poses(const SweepFilterOf<Triangle>& filter, const V
 }  // namespace
 
 TEST_CASE("runs of poses take a fraction of the tests that single poses do") {
-  const GrazingScene scene(1e-3);
-  const Query query = scene.query();
-  const MemoryCloud cloud(scene.points, scene.quantisation);
-  const TriangleTree model(triangles_of(query.model));
-  const ModelField field(model, query.radius, {}, 1);
-  const MotionTree motion(query.poses, model.box());
-  const SweepFilterOf<Triangle> filter(query, motion, model, field, cloud);
+  const GrazingFilter made;
+  const GrazingScene& scene = made.scene;
+  const SweepFilterOf<Triangle>& filter = made.filter;
   SweepStatistics by_poses, by_runs, narrowing;
   std::uint64_t grazing = 0;
   for (const Quantum& point : scene.points) {
@@ -269,13 +276,9 @@ TEST_CASE("runs of poses take a fraction of the tests that single poses do") {
 }
 
 TEST_CASE("a point that is searched in runs is counted once") {
-  const GrazingScene scene(1e-3);
-  const Query query = scene.query();
-  const MemoryCloud cloud(scene.points, scene.quantisation);
-  const TriangleTree model(triangles_of(query.model));
-  const ModelField field(model, query.radius, {}, 1);
-  const MotionTree motion(query.poses, model.box());
-  const SweepFilterOf<Triangle> filter(query, motion, model, field, cloud);
+  const GrazingFilter made;
+  const GrazingScene& scene = made.scene;
+  const SweepFilterOf<Triangle>& filter = made.filter;
   BlockDescentOf<Triangle> descent(filter);
   SweepStatistics narrowing, of_sets, of_first_poses;
   std::uint64_t searched = 0;

@@ -4,17 +4,11 @@
 #include <span>
 #include <vector>
 
+#include "core/cloud/block_positions.hpp"
 #include "core/sweep/field/field_lanes.hpp"
 #include "core/sweep/sweep_filter.hpp"
 
 namespace clearway {
-
-/// Positions of the points of a block, an array for each axis.
-struct BlockPositions {
-  double at[3][kBlockPoints];
-
-  Vec3 point(std::uint32_t i) const { return {at[0][i], at[1][i], at[2][i]}; }
-};
 
 /// Searches the points of a block together, on the host: every motion node is looked at for all
 /// points that it may still matter to, in vectors of the processor. One thread uses it at a time.
