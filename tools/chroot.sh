@@ -57,8 +57,13 @@ make_root() {
   echo "$name: a fresh $1 from apt's mirror"
 }
 
-as_root() { DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 HOME=/root chroot "$root" "$@"; }
-as_user() { LC_ALL=C.UTF-8 HOME=/tmp/asked chroot --userspec=nobody:nogroup "$root" "$@"; }
+# TMPDIR names a folder of this machine, which the system does not have.
+as_root() {
+  env -u TMPDIR DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 HOME=/root chroot "$root" "$@"
+}
+as_user() {
+  env -u TMPDIR LC_ALL=C.UTF-8 HOME=/tmp/asked chroot --userspec=nobody:nogroup "$root" "$@"
+}
 
 install_in_chroot() {
   { as_root apt-get update -qq &&
