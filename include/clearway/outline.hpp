@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -38,8 +41,10 @@ struct OutlineOptions {
   /// The file has one half of a symmetric outline, as rows of height and half the width from the
   /// one end to the other: it is completed by its mirror image. Otherwise its rows are y and z.
   bool mirror = false;
-  /// The unit of the file; metres where it is not known.
+  /// The unit of the file; that of the environment where it is not known.
   FileUnit unit = {};
+  /// Length of the environment's unit in metres, to which corners are converted.
+  double environment_unit = 1;
 };
 
 /// Reads the outline in a file of text: two numbers in each line, separated by a comma, a semicolon
@@ -50,5 +55,35 @@ struct OutlineOptions {
 std::vector<OutlinePoint> read_outline(const std::filesystem::path& path,
                                        const OutlineOptions& options = {},
                                        std::vector<Message>* messages = nullptr);
+
+/// A row of a table of outlines: the load that is judged on a stretch of the path.
+struct OutlineRow {
+  std::uint64_t line = 0;              ///< line of the file
+  double from = 0, to = 0;             ///< the stretch reaches up to `to`, without it
+  std::filesystem::path file = {};     ///< of the outline
+  std::vector<OutlinePoint> outline = {};
+  std::optional<double> margin = {};   ///< the distance to keep; none where the row has none
+};
+
+/// Outlines by stretches of a path: dynamic envelopes, or gauges that are wider in curves.
+struct OutlineTable {
+  std::filesystem::path path = {};
+  /// Whether stretches are given by stations along an alignment, in metres, and not by chainages
+  /// along the path, in the unit of the environment.
+  bool by_station = false;
+  std::vector<OutlineRow> rows = {};  ///< ascending, and none overlaps the next one
+};
+
+/// The greatest number of rows of a table of outlines.
+inline constexpr std::size_t kMostOutlineRows = 100'000;
+
+/// Reads a table of outlines: CSV with a line of names, the columns chainage_from, chainage_to or
+/// station_from, station_to, then outline and, where it is there, margin, in any order. The file of
+/// an outline is relative to the folder of the table, and is read as read_outline() does. Throws
+/// InputError, which names the line, for anything else in the file, for a stretch that ends before
+/// it begins, and for rows that overlap.
+OutlineTable read_outline_table(const std::filesystem::path& path,
+                                const OutlineOptions& options = {},
+                                std::vector<Message>* messages = nullptr);
 
 }  // namespace clearway

@@ -95,6 +95,10 @@ std::vector<NamedObstacle> read_obstacles(const std::filesystem::path& path);
 struct SectionPicture {
   /// The outline of a load, whose passing is judged and drawn, or empty.
   std::vector<OutlinePoint> outline = {};
+  /// Outlines by stretches of the path, in place of one outline; or without rows. station: of each
+  /// pose of the path, for a table by stations.
+  OutlineTable table = {};
+  std::vector<double> station = {};
   /// The distance that the load keeps; none: that for which the section was found
   std::optional<double> margin = {};
   SectionHeights heights = {};  ///< the bands of height whose widths are shown

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -202,6 +203,7 @@ struct SectionStop {
   double chainage = 0;                 ///< of that pose
   std::array<std::int32_t, 2> cell{};  ///< j, k: of that pose, the least k, and then the least j
   std::vector<SectionIntrusion> intrusions = {};  ///< of the bin: left, right, above, below
+  std::size_t row = 0;  ///< of a table of outlines: index of the row that is judged here
 };
 
 struct SectionCheck {
@@ -212,6 +214,39 @@ struct SectionCheck {
   /// The first place in each bin where the load needs a cell that is not known, ascending; empty
   /// without seen space.
   std::vector<SectionStop> unknowns = {};
+};
+
+/// Consecutive bins of a section, from the first to the last one.
+struct SectionBinRange {
+  std::uint32_t first = 0, last = std::numeric_limits<std::uint32_t>::max();
+
+  bool contains(std::uint32_t bin) const { return first <= bin && bin <= last; }
+  friend bool operator==(const SectionBinRange&, const SectionBinRange&) = default;
+};
+
+/// The answer to one row of a table of outlines.
+struct OutlineRowCheck {
+  std::uint64_t line = 0;           ///< line of the table
+  std::filesystem::path file = {};  ///< of the outline, as the table names it
+  double chainage_from = 0, chainage_to = 0;  ///< of the row, along the path
+  double margin = 0;                          ///< the distance that was kept
+  /// The bins that were judged: those that the row touches. None where it touches none in which the
+  /// load has a pose, so that it judges nothing.
+  std::optional<SectionBinRange> bins = {};
+  SectionCheck check = {};
+};
+
+/// A stretch of the path for which no row of a table has an outline.
+struct OutlineGap {
+  double chainage_from = 0, chainage_to = 0;
+  SectionBinRange bins = {};  ///< the bins that it touches, of which nothing is known
+};
+
+/// The answer to a table of outlines: stopped where any row is stopped, otherwise unknown where a
+/// row is or where there is a gap. Its places are those of all rows, ascending by bin.
+struct OutlineTableCheck : SectionCheck {
+  std::vector<OutlineRowCheck> rows = {};  ///< of each row of the table, in its order
+  std::vector<OutlineGap> gaps = {};       ///< where the load has a pose, in the order of the path
 };
 
 /// The whole cells of a window: columns j_from .. j_to - 1 and rows k_from .. k_to - 1.
@@ -237,10 +272,17 @@ class Section {
 
   /// Whether a load with this outline, and with the length for which the section was found, passes
   /// at a distance of more than `margin` from every point; none: the margin for which the section
-  /// was found. Throws UsageError for a margin that is negative or not finite, and for an outline
-  /// that outline_model() refuses.
-  SectionCheck check(std::span<const OutlinePoint> outline,
-                     std::optional<double> margin = {}) const;
+  /// was found. bins: only these are judged. Throws UsageError for a margin that is negative or not
+  /// finite, and for an outline that outline_model() refuses.
+  SectionCheck check(std::span<const OutlinePoint> outline, std::optional<double> margin = {},
+                     SectionBinRange bins = {}) const;
+
+  /// Judges each row of a table by the bins that it touches, with its own outline and margin, and
+  /// without one with `margin`. A bin of which a part has no outline is unknown. station: of each
+  /// pose of the path, for a table by stations. Throws as check() does, with file and line, and
+  /// UsageError where stations are missing or do not ascend.
+  OutlineTableCheck check(const OutlineTable& table, std::optional<double> margin = {},
+                          std::span<const double> station = {}) const;
 
   /// For each cell of grid(), row by row, whether it is free with this margin, or without one with
   /// that of the section; false everywhere where the section is in doubt or the margin exceeds that

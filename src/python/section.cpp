@@ -184,6 +184,49 @@ void add_section_checks(py::module_& module) {
       });
 }
 
+void add_outline_tables(py::module_& module) {
+  using Row = OutlineRowCheck;
+  using Gap = OutlineGap;
+  using Table = OutlineTableCheck;
+  const auto bins = [](const SectionBinRange& range) {
+    return py::make_tuple(range.first, range.last);
+  };
+  py::class_<Row>(module, "OutlineRowCheck", "The answer to one row of a table of outlines.")
+      .def_readonly("line", &Row::line, "The line of the table that has the row.")
+      .def_property_readonly(
+          "outline", [](const Row& r) { return text(r.file.string()); },
+          "The file of the outline, as the table names it.")
+      .def_readonly("chainage_from", &Row::chainage_from, "Where the row begins, metres.")
+      .def_readonly("chainage_to", &Row::chainage_to, "Where the row ends, metres.")
+      .def_readonly("margin", &Row::margin, "The distance that was kept, metres.")
+      .def_property_readonly(
+          "bins", [bins](const Row& r) { return r.bins ? py::object(bins(*r.bins)) : py::none(); },
+          "The first and the last stretch that were judged, or None where the load has no pose "
+          "there.")
+      .def_readonly("check", &Row::check, "The answer: a SectionCheck.")
+      .def("__repr__", [](const Row& r) {
+        return text("<line " + std::to_string(r.line) + ": " + name_of(r.check.verdict) + ">");
+      });
+  py::class_<Gap>(module, "OutlineGap",
+                  "A part of the path for which a table of outlines has none.")
+      .def_readonly("chainage_from", &Gap::chainage_from, "Where the gap begins, metres.")
+      .def_readonly("chainage_to", &Gap::chainage_to, "Where the gap ends, metres.")
+      .def_property_readonly(
+          "bins", [bins](const Gap& g) { return bins(g.bins); },
+          "The first and the last stretch that it touches, which are unknown.")
+      .def("__repr__", [](const Gap& g) {
+        return text("<no outline from " + format_brief(g.chainage_from) + " to " +
+                    format_brief(g.chainage_to) + ">");
+      });
+  py::class_<Table, SectionCheck>(module, "OutlineTableCheck",
+                                  "The answer to a table of outlines. Its places are those of all "
+                                  "rows.")
+      .def_readonly("rows", &Table::rows,
+                    "The answer to each row, along the path: a list of OutlineRowCheck.")
+      .def_readonly("gaps", &Table::gaps,
+                    "Parts of the path without an outline: a list of OutlineGap.");
+}
+
 void add_section_cells(py::module_& module) {
   using Cells = CellColumns;
   py::class_<Cells>(module, "SectionCells",
@@ -372,6 +415,33 @@ Say whether a load with this outline passes. Returns a SectionCheck.
 
 outline: corners y, z of a simple polygon, n x 2, in the unit of the section; y is to the left, z up.
 margin: the distance to keep on all sides; at most that of find_section(), which None stands for.)")
+      .def(
+          "check_table",
+          [](const Section& s, const py::object& path, std::optional<double> margin, bool mirror,
+             const UnitArgument& unit, const py::object& station, const py::object& messages) {
+            const std::string of_section = s.data().length_unit;
+            const OutlineOptions options{
+                .mirror = mirror,
+                .unit = file_unit(unit),
+                .environment_unit = environment_unit_of(UnitArgument(of_section)).metres};
+            const auto stations = station.cast<std::vector<double>>();
+            return read_noting(messages, [&, file = path_of(path)](auto* noted) {
+              return s.check(read_outline_table(file, options, noted), margin, stations);
+            });
+          },
+          "path"_a, "margin"_a = py::none(), py::kw_only(), "mirror"_a = false, "unit"_a = 0.0,
+          "station"_a = py::tuple(), "messages"_a = py::none(),
+          R"(check_table(self, path, margin=None, *, mirror=False, unit=0.0, station=(), messages=None)
+--
+
+Judge each stretch of the path by its own outline. Returns an OutlineTableCheck.
+
+path: a CSV file with the columns chainage_from,chainage_to (or station_from,station_to),outline and
+    margin. Files of outlines are relative to it, and are read as read_outline() does.
+margin: the distance to keep where a row has none; None: that of find_section().
+mirror, unit: as read_outline() takes them, for all outlines; a unit of 0 is that of the section.
+station: the station of each pose of the path, for a table by stations: PoseLabels.station.
+messages: a list to which warnings of half an outline are appended.)")
       .def("free_cells", &free_cells_of, "margin"_a = py::none(),
            R"(free_cells(self, margin=None)
 --
@@ -572,6 +642,7 @@ void add_section(py::module_& module) {
   add_section_parameters(module);
   add_section_report(module);
   add_section_checks(module);
+  add_outline_tables(module);
   add_section_cells(module);
   add_section_widths(module);
   add_section_class(module);

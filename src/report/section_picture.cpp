@@ -18,6 +18,10 @@ namespace {
 constexpr double kWidth = 1000, kLeft = 94, kRight = 54, kMostHeight = 640;
 constexpr double kLetter = 6.9;  ///< width of a letter of 13 pixels
 constexpr std::size_t kMostMarks = 24;
+constexpr std::size_t kMostLegends = 12;  ///< of outlines
+/// Colours of the outlines, which begin again where there are more.
+constexpr std::array<const char*, 5> kLoadColours{"#5b21b6", "#be123c", "#0369a1", "#a16207",
+                                                  "#0f766e"};
 constexpr int kColours = static_cast<int>(kSectionColours.size());
 
 /// A coordinate of the picture with two digits.
@@ -55,7 +59,7 @@ class Picture {
       text(16, 24 + 19 * static_cast<double>(i), title[i], i == 0 ? "section_title" : "");
     }
     draw_cells();
-    draw_load();
+    draw_loads();
     draw_marks();
     draw_axes();
     double bottom = draw_legend(top_ + height_ + 52);
@@ -200,30 +204,37 @@ class Picture {
     out_ << "</g>\n";
   }
 
-  std::string outline_path() const {
+  std::string outline_path(const ShownLoad& load) const {
     std::string path;
-    for (const OutlinePoint& p : view_.picture().outline) {
+    for (const OutlinePoint& p : load.outline) {
       path += (path.empty() ? "M" : "L") + px(x_of(p.y)) + " " + px(y_of(p.z));
     }
     return path + "Z";
   }
 
-  void draw_load() {
-    if (view_.picture().outline.empty()) return;
-    const std::string path = outline_path();
-    const double band = 2 * view_.margin() / lattice_.cell * scale_;
+  void draw_loads() {
+    for (std::size_t i = 0; i < view_.loads().size(); ++i) draw_load(i);
+  }
+
+  void draw_load(std::size_t index) {
+    const ShownLoad& load = view_.loads()[index];
+    const std::string path = outline_path(load), number = std::to_string(index);
+    const std::string colour = kLoadColours[index % kLoadColours.size()];
+    const double band = 2 * load.margin / lattice_.cell * scale_;
+    out_ << "<g class=\"section_load\" data-load=\"" << number << "\">\n";
     if (band > 0) {
-      out_ << R"(<clipPath id="section_outside"><path clip-rule="evenodd" d="M)" << px(left_) << " "
-           << px(top_) << "h" << px(width_) << "v" << px(height_) << "h-" << px(width_) << "z"
-           << path << "\"/></clipPath>\n"
-           << "<path class='section_margin' clip-path='url(#section_outside)' fill='none' "
-              "stroke='#7c3aed' "
-              "stroke-opacity='0.35' stroke-linejoin='round' stroke-width=\""
-           << px(band) << "\" d=\"" << path << "\"/>\n";
+      out_ << "<clipPath id=\"section_outside" << number
+           << R"("><path clip-rule="evenodd" d="M)" << px(left_) << " " << px(top_) << "h"
+           << px(width_) << "v" << px(height_) << "h-" << px(width_) << "z" << path
+           << "\"/></clipPath>\n"
+           << "<path class='section_margin' clip-path='url(#section_outside" << number
+           << ")' fill='none' stroke='" << colour
+           << "' stroke-opacity='0.35' stroke-linejoin='round' stroke-width=\"" << px(band)
+           << "\" d=\"" << path << "\"/>\n";
     }
     out_ << R"(<path fill="none" stroke="#fff" stroke-width="5" d=")" << path << "\"/>\n"
-         << R"(<path class="section_outline" fill="none" stroke="#5b21b6" stroke-width="2.6" d=")"
-         << path << "\"/>\n";
+         << R"(<path class="section_outline" fill="none" stroke=")" << colour
+         << R"(" stroke-width="2.6" d=")" << path << "\"/>\n</g>\n";
   }
 
   /// Whole steps of 1, 2 or 5 times a power of ten from `from` to `to`, about `most` of them.
@@ -355,6 +366,29 @@ class Picture {
     x += wide;
   }
 
+  void draw_legend_of_loads(double& x, double& y) {
+    const std::vector<ShownLoad>& loads = view_.loads();
+    for (std::size_t i = 0; i < std::min(loads.size(), kMostLegends); ++i) {
+      const std::string colour = kLoadColours[i % kLoadColours.size()];
+      const ShownLoad& load = loads[i];
+      const std::string margin = format_brief(load.margin) + " " + view_.unit();
+      const std::string line = "<path d=\"M0 8h24\" stroke=\"" + colour;
+      if (loads.size() > 1) {
+        legend_item(x, y, line + "\" stroke-width=\"3\"/>",
+                    load.name + (load.margin > 0 ? ", margin " + margin : ""));
+        continue;
+      }
+      legend_item(x, y, line + "\" stroke-width=\"3\"/>", "load");
+      if (load.margin > 0) {
+        legend_item(x, y, line + R"(" stroke-opacity="0.35" stroke-width="10"/>)",
+                    "its margin, " + margin);
+      }
+    }
+    if (loads.size() > kMostLegends) {
+      legend_item(x, y, "", "and " + counted(loads.size() - kMostLegends, "further outline"));
+    }
+  }
+
   double draw_legend(double y) {
     const SectionData& data = view_.section().data();
     const auto box = [](const std::string& fill) {
@@ -381,13 +415,7 @@ class Picture {
       legend_item(x, y, patterned("section_unknown"), "not known");
     }
     if (view_.check()) {
-      legend_item(x, y, R"(<path d="M0 8h24" stroke="#5b21b6" stroke-width="3"/>)", "load");
-      if (view_.margin() > 0) {
-        legend_item(x, y,
-                    R"(<path d="M0 8h24" stroke="#7c3aed" stroke-opacity="0.35" )"
-                    R"(stroke-width="10"/>)",
-                    "its margin, " + format_brief(view_.margin()) + " " + view_.unit());
-      }
+      draw_legend_of_loads(x, y);
       if (!view_.stops().empty()) {
         legend_item(x, y, patterned("section_stops"), "stops the load");
         legend_item(x, y,
@@ -417,6 +445,7 @@ class Picture {
                format_brief(mark.place->chainage_to) + " " + unit + ": reaches " +
                depth_words(in.depth) + " " + unit + " too far, z = " + format_brief(in.z_from) +
                " to " + format_brief(in.z_to) + " " + unit;
+      if (view_.loads().size() > 1) words += ", of " + view_.loads()[mark.place->load].name;
       if (deepest.witness) words += ", point " + std::to_string(deepest.witness->source);
       text(40, y, mark.place->label, "section_end section_strong");
       for (const std::string& part : wrapped(words, 132)) {

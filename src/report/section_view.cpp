@@ -76,17 +76,75 @@ SectionView::SectionView(const Section& section, const SectionPicture& picture)
                      counted(stretches_.size(), "stretch", "stretches") +
                      " are too many for a page; expected bands that are higher");
   }
-  if (picture.outline.empty()) return;
-  check_ = section.check(picture.outline, margin());
-  stopping_ = stopping_cells(section, picture.outline, margin());
+  if (picture.outline.empty() && picture.table.rows.empty()) return;
+  check_loads();
+  find_stopping();
   for (const SectionStop& stop : check_->stops) {
-    ShownStop shown{.stop = stop};
+    ShownStop shown{.stop = stop, .load = load_of_row_[stop.row]};
     for (const SectionIntrusion& intrusion : stop.intrusions)
       shown.intrusions.push_back({intrusion});
     stops_.push_back(std::move(shown));
   }
   if (picture.store != nullptr && picture.path != nullptr) find_obstacles();
   find_places();
+}
+
+/// Judges the outline as a table of one row, or the table.
+void SectionView::check_loads() {
+  const OutlineTable& table = picture_.table;
+  if (!table.rows.empty()) {
+    check_ = section_.check(table, picture_.margin, picture_.station);
+    for (std::size_t i = 0; i < table.rows.size(); ++i) {
+      load_of_row_.push_back(add_load({.name = table.rows[i].file.string(),
+                                       .outline = table.rows[i].outline,
+                                       .margin = check_->rows[i].margin}));
+    }
+    return;
+  }
+  const double margin = picture_.margin.value_or(section_.data().parameters.margin);
+  check_.emplace();
+  static_cast<SectionCheck&>(*check_) = section_.check(picture_.outline, margin);
+  check_->rows.push_back({.chainage_to = section_.data().chainage.empty()
+                                             ? 0.0
+                                             : section_.data().chainage.back(),
+                          .margin = margin,
+                          .bins = SectionBinRange{},
+                          .check = *check_});
+  load_of_row_.push_back(add_load(
+      {.name = picture_.outline_name, .outline = picture_.outline, .margin = margin}));
+}
+
+/// The index of a load, which is added where it is not there yet.
+std::size_t SectionView::add_load(ShownLoad load) {
+  const auto same = std::ranges::find_if(loads_, [&](const ShownLoad& other) {
+    return other.name == load.name && other.margin == load.margin;
+  });
+  if (same != loads_.end()) return static_cast<std::size_t>(same - loads_.begin());
+  load.stopping = stopping_cells(section_, load.outline, load.margin);
+  loads_.push_back(std::move(load));
+  return loads_.size() - 1;
+}
+
+std::vector<std::size_t> SectionView::stopping_in(const SectionStop& stop,
+                                                  const ShownLoad& load) const {
+  const SectionCells& all = section_.data().bin_cells;
+  std::vector<std::size_t> cells;
+  const auto begin = std::ranges::lower_bound(all.bin, stop.bin);
+  for (auto i = static_cast<std::size_t>(begin - all.bin.begin());
+       i < all.size() && all.bin[i] == stop.bin; ++i) {
+    if (load.stopping[index_of_cell(section_.cells(), all.j[i], all.k[i])]) cells.push_back(i);
+  }
+  return cells;
+}
+
+void SectionView::find_stopping() {
+  const SectionCells& all = section_.data().bin_cells;
+  stopping_.resize(section_.cells().size());
+  for (const SectionStop& stop : check_->stops) {
+    for (const std::size_t i : stopping_in(stop, loads_[load_of_row_[stop.row]])) {
+      stopping_[index_of_cell(section_.cells(), all.j[i], all.k[i])] = true;
+    }
+  }
 }
 
 namespace {
@@ -114,7 +172,10 @@ void SectionView::find_places() {
       std::size_t at = 0;
       for (; at < places_.size(); ++at) {
         const ShownIntrusion& before = *last[at];
-        if (before.intrusion.side != in.side || before.obstacle != shown.obstacle) continue;
+        if (before.intrusion.side != in.side || before.obstacle != shown.obstacle ||
+            places_[at].load != stops_[s].load) {
+          continue;
+        }
         const bool follows = stops_[places_[at].stops.back() - 1].stop.bin + 1 == bin;
         if (!shown.obstacle.empty() ||
             (follows && overlap_across(before.intrusion, in, lattice_.cell))) {
@@ -122,7 +183,7 @@ void SectionView::find_places() {
         }
       }
       if (at == places_.size()) {
-        places_.push_back({.deepest = shown, .chainage_from = chainage_of_bin(bin)});
+        places_.push_back({.load = stops_[s].load, .deepest = shown, .chainage_from = chainage_of_bin(bin)});
         last.push_back(&shown);
       }
       ShownPlace& place = places_[at];
@@ -147,18 +208,13 @@ void SectionView::find_obstacles() {
   const SectionCells& all = data.bin_cells;
   std::vector<SectionPlace> places;
   std::vector<std::size_t> stop_of;
-  std::size_t i = 0;
   for (std::size_t s = 0; s < stops_.size(); ++s) {
     for (const ShownIntrusion& shown : stops_[s].intrusions) {
       places.push_back({shown.intrusion.first_pose, shown.intrusion.cell});
     }
     stop_of.resize(places.size(), s);
     if (picture_.obstacles.empty()) continue;
-    std::vector<std::size_t> cells;
-    while (i < all.size() && all.bin[i] < stops_[s].stop.bin) ++i;
-    for (; i < all.size() && all.bin[i] == stops_[s].stop.bin; ++i) {
-      if (stopping_[index_of_cell(section_.cells(), all.j[i], all.k[i])]) cells.push_back(i);
-    }
+    const std::vector<std::size_t> cells = stopping_in(stops_[s].stop, loads_[stops_[s].load]);
     const std::size_t looks = std::min(kLooksPerStretch, cells.size());
     for (std::size_t look = 0; look < looks; ++look) {
       const std::size_t cell = cells[look * cells.size() / looks];
@@ -188,14 +244,13 @@ void SectionView::find_obstacles() {
   }
 }
 
-double SectionView::margin() const {
-  return picture_.margin.value_or(section_.data().parameters.margin);
-}
-
 std::string SectionView::unit() const { return section_unit(section_.data()); }
 
 std::string SectionView::sentence() const {
-  if (check_) return verdict_sentence(*check_, section_.data(), margin());
+  if (check_ && !picture_.table.rows.empty()) {
+    return table_sentence(*check_, section_.data());
+  }
+  if (check_) return verdict_sentence(*check_, section_.data(), loads_[0].margin);
   return widths_sentence(section_, picture_.heights);
 }
 
@@ -291,17 +346,17 @@ std::string SectionView::remedy(const ShownStop& stop) const {
   std::string out;
   for (const ShownIntrusion& shown : stop.intrusions) {
     if (!out.empty()) out += "; and ";
-    out += remedy(shown.intrusion);
+    out += remedy(shown.intrusion, loads_[stop.load]);
   }
   return capitalized(std::move(out));
 }
 
 std::string SectionView::remedy(const ShownPlace& place) const {
-  return capitalized(remedy(place.deepest.intrusion));
+  return capitalized(remedy(place.deepest.intrusion, loads_[place.load]));
 }
 
-std::string SectionView::remedy(const SectionIntrusion& intrusion) const {
-  const bool gives_way = intrusion.depth < size_across(picture_.outline, intrusion.side) / 2;
+std::string SectionView::remedy(const SectionIntrusion& intrusion, const ShownLoad& load) const {
+  const bool gives_way = intrusion.depth < size_across(load.outline, intrusion.side) / 2;
   return remedy_of(intrusion, lattice_.cell, unit(), gives_way);
 }
 
@@ -382,16 +437,46 @@ void SectionView::add_question(Json& json) const {
   json["trajectory_hash"] = hash_text(data.trajectory_hash);
 }
 
+namespace {
+
+Json json_of(const ShownLoad& load) {
+  Json outline = Json::array();
+  for (const OutlinePoint& p : load.outline) outline.push_back(Json::array({p.y, p.z}));
+  return {{"outline_name", load.name}, {"margin", load.margin}, {"outline", std::move(outline)}};
+}
+
+Json json_of(const std::optional<SectionBinRange>& bins) {
+  return bins ? Json::array({bins->first, bins->last}) : Json();
+}
+
+Json json_of(const OutlineRowCheck& row, std::size_t load) {
+  return {{"line", row.line},
+          {"load", load},
+          {"chainage_from", row.chainage_from},
+          {"chainage_to", row.chainage_to},
+          {"bins", json_of(row.bins)},
+          {"verdict", row.bins ? Json(name_of(row.check.verdict)) : Json()},
+          {"reason", row.check.reason}};
+}
+
+Json json_of(const OutlineGap& gap) {
+  return {{"chainage_from", gap.chainage_from},
+          {"chainage_to", gap.chainage_to},
+          {"bins", json_of(gap.bins)}};
+}
+
+}  // namespace
+
 Json SectionView::json_of_check() const {
   if (!check_) return {};
-  Json outline = Json::array(), stops = Json::array();
-  for (const OutlinePoint& p : picture_.outline) outline.push_back(Json::array({p.y, p.z}));
+  Json stops = Json::array();
   for (const ShownStop& shown : stops_) {
     Json intrusions = Json::array();
     for (const ShownIntrusion& in : shown.intrusions) {
       intrusions.push_back(json_of(in, lattice_.cell));
     }
     stops.push_back({{"bin", shown.stop.bin},
+                     {"load", shown.load},
                      {"first_pose", shown.stop.first_pose},
                      {"chainage", shown.stop.chainage},
                      {"cell", shown.stop.cell},
@@ -403,19 +488,26 @@ Json SectionView::json_of_check() const {
   for (const ShownPlace& place : places_) {
     Json json = json_of(place.deepest, lattice_.cell);
     json["label"] = place.label;
+    json["load"] = place.load;
     json["stops"] = place.stops;
     json["chainage_from"] = place.chainage_from;
     json["chainage_to"] = place.chainage_to;
     json["remedy"] = remedy(place);
     places.push_back(std::move(json));
   }
-  return {{"verdict", name_of(check_->verdict)},
-          {"reason", check_->reason},
-          {"outline_name", picture_.outline_name},
-          {"margin", margin()},
-          {"outline", std::move(outline)},
-          {"places", std::move(places)},
-          {"stops", std::move(stops)}};
+  Json out{{"verdict", name_of(check_->verdict)}, {"reason", check_->reason}};
+  Json loads = Json::array(), rows = Json::array(), gaps = Json::array();
+  for (const ShownLoad& load : loads_) loads.push_back(json_of(load));
+  for (std::size_t i = 0; i < picture_.table.rows.size(); ++i) {
+    rows.push_back(json_of(check_->rows[i], load_of_row_[i]));
+  }
+  for (const OutlineGap& gap : check_->gaps) gaps.push_back(json_of(gap));
+  out["loads"] = std::move(loads);
+  out["rows"] = std::move(rows);
+  out["gaps"] = std::move(gaps);
+  out["places"] = std::move(places);
+  out["stops"] = std::move(stops);
+  return out;
 }
 
 Json SectionView::facts() const {
@@ -488,12 +580,23 @@ void SectionView::add_columns(std::vector<PageColumn>& columns) const {
   for (std::size_t i = 0; i < section_.cells().size(); ++i) {
     const std::uint64_t at = place(section_.cells().j[i], section_.cells().k[i]);
     whole[at] = true;
-    if (!stopping_.empty() && stopping_[i]) stops[at] = true;
+    if (check_ && stopping_[i]) stops[at] = true;
     firsts.push_back(static_cast<std::int32_t>(section_.cells().first_pose[i]));
   }
   columns.push_back({"section.whole", deflated_base64(packed(whole))});
   add_integers("section.first", firsts, columns);
-  if (check_) columns.push_back({"section.stops", deflated_base64(packed(stops))});
+  if (check_) {
+    std::string bytes = packed(stops);
+    for (std::size_t load = 0; loads_.size() > 1 && load < loads_.size(); ++load) {
+      CellBits of_load(cells);
+      for (std::size_t i = 0; i < section_.cells().size(); ++i) {
+        if (!loads_[load].stopping[i]) continue;
+        of_load[place(section_.cells().j[i], section_.cells().k[i])] = true;
+      }
+      bytes += packed(of_load);
+    }
+    columns.push_back({"section.stops", deflated_base64(bytes)});
+  }
   std::vector<const std::vector<SectionBand>*> rows;
   for (const SectionStretch& stretch : stretches_) rows.push_back(&stretch.bands);
   rows.push_back(&bands_);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,14 @@ namespace clearway {
 /// A bit for each cell of the window, row by row from below and from the least j.
 using CellBits = std::vector<bool>;
 
+/// An outline that is judged, on the whole path or on stretches of it.
+struct ShownLoad {
+  std::string name = {};  ///< of its file; empty where it has none
+  std::span<const OutlinePoint> outline = {};
+  double margin = 0;                 ///< the distance that it keeps
+  std::vector<bool> stopping = {};   ///< stopping_cells()
+};
+
 /// An intrusion with what is known of the obstacle.
 struct ShownIntrusion {
   SectionIntrusion intrusion;
@@ -28,6 +37,7 @@ struct ShownIntrusion {
 
 struct ShownStop {
   SectionStop stop;
+  std::size_t load = 0;  ///< index of the load that is stopped
   std::vector<ShownIntrusion> intrusions = {};
   std::vector<std::string> obstacles = {};  ///< names of all that are known to stop the load here
 };
@@ -36,6 +46,7 @@ struct ShownStop {
 /// without names, intrusions of one side in neighbouring stretches that overlap across the path.
 struct ShownPlace {
   std::string label = {};                     ///< "A", "B" and so on; A is the deepest
+  std::size_t load = 0;                       ///< index of the load
   ShownIntrusion deepest = {};                ///< with the heights of all of its intrusions
   std::vector<std::size_t> stops = {};        ///< numbers of the stops, from 1, ascending
   double chainage_from = 0, chainage_to = 0;  ///< ends of its stretches
@@ -52,12 +63,15 @@ class SectionView {
   const SectionPicture& picture() const { return picture_; }
   const SectionLattice& lattice() const { return lattice_; }
   std::string unit() const;  ///< symbol of the unit of lengths
-  double margin() const;     ///< the distance that the load keeps
-  const std::optional<SectionCheck>& check() const { return check_; }
+  /// The answer to the outline, or to a table of outlines; none without them.
+  const std::optional<OutlineTableCheck>& check() const { return check_; }
+  /// The outlines that are judged, each with its margin once.
+  const std::vector<ShownLoad>& loads() const { return loads_; }
   const std::vector<ShownStop>& stops() const { return stops_; }
   /// What the stops have in common, deepest first.
   const std::vector<ShownPlace>& places() const { return places_; }
-  /// Whether each cell of the whole path, in its order, stops the load; empty without an outline.
+  /// Whether each cell of the whole path, in its order, stops a load that is judged where it is
+  /// blocked; empty without an outline.
   const std::vector<bool>& stopping() const { return stopping_; }
   const std::vector<SectionBand>& bands() const { return bands_; }
   const std::vector<SectionStretch>& stretches() const { return stretches_; }
@@ -85,9 +99,14 @@ class SectionView {
   bool has_cells_of_bins() const;
 
  private:
+  void check_loads();
+  std::size_t add_load(ShownLoad load);
+  void find_stopping();
   void find_obstacles();
   void find_places();
-  std::string remedy(const SectionIntrusion& intrusion) const;
+  /// The cells of the bins, by index, that stop a load in its bin.
+  std::vector<std::size_t> stopping_in(const SectionStop& stop, const ShownLoad& load) const;
+  std::string remedy(const SectionIntrusion& intrusion, const ShownLoad& load) const;
   void add_question(Json& json) const;
   Json json_of_check() const;
   std::string sentence_of_widths() const;
@@ -95,7 +114,9 @@ class SectionView {
   const Section& section_;
   const SectionPicture& picture_;
   SectionLattice lattice_;
-  std::optional<SectionCheck> check_;
+  std::optional<OutlineTableCheck> check_;
+  std::vector<ShownLoad> loads_;
+  std::vector<std::size_t> load_of_row_;  ///< for each row of the check
   std::vector<bool> stopping_;
   std::vector<ShownStop> stops_;
   std::vector<ShownPlace> places_;

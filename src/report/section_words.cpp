@@ -1,6 +1,8 @@
 #include "report/section_words.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <set>
 #include <vector>
 
 #include "core/section/section_tables.hpp"
@@ -31,12 +33,23 @@ std::string extent_words(const SectionData& section) {
          " of the path, as its pivots are off the path at the others";
 }
 
+/// The warnings of a section, as the end of a sentence.
+std::string doubt_words(const SectionData& section) {
+  const std::size_t warned = section.warnings.size();
+  return warned == 0 ? "" : ". The section has " + counted(warned, "warning");
+}
+
+std::string stop_words(const SectionStop& stop, const SectionData& section) {
+  const std::string unit = section_unit(section);
+  return "at pose " + std::to_string(stop.first_pose) + ", " + format_brief(stop.chainage) + " " +
+         unit + " along the path, " + cell_words(stop.cell, section);
+}
+
 }  // namespace
 
 std::string verdict_sentence(const SectionCheck& check, const SectionData& section, double margin) {
   const std::string unit = section_unit(section);
-  const std::size_t warned = section.warnings.size();
-  const std::string doubts = warned == 0 ? "" : ". The section has " + counted(warned, "warning");
+  const std::string doubts = doubt_words(section);
   const std::string kept = margin > 0 ? " with a margin of " + format_brief(margin) + " " + unit
                            : section.parameters.margin > 0 ? " without a margin"
                                                            : "";
@@ -44,14 +57,47 @@ std::string verdict_sentence(const SectionCheck& check, const SectionData& secti
     case SectionVerdict::kPasses:
       return "passes: the load passes " + extent_words(section) + kept + doubts;
     case SectionVerdict::kStopped:
-      return "stopped: the load is stopped" + kept + " at pose " +
-             std::to_string(check.stop->first_pose) + ", " + format_brief(check.stop->chainage) +
-             " " + unit + " along the path, " + cell_words(check.stop->cell, section) +
+      return "stopped: the load is stopped" + kept + " " + stop_words(*check.stop, section) +
              ", and in " + counted(check.stops.size(), "stretch", "stretches") + " in all" + doubts;
     case SectionVerdict::kUnknown:
       break;
   }
   return "unknown: " + check.reason + doubts;
+}
+
+std::string table_sentence(const OutlineTableCheck& check, const SectionData& section) {
+  const std::string doubts = doubt_words(section);
+  switch (check.verdict) {
+    case SectionVerdict::kPasses:
+      return "passes: the outlines of " + counted(check.rows.size(), "row") + " pass " +
+             extent_words(section) + doubts;
+    case SectionVerdict::kStopped: {
+      const OutlineRowCheck& row = check.rows[check.stop->row];
+      std::set<std::uint32_t> bins;
+      for (const SectionStop& stop : check.stops) bins.insert(stop.bin);
+      return "stopped: the outline of line " + std::to_string(row.line) + ", " +
+             row.file.string() + ", is stopped " + stop_words(*check.stop, section) + ". A load is stopped in " +
+             counted(bins.size(), "stretch", "stretches") + " in all" + doubts;
+    }
+    case SectionVerdict::kUnknown:
+      break;
+  }
+  return "unknown: " + check.reason + doubts;
+}
+
+std::string row_words(const OutlineRowCheck& check, const SectionData& section) {
+  const std::string unit = section_unit(section);
+  std::string out = "line " + std::to_string(check.line) + ", chainage " +
+                    format_brief(check.chainage_from) + " to " + format_brief(check.chainage_to) +
+                    " " + unit + ", " + check.file.string();
+  if (check.margin > 0) out += " with a margin of " + format_brief(check.margin) + " " + unit;
+  if (!check.bins) return out + ": not judged, because " + check.check.reason;
+  out += std::string(": ") + name_of(check.check.verdict);
+  if (check.check.stop) {
+    return out + " " + stop_words(*check.check.stop, section) + ", and in " +
+           counted(check.check.stops.size(), "stretch", "stretches") + " in all";
+  }
+  return check.check.reason.empty() ? out : out + ", because " + check.check.reason;
 }
 
 namespace {

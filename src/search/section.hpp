@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "clearway/body.hpp"
 #include "clearway/query.hpp"
@@ -16,6 +18,9 @@ Body load_of_section(const std::vector<Pose>& path, const SectionParameters& par
 
 /// The points that a section leaves out, as a query has them.
 QueryParameters ignored_by(const SectionParameters& asked);
+
+/// Throws InputError where this is not the path of the section.
+void check_path_of(const SectionData& section, std::span<const Pose> path);
 
 /// Adds the blocked cells of a bin, ascending by k and j. without: the firsts of another map, whose
 /// cells with the same first pose are left out; null for none.

@@ -183,14 +183,18 @@ void check_hash(const char* what, std::uint64_t given, std::uint64_t of_section,
 
 }  // namespace
 
+void check_path_of(const SectionData& section, std::span<const Pose> path) {
+  check_hash("trajectory", hash_of_trajectory(path), section.trajectory_hash,
+             Remedy::kSameTrajectory);
+}
+
 std::vector<std::optional<SectionWitness>> section_witnesses(const SectionData& section,
                                                              const Store& store,
                                                              const std::vector<Pose>& path,
                                                              std::span<const SectionPlace> places) {
   check_hash("environment", store.reader().metadata().points_hash, section.environment_hash,
              Remedy::kSameEnvironment);
-  check_hash("trajectory", hash_of_trajectory(path), section.trajectory_hash,
-             Remedy::kSameTrajectory);
+  check_path_of(section, path);
   return WitnessSearch(section, store.reader(), path, places).run();
 }
 

@@ -53,7 +53,9 @@ WRITTEN = {
     ("docs/guide/campaigns.md", "{"): "campaign.json",
     ("docs/guide/vehicles.md", '{"bodies": [\n  {"name": "body"'): "wagon.json",
     ("docs/guide/vehicles.md", '{"bodies": [\n  {"name": "tractor"'): "road.json",
-    ("docs/guide/section.md", "y,z"): "load.csv",
+    ("docs/guide/section.md", "y,z\n-0.6"): "load.csv",
+    ("docs/guide/section.md", "y,z\n-0.7"): "curve.csv",
+    ("docs/guide/section.md", "chainage_from"): "outlines.csv",
 }
 
 # (page, beginning of the command): the exit code, where it is not 0.
@@ -61,6 +63,7 @@ EXIT_CODES = {
     ("README.md", "clearway compare"): 1,
     ("docs/guide/tutorial.md", "clearway compare"): 1,
     ("docs/guide/command-line.md", "clearway compare before.h5"): 1,
+    ("docs/guide/section.md", "clearway section check section.h5 --table"): 1,
     ("docs/guide/results.md", "clearway compare before.h5"): 1,
 }
 

@@ -166,6 +166,33 @@ class Sections(SceneTest):
             with self.assertRaisesRegex((clearway.UsageError, TypeError), "^margin: "):
                 section.check(wide, margin)
 
+    def test_a_table_of_outlines_is_a_check_of_each_row(self):
+        section = self.section()
+        end = section.chainage()[-1]
+        for name, half in (("narrow.csv", 0.2), ("wide.csv", 1.2)):
+            corners = [(-half, -0.3), (half, -0.3), (half, 0.3), (-half, 0.3)]
+            (self.folder / name).write_text("".join(f"{y},{z}\n" for y, z in corners))
+        table = self.folder / "outlines.csv"
+        table.write_text(f"chainage_from,chainage_to,outline,margin\n0,{end / 2},narrow.csv,0.1\n"
+                         f"{end / 2},{end},wide.csv,\n")
+        check = section.check_table(table, 0.05)
+        self.assertEqual([(r.line, r.outline, r.margin) for r in check.rows],
+                         [(2, "narrow.csv", 0.1), (3, "wide.csv", 0.05)])
+        found = []
+        for row in check.rows:
+            whole = section.check(clearway.read_outline(self.folder / row.outline), row.margin)
+            first, last = row.bins
+            expected = [(s.bin, s.first_pose, s.cell) for s in whole.stops if first <= s.bin <= last]
+            self.assertEqual([(s.bin, s.first_pose, s.cell) for s in row.check.stops], expected)
+            found += expected
+        self.assertEqual(sorted((s.bin, s.first_pose, s.cell) for s in check.stops), sorted(found))
+        self.assertEqual((check.gaps, check.verdict), ([], "stopped" if found else "passes"))
+        table.write_text(f"station_from,station_to,outline\n0,{end / 2},narrow.csv\n")
+        gap = section.check_table(table, station=2 * section.chainage()).gaps[0]
+        self.assertAlmostEqual(gap.chainage_from, end / 4)
+        with self.assertRaisesRegex(clearway.UsageError, "no stations"):
+            section.check_table(table)
+
     def test_widths(self):
         section = self.section(ignore_boxes=[clearway.Box((-9, -0.7, -0.5), (9, 0.9, 0.6))])
         whole = rows(section.cells())

@@ -157,7 +157,6 @@ void add_options_of_both(CLI::App& command, ReportCommand& options) {
   CLI::Option* trajectory =
       command.add_option("--trajectory", options.trajectory, kTrajectoryHelp)->type_name("FILE");
   environment->needs(trajectory);
-  trajectory->needs(environment);
   command
       .add_option("-o,--output", options.outputs,
                   "The page, an HTML file; of a section also the picture, an SVG file, in place of "
@@ -287,10 +286,7 @@ struct SectionPage {
 
 void add_options_of_section(CLI::App& command, SectionPage& options, LengthOptions& lengths) {
   const GroupScope group(command, OptionGroup::kSection);
-  CLI::Option* outline = add_load_options(command, options.load, lengths);
-  for (const char* name : {"--margin", "--mirror", "--unit"}) {
-    command.get_option(name)->needs(outline)->group(title_of(OptionGroup::kSection));
-  }
+  add_load_options(command, options.load, lengths);
   lengths.add(command, "--band", options.heights.band,
               "Height of a band of the map of widths (default: 0.1 m)");
   lengths.add(command, "--base", options.heights.base, kBaseHelp, FieldRange::kAny);
@@ -299,15 +295,24 @@ void add_options_of_section(CLI::App& command, SectionPage& options, LengthOptio
                   "Names for what stops the load: a CSV file of clearway conflicts on the same "
                   "path, with a column `name` if you add one")
       ->type_name("FILE")
-      ->needs(command.get_option("--env"))
-      ->needs(outline);
+      ->needs(command.get_option("--env"));
+}
+
+/// Throws UsageError where options need an outline or a table that is not given.
+void check_load_is_given(const CLI::App& command, const LoadInput& load) {
+  if (load.is_given()) return;
+  for (const char* name : {"--margin", "--mirror", "--unit", "--conflicts"}) {
+    if (command.count(name) > 0) {
+      throw UsageError(std::string(name) + " needs the load: --outline or --table");
+    }
+  }
 }
 
 /// Throws UsageError where an output is neither a page nor a picture, or is an input.
 void check_outputs(const ReportCommand& both, const SectionPage& options) {
   std::vector<std::filesystem::path> inputs{both.result};
   for (const auto& input :
-       {options.load.outline, both.environment, both.trajectory, options.conflicts}) {
+       {options.load.outline, options.load.table, both.environment, both.trajectory, options.conflicts}) {
     if (!input.empty()) inputs.push_back(input);
   }
   bool has_page = false;
@@ -326,20 +331,26 @@ void check_outputs(const ReportCommand& both, const SectionPage& options) {
   }
 }
 
-/// The texts of a page of a section, and what the page is made of but store and path.
-SectionPageOptions page_of(ReportCommand& both, SectionPage& options, const Section& section) {
-  const double metres = convert_for(both.lengths, section, both.result);
+/// The texts of a page of a section, and what the page is made of but store and path. metres: of
+/// the section's unit.
+SectionPageOptions page_of(ReportCommand& both, SectionPage& options, const Section& section,
+                           double metres) {
   SectionPageOptions page;
   static_cast<PageTexts&>(page) = both.report;
   if (page.date.empty()) page.date = now_in_utc();
   page.overwrite = both.report.overwrite;
   page.heights = options.heights;
   page.section_name = file_name(both.result);
-  if (options.load.outline.empty()) return page;
-  page.outline = read_load(options.load, section, metres);
+  if (!options.load.is_given()) return page;
+  if (options.load.table.empty()) {
+    page.outline = read_load(options.load, section, metres);
+    page.outline_name = file_name(options.load.outline);
+  } else {
+    page.table = read_load_table(options.load, section, metres);
+    page.outline_name = file_name(options.load.table);
+  }
   page.warnings = options.load.messages;
   page.margin = options.load.margin;
-  page.outline_name = file_name(options.load.outline);
   return page;
 }
 
@@ -359,12 +370,16 @@ SectionPageSummary write_outputs(const std::vector<std::filesystem::path>& outpu
 }
 
 SectionPageSummary report_section(ReportCommand& both, SectionPage& options) {
+  check_load_is_given(*both.command, options.load);
   check_outputs(both, options);
   const Section section(both.result);
-  SectionPageOptions page = page_of(both, options, section);
+  const double metres = convert_for(both.lengths, section, both.result);
+  SectionPageOptions page = page_of(both, options, section, metres);
   SiteInput site{both.environment, both.trajectory, both.trajectory_options};
-  site.read();
-  if (site.is_given()) {
+  check_site(site, page.table.rows.empty() ? nullptr : &page.table);
+  site.read(section, metres);
+  page.station = site.labels.station;
+  if (site.store) {
     page.store = &*site.store;
     page.path = &site.path;
   }

@@ -30,7 +30,6 @@
 #include "io/files/json.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/thread_limit.hpp"
-#include "report/section_words.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -203,118 +202,6 @@ void add_find(CLI::App& section) {
       "--pivots 10,-10 -o section.h5");
   command->callback(
       [options] { run_stoppable(options->output, kStartsAgain, [&] { run_find(*options); }); });
-}
-
-struct CheckCommand {
-  std::filesystem::path section;
-  LoadInput load;
-  SiteInput site;
-  LengthOptions lengths;
-  bool json = false;
-};
-
-using Witnesses = std::vector<std::optional<SectionWitness>>;
-
-ordered_json witness_json(const std::optional<SectionWitness>& witness) {
-  if (!witness) return nullptr;
-  return {{"source", witness->source},
-          {"xyz", {witness->xyz.x, witness->xyz.y, witness->xyz.z}},
-          {"class", witness->point_class}};
-}
-
-ordered_json stop_json(const SectionStop& stop) {
-  return {{"bin", stop.bin},
-          {"first_pose", stop.first_pose},
-          {"chainage", stop.chainage},
-          {"cell", stop.cell}};
-}
-
-/// witnesses: of each stop, or empty where nobody asked for them.
-ordered_json json_of(const SectionCheck& check, double margin, const Witnesses& witnesses,
-                     const Section& section, const CheckCommand& options) {
-  ordered_json out =
-      program_json({{"section", options.section}, {"outline", options.load.outline}});
-  out["margin"] = margin;
-  out["verdict"] = name_of(check.verdict);
-  out["reason"] = check.reason.empty() ? ordered_json(nullptr) : ordered_json(check.reason);
-  out["first_pose"] = out["chainage"] = out["cell"] = nullptr;
-  if (check.stop) {
-    out["first_pose"] = check.stop->first_pose;
-    out["chainage"] = check.stop->chainage;
-    out["cell"] = check.stop->cell;
-  }
-  if (options.site.is_given()) {
-    out["witness"] = witnesses.empty() ? ordered_json(nullptr) : witness_json(witnesses.front());
-  }
-  auto stops = ordered_json::array();
-  for (std::size_t i = 0; i < check.stops.size(); ++i) {
-    stops.push_back(stop_json(check.stops[i]));
-    if (!witnesses.empty()) stops.back()["witness"] = witness_json(witnesses[i]);
-  }
-  out["stops"] = std::move(stops);
-  if (section.data().unknown) {
-    auto unknowns = ordered_json::array();
-    for (const SectionStop& place : check.unknowns) unknowns.push_back(stop_json(place));
-    out["unknowns"] = std::move(unknowns);
-  }
-  std::vector<Message> warnings = section.data().warnings;
-  warnings.insert(warnings.end(), options.load.messages.begin(), options.load.messages.end());
-  out["warnings"] = warnings;
-  return out;
-}
-
-/// The points that stop the load first in each stretch; empty without store and path.
-Witnesses witnesses_of(const SectionCheck& check, const Section& section, SiteInput& site) {
-  if (!site.is_given()) return {};
-  site.read();
-  std::vector<SectionPlace> places;
-  for (const SectionStop& stop : check.stops) places.push_back({stop.first_pose, stop.cell});
-  return section_witnesses(section.data(), *site.store, site.path, places);
-}
-
-int run_check(CheckCommand& options) {
-  const Section section(options.section);
-  const double metres = convert_for(options.lengths, section, options.section);
-  const std::vector<OutlinePoint> outline = read_load(options.load, section, metres);
-  const double margin = options.load.margin.value_or(section.data().parameters.margin);
-  SectionCheck check;
-  try {
-    check = section.check(outline, margin);
-  } catch (const UsageError& error) {
-    throw UsageError(options.load.outline.string() + ": " + error.what());
-  }
-  const Witnesses witnesses = witnesses_of(check, section, options.site);
-  for (const Message& warning : section.data().warnings) log_message(warning);
-  const std::string sentence = verdict_sentence(check, section.data(), margin);
-  if (options.json) {
-    spdlog::info("{}", sentence);
-    print(indented_text(json_of(check, margin, witnesses, section, options)));
-  } else {
-    print(sentence + "\n");
-  }
-  return check.verdict == SectionVerdict::kPasses    ? kDone
-         : check.verdict == SectionVerdict::kStopped ? kDiffers
-                                                     : kUndecided;
-}
-
-void add_section_check(CLI::App& section, int& exit_code) {
-  const auto options = std::make_shared<CheckCommand>();
-  CLI::App* command = section.add_subcommand(
-      "check", "Say whether a load with this outline passes, and where it is stopped");
-  command->add_option("SECTION", options->section, "Section of clearway section find")
-      ->type_name("FILE")
-      ->required();
-  add_load_options(*command, options->load, options->lengths)->required();
-  add_site_options(*command, options->site, options->lengths);
-  command->add_flag("--json", options->json, "Print one JSON object");
-  command->footer(
-      "Exit code 0: the load passes.\n"
-      "Exit code 1: it is stopped.\n"
-      "Exit code 6: unknown, because the load with its margin leaves the window, the margin "
-      "exceeds\n"
-      "that of the section, the section is in doubt, or no beam crossed what the load needs.\n"
-      "Example: clearway section check section.h5 --outline load.csv --margin 0.1");
-  command->callback([options, &exit_code] { exit_code = run_check(*options); });
 }
 
 struct ExportCommand {

@@ -10,25 +10,33 @@
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
+#include "clearway/error.hpp"
 #include "core/util/format.hpp"
 #include "io/scans/length_unit.hpp"
+#include "search/section.hpp"
 
 namespace clearway::tool {
 
-CLI::Option* add_load_options(CLI::App& command, LoadInput& load, LengthOptions& lengths) {
+void add_load_options(CLI::App& command, LoadInput& load, LengthOptions& lengths) {
   CLI::Option* outline =
       command
           .add_option("--outline", load.outline,
                       "The outline of the load as text: y,z of each corner in a line, y to the "
                       "left and z up, or with --mirror height,half_width")
           ->type_name("FILE");
+  command
+      .add_option("--table", load.table,
+                  "Outlines by stretches of the path: CSV with chainage_from,chainage_to (or "
+                  "station_from,station_to),outline,margin; outline files are relative to it")
+      ->type_name("FILE")
+      ->excludes(outline);
   lengths.add(command, "--margin", load.margin,
-              "Distance to keep on all sides; at most that of the section, which is the default",
+              "Distance to keep on all sides; at most that of the section, which is the default; "
+              "of a table, for rows without a margin",
               FieldRange::kFromZero);
   command.add_flag("--mirror", load.how.mirror,
                    "The file has height,half_width of the one half of a symmetric outline");
   add_outline_unit(command, load.how.unit);
-  return outline;
 }
 
 double convert_for(const LengthOptions& lengths, const Section& section,
@@ -42,19 +50,35 @@ double convert_for(const LengthOptions& lengths, const Section& section,
   return metres;
 }
 
-std::vector<OutlinePoint> read_load(LoadInput& load, const Section& section, double metres) {
-  std::vector<OutlinePoint> outline =
-      read_outline(load.outline, {.mirror = load.how.mirror}, &load.messages);
-  for (const Message& message : load.messages) log_message(message);
-  const FileUnit& unit = load.how.unit;
-  if (!unit.is_known()) return outline;
-  if (length_unit_of(section.data().length_unit) == LengthUnit::kUnknown &&
-      (is_foot(unit.metres()) || unit.metres() == kMetresPerInch)) {
-    spdlog::warn("{}", unit_assumed_text("corners of the outline", unit.metres()));
+namespace {
+
+/// How the outlines of a load are read for a section whose unit has so many metres. Warns where a
+/// unit is named and that of the section is not known.
+OutlineOptions outline_options(const LoadInput& load, const Section& section, double metres) {
+  OutlineOptions how = load.how;
+  how.environment_unit = metres;
+  if (how.unit.is_known() &&
+      length_unit_of(section.data().length_unit) == LengthUnit::kUnknown &&
+      (is_foot(how.unit.metres()) || how.unit.metres() == kMetresPerInch)) {
+    spdlog::warn("{}", unit_assumed_text("corners of the outline", how.unit.metres()));
   }
-  const UnitFactor factor(unit.metres_in(metres), metres);
-  for (OutlinePoint& p : outline) p = {factor(p.y), factor(p.z)};
+  return how;
+}
+
+}  // namespace
+
+std::vector<OutlinePoint> read_load(LoadInput& load, const Section& section, double metres) {
+  const OutlineOptions how = outline_options(load, section, metres);
+  std::vector<OutlinePoint> outline = read_outline(load.outline, how, &load.messages);
+  for (const Message& message : load.messages) log_message(message);
   return outline;
+}
+
+OutlineTable read_load_table(LoadInput& load, const Section& section, double metres) {
+  const OutlineOptions how = outline_options(load, section, metres);
+  OutlineTable table = read_outline_table(load.table, how, &load.messages);
+  for (const Message& message : load.messages) log_message(message);
+  return table;
 }
 
 void add_site_options(CLI::App& command, SiteInput& site, LengthOptions& lengths) {
@@ -66,23 +90,41 @@ void add_site_options(CLI::App& command, SiteInput& site, LengthOptions& lengths
           ->type_name("FILE");
   CLI::Option* trajectory =
       command
-          .add_option("--trajectory", site.trajectory, "The path that the section was found for")
+          .add_option("--trajectory", site.trajectory,
+                      "The path that the section was found for, with --env or for a table by "
+                      "station")
           ->type_name("FILE");
   environment->needs(trajectory);
-  trajectory->needs(environment);
   add_trajectory_options(command, site.trajectory_options, lengths);
 }
 
-void SiteInput::read() {
-  if (!is_given()) return;
+void check_site(const SiteInput& site, const OutlineTable* table) {
+  const bool by_station = table != nullptr && table->by_station;
+  if (by_station && site.trajectory.empty()) {
+    throw UsageError(table->path.string() +
+                     ": its rows are by station; expected --trajectory, whose poses have stations");
+  }
+  if (!site.trajectory.empty() && !site.has_store() && !by_station) {
+    throw UsageError("--trajectory needs --env, unless it gives the stations of --table");
+  }
+}
+
+void SiteInput::read(const Section& section, double metres) {
+  if (trajectory.empty()) return;
   check_is_trajectory(trajectory);
-  check_is_store(environment);
-  store.emplace(environment);
-  set_environment_unit(*store, trajectory_options);
-  trajectory_options.default_crs = store->crs_wkt();
+  if (has_store()) {
+    check_is_store(environment);
+    store.emplace(environment);
+    set_environment_unit(*store, trajectory_options);
+    trajectory_options.default_crs = store->crs_wkt();
+  } else {
+    trajectory_options.environment_unit = metres;
+    trajectory_options.default_crs = section.data().crs_wkt;
+  }
   std::vector<Message> messages;
-  path = read_trajectory(trajectory, trajectory_options, &messages);
+  path = read_trajectory(trajectory, trajectory_options, &messages, &labels);
   for (const Message& message : messages) log_message(message);
+  check_path_of(section.data(), path);
 }
 
 }  // namespace clearway::tool

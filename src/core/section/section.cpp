@@ -261,13 +261,16 @@ std::size_t index_of_cell(const SectionCells& cells, std::int32_t j, std::int32_
 
 namespace {
 
-/// The first place in each bin at which a load needs a cell. all: cells of the bins. cells: those
-/// of the whole path. near: whether the load needs them.
-std::vector<SectionStop> first_places(const SectionCells& all, const SectionCells& cells,
-                                      const std::vector<bool>& near,
+/// The first place in each of some bins at which a load needs a cell. all: cells of the bins.
+/// cells: those of the whole path. near: whether the load needs them.
+std::vector<SectionStop> first_places(const SectionCells& all, SectionBinRange bins,
+                                      const SectionCells& cells, const std::vector<bool>& near,
                                       const std::vector<double>& chainage) {
   std::vector<SectionStop> places;
-  for (std::size_t i = 0; i < all.size(); ++i) {
+  const auto begin = std::ranges::lower_bound(all.bin, bins.first);
+  const auto end = std::upper_bound(begin, all.bin.end(), bins.last);
+  for (auto i = static_cast<std::size_t>(begin - all.bin.begin());
+       i < static_cast<std::size_t>(end - all.bin.begin()); ++i) {
     if (!near[index_of_cell(cells, all.j[i], all.k[i])]) continue;
     if (places.empty() || places.back().bin != all.bin[i]) {
       places.push_back({all.bin[i], kNotBlocked, 0, {}});
@@ -291,13 +294,23 @@ std::string doubt_about(const SectionData& section) {
 
 namespace {
 
-/// Why nothing could be found on stretches of the path, as a clause; empty where something could be
-/// found everywhere. all_seen: whether beams crossed all that the load needs, so that no point is
-/// missing there.
-std::string doubt_about_stretches(const SectionData& section, bool all_seen) {
+/// Whether a message is about poses of these bins, which it is where it names no stretch.
+bool concerns(const Message& message, const SectionData& section, SectionBinRange bins) {
+  const auto bin_of = [&](std::uint32_t pose) {
+    return std::floor(section.chainage[pose] / section.parameters.bin);
+  };
+  return message.stretches.empty() || std::ranges::any_of(message.stretches, [&](PoseRange poses) {
+           return bin_of(poses.first) <= bins.last && bin_of(poses.last) >= bins.first;
+         });
+}
+
+/// Why nothing could be found on stretches of the path that these bins hold, as a clause; empty
+/// where something could be found everywhere. all_seen: whether beams crossed all that the load
+/// needs, so that no point is missing there.
+std::string doubt_about_stretches(const SectionData& section, SectionBinRange bins, bool all_seen) {
   std::set<std::string_view> codes;
   for (const Message& warning : section.warnings) {
-    if (doubt_of(warning) != Doubt::kStretch) continue;
+    if (doubt_of(warning) != Doubt::kStretch || !concerns(warning, section, bins)) continue;
     if (!all_seen || !lacks_points(warning.code)) codes.insert(warning.code);
   }
   std::string listed;
@@ -334,16 +347,16 @@ SectionGrid Section::grid() const {
 }
 
 SectionCheck Section::check(std::span<const OutlinePoint> outline,
-                            std::optional<double> asked_margin) const {
+                            std::optional<double> asked_margin, SectionBinRange bins) const {
   const double margin = asked_margin.value_or(data_.parameters.margin);
   const std::vector<bool> stops = stopping_cells(*this, outline, margin);
   const Load load(outline);
   const double g = data_.parameters.cell;
   const double reach = reach_of(data_, margin);
   SectionCheck check;
-  check.stops = first_places(data_.bin_cells, cells_, stops, data_.chainage);
+  check.stops = first_places(data_.bin_cells, bins, cells_, stops, data_.chainage);
   if (data_.unknown) {
-    check.unknowns = first_places(*data_.unknown, ever_unknown_,
+    check.unknowns = first_places(*data_.unknown, bins, ever_unknown_,
                                   needed(ever_unknown_, g, load, reach), data_.chainage);
   }
   if (!check.stops.empty()) {
@@ -368,7 +381,7 @@ SectionCheck Section::check(std::span<const OutlinePoint> outline,
                    format_brief(check.unknowns.front().chainage) + " along the path";
   }
   if (check.reason.empty()) {
-    check.reason = doubt_about_stretches(data_, data_.unknown.has_value());
+    check.reason = doubt_about_stretches(data_, bins, data_.unknown.has_value());
   }
   check.verdict = check.reason.empty() ? SectionVerdict::kPasses : SectionVerdict::kUnknown;
   return check;

@@ -190,7 +190,9 @@ void find_intrusions(const Section& section, std::span<const OutlinePoint> outli
   const SectionCells& all = section.data().bin_cells;
   const GivingWay way(outline, lattice_of(section.data()), reach);
   std::vector<std::size_t> cells;
-  std::size_t i = 0;
+  if (stops.empty()) return;
+  auto i = static_cast<std::size_t>(std::ranges::lower_bound(all.bin, stops.front().bin) -
+                                    all.bin.begin());
   for (SectionStop& stop : stops) {
     cells.clear();
     while (i < all.size() && all.bin[i] < stop.bin) ++i;

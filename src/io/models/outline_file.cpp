@@ -96,12 +96,14 @@ std::vector<OutlinePoint> read_outline(const std::filesystem::path& path,
                                        const OutlineOptions& options,
                                        std::vector<Message>* messages) {
   const std::vector<Row> rows = rows_of(path, options.mirror);
-  const UnitFactor metres(options.unit.is_known() ? options.unit.metres_in(1) : 1);
+  const double environment = options.environment_unit;
+  const UnitFactor lengths(
+      options.unit.is_known() ? options.unit.metres_in(environment) : environment, environment);
   std::vector<OutlinePoint> outline;
   for (const Row& row : rows) {
     const OutlinePoint point =
         options.mirror ? OutlinePoint{row.second, row.first} : OutlinePoint{row.first, row.second};
-    outline.push_back({metres(point.y), metres(point.z)});
+    outline.push_back({lengths(point.y), lengths(point.z)});
   }
   if (options.mirror) {
     for (std::size_t i = outline.size(); i-- > 0;) {

@@ -80,13 +80,49 @@ function stretchCells(index) {
   return make("g", { id: "section-stretch", "shape-rendering": "crispEdges", transform: transform.value },
       unknown && make("path", { class: "unknown", fill: "url(#section_unknown)", d: pathOfCells(unknown) }),
       make("path", { fill: colourAt(stretchRange(index)[0]), d: pathOfCells(bits) }),
-      section.stops && make("path", { class: "stops", fill: "url(#section_stops)", d: pathOfCells(bits, section.stops) }));
+      section.stops && make("path", { class: "stops", fill: "url(#section_stops)", d: pathOfCells(bits, stopsOf(index)) }));
+}
+
+/** The rows of a table of outlines that judge a stretch; none where one outline is judged everywhere. */
+function rowsOf(index) {
+  const bin = sectionBins()[index];
+  return section.facts.check.rows.filter(({ bins }) => bins && bins[0] <= bin && bin <= bins[1]);
+}
+
+/** The indices of the loads that are judged on a stretch. */
+const loadsOf = (index) => section.facts.check.rows.length > 0 ? [...new Set(rowsOf(index).map(({ load }) => load))] : [0];
+
+/** The bits of the cells that stop the loads of a stretch. */
+function stopsOf(index) {
+  if (section.facts.check.loads.length === 1) return loadsOf(index).length > 0 ? section.stops : new Uint8Array(bytesOfWindow());
+  const out = new Uint8Array(bytesOfWindow());
+  for (const load of loadsOf(index)) bitsOf(section.stops, load + 1).forEach((byte, i) => { out[i] |= byte; });
+  return out;
+}
+
+/** Which outlines of a table are judged on a stretch, in words. */
+function outlineWords(index) {
+  const { rows, loads } = section.facts.check;
+  if (rows.length === 0) return "";
+  const names = loadsOf(index).map((load) => `${loads[load].outline_name} with a margin of ${shortLength(loads[load].margin)}`);
+  return names.length > 0 ? `, ${names.join(" and ")}` : "";
+}
+
+/** Whether a part of a stretch has no outline. */
+const isInGap = (index) => section.facts.check.gaps.some(({ bins }) => bins[0] <= sectionBins()[index] && sectionBins()[index] <= bins[1]);
+
+/** Shows the outlines of a stretch, or with null all of them. */
+function drawLoads(index) {
+  const shown = index === null || !section.facts.check ? null : loadsOf(index);
+  for (const load of byId("section-svg").querySelectorAll(".section_load")) {
+    load.style.display = shown === null || shown.includes(+load.dataset.load) ? "" : "none";
+  }
 }
 
 /** The deepest places of the intrusions of one stretch, with how deep they are. */
 function stretchMarks(index) {
-  const stop = stopOfStretch(index), scale = sectionScale(), { cell } = section.facts;
-  return make("g", { id: "section-stretch-marks" }, (stop?.intrusions ?? []).map((intrusion) => {
+  const scale = sectionScale(), { cell } = section.facts;
+  return make("g", { id: "section-stretch-marks" }, stopsOfStretch(index).flatMap(({ intrusions }) => intrusions).map((intrusion) => {
     const x = scale.x((intrusion.cell[0] + 0.5) * cell), y = scale.y((intrusion.cell[1] + 0.5) * cell);
     const label = `${intrusion.depth.toFixed(2)} ${unitSymbol}${intrusion.obstacle ? `, ${intrusion.obstacle}` : ""}`;
     const right = x < (scale.left + scale.right) / 2;
@@ -95,7 +131,7 @@ function stretchMarks(index) {
   }));
 }
 
-const stopOfStretch = (index) => section.facts.check?.stops.find((stop) => stop.bin === sectionBins()[index]);
+const stopsOfStretch = (index) => (section.facts.check?.stops ?? []).filter((stop) => stop.bin === sectionBins()[index]);
 
 /** Shows a stretch, or with null the whole path, in the picture. */
 function drawStretch(index) {
@@ -109,6 +145,7 @@ function drawStretch(index) {
     byId("section-cells").after(stretchCells(index));
     byId("section-marks").after(stretchMarks(index));
   }
+  drawLoads(whole ? null : index);
   byId("section-title").textContent = pictureTitle(index);
   byId("section-whole").disabled = section.chosen === null;
   drawRoom();
@@ -117,9 +154,13 @@ function drawStretch(index) {
 function pictureTitle(index) {
   if (index === null) return "The whole path: a cell shows where on the path it is blocked first.";
   if (!section.cells) return "The section is so large that the page has the picture of the whole path alone.";
-  const stop = stopOfStretch(index), range = `Chainage ${rangeWords(stretchRange(index))}`;
+  const range = `Chainage ${rangeWords(stretchRange(index))}`;
   if (!section.facts.check) return `${range}.`;
-  return stop ? `${range}: stops the load. ${stop.remedy}.` : `${range}: nothing stops the load here.`;
+  const stops = stopsOfStretch(index), judged = `${range}${outlineWords(index)}`;
+  const gap = isInGap(index) ? " A part of it has no outline in the table." : "";
+  if (loadsOf(index).length === 0) return `${range}: the table has no outline here.`;
+  return stops.length > 0 ? `${judged}: stops the load. ${stops.map(({ remedy }) => remedy).join(". ")}.${gap}`
+      : `${judged}: nothing stops the load here.${gap}`;
 }
 
 function chooseStretch(index) {

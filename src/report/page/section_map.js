@@ -61,10 +61,11 @@ function mapStops() {
   const { columns, bands, cell, k_from, rows } = section.facts, parts = [];
   for (const stop of section.facts.check.stops) {
     const index = sectionBins().indexOf(stop.bin), bits = bitsOf(section.cells, index), [from, to] = stretchRange(index);
+    const stopping = stopsOf(index);
     const stopped = bands.map(({ z_from, z_to }) => {
       const first = clamp(Math.floor(z_from / cell + 1e-6) - k_from, 0, rows);
       const end = clamp(Math.ceil(z_to / cell - 1e-6) - k_from, 0, rows);
-      for (let i = first * columns; i < end * columns; ++i) if (isSet(bits, i) && isSet(section.stops, i)) return true;
+      for (let i = first * columns; i < end * columns; ++i) if (isSet(bits, i) && isSet(stopping, i)) return true;
       return false;
     });
     bands.forEach((band, i) => {

@@ -31,7 +31,8 @@ function buildQuestion() {
     f.name && ["Section", f.name],
     ["Load", `from x = ${shortLength(f.rear)} to ${shortLength(f.front)} along the vehicle` +
         (f.pivots ? `, on pivots at ${f.pivots.map(shortLength).join(" and ")}` : "")],
-    check && ["Outline", `${check.outline_name ? `${check.outline_name}, ` : ""}${plural(check.outline.length, "corner")}, margin ${shortLength(check.margin)}`],
+    check && check.rows.length === 0 && ["Outline", loadWords(check.loads[0])],
+    check && check.rows.length > 0 && ["Outlines", `${plural(check.rows.length, "row")}, see the table below`],
     ["Cells", `${shortLength(f.cell)}, in stretches of ${shortLength(f.bin)}`],
     ["Margin at most", shortLength(f.margin)],
     ["Between poses", f.between_poses ? "counts, too" : "does not count"],
@@ -41,6 +42,24 @@ function buildQuestion() {
     ["Environment", make("code", {}, f.environment_hash)], ["Path", make("code", {}, f.trajectory_hash)],
   ].filter(Boolean);
   byId("question-body").append(factsTable(...rows.map(([name, value]) => factRow(name, value))));
+  if (check && check.rows.length > 0) byId("question-body").append(...outlinesTable(check));
+}
+
+const loadWords = ({ outline_name: name, outline, margin }) =>
+    `${name ? `${name}, ` : ""}${plural(outline.length, "corner")}, margin ${shortLength(margin)}`;
+
+/** Which outline is judged on which part of the path, and parts without one. */
+function outlinesTable({ rows, gaps, loads }) {
+  const parts = [...rows, ...gaps].sort((a, b) => a.chainage_from - b.chainage_from);
+  const columns = [
+    { title: `Chainage (${unitSymbol})`, cell: (p) => rangeWords([p.chainage_from, p.chainage_to]), number: true },
+    { title: "Line", cell: (p) => p.line ?? "", number: true },
+    { title: "Outline", cell: (p) => p.line ? loadWords(loads[p.load]) : "none" },
+    { title: "Verdict", cell: (p) => p.line ? p.verdict ?? "not judged" : "unknown" },
+    { title: "Why", cell: (p) => p.reason ?? "the table has no outline here", text: true },
+  ];
+  return [make("h3", {}, "Outlines by stretch"), make("div", { class: "scroll tall" },
+      listTable("Outlines by stretch", columns, parts.map((part) => make("tr", {}, cellsOf(columns, part)))))];
 }
 
 window.addEventListener("beforeprint", () => chooseStretch(section.chosen));

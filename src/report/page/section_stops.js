@@ -54,7 +54,7 @@ const kShownPlaces = 24, kShownStretches = 12;
 
 /** What stops the load, place by place, deepest first, with what would free it. */
 function placesTable() {
-  const { places } = section.facts.check, known = places.some((p) => p.obstacle || p.witness || othersAt(p));
+  const { places, loads } = section.facts.check, known = places.some((p) => p.obstacle || p.witness || othersAt(p));
   const columns = [
     { title: "", cell: ({ label }) => label },
     { title: "Side", cell: ({ side }) => kSideWords[side] },
@@ -63,6 +63,7 @@ function placesTable() {
     { title: "Stretches", cell: ({ stops }) => numberRanges(stops) },
     { title: `Deepest at (${unitSymbol})`, cell: ({ chainage }) => chainage.toFixed(2), number: true },
     { title: `z (${unitSymbol})`, cell: (p) => `${signed(p.z_from)} – ${signed(p.z_to)}`, number: true },
+    loads.length > 1 && { title: "Outline", cell: ({ load }) => loads[load].outline_name },
     known && { title: "What is there", cell: (p) => [obstacleWords(p), othersAt(p)].filter(Boolean).join("; "), text: true },
     { title: "What lets the load pass", cell: ({ remedy }) => remedy, text: true },
   ].filter(Boolean);

@@ -1,7 +1,9 @@
 // What follows from the cells of a section: verdicts on outlines, free cells, widths.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
+#include <string>
 
 #include "clearway/error.hpp"
 #include "clearway/section.hpp"
@@ -256,4 +258,175 @@ TEST_CASE("the largest outline passes, and no wider one does") {
     CHECK(section.check(outline, 0).verdict == SectionVerdict::kPasses);
     for (const OutlinePoint& corner : outline) CHECK(std::abs(corner.y) < 4);
   }
+}
+
+namespace {
+
+/// A table of rows of 20 m at the most, which end at multiples of 0.5 and leave gaps.
+OutlineTable random_table(Random& random) {
+  OutlineTable table{.path = "table.csv"};
+  double at = 0.5 * (static_cast<double>(below(random, 6)) - 4);
+  while (at < 22) {
+    OutlineRow row{.line = table.rows.size() + 2, .file = "load.csv"};
+    row.from = at;
+    row.to = at + 0.5 * static_cast<double>(1 + below(random, 16));
+    const double half = uniform(random, 0.5, 2.5);
+    row.outline = box(-half, half, 1, uniform(random, 1.5, 3.9));
+    if (below(random, 2) == 0) row.margin = uniform(random, 0, 0.9);
+    at = row.to + (below(random, 3) == 0 ? 0.5 * static_cast<double>(below(random, 8)) : 0);
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+/// Whether a row holds a place of bin `number` of section_of(), whose path ends at 19.
+/// A row that ends where the path ends holds that end, unless the next one does.
+bool touches(const OutlineTable& table, const OutlineRow& row, std::uint32_t number) {
+  for (double at = 5.0 * number; at < 5.0 * number + 5 && at <= 19; at += 0.25) {
+    if (row.from <= at && at < row.to) return true;
+  }
+  return number == 3 && row.to == 19 &&
+         std::ranges::none_of(table.rows, [](const OutlineRow& next) { return next.from == 19; });
+}
+
+bool is_covered(const OutlineTable& table, std::uint32_t number) {
+  for (double at = 5.0 * number; at < 5.0 * number + 5 && at <= 19; at += 0.25) {
+    const bool held = std::ranges::any_of(
+        table.rows, [&](const OutlineRow& row) { return row.from <= at && at < row.to; });
+    const bool at_end = at == 19 && std::ranges::any_of(table.rows, [](const OutlineRow& row) {
+                          return row.to == 19;
+                        });
+    if (!held && !at_end) return false;
+  }
+  return true;
+}
+
+std::vector<std::uint32_t> bins_of(const std::vector<SectionStop>& stops) {
+  std::vector<std::uint32_t> bins;
+  for (const SectionStop& stop : stops) bins.push_back(stop.bin);
+  return bins;
+}
+
+OutlineTable table_of(const std::vector<std::array<double, 2>>& stretches,
+                      const std::vector<OutlinePoint>& outline) {
+  OutlineTable table{.path = "table.csv"};
+  for (const auto& [from, to] : stretches) {
+    table.rows.push_back({.line = table.rows.size() + 2,
+                          .from = from,
+                          .to = to,
+                          .file = "load.csv",
+                          .outline = outline,
+                          .margin = 0});
+  }
+  return table;
+}
+
+}  // namespace
+
+TEST_CASE("a table of outlines is one check for each row, of the bins that it touches") {
+  Random random(31);
+  std::set<std::string> verdicts;
+  for (int i = 0; i < 300; ++i) {
+    std::vector<std::array<int, 4>> cells;
+    for (int bin = 0; bin < 4; ++bin) {
+      if (below(random, 2) == 0) continue;
+      const int j = static_cast<int>(below(random, 16)) - 8;
+      cells.push_back({bin, j, static_cast<int>(below(random, 10)),
+                       5 * bin + static_cast<int>(below(random, 5))});
+    }
+    const Section section(section_of(cells));
+    const OutlineTable table = random_table(random);
+    const OutlineTableCheck check = section.check(table, 0.25);
+    SectionVerdict expected = SectionVerdict::kPasses;
+    for (std::uint32_t bin = 0; bin < 4; ++bin) {
+      const bool is_gap = std::ranges::any_of(
+          check.gaps, [&](const OutlineGap& gap) { return gap.bins.contains(bin); });
+      check_equal(is_gap, !is_covered(table, bin));
+      if (is_gap) expected = SectionVerdict::kUnknown;
+    }
+    std::vector<std::uint32_t> all;
+    for (std::size_t r = 0; r < table.rows.size(); ++r) {
+      const OutlineRow& row = table.rows[r];
+      const OutlineRowCheck& judged = check.rows[r];
+      const SectionCheck whole = section.check(row.outline, row.margin.value_or(0.25));
+      std::vector<std::uint32_t> here;
+      for (const SectionStop& stop : whole.stops) {
+        if (touches(table, row, stop.bin)) here.push_back(stop.bin);
+      }
+      check_equal(bins_of(judged.check.stops), here);
+      all.insert(all.end(), here.begin(), here.end());
+      if (!judged.bins) continue;
+      if (here.empty()) {
+        CHECK(judged.check.reason == (whole.verdict == SectionVerdict::kUnknown ? whole.reason
+                                                                               : std::string()));
+      }
+      if (judged.check.verdict == SectionVerdict::kUnknown) expected = SectionVerdict::kUnknown;
+    }
+    std::ranges::sort(all);
+    check_equal(bins_of(check.stops), all);
+    if (!all.empty()) expected = SectionVerdict::kStopped;
+    CHECK(check.verdict == expected);
+    verdicts.insert(name_of(check.verdict));
+  }
+  check_equal(verdicts.size(), 3);
+}
+
+TEST_CASE("a bin that two rows cross is judged by both, and a gap makes it unknown") {
+  // The cell is blocked in bin 1, from 5 to 10, and stops what is wider than 2.
+  const Section section(section_of({{1, 4, 2, 7}}));
+  OutlineTable table = table_of({{0, 9}, {9, 19}}, box(-1, 1, 0.5, 3));
+  CHECK(section.check(table).verdict == SectionVerdict::kPasses);
+  table.rows[1].outline = box(-1, 2.2, 0.5, 3);
+  const OutlineTableCheck stopped = section.check(table);
+  CHECK(stopped.verdict == SectionVerdict::kStopped);
+  check_equal(stopped.stop->row, 1);
+  check_equal(stopped.stop->first_pose, 7);
+  CHECK(stopped.rows[0].check.verdict == SectionVerdict::kPasses);
+
+  const auto bins_in_gaps = [&](const std::vector<std::array<double, 2>>& stretches) {
+    std::string bins;
+    const OutlineTableCheck check = section.check(table_of(stretches, box(-1, 1, 0.5, 3)));
+    for (const OutlineGap& gap : check.gaps) {
+      bins += std::to_string(gap.bins.first) + "-" + std::to_string(gap.bins.last) + " ";
+    }
+    return bins + name_of(check.verdict);
+  };
+  check_equal(bins_in_gaps({{0, 19}}), "passes");
+  check_equal(bins_in_gaps({{-5, 30}}), "passes");
+  check_equal(bins_in_gaps({{0.0004, 18.9996}}), "passes");
+  check_equal(bins_in_gaps({{0, 7}, {7.5, 19}}), "1-1 unknown");
+  check_equal(bins_in_gaps({{0, 10}, {15, 19}}), "2-2 unknown");
+  check_equal(bins_in_gaps({{2, 18}}), "0-0 3-3 unknown");
+  check_equal(bins_in_gaps({{30, 40}}), "0-3 unknown");
+  CHECK_FALSE(section.check(table_of({{0, 19}, {30, 40}}, box(-1, 1, 0.5, 3))).rows[1].bins);
+}
+
+TEST_CASE("rows by station lie where the path has these stations, which have to ascend") {
+  const Section section(section_of({{1, 4, 2, 7}}));
+  std::vector<double> station;
+  for (int i = 0; i < 20; ++i) station.push_back(100 + 2 * i);
+  OutlineTable table = table_of({{100, 112}, {112, 140}}, box(-1, 1, 0.5, 3));
+  table.by_station = true;
+  const OutlineTableCheck check = section.check(table, {}, station);
+  CHECK(check.verdict == SectionVerdict::kPasses);
+  check_near(check.rows[0].chainage_to, 6, 1e-12);
+  check_near(check.rows[1].chainage_to, 21, 1e-12);
+  check_refused([&] { section.check(table); }, "no stations");
+  check_refused([&] { section.check(table, {}, std::vector<double>(3, 1.0)); }, "3 stations");
+  station[7] = station[6];
+  check_refused([&] { section.check(table, {}, station); }, "do not ascend from pose 6");
+}
+
+TEST_CASE("a warned stretch leaves only rows unknown that touch it") {
+  SectionData data = section_of({});
+  data.warnings.push_back(
+      {Message::Severity::kWarning, "nothing-below", "text", {}, {{PoseRange{11, 12}}}});
+  const Section section(std::move(data));
+  const OutlineTableCheck check =
+      section.check(table_of({{0, 10}, {10, 15}, {15, 19}}, box(-1, 1, 0.5, 3)));
+  CHECK(check.rows[0].check.verdict == SectionVerdict::kPasses);
+  check_says(check.rows[1].check.reason, "nothing-below");
+  CHECK(check.rows[2].check.verdict == SectionVerdict::kPasses);
+  CHECK(check.verdict == SectionVerdict::kUnknown);
+  check_says(check.reason, "line 3 of table.csv");
 }

@@ -261,6 +261,142 @@ class Outlines(Sections):
         self.assertEqual(self.run_("verify section.h5").returncode, 0)
 
 
+
+class OutlineTables(Sections):
+    """section check --table: outlines by stretches of the path."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        lists = cls.folder / "lists"
+        (lists / "forms").mkdir(parents=True)
+        (lists / "forms" / "narrow.csv").write_text(RECTANGLE)
+        (lists / "forms" / "wide.csv").write_text(RECTANGLE.replace("-0.5,", "-2.2,"))
+        station = "".join(f"{i * 0.5},0,0,0,0,0,1,{1000 + i * 0.6}\n" for i in range(41))
+        (cls.folder / "stations.csv").write_text("x,y,z,qx,qy,qz,qw,station\n" + station)
+        (cls.folder / "back.csv").write_text("x,y,z,qx,qy,qz,qw,station\n" + "".join(
+            f"{i * 0.5},0,0,0,0,0,1,{1000 - i}\n" for i in range(41)))
+
+    @classmethod
+    def table(cls, text, name="outlines.csv"):
+        data = text if isinstance(text, bytes) else text.encode()
+        (cls.folder / "lists" / name).write_bytes(data)
+        return f"section check section.h5 --table lists/{name}"
+
+    def answer(self, text, more=""):
+        done = self.run_(self.table(text) + " --json " + more)
+        answer = json.loads(done.stdout)
+        code = {"passes": 0, "stopped": 1, "unknown": 6}
+        self.assertEqual(done.returncode, code[answer["verdict"]], done)
+        return answer
+
+    NAMES = "chainage_from,chainage_to,outline,margin\n"
+
+    def test_each_row_is_a_check_of_its_stretch(self):
+        answer = self.answer(self.NAMES + "0,7,forms/narrow.csv,0.1\n7,20,forms/wide.csv,\n")
+        self.assertEqual(answer["verdict"], "stopped")
+        self.assertEqual(answer["row"], 1)
+        self.assertEqual([row["bins"] for row in answer["rows"]], [[0, 1], [1, 4]])
+        self.assertEqual([row["margin"] for row in answer["rows"]], [0.1, 0.2])
+        for row in answer["rows"]:
+            whole = self.run_(f"section check section.h5 --outline lists/{row['outline']} --json "
+                              f"--margin {row['margin']}")
+            first, last = row["bins"]
+            self.assertEqual(row["stops"], [s for s in json.loads(whole.stdout)["stops"]
+                                            if first <= s["bin"] <= last])
+        self.assertEqual(answer["stops"], [{**s, "row": 1} for s in answer["rows"][1]["stops"]])
+        self.assertEqual(self.answer(self.NAMES + "0,20,forms/narrow.csv,\n", "--margin 0.05")
+                         ["rows"][0]["margin"], 0.05)
+        printed = self.run_(self.table(self.NAMES + "0,20,forms/narrow.csv,0.1\n"))
+        self.assertIn("line 2, chainage 0 to 20 m, forms/narrow.csv with a margin of 0.1 m: passes",
+                      printed.stdout)
+
+    def test_what_has_no_outline_is_unknown_unless_something_is_stopped(self):
+        gap = self.answer(self.NAMES + "0,10,forms/narrow.csv,\n12,20,forms/narrow.csv,\n")
+        self.assertEqual(gap["verdict"], "unknown")
+        self.assertEqual(gap["gaps"], [{"chainage_from": 10, "chainage_to": 12, "bins": [2, 2]}])
+        self.assertEqual(self.answer(self.NAMES + "0,10,forms/wide.csv,\n")["verdict"], "stopped")
+        beyond = self.answer(self.NAMES + "0,20,forms/narrow.csv,\n90,99,forms/narrow.csv,\n")
+        self.assertEqual((beyond["verdict"], beyond["rows"][1]["verdict"]), ("passes", None))
+
+    def test_rows_by_station(self):
+        rows = "station_from,station_to,outline\n1000,1012,forms/wide.csv\n1012,1024,forms/narrow.csv\n"
+        answer = self.answer(rows, "--trajectory stations.csv")
+        self.assertEqual(answer["verdict"], "stopped")
+        self.assertEqual([round(row["chainage_to"], 9) for row in answer["rows"]], [10, 20])
+        self.assertEqual(answer["rows"][1]["station_to"], 1024)
+        command = self.table(rows)
+        self.refused(self.run_(command), "by station; expected --trajectory", 2)
+        self.refused(self.run_(command + " --trajectory path.txt"), "no stations of the path", 2)
+        self.refused(self.run_(command + " --trajectory back.csv"), "do not ascend from pose 0", 2)
+        self.write_path("other.txt", 41, 0.4)
+        self.refused(self.run_(command + " --trajectory other.txt"), "another trajectory", 3)
+        chainage = self.table(self.NAMES + "0,20,forms/narrow.csv,\n")
+        self.refused(self.run_(chainage + " --trajectory path.txt"), "--trajectory needs --env", 2)
+
+    def test_forms_of_one_table_have_one_answer(self):
+        text = self.NAMES + "0,7,forms/narrow.csv,0.1\n7,20,forms/wide.csv,\n"
+        expected = self.answer(text)
+        for name, form in {
+                "semicolons": text.replace(",", ";"), "bom": "\ufeff" + text,
+                "bom and semicolons": "\ufeff" + text.replace(",", ";"),
+                "crlf": text.replace("\n", "\r\n"), "spaces": text.replace(",", " , "),
+                "quotes": text.replace("forms/narrow.csv", '"forms/narrow.csv"'),
+                "unit": text.replace("margin\n", "margin [cm]\n").replace("0.1", "10"),
+                "a column more": text.replace("\n", ",x\n")}.items():
+            with self.subTest(name):
+                self.assertEqual(self.answer(form), expected)
+
+    def test_wrong_tables_are_refused_by_file_and_line(self):
+        row = "0,20,forms/narrow.csv,0.1\n"
+        (self.folder / "lists" / "bad.csv").write_text("0,1\nx\n")
+        (self.folder / "lists" / "cross.csv").write_text("-1,0\n1,1\n1,0\n-1,1\n")
+        cases = {
+            "empty": ("", 3, "outlines.csv: holds no row"),
+            "names only": (self.NAMES, 3, "outlines.csv: holds no row"),
+            "no names": (row, 3, "line 1: .*expected the columns chainage_from"),
+            "no outline": ("chainage_from,chainage_to\n0,20\n", 3, "line 1: .*expected the columns"),
+            "both": ("chainage_from,station_to,outline\n", 3, "line 1: .*by chainage and by station"),
+            "twice": ("chainage_from,chainage_to,outline,outline\n", 3, "line 1: .*outline twice"),
+            "unit": (self.NAMES.replace("margin", "margin [deg]") + row, 3, "line 1: .*margin in"),
+            "text": (self.NAMES + "a,20,forms/narrow.csv,0\n", 3, "line 2: .*finite number"),
+            "nan": (self.NAMES + "0,nan,forms/narrow.csv,0\n", 3, "line 2: .*finite number"),
+            "backwards": (self.NAMES + "20,0,forms/narrow.csv,0\n", 3, "line 2: .*ends before"),
+            "fields": (self.NAMES + "0,20,forms/narrow.csv\n", 3, "line 2: has 3 fields.*expected 4"),
+            "decimal commas": (self.NAMES.replace(",", ";") + "0,0;20,0;forms/narrow.csv;0,1\n", 3,
+                               "line 2: .*decimal"),
+            "margin": (self.NAMES + "0,20,forms/narrow.csv,-1\n", 3, "line 2: .*margin below 0"),
+            "no file": (self.NAMES + "0,20,,0\n", 3, "line 2: names no outline"),
+            "missing": (self.NAMES + "0,20,none.csv,0\n", 4, "line 2: .*none.csv: cannot open"),
+            "bad outline": (self.NAMES + "0,20,bad.csv,0\n", 3, "line 2: .*bad.csv: line 2"),
+            "crossing": (self.NAMES + "0,20,cross.csv,0\n", 2, "line 2: cross.csv: .*cross"),
+            "overlap": (self.NAMES + "9,20,forms/narrow.csv,0\n0,10,forms/narrow.csv,0\n", 3,
+                        "line 3: overlaps line 2 from 9 to 10"),
+            "binary": (bytes(range(256)) * 40, 3, "outlines.csv: line 1: "),
+        }
+        for name, (text, code, message) in cases.items():
+            with self.subTest(name):
+                self.refused(self.run_(self.table(text)), message, code)
+        self.refused(self.run_("section check section.h5"), "--outline or --table", 2)
+        self.refused(self.run_(self.table(self.NAMES + row) + " --outline lists/bad.csv"), "excludes", 2)
+
+    def test_page_and_picture_show_which_outline_is_judged(self):
+        self.table(self.NAMES + "0,7,forms/narrow.csv,0.1\n7,18,forms/wide.csv,\n")
+        done = self.ok("report section.h5 --table lists/outlines.csv --json --force -o page.html "
+                       "-o picture.svg --env site.h5 --trajectory path.txt")
+        check = json.loads(done.stdout)["section"]["check"]
+        self.assertEqual([load["outline_name"] for load in check["loads"]],
+                         ["forms/narrow.csv", "forms/wide.csv"])
+        self.assertEqual([(row["line"], row["load"], row["verdict"]) for row in check["rows"]],
+                         [(2, 0, "passes"), (3, 1, "stopped")])
+        self.assertEqual([gap["bins"] for gap in check["gaps"]], [[3, 4]])
+        self.assertEqual({stop["load"] for stop in check["stops"]}, {1})
+        picture = (self.folder / "picture.svg").read_text()
+        self.assertEqual(picture.count("section_load"), 2)
+        for words in ("forms/narrow.csv, margin 0.1 m", "forms/wide.csv, margin 0.2 m"):
+            self.assertIn(words, picture)
+
+
 class Finding(Sections):
     def test_json(self):
         done = self.find("--json --margin 0.2 --between-poses")
