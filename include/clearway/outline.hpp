@@ -58,11 +58,11 @@ std::vector<OutlinePoint> read_outline(const std::filesystem::path& path,
 
 /// A row of a table of outlines: the load that is judged on a stretch of the path.
 struct OutlineRow {
-  std::uint64_t line = 0;              ///< line of the file
-  double from = 0, to = 0;             ///< the stretch reaches up to `to`, without it
-  std::filesystem::path file = {};     ///< of the outline
+  std::uint64_t line = 0;           ///< line of the file
+  double from = 0, to = 0;          ///< the stretch reaches up to `to`, without it
+  std::filesystem::path file = {};  ///< of the outline
   std::vector<OutlinePoint> outline = {};
-  std::optional<double> margin = {};   ///< the distance to keep; none where the row has none
+  std::optional<double> margin = {};  ///< the distance to keep; none where the row has none
 };
 
 /// Outlines by stretches of a path: dynamic envelopes, or gauges that are wider in curves.

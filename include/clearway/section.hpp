@@ -226,8 +226,8 @@ struct SectionBinRange {
 
 /// The answer to one row of a table of outlines.
 struct OutlineRowCheck {
-  std::uint64_t line = 0;           ///< line of the table
-  std::filesystem::path file = {};  ///< of the outline, as the table names it
+  std::uint64_t line = 0;                     ///< line of the table
+  std::filesystem::path file = {};            ///< of the outline, as the table names it
   double chainage_from = 0, chainage_to = 0;  ///< of the row, along the path
   double margin = 0;                          ///< the distance that was kept
   /// The bins that were judged: those that the row touches. None where it touches none in which the

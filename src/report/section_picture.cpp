@@ -223,10 +223,9 @@ class Picture {
     const double band = 2 * load.margin / lattice_.cell * scale_;
     out_ << "<g class=\"section_load\" data-load=\"" << number << "\">\n";
     if (band > 0) {
-      out_ << "<clipPath id=\"section_outside" << number
-           << R"("><path clip-rule="evenodd" d="M)" << px(left_) << " " << px(top_) << "h"
-           << px(width_) << "v" << px(height_) << "h-" << px(width_) << "z" << path
-           << "\"/></clipPath>\n"
+      out_ << "<clipPath id=\"section_outside" << number << R"("><path clip-rule="evenodd" d="M)"
+           << px(left_) << " " << px(top_) << "h" << px(width_) << "v" << px(height_) << "h-"
+           << px(width_) << "z" << path << "\"/></clipPath>\n"
            << "<path class='section_margin' clip-path='url(#section_outside" << number
            << ")' fill='none' stroke='" << colour
            << "' stroke-opacity='0.35' stroke-linejoin='round' stroke-width=\"" << px(band)

@@ -104,14 +104,13 @@ void SectionView::check_loads() {
   const double margin = picture_.margin.value_or(section_.data().parameters.margin);
   check_.emplace();
   static_cast<SectionCheck&>(*check_) = section_.check(picture_.outline, margin);
-  check_->rows.push_back({.chainage_to = section_.data().chainage.empty()
-                                             ? 0.0
-                                             : section_.data().chainage.back(),
-                          .margin = margin,
-                          .bins = SectionBinRange{},
-                          .check = *check_});
-  load_of_row_.push_back(add_load(
-      {.name = picture_.outline_name, .outline = picture_.outline, .margin = margin}));
+  check_->rows.push_back(
+      {.chainage_to = section_.data().chainage.empty() ? 0.0 : section_.data().chainage.back(),
+       .margin = margin,
+       .bins = SectionBinRange{},
+       .check = *check_});
+  load_of_row_.push_back(
+      add_load({.name = picture_.outline_name, .outline = picture_.outline, .margin = margin}));
 }
 
 /// The index of a load, which is added where it is not there yet.
@@ -183,7 +182,8 @@ void SectionView::find_places() {
         }
       }
       if (at == places_.size()) {
-        places_.push_back({.load = stops_[s].load, .deepest = shown, .chainage_from = chainage_of_bin(bin)});
+        places_.push_back(
+            {.load = stops_[s].load, .deepest = shown, .chainage_from = chainage_of_bin(bin)});
         last.push_back(&shown);
       }
       ShownPlace& place = places_[at];

@@ -24,8 +24,8 @@ using CellBits = std::vector<bool>;
 struct ShownLoad {
   std::string name = {};  ///< of its file; empty where it has none
   std::span<const OutlinePoint> outline = {};
-  double margin = 0;                 ///< the distance that it keeps
-  std::vector<bool> stopping = {};   ///< stopping_cells()
+  double margin = 0;                ///< the distance that it keeps
+  std::vector<bool> stopping = {};  ///< stopping_cells()
 };
 
 /// An intrusion with what is known of the obstacle.

@@ -75,8 +75,8 @@ std::string table_sentence(const OutlineTableCheck& check, const SectionData& se
       const OutlineRowCheck& row = check.rows[check.stop->row];
       std::set<std::uint32_t> bins;
       for (const SectionStop& stop : check.stops) bins.insert(stop.bin);
-      return "stopped: the outline of line " + std::to_string(row.line) + ", " +
-             row.file.string() + ", is stopped " + stop_words(*check.stop, section) + ". A load is stopped in " +
+      return "stopped: the outline of line " + std::to_string(row.line) + ", " + row.file.string() +
+             ", is stopped " + stop_words(*check.stop, section) + ". A load is stopped in " +
              counted(bins.size(), "stretch", "stretches") + " in all" + doubts;
     }
     case SectionVerdict::kUnknown:

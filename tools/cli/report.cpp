@@ -311,8 +311,8 @@ void check_load_is_given(const CLI::App& command, const LoadInput& load) {
 /// Throws UsageError where an output is neither a page nor a picture, or is an input.
 void check_outputs(const ReportCommand& both, const SectionPage& options) {
   std::vector<std::filesystem::path> inputs{both.result};
-  for (const auto& input :
-       {options.load.outline, options.load.table, both.environment, both.trajectory, options.conflicts}) {
+  for (const auto& input : {options.load.outline, options.load.table, both.environment,
+                            both.trajectory, options.conflicts}) {
     if (!input.empty()) inputs.push_back(input);
   }
   bool has_page = false;

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "clearway/error.hpp"
 #include "cli/input_roles.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
-#include "clearway/error.hpp"
 #include "core/util/format.hpp"
 #include "io/scans/length_unit.hpp"
 #include "search/section.hpp"
@@ -57,8 +57,7 @@ namespace {
 OutlineOptions outline_options(const LoadInput& load, const Section& section, double metres) {
   OutlineOptions how = load.how;
   how.environment_unit = metres;
-  if (how.unit.is_known() &&
-      length_unit_of(section.data().length_unit) == LengthUnit::kUnknown &&
+  if (how.unit.is_known() && length_unit_of(section.data().length_unit) == LengthUnit::kUnknown &&
       (is_foot(how.unit.metres()) || how.unit.metres() == kMetresPerInch)) {
     spdlog::warn("{}", unit_assumed_text("corners of the outline", how.unit.metres()));
   }

@@ -18,8 +18,8 @@ class Option;
 /// What several commands on a section are given besides its file.
 namespace clearway::tool {
 
-/// The outline of a load, or a table of outlines by stretches of the path, and the distance to keep;
-/// none: that of the section.
+/// The outline of a load, or a table of outlines by stretches of the path, and the distance to
+/// keep; none: that of the section.
 struct LoadInput {
   std::filesystem::path outline, table;
   OutlineOptions how;
@@ -59,8 +59,8 @@ struct SiteInput {
 
   bool has_store() const { return !environment.empty(); }
   /// Opens the store and reads the path, where they are given, and warns as reading does. metres:
-  /// of the section's unit. Throws InputError where one is not what it should be, or the path is not
-  /// that of the section.
+  /// of the section's unit. Throws InputError where one is not what it should be, or the path is
+  /// not that of the section.
   void read(const Section& section, double metres);
 };
 

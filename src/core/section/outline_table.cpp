@@ -41,8 +41,9 @@ class ChainageOfStation {
       : chainage_(chainage), station_(station) {
     const std::string why = table.path.string() + ": its rows are by station, ";
     if (station.empty()) {
-      throw UsageError(why + "but no stations of the path are known; expected the trajectory with "
-                             "its stations");
+      throw UsageError(why +
+                       "but no stations of the path are known; expected the trajectory with "
+                       "its stations");
     }
     if (station.size() != chainage.size()) {
       throw UsageError(why + "but the path has " + counted(chainage.size(), "pose") + " and " +
@@ -156,11 +157,10 @@ void conclude(const OutlineTable& table, OutlineTableCheck& out) {
     out.reason = "line " + std::to_string(first_unknown->line) + " of " +
                  table.path.filename().string() + ": " + first_unknown->check.reason;
   } else if (!out.gaps.empty()) {
-    out.reason = "the table has no outline from " + format_brief(out.gaps.front().chainage_from) +
-                 " to " + format_brief(out.gaps.front().chainage_to) + " along the path" +
-                 (out.gaps.size() == 1
-                      ? ""
-                      : ", and " + counted(out.gaps.size() - 1, "further gap"));
+    out.reason =
+        "the table has no outline from " + format_brief(out.gaps.front().chainage_from) + " to " +
+        format_brief(out.gaps.front().chainage_to) + " along the path" +
+        (out.gaps.size() == 1 ? "" : ", and " + counted(out.gaps.size() - 1, "further gap"));
   } else {
     out.verdict = SectionVerdict::kPasses;
   }

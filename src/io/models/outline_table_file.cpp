@@ -67,7 +67,8 @@ class TableOfOutlines {
         add(line);
       }
     }
-    if (table_.rows.empty()) refuse(input_.name(), "holds no row with an outline" + after_nothing());
+    if (table_.rows.empty())
+      refuse(input_.name(), "holds no row with an outline" + after_nothing());
     check_order();
     return std::move(table_);
   }

@@ -357,8 +357,8 @@ TEST_CASE("a table of outlines is one check for each row, of the bins that it to
       all.insert(all.end(), here.begin(), here.end());
       if (!judged.bins) continue;
       if (here.empty()) {
-        CHECK(judged.check.reason == (whole.verdict == SectionVerdict::kUnknown ? whole.reason
-                                                                               : std::string()));
+        CHECK(judged.check.reason ==
+              (whole.verdict == SectionVerdict::kUnknown ? whole.reason : std::string()));
       }
       if (judged.check.verdict == SectionVerdict::kUnknown) expected = SectionVerdict::kUnknown;
     }
