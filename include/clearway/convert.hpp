@@ -46,12 +46,22 @@ struct ConvertOptions {
   /// at the point's GPS time. It replaces what the scans say of their origins, and excludes
   /// `origins`. Empty: there is none.
   std::filesystem::path origins_path = {};
-  /// How origins_path is read. The environment's unit and coordinate reference system are filled
-  /// in, and its own lever_arm does not count.
-  TrajectoryOptions origins_path_options = {};
+  /// How origins_path and near are read. The environment's unit and coordinate reference system are
+  /// filled in, and its own lever_arm does not count.
+  TrajectoryOptions path_options = {};
   /// Where the scanner is in the frame of the poses of origins_path, metres whatever the unit of
   /// the environment: it is at p + R lever_arm for a pose with the position p and the rotation R.
   Vec3 lever_arm{0, 0, 0};
+  /// A trajectory: the store holds only the points whose distance to the path of its positions, the
+  /// segments between consecutive ones, is at most `within`. Scale, offset and source indices are
+  /// those of converting everything. Questions whose answer could depend on a point that was left
+  /// out are refused.
+  std::filesystem::path near = {};
+  /// Metres whatever the unit of the environment, above 0; only with `near`, which needs it.
+  double within = 0;
+  /// Does not read LAS and LAZ files whose header's bounds are farther than `within` from the path.
+  /// A header that is wrong then makes points disappear. Only with `near`.
+  bool trust_bounds = false;
   /// Keeps points with the flag `withheld` of LAS and LAZ, which otherwise are left out as deleted.
   bool keep_withheld = false;
   bool skip_unreadable = false;  ///< leaves out files that cannot be read, with a warning
@@ -95,6 +105,11 @@ struct ConvertReport {
   /// Number of points left out because they have the flag `withheld`, and of those that were stored
   /// although they have it, as ConvertOptions::keep_withheld wants
   std::uint64_t withheld_points = 0, kept_withheld_points = 0;
+  /// Number of points left out because they are farther than ConvertOptions::within from the path;
+  /// and of those, points that were not even read
+  std::uint64_t far_points = 0, unread_points = 0;
+  /// Number of files that were not read because of ConvertOptions::trust_bounds
+  std::uint64_t passed_over_files = 0;
   /// Number of distinct places from which points were seen; 0 if that is known for no point
   std::uint64_t origins = 0;
   /// Number of stored points for which it is not known from where they were seen
@@ -102,7 +117,8 @@ struct ConvertReport {
   /// Only with ConvertOptions::origins_path
   std::optional<OriginsPathReport> origins_path = std::nullopt;
   Vec3 scale{}, offset{};  ///< scale and offset of the stored integers, metres
-  /// Box around the stored points; none if there are no points
+  /// Box around the points of the inputs, with those that are too far from a path; none if there
+  /// are no points
   std::optional<Box> box = std::nullopt;
   double largest_change = 0;  ///< greatest change of a coordinate by rounding to the scale, metres
   std::uint64_t temporary_bytes = 0;

@@ -324,7 +324,7 @@ void add_convert(py::module_& module) {
          py::object message, py::object stop, const py::kwargs& given) {
         ConvertOptions options;
         set_fields(kConvertFields, given, options);
-        set_fields(kReadingFields, given, options.origins_path_options);
+        set_fields(kReadingFields, given, options.path_options);
         Watch watch(std::move(progress), std::move(message), std::move(stop));
         watch.attach(options);
         return watch.run([&, from = paths_of(inputs), to = path_of(output)] {

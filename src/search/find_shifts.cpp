@@ -34,6 +34,7 @@
 #include "findings/check_conflicts.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/result/result.hpp"
+#include "search/check_corridor.hpp"
 #include "search/checks/query_warnings.hpp"
 #include "search/kept_models.hpp"
 
@@ -398,6 +399,9 @@ class ShiftSearch {
     table.lateral_from = options_.lateral_from;
     table.lateral_to = options_.lateral_to;
     table.step = options_.step;
+    const double farthest = std::max(std::abs(options_.lateral_from), std::abs(options_.lateral_to));
+    CorridorCheck(session_.store().reader().metadata())
+        .check(moving_bodies(query_), asked_.between_poses, asked_.radius + farthest);
     read_obstacles();
     progress_.begin("shifts", conflicts.size() + 1, "stretches");
     std::vector<Found> found(conflicts.size());

@@ -22,6 +22,7 @@
 #include "io/paths/content_hash.hpp"
 #include "io/result/answer.hpp"
 #include "search/answer_question.hpp"
+#include "search/check_corridor.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/check_floor.hpp"
 #include "search/checks/query_warnings.hpp"
@@ -202,6 +203,7 @@ class Search {
       if (message.severity == Message::Severity::kWarning) report_.warnings.push_back(message);
     }
     check_sizes(query_);
+    CorridorCheck(store_.metadata()).check(query_, swept_radius());
     if (query_.seen) check_seen_space(store_, query_);
     ThreadLimit(threads_or_all(options_.threads)).run([&] {
       const auto looks_of = [&](const Model& model) {

@@ -18,6 +18,7 @@
 #include "io/section/section_file.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/block_cells.hpp"
+#include "search/check_corridor.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/query_warnings.hpp"
 #include "search/checks/question.hpp"
@@ -121,6 +122,7 @@ class Finder {
     }
     check_rigid(path_);
     place_load();
+    CorridorCheck(store_.metadata()).check(data_.parameters, load_);
     describe();
     warn();
     if (options_.strict) refuse_warnings(data_.warnings);

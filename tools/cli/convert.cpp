@@ -87,6 +87,7 @@ nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertCommand
   const StoreWithheld withheld = metadata.withheld.value_or(StoreWithheld());
   out["withheld"] = withheld.left_out();
   out["withheld_kept"] = withheld.points - withheld.left_out();
+  out["near"] = metadata.near ? corridor_json(*metadata.near) : nullptr;
   out["scale"] = metadata.quantisation.scale;
   out["offset"] = metadata.quantisation.offset;
   out["box"] = box_json(store);
@@ -135,6 +136,16 @@ void log_report(const ConvertCommand& options, const ConvertReport& report) {
                format_count(options.conversion.cell_points), format_size(report.output_bytes),
                static_cast<double>(report.output_bytes) /
                    static_cast<double>(std::max<std::uint64_t>(1, report.points)));
+  if (report.far_points > 0) {
+    spdlog::info("{} beyond {} of the path left out{}{}", counted(report.far_points, "point"),
+                 format_number(options.conversion.within) + " m",
+                 report.unread_points > 0
+                     ? ", " + counted(report.unread_points, "point") + " of them not read"
+                     : "",
+                 report.passed_over_files > 0
+                     ? "; " + counted(report.passed_over_files, "file") + " passed over by bounds"
+                     : "");
+  }
   if (report.largest_change > 0) {
     spdlog::info("coordinates changed by at most {:.3g} (rounded to the scale)",
                  report.largest_change);
@@ -175,7 +186,7 @@ void add_options(CLI::App& command, ConvertCommand& options) {
                   "adaptive, or regular:SIZE for cubes of that size, for example regular:50cm")
       ->group(title_of(OptionGroup::kStore))
       ->capture_default_str();
-  add_options_of_reading(command, conversion.origins_path_options, options.lengths);
+  add_options_of_reading(command, conversion.path_options, options.lengths);
   command.get_option("--resume")->excludes("--force");
   command.add_flag("--json", options.json, "Print one JSON object about the conversion");
 }

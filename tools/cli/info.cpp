@@ -85,6 +85,7 @@ ordered_json describe(const StoreReader& store) {
                                {"kept", m.withheld->kept},
                                {"cubes", m.withheld->cubes.size()}};
   }
+  if (m.near) description["near"] = corridor_json(*m.near);
   if (m.origins) description["origins"] = origins_json(*m.origins);
   if (m.dates.known()) description["dates"] = {m.dates.first, m.dates.last};
   return description;
@@ -340,6 +341,20 @@ std::string text_of(const ordered_json& description) {
                                ? ", kept"
                                : ", left out, in " + counted(value["cubes"].get<std::uint64_t>(),
                                                              "cube of 1 m", "cubes of 1 m")));
+    } else if (key == "near") {
+      text += fmt::format(
+          "{:<{}}  within {} of a path of {}; {} left out", key, width,
+          format_number(value["within"].get<double>()),
+          counted(value["path_poses"].get<std::uint64_t>(), "pose"),
+          counted(value["points_left_out"].get<std::uint64_t>(), "point"));
+      if (const auto unread = value["points_unread"].get<std::uint64_t>(); unread > 0) {
+        text += fmt::format(", {} of them not read ({})", format_count(unread),
+                            format_size(value["bytes_unread"].get<std::uint64_t>()));
+      }
+      if (const auto files = value["files_passed_over"].get<std::uint64_t>(); files > 0) {
+        text += "; " + counted(files, "file") + " passed over";
+      }
+      text += "\n";
     } else if (key == "flags") {
       for (const auto& [flag, points] : value.items()) {
         text += fmt::format("{:<{}}  {}: {}\n", "flag", width, flag,

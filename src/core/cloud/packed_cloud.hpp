@@ -248,6 +248,10 @@ class PackedCloud {
   /// Throws InputError if the cell is damaged.
   virtual PackedChunk<std::uint8_t> classes(std::uint32_t /*cell*/) const { return {}; }
 
+  /// A box around all points; with those that a store left out because they are far from a path.
+  /// The cloud has at least one point.
+  virtual Box bounds() const { return position_box(quantisation(), tree()[0].box); }
+
   /// The median diagonal of the blocks, metres, found from a sample where there are many. The cloud
   /// has at least one point.
   virtual double typical_block() const;
@@ -262,7 +266,7 @@ class PackedCloud {
   std::uint64_t entry_count() const { return std::uint64_t{cells().size()} * cell_entries(); }
 };
 
-/// The largest |coordinate| of the cloud's box, metres; 0 for no points.
+/// The largest |coordinate| of the cloud's bounds(), metres; 0 for no points.
 double largest_coordinate(const PackedCloud& cloud);
 
 }  // namespace clearway

@@ -15,6 +15,7 @@ enum class OptionGroup {
   kQuestion,
   kCertainty,
   kIgnored,
+  kCorridor,
   kStore,
   kModel,
   kPath,

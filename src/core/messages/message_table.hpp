@@ -108,6 +108,10 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
      "The conversion gave more warnings than the 64 that a store keeps."},
     {"named-otherwise", kNote, kScans,
      "A text is read as PTX or PTS, although its name says otherwise."},
+    {"near-store", kNote, kScans,
+     "The store holds only points near a path (`convert --near`), and the checks that look farther "
+     "are not made. What is left out never changes an answer: questions that reach so far are "
+     "refused."},
     {"no-crs", kNote, kScans,
      "Some files name no coordinate reference system, and go with the others."},
     {"no-gps-times", kWarning, kScans,

@@ -88,11 +88,11 @@ struct PointBatch {
   }
 };
 
-/// The bytes of a file from which a piece of its points was read.
+/// The bytes of a file from which a piece of its points was read, or would have been.
 struct PieceBytes {
   std::uint64_t first = 0;  ///< position in the file
   std::size_t count = 0;
-  std::unique_ptr<std::byte[]> bytes;
+  std::unique_ptr<std::byte[]> bytes;  ///< null where they were not read
 
   std::span<std::byte> span() const { return {bytes.get(), count}; }
 };
@@ -115,6 +115,11 @@ class PointReader {
   /// Reads one piece. Several threads may call it at once, while nobody calls read(). bytes:
   /// receives the bytes of the piece, or is null. Throws as read() does.
   virtual void read_piece(std::size_t /*piece*/, PointBatch& /*batch*/, PieceBytes* /*bytes*/) {}
+  /// A box that the file promises to hold the points of a piece, as the hierarchy of COPC does;
+  /// nullopt where it promises none.
+  virtual std::optional<Box> bounds_of_piece(std::size_t /*piece*/) const { return std::nullopt; }
+  /// Where the bytes of a piece are, without the bytes.
+  virtual PieceBytes place_of_piece(std::size_t /*piece*/) const { return {}; }
   virtual bool can_rewind() const { return true; }
   /// Goes back to the first point. Throws ResourceError where the input cannot seek.
   virtual void rewind() = 0;

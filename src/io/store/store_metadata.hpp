@@ -8,7 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "clearway/box.hpp"
 #include "clearway/progress.hpp"
+#include "clearway/vec3.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/scans/length_unit.hpp"
@@ -101,6 +103,21 @@ struct StoreWithheld {
   friend bool operator==(const StoreWithheld&, const StoreWithheld&) = default;
 };
 
+/// The corridor that a store was made of, where points farther from a path were left out.
+struct StoreCorridor {
+  std::vector<Vec3> path;  ///< positions, in the unit of the coordinates
+  double within = 0;       ///< the greatest distance of a stored point from the path
+  /// A box around all points of the inputs, those left out included. Where a part was not read, the
+  /// bounds that the input declares of it count instead.
+  Box whole{};
+  std::uint64_t left_out = 0;  ///< points of the inputs that are not stored because they lie beyond
+  /// Of these, points that were not even read: of nodes of COPC files, and of passed-over files
+  std::uint64_t unread = 0;
+  std::uint64_t unread_bytes = 0;  ///< bytes of the inputs that were not read
+  std::uint64_t passed_over = 0;   ///< files passed over by their declared bounds
+  friend bool operator==(const StoreCorridor&, const StoreCorridor&) = default;
+};
+
 /// The description of a store (docs/design/store-format.md), without its cells.
 struct StoreMetadata {
   std::uint64_t point_count = 0;
@@ -122,12 +139,14 @@ struct StoreMetadata {
   std::optional<StoreOrigins> origins = {};  ///< only where some point has an origin
   /// Only where some point of the inputs has the flag `withheld`
   std::optional<StoreWithheld> withheld = {};
+  std::optional<StoreCorridor> near = {};  ///< only where points far from a path were left out
   ScanDates dates = {};                ///< days on which the sources were made
   std::vector<Message> warnings = {};  ///< warnings of the conversion, for users of the store
 
   /// Points of the inputs that are not stored because they hold no finite place.
   std::uint64_t points_without_place() const {
-    return input_points - point_count - (withheld ? withheld->left_out() : 0);
+    return input_points - point_count - (withheld ? withheld->left_out() : 0) -
+           (near ? near->left_out : 0);
   }
 
   /// Number of points of a source file, by its index in `sources`; nullopt where it is not known.
@@ -164,6 +183,30 @@ inline constexpr const char* kSourcePoints = "points";
 inline constexpr const char* kWithheldPoints = "withheld_points";
 inline constexpr const char* kWithheldHash = "withheld_hash";
 inline constexpr const char* kWithheld = "withheld";
+
+/// Group and attributes of a corridor; only where points far from a path were left out.
+inline constexpr const char* kNearGroup = "near";
+inline constexpr const char* kNearPath = "path";
+inline constexpr const char* kNearWithin = "near_within";
+inline constexpr const char* kNearWhole = "near_whole";
+inline constexpr const char* kNearCounts = "near_counts";
+inline constexpr const char* kNearHash = "near_hash";
+
+inline std::span<const double> numbers_of(const std::vector<Vec3>& places) {
+  return {places.empty() ? nullptr : &places.front().x, 3 * places.size()};
+}
+
+/// The hash of what a store says of its corridor.
+inline std::uint64_t hash_of(const StoreCorridor& corridor) {
+  ColumnHashes hashes;
+  hashes.add(numbers_of(corridor.path));
+  hashes.add(std::array{corridor.within, corridor.whole.lo.x, corridor.whole.lo.y,
+                        corridor.whole.lo.z, corridor.whole.hi.x, corridor.whole.hi.y,
+                        corridor.whole.hi.z});
+  hashes.add(std::array{corridor.left_out, corridor.unread, corridor.unread_bytes,
+                        corridor.passed_over});
+  return hashes.digest();
+}
 
 inline std::span<const std::int32_t> coordinates_of(const std::vector<MetreCube>& cubes) {
   return {cubes.empty() ? nullptr : cubes.front().data(), 3 * cubes.size()};

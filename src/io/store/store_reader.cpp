@@ -94,6 +94,32 @@ std::optional<StoreWithheld> read_withheld(const hdf5::Id& file, const std::stri
   return withheld;
 }
 
+/// Reads the corridor that the store was made of; nullopt where it holds all points.
+std::optional<StoreCorridor> read_corridor(const hdf5::Id& file, const std::string& name) {
+  if (!hdf5::has_attribute(file, kNearWithin, name)) return std::nullopt;
+  StoreCorridor near{.path = {}, .within = hdf5::read_number<double>(file, kNearWithin, name)};
+  const auto whole = hdf5::read_attribute<double>(file, kNearWhole, 6, name);
+  near.whole = {{whole[0], whole[1], whole[2]}, {whole[3], whole[4], whole[5]}};
+  const auto counts = hdf5::read_attribute<std::uint64_t>(file, kNearCounts, 4, name);
+  near.left_out = counts[0];
+  near.unread = counts[1];
+  near.unread_bytes = counts[2];
+  near.passed_over = counts[3];
+  const hdf5::Id group = hdf5::open_group(file, kNearGroup, name);
+  const std::uint64_t rows = hdf5::dataset_rows(group, kNearPath, name);
+  const auto numbers = hdf5::read_dataset<double>(group, kNearPath, rows, 3, name);
+  for (std::uint64_t i = 0; i < rows; ++i) {
+    near.path.push_back({numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]});
+  }
+  const auto is_finite = [](double value) { return std::isfinite(value); };
+  if (hash_of(near) != hdf5::read_number<std::uint64_t>(file, kNearHash, name) || rows == 0 ||
+      !std::ranges::all_of(numbers, is_finite) || !(near.within >= 0) ||
+      !std::isfinite(near.within)) {
+    refuse(name, "what it says of its corridor is damaged (its hash is not the one recorded)");
+  }
+  return near;
+}
+
 StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name, ColumnHashes& hashes) {
   if (!hdf5::has_attribute(file, "format", name) ||
       hdf5::read_text_attribute(file, "format", name) != kStoreFormat) {
@@ -138,6 +164,12 @@ StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name, Colum
   if (metadata.withheld && metadata.withheld->left_out() > not_stored) {
     refuse(name, "attribute 'withheld_points' is " + std::to_string(metadata.withheld->points) +
                      ", expected at most the points not stored, " + std::to_string(not_stored));
+  }
+  metadata.near = read_corridor(file, name);
+  if (metadata.near && metadata.near->left_out > not_stored) {
+    refuse(name, "attribute 'near_counts' counts " + std::to_string(metadata.near->left_out) +
+                     " points left out, expected at most the points not stored, " +
+                     std::to_string(not_stored));
   }
   metadata.dates = read_scan_dates(file, name);
   if (H5Lexists(file.get(), "warnings", H5P_DEFAULT) > 0) {
@@ -457,6 +489,7 @@ std::uint64_t StoreReader::fingerprint() const {
     add(std::array{metadata().withheld->points});
     add(metadata().withheld->cubes);
   }
+  if (metadata().near) add(std::array{hash_of(*metadata().near)});
   if (has_classes()) add(index_.classes.xxh64);
   if (has_origins()) {
     add(index_.origins.xxh64);
@@ -490,6 +523,10 @@ StoreReader::Touched StoreReader::touched() const {
   return touched;
 }
 
+Box StoreReader::bounds() const {
+  return metadata().near ? metadata().near->whole : PackedCloud::bounds();
+}
+
 double StoreReader::typical_block() const {
   std::call_once(typical_block_found_, [this] { typical_block_ = PackedCloud::typical_block(); });
   return typical_block_;
@@ -503,7 +540,8 @@ std::uint64_t StoreReader::allocated_bytes() const {
          bytes(sources_checked_) + index_.classes.allocated_bytes() + bytes(classes_checked_) +
          index_.origins.allocated_bytes() + bytes(origins_checked_) +
          (has_origins() ? bytes(metadata().origins->quanta) : 0) +
-         (metadata().withheld ? bytes(metadata().withheld->cubes) : 0);
+         (metadata().withheld ? bytes(metadata().withheld->cubes) : 0) +
+         (metadata().near ? bytes(metadata().near->path) : 0);
 }
 
 Store::Store(const std::filesystem::path& path)

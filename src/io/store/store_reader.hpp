@@ -90,6 +90,7 @@ class StoreReader final : public PackedCloud {
   };
   Touched touched() const;
 
+  Box bounds() const override;
   /// Found at the first call.
   double typical_block() const override;
 

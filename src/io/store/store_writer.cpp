@@ -148,6 +148,18 @@ void write_withheld(const hdf5::Id& file, const StoreWithheld& withheld) {
   hdf5::write_number(file, kWithheldHash, hashes.digest());
 }
 
+void write_corridor(const hdf5::Id& file, const StoreCorridor& near) {
+  const Box& whole = near.whole;
+  const std::array box{whole.lo.x, whole.lo.y, whole.lo.z, whole.hi.x, whole.hi.y, whole.hi.z};
+  const std::array counts{near.left_out, near.unread, near.unread_bytes, near.passed_over};
+  hdf5::write_number(file, kNearWithin, near.within);
+  hdf5::write_attribute<double>(file, kNearWhole, box);
+  hdf5::write_attribute<std::uint64_t>(file, kNearCounts, counts);
+  hdf5::write_number(file, kNearHash, hash_of(near));
+  const hdf5::Id group = hdf5::create_group(file, kNearGroup);
+  hdf5::write_dataset<double>(group, kNearPath, numbers_of(near.path), 3);
+}
+
 /// Writes the attributes and /sources, whose datasets are the first of `hashes`.
 void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata, ColumnHashes& hashes) {
   hdf5::write_attribute(file, "format", kStoreFormat);
@@ -164,6 +176,7 @@ void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata, ColumnH
   if (metadata.height_unit != 0) hdf5::write_number(file, kHeightUnit, metadata.height_unit);
 
   if (metadata.withheld) write_withheld(file, *metadata.withheld);
+  if (metadata.near) write_corridor(file, *metadata.near);
   write_scan_dates(file, metadata.dates);
   if (!metadata.warnings.empty()) write_warnings(file, metadata.warnings);
 

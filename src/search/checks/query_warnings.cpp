@@ -16,8 +16,10 @@
 #include "core/trajectory/follow/follow_path.hpp"
 #include "core/trajectory/pose_ranges.hpp"
 #include "core/util/format.hpp"
+#include "search/check_corridor.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/checks.hpp"
+#include "search/checks/facts/path_looks.hpp"
 #include "search/checks/question.hpp"
 #include "search/checks/warning_stretches.hpp"
 #include "search/ignored.hpp"
@@ -215,16 +217,25 @@ void check_what_is_around(const Question& question, const PathCover& cover, bool
 }
 
 /// The checks of what moves along a path: a model, a body of a vehicle or the load of a section.
-void check_question(const Question& question, bool of_body, std::span<const Message> of_inputs,
-                    StepChecks& steps, MessageLog& log) {
-  const PathCover cover(question);
-  check_reach(question, cover, log);
-  check_what_is_around(question, cover, of_body, log);
+/// around: whether the checks that look far from the path are made.
+void check_question(const Question& question, bool around, bool of_body,
+                    std::span<const Message> of_inputs, StepChecks& steps, MessageLog& log) {
+  if (around) {
+    const PathCover cover(question);
+    check_reach(question, cover, log);
+    check_what_is_around(question, cover, of_body, log);
+  }
   check_model_itself(question, log);
   check_radius(question, log);
   steps.check(question, log);
   if (!of_body) check_path_digits(question, log);
   check_heading(question, of_inputs, log);
+}
+
+/// Whether the store has all that the checks look at that look far from the path. longest: the
+/// longest side of what moves.
+bool looks_around(const StoreReader& store, double longest, MessageLog& log) {
+  return looks_stay_near(store.metadata(), kLooksBeside * metre_of(store) + longest, log);
 }
 
 /// The longest side of a vehicle where it first has most of its bodies; 0 if none has a pose.
@@ -274,7 +285,8 @@ void check_same_bodies(std::span<const Body> bodies, MessageLog& log) {
 /// vehicle_longest: the longest side of the vehicle.
 void warn_of_body(const StoreReader& store, const Body& body, const Query& query,
                   const ModelLooks& looks, std::span<const double> chainage, double vehicle_longest,
-                  std::span<const Message> of_inputs, StepChecks& steps, MessageLog& log) {
+                  bool around, std::span<const Message> of_inputs, StepChecks& steps,
+                  MessageLog& log) {
   if (body.poses.empty()) {
     log.warn("no-poses", "has no poses: it cannot collide");
     return;
@@ -283,7 +295,7 @@ void warn_of_body(const StoreReader& store, const Body& body, const Query& query
   Question question(store, store.metadata().unit, own, looks, body.path_pose, chainage);
   question.longest = std::max(question.longest, vehicle_longest);
   note_sizes(question, log);
-  check_question(question, true, of_inputs, steps, log);
+  check_question(question, around, true, of_inputs, steps, log);
 }
 
 /// The indices of the path's poses at which a body has none, ascending.
@@ -327,6 +339,7 @@ void warn_of_bodies(const StoreReader& store, const Question& path, const Query&
   StepChecks steps(path);
   const std::vector<double> chainage = chainage_of(query.poses);
   const double longest = longest_side(query.bodies, looks_of);
+  const bool around = looks_around(store, longest, log);
   for (const Body& body : query.bodies) {
     found.push_back({body.name, {}});
     const MessageCallback keep = [&](const Message& message) {
@@ -334,7 +347,8 @@ void warn_of_bodies(const StoreReader& store, const Question& path, const Query&
     };
     std::vector<Message> unused;
     MessageLog own(keep, unused);
-    warn_of_body(store, body, query, *looks_of(body.model), chainage, longest, before, steps, own);
+    warn_of_body(store, body, query, *looks_of(body.model), chainage, longest, around, before,
+                 steps, own);
   }
   warn_of_bodies_once(found, log);
   steps.check_path(path, log);
@@ -397,7 +411,8 @@ void check_motion(const StoreReader& store, const Query& query, const LooksOf& l
   note_sizes(question, log);
   warn_of_flat_scan(question, log);
   StepChecks steps;
-  check_question(question, false, of_inputs, steps, log);
+  check_question(question, looks_around(store, question.longest, log), false, of_inputs, steps,
+                 log);
 }
 
 void check_load(const StoreReader& store, const SectionParameters& asked, const Body& load,
@@ -419,7 +434,8 @@ void check_load(const StoreReader& store, const SectionParameters& asked, const 
   note_sizes(question, log);
   warn_of_flat_scan(question, log);
   StepChecks steps;
-  check_question(question, false, of_inputs, steps, log);
+  check_question(question, looks_around(store, question.longest, log), false, of_inputs, steps,
+                 log);
 }
 
 }  // namespace

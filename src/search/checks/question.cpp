@@ -31,7 +31,7 @@ Question::Question(const PackedCloud& environment_points, LengthUnit length_unit
       path_pose(numbers),
       path_chainage(chainages),
       section(of_section),
-      environment(position_box(cloud.quantisation(), cloud.tree()[0].box)),
+      environment(cloud.bounds()),
       model(of_model.box()),
       longest(Sides(model).longest),
       // An international foot also stands for a US survey foot: the checks need no more digits.

@@ -31,6 +31,18 @@ Json sources_json(const StoreMetadata& store) {
   return out;
 }
 
+Json corridor_json(const StoreCorridor& near) {
+  return {{"within", near.within},
+          {"path_poses", near.path.size()},
+          {"points_left_out", near.left_out},
+          {"points_unread", near.unread},
+          {"bytes_unread", near.unread_bytes},
+          {"files_passed_over", near.passed_over},
+          {"whole",
+           {{"lo", {near.whole.lo.x, near.whole.lo.y, near.whole.lo.z}},
+            {"hi", {near.whole.hi.x, near.whole.hi.y, near.whole.hi.z}}}}};
+}
+
 Json origins_json(const StoreOrigins& origins) {
   auto rest_on = Json::array();
   for (const OriginBasis& basis : origins.rest_on) {

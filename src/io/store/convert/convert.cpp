@@ -35,6 +35,7 @@
 #include "io/store/convert/input_files.hpp"
 #include "io/store/convert/input_warnings.hpp"
 #include "io/store/convert/map_warnings.hpp"
+#include "io/store/convert/near_path.hpp"
 #include "io/store/convert/origin_table.hpp"
 #include "io/store/convert/pack_unit.hpp"
 #include "io/store/convert/path_origins.hpp"
@@ -144,6 +145,16 @@ void check_origins(const ConversionOptions& options) {
   }
 }
 
+void check_corridor(const ConversionOptions& options) {
+  if (options.near.empty()) {
+    if (options.within == 0 && !options.trust_bounds) return;
+    throw UsageError("a distance from a path, or trust in bounds: expected the path");
+  }
+  if (!(options.within > 0) || !std::isfinite(options.within)) {
+    throw UsageError("points near a path are to be kept: expected the distance, in metres above 0");
+  }
+}
+
 void check_options(const ConversionOptions& options) {
   if (options.memory_bytes < kLeastConversionMemory) {
     throw ResourceError(format_size(options.memory_bytes) +
@@ -160,6 +171,7 @@ void check_options(const ConversionOptions& options) {
   }
   check_columns(options.columns);
   check_origins(options);
+  check_corridor(options);
 }
 
 /// The number of threads that the memory allows, as each has a counting grid of its own.
@@ -239,18 +251,29 @@ class Conversion {
   ConversionReport run() {
     EnvironmentSource environment(options_.inputs, environment_options(), progress_);
     refuse_overwriting(options_.output, environment.read_files());
-    for (const auto& given : {options_.origins, options_.origins_path}) {
+    for (const auto& given : {options_.origins, options_.origins_path, options_.near}) {
       if (!given.empty()) refuse_overwriting(options_.output, {given});
     }
     if (environment.declared_points()) {
       check_disk(folder_, {*environment.declared_points(), *environment.declared_points()});
     }
+    std::optional<Corridor> corridor;
+    if (!options_.near.empty()) {
+      corridor.emplace(corridor_of(options_, environment, log_));
+      environment.keep_near(*corridor, options_.trust_bounds);
+    }
     OriginTable origins(environment.quantisation(), options_.memory_bytes / 4);
     if (!options_.origins.empty()) add_origins_of_file(options_.origins, origins);
     std::optional<PathOrigins> path;
     if (!options_.origins_path.empty()) path.emplace(options_, environment, origins, log_);
-    SourceDescription others(environment.read_files(), environment.in_pieces(), progress_);
     FileHashes hashes(environment.files(), environment.in_pieces());
+    std::vector<bool> described = environment.in_pieces();
+    for (std::size_t i = 0; i < environment.passed_over().size(); ++i) {
+      if (!environment.passed_over()[i]) continue;
+      hashes.pass_over(i);
+      described[i] = true;
+    }
+    SourceDescription others(environment.read_files(), described, progress_);
     const Lattice lattice = lattice_for(options_, environment.quantisation());
     InputSurvey survey;
     CountedEnvironment counted = count_environment(environment, lattice, survey, hashes, threads_,
@@ -263,6 +286,7 @@ class Conversion {
           "the inputs name no unit of length, so metres are assumed; --unit names another one");
     }
     report_.box = warn_of_inputs(environment, survey.boxes, report_.metadata, log_);
+    if (corridor) describe_corridor(environment, *corridor);
     check_coordinates(environment, survey.boxes);
     if (path) report_.origins_path = path->finish(environment, log_);
     path.reset();
@@ -293,6 +317,25 @@ class Conversion {
   }
 
  private:
+  /// Describes the corridor in the store, once all points were counted.
+  void describe_corridor(const EnvironmentSource& environment, const Corridor& corridor) {
+    report_.far_points = environment.far_points();
+    report_.unread_points = environment.unread_points();
+    const auto& passed_over = environment.passed_over();
+    report_.passed_over_files =
+        static_cast<std::uint64_t>(std::count(passed_over.begin(), passed_over.end(), true));
+    if (report_.points == 0 && report_.far_points > 0) {
+      refuse_empty_corridor(options_, corridor, report_.box, report_.far_points);
+    }
+    report_.metadata.near = {.path = {corridor.path().begin(), corridor.path().end()},
+                             .within = corridor.within(),
+                             .whole = report_.box.value_or(Box{}),
+                             .left_out = report_.far_points,
+                             .unread = report_.unread_points,
+                             .unread_bytes = environment.unread_bytes(),
+                             .passed_over = report_.passed_over_files};
+  }
+
   /// Judges the coordinates by the place where they lie, now that it is known.
   void check_coordinates(const EnvironmentSource& environment, const FileBoxes& boxes) {
     if (!report_.box) return;
@@ -520,6 +563,12 @@ bool has_wanted_origins(const ConversionOptions& options, const StoreMetadata& f
   return given == (options.origins.empty() ? 0 : given_origins_hash(options.origins));
 }
 
+/// Whether a store has the corridor that these options give it. The path itself is compared only by
+/// reading it anew, for which the inputs have to be opened.
+bool has_wanted_corridor(const ConversionOptions& options, const StoreMetadata& found) {
+  return options.near.empty() == !found.near.has_value();
+}
+
 /// Whether a conversion with these options could have made this store, as far as its metadata
 /// says.
 bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
@@ -532,14 +581,15 @@ bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
          (!options.strict || found.points_without_place() == 0 || !found.warnings.empty()) &&
          (!found.withheld || found.withheld->kept == options.keep_withheld) &&
          has_wanted_unit(options.unit, found.unit) && has_wanted_heights(options, found) &&
-         has_wanted_origins(options, found) &&
+         has_wanted_origins(options, found) && has_wanted_corridor(options, found) &&
          (options.ignore_crs || std::ranges::none_of(found.warnings, is_of_ignored_crs));
 }
 
 /// Whether a store shows whether these options made it. It does not record the columns with which
-/// it was made, and standard input can be read only once.
+/// it was made, or how its path was read, and standard input can be read only once.
 bool tells_whether_made_by(const ConversionOptions& options) {
-  return options.inputs != std::vector<std::filesystem::path>{"-"} && options.columns.empty();
+  return options.inputs != std::vector<std::filesystem::path>{"-"} && options.columns.empty() &&
+         options.near.empty();
 }
 
 /// Throws UsageError where a file is at the place of the output of a conversion that is resumed,

@@ -44,6 +44,17 @@ class ConvertedHeights final : public PointReader {
     reader_->read_piece(piece, batch, bytes);
     convert(batch);
   }
+  std::optional<Box> bounds_of_piece(std::size_t piece) const override {
+    std::optional<Box> box = reader_->bounds_of_piece(piece);
+    if (box) {
+      box->lo.z *= factor_;
+      box->hi.z *= factor_;
+    }
+    return box;
+  }
+  PieceBytes place_of_piece(std::size_t piece) const override {
+    return reader_->place_of_piece(piece);
+  }
   bool can_rewind() const override { return reader_->can_rewind(); }
   void rewind() override { reader_->rewind(); }
   std::vector<std::uint64_t> lines_of(std::span<const std::uint64_t> points) override {

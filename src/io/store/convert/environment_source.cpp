@@ -162,6 +162,7 @@ void EnvironmentSource::rewind() {
   file_ = piece_ = 0;
   file_points_ = next_source_ = 0;
   input_points_ = non_finite_points_ = absent_points_ = withheld_points_ = 0;
+  far_points_ = unread_points_ = unread_bytes_ = 0;
   largest_change_ = 0;
   withheld_edge_ = metre_cube_edge(crs_.unit);
   points_of_files_.clear();
@@ -171,12 +172,20 @@ void EnvironmentSource::rewind() {
 
 bool EnvironmentSource::next(RecordBatch& records) {
   for (; file_ < files().size(); ++file_, piece_ = 0, file_points_ = 0) {
+    records.unread = 0;
+    if (pass_over(records)) return true;
     const std::shared_ptr<PointReader>& from = reader(file_);
     std::uint64_t count = 0;
     if (piece_ < from->pieces()) {
       records.reader = from;
       records.piece = piece_++;
       count = from->points_of_piece(records.piece);
+      const std::optional<Box> bounds = from->bounds_of_piece(records.piece);
+      if (is_far(bounds)) {
+        records.unread = count;
+        records.unread_bytes = from->place_of_piece(records.piece).count;
+        records.bounds = *bounds;
+      }
     } else if (from->pieces() == 0 &&
                reading_one_of(files().size(), [&] { return from->read(records.points); })) {
       records.reader.reset();
@@ -196,6 +205,23 @@ bool EnvironmentSource::next(RecordBatch& records) {
   }
   if (stream_) take_late_crs();
   return false;
+}
+
+/// Takes all records of a file that is passed over. Returns false for other files, and where that
+/// was done.
+bool EnvironmentSource::pass_over(RecordBatch& records) {
+  if (file_ >= passed_over_.size() || !passed_over_[file_]) return false;
+  const CloudInfo& info = infos_[file_];
+  if (file_points_ > 0 || *info.declared_points == 0) return false;
+  records.reader.reset();
+  records.file = file_;
+  records.first_source = next_source_;
+  records.unread = *info.declared_points;
+  records.unread_bytes = std::filesystem::file_size(files()[file_]);
+  records.bounds = *info.declared_box;
+  file_points_ += records.unread;
+  next_source_ += records.unread;
+  return true;
 }
 
 /// Takes the CRS of a stream, which may follow its points.
@@ -225,6 +251,9 @@ void EnvironmentSource::note(const QuantaBatch& batch) {
   absent_points_ += batch.absent_points;
   if (withheld_points_ == 0) first_withheld_ = batch.first_withheld;
   withheld_points_ += batch.withheld_points;
+  far_points_ += batch.far_points;
+  unread_points_ += batch.unread_points;
+  unread_bytes_ += batch.unread_bytes;
   largest_change_ = std::max(largest_change_, batch.largest_change);
 }
 
@@ -265,6 +294,10 @@ std::optional<std::array<std::int32_t, 3>> EnvironmentSource::origin_of(std::siz
 namespace clearway {
 
 void EnvironmentSource::convert(RecordBatch& records, QuantaBatch& batch, bool with_bytes) const {
+  if (records.unread > 0) {
+    if (records.reader) batch.bytes = records.reader->place_of_piece(records.piece);
+    return append_unread(records, batch);
+  }
   if (records.reader) read_piece(records, with_bytes ? &batch.bytes : nullptr);
   batch.file = records.file;
   batch.first_source = records.first_source;
@@ -273,6 +306,7 @@ void EnvironmentSource::convert(RecordBatch& records, QuantaBatch& batch, bool w
   batch.offsets.clear();
   batch.classes.clear();
   batch.non_finite_points = batch.absent_points = 0;
+  batch.far_points = batch.unread_points = batch.unread_bytes = 0;
   batch.largest_change = 0;
   note_withheld(records, batch);
   if (shifts_.empty() || !infos_[records.file].quantisation) {
@@ -280,9 +314,80 @@ void EnvironmentSource::convert(RecordBatch& records, QuantaBatch& batch, bool w
   } else {
     append_kept(records, batch);
   }
+  batch.whole = FileBox::of(batch.quanta);
+  if (corridor_ != nullptr) {
+    check_bounds(records, batch);
+    drop_far(batch);
+  }
   keep_classes(records, batch);
   batch.times = std::move(records.points.times);
   records.points = {};
+}
+
+void EnvironmentSource::keep_near(const Corridor& corridor, bool trust_bounds) {
+  corridor_ = &corridor;
+  for (const CloudInfo& info : infos_) {
+    passed_over_.push_back(trust_bounds && !stream_ && info.quantisation && info.declared_points &&
+                           is_far(info.declared_box));
+  }
+}
+
+/// Counts records that are not read.
+void EnvironmentSource::append_unread(const RecordBatch& records, QuantaBatch& out) const {
+  out.file = records.file;
+  out.first_source = records.first_source;
+  out.quanta.clear();
+  out.offsets.clear();
+  out.classes.clear();
+  out.times.clear();
+  out.records = out.far_points = out.unread_points = records.unread;
+  out.unread_bytes = records.unread_bytes;
+  out.whole.points = records.unread;
+  for (int k = 0; k < 3; ++k) {
+    const auto quantum = [&](double at) {
+      const double whole = std::nearbyint((at - quantisation_.offset[k]) / quantisation_.scale[k]);
+      return static_cast<std::int32_t>(std::clamp(whole, kLeastQuantum, kGreatestQuantum));
+    };
+    out.whole.lo[k] = quantum(records.bounds.lo[k]);
+    out.whole.hi[k] = quantum(records.bounds.hi[k]);
+  }
+}
+
+/// Throws InputError where points that were read lie beyond the bounds that the file promises of
+/// them, so that those of other pieces cannot be believed either.
+void EnvironmentSource::check_bounds(const RecordBatch& records, const QuantaBatch& batch) const {
+  if (!records.reader || batch.whole.points == 0) return;
+  const std::optional<Box> bounds = records.reader->bounds_of_piece(records.piece);
+  if (!bounds) return;
+  for (int k = 0; k < 3; ++k) {
+    const double step = 2 * quantisation_.scale[k];
+    if (coordinate(quantisation_, k, batch.whole.lo[k]) >= bounds->lo[k] - step &&
+        coordinate(quantisation_, k, batch.whole.hi[k]) <= bounds->hi[k] + step) {
+      continue;
+    }
+    refuse(files()[records.file].string(),
+           "points lie outside of the cube that its hierarchy names for them, so that it does not "
+           "tell which points are near a path; expected a hierarchy that is right. Write the file "
+           "again");
+  }
+}
+
+/// Leaves out the points that are too far from the path.
+void EnvironmentSource::drop_far(QuantaBatch& out) const {
+  const std::size_t count = out.quanta.size();
+  std::size_t kept = 0;
+  std::vector<std::uint32_t> offsets;
+  CorridorWalk walk(*corridor_);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& q = out.quanta[i];
+    if (!walk.holds(position(quantisation_, q[0], q[1], q[2]))) continue;
+    offsets.push_back(out.offsets.empty() ? static_cast<std::uint32_t>(i) : out.offsets[i]);
+    out.quanta[kept++] = out.quanta[i];
+  }
+  out.far_points = count - kept;
+  if (kept == count) return;
+  out.quanta.resize(kept);
+  out.offsets = std::move(offsets);
 }
 
 /// Keeps the classes of the points that were not left out.

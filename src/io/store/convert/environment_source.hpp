@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/util/progress.hpp"
+#include "core/trajectory/corridor.hpp"
 #include "io/scans/point_reader.hpp"
 #include "io/store/convert/input_agreement.hpp"
 #include "io/store/convert/input_files.hpp"
@@ -38,6 +39,13 @@ class EnvironmentSource {
   EnvironmentSource(const std::vector<std::filesystem::path>& inputs,
                     const EnvironmentOptions& options, Progress& progress);
   ~EnvironmentSource();
+
+  /// Leaves out the points that the corridor does not hold from the next rewind() on, and does not
+  /// read pieces of which the file promises that they are all beyond. trust_bounds: the same for
+  /// whole files by their declared boxes. corridor: must outlive this object.
+  void keep_near(const Corridor& corridor, bool trust_bounds);
+  /// For each of files(), whether keep_near() passes it over.
+  const std::vector<bool>& passed_over() const { return passed_over_; }
 
   const Quantisation& quantisation() const { return quantisation_; }
   const std::string& crs_wkt() const { return crs_.wkt; }
@@ -99,6 +107,11 @@ class EnvironmentSource {
   std::uint64_t withheld_points() const { return withheld_points_; }
   /// The source index of the first of them.
   std::uint64_t first_withheld() const { return first_withheld_; }
+  /// Number of points that keep_near() left out; and of these, points that were not read, with the
+  /// bytes that hold them.
+  std::uint64_t far_points() const { return far_points_; }
+  std::uint64_t unread_points() const { return unread_points_; }
+  std::uint64_t unread_bytes() const { return unread_bytes_; }
   /// Largest |stored - read| of any coordinate, metres.
   double largest_change() const { return largest_change_; }
 
@@ -118,6 +131,13 @@ class EnvironmentSource {
   void append_kept(RecordBatch& records, QuantaBatch& out) const;
   void append_rounded(const RecordBatch& records, QuantaBatch& out) const;
   static void keep_classes(RecordBatch& records, QuantaBatch& out);
+  bool is_far(const std::optional<Box>& bounds) const {
+    return corridor_ != nullptr && bounds && !corridor_->may_hold(*bounds);
+  }
+  bool pass_over(RecordBatch& records);
+  void append_unread(const RecordBatch& records, QuantaBatch& out) const;
+  void check_bounds(const RecordBatch& records, const QuantaBatch& batch) const;
+  void drop_far(QuantaBatch& out) const;
   [[noreturn]] void refuse_beyond_quanta(std::size_t file) const;
 
   EnvironmentOptions options_;
@@ -129,6 +149,8 @@ class EnvironmentSource {
   // Shifts of the files' integers in quanta; empty where all are rounded anew.
   std::vector<std::array<std::int64_t, 3>> shifts_;
   CommonCrs crs_;
+  const Corridor* corridor_ = nullptr;  ///< null where points are kept wherever they are
+  std::vector<bool> passed_over_;
   // Edge of a cube of 1 m in the unit of the coordinates. It is that of the last rewind(), because
   // next() may change crs_ while other threads are in convert().
   double withheld_edge_ = 1;
@@ -149,6 +171,7 @@ class EnvironmentSource {
   std::uint64_t absent_points_ = 0;
   std::uint64_t withheld_points_ = 0;
   std::uint64_t first_withheld_ = 0;
+  std::uint64_t far_points_ = 0, unread_points_ = 0, unread_bytes_ = 0;
   double largest_change_ = 0;
 };
 

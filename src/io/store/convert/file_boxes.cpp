@@ -144,27 +144,10 @@ std::optional<Message> without_points(std::span<const FileBox> boxes,
 }  // namespace
 
 void FileBoxes::add(const QuantaBatch& batch) {
-  if (batch.quanta.empty()) return;
-  FileBox box{.points = batch.quanta.size()};
-  for (std::size_t k = 0; k < 3; ++k) box.lo[k] = box.hi[k] = batch.quanta[0][k];
-  for (const auto& q : batch.quanta) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(box.lo[k], q[k]);
-      box.hi[k] = std::max(box.hi[k], q[k]);
-    }
-  }
+  if (batch.whole.points == 0) return;
   const std::lock_guard lock(mutex_);
   if (boxes_.size() <= batch.file) boxes_.resize(batch.file + 1);
-  FileBox& all = boxes_[batch.file];
-  if (all.points == 0) {
-    all = box;
-    return;
-  }
-  all.points += box.points;
-  for (std::size_t k = 0; k < 3; ++k) {
-    all.lo[k] = std::min(all.lo[k], box.lo[k]);
-    all.hi[k] = std::max(all.hi[k], box.hi[k]);
-  }
+  boxes_[batch.file].add(batch.whole);
 }
 
 std::vector<FileBox> FileBoxes::boxes(std::size_t files) const {

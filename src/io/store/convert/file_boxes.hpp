@@ -15,13 +15,7 @@
 
 namespace clearway {
 
-/// Number and box of the points of an input, in the store's integers.
-struct FileBox {
-  std::uint64_t points = 0;
-  std::int32_t lo[3]{}, hi[3]{};  ///< defined where there is a point
-};
-
-/// The box of each input. add() may be called from several threads.
+/// The box of each input, with the points that are too far from a path. add() may be called from several threads.
 class FileBoxes {
  public:
   void add(const QuantaBatch& batch);

@@ -22,8 +22,13 @@ void FileHashes::add(std::size_t file, const PieceBytes& piece) {
     hash_.emplace();
   }
   read_until(piece.first);
-  hash_->update(piece.span());
+  if (piece.bytes) hash_->update(piece.span());
   position_ += piece.count;
+}
+
+void FileHashes::pass_over(std::size_t file) {
+  const std::uint64_t bytes = std::filesystem::file_size(files_[file]);
+  found_[file] = {files_[file].filename().string(), bytes, Xxh64Stream().digest()};
 }
 
 std::vector<std::optional<SourceFile>> FileHashes::finish() {

@@ -32,7 +32,8 @@ inline FileState state_of(const std::filesystem::path& path) {
 }
 
 /// Describes the files that a pass reads in pieces by name, size and hash, from the bytes of the
-/// pieces. Only the bytes before, between and after the pieces are read for it.
+/// pieces. Only the bytes before, between and after the pieces are read for it. Pieces that were
+/// not read do not enter the hash.
 class FileHashes {
  public:
   /// wanted: which of the files to describe; pieces of others are ignored.
@@ -41,6 +42,8 @@ class FileHashes {
 
   /// Adds the next piece, in the order of the points.
   void add(std::size_t file, const PieceBytes& piece);
+  /// Leaves out a file that is not read at all.
+  void pass_over(std::size_t file);
   /// Called after the last piece. Returns a description for each file; nullopt for files without a
   /// piece.
   std::vector<std::optional<SourceFile>> finish();

@@ -11,6 +11,7 @@
 #include "io/files/mapped_file.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/paths/trajectory_file.hpp"
+#include "io/store/convert/near_path.hpp"
 
 namespace clearway {
 namespace {
@@ -48,15 +49,6 @@ std::string name_of(GpsTimes kind) {
       break;
   }
   return "no GPS times";
-}
-
-/// Whether a doubt about a trajectory concerns only how it turns.
-bool is_about_rotation(const Message& remark) {
-  for (const char* code : {"rotation-missing", "rotation-too-small", "quaternion-order",
-                           "upside-down", "turns-against-path", "model-frame"}) {
-    if (remark.code == code) return true;
-  }
-  return false;
 }
 
 /// Reads a path. Matrices that scale or shear stay refused whatever the caller does, since a
@@ -108,12 +100,8 @@ PathOrigins::PathOrigins(const ConvertOptions& options, const EnvironmentSource&
       files_(environment.files().size()) {
   for (const CloudInfo& info : environment.infos()) kinds_.push_back(info.gps_times);
   for (const auto& file : environment.files()) names_.push_back(file.string());
-  const double metres = metres_of(unit_) > 0 ? metres_of(unit_) : 1;
-  TrajectoryOptions how = options.origins_path_options;
-  how.lever_arm = {0, 0, 0};
-  how.default_crs = environment.crs().crs;
-  how.environment_unit = metres;
-  how.environment_unit_is_assumed = unit_ == LengthUnit::kUnknown;
+  const TrajectoryOptions how = reading_of_paths(options, environment);
+  const double metres = how.environment_unit;
   TrajectoryFile file = read_rigid_path(options.origins_path, how);
   const bool turns = !(options.lever_arm == Vec3{0, 0, 0});
   for (const Message& remark : file.remarks) {
@@ -443,7 +431,7 @@ void PathOrigins::warn(MessageLog& log) const {
 
 std::uint64_t given_path_hash(const ConvertOptions& options) {
   File::open_regular(options.origins_path);  // refuses what cannot be mapped, such as a pipe
-  const TrajectoryOptions& how = options.origins_path_options;
+  const TrajectoryOptions& how = options.path_options;
   std::string text = "path " + how.crs + "\n" + how.datum;
   for (const int value : {static_cast<int>(how.format), static_cast<int>(how.angle_unit),
                           static_cast<int>(how.angle_frame), how.allow_non_rigid ? 1 : 0}) {

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "io/scans/point_reader.hpp"
@@ -19,10 +21,44 @@ struct RecordBatch {
   std::shared_ptr<PointReader> reader;
   std::size_t piece = 0;
   PointBatch points;  ///< the records, where they have been read
+  /// Number of records that are not read, because `bounds` of them are too far from a path.
+  std::uint64_t unread = 0;
+  std::uint64_t unread_bytes = 0;
+  Box bounds{};
 };
 
-/// Consecutive points of the environment in the store's integers, without those that are not finite
-/// or withheld.
+/// Number and box of points of an input, in the store's integers.
+struct FileBox {
+  std::uint64_t points = 0;
+  std::int32_t lo[3]{}, hi[3]{};  ///< defined where there is a point
+
+  void add(const FileBox& other) {
+    if (other.points == 0) return;
+    for (int k = 0; k < 3; ++k) {
+      lo[k] = points == 0 ? other.lo[k] : std::min(lo[k], other.lo[k]);
+      hi[k] = points == 0 ? other.hi[k] : std::max(hi[k], other.hi[k]);
+    }
+    points += other.points;
+  }
+
+  static FileBox of(std::span<const std::array<std::int32_t, 3>> quanta) {
+    if (quanta.empty()) return {};
+    FileBox box{.points = quanta.size()};
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::int32_t lo = quanta[0][k], hi = lo;
+      for (const auto& q : quanta) {
+        lo = std::min(lo, q[k]);
+        hi = std::max(hi, q[k]);
+      }
+      box.lo[k] = lo;
+      box.hi[k] = hi;
+    }
+    return box;
+  }
+};
+
+/// Consecutive points of the environment in the store's integers, without those that are not
+/// finite, withheld, or too far from a path.
 struct QuantaBatch {
   std::size_t file = 0;            ///< number of the input that all points belong to
   std::uint64_t first_source = 0;  ///< source index of the batch's first input point
@@ -44,6 +80,10 @@ struct QuantaBatch {
   std::uint64_t withheld_points = 0;
   std::uint64_t first_withheld = 0;  ///< source index of the first of them, where there is one
   std::vector<MetreCube> withheld_cubes;
+  FileBox whole;                   ///< of the finite points, those too far from a path included
+  std::uint64_t far_points = 0;    ///< points left out because they are too far from a path
+  std::uint64_t unread_points = 0;  ///< of these, points that were not read
+  std::uint64_t unread_bytes = 0;   ///< the bytes that hold them
   double largest_change = 0;  ///< largest |stored - read| of any coordinate, metres
   PieceBytes bytes;           ///< the bytes from which a piece was read, where requested
 

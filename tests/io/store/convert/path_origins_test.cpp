@@ -54,7 +54,7 @@ struct TimedScan {
   void path_text(const std::string& text) {
     put_bytes(folder / "p.txt", text);
     options.origins_path = folder / "p.txt";
-    options.origins_path_options.format = TrajectoryFormat::kTum;
+    options.path_options.format = TrajectoryFormat::kTum;
   }
   std::vector<std::optional<OriginQuanta>> converted() {
     convert_quietly(options);
@@ -306,7 +306,7 @@ TEST_CASE("a path that is none, and options that contradict each other, are refu
   TimedScan scan;
   SECTION("no times") {
     scan.path_text("0 0 0 0 0 0 1\n1 0 0 0 0 0 1\n");
-    scan.options.origins_path_options.format = TrajectoryFormat::kPoseXyzw;
+    scan.options.path_options.format = TrajectoryFormat::kPoseXyzw;
     check_says(conversion_refusal<InputError>(scan.options), "have no times");
   }
   SECTION("times that go back") {
@@ -362,7 +362,7 @@ TEST_CASE("a path that takes more than an eighth of the memory is refused with a
 TEST_CASE("a lever arm is in metres and a path in metres becomes the feet of the environment") {
   TimedScan scan({100.25});
   scan.options.unit = FileUnit::named("ift");
-  scan.options.origins_path_options.metres_per_unit = 1.0;
+  scan.options.path_options.metres_per_unit = 1.0;
   scan.options.lever_arm = {0, 0, 3.048};
   CHECK(scan.converted()[0] == millimetres(0.5 / 0.3048, 0, 10));
 }
