@@ -53,6 +53,7 @@ enum class Remedy {
   /// Search or ask with points of the surface, where the surface itself is not possible
   kModelPoints,
   kFreeDisk,   ///< free some room on the disk, or write to another one
+  kWiderCorridor,  ///< the scans have to be converted with a larger `within`; amount: metres
   kOtherPart,  ///< the output belongs to another part, or to the whole, than the one asked for
 };
 

@@ -71,9 +71,8 @@ void CorridorCheck::refuse(const Need& need, double reach, const std::string& wh
   throw InputError("the environment holds only points within " +
                    format_number(corridor_->within() / metre_) + " m of a path, and " + what +
                    " at pose " + std::to_string(need.pose) +
-                   " reaches farther, so that points which were left out could change the answer. "
-                   "Convert the scans with --within " +
-                   format_number(metres) + " or more, or without --near");
+                   " reaches farther, so that points which were left out could change the answer",
+                   Remedy::kWiderCorridor, metres);
 }
 
 void CorridorCheck::check(std::span<const MovingBody> bodies, bool between_poses,

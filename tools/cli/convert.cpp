@@ -188,6 +188,10 @@ void add_options(CLI::App& command, ConvertCommand& options) {
       ->capture_default_str();
   add_options_of_reading(command, conversion.path_options, options.lengths);
   command.get_option("--resume")->excludes("--force");
+  command.get_option("--near")->needs("--within");
+  for (const char* of_near : {"--within", "--trust-bounds"}) {
+    command.get_option(of_near)->needs("--near");
+  }
   command.add_flag("--json", options.json, "Print one JSON object about the conversion");
 }
 

@@ -100,6 +100,8 @@ inline constexpr auto kRemedies = std::to_array<RemedyKind>({
      "; --model-as points searches points of it, and the answer says how far its surface may be "
      "from them"},
     {kFreeDisk, "free_disk", "; free some room, or write to a disk with more"},
+    {kWiderCorridor, "wider_corridor", "; convert the scans with a larger --within", kNumber,
+     "; convert the scans with --within {} or more, or without --near"},
     {kOtherPart, "other_part",
      "; give the same --shard as its run, or another output. --force instead of --resume "
      "overwrites it"},

@@ -51,16 +51,20 @@ Box Corridor::build(std::uint32_t node, std::uint32_t first, std::uint32_t count
   if (node >= boxes_.size()) boxes_.resize(std::max<std::size_t>(node + 1, 2 * boxes_.size()));
   Box box;
   if (count <= kLeaf) {
-    box = {path_[first], path_[first]};
-    for (std::uint32_t i = first; i <= first + count && i < path_.size(); ++i) {
-      box = box.united({path_[i], path_[i]});
-    }
-    box = box.grown(slack_);
+    box = box_of_segment(first);
+    for (std::uint32_t i = 1; i < count; ++i) box = box.united(box_of_segment(first + i));
   } else {
     const Box earlier = build(2 * node + 1, first, count / 2);
     box = earlier.united(build(2 * node + 2, first + count / 2, count - count / 2));
   }
   return boxes_[node] = box;
+}
+
+/// A box around all computed places of a segment.
+Box Corridor::box_of_segment(std::uint32_t segment) const {
+  Box box{path_[segment], path_[segment]};
+  if (segment + 1 < path_.size()) box.extend(path_[segment + 1]);
+  return box.grown(slack_);
 }
 
 double Corridor::squared_to_segment(const Vec3& p, std::uint32_t segment) const {
@@ -133,7 +137,8 @@ bool Corridor::may_hold(const Box& box) const {
   const auto is_near = [&](const Box& of_run) {
     return !found && !(squared_between(box, of_run) * (1 - kRelative) > limit);
   };
-  descend(0, 0, segments(), is_near, [&](std::uint32_t) { found = true; });
+  descend(0, 0, segments(), is_near,
+          [&](std::uint32_t i) { found = found || is_near(box_of_segment(i)); });
   return found;
 }
 

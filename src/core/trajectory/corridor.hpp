@@ -42,6 +42,7 @@ class Corridor {
     return static_cast<std::uint32_t>(path_.size() > 1 ? path_.size() - 1 : 1);
   }
   Box build(std::uint32_t node, std::uint32_t first, std::uint32_t count);
+  Box box_of_segment(std::uint32_t segment) const;
   double squared_to_segment(const Vec3& p, std::uint32_t segment) const;
   template <typename IsNear, typename Visit>
   void descend(std::uint32_t node, std::uint32_t first, std::uint32_t count, const IsNear& is_near,

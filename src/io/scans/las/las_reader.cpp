@@ -252,7 +252,7 @@ std::unique_ptr<PointReader> read_compressed(InputBuffer input, const LasPublicH
   info.date = header.date;
   const std::uint64_t end = header.tail_count > 0 ? header.tail_offset : *input.size();
   return read_laz_points(std::move(input), scheme, {header.points_offset, end, header.points},
-                         std::move(info));
+                         records.copc, std::move(info));
 }
 
 }  // namespace

@@ -44,6 +44,7 @@ void keep_record(const std::string& user, unsigned id, std::span<const std::byte
   if (user == "LASF_Spec" && id == kExtraBytes && records.extra_bytes.empty()) {
     records.extra_bytes.assign(payload.begin(), payload.end());
   }
+  if (user == "copc" && id == 1) records.copc.assign(payload.begin(), payload.end());
   if (user != "LASF_Projection" || id < kGeoKeys || id > kGeoTexts) return;
   for (const LasRecord& kept : records.geotiff) {
     if (kept.id == id) return;

@@ -40,6 +40,7 @@ struct LasRecord {
 struct LasRecords {
   LasCrs crs;
   std::vector<std::byte> laz;  ///< record of the points' compression; empty where there is none
+  std::vector<std::byte> copc;  ///< record about the octree of COPC; empty where there is none
   std::vector<std::byte> extra_bytes;  ///< descriptions of the points' extra bytes
   std::vector<LasRecord> geotiff;      ///< up to three GeoTIFF records of the CRS
 };

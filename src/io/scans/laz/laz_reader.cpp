@@ -4,10 +4,12 @@
 #include <array>
 #include <utility>
 
+#include "clearway/error.hpp"
 #include "core/messages/messages.hpp"
 #include "io/files/bytes.hpp"
 #include "io/files/input_error.hpp"
 #include "io/scans/laz/chunk_table.hpp"
+#include "io/scans/laz/copc_hierarchy.hpp"
 
 namespace clearway {
 namespace {
@@ -31,9 +33,12 @@ laz::PointRoom room_in(PointBatch& batch, std::size_t first, std::size_t count,
 /// Reads a file with a chunk table.
 class TabledReader final : public PointReader {
  public:
-  TabledReader(InputBuffer input, const Scheme& scheme, std::vector<Chunk> chunks, CloudInfo info)
+  /// cubes: that of each chunk, where the file is COPC; otherwise empty.
+  TabledReader(InputBuffer input, const Scheme& scheme, std::vector<Chunk> chunks,
+               std::vector<Box> cubes, CloudInfo info)
       : input_(std::move(input)),
         chunks_(std::move(chunks)),
+        cubes_(std::move(cubes)),
         info_(std::move(info)),
         scheme_(scheme),
         groups_(scheme) {
@@ -102,14 +107,23 @@ class TabledReader final : public PointReader {
       room = room.behind(chunk.points);
     }
     if (!bytes) return;
-    bytes->first = chunks.front().begin;
-    bytes->count = chunks.back().end - chunks.front().begin;
+    *bytes = place_of_piece(piece);
     bytes->bytes = std::make_unique_for_overwrite<std::byte[]>(bytes->count);
     input_.read_at(bytes->first, bytes->span());
   }
 
+  std::optional<Box> bounds_of_piece(std::size_t piece) const override {
+    if (cubes_.empty()) return std::nullopt;
+    return cubes_[piece];  // a piece is one chunk
+  }
+
+  PieceBytes place_of_piece(std::size_t piece) const override {
+    const std::span<const Chunk> chunks = chunks_of(piece);
+    return {chunks.front().begin, chunks.back().end - chunks.front().begin, nullptr};
+  }
+
  private:
-  /// Forms pieces of several chunks each; none where a chunk is too large to be decoded as a whole.
+  /// Forms pieces of several chunks each, and of one each where it has a cube; none where a chunk is too large to be decoded as a whole.
   void find_pieces() {
     std::uint64_t points = 0, bytes = 0;
     for (std::size_t i = 0; i < chunks_.size(); ++i) {
@@ -121,7 +135,7 @@ class TabledReader final : public PointReader {
       points += chunks_[i].points;
       bytes += size;
       const bool full = points >= kBatchPoints / 2 || bytes >= kMostChunkBytes / 4;
-      if (!full && i + 1 < chunks_.size()) continue;
+      if (cubes_.empty() && !full && i + 1 < chunks_.size()) continue;
       piece_ends_.push_back(i + 1);
       points = bytes = 0;
     }
@@ -156,6 +170,7 @@ class TabledReader final : public PointReader {
 
   InputBuffer input_;
   std::vector<Chunk> chunks_;
+  std::vector<Box> cubes_;
   /// Index of the chunk after each piece; empty where only read() works.
   std::vector<std::size_t> piece_ends_;
   CloudInfo info_;
@@ -255,15 +270,30 @@ class UntabledReader final : public PointReader {
   std::uint64_t left_ = 0;  ///< points left in the current chunk
 };
 
+/// The cubes of the chunks of a COPC file; none for other files, and where they are damaged.
+std::vector<Box> cubes_of(const InputBuffer& input, std::span<const std::byte> copc,
+                          std::span<const Chunk> chunks, CloudInfo& info) {
+  if (copc.empty()) return {};
+  try {
+    return laz::read_copc_cubes(input, copc, chunks);
+  } catch (const InputError& error) {
+    info.remarks.push_back(
+        plain_note(std::string(error.what()) + ". Its points are read without the hierarchy"));
+    return {};
+  }
+}
+
 }  // namespace
 
 std::unique_ptr<PointReader> read_laz_points(InputBuffer input, const Scheme& scheme,
-                                             const laz::PointBytes& bytes, CloudInfo info) {
+                                             const laz::PointBytes& bytes,
+                                             std::span<const std::byte> copc, CloudInfo info) {
   if (scheme.chunks != Scheme::Chunks::kNone) {
     auto chunks = laz::read_chunk_table(input, scheme, bytes);
     if (chunks) {
+      std::vector<Box> cubes = cubes_of(input, copc, *chunks, info);
       return std::make_unique<TabledReader>(std::move(input), scheme, std::move(*chunks),
-                                            std::move(info));
+                                            std::move(cubes), std::move(info));
     }
     if (!scheme.chunk_points && bytes.points > 0) {
       refuse(input.name(),

@@ -259,7 +259,8 @@ class Conversion {
     }
     std::optional<Corridor> corridor;
     if (!options_.near.empty()) {
-      corridor.emplace(corridor_of(options_, environment, log_));
+      corridor.emplace(
+          corridor_of(options_, environment.crs().crs, environment.unit(), log_));
       environment.keep_near(*corridor, options_.trust_bounds);
     }
     OriginTable origins(environment.quantisation(), options_.memory_bytes / 4);
@@ -563,10 +564,15 @@ bool has_wanted_origins(const ConversionOptions& options, const StoreMetadata& f
   return given == (options.origins.empty() ? 0 : given_origins_hash(options.origins));
 }
 
-/// Whether a store has the corridor that these options give it. The path itself is compared only by
-/// reading it anew, for which the inputs have to be opened.
+/// Whether a store has the corridor that these options give it, and read its inputs whole, so that
+/// their hashes say that they are the same.
 bool has_wanted_corridor(const ConversionOptions& options, const StoreMetadata& found) {
-  return options.near.empty() == !found.near.has_value();
+  if (options.near.empty() || !found.near) return options.near.empty() == !found.near;
+  std::vector<Message> unused;
+  MessageLog log(nullptr, unused);
+  const Corridor wanted = corridor_of(options, found.crs_wkt, found.unit, log);
+  return found.near->unread == 0 && wanted.within() == found.near->within &&
+         std::ranges::equal(wanted.path(), found.near->path);
 }
 
 /// Whether a conversion with these options could have made this store, as far as its metadata
@@ -586,10 +592,9 @@ bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
 }
 
 /// Whether a store shows whether these options made it. It does not record the columns with which
-/// it was made, or how its path was read, and standard input can be read only once.
+/// it was made, and standard input can be read only once.
 bool tells_whether_made_by(const ConversionOptions& options) {
-  return options.inputs != std::vector<std::filesystem::path>{"-"} && options.columns.empty() &&
-         options.near.empty();
+  return options.inputs != std::vector<std::filesystem::path>{"-"} && options.columns.empty();
 }
 
 /// Throws UsageError where a file is at the place of the output of a conversion that is resumed,

@@ -173,7 +173,11 @@ void EnvironmentSource::rewind() {
 bool EnvironmentSource::next(RecordBatch& records) {
   for (; file_ < files().size(); ++file_, piece_ = 0, file_points_ = 0) {
     records.unread = 0;
-    if (pass_over(records)) return true;
+    if (file_ < passed_over_.size() && passed_over_[file_]) {
+      if (pass_over(records)) return true;
+      points_of_files_.push_back(file_points_);
+      continue;
+    }
     const std::shared_ptr<PointReader>& from = reader(file_);
     std::uint64_t count = 0;
     if (piece_ < from->pieces()) {
@@ -207,10 +211,8 @@ bool EnvironmentSource::next(RecordBatch& records) {
   return false;
 }
 
-/// Takes all records of a file that is passed over. Returns false for other files, and where that
-/// was done.
+/// Takes all records of a file that is passed over. Returns false where that was done.
 bool EnvironmentSource::pass_over(RecordBatch& records) {
-  if (file_ >= passed_over_.size() || !passed_over_[file_]) return false;
   const CloudInfo& info = infos_[file_];
   if (file_points_ > 0 || *info.declared_points == 0) return false;
   records.reader.reset();
@@ -327,8 +329,10 @@ void EnvironmentSource::convert(RecordBatch& records, QuantaBatch& batch, bool w
 void EnvironmentSource::keep_near(const Corridor& corridor, bool trust_bounds) {
   corridor_ = &corridor;
   for (const CloudInfo& info : infos_) {
+    // Bounds without any extent were never filled in.
+    const bool has_bounds = info.declared_box && !(info.declared_box->lo == info.declared_box->hi);
     passed_over_.push_back(trust_bounds && !stream_ && info.quantisation && info.declared_points &&
-                           is_far(info.declared_box));
+                           has_bounds && is_far(info.declared_box));
   }
 }
 

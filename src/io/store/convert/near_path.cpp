@@ -12,14 +12,14 @@
 
 namespace clearway {
 
-TrajectoryOptions reading_of_paths(const ConvertOptions& options,
-                                   const EnvironmentSource& environment) {
-  const double metres = metres_of(environment.unit());
+TrajectoryOptions reading_of_paths(const ConvertOptions& options, const std::string& crs,
+                                   LengthUnit unit) {
+  const double metres = metres_of(unit);
   TrajectoryOptions how = options.path_options;
   how.lever_arm = {0, 0, 0};
-  how.default_crs = environment.crs().crs;
+  how.default_crs = crs;
   how.environment_unit = metres > 0 ? metres : 1;
-  how.environment_unit_is_assumed = environment.unit() == LengthUnit::kUnknown;
+  how.environment_unit_is_assumed = unit == LengthUnit::kUnknown;
   return how;
 }
 
@@ -31,9 +31,9 @@ bool is_about_rotation(const Message& remark) {
   return false;
 }
 
-Corridor corridor_of(const ConvertOptions& options, const EnvironmentSource& environment,
+Corridor corridor_of(const ConvertOptions& options, const std::string& crs, LengthUnit unit,
                      MessageLog& log) {
-  TrajectoryOptions how = reading_of_paths(options, environment);
+  TrajectoryOptions how = reading_of_paths(options, crs, unit);
   how.allow_non_rigid = true;  // only positions count
   const TrajectoryFile file = read_trajectory_file(options.near, how);
   for (const Message& remark : file.remarks) {

@@ -100,7 +100,7 @@ PathOrigins::PathOrigins(const ConvertOptions& options, const EnvironmentSource&
       files_(environment.files().size()) {
   for (const CloudInfo& info : environment.infos()) kinds_.push_back(info.gps_times);
   for (const auto& file : environment.files()) names_.push_back(file.string());
-  const TrajectoryOptions how = reading_of_paths(options, environment);
+  const TrajectoryOptions how = reading_of_paths(options, environment.crs().crs, unit_);
   const double metres = how.environment_unit;
   TrajectoryFile file = read_rigid_path(options.origins_path, how);
   const bool turns = !(options.lever_arm == Vec3{0, 0, 0});

@@ -50,8 +50,28 @@ struct LazBytes {
   std::uint32_t points_offset() const {
     return las.points_offset() + 54 + static_cast<std::uint32_t>(scheme().size());
   }
+  /// Where each chunk begins.
+  std::vector<std::uint64_t> chunk_begins() const {
+    std::vector<std::uint64_t> begins;
+    std::uint64_t at = points_offset() + 8;
+    for (std::size_t begin = 0, i = 0; begin < points.size(); ++i) {
+      const std::size_t end = chunk_end(begin, i);
+      begins.push_back(at);
+      at += chunk(begin, end).size();
+      begin = end;
+    }
+    return begins;
+  }
 
  private:
+  std::size_t chunk_end(std::size_t begin, std::size_t number) const {
+    const std::size_t size =
+        variable ? (number < chunks.size() ? chunks[number] : points.size()) : chunks[0];
+    return std::min(points.size(), begin + size);
+  }
+  std::string chunk(std::size_t begin, std::size_t end) const {
+    return layered() ? layered_chunk(begin, end) : pointwise_chunk(begin, end);
+  }
   bool layered() const { return las.format >= 6; }
 
   template <typename Number>
@@ -149,13 +169,11 @@ struct LazBytes {
     add(bytes, table == Table::kAtEnd ? ~std::uint64_t{0} : std::uint64_t{pointer});
     std::vector<std::array<std::uint32_t, 2>> entries;
     for (std::size_t begin = 0, i = 0; begin < points.size(); ++i) {
-      const std::size_t size =
-          variable ? (i < chunks.size() ? chunks[i] : points.size()) : chunks[0];
-      const std::size_t end = std::min(points.size(), begin + size);
-      const std::string chunk = layered() ? layered_chunk(begin, end) : pointwise_chunk(begin, end);
-      bytes += chunk;
+      const std::size_t end = chunk_end(begin, i);
+      const std::string one = chunk(begin, end);
+      bytes += one;
       entries.push_back(
-          {static_cast<std::uint32_t>(end - begin), static_cast<std::uint32_t>(chunk.size())});
+          {static_cast<std::uint32_t>(end - begin), static_cast<std::uint32_t>(one.size())});
       begin = end;
     }
     if (table == Table::kNone) return;
