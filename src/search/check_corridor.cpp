@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "clearway/error.hpp"
 #include "core/geometry/rigid.hpp"
@@ -18,6 +19,11 @@ constexpr double kUp = 1 + 0x1p-40;
 
 Vec3 position_of(const Pose& pose) {
   return {pose.translation[0], pose.translation[1], pose.translation[2]};
+}
+
+/// How far from its model a query looks. radius: the greatest that is searched.
+double reach_of(const Query& query, double radius) {
+  return std::max({radius, query.radius, query.clearance, query.profile});
 }
 
 double farthest_of(const Model& model) {
@@ -47,13 +53,12 @@ CorridorCheck::Need CorridorCheck::need_of(std::span<const Pose> poses,
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Pose& pose = poses[i];
     const double away = corridor_->distance_above(position_of(pose));
-    const double extent = greatest_stretch_bound(pose) * farthest_of_model +
-                          2 * transform_rounding(reach, pose);
+    const double extent =
+        greatest_stretch_bound(pose) * farthest_of_model + 2 * transform_rounding(reach, pose);
     double distance = away + extent;
     if (between_poses && i > 0) {
       const double chord = length(position_of(pose) - position_of(poses[i - 1])) * kUp;
-      distance = std::max(
-          distance, (before + away + chord) / 2 + std::max(extent, extent_before));
+      distance = std::max(distance, (before + away + chord) / 2 + std::max(extent, extent_before));
     }
     before = away;
     extent_before = extent;
@@ -68,11 +73,11 @@ void CorridorCheck::refuse(const Need& need, double reach, const std::string& wh
   const double wanted = (need.distance + reach) * kUp;
   if (wanted <= corridor_->within()) return;
   const double metres = std::ceil(wanted / metre_ * 1000 + 0.5) / 1000;
-  throw InputError("the environment holds only points within " +
-                   format_number(corridor_->within() / metre_) + " m of a path, and " + what +
-                   " at pose " + std::to_string(need.pose) +
-                   " reaches farther, so that points which were left out could change the answer",
-                   Remedy::kWiderCorridor, metres);
+  throw InputError(
+      "the environment holds only points within " + format_number(corridor_->within() / metre_) +
+          " m of a path, and " + what + " at pose " + std::to_string(need.pose) +
+          " reaches farther, so that points which were left out could change the answer",
+      Remedy::kWiderCorridor, metres);
 }
 
 void CorridorCheck::check(std::span<const MovingBody> bodies, bool between_poses,
@@ -88,8 +93,7 @@ void CorridorCheck::check(std::span<const MovingBody> bodies, bool between_poses
 
 void CorridorCheck::check(const Query& query, double radius) const {
   refuse_seen(query.seen);
-  check(moving_bodies(query), query.between_poses,
-        std::max({radius, query.radius, query.clearance, query.profile}));
+  check(moving_bodies(query), query.between_poses, reach_of(query, radius));
 }
 
 void CorridorCheck::check(const SectionParameters& asked, const Body& load) const {
@@ -111,6 +115,18 @@ void CorridorCheck::check(const SectionParameters& asked, const Body& load) cons
   }
   const double farthest = std::sqrt(x * x + y * y + z * z) * kUp + asked.cell + grown;
   refuse(need_of(load.poses, load.path_pose, farthest, asked.between_poses), 0, "the section");
+}
+
+double CorridorCheck::wanted(const Query& query, std::vector<Vec3> path, double radius) {
+  CorridorCheck check;
+  check.corridor_.emplace(std::move(path), 0);
+  double wanted = 0;
+  for (const MovingBody& body : moving_bodies(query)) {
+    const Need need =
+        check.need_of(body.poses, body.path_pose, farthest_of(body.model), query.between_poses);
+    wanted = std::max(wanted, need.distance);
+  }
+  return (wanted + reach_of(query, radius)) * kUp;
 }
 
 void CorridorCheck::refuse_seen(bool seen) const {

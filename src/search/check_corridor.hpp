@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "clearway/body.hpp"
 #include "clearway/query.hpp"
@@ -27,6 +28,9 @@ class CorridorCheck {
   /// The same for all that a query asks for. radius: the greatest that is searched.
   void check(const Query& query, double radius) const;
 
+  /// The distance from a path, in the environment's unit, that such a check of the query accepts.
+  static double wanted(const Query& query, std::vector<Vec3> path, double radius);
+
   /// The same for a section and its load, whose poses belong to those of the path by path_pose.
   void check(const SectionParameters& asked, const Body& load) const;
 
@@ -41,6 +45,8 @@ class CorridorCheck {
   Need need_of(std::span<const Pose> poses, std::span<const std::uint32_t> path_pose,
                double farthest_of_model, bool between_poses) const;
   void refuse(const Need& need, double reach, const std::string& what) const;
+
+  CorridorCheck() = default;
 
   std::optional<Corridor> corridor_;
   double metre_ = 1;  ///< the length of a metre in the store's unit

@@ -78,11 +78,20 @@ Query random_question(Random& random, const NearScene& scene) {
   query.radius = uniform(random, 0.1, 0.6);
   query.first_pose = below(random, 2) == 0;
   switch (below(random, 5)) {
-    case 0: query.clearance = uniform(random, 0.1, 1); break;
-    case 1: query.profile = uniform(random, 0.1, 1); break;
-    case 2: query.between_poses = true; break;
-    case 3: query.error_scan = uniform(random, 0, 0.1); break;
-    default: break;
+    case 0:
+      query.clearance = uniform(random, 0.1, 1);
+      break;
+    case 1:
+      query.profile = uniform(random, 0.1, 1);
+      break;
+    case 2:
+      query.between_poses = true;
+      break;
+    case 3:
+      query.error_scan = uniform(random, 0, 0.1);
+      break;
+    default:
+      break;
   }
   if (below(random, 4) == 0) query.floor = uniform(random, -0.5, 0.2);
   if (below(random, 4) != 0) return query;
@@ -128,7 +137,9 @@ TEST_CASE("a store of points near a path answers as the whole store does, or ref
         check_same_tables(found, expected);
         ++answered;
       } catch (const InputError& error) {
-        check_says(error.what(), "holds only points within ... points which were left out could change the answer");
+        check_says(
+            error.what(),
+            "holds only points within ... points which were left out could change the answer");
         CHECK(error.remedy() == Remedy::kWiderCorridor);
         CHECK(error.amount() > scene.within);
         ++refused;

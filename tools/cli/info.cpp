@@ -342,11 +342,10 @@ std::string text_of(const ordered_json& description) {
                                : ", left out, in " + counted(value["cubes"].get<std::uint64_t>(),
                                                              "cube of 1 m", "cubes of 1 m")));
     } else if (key == "near") {
-      text += fmt::format(
-          "{:<{}}  within {} of a path of {}; {} left out", key, width,
-          format_number(value["within"].get<double>()),
-          counted(value["path_poses"].get<std::uint64_t>(), "pose"),
-          counted(value["points_left_out"].get<std::uint64_t>(), "point"));
+      text += fmt::format("{:<{}}  within {} of a path of {}; {} left out", key, width,
+                          format_number(value["within"].get<double>()),
+                          counted(value["path_poses"].get<std::uint64_t>(), "pose"),
+                          counted(value["points_left_out"].get<std::uint64_t>(), "point"));
       if (const auto unread = value["points_unread"].get<std::uint64_t>(); unread > 0) {
         text += fmt::format(", {} of them not read ({})", format_count(unread),
                             format_size(value["bytes_unread"].get<std::uint64_t>()));

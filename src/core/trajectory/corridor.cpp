@@ -15,9 +15,7 @@ constexpr std::uint32_t kLeaf = 4;
 /// distances, with room to spare.
 constexpr double kRelative = 0x1p-44;
 
-double largest(const Vec3& p) {
-  return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-}
+double largest(const Vec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
 
 double squared_to_box(const Vec3& p, const Box& box) {
   double squared = 0;

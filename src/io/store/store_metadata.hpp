@@ -140,8 +140,8 @@ struct StoreMetadata {
   /// Only where some point of the inputs has the flag `withheld`
   std::optional<StoreWithheld> withheld = {};
   std::optional<StoreCorridor> near = {};  ///< only where points far from a path were left out
-  ScanDates dates = {};                ///< days on which the sources were made
-  std::vector<Message> warnings = {};  ///< warnings of the conversion, for users of the store
+  ScanDates dates = {};                    ///< days on which the sources were made
+  std::vector<Message> warnings = {};      ///< warnings of the conversion, for users of the store
 
   /// Points of the inputs that are not stored because they hold no finite place.
   std::uint64_t points_without_place() const {
@@ -203,8 +203,8 @@ inline std::uint64_t hash_of(const StoreCorridor& corridor) {
   hashes.add(std::array{corridor.within, corridor.whole.lo.x, corridor.whole.lo.y,
                         corridor.whole.lo.z, corridor.whole.hi.x, corridor.whole.hi.y,
                         corridor.whole.hi.z});
-  hashes.add(std::array{corridor.left_out, corridor.unread, corridor.unread_bytes,
-                        corridor.passed_over});
+  hashes.add(
+      std::array{corridor.left_out, corridor.unread, corridor.unread_bytes, corridor.passed_over});
   return hashes.digest();
 }
 

@@ -38,8 +38,7 @@ std::vector<Vec3> random_path(Random& random, const Vec3& origin, bool lattice) 
     Vec3 next = path.back();
     if (below(random, 5) != 0) {
       for (int k = 0; k < 3; ++k) {
-        next[k] += lattice ? static_cast<double>(below(random, 3)) - 1
-                           : uniform(random, -0.6, 0.8);
+        next[k] += lattice ? static_cast<double>(below(random, 3)) - 1 : uniform(random, -0.6, 0.8);
       }
     }
     path.push_back(next);

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -32,6 +33,7 @@
 #include "cli/support/program.hpp"
 #include "cli/support/program_json.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
+#include "core/query/error_budget.hpp"
 #include "core/util/shell_words.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/files/json.hpp"
@@ -43,6 +45,7 @@
 #include "io/scans/point_reader.hpp"
 #include "io/store/convert/convert.hpp"
 #include "io/store/file_kind.hpp"
+#include "search/check_corridor.hpp"
 #include "search/check_query.hpp"
 #include "search/choose_engine.hpp"
 #include "search/devices.hpp"
@@ -177,9 +180,10 @@ class Check {
     record_.emplace(options_.folder);
     claim_folder();
     start_gpus();
+    if (options_.near) choose_corridor();
     if (!plan_.has_store()) timed("convert", [&] { convert_scans(); });
     timed("path", [&] { fill_path(); });
-    const RunOutcome found = timed("run", [&] { return search(); });
+    const RunOutcome found = timed("run", [&] { return search_widening(); });
     const ordered_json conflicts = timed("conflicts", [&] {
       made_for_ = question();
       return make_table<ConflictsCommand>(kConflictsName, plan_.conflicts());
@@ -337,6 +341,46 @@ class Check {
     return bytes;
   }
 
+  /// The distance from the path, in metres, that the question needs: so that no point that is left
+  /// out can matter to it.
+  double corridor_of_question() const {
+    Step<RunOptions> step(plan_.run(false));
+    RunOptions& options = step.options();
+    options.lengths.convert(1);
+    const std::vector<Pose> poses = read_trajectory(options.trajectory, options.trajectory_options);
+    check_has_poses(poses, options.trajectory);
+    Query query({}, poses, options.query);
+    if (options.vehicle.empty()) {
+      query.model = read_model(options.model, model_options_of(options));
+    } else {
+      query.bodies = read_vehicle(
+          options.vehicle, poses,
+          {model_options_of(options), options.trajectory_options, options.search.threads});
+    }
+    const auto errors = given_errors(query);
+    const double radius = errors ? errors->near_radius(query.radius) : query.radius;
+    std::vector<Vec3> path;
+    for (const Pose& pose : poses) {
+      path.push_back({pose.translation[0], pose.translation[1], pose.translation[2]});
+    }
+    // The denser path runs beside the straight lines between poses, and steps of the store add to
+    // an error budget.
+    constexpr double kBeside = 0.5;
+    return std::ceil(CorridorCheck::wanted(query, std::move(path), radius) + kBeside);
+  }
+
+  /// Makes the plan keep only what the question can reach. A store that an earlier check widened
+  /// stays as wide.
+  void choose_corridor() {
+    double metres = in_terms_of_check([&] { return corridor_of_question(); });
+    const Words before = record_->command_of(kStoreName);
+    const auto within = std::ranges::find(before, "--within");
+    if (within != before.end() && std::next(within) != before.end()) {
+      metres = std::max(metres, std::strtod(std::next(within)->c_str(), nullptr));
+    }
+    plan_.keep_near(metres);
+  }
+
   void convert_scans() {
     Step<ConvertCommand> step(plan_.convert(false));
     if (is_store_of_record(step)) {
@@ -416,6 +460,25 @@ class Check {
       if (!names_box(input)) what["inputs"].push_back(contents_of(input));
     }
     return what;
+  }
+
+  /// Searches. Where the corridor proves too narrow, the store is made anew with one that is wide
+  /// enough.
+  RunOutcome search_widening() {
+    try {
+      return search();
+    } catch (const InputError& error) {
+      if (!options_.near || error.remedy() != Remedy::kWiderCorridor) throw;
+      spdlog::info("{}. The scans are converted once more, with --within {:g}", error.what(),
+                   error.amount());
+      plan_.keep_near(error.amount());
+    }
+    Step<ConvertCommand> wider(plan_.convert(true));
+    in_terms_of_check([&] { return perform(wider.options()); });
+    commands_.clear();
+    note_step(kStoreName, wider.words(), false);
+    record_->note_command(kStoreName, wider.essence());
+    return search();
   }
 
   RunOutcome search() {
@@ -589,6 +652,11 @@ void add_check_options(CLI::App& command, CheckCommand& options) {
       ->type_name("DIR")
       ->required();
   offer_options_of_steps(command);
+  command
+      .add_flag("--near", options.near,
+                "Keep only the points near the path that this question can reach, which makes the "
+                "store small. Another question may need it anew")
+      ->group(title_of(OptionGroup::kCorridor));
   command.add_flag("--open", options.open, "Open the report in the browser")
       ->group(title_of(OptionGroup::kPage));
   command.add_flag(

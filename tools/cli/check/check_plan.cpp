@@ -30,13 +30,14 @@ using Words = CheckPlan::Words;
 constexpr double kClearanceRadii = 3, kProfileRadii = 5;
 
 // How check deals with the options of its steps.
-const StepOptions kConvertOptions{{"--output", "--force", "--resume", "--json", "--help"},
-                                  {{"--lever-arm", "--origins-lever-arm"},
-                                   {"--trajectory-format", "--origins-format"},
-                                   {"--angles", "--origins-angles"},
-                                   {"--trajectory-crs", "--origins-crs"},
-                                   {"--trajectory-datum", "--origins-datum"},
-                                   {"--trajectory-unit", "--origins-unit"}}};
+const StepOptions kConvertOptions{
+    {"--output", "--force", "--resume", "--near", "--within", "--json", "--help"},
+    {{"--lever-arm", "--origins-lever-arm"},
+     {"--trajectory-format", "--origins-format"},
+     {"--angles", "--origins-angles"},
+     {"--trajectory-crs", "--origins-crs"},
+     {"--trajectory-datum", "--origins-datum"},
+     {"--trajectory-unit", "--origins-unit"}}};
 // --gap is that of conflicts, and only a run with an error budget takes it.
 const StepOptions kRunOptions{{"--env", "--output", "--first-pose", "--gap", "--shard", "--force",
                                "--resume", "--fail-on-collision", "--json", "--help"}};
@@ -51,6 +52,10 @@ const StepOptions kStationsOptions{
 // A section of a store that check is about to make cannot be there.
 const StepOptions kReportOptions{{"--env", "--output", "--section", "--forward", "--up", "--shifts",
                                   "--force", "--json", "--help"}};
+
+/// The options that say how the path of the question is read.
+constexpr std::array kReading{"--trajectory-format", "--lever-arm",        "--angles",
+                              "--trajectory-crs",    "--trajectory-datum", "--trajectory-unit"};
 
 Words operator+(Words a, const Words& b) {
   a.insert(a.end(), b.begin(), b.end());
@@ -123,6 +128,18 @@ CheckPlan::CheckPlan(const CheckCommand& options)
       scans_(options.inputs),
       has_store_(is_one_store(options.inputs)) {
   if (!has_store_) leave_out_models();
+  if (!options.near) return;
+  if (has_store_) {
+    throw UsageError("--near makes a store of the scans near the path, and the input is a store");
+  }
+  if (is_given("--seen")) {
+    throw UsageError("--seen needs all points of the scans, and --near leaves some out");
+  }
+  if (is_given("--origins-path")) {
+    throw UsageError(
+        "--near and --origins-path would be read alike; expected one of them, or clearway convert "
+        "first");
+  }
 }
 
 /// The files of the vehicle; none where they cannot be found out, which the search reports.
@@ -185,8 +202,20 @@ std::filesystem::path CheckPlan::environment() const {
 Words CheckPlan::convert(bool replacing) const {
   Words words{"convert"};
   for (const std::filesystem::path& input : scans_) words.push_back(input.string());
-  return words + Words{"-o", file(kStoreName).string()} +
+  return words + Words{"-o", file(kStoreName).string()} + corridor() +
          given<ConvertCommand>(check_, kConvertOptions) + again(replacing);
+}
+
+/// The words of a corridor around the path of the question, with how this is read.
+Words CheckPlan::corridor() const {
+  if (near_metres_ == 0) return {};
+  Words words{"--near", value_of("--trajectory"), "--within", format_number(near_metres_)};
+  for (const char* name : kReading) {
+    if (is_given(name) && std::string_view(name) != "--lever-arm") {
+      words = words + Words{name, value_of(name)};
+    }
+  }
+  return words;
 }
 
 Words CheckPlan::resample() const {
@@ -207,8 +236,6 @@ Words CheckPlan::resample() const {
 /// what says how the file of the user is read goes.
 Words CheckPlan::with_path(Words words) const {
   if (!has_denser_path_) return words;
-  constexpr std::array kReading{"--trajectory-format", "--lever-arm",        "--angles",
-                                "--trajectory-crs",    "--trajectory-datum", "--trajectory-unit"};
   Words out;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::size_t equals = words[i].find('=');

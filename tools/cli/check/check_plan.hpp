@@ -24,6 +24,7 @@ inline constexpr const char* kReportName = "report.html";
 struct CheckCommand {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path folder;
+  bool near = false;  ///< whether the store holds only what the question can reach
   bool force = false, fail_on_collision = false, json = false, open = false;
   const CLI::App* command = nullptr;  ///< the command that has these options
 };
@@ -55,6 +56,8 @@ class CheckPlan {
   /// The path with more poses, so that the model moves no farther than the radius from one to the
   /// next; no words where the question needs none, or the path is not that of one model.
   Words resample() const;
+  /// From here on the conversion keeps only the points within `metres` of the path.
+  void keep_near(double metres) { near_metres_ = metres; }
   /// From here on the steps take the output of resample() as the path.
   /// unit: the environment's, as options name it; empty where it is not known.
   void take_denser_path(std::string unit) {
@@ -80,12 +83,14 @@ class CheckPlan {
   bool has_budget() const;
   Words distances() const;
   Words with_path(Words words) const;
+  Words corridor() const;
 
   const CheckCommand& options_;
   const CLI::App& check_;
   std::vector<std::filesystem::path> scans_;  ///< files, and folders that hold no model
   std::vector<Message> remarks_;
   bool has_store_;
+  double near_metres_ = 0;  ///< 0: the conversion keeps all points
   bool has_denser_path_ = false;
   std::string unit_of_path_;
 };

@@ -55,8 +55,8 @@ struct Page {
 std::vector<Box> read_copc_cubes(const InputBuffer& input, std::span<const std::byte> info,
                                  std::span<const Chunk> chunks) {
   if (info.size() < kInfoBytes) {
-    refuse_hierarchy(input, "its record has " + std::to_string(info.size()) +
-                                " bytes, expected 160");
+    refuse_hierarchy(input,
+                     "its record has " + std::to_string(info.size()) + " bytes, expected 160");
   }
   const Root root(info);
   if (!root.is_sound()) refuse_hierarchy(input, "expected a cube of finite size above 0");

@@ -13,8 +13,8 @@
 namespace clearway::laz {
 
 /// The cube of each chunk's node, in the order of the chunks. info: the payload of the record of
-/// user `copc` with the number 1. Throws InputError where the hierarchy is damaged or is not that of
-/// these chunks.
+/// user `copc` with the number 1. Throws InputError where the hierarchy is damaged or is not that
+/// of these chunks.
 std::vector<Box> read_copc_cubes(const InputBuffer& input, std::span<const std::byte> info,
                                  std::span<const Chunk> chunks);
 

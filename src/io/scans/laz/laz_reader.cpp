@@ -123,7 +123,8 @@ class TabledReader final : public PointReader {
   }
 
  private:
-  /// Forms pieces of several chunks each, and of one each where it has a cube; none where a chunk is too large to be decoded as a whole.
+  /// Forms pieces of several chunks each, and of one each where it has a cube; none where a chunk
+  /// is too large to be decoded as a whole.
   void find_pieces() {
     std::uint64_t points = 0, bytes = 0;
     for (std::size_t i = 0; i < chunks_.size(); ++i) {

@@ -259,8 +259,7 @@ class Conversion {
     }
     std::optional<Corridor> corridor;
     if (!options_.near.empty()) {
-      corridor.emplace(
-          corridor_of(options_, environment.crs().crs, environment.unit(), log_));
+      corridor.emplace(corridor_of(options_, environment.crs().crs, environment.unit(), log_));
       environment.keep_near(*corridor, options_.trust_bounds);
     }
     OriginTable origins(environment.quantisation(), options_.memory_bytes / 4);

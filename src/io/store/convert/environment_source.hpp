@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/util/progress.hpp"
 #include "core/trajectory/corridor.hpp"
+#include "core/util/progress.hpp"
 #include "io/scans/point_reader.hpp"
 #include "io/store/convert/input_agreement.hpp"
 #include "io/store/convert/input_files.hpp"

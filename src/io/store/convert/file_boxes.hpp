@@ -15,7 +15,8 @@
 
 namespace clearway {
 
-/// The box of each input, with the points that are too far from a path. add() may be called from several threads.
+/// The box of each input, with the points that are too far from a path. add() may be called from
+/// several threads.
 class FileBoxes {
  public:
   void add(const QuantaBatch& batch);

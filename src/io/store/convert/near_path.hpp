@@ -20,8 +20,8 @@ TrajectoryOptions reading_of_paths(const ConvertOptions& options, const std::str
 /// Whether a doubt about a trajectory concerns only how it turns.
 bool is_about_rotation(const Message& remark);
 
-/// The corridor around ConvertOptions::near, in the unit of the environment. Throws InputError where
-/// the path cannot be read or has no pose.
+/// The corridor around ConvertOptions::near, in the unit of the environment. Throws InputError
+/// where the path cannot be read or has no pose.
 Corridor corridor_of(const ConvertOptions& options, const std::string& crs, LengthUnit unit,
                      MessageLog& log);
 

@@ -80,12 +80,12 @@ struct QuantaBatch {
   std::uint64_t withheld_points = 0;
   std::uint64_t first_withheld = 0;  ///< source index of the first of them, where there is one
   std::vector<MetreCube> withheld_cubes;
-  FileBox whole;                   ///< of the finite points, those too far from a path included
-  std::uint64_t far_points = 0;    ///< points left out because they are too far from a path
+  FileBox whole;                    ///< of the finite points, those too far from a path included
+  std::uint64_t far_points = 0;     ///< points left out because they are too far from a path
   std::uint64_t unread_points = 0;  ///< of these, points that were not read
   std::uint64_t unread_bytes = 0;   ///< the bytes that hold them
-  double largest_change = 0;  ///< largest |stored - read| of any coordinate, metres
-  PieceBytes bytes;           ///< the bytes from which a piece was read, where requested
+  double largest_change = 0;        ///< largest |stored - read| of any coordinate, metres
+  PieceBytes bytes;                 ///< the bytes from which a piece was read, where requested
 
   std::uint64_t source(std::size_t i) const {
     return first_source + (offsets.empty() ? i : offsets[i]);

@@ -107,7 +107,8 @@ TEST_CASE("a corridor without any point, a distance alone and a path alone are r
   const ScratchFolder folder;
   write_las(folder / "a.las", std::vector<Quantum>{{0, 0, 0}, {1, 1, 1}});
   ConversionOptions options = near_of(folder, {{0, 0, 0}}, 2, {folder / "a.las"});
-  check_says(conversion_refusal<InputError>(options), "none of the 2 points ... within 2 of its path");
+  check_says(conversion_refusal<InputError>(options),
+             "none of the 2 points ... within 2 of its path");
   options.within = 0;
   check_says(conversion_refusal<UsageError>(options), "expected the distance");
   options.near.clear();
