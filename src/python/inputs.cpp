@@ -277,6 +277,12 @@ void add_convert_report(py::module_& module) {
                     "How many points were left out because they have the flag withheld.")
       .def_readonly("kept_withheld_points", &Report::kept_withheld_points,
                     "How many points were stored although they have the flag withheld.")
+      .def_readonly("far_points", &Report::far_points,
+                    "How many points were left out because they are too far from the path of near.")
+      .def_readonly("unread_points", &Report::unread_points,
+                    "How many of these were not even read.")
+      .def_readonly("passed_over_files", &Report::passed_over_files,
+                    "How many files were not read because of trust_bounds.")
       .def_readonly("origins", &Report::origins,
                     "From how many distinct places the points were seen; 0 where no input says so.")
       .def_readonly("points_without_origin", &Report::points_without_origin,
@@ -291,7 +297,8 @@ void add_convert_report(py::module_& module) {
           "offset", [](const Report& r) { return to_array(r.offset); },
           "The place that the stored coordinates count from: 3 float64, metres.")
       .def_readonly("box", &Report::box,
-                    "The Box around the stored points; None where there are no points.")
+                    "The Box around the points of the scans, those too far from a path included; "
+                    "None where there are no points.")
       .def_readonly("largest_change", &Report::largest_change,
                     "By how much rounding to the scale changed any coordinate at the most, metres.")
       .def_readonly("temporary_bytes", &Report::temporary_bytes,

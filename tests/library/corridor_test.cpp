@@ -149,3 +149,38 @@ TEST_CASE("a store of points near a path answers as the whole store does, or ref
   CHECK(answered > 40);
   CHECK(refused > 40);
 }
+
+TEST_CASE("sections and shifts that reach too far are refused, and seen space always") {
+  Random random(20261130);
+  const NearScene scene(random);
+  const Store near(scene.folder / "near.h5");
+  SectionParameters asked{.rear = -0.2, .front = 0.2, .window = SectionWindow{-0.2, 0.2, 0, 0.2}};
+  const SectionOptions overwriting{.threads = 2, .overwrite = true};
+  std::vector<Pose> rigid;
+  for (const Pose& pose : scene.path) {
+    const auto& at = pose.translation;
+    rigid.push_back(translation({at[0], at[1], at[2]}));
+  }
+  const auto find = [&] { find_section(near, rigid, asked, scene.folder / "s.h5", overwriting); };
+  find();
+  asked.margin = 1;
+  asked.window->y_to = 2.4;
+  check_refused<InputError>(find, "the section at pose ... reaches farther");
+
+  Query query;
+  query.model.vertices = {{0, 0, 0}};
+  query.poses = rigid;
+  query.radius = 0.2;
+  const Session session(scene.folder / "near.h5", {.threads = 2});
+  query.seen = true;
+  check_refused<UsageError>([&] { session.search(query); }, "seen space needs the whole scans");
+  query.seen = false;
+  query.first_pose = true;
+  search(near, query, scene.folder / "out.h5");
+  const Result result(scene.folder / "out.h5");
+  const auto shift = [&](double most) {
+    return find_shifts(session, result, query, {}, {.lateral_from = -0.1, .lateral_to = most});
+  };
+  shift(0.1);
+  check_refused<InputError>([&] { shift(4); }, "reaches farther");
+}

@@ -177,6 +177,11 @@ Reach put_on_ground(const std::string& name, const LineVertices& line, const Lin
         ": the line has cant, and the ground gives the roll too; expected one of both, "
         "so leave out the cant");
   }
+  if (options.ground->reader().metadata().near) {
+    throw UsageError(options.ground->path().string() +
+                     ": holds only points within a distance of a path, so the ground may have been "
+                     "left out; expected a store of the whole scans");
+  }
   const double track = *options.track, metre = 1 / options.environment_unit;
   const std::vector<GroundPlace> places = places_of(line, path);
   const auto side = [&](const char* which, double left) {
