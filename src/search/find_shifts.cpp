@@ -399,7 +399,8 @@ class ShiftSearch {
     table.lateral_from = options_.lateral_from;
     table.lateral_to = options_.lateral_to;
     table.step = options_.step;
-    const double farthest = std::max(std::abs(options_.lateral_from), std::abs(options_.lateral_to));
+    const double farthest =
+        std::max(std::abs(options_.lateral_from), std::abs(options_.lateral_to));
     CorridorCheck(session_.store().reader().metadata())
         .check(moving_bodies(query_), asked_.between_poses, asked_.radius + farthest);
     read_obstacles();
