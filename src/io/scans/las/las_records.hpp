@@ -39,7 +39,7 @@ struct LasRecord {
 /// Contents of the records before the points.
 struct LasRecords {
   LasCrs crs;
-  std::vector<std::byte> laz;  ///< record of the points' compression; empty where there is none
+  std::vector<std::byte> laz;   ///< record of the points' compression; empty where there is none
   std::vector<std::byte> copc;  ///< record about the octree of COPC; empty where there is none
   std::vector<std::byte> extra_bytes;  ///< descriptions of the points' extra bytes
   std::vector<LasRecord> geotiff;      ///< up to three GeoTIFF records of the CRS
