@@ -52,9 +52,9 @@ enum class Remedy {
   kMerge,         ///< merge the parts first: the file is one part of a result
   /// Search or ask with points of the surface, where the surface itself is not possible
   kModelPoints,
-  kFreeDisk,   ///< free some room on the disk, or write to another one
+  kFreeDisk,       ///< free some room on the disk, or write to another one
   kWiderCorridor,  ///< the scans have to be converted with a larger `within`; amount: metres
-  kOtherPart,  ///< the output belongs to another part, or to the whole, than the one asked for
+  kOtherPart,      ///< the output belongs to another part, or to the whole, than the one asked for
 };
 
 /// Base of all errors that the outside world causes. A program chooses its exit code by the type.
