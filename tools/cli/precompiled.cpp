@@ -1,0 +1,1 @@
+// The headers that CMakeLists.txt precompiles need a source to be compiled with.
