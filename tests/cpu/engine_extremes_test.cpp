@@ -85,6 +85,7 @@ TEST_CASE("a model far from its own origin") {
 
 TEST_CASE("coordinates near the ends of double") {
   Scene scene;
+  scene.points.resize(1000);  // few, as above
   SECTION("poses") {
     scene.poses[3].translation[0] = 1e308;
     scene.poses[5].rotation[4] = 1e300;

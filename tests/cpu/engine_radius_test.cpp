@@ -89,7 +89,7 @@ std::uint64_t check_boundary(Random& random, const Boundary& boundary, std::uint
 void check_boundaries(const Boundary& boundary) {
   Random random(11);
   std::uint64_t total = 0, colliding = 0;
-  for (int i = 0; i < 40; ++i) colliding += check_boundary(random, boundary, total);
+  for (int i = 0; i < 20; ++i) colliding += check_boundary(random, boundary, total);
   // Both answers occur many times.
   CHECK(colliding > total / 20);
   CHECK(colliding < total - total / 20);

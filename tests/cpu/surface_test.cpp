@@ -100,7 +100,7 @@ TEST_CASE("random surfaces") {
 #ifdef CLEARWAY_SANITIZED
   constexpr std::uint64_t kScenes = 30;
 #else
-  constexpr std::uint64_t kScenes = 500;
+  constexpr std::uint64_t kScenes = 300;
 #endif
   std::uint64_t with_hits = 0;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {

@@ -112,8 +112,8 @@ class Page:
 
     def __init__(self, browser, path, width, height):
         self._browser = browser
-        target = browser.call("Target.createTarget", url="about:blank")["targetId"]
-        self._session = browser.call("Target.attachToTarget", targetId=target,
+        self._target = browser.call("Target.createTarget", url="about:blank")["targetId"]
+        self._session = browser.call("Target.attachToTarget", targetId=self._target,
                                      flatten=True)["sessionId"]
         browser.events.clear()
         for domain in ("Page", "Runtime", "Network", "Log"):
@@ -124,6 +124,10 @@ class Page:
         self.url = "file://" + os.path.abspath(path)
         self.call("Page.navigate", url=self.url)
         self.wait("document.body && document.body.dataset.ready")
+
+    def close(self):
+        """Ends the page; otherwise it goes on until the browser ends."""
+        self._browser.call("Target.closeTarget", targetId=self._target)
 
     def call(self, method, **parameters):
         return self._browser.call(method, session=self._session, **parameters)

@@ -108,7 +108,9 @@ class WorstPlaceTest(unittest.TestCase):
         if how != "solid":
             self.assertTrue(all(row["encroachment_is"] in ("at-least", "") for row in rows))
         if self.browser:
-            self.check_page(self.browser.page(f"{site}/report.html"), worst, first)
+            page = self.browser.page(f"{site}/report.html")
+            self.check_page(page, worst, first)
+            page.close()
         return 1
 
     def check_page(self, page, worst, first):

@@ -193,6 +193,6 @@ TEST_CASE("poses that were divided otherwise are counted once") {
     const Outcome resumed =
         work.run(std::string("--resume --json --threads ") + threads, "0.1", "kdtree");
     if (resumed.exit_code != 0 || !json_of(resumed).contains("resumed_poses")) continue;
-    CHECK(json_of(resumed)["resumed_poses"] <= 3000);
+    CHECK(json_of(resumed)["resumed_poses"] <= 1500);
   }
 }

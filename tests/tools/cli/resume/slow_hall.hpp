@@ -31,7 +31,7 @@ class SlowHall {
   SlowHall() {
     const std::string folder = quoted(folder_ / "");
     if (run_program(folder_,
-                    "scene hall --points 500000 --model-points 10000 --poses 3000 -o " + folder)
+                    "scene hall --points 500000 --model-points 10000 --poses 1500 -o " + folder)
                 .exit_code != 0 ||
         run_program(folder_, "convert " + path("environment.las") + " --cell-points 500 -o " +
                                  path("site.h5"))
