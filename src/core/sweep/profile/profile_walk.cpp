@@ -19,6 +19,9 @@ constexpr std::uint32_t kNever = kSweepNever;
 /// Number of points of an open block from which on its sphere is looked at first (measured).
 constexpr int kManyPoints = 8;
 
+/// The points of a block that may be due up to so many poses later are looked up, too (measured).
+constexpr std::uint32_t kPosesAhead = 3;
+
 /// For how many entries of each block the lists have room. A pose begins with at most two of each
 /// and adds at most two.
 constexpr std::size_t kEntries = 4;
@@ -227,8 +230,15 @@ class ProfileWalkOf<Element>::OfPage {
     return squared_distance(e, transform(sweep_.motion.poses[pose_], m));
   }
 
+  /// The limit of a pose soon after this one, if it has the same reach.
+  double limit_of_next() const {
+    const std::uint32_t next = std::min(pose_ + kPosesAhead, end_pose_ - 1);
+    return (limit_ + (travel_.moved(next) - moved_)) * kRoundedUp;
+  }
+
   /// Looks at a block whose time has come: at its sphere, unless it is open and only few of its
-  /// points are concerned, and when it is the next one again at its points.
+  /// points are concerned, and when it is the next one again at its points, with those whose time
+  /// comes soon. So its points come due together, and the block is looked at less often.
   void look_at(std::uint32_t index) {
     Block& block = m_.blocks_[index];
     double* const keys = m_.keys_.data() + std::size_t{index} * kBlockPoints;
@@ -243,7 +253,11 @@ class ProfileWalkOf<Element>::OfPage {
       }
       return;
     }
-    if (!block.is_open) open(index, keys);
+    if (block.is_open) {
+      due = not_above(keys, limit_of_next()) & block.awake;
+    } else {
+      open(index, keys);
+    }
     search_points(index, due);
     block.key = least_of(keys);
     m_.settled_.push_back(index);
@@ -284,14 +298,12 @@ class ProfileWalkOf<Element>::OfPage {
     lanes_.clear();
     for_each_bit(due, [&](std::uint32_t i) { lanes_.add(position_of(index, i)); });
     if (due != 0) lanes_.look_up(sweep_.motion.inverse_poses[pose_]);
-    double proven[kBlockPoints];
-    for (std::uint32_t lane = 0; lane < lanes_.count(); ++lane) {
-      proven[lane] = key_of(distance_of(lanes_.squared_lower(lane)));
-    }
     std::uint32_t next_lane = 0;
     for_each_bit(due, [&](std::uint32_t i) {
-      const std::uint32_t lane = next_lane++;
-      keys[i] = std::max(keys[i], proven[lane]);
+      const double proven = key_of(distance_of(lanes_.squared_lower(next_lane++)));
+      keys[i] = std::max(keys[i], proven);
+    });
+    for_each_bit(due & not_above(keys, limit_), [&](std::uint32_t i) {
       if (keys[i] > limit_) return;
       Candidate& candidate = candidates_[open];
       candidate.e = position_of(index, i);
@@ -301,7 +313,8 @@ class ProfileWalkOf<Element>::OfPage {
       }
       candidate.point = i;
       candidate.least = kInfinity;
-      const std::uint32_t near = lanes_.near(lane);
+      const std::uint64_t before = due & ((std::uint64_t{1} << i) - 1);
+      const std::uint32_t near = lanes_.near(static_cast<std::uint32_t>(std::popcount(before)));
       if (near != ModelFieldRef::kNone) {
         offer(candidate, sweep_.model.elements[near]);
         lower_bound(candidate.least);
@@ -426,17 +439,16 @@ class ProfileWalkOf<Element>::OfPage {
       block.key = -kInfinity;
       push(m_.queue_, {block.key, sleeper.block});
       std::uint32_t wakes = kNever;
-      for (std::uint64_t asleep = block.asleep; asleep != 0; asleep &= asleep - 1) {
-        const auto point = static_cast<std::uint32_t>(std::countr_zero(asleep));
+      for_each_bit(block.asleep, [&](std::uint32_t point) {
         const std::size_t slot = std::size_t{sleeper.block} * kBlockPoints + point;
         if (m_.wakes_[slot] > pose_) {
           wakes = std::min(wakes, m_.wakes_[slot]);
-          continue;
+          return;
         }
         m_.keys_[slot] = -kInfinity;
         block.awake |= std::uint64_t{1} << point;
         block.asleep &= ~(std::uint64_t{1} << point);
-      }
+      });
       sleep_until(sleeper.block, wakes);
     }
     drop_outdated();
