@@ -27,6 +27,7 @@
 #include "clearway/session.hpp"     // IWYU pragma: export
 #include "clearway/shard.hpp"       // IWYU pragma: export
 #include "clearway/shift.hpp"       // IWYU pragma: export
+#include "clearway/smooth.hpp"      // IWYU pragma: export
 #include "clearway/stations.hpp"    // IWYU pragma: export
 #include "clearway/store.hpp"       // IWYU pragma: export
 #include "clearway/trajectory.hpp"  // IWYU pragma: export

@@ -122,6 +122,8 @@ TYPES = {
     "SectionStop.cell": "tuple[int, int]",
     "SectionCheck.reason": "str | None",
     "SectionCheck.stop": "SectionStop | None",
+    "SmoothPath.poses": "_Doubles",
+    "SmoothPath.place": "_Doubles",
     "OutlineRowCheck.outline": "str",
     "OutlineRowCheck.bins": "tuple[int, int] | None",
     "OutlineGap.bins": "tuple[int, int]",

@@ -23,6 +23,7 @@ PYBIND11_MODULE(_clearway, module) {
   add_merge(module);
   add_findings(module);
   add_section(module);
+  add_smooth(module);
   add_shifts(module);
   add_report_page(module);
 }

@@ -86,6 +86,7 @@ void add_results(py::module_& module);      // results.cpp
 void add_session(py::module_& module);      // session.cpp, after what its answers have
 void add_findings(py::module_& module);     // findings.cpp
 void add_section(py::module_& module);      // section.cpp
+void add_smooth(py::module_& module);       // smooth.cpp
 void add_shifts(py::module_& module);       // shifts.cpp
 void add_report_page(py::module_& module);  // report_page.cpp
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "clearway/error.hpp"
+#include "core/trajectory/rotation_vector.hpp"
 
 namespace clearway {
 namespace {
@@ -33,22 +34,6 @@ Polar polar_of(const Pose& pose) {
 
 Eigen::Vector3d position_of(const Pose& pose) {
   return Eigen::Map<const Eigen::Vector3d>(pose.translation);
-}
-
-Eigen::Quaterniond exponential(const Eigen::Vector3d& turn) {
-  const double half = turn.norm() / 2;
-  const double factor = half > 0 ? std::sin(half) / (2 * half) : 0.5;
-  Eigen::Quaterniond q;
-  q.w() = std::cos(half);
-  q.vec() = factor * turn;
-  return q;
-}
-
-/// The rotation vector of a quaternion, of length at most pi.
-Eigen::Vector3d logarithm(const Eigen::Quaterniond& q) {
-  const double sine = q.vec().norm();
-  const double sign = q.w() < 0 ? -1 : 1;
-  return sign * (sine > 0 ? 2 * std::atan2(sine, sign * q.w()) / sine : 2) * q.vec();
 }
 
 Eigen::Vector3d shortened(const Eigen::Vector3d& v, double most) {

@@ -247,3 +247,44 @@ TEST_CASE("resample and thin keep stations, and put those of new poses between t
     CHECK(found[i] == stations[static_cast<std::size_t>(at - files.poses.begin())]);
   }
 }
+
+TEST_CASE("trajectory smooth says what it does, and keeps to it as read back") {
+  const PathFiles files;
+  std::string noisy, table = "x,y,z,qx,qy,qz,qw,station,time\n", jump;
+  Random random(8);
+  for (int i = 0; i < 200; ++i) {
+    const std::string y = std::to_string(0.2 * std::sin(0.05 * i) + uniform(random, -0.004, 0.004));
+    const std::string x = std::to_string(0.05 * i + (i > 150 ? 2 : 0));
+    noisy += "1 0 0 " + std::to_string(0.05 * i) + " 0 1 0 " + y + " 0 0 1 0\n";
+    jump += "1 0 0 " + x + " 0 1 0 " + y + " 0 0 1 0\n";
+    table += std::to_string(0.05 * i) + "," + y + ",0,0,0,0,1," + std::to_string(100 + i) + "," +
+             std::to_string(i) + "\n";
+  }
+  files.put("noisy.txt", noisy);
+  files.put("jump.txt", jump);
+  files.put("noisy.csv", table);
+  const auto report =
+      json_of(require_success(files.run("smooth", "noisy.txt", "out.txt", "--within 0.02 --json")));
+  const auto out = files.read("out.txt");
+  CHECK(report["poses_out"] == out.size());
+  check_json(report, R"({"poses_in": 200, "within": 0.02, "step": 0.1})");
+  CHECK(report["largest_deviation"] <= 0.02);
+  CHECK(report["largest_step"] == largest_motion(kModel, out));
+  CHECK(largest_motion(kModel, out) <= 0.1);
+  const double error = report["error_model"], between = report["error_model_between_poses"];
+  const double deviation = report["largest_deviation"], step = report["largest_step"];
+  CHECK((error >= deviation + step / 2 && error < deviation + step / 2 + 1e-4));
+  CHECK((between >= deviation && between < deviation + 1e-4));
+
+  require_success(files.run("smooth", "noisy.csv", "out.csv", "--within 0.02"));
+  check_says(files.bytes("out.csv"), "station");
+  check_outcome(files.run("smooth", "noisy.txt", "out.txt", "--within 0.02"), 2, "--force");
+  check_outcome(files.run("smooth", "noisy.txt", "noisy.txt", "--within 0.02 --force"), 2);
+  check_outcome(files.run("smooth", "noisy.txt", "new.txt", ""), 2, "--within");
+  check_outcome(files.run("smooth", "noisy.txt", "new.txt", "--within 0"), 2);
+  check_outcome(files.run("smooth", "jump.txt", "new.txt", "--within 0.02"), 3,
+                "jump.txt: jumps by ... from pose 150 to pose 151");
+  check_outcome(run_program(files.folder, "trajectory smooth path.txt -o new.txt --within 0.1"), 2,
+                "expected the model");
+  require_success(run_program(files.folder, "trajectory smooth noisy.txt -o new.txt --within 2cm"));
+}

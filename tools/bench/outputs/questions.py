@@ -432,6 +432,9 @@ def trajectory():
         *(f"trajectory thin {file} --model hall/model.ply --max-motion {motion} -o @.txt"
           for file in ("hall/trajectory.txt", "paths/repeated.txt", "paths/back.txt")
           for motion in ("0.01", "2", "3m --json")),
+        *(f"trajectory smooth {file} --model hall/model.ply --within {within} -o @.txt"
+          for file in ("hall/trajectory.txt", "paths/repeated.txt")
+          for within in ("0.01", "5cm --step 0.3 --json")),
         *(f"trajectory follow {file} {body} -o @.txt" for file in (
             "hall/trajectory.txt", "tunnel/trajectory.txt", "paths/utm.txt", "paths/few_digits.txt",
             "paths/repeated.txt") for body in ("--at 2.5", "--at -1", "--pivots 3,-3", "--pivots 1,-2.5 --json")),

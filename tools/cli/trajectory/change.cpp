@@ -9,18 +9,22 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 
 #include "clearway/error.hpp"
 #include "clearway/model.hpp"
+#include "clearway/smooth.hpp"
 #include "clearway/store.hpp"
 #include "clearway/trajectory.hpp"
 #include "cli/steps.hpp"
 #include "cli/support/console.hpp"
+#include "cli/support/field_options.hpp"
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "cli/trajectory/commands.hpp"
 #include "cli/trajectory/made_labels.hpp"
+#include "core/describe/smooth.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/resample_trajectory.hpp"
 #include "core/trajectory/trajectory_doubts.hpp"
@@ -98,18 +102,28 @@ void take_unit_of_environment(ChangeCommand& options) {
   options.unit = symbol_of_unit(store.length_unit());
 }
 
-void write_changed(ChangeCommand& options, const Change& change) {
-  std::vector<std::filesystem::path> inputs{options.input, options.model};
-  if (!options.environment.empty()) inputs.push_back(options.environment);
-  refuse_overwriting(options.output, inputs);
-  take_unit_of_environment(options);
-  PendingFile output(options.output, options.force);
+/// Reads the path, and logs what is odd about it and which labels are left out.
+std::vector<Pose> read_path(const ChangeCommand& options, PoseLabels& labels) {
   std::vector<Message> remarks;
-  PoseLabels labels;
-  const std::vector<Pose> before =
-      read_trajectory(options.input, options.trajectory, &remarks, &labels);
+  std::vector<Pose> poses = read_trajectory(options.input, options.trajectory, &remarks, &labels);
   for (const Message& remark : remarks) log_message(remark);
   tell_of_labels(options.input, labels);
+  return poses;
+}
+
+void refuse_overwriting_inputs(const ChangeCommand& options) {
+  std::vector<std::filesystem::path> inputs{options.input};
+  if (!options.model.empty()) inputs.push_back(options.model);
+  if (!options.environment.empty()) inputs.push_back(options.environment);
+  refuse_overwriting(options.output, inputs);
+}
+
+void write_changed(ChangeCommand& options, const Change& change) {
+  refuse_overwriting_inputs(options);
+  take_unit_of_environment(options);
+  PendingFile output(options.output, options.force);
+  PoseLabels labels;
+  const std::vector<Pose> before = read_path(options, labels);
   if (before.empty()) spdlog::warn("{}: no poses", options.input.string());
   const Box model = box_of_model(options);
   const double motion_before = largest_motion(model, before);
@@ -137,23 +151,28 @@ void write_changed(ChangeCommand& options, const Change& change) {
   }
 }
 
-void add_change_options(CLI::App& command, ChangeCommand& options, const char* max_motion_help) {
+/// Adds the options that all changes of a path have but for how much it is changed. Returns that of
+/// the model.
+CLI::Option* add_files(CLI::App& command, ChangeCommand& options) {
   command.add_option("IN", options.input, kTrajectoryHelp)->type_name("FILE")->required();
   command
       .add_option("-o,--output", options.output,
                   "The new trajectory: 16 numbers a line, a row-major 4x4 matrix")
       ->type_name("FILE")
       ->required();
-  options.lengths.add(command, "--max-motion", options.max_motion, max_motion_help)->required();
-  command
-      .add_option("--model", options.model,
-                  "The model, as clearway run reads it; its bounding box is what moves")
-      ->type_name("FILE")
-      ->required();
+  CLI::Option* model =
+      command
+          .add_option("--model", options.model,
+                      "The model, as clearway run reads it; its bounding box is what moves")
+          ->type_name("FILE");
   command
       .add_option("--env", options.environment,
                   "The store: says the unit of lengths, and which foot a ft is, and gives the CRS")
       ->type_name("FILE");
+  return model;
+}
+
+void add_reading(CLI::App& command, ChangeCommand& options) {
   add_model_unit(command, options.model_unit);
   add_turn_options(command, options.model_axes.forward, options.model_axes.up);
   add_trajectory_options(command, options.trajectory, options.lengths);
@@ -161,11 +180,110 @@ void add_change_options(CLI::App& command, ChangeCommand& options, const char* m
   command.add_flag("--json", options.json, "One JSON object on standard output");
 }
 
+void add_change_options(CLI::App& command, ChangeCommand& options, const char* max_motion_help) {
+  CLI::Option* model = add_files(command, options);
+  options.lengths.add(command, "--max-motion", options.max_motion, max_motion_help)->required();
+  model->required();
+  add_reading(command, options);
+}
+
 void add_change(CLI::App& command, const char* max_motion_help, const Change& change) {
   const auto options = std::make_shared<ChangeCommand>();
   add_change_options(command, *options, max_motion_help);
   command.callback([options, change] {
     run_stoppable(options->output, kStartsAgain, [&] { write_changed(*options, change); });
+  });
+}
+
+struct SmoothCommand : ChangeCommand {
+  SmoothParameters parameters;
+};
+
+/// A length in tenths of a millimetre, or of a thousandth of another unit, rounded up so that it
+/// remains a bound.
+double rounded_up(double length) {
+  const double tenths = std::ceil(length * 1e4 - 1e-9);
+  return tenths / 1e4 >= length ? tenths / 1e4 : (tenths + 1) / 1e4;
+}
+
+SmoothPath smoothed(const std::vector<Pose>& poses, const SmoothCommand& options) {
+  ConsoleProgress progress;
+  const std::optional<Box> model =
+      options.model.empty() ? std::nullopt : std::optional(box_of_model(options));
+  try {
+    return smooth_trajectory(
+        poses, options.parameters, model,
+        [&](const ProgressUpdate& update) { progress.update(update); }, &stop_flag());
+  } catch (const InputError& error) {
+    throw InputError(options.input.string() + ": " + error.what());
+  } catch (const UsageError& error) {
+    throw UsageError(options.input.string() + ": " + error.what());
+  }
+}
+
+/// The labels of new poses, linear between those of the given ones.
+PoseLabels labels_at(const std::vector<double>& places, const PoseLabels& labels) {
+  return made_labels(labels, [&](const std::vector<double>& values) {
+    std::vector<double> out;
+    for (const double place : places) {
+      const auto i = static_cast<std::size_t>(place);
+      const double part = place - static_cast<double>(i);
+      out.push_back(part > 0 ? values[i] + part * (values[i + 1] - values[i]) : values[i]);
+    }
+    return out;
+  });
+}
+
+void write_smoothed(SmoothCommand& options) {
+  refuse_overwriting_inputs(options);
+  take_unit_of_environment(options);
+  if (options.parameters.step == 0) {
+    options.parameters.step = 0.1 / options.trajectory.environment_unit;
+  }
+  PendingFile output(options.output, options.force);
+  PoseLabels labels;
+  const std::vector<Pose> before = read_path(options, labels);
+  const SmoothPath path = smoothed(before, options);
+  ConsoleProgress progress;
+  write_poses(path.poses, labels_at(path.place, labels), output.partial(), progress);
+  output.publish();
+  const std::string& unit = options.unit;
+  const double at_poses = rounded_up(path.error_at_poses());
+  const double between_poses = rounded_up(path.error_between_poses());
+  const std::string sentence = fmt::format(
+      "{} on a curve of {}, from {}; the largest deviation is {:.4f} {}, the mean {:.4f} {}. "
+      "--error-model {:.4f} covers the given path, with --between-poses {:.4f}",
+      counted(path.poses.size(), "pose"), counted(path.control_points, "control point"),
+      format_count(before.size()), between_poses, unit, path.mean_deviation, unit, at_poses,
+      between_poses);
+  if (!options.json) return print(sentence + "\n");
+  spdlog::info("{}: {}", options.output.string(), sentence);
+  print(indented_text(nlohmann::ordered_json{{"poses_in", before.size()},
+                                             {"poses_out", path.poses.size()},
+                                             {"control_points", path.control_points},
+                                             {"within", options.parameters.within},
+                                             {"step", options.parameters.step},
+                                             {"largest_deviation", path.largest_deviation},
+                                             {"mean_deviation", path.mean_deviation},
+                                             {"largest_step", path.largest_step},
+                                             {"error_model", at_poses},
+                                             {"error_model_between_poses", between_poses}}));
+}
+
+void add_smooth(CLI::App& trajectory) {
+  const auto options = std::make_shared<SmoothCommand>();
+  CLI::App* command = trajectory.add_subcommand(
+      "smooth", "Put a smooth curve to a noisy path, and say which error covers the difference");
+  add_files(*command, *options);
+  add_required_fields(*command, kSmoothFields, options->parameters, options->lengths);
+  add_fields(*command, kSmoothFields, options->parameters, options->lengths);
+  add_reading(*command, *options);
+  command->footer(
+      "The model is required where rotations change. Without one, --within and --step hold for\n"
+      "the positions.\n"
+      "Example: clearway trajectory smooth path.txt -o smooth.txt --within 0.01 --model car.ply");
+  command->callback([options] {
+    run_stoppable(options->output, kStartsAgain, [&] { write_smoothed(*options); });
   });
 }
 
@@ -209,6 +327,7 @@ void add_trajectory_changes(CLI::App& trajectory) {
       {thin, ". The output does not show it any more"});
   thinning->footer(
       "Example: clearway trajectory thin path.txt -o sparse.txt --max-motion 0.01 --model car.ply");
+  add_smooth(trajectory);
 }
 
 }  // namespace clearway::tool

@@ -13,7 +13,7 @@ class App;
 namespace clearway::tool {
 
 void add_trajectory_alignment(CLI::App& trajectory);
-/// Adds resample and thin.
+/// Adds resample, thin and smooth.
 void add_trajectory_changes(CLI::App& trajectory);
 void add_trajectory_follow(CLI::App& trajectory);
 void add_trajectory_info(CLI::App& trajectory);

@@ -1,0 +1,320 @@
+// Smoothing, against an independent brute force over random paths, and what its error has to cover.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clearway/error.hpp"
+#include "clearway/smooth.hpp"
+#include "support/catch.hpp"
+#include "support/compare.hpp"
+#include "support/scenes.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+
+namespace {
+
+const Box kCar{{-1, -0.9, 0}, {3.5, 0.9, 1.6}};
+
+/// A pose at (x, y, z) that is turned about z, and then tilted about its own x axis.
+Pose pose_at(double x, double y, double z, double heading, double roll = 0) {
+  const double c = std::cos(heading), s = std::sin(heading);
+  const double d = std::cos(roll), t = std::sin(roll);
+  return {{c, -s * d, s * t, s, c * d, -c * t, 0, t, d}, {x, y, z}};
+}
+
+Vec3 moved(const Pose& pose, const Vec3& m) { return pose.rotated(m) + pose.position(); }
+
+double length_of(const Vec3& v) { return std::sqrt(dot(v, v)); }
+
+/// Where a model point is on a path whose poses stand at these places, by straight ways.
+Vec3 point_at(const std::vector<Pose>& poses, const std::vector<double>& places, double at,
+              const Vec3& m) {
+  const auto after = std::ranges::upper_bound(places, at);
+  const auto k = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
+      after - places.begin() - 1, 0, static_cast<std::ptrdiff_t>(places.size()) - 1));
+  if (k + 1 == places.size()) return moved(poses[k], m);
+  const double way = places[k + 1] - places[k];
+  const double part = way > 0 ? std::clamp((at - places[k]) / way, 0.0, 1.0) : 0;
+  const Vec3 a = moved(poses[k], m), b = moved(poses[k + 1], m);
+  return {a.x + part * (b.x - a.x), a.y + part * (b.y - a.y), a.z + part * (b.z - a.z)};
+}
+
+/// Points of a box, its corners among them.
+std::vector<Vec3> points_of(Random& random, const Box& box) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 8; ++i) {
+    points.push_back({(i & 1) != 0 ? box.hi.x : box.lo.x, (i & 2) != 0 ? box.hi.y : box.lo.y,
+                      (i & 4) != 0 ? box.hi.z : box.lo.z});
+  }
+  for (int i = 0; i < 4; ++i) {
+    points.push_back({uniform(random, box.lo.x, box.hi.x), uniform(random, box.lo.y, box.hi.y),
+                      uniform(random, box.lo.z, box.hi.z)});
+  }
+  return points;
+}
+
+/// How far the model has moved up to each pose: the sum of the greatest ways of its corners.
+std::vector<double> ways_of(Random& random, const std::vector<Pose>& poses, const Box& model) {
+  std::vector<double> out{0};
+  const std::vector<Vec3> points = points_of(random, model);
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    double most = 0;
+    for (const Vec3& m : points) {
+      most = std::max(most, length_of(moved(poses[i], m) - moved(poses[i - 1], m)));
+    }
+    out.push_back(out.back() + most);
+  }
+  return out;
+}
+
+/// The way at each of some places between poses.
+std::vector<double> ways_at(const std::vector<double>& ways, const std::vector<double>& places) {
+  std::vector<double> out;
+  for (const double place : places) {
+    const auto i = std::min(static_cast<std::size_t>(place), ways.size() - 1);
+    const double part = place - static_cast<double>(i);
+    out.push_back(part > 0 ? ways[i] + part * (ways[i + 1] - ways[i]) : ways[i]);
+  }
+  return out;
+}
+
+/// Checks all that smoothing promises, by dense samples of both paths.
+void check_promises(const std::vector<Pose>& given, const SmoothParameters& asked,
+                    const std::optional<Box>& model, const SmoothPath& path) {
+  Random random(3);
+  REQUIRE(path.poses.size() == path.place.size());
+  REQUIRE(!path.poses.empty());
+  CHECK(path.largest_deviation <= asked.within);
+  CHECK(path.mean_deviation <= path.largest_deviation);
+  CHECK(std::ranges::is_sorted(path.place));
+  CHECK(given[static_cast<std::size_t>(path.place.front())] == given[0]);
+  check_equal(path.place.back(), static_cast<double>(given.size() - 1));
+  const double step = asked.step > 0 ? asked.step : 0.1;
+  CHECK(path.largest_step <= step);
+  const Box box = model.value_or(Box{{0, 0, 0}, {0, 0, 0}});
+  const std::vector<double> ways = ways_of(random, given, box),
+                            new_ways = ways_at(ways, path.place);
+  double deviation = 0, longest = 0;
+  for (const Vec3& m : points_of(random, box)) {
+    for (std::size_t k = 0; k + 1 < path.poses.size(); ++k) {
+      longest = std::max(longest, length_of(moved(path.poses[k + 1], m) - moved(path.poses[k], m)));
+    }
+    const auto compare = [&](double at) {
+      deviation = std::max(deviation, length_of(point_at(path.poses, new_ways, at, m) -
+                                                point_at(given, ways, at, m)));
+    };
+    for (const double at : ways) compare(at);
+    for (const double at : new_ways) compare(at);
+    for (int i = 0; i < 4000; ++i) compare(uniform(random, 0, ways.back()));
+  }
+  CHECK(longest <= path.largest_step);
+  CHECK(deviation <= path.largest_deviation + 1e-8);
+  CHECK(path.largest_deviation <= 1.01 * deviation + 1e-6);
+}
+
+SmoothPath smoothed(const std::vector<Pose>& given, double within, double step = 0,
+                    const std::optional<Box>& model = kCar) {
+  const SmoothParameters asked{.within = within, .step = step};
+  const SmoothPath path = smooth_trajectory(given, asked, model);
+  check_promises(given, asked, model, path);
+  return path;
+}
+
+double noise(Random& random, double most) { return uniform(random, -most, most); }
+
+/// A drive with bends, stops, turns on the spot and noise, and without jumps.
+std::vector<Pose> random_drive(Random& random) {
+  std::vector<Pose> poses;
+  const Vec3 from = below(random, 3) == 0 ? Vec3{521234.25, 5412345.5, 312.75} : Vec3{0, 0, 0};
+  const double jitter = below(random, 2) == 0 ? 0 : uniform(random, 0, 0.005);
+  double x = from.x, y = from.y, z = from.z, heading = uniform(random, -3, 3), roll = 0;
+  const double step = jitter > 0 ? uniform(random, 0.02, 0.07) : uniform(random, 0.02, 0.3);
+  for (std::uint64_t leg = 1 + below(random, 5); leg > 0; --leg) {
+    const std::uint64_t kind = below(random, 5), count = 2 + below(random, 60);
+    const double bend = uniform(random, -0.3, 0.3), climb = uniform(random, -0.05, 0.05);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      if (kind == 0) {
+        heading += step / 4;  // on the spot
+      } else if (kind > 1) {
+        heading += kind == 2 ? 0 : bend * step;
+        x += step * std::cos(heading);
+        y += step * std::sin(heading);
+        z += step * climb;
+        roll += 0.01 * std::sin(0.1 * static_cast<double>(i));
+      }
+      poses.push_back(pose_at(x + noise(random, jitter), y + noise(random, jitter),
+                              z + noise(random, jitter), heading + noise(random, jitter / 4),
+                              roll));
+    }
+  }
+  return poses;
+}
+
+}  // namespace
+
+TEST_CASE("a smoothed path keeps its distance, everywhere and for every model point") {
+  Random random(11);
+  for (int i = 0; i < 60; ++i) {
+    const std::vector<Pose> given = random_drive(random);
+    smoothed(given, uniform(random, 0.03, 0.2), below(random, 2) == 0 ? 0 : 0.3);
+  }
+}
+
+TEST_CASE("a straight path becomes one of four control points, with or without a model") {
+  std::vector<Pose> given;
+  for (int i = 0; i <= 400; ++i) given.push_back(pose_at(0.05 * i, 0.1 * i, 7, 0.3));
+  for (const auto& model : {std::optional<Box>(kCar), std::optional<Box>()}) {
+    const SmoothPath path = smoothed(given, 0.001, 0, model);
+    check_equal(path.control_points, 4);
+    CHECK(path.largest_deviation < 1e-9);
+    CHECK(path.poses.size() < 480);
+    for (const Pose& pose : path.poses)
+      CHECK(std::equal(pose.rotation, pose.rotation + 9, given[0].rotation));
+  }
+}
+
+TEST_CASE("closed curves end where they began") {
+  std::vector<Pose> given;
+  constexpr int kPoses = 600;
+  for (int i = 0; i <= kPoses; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kPoses;
+    given.push_back(
+        pose_at(10 * std::cos(angle), 10 * std::sin(angle), 0, angle + std::numbers::pi / 2));
+  }
+  const SmoothPath path = smoothed(given, 0.005);
+  CHECK(path.control_points < 60);
+  check_near(path.poses.front().translation[0], path.poses.back().translation[0], 0.01);
+  check_near(path.poses.front().translation[1], path.poses.back().translation[1], 0.01);
+}
+
+TEST_CASE("noise of a centimetre on a known curve is taken off") {
+  Random random(5);
+  std::vector<Pose> truth, given;
+  for (int i = 0; i < 4000; ++i) {
+    const double s = 0.02 * i;
+    truth.push_back(pose_at(s, 3 * std::sin(s / 12), 0, 0));
+    Pose noisy = truth.back();
+    for (double& value : noisy.translation) value += noise(random, 0.01);
+    given.push_back(noisy);
+  }
+  const SmoothPath path = smoothed(given, 0.04, 0, std::nullopt);
+  CHECK(path.control_points < 40);
+  double worst = 0, mean = 0;
+  for (std::size_t k = 0; k < path.poses.size(); ++k) {
+    double least = 1e9;  // to the true curve
+    for (std::size_t i = 0; i + 1 < truth.size(); ++i) {
+      for (const double part : {0.0, 0.5}) {
+        const Vec3 a = truth[i].position(), b = truth[i + 1].position();
+        least = std::min(least, length_of(Vec3{a.x + part * (b.x - a.x), a.y + part * (b.y - a.y),
+                                               a.z + part * (b.z - a.z)} -
+                                          path.poses[k].position()));
+      }
+    }
+    worst = std::max(worst, least);
+    mean += least / static_cast<double>(path.poses.size());
+  }
+  CHECK(mean < 0.008);
+  CHECK(worst < 0.03);
+}
+
+TEST_CASE("stops take no poses, and turns on the spot keep to the step") {
+  std::vector<Pose> given;
+  for (int i = 0; i <= 100; ++i) given.push_back(pose_at(0.05 * i, 0, 0, 0));
+  for (int i = 0; i < 500; ++i) given.push_back(given.back());
+  for (int i = 0; i <= 100; ++i) {
+    given.push_back(pose_at(5, 0, 0, std::numbers::pi / 2 * i / 100));
+  }
+  for (int i = 0; i <= 100; ++i) given.push_back(pose_at(5, 0.05 * i, 0, std::numbers::pi / 2));
+  const SmoothPath path = smoothed(given, 0.02, 0.1);
+  CHECK(path.poses.size() < 1000);
+  // The middle of the turn is there: the corner of the car in front goes 5.6 m.
+  CHECK(std::ranges::any_of(path.poses, [](const Pose& pose) {
+    return std::abs(std::atan2(pose.rotation[3], pose.rotation[0]) - std::numbers::pi / 4) < 0.03 &&
+           std::hypot(pose.translation[0] - 5, pose.translation[1]) < 0.02;
+  }));
+  const std::vector<Pose> still(20, pose_at(1, 2, 3, 0.4));
+  check_equal(smoothed(still, 0.01).poses.size(), 1);
+  check_equal(smoothed({still[0]}, 0.01).poses.size(), 1);
+  check_equal(smoothed({still[0]}, 0.01, 0, std::nullopt).poses.size(), 1);
+}
+
+TEST_CASE("corners of a coarse path are followed") {
+  const std::vector<Pose> given{pose_at(0, 0, 0, 0), pose_at(3, 0, 0, 0), pose_at(3, 3, 0, 0),
+                                pose_at(0, 3, 0, 0)};
+  const SmoothPath path = smoothed(given, 0.02, 0, std::nullopt);
+  CHECK(path.control_points > 40);
+}
+
+TEST_CASE("many poses are smoothed in time that grows with their number") {
+  Random random(8);
+  std::vector<Pose> given;
+  double heading = 0, x = 0, y = 0;
+  for (int i = 0; i < 400000; ++i) {
+    heading += 0.001 * std::sin(i * 0.001);
+    x += 0.01 * std::cos(heading);
+    y += 0.01 * std::sin(heading);
+    given.push_back(pose_at(x + noise(random, 0.005), y + noise(random, 0.005), 0, heading));
+  }
+  const SmoothParameters asked{.within = 0.05};
+  const SmoothPath path = smooth_trajectory(given, asked, kCar);
+  CHECK(path.largest_deviation <= asked.within);
+  CHECK(path.poses.size() < 200000);
+}
+
+TEST_CASE("what cannot be smoothed is refused") {
+  std::vector<Pose> given;
+  for (int i = 0; i < 50; ++i) given.push_back(pose_at(0.05 * i, 0, 0, 0.01 * i));
+  const auto refused = [](const std::vector<Pose>& poses, const SmoothParameters& asked,
+                          const std::optional<Box>& model, const char* words) {
+    check_refused([&] { smooth_trajectory(poses, asked, model); }, words);
+  };
+  refused(given, {.within = 0.01}, std::nullopt, "expected the model");
+  refused(given, {.within = 0}, kCar, "above 0");
+  refused(given, {.within = 0.01, .step = -1}, kCar, "above 0");
+  refused({}, {.within = 0.01}, kCar, "no poses");
+  std::vector<Pose> jump = given;
+  for (int i = 30; i < 50; ++i) jump[static_cast<std::size_t>(i)].translation[1] += 2;
+  refused(jump, {.within = 0.01}, kCar, "from pose 29 to pose 30");
+  std::vector<Pose> mirrored = given;
+  for (double& value : mirrored[7].rotation) value = -value;
+  refused(mirrored, {.within = 0.01}, Box{{-1e-3, -1e-3, -1e-3}, {1e-3, 1e-3, 1e-3}}, "pose 7");
+}
+
+TEST_CASE("with its error a search of the smoothed path covers what the given path touches") {
+  Random random(21);
+  for (int scene = 0; scene < 30; ++scene) {
+    const std::vector<Pose> given = random_drive(random);
+    const SmoothPath path = smooth_trajectory(given, {.within = uniform(random, 0.02, 0.1)}, kCar);
+    const std::vector<Vec3> model = points_of(random, kCar);
+    const double radius = 0.05;
+    for (int i = 0; i < 200; ++i) {
+      // A point just within the radius of a model point of the given path, at a pose or between.
+      const std::size_t pose = below(random, given.size() - 1);
+      const double part = i % 2 == 0 ? 0 : uniform(random, 0, 1);
+      const Vec3 a = moved(given[pose], model[i % model.size()]);
+      const Vec3 b = moved(given[pose + 1], model[i % model.size()]);
+      const Vec3 way{noise(random, 1), noise(random, 1), noise(random, 1)};
+      const double out = 0.999 * radius / std::max(length_of(way), 1e-3);
+      const Vec3 e{a.x + part * (b.x - a.x) + out * way.x, a.y + part * (b.y - a.y) + out * way.y,
+                   a.z + part * (b.z - a.z) + out * way.z};
+      double at_poses = 1e9, between = 1e9;
+      for (const Vec3& m : model) {
+        for (std::size_t k = 0; k < path.poses.size(); ++k) {
+          const Vec3 from = moved(path.poses[k], m);
+          at_poses = std::min(at_poses, length_of(from - e));
+          between = std::min(between, at_poses);
+          if (k + 1 == path.poses.size()) continue;
+          const Vec3 d = moved(path.poses[k + 1], m) - from;
+          const double t = dot(d, d) > 0 ? std::clamp(dot(e - from, d) / dot(d, d), 0.0, 1.0) : 0;
+          between = std::min(between, length_of(e - from - Vec3{t * d.x, t * d.y, t * d.z}));
+        }
+      }
+      CHECK(at_poses < radius + path.error_at_poses());
+      CHECK(between < radius + path.error_between_poses());
+    }
+  }
+}
