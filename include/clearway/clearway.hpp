@@ -13,6 +13,7 @@
 #include "clearway/file_unit.hpp"   // IWYU pragma: export
 #include "clearway/follow.hpp"      // IWYU pragma: export
 #include "clearway/ignored.hpp"     // IWYU pragma: export
+#include "clearway/ledger.hpp"      // IWYU pragma: export
 #include "clearway/line.hpp"        // IWYU pragma: export
 #include "clearway/merge.hpp"       // IWYU pragma: export
 #include "clearway/model.hpp"       // IWYU pragma: export

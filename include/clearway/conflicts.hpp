@@ -195,4 +195,14 @@ Conflicts find_conflicts(const Result& result, const std::vector<Pose>& poses,
                          std::vector<std::uint32_t>* conflict_of = nullptr,
                          std::vector<std::uint32_t>* conflict_of_near = nullptr);
 
+/// A result with its conflicts, and the conflict of each row of its tables; 0 for rows of small
+/// groups.
+struct GroupedResult {
+  const Result& result;
+  const Conflicts& conflicts;
+  std::span<const std::uint32_t> conflict_of;       ///< of each colliding point
+  std::span<const std::uint32_t> conflict_of_near;  ///< of each near point
+  const std::vector<Pose>& poses;
+};
+
 }  // namespace clearway

@@ -55,6 +55,7 @@ enum class Remedy {
   kFreeDisk,       ///< free some room on the disk, or write to another one
   kWiderCorridor,  ///< the scans have to be converted with a larger `within`; amount: metres
   kOtherPart,      ///< the output belongs to another part, or to the whole, than the one asked for
+  kMakeLedger,     ///< there is no such ledger yet; an update makes it
 };
 
 /// Base of all errors that the outside world causes. A program chooses its exit code by the type.

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "clearway/conflicts.hpp"
+#include "clearway/ledger.hpp"
 #include "io/result/result_header.hpp"
 
 namespace clearway {
@@ -14,6 +16,7 @@ struct FoundConflicts {
   std::vector<std::uint32_t> conflict_of;  ///< as find_conflicts() gives it
   ResultQuestion question;                 ///< that of the result
   ConflictOptions options;                 ///< pointers and spans in it are not followed
+  std::optional<Ledger> ledger = {};       ///< where they were compared with one
 
   /// Whether these are the conflicts of a result with other options. Threads, memory and what
   /// watches the call change nothing of them; models, bodies and stations are those of the result.

@@ -12,16 +12,6 @@
 
 namespace clearway {
 
-/// A result with its conflicts, and the conflict of each row of its tables; 0 for rows of small
-/// groups.
-struct GroupedResult {
-  const Result& result;
-  const Conflicts& conflicts;
-  std::span<const std::uint32_t> conflict_of;       ///< of each colliding point
-  std::span<const std::uint32_t> conflict_of_near;  ///< of each near point
-  const std::vector<Pose>& poses;
-};
-
 /// Some of the points of a conflict.
 struct ConflictPart {
   std::uint32_t conflict = 0;  ///< id of the conflict

@@ -2,7 +2,7 @@
 
 # A page that is followed from top to bottom runs in one folder, which is empty or has the files that
 # stand_ins.py makes. Of any other page each block runs by itself, in a folder with these files.
-FOLLOWED_FROM_NOTHING = {"docs/guide/tutorial.md", "docs/guide/campaigns.md"}
+FOLLOWED_FROM_NOTHING = {"docs/guide/tutorial.md", "docs/guide/campaigns.md", "docs/guide/ledger.md"}
 FOLLOWED = {"docs/guide/section.md", "docs/guide/vehicles.md"}
 
 # (page, beginning of the command): why the test does not run it.

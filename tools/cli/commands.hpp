@@ -14,7 +14,7 @@ void add_convert(CLI::App& program);
 void add_run(CLI::App& program, int& exit_code);
 void add_merge(CLI::App& program, int& exit_code);
 void add_export(CLI::App& program);
-void add_conflicts(CLI::App& program);
+void add_conflicts(CLI::App& program, int& exit_code);
 void add_stations(CLI::App& program);
 void add_shift(CLI::App& program);
 void add_compare(CLI::App& program, int& exit_code);

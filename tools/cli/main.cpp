@@ -14,7 +14,7 @@ void add_commands(CLI::App& program, int& exit_code) {
   add_run(program, exit_code);
   add_merge(program, exit_code);
   add_export(program);
-  add_conflicts(program);
+  add_conflicts(program, exit_code);
   add_stations(program);
   add_shift(program);
   add_compare(program, exit_code);

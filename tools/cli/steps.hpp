@@ -77,7 +77,9 @@ struct ConflictsCommand : ConflictCommand {
   std::vector<std::filesystem::path> outputs;
   ModelOptions model_options;
   std::string date = ConflictFile::kNoDate;
+  LedgerCommand ledger;
   std::uint64_t show = 20;
+  bool fail_on_collision = false;
   bool force = false;
   bool json = false;
 };
@@ -88,6 +90,11 @@ struct ConflictsOutcome {
   std::string worst;    ///< a sentence about the worst one; empty where none is listed
   std::string json;     ///< the summary as one JSON object
   std::string verdict;  ///< the verdict of the result, where the table alone does not show it
+  /// What the ledger accepts, in a sentence; empty without a ledger or conflicts
+  std::string accepted;
+  /// The verdict that decides about success: with a ledger what is left without its accepted
+  /// conflicts.
+  Verdict outside = Verdict::kUnknown;
 };
 
 void add_options(CLI::App& command, ConflictsCommand& options);

@@ -105,6 +105,7 @@ inline constexpr auto kRemedies = std::to_array<RemedyKind>({
     {kOtherPart, "other_part",
      "; give the same --shard as its run, or another output. --force instead of --resume "
      "overwrites it"},
+    {kMakeLedger, "make_ledger", "; --update makes it"},
 });
 
 }  // namespace remedy_table
@@ -119,7 +120,7 @@ static_assert(
       for (std::size_t i = 0; i < remedy_table::kRemedies.size(); ++i) {
         if (remedy_table::kRemedies[i].remedy != static_cast<Remedy>(i)) return false;
       }
-      return kind_of(Remedy::kOtherPart).remedy == Remedy::kOtherPart;
+      return kind_of(Remedy::kMakeLedger).remedy == Remedy::kMakeLedger;
     }(),
     "the rows of the remedies are in the order of the enumeration");
 

@@ -206,7 +206,8 @@ void QuestionReader::check_outputs(const PlannedRun& run) {
     if (!checked_.insert(command[0] + text_of(arguments)).second) continue;
     const Parse parse = [&command = command](const Arguments& some) -> std::optional<Refusal> {
       CLI::App program;
-      add_conflicts(program);
+      int exit_code = 0;
+      add_conflicts(program, exit_code);
       add_report(program);
       for (CLI::App* one : program.get_subcommands({})) {
         one->parse_complete_callback([] { throw CLI::Success(); });  // parsed only, not run

@@ -193,7 +193,7 @@ class Check {
     record_->write();
     print_answer(found, conflicts);
     if (options_.open) open_page(plan_.file(kReportName));
-    return found.report.verdict();
+    return outside_.value_or(found.report.verdict());
   }
 
  private:
@@ -545,7 +545,8 @@ class Check {
   ordered_json make_table(const char* name, const Words& words) {
     Step<Command> step(words);
     const ordered_json what = made_for(step.essence());
-    const ordered_json known = record_->find(name, what);
+    ordered_json known = record_->find(name, what);
+    if (std::is_same_v<Command, ConflictsCommand> && plan_.has_ledger()) known = nullptr;
     note_step(name, step.words(), known.is_object());
     if (known.is_object()) return known;
     const auto outcome = in_terms_of_check([&] {
@@ -557,7 +558,11 @@ class Check {
     });
     spdlog::info("{}: written", plan_.file(name).string());
     ordered_json said{{"text", outcome.text}};
-    if constexpr (requires { outcome.worst; }) said["worst"] = outcome.worst;
+    if constexpr (std::is_same_v<Command, ConflictsCommand>) {
+      said["worst"] = outcome.worst;
+      said["accepted"] = outcome.accepted;
+      if (plan_.has_ledger()) outside_ = outcome.outside;
+    }
     record_->note(name, what, said);
     return said;
   }
@@ -583,8 +588,11 @@ class Check {
   }
 
   void print_answer(const RunOutcome& found, const ordered_json& conflicts) const {
-    const std::string worst = conflicts.value("worst", "");
-    const std::string sentence = found.sentence + (worst.empty() ? "" : " " + worst);
+    std::string sentence = found.sentence;
+    for (const char* part : {"worst", "accepted"}) {
+      const std::string text = conflicts.value(part, "");
+      if (!text.empty()) sentence += " " + text;
+    }
     if (nothing_done_) {
       spdlog::info("{}: has the answer to this question already; nothing was to be done",
                    options_.folder.string());
@@ -620,6 +628,7 @@ class Check {
                                      {"stations", plan_.file(kStationsName)},
                                      {"report", plan_.file(kReportName)}});
     out["verdict"] = name_of(found.report.verdict());
+    if (outside_) out["outside_of_accepted"] = name_of(*outside_);
     out["sentence"] = sentence;
     out["nothing_done"] = nothing_done_;
     out["reused"] = reused_;
@@ -637,6 +646,8 @@ class Check {
   ordered_json reused_ = ordered_json::object();
   std::shared_ptr<const DeviceStart> started_;  ///< null where no GPU was started early
   std::optional<FoundConflicts> found_;         ///< where the table of conflicts was made anew
+  /// With a ledger, the verdict on what is left without its accepted conflicts.
+  std::optional<Verdict> outside_;
   StepSeconds seconds_;
   bool nothing_done_ = true;
 };

@@ -44,8 +44,8 @@ const StepOptions kRunOptions{{"--env", "--output", "--first-pose", "--gap", "--
 const StepOptions kResampleOptions{
     {"--output", "--env", "--max-motion", "--force", "--json", "--help"}};
 // The run turns the model, and what reads its result knows that.
-const StepOptions kConflictsOptions{
-    {"--output", "--forward", "--up", "--date", "--force", "--json", "--help"}};
+const StepOptions kConflictsOptions{{"--output", "--env", "--forward", "--up", "--date",
+                                     "--fail-on-collision", "--force", "--json", "--help"}};
 // --show is about conflicts, which check prints.
 const StepOptions kStationsOptions{
     {"--output", "--forward", "--up", "--show", "--force", "--json", "--help"}};
@@ -262,8 +262,13 @@ Words CheckPlan::run(bool replacing) const {
 }
 
 Words CheckPlan::conflicts() const {
+  Words ledger;
+  if (has_ledger()) {
+    ledger = {"--env", environment().string()};
+    if (is_given("--date")) ledger = ledger + Words{"--date", value_of("--date")};
+  }
   return Words{"conflicts", file(kResultName).string()} +
-         with_path(given<ConflictsCommand>(check_, kConflictsOptions)) +
+         with_path(given<ConflictsCommand>(check_, kConflictsOptions)) + ledger +
          Words{"-o", file(kConflictsName).string(), "--force"};
 }
 
@@ -290,6 +295,8 @@ std::string CheckPlan::about_distances() const {
   }
   return text.empty() ? "" : "taken by default: " + text;
 }
+
+bool CheckPlan::has_ledger() const { return is_given("--ledger"); }
 
 bool CheckPlan::is_given(const char* name) const { return !check_.get_option(name)->empty(); }
 

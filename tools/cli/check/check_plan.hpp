@@ -71,6 +71,9 @@ class CheckPlan {
   /// date: for the page, where the user names none; empty: none.
   Words report(const std::string& date) const;
 
+  /// Whether the conflicts are compared with a ledger, which may have changed since the last time.
+  bool has_ledger() const;
+
   /// A sentence on the distances that the user did not ask for but that are found; empty where
   /// there are none.
   std::string about_distances() const;

@@ -3,14 +3,17 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "clearway/error.hpp"
 #include "clearway/vehicle.hpp"
 #include "cli/support/console.hpp"
+#include "cli/support/field_options.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
+#include "core/describe/ledger.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/xxh64.hpp"
@@ -39,6 +42,33 @@ void add_conflict_options(CLI::App& command, ConflictCommand& options) {
     add_memory_option(command, options.find.memory_bytes);
     add_threads_option(command, options.find.threads);
   }
+}
+
+void add_ledger_options(CLI::App& command, LedgerCommand& ledger, LengthOptions& lengths) {
+  command
+      .add_option("--ledger", ledger.options.table,
+                  "Compare the conflicts with a ledger, a table of those that are known: which are "
+                  "new, accepted, worse or gone")
+      ->group(title_of(OptionGroup::kConflicts))
+      ->type_name("FILE");
+  add_fields(command, kLedgerFields, ledger.options, lengths);
+}
+
+void add_update_option(CLI::App& command, LedgerCommand& ledger, LengthOptions& lengths) {
+  add_fields(command, kLedgerUpdateFields, ledger.options, lengths);
+  command.get_option("--update")->needs("--ledger");
+}
+
+Ledger apply_ledger_of(const LedgerCommand& ledger, const GroupedResult& found,
+                       const ConflictOptions& find) {
+  LedgerOptions options = ledger.options;
+  std::optional<Store> store;
+  if (!ledger.environment.empty()) options.store = &store.emplace(ledger.environment);
+  options.memory_bytes = find.memory_bytes;
+  options.threads = find.threads;
+  options.progress = find.progress;
+  options.stop = find.stop;
+  return apply_ledger(found, find, options);
 }
 
 void add_axis_options(CLI::App& command, ConflictCommand& options) {

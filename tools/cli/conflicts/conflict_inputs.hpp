@@ -7,6 +7,7 @@
 
 #include "clearway/body.hpp"
 #include "clearway/conflicts.hpp"
+#include "clearway/ledger.hpp"
 #include "clearway/model.hpp"
 #include "clearway/result.hpp"
 #include "clearway/trajectory.hpp"
@@ -29,6 +30,24 @@ struct ConflictCommand {
 
 /// Adds --gap, --min-points, --split, --chainage-start, --memory and --threads.
 void add_conflict_options(CLI::App& command, ConflictCommand& options);
+
+/// The ledger that conflicts are compared with.
+struct LedgerCommand {
+  LedgerOptions options;              ///< without table, no ledger
+  std::filesystem::path environment;  ///< the store; empty: not given
+
+  bool is_given() const { return !options.table.empty(); }
+};
+
+/// Adds --ledger and --worse-by.
+void add_ledger_options(CLI::App& command, LedgerCommand& ledger, LengthOptions& lengths);
+
+/// Adds --update, which needs --ledger.
+void add_update_option(CLI::App& command, LedgerCommand& ledger, LengthOptions& lengths);
+
+/// Compares the conflicts with the ledger of the command.
+Ledger apply_ledger_of(const LedgerCommand& ledger, const GroupedResult& found,
+                       const ConflictOptions& find);
 
 /// Adds --forward and --up, which say how the model is seen. `options` outlive the command.
 void add_axis_options(CLI::App& command, ConflictCommand& options);

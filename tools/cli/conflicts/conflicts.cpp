@@ -22,6 +22,7 @@
 #include "cli/steps.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
+#include "cli/support/program.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "cli/verdict.hpp"
@@ -37,6 +38,7 @@
 #include "io/result/conflicts/conflict_fields.hpp"
 #include "io/result/conflicts/conflict_file.hpp"
 #include "io/result/conflicts/conflict_words.hpp"
+#include "io/result/conflicts/ledger_words.hpp"
 #include "io/result/conflicts/write_conflicts.hpp"
 #include "io/result/result.hpp"
 
@@ -105,6 +107,15 @@ std::vector<TextColumn> columns_of(const ConflictFile& file,
   const Conflicts& all = file.conflicts;
   const double metre = file.metres_per_unit();
   add("id", [](const Conflict& c) { return std::to_string(c.id); });
+  if (file.ledger != nullptr) {
+    const std::vector<LedgerEntry>& entries = file.ledger->conflicts;
+    add("ledger",
+        [&](const Conflict& c) { return std::string(name_of(entries[c.id - 1].status)); });
+    add("row", [&](const Conflict& c) {
+      const std::string& key = entries[c.id - 1].key;
+      return key.empty() ? "-" : key;
+    });
+  }
   add("chainage", [](const Conflict& c) { return range_cell(c.chainage_from, c.chainage_to); });
   if (rows.front()->station_from) {
     add("station (m)", [](const Conflict& c) {
@@ -231,6 +242,43 @@ std::string conflict_text(const ConflictFile& file, std::size_t most) {
   return text;
 }
 
+/// A line about a row of the ledger that needs one, because its status or a reason says more than
+/// the table of conflicts does; otherwise empty.
+std::string row_text(const LedgerRow& row) {
+  if (row.why.empty() && !row.conflicts.empty()) return "";
+  if (row.why.empty() && row.shown == LedgerStatus::kResolved) return "";
+  std::string text = fmt::format("  row {}: {}", row.key, name_of(row.shown));
+  if (!row.why.empty()) text += ", because " + row.why;
+  if (!row.owner.empty()) text += " (" + row.owner + ")";
+  return text + "\n";
+}
+
+/// The rows and conflicts by status, and the rows that need words; at most `most` of these.
+std::string ledger_text(const Ledger& ledger, const std::filesystem::path& table,
+                        std::size_t most) {
+  std::string text = fmt::format("ledger {}: {}{}\n", table.string(), ledger_counts_words(ledger),
+                                 ledger.is_updated ? "; updated" : "");
+  std::size_t shown = 0, left = 0;
+  for (const LedgerRow& row : ledger.rows) {
+    const std::string line = row_text(row);
+    if (line.empty()) continue;
+    if (shown < most) {
+      text += line;
+      ++shown;
+    } else {
+      ++left;
+    }
+  }
+  if (left > 0) text += "  and " + counted(left, "more row", "more rows") + "\n";
+  return text;
+}
+
+/// What the ledger accepts, in a sentence; empty without conflicts.
+std::string accepted_text(const Ledger& ledger, Verdict verdict) {
+  const bool stays = verdict == Verdict::kConflict && ledger.accepted_conflicts() > 0;
+  return (stays ? "The verdict stays conflict. " : "") + ledger_sentence(ledger);
+}
+
 /// An output that does not exist yet.
 struct ConflictOutput {
   ConflictOutput(const std::filesystem::path& path, bool overwrite)
@@ -245,7 +293,9 @@ using Outputs = std::vector<std::unique_ptr<ConflictOutput>>;
 Outputs open_outputs(const ConflictsCommand& options) {
   Outputs out;
   for (const std::filesystem::path& path : options.outputs) conflict_format_of(path);
-  std::vector<std::filesystem::path> inputs{options.result, options.trajectory, options.model};
+  std::vector<std::filesystem::path> inputs{options.result, options.trajectory, options.model,
+                                            options.ledger.options.table,
+                                            options.ledger.environment};
   if (!options.vehicle.empty()) inputs = vehicle_inputs(options.vehicle, std::move(inputs));
   for (const std::filesystem::path& path : options.outputs) {
     refuse_overwriting(path, inputs);
@@ -367,10 +417,12 @@ ConflictsOutcome perform(ConflictsCommand& options, FoundConflicts* found) {
   if (!from.model.empty()) options.find.model = &from.model;
   const bool has_pictures = std::ranges::any_of(
       outputs, [](const auto& output) { return output->format == ConflictFormat::kBcf; });
-  std::vector<std::uint32_t> conflict_of;
-  const bool wants_rows = has_pictures || found != nullptr;
+  std::vector<std::uint32_t> conflict_of, conflict_of_near;
+  const bool has_ledger = options.ledger.is_given();
+  const bool wants_rows = has_pictures || has_ledger || found != nullptr;
   Conflicts conflicts =
-      find_conflicts(result, poses, options.find, wants_rows ? &conflict_of : nullptr);
+      find_conflicts(result, poses, options.find, wants_rows ? &conflict_of : nullptr,
+                     has_ledger ? &conflict_of_near : nullptr);
   ConflictPictures pictures;
   if (has_pictures) {
     pictures = {conflict_points(result.reader(), conflicts, conflict_of), from.drawn_models()};
@@ -379,6 +431,12 @@ ConflictsOutcome perform(ConflictsCommand& options, FoundConflicts* found) {
   ConflictFile file{conflicts, options.find, result.reader().header(), answer, poses,
                     {},        options.date};
   file.warnings = conflict_warnings(conflicts, symbol_of(file.unit()));
+  std::optional<Ledger> ledger;
+  if (has_ledger) {
+    ledger = apply_ledger_of(
+        options.ledger, {result, conflicts, conflict_of, conflict_of_near, poses}, options.find);
+    file.ledger = &*ledger;
+  }
   for (const auto& output : outputs) {
     write_conflicts(file, pictures, output->format, output->pending.partial());
   }
@@ -386,12 +444,17 @@ ConflictsOutcome perform(ConflictsCommand& options, FoundConflicts* found) {
   for (const Message& warning : file.warnings) log_message(warning);
   tell_of_unknown_sides(options, result, conflicts);
   ConflictsOutcome outcome{
-      conflict_text(file, options.show), worst_text(file),
+      conflict_text(file, options.show),
+      worst_text(file),
       "{\n" + member_lines(summary_of(file)) + "\n}\n",
       verdict_to_repeat(result.reader(), {{.station = labels.station}, chainage_of(poses)},
-                        symbol_of(file.unit()))};
+                        symbol_of(file.unit())),
+      ledger ? accepted_text(*ledger, answer.verdict()) : "",
+      ledger ? ledger->outside.verdict : answer.verdict()};
+  if (ledger) outcome.text += ledger_text(*ledger, options.ledger.options.table, options.show);
   if (found != nullptr) {
-    *found = {std::move(conflicts), std::move(conflict_of), result.reader().header(), options.find};
+    *found = {std::move(conflicts), std::move(conflict_of), result.reader().header(), options.find,
+              std::move(ledger)};
   }
   return outcome;
 }
@@ -412,18 +475,32 @@ void add_options(CLI::App& command, ConflictsCommand& options) {
   add_sides(command, options);
   add_count_option(command, "--show", options.show, 0, 1'000'000'000,
                    "Print a table of so many conflicts");
+  add_ledger_options(command, options.ledger, options.lengths);
+  add_update_option(command, options.ledger, options.lengths);
+  command
+      .add_option("--env", options.ledger.environment,
+                  "With --ledger: the store that was searched; without it and the model, no row is "
+                  "gone")
+      ->type_name("FILE");
   command
       .add_option_function<std::string>(
-          "--date", [&date = options.date](const std::string& text) { date = full_date(text); },
+          "--date",
+          [&options](const std::string& text) {
+            options.date = full_date(text);
+            options.ledger.options.date = options.date.substr(0, 10);
+          },
           "Date that BCF and GeoPackage show, for example 2025-03-31 (default: 2000-01-01, so that "
-          "equal conflicts give equal files)")
+          "equal conflicts give equal files); and the day of the ledger (default: today in UTC)")
       ->group(title_of(OptionGroup::kConflicts))
       ->type_name("DATE");
   command.add_flag("--force", options.force, "Overwrite existing outputs");
+  command.add_flag("--fail-on-collision", options.fail_on_collision,
+                   "Exit with code 1 where a point collides, and 6 where the verdict is undecided; "
+                   "what the ledger accepts does not count");
   command.add_flag("--json", options.json, "Print one JSON object, without the conflicts");
 }
 
-void add_conflicts(CLI::App& program) {
+void add_conflicts(CLI::App& program, int& exit_code) {
   const auto options = std::make_shared<ConflictsCommand>();
   CLI::App* command = program.add_subcommand(
       "conflicts", "Group the colliding points of a result to conflicts, place by place");
@@ -434,17 +511,19 @@ void add_conflicts(CLI::App& program) {
       "numbered along the path, and the table begins with the worst. Those of a result with\n"
       "clearances have their least distance.\n"
       "Example: clearway conflicts out.h5 --trajectory path.txt -o conflicts.csv");
-  command->callback([options, command] {
+  command->callback([options, command, &exit_code] {
     run_stoppable(options->result, kStartsAgain, [&] {
       advising_to_run_again(*command, {{options->result, options->trajectory}}, [&] {
-        const auto [text, worst, json, verdict] = perform(*options);
+        const auto [text, worst, json, verdict, accepted, outside] = perform(*options);
         if (options->json) {
           if (!verdict.empty()) spdlog::info("the verdict of this result is {}", verdict);
           print(json);
         } else {
           print(text + (worst.empty() ? "" : worst + "\n") +
-                (verdict.empty() ? "" : "the verdict of this result is " + verdict + "\n"));
+                (verdict.empty() ? "" : "the verdict of this result is " + verdict + "\n") +
+                (accepted.empty() ? "" : accepted + "\n"));
         }
+        if (options->fail_on_collision) exit_code = exit_code_of(outside);
       });
     });
   });

@@ -12,6 +12,7 @@
 #include "io/files/text_writer.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/conflicts/conflict_words.hpp"
+#include "io/result/conflicts/ledger_words.hpp"
 #include "io/result/floor_facts.hpp"
 
 namespace clearway {
@@ -175,6 +176,7 @@ Json summary_of(const ConflictFile& file) {
   out["small"] = small_json(conflicts.small);
   out["longest_group"] = conflicts.longest_group;
   out["longest_group_points"] = conflicts.longest_group_points;
+  if (file.ledger != nullptr) out["ledger"] = ledger_json(*file.ledger);
   out["warnings"] = file.all_warnings();
   return out;
 }

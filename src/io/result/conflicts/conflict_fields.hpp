@@ -57,6 +57,8 @@ void add_fields(std::vector<ConflictField>& fields, const std::tuple<Columns...>
     } else if constexpr (std::is_same_v<Value, std::optional<FoundPlace>>) {
       fields.push_back({key, value ? FieldValue(value->distance) : FieldValue(), true});
       fields.push_back({key + "_source", value ? FieldValue(value->source) : FieldValue()});
+    } else if constexpr (std::is_same_v<Value, std::string>) {
+      fields.push_back({key, std::string_view(value)});
     } else if constexpr (std::is_enum_v<Value>) {
       fields.push_back({key, std::string_view(name_of(value))});
     } else if constexpr (requires { name_of(*value); }) {

@@ -7,6 +7,7 @@
 
 #include "clearway/answer.hpp"
 #include "clearway/conflicts.hpp"
+#include "clearway/ledger.hpp"
 #include "clearway/pose.hpp"
 #include "io/result/result.hpp"
 
@@ -22,6 +23,7 @@ struct ConflictFile {
   std::vector<Message> warnings;
   /// Date for formats that need one: an ISO 8601 time in UTC.
   std::string date = kNoDate;
+  const Ledger* ledger = nullptr;  ///< where the conflicts were compared with one
 
   /// The warnings of the search, and those about the conflicts.
   std::vector<Message> all_warnings() const {

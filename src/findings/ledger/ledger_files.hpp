@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "findings/ledger/ledger_places.hpp"
+#include "findings/ledger/ledger_table.hpp"
+#include "io/files/pending_file.hpp"
+
+namespace clearway {
+
+/// The table of a ledger with the places of its rows.
+struct LedgerFiles {
+  LedgerTable table;
+  /// Of each row; none for a row that somebody added by hand, or where there is no places file.
+  std::vector<std::optional<LedgerPlaces>> places;
+};
+
+/// Reads a ledger. unit: the name of the unit of the result. Throws InputError where the table is
+/// none of a ledger, or table and places are of different runs. A table without a places file has
+/// no places.
+LedgerFiles read_ledger(const std::filesystem::path& table, const std::string& unit);
+
+/// A ledger that is about to be replaced. Holds both files from its construction on, so that no
+/// other process changes them between reading and writing.
+class LedgerUpdate {
+ public:
+  /// Throws ResourceError where another process writes the ledger.
+  explicit LedgerUpdate(const std::filesystem::path& table);
+
+  /// Replaces both files. The places come first: killed in between, the new table is complete
+  /// under its partial name.
+  void publish(const LedgerFiles& files, const std::string& unit);
+
+ private:
+  std::filesystem::path path_;
+  PendingFile places_, table_;
+};
+
+}  // namespace clearway

@@ -1,0 +1,206 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clearway/clearway.hpp"
+#include "io/files/input_error.hpp"
+#include "support/bytes/las_bytes.hpp"
+#include "support/scenes.hpp"
+#include "support/solid_scene.hpp"
+#include "support/store_fixture.hpp"
+
+/// Scans of a road at several epochs, and the ledger of the conflicts of a vehicle that drives
+/// along it.
+namespace clearway::test {
+
+/// The points of a scan, with what LAS says of them.
+struct RoadScan {
+  struct Point {
+    Vec3 xyz;
+    std::uint8_t point_class = 1;
+    bool withheld = false;
+  };
+  std::vector<Point> points;
+
+  RoadScan& add(const std::vector<Vec3>& more, std::uint8_t point_class = 1,
+                bool withheld = false) {
+    for (const Vec3& p : more) points.push_back({p, point_class, withheld});
+    return *this;
+  }
+
+  void write(const std::filesystem::path& path) const {
+    LasBytes las;
+    las.minor = 4;
+    las.format = 6;
+    las.scale = {0.001, 0.001, 0.001};
+    las.offset = {0, 0, 0};
+    las.points.clear();
+    for (const Point& p : points) {
+      Quantum q;
+      for (int k = 0; k < 3; ++k) q[k] = static_cast<std::int32_t>(std::lround(p.xyz[k] * 1000));
+      las.points.push_back(q);
+      las.bytes_of_class.push_back(p.point_class);
+      las.bytes_of_flags.push_back(static_cast<std::uint8_t>(p.withheld ? 4 : 0));
+    }
+    put_bytes(path, las.build());
+  }
+};
+
+/// A grid of points beside the way: from `from` on along the path, at `left`, 1 to 2 m high.
+inline std::vector<Vec3> panel(double from, double left, double length = 1, double step = 0.05) {
+  std::vector<Vec3> out;
+  for (int i = 0; i * step <= length + 1e-9; ++i) {
+    for (int k = 0; k * step <= 1 + 1e-9; ++k) {
+      out.push_back({from + i * step, left, 1 + k * step});
+    }
+  }
+  return out;
+}
+
+/// A road of 30 m with a wall on either side, where nothing collides, up to `end` along the path.
+inline RoadScan road(double end = 26) {
+  std::vector<Vec3> out;
+  for (double x = -4; x <= end; x += 0.2) {
+    for (double y = -2; y <= 2.01; y += 0.2) out.push_back({x, y, 0});
+    for (double z = 0.2; z <= 3.01; z += 0.2) {
+      out.push_back({x, -1.8, z});
+      out.push_back({x, 1.8, z});
+    }
+  }
+  return RoadScan().add(out);
+}
+
+/// The road with panels: a point that is deeper in the way is farther from 1 m.
+inline RoadScan road_with(const std::vector<std::vector<Vec3>>& panels) {
+  RoadScan scan = road();
+  for (const auto& one : panels) scan.add(one);
+  return scan;
+}
+
+/// What is asked of a scan.
+struct RoadQuestion {
+  Query query;
+  bool knows_store = true, knows_model = true;
+  double worse_by = 0.02;
+  std::string date = "2026-06-30";
+
+  RoadQuestion() {
+    Bodies bodies;
+    bodies.add(box_surface({{-2, -1, 0.2}, {2, 1, 3}}));
+    std::vector<Pose> poses;
+    // Steps of the radius, so that nothing between two poses could be missed.
+    for (int i = 0; i <= 200; ++i) poses.push_back(translation({0.1 * i, 0, 0}));
+    query = bodies.query(std::move(poses), 0.1);
+    query.first_pose = true;
+    query.clearance = 0.3;
+  }
+};
+
+inline void write_text(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+/// A ledger with the scans that it is kept of.
+struct LedgerScene {
+  std::filesystem::path table() const { return folder / "L.csv"; }
+  std::filesystem::path places() const { return folder / "L.places.h5"; }
+  std::string text() const { return text_of_file(table()); }
+  void write(const std::string& text) const { write_text(table(), text); }
+
+  /// Searches a scan, and judges its conflicts by the ledger.
+  Ledger run(const RoadScan& scan, const RoadQuestion& asked, bool update = true) {
+    const std::string name = "scan" + std::to_string(epoch_++);
+    scan.write(folder / (name + ".las"));
+    ConvertOptions conversion{.cell_points = 256, .threads = 2};
+    if (origin_) {
+      conversion.origins = folder / "origins.csv";
+      write_text(conversion.origins, "first,x,y,z\n0," + std::to_string(origin_->x) + "," +
+                                         std::to_string(origin_->y) + "," +
+                                         std::to_string(origin_->z) + "\n");
+    }
+    convert({folder / (name + ".las")}, folder / (name + ".h5"), conversion);
+    const Store store(folder / (name + ".h5"));
+    const auto output = folder / (name + ".result.h5");
+    search(store, asked.query, output, {.device = Device::kCpu, .threads = 2});
+    const Result result(output);
+    ConflictOptions find;
+    find.threads = 2;
+    if (asked.knows_model) find.model = &asked.query.model;
+    std::vector<std::uint32_t> conflict_of, conflict_of_near;
+    const Conflicts conflicts =
+        find_conflicts(result, asked.query.poses, find, &conflict_of, &conflict_of_near);
+    LedgerOptions options;
+    options.table = table();
+    options.update = update;
+    options.worse_by = asked.worse_by;
+    options.date = asked.date;
+    options.store = asked.knows_store ? &store : nullptr;
+    options.threads = 2;
+    return apply_ledger({result, conflicts, conflict_of, conflict_of_near, asked.query.poses}, find,
+                        options);
+  }
+
+  /// The place of the scanner of all scans from here on.
+  void set_origin(const Vec3& origin) { origin_ = origin; }
+
+  /// Sets the cells of a column in all rows, or in one.
+  void set(const std::string& column, const std::string& value, int row = -1) const {
+    std::vector<std::vector<std::string>> lines;
+    std::string text = this->text();
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t end = text.find('\n', at);
+      std::vector<std::string>& cells = lines.emplace_back(1);
+      for (const char c : text.substr(at, end - at)) {
+        if (c == ',') {
+          cells.emplace_back();
+        } else {
+          cells.back() += c;
+        }
+      }
+      at = end + 1;
+    }
+    std::size_t index = 0;
+    while (lines[0][index] != column) ++index;
+    std::string out;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      if (i > 0 && (row < 0 || static_cast<std::size_t>(row) + 1 == i)) lines[i][index] = value;
+      for (std::size_t k = 0; k < lines[i].size(); ++k) out += (k > 0 ? "," : "") + lines[i][k];
+      out += "\n";
+    }
+    write(out);
+  }
+
+  ScratchFolder folder;
+
+ private:
+  int epoch_ = 0;
+  std::optional<Vec3> origin_;
+};
+
+/// The counts that are not 0, as in "open 1, accepted 2".
+inline std::string counts_of(const Ledger& ledger) {
+  std::string out;
+  const auto counts = ledger.counts();
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] == 0) continue;
+    if (!out.empty()) out += ", ";
+    out += name_of(static_cast<LedgerStatus>(i)) + std::string(" ") + std::to_string(counts[i]);
+  }
+  return out;
+}
+
+/// The reasons of all rows, for messages.
+inline std::string reasons_of(const Ledger& ledger) {
+  std::string out;
+  for (const LedgerRow& row : ledger.rows) out += row.key + ": " + row.why + "; ";
+  return out;
+}
+
+}  // namespace clearway::test

@@ -1,0 +1,256 @@
+// The files of a ledger: what is read and kept of a table, and which pairs of files are refused.
+#include "findings/ledger/ledger_table.hpp"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clearway/clearway.hpp"
+#include "findings/ledger/ledger_date.hpp"
+#include "findings/ledger/ledger_files.hpp"
+#include "findings/ledger_scene.hpp"
+#include "support/catch.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+
+namespace {
+
+const std::string kHeader =
+    "key,status,owner,comment,until,x,y,z,size_x,size_y,size_z,side,least,trim,first_seen,"
+    "last_seen\n";
+
+std::string with(std::string text, char from, char to) {
+  for (char& c : text) c = c == from ? to : c;
+  return text;
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    LedgerTable(text, "L.csv");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// The message with which a run refuses a ledger.
+std::string refused(LedgerScene& scene, const RoadScan& scan) {
+  try {
+    scene.run(scan, RoadQuestion());
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+RoadScan one_panel() { return road_with({panel(10, 0.95)}); }
+
+}  // namespace
+
+TEST_CASE("days are read in the forms of spreadsheets, and ambiguous ones as the earlier day") {
+  struct Row {
+    const char* text;
+    const char* day;  ///< null: no day
+  };
+  const std::vector<Row> rows{{"2026-06-30", "2026-06-30"},
+                              {" 2026-6-3 ", "2026-06-03"},
+                              {"2026-06-30T12:00:00Z", "2026-06-30"},
+                              {"2026-06-30 00:00:00", "2026-06-30"},
+                              {"2026/06/30", "2026-06-30"},
+                              {"30.06.2026", "2026-06-30"},
+                              {"3.6.26", "2026-06-03"},
+                              {"30/06/2026", "2026-06-30"},
+                              {"06/30/2026", "2026-06-30"},
+                              {"07/06/2026", "2026-06-07"},
+                              {"06/07/2026", "2026-06-07"},
+                              {"05/05/2026", "2026-05-05"},
+                              {"30-06-2026", "2026-06-30"},
+                              {"30-06-26", nullptr},
+                              {"2026.06.30", nullptr},
+                              {"31.06.2026", nullptr},
+                              {"13/13/2026", nullptr},
+                              {"2026-02-29", nullptr},
+                              {"soon", nullptr},
+                              {"46203", nullptr},
+                              {"", nullptr}};
+  for (const Row& row : rows) {
+    CAPTURE(row.text);
+    const auto read = day_of(row.text);
+    CHECK((read ? text_of(read->day) : "") == (row.day != nullptr ? row.day : ""));
+  }
+}
+
+TEST_CASE("a table of a spreadsheet is kept byte for byte, except for the cells that change") {
+  const std::string row = "1,open,\"Miller, Ann\",\"says \"\"no\"\"\",,1.0,2,3,0,0,0,left,,0.1,";
+  for (const std::string& end : {std::string("\n"), std::string("\r\n")}) {
+    for (const std::string& mark : {std::string(), std::string("\xEF\xBB\xBF")}) {
+      std::string text = mark + kHeader + row + "2026-01-05,2026-01-06\n\n";
+      if (end != "\n") {
+        std::string other;
+        for (const char c : text) other += c == '\n' ? end : std::string(1, c);
+        text = other;
+      }
+      LedgerTable table(text, "L.csv");
+      REQUIRE(table.rows() == 1);
+      CHECK(table.text() == text);
+      CHECK(table.get(0, LedgerColumn::kOwner) == "Miller, Ann");
+      CHECK(table.get(0, LedgerColumn::kComment) == "says \"no\"");
+      table.set(0, LedgerColumn::kX, 1.0, 3);  // says the same
+      CHECK(table.text() == text);
+      table.set(0, LedgerColumn::kStatus, std::string("accepted"));
+      std::string changed = text;
+      changed.replace(changed.find("open"), 4, "accepted");
+      CHECK(table.text() == changed);
+    }
+  }
+}
+
+TEST_CASE("semicolons, decimal commas and the form of days are kept, and further columns stay") {
+  const std::string header = with(kHeader, ',', ';');
+  const std::string text = "Link;" + header.substr(0, header.size() - 1) + ";Foto\n" +
+                           "a;1;open;;;;1,5;2,25;3;0;0;0;left;;0,1;05.01.2026;06.01.2026;x.jpg\n";
+  LedgerTable table(text, "L.csv");
+  CHECK(table.text() == text);
+  CHECK(table.number(0, LedgerColumn::kY) == std::optional(2.25));
+  CHECK(table.day(0, LedgerColumn::kLastSeen) == std::optional(Day{2026, 1, 6}));
+  table.set(0, LedgerColumn::kLastSeen, Day{2026, 6, 30});
+  const std::size_t row = table.add_row();
+  table.set(row, LedgerColumn::kStatus, std::string("new"));
+  table.set(row, LedgerColumn::kX, 7.125, 3);
+  CHECK(table.text() == "Link;" + header.substr(0, header.size() - 1) + ";Foto\n" +
+                            "a;1;open;;;;1,5;2,25;3;0;0;0;left;;0,1;05.01.2026;30.06.2026;x.jpg\n"
+                            ";2;new;;;;7,125;;;;;;;;;;;\n");
+}
+
+TEST_CASE("a table that is none of a ledger is refused with line and column") {
+  struct Row {
+    std::string text, words;
+  };
+  const std::string cells = ",,,,1,2,3,0,0,0,left,,0.1,2026-01-05,2026-01-06\n";
+  const std::vector<Row> rows{
+      {"", "is empty"},
+      {"a,b\n", "line 1: lacks the column key"},
+      {with(kHeader, 'z', 'x'), "line 1: "},
+      {kHeader + "1,acepted" + cells, "line 2: status \"acepted\": expected new, open, accepted"},
+      {kHeader + "1," + cells, "line 2: status \"\""},
+      {kHeader + "1,open" + cells + "1,open" + cells, "line 3: key \"1\": another row"},
+      {kHeader + "1,open,,,soon,1,2,3,0,0,0,left,,,,\n", "line 2: until \"soon\""},
+      {kHeader + "1,open" + cells.substr(0, cells.size() - 1) + ",more\n", "line 2: has 17 cells"},
+      {kHeader + "1,open,\"cut", "a quote is not closed"},
+      {"\xFF\xFEk", "UTF-16"}};
+  for (const Row& row : rows) {
+    CAPTURE(row.text);
+    CHECK_THAT(refusal(row.text), Contains(row.words));
+  }
+}
+
+TEST_CASE("a ledger without its places accepts nothing") {
+  LedgerScene scene;
+  scene.run(one_panel(), RoadQuestion());
+  scene.set("status", "accepted");
+  std::filesystem::remove(scene.places());
+  const Ledger ledger = scene.run(one_panel(), RoadQuestion(), false);
+  CHECK(counts_of(ledger) == "new 1, not-searched 1");
+  CHECK(ledger.outside.verdict == Verdict::kConflict);
+}
+
+TEST_CASE("a row that somebody wrote by hand accepts nothing, and stays") {
+  LedgerScene scene;
+  scene.run(one_panel(), RoadQuestion());
+  scene.set("status", "open");
+  scene.write(scene.text() + "by hand,accepted,me,the pole at the gate,,,,,,,,,,,,\n");
+  const Ledger ledger = scene.run(one_panel(), RoadQuestion());
+  CHECK(counts_of(ledger) == "open 1, not-searched 1");
+  CHECK_THAT(scene.text(), Contains("by hand,accepted,me,the pole at the gate"));
+}
+
+TEST_CASE("table and places of different runs are refused, and nothing is changed") {
+  LedgerScene scene;
+  scene.run(one_panel(), RoadQuestion());
+  const std::string first = scene.text();
+  const auto kept = scene.folder / "kept.h5";
+  std::filesystem::copy_file(scene.places(), kept);
+  scene.run(road_with({panel(10, 0.95), panel(15, 0.95)}), RoadQuestion());
+  const std::string second = scene.text();
+
+  SECTION("the table of the run before") { scene.write(first); }
+  SECTION("the places of the run before") {
+    std::filesystem::remove(scene.places());
+    std::filesystem::copy_file(kept, scene.places());
+  }
+  SECTION("a row was deleted") {
+    scene.write(second.substr(0, second.rfind('\n', second.size() - 2) + 1));
+  }
+  SECTION("a place was changed") { scene.set("x", "11.5", 0); }
+  const std::string before = scene.text();
+  CHECK_THAT(refused(scene, one_panel()), Contains("are of different runs"));
+  CHECK(scene.text() == before);
+}
+
+TEST_CASE("sorted rows and changed cells of people are no other run") {
+  LedgerScene scene;
+  scene.run(road_with({panel(10, 0.95), panel(15, 0.95)}), RoadQuestion());
+  scene.set("owner", "me");
+  scene.set("status", "accepted", 0);
+  std::string text = scene.text();
+  const std::size_t line = text.find('\n') + 1, next = text.find('\n', line) + 1;
+  text = text.substr(0, line) + text.substr(next) + text.substr(line, next - line);
+  scene.write(text);
+  const Ledger ledger =
+      scene.run(road_with({panel(10, 0.95), panel(15, 0.95)}), RoadQuestion(), true);
+  CHECK(counts_of(ledger) == "new 1, accepted 1");
+  CHECK(scene.text() == text);
+}
+
+TEST_CASE("an update that is killed between its two files is noticed, and can be completed") {
+  LedgerScene scene;
+  scene.run(one_panel(), RoadQuestion());
+  const std::string before = scene.text();
+  scene.run(road_with({panel(10, 0.95), panel(15, 0.95)}), RoadQuestion());
+  // As it is when only the places have been renamed.
+  const auto partial = scene.folder / "L.csv.partial";
+  write_text(partial, scene.text());
+  scene.write(before);
+  const std::string message = refused(scene, one_panel());
+  CHECK_THAT(message, Contains("an update was interrupted"));
+  CHECK_THAT(message, Contains("L.csv.partial: rename it to L.csv"));
+  std::filesystem::rename(partial, scene.table());
+  CHECK(refused(scene, one_panel()).empty());
+}
+
+TEST_CASE("a table whose places are left alone is not begun anew") {
+  LedgerScene scene;
+  scene.run(one_panel(), RoadQuestion());
+  std::filesystem::remove(scene.table());
+  CHECK_THAT(refused(scene, one_panel()), Contains("is missing, and its places are there"));
+}
+
+TEST_CASE("a ledger is made by an update only") {
+  LedgerScene scene;
+  CHECK_THROWS_AS(scene.run(one_panel(), RoadQuestion(), false), UsageError);
+  CHECK_FALSE(std::filesystem::exists(scene.table()));
+}
+
+TEST_CASE("damaged places are refused") {
+  LedgerScene scene;
+  scene.run(one_panel(), RoadQuestion());
+  std::string bytes = text_of_file(scene.places());
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  write_text(scene.places(), bytes);
+  CHECK(!refused(scene, one_panel()).empty());
+}
+
+TEST_CASE("the same scan twice changes nothing in either file") {
+  LedgerScene scene;
+  scene.run(one_panel(), RoadQuestion());
+  const std::string table = scene.text(), places = text_of_file(scene.places());
+  scene.run(one_panel(), RoadQuestion());
+  CHECK(scene.text() == table);
+  CHECK(text_of_file(scene.places()) == places);
+}
