@@ -44,8 +44,6 @@ SNIPPETS_ELSEWHERE = {
 
 # (page, beginning of the text): why it is not the output of the commands above it.
 SAMPLES = {
-    ("docs/guide/ledger.md", "key,status,owner"): "of cut, which the test does not run",
-    ("docs/guide/ledger.md", "2 conflicts of 603"): "after the edit of the table, which the test does not make",
     ("README.md", "2 conflicts of 6,128"): "of the demo, tools/demo.sh",
     ("docs/guide/results.md", "conflict: 1,204"): "of a trajectory with names and times",
 }
