@@ -85,6 +85,19 @@ bool last_byte_is_unused(std::size_t count, unsigned minbits) {
   return minbits < kValueBits<Value> && count * minbits % 8 == 0;
 }
 
+/// Whether HDF5 reads what it packs itself where values need all their bits.
+template <typename Value>
+bool reads_full_width(PackedFile& file) {
+  const std::vector<Value> values{std::numeric_limits<Value>::min(),
+                                  std::numeric_limits<Value>::max()};
+  const hdf5::QuietScope quiet;
+  try {
+    return unpacked_by_hdf5<Value>(file, packed_by_hdf5(file, values), values.size()) == values;
+  } catch (const hdf5::CallFailure&) {
+    return false;
+  }
+}
+
 template <typename Value>
 void check_against_hdf5(PackedFile& file, const std::vector<Value>& values, unsigned minbits) {
   CAPTURE(values.size(), minbits);
@@ -101,6 +114,8 @@ void check_against_hdf5(PackedFile& file, const std::vector<Value>& values, unsi
     theirs.back() = std::byte{0};
   }
   REQUIRE(ours == theirs);
+  // HDF5 1.14.5 does not even read what it packs itself where values need all their bits.
+  if (minbits == kValueBits<Value> && !reads_full_width<Value>(file)) return;
   REQUIRE(unpacked_by_hdf5<Value>(file, ours, values.size()) == values);
 }
 

@@ -70,6 +70,19 @@ def h5dump_value(path, dataset):
     return int(text.split("DATA {")[1].split("}")[0])
 
 
+def reads_full_width(folder):
+    """Whether this HDF5 reads what it packs itself where values need all their bits; 1.14.5 does not."""
+    path = folder / "own.h5"
+    values = numpy.array([-(2**31), 2**31 - 1, 5], numpy.int32)
+    with h5py.File(path, "w") as file:
+        file.create_dataset("own", data=values, chunks=(3,), scaleoffset=0)
+    try:
+        with h5py.File(path, "r") as file:
+            return bool((file["own"][:] == values).all())
+    except OSError:
+        return False
+
+
 def check(program, folder, name, points):
     las, path = folder / "a.las", folder / "a.h5"
     write_las(las, points)
@@ -91,7 +104,11 @@ def check(program, folder, name, points):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
+        full_width = reads_full_width(pathlib.Path(folder))
         for name, points in clouds():
+            if name == "whole range" and not full_width:
+                print(f"{name}: HDF5 {h5py.version.hdf5_version} does not read what it packs itself")
+                continue
             check(sys.argv[1], pathlib.Path(folder), name, points)
 
 

@@ -183,7 +183,7 @@ class HelpInOrder : public CLI::Formatter {
   }
   std::string make_option_opts(const CLI::Option* option) const override {
     const auto choices = choices_of(option);
-    return choices ? choices->before + choices->after : CLI::Formatter::make_option_opts(option);
+    return choices ? choices->before + choices->after : values_of(option);
   }
   std::string make_option_desc(const CLI::Option* option) const override {
     std::string text = CLI::Formatter::make_option_desc(option);
@@ -203,8 +203,19 @@ class HelpInOrder : public CLI::Formatter {
 
  private:
   std::optional<LongChoices> choices_of(const CLI::Option* option) const {
-    return LongChoices::in(make_option_name(option, false),
-                           CLI::Formatter::make_option_opts(option));
+    return LongChoices::in(make_option_name(option, false), values_of(option));
+  }
+
+  /// What stands behind an option's name. CLI11 2.4 writes a default as " [5] " where 2.1 has "=5",
+  /// which is what is shown with either.
+  std::string values_of(const CLI::Option* option) const {
+    std::string text = CLI::Formatter::make_option_opts(option);
+    const std::string newer = " [" + option->get_default_str() + "]";
+    const std::size_t at = text.find(newer);
+    if (option->get_default_str().empty() || at == std::string::npos) return text;
+    text.replace(at, newer.size(), "=" + option->get_default_str());
+    while (text.ends_with(' ')) text.pop_back();
+    return text;
   }
 
   std::string groups_of(const CLI::App& app, bool all) const {

@@ -66,7 +66,7 @@ TEST_CASE("a ledger is begun, edited and read, and what it accepts decides about
   check_refused(judged(""), 3, "expected new, open, accepted or resolved");
 }
 
-TEST_CASE("--fail-on-collision of conflicts works without a ledger, and --update needs one") {
+TEST_CASE("conflicts --fail-on-collision works without a ledger, and --update needs one") {
   check_outcome(yard().conflicts("--fail-on-collision --min-points 3", "plain.h5"), 1);
   check_outcome(yard().conflicts("--update", "plain.h5"), 2);
 }
