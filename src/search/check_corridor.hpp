@@ -25,13 +25,13 @@ class CorridorCheck {
   /// out could lie within `reach` of a body, at a pose or, with between_poses, on the way to the
   /// next one.
   void check(std::span<const MovingBody> bodies, bool between_poses, double reach) const;
-  /// The same for all that a query asks for. radius: the greatest that is searched.
+  /// Checks all that a query asks for. radius: the greatest that is searched.
   void check(const Query& query, double radius) const;
 
   /// The distance from a path, in the environment's unit, that such a check of the query accepts.
   static double wanted(const Query& query, std::vector<Vec3> path, double radius);
 
-  /// The same for a section and its load, whose poses belong to those of the path by path_pose.
+  /// Checks a section with its load, whose poses belong to those of the path by path_pose.
   void check(const SectionParameters& asked, const Body& load) const;
 
   /// Throws UsageError where seen space is asked for: beams and cubes need the whole scan.

@@ -26,15 +26,6 @@ double squared_to_box(const Vec3& p, const Box& box) {
   return squared;
 }
 
-double squared_between(const Box& a, const Box& b) {
-  double squared = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double gap = std::max({a.lo[k] - b.hi[k], b.lo[k] - a.hi[k], 0.0});
-    squared += gap * gap;
-  }
-  return squared;
-}
-
 }  // namespace
 
 Corridor::Corridor(std::vector<Vec3> path, double within)
@@ -130,10 +121,9 @@ double Corridor::distance_above(const Vec3& p) const {
 bool Corridor::may_hold(const Box& box) const {
   const double slack = 0x1p-46 * std::max(largest(box.lo), largest(box.hi));
   const double reach = (within_ + slack) * (1 + kRelative);
-  const double limit = reach * reach;
   bool found = false;
   const auto is_near = [&](const Box& of_run) {
-    return !found && !(squared_between(box, of_run) * (1 - kRelative) > limit);
+    return !found && !(box.distance(of_run) * (1 - kRelative) > reach);
   };
   descend(0, 0, segments(), is_near,
           [&](std::uint32_t i) { found = found || is_near(box_of_segment(i)); });

@@ -11,6 +11,7 @@
 #include <optional>
 #include <tuple>
 
+#include "core/geometry/chord_pose.hpp"
 #include "core/geometry/inside.hpp"
 #include "core/geometry/model_tree.hpp"
 #include "core/geometry/point_box.hpp"
@@ -75,20 +76,6 @@ int steps_between(const Pose& a, const Pose& b, double radius) {
     square += d * d;
   }
   return static_cast<int>(std::clamp(std::ceil(2 * std::sqrt(square) / radius), 1.0, kMostSteps));
-}
-
-/// A pose between a and b at which model points are that move on straight segments. Where the poses
-/// turn, its matrix is not a rotation but one that also shrinks. Seen from it, places are farther
-/// away than they are, so a shift that is computed from it is never too long.
-Pose between(const Pose& a, const Pose& b, double part) {
-  Pose out{};
-  for (int k = 0; k < 9; ++k) {
-    out.rotation[k] = a.rotation[k] + part * (b.rotation[k] - a.rotation[k]);
-  }
-  for (int k = 0; k < 3; ++k) {
-    out.translation[k] = a.translation[k] + part * (b.translation[k] - a.translation[k]);
-  }
-  return out;
 }
 
 /// Bounds are wider than computed by this share of the numbers that they are computed from.
@@ -704,7 +691,10 @@ void LeastShift::add_instants(std::size_t body, std::uint32_t i, bool with_way, 
   const int steps = steps_between(*pose, *next, radius_);
   for (int step = 1; step < steps; ++step) {
     const double part = static_cast<double>(step) / steps;
-    add_instant(between(*pose, *next, part), between(path_[i], path_[i + 1], part), direction, out);
+    // Seen from a pose that also shrinks, places are farther away than they are, so a shift that is
+    // computed from it is never too long.
+    add_instant(pose_on_chords(*pose, *next, part), pose_on_chords(path_[i], path_[i + 1], part),
+                direction, out);
   }
 }
 

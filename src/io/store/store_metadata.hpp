@@ -111,7 +111,7 @@ struct StoreCorridor {
   /// bounds that the input declares of it count instead.
   Box whole{};
   std::uint64_t left_out = 0;  ///< points of the inputs that are not stored because they lie beyond
-  /// Of these, points that were not even read: of nodes of COPC files, and of passed-over files
+  /// How many of left_out were not even read: those of nodes of COPC and of passed-over files
   std::uint64_t unread = 0;
   std::uint64_t unread_bytes = 0;  ///< bytes of the inputs that were not read
   std::uint64_t passed_over = 0;   ///< files passed over by their declared bounds

@@ -7,6 +7,7 @@
 
 #include "clearway/error.hpp"
 #include "clearway/smooth.hpp"
+#include "core/geometry/chord_pose.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/trajectory/smooth/smooth_curve.hpp"
 #include "core/trajectory/trajectory_doubts.hpp"
@@ -28,18 +29,9 @@ bool same_rotation(const Pose& a, const Pose& b) {
   return std::equal(a.rotation, a.rotation + 9, b.rotation);
 }
 
-/// The map of which every value is linear between those of two poses: it moves each model point
-/// along its chord.
+/// The map on the way from a to b; a itself, bit for bit, where the way begins.
 Pose on_chord(const Pose& a, const Pose& b, double part) {
-  if (part == 0) return a;
-  Pose out{};
-  for (int k = 0; k < 9; ++k) {
-    out.rotation[k] = a.rotation[k] + part * (b.rotation[k] - a.rotation[k]);
-  }
-  for (int k = 0; k < 3; ++k) {
-    out.translation[k] = a.translation[k] + part * (b.translation[k] - a.translation[k]);
-  }
-  return out;
+  return part == 0 ? a : pose_on_chords(a, b, part);
 }
 
 void check_is_rotation(const Pose& pose, std::size_t index) {
