@@ -52,7 +52,7 @@ struct LedgerRow {
   std::string why;                          ///< why `shown` is not `status`; otherwise mostly empty
   std::string owner, comment, until;        ///< what the table has there
   std::vector<std::uint32_t> conflicts;     ///< ids of the conflicts that belong to it, ascending
-  Box box{};                                ///< box around its places
+  std::optional<Box> box;                   ///< box around its places; none without places
   std::string first_seen, last_seen;        ///< days on which it was found, as in 2026-06-30
 };
 
@@ -60,8 +60,9 @@ struct LedgerRow {
 struct LedgerEntry {
   std::uint32_t conflict = 0;  ///< Conflict::id
   LedgerStatus status = LedgerStatus::kNew;
-  std::string key;  ///< of the row that decides; empty where it has none
-  std::string why;  ///< as of LedgerRow
+  std::string key;                    ///< of the row that decides; empty where it has none
+  std::string why;                    ///< as of LedgerRow
+  std::string owner, comment, until;  ///< of the row that decides
 };
 
 /// What is left of an answer without the accepted conflicts.
@@ -77,6 +78,7 @@ struct OutsideOfAccepted {
 struct Ledger {
   std::vector<LedgerRow> rows;  ///< in the order of the table; those that an update adds come last
   std::vector<LedgerEntry> conflicts;  ///< of each listed conflict, by its id
+  std::string date;                    ///< the day of the run, as in 2026-06-30
   /// Whether rows were added for conflicts that had none.
   bool is_updated = false;
   OutsideOfAccepted outside;

@@ -10,6 +10,7 @@
 #include "clearway/body.hpp"
 #include "clearway/conflicts.hpp"
 #include "clearway/follow.hpp"
+#include "clearway/ledger.hpp"
 #include "clearway/model.hpp"
 #include "clearway/outline.hpp"
 #include "clearway/pose.hpp"
@@ -53,6 +54,10 @@ struct ReportOptions : PageTexts {
   /// Shifts that free the path and its conflicts, by find_shifts() for conflicts that were found
   /// with the options of `conflicts`; the page shows them.
   std::optional<ShiftTable> shifts = {};
+  /// What a ledger says of the conflicts, by apply_ledger() for conflicts that were found with the
+  /// options of `conflicts`; the page shows it.
+  std::optional<Ledger> ledger = {};
+  std::string ledger_name = {};  ///< name of its table; if empty, it is left out
   /// Bodies of the search, for the result of a vehicle; then the model is empty.
   std::vector<Body> bodies = {};
   /// How each of these bodies follows the path, for the page to say its axles and pivots; or empty.

@@ -21,6 +21,7 @@
 #include "io/files/json.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/conflicts/conflict_words.hpp"
+#include "io/result/conflicts/ledger_words.hpp"
 #include "io/result/floor_facts.hpp"
 #include "io/result/result.hpp"
 #include "io/store/store_metadata.hpp"
@@ -316,6 +317,20 @@ Json json_of(const ShiftTable& table) {
           {"list", std::move(list)}};
 }
 
+/// What the ledger says of the listed conflicts and of its rows.
+Json json_of_ledger(const ReportFacts& facts) {
+  const Ledger& ledger = *facts.options.ledger;
+  Json out{{"name", facts.options.ledger_name}, {"sentence", ledger_sentence(ledger)}};
+  out.update(ledger_json(ledger));
+  if (ledger.conflicts.size() <= kMostListedConflicts) return out;
+  Json listed = Json::array();
+  for (const Conflict* conflict : listed_in_page(*facts.conflicts)) {
+    listed.push_back(out["conflicts"][conflict->id - 1]);
+  }
+  out["conflicts"] = std::move(listed);
+  return out;
+}
+
 Json json_of_least(const ReportFacts& facts) {
   if (!facts.least) return {};
   Json out{{"distance", facts.least->distance},       {"pose", facts.least->pose},
@@ -500,6 +515,7 @@ std::string json_of(const ReportFacts& facts) {
   out["stations"] = json_of_stations(facts);
   if (facts.section != nullptr) out["section"] = facts.section->facts();
   if (facts.options.shifts) out["shifts"] = json_of(*facts.options.shifts);
+  if (facts.options.ledger) out["ledger"] = json_of_ledger(facts);
   out["page"] = json_of_page(facts);
   return page_text(out);
 }

@@ -184,6 +184,12 @@ class Report {
       }
     }
     if (options_.shifts) check_shifts(*options_.shifts, conflicts, result_.reader());
+    if (options_.ledger && options_.ledger->conflicts.size() != conflicts.listed.size()) {
+      throw UsageError("ledger: it judges " +
+                       counted(options_.ledger->conflicts.size(), "conflict") +
+                       ", and the result has " + format_count(conflicts.listed.size()) +
+                       "; expected that of these conflicts, found with the same options");
+    }
     PointSelection selection{
         .classes = classes_, .conflicts = &conflicts, .conflict_of = conflict_of, .wanted = {}};
     for (const Conflict& conflict : conflicts.listed) {

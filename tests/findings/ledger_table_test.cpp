@@ -87,7 +87,9 @@ TEST_CASE("days are read in the forms of spreadsheets, and ambiguous ones as the
 }
 
 TEST_CASE("a table of a spreadsheet is kept byte for byte, except for the cells that change") {
-  const std::string row = "1,open,\"Miller, Ann\",\"says \"\"no\"\"\",,1.0,2,3,0,0,0,left,,0.1,";
+  const std::string row =
+      "1,open,\"Miller, Ann\",\"says \"\"no, never\"\", twice: "
+      "\"\"no\"\"\",,1.0,2,3,0,0,0,left,,0.1,";
   for (const std::string& end : {std::string("\n"), std::string("\r\n")}) {
     for (const std::string& mark : {std::string(), std::string("\xEF\xBB\xBF")}) {
       std::string text = mark + kHeader + row + "2026-01-05,2026-01-06\n\n";
@@ -100,7 +102,7 @@ TEST_CASE("a table of a spreadsheet is kept byte for byte, except for the cells 
       REQUIRE(table.rows() == 1);
       CHECK(table.text() == text);
       CHECK(table.get(0, LedgerColumn::kOwner) == "Miller, Ann");
-      CHECK(table.get(0, LedgerColumn::kComment) == "says \"no\"");
+      CHECK(table.get(0, LedgerColumn::kComment) == "says \"no, never\", twice: \"no\"");
       table.set(0, LedgerColumn::kX, 1.0, 3);  // says the same
       CHECK(table.text() == text);
       table.set(0, LedgerColumn::kStatus, std::string("accepted"));

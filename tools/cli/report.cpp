@@ -28,6 +28,7 @@
 #include "cli/support/trajectory_options.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "core/util/format.hpp"
+#include "findings/ledger/ledger_date.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/models/vehicle_file.hpp"
 #include "io/result/conflicts/shift_file.hpp"
@@ -53,6 +54,7 @@ void name_files(ReportCommand& options) {
   options.report.environment_name = file_name(options.environment);
   options.report.model_name = file_name(options.vehicle.empty() ? options.model : options.vehicle);
   options.report.trajectory_name = file_name(options.trajectory);
+  options.report.ledger_name = file_name(options.ledger.options.table);
   if (options.report.date.empty()) options.report.date = now_in_utc();
 }
 
@@ -90,6 +92,27 @@ Query read_query_again(ReportCommand& options, const Result& result, const Store
     warnings.push_back(std::move(*note));
   }
   return query;
+}
+
+/// Conflicts that were compared with the ledger of the command: those of an earlier step, or
+/// `here`, where they are put. The day of the ledger is that of the page, where it shows one.
+const FoundConflicts& compare_with_ledger(ReportCommand& options, const Result& result,
+                                          const Store& store, const Query& query,
+                                          const FoundConflicts* found, FoundConflicts& here) {
+  if (found != nullptr && found->ledger) return *found;
+  if (day_of(options.report.date)) options.ledger.options.date = options.report.date;
+  here.question = result.reader().header();
+  here.options = options.find;
+  here.options.bodies = query.bodies;
+  here.options.station = options.report.labels.station;
+  if (query.bodies.empty()) here.options.model = &query.model;
+  std::vector<std::uint32_t> conflict_of_near;
+  here.conflicts =
+      find_conflicts(result, query.poses, here.options, &here.conflict_of, &conflict_of_near);
+  here.ledger = apply_ledger_of(
+      options.ledger, {result, here.conflicts, here.conflict_of, conflict_of_near, query.poses},
+      here.options, &store);
+  return here;
 }
 
 void log_summary(const ReportCommand& options, const ReportSummary& summary, const Result& result) {
@@ -133,8 +156,9 @@ void check_one_page(const ReportCommand& options) {
 
 void check_model_or_vehicle(const ReportCommand& options) {
   if (options.model.empty() && options.vehicle.empty()) throw CLI::RequiredError("--model");
-  std::vector<std::filesystem::path> inputs{options.result, options.environment, options.model,
-                                            options.trajectory, options.shifts};
+  std::vector<std::filesystem::path> inputs{options.result, options.environment,
+                                            options.model,  options.trajectory,
+                                            options.shifts, options.ledger.options.table};
   if (!options.section.empty()) inputs.push_back(options.section);
   if (!options.vehicle.empty()) inputs = vehicle_inputs(options.vehicle, std::move(inputs));
   refuse_overwriting(options.outputs.front(), inputs);
@@ -229,6 +253,7 @@ void add_options_of_result(CLI::App& command, ReportCommand& options) {
   add_sizes(command, options.report, options.lengths);
   add_conflict_options(command, options);
   add_axis_options(command, options);
+  add_ledger_options(command, options.ledger, options.lengths);
 }
 
 }  // namespace
@@ -262,6 +287,11 @@ ReportSummary perform(ReportCommand& options, const FoundConflicts* found) {
     section.emplace(options.section);
     options.report.section = &*section;
     options.report.section_name = file_name(options.section);
+  }
+  FoundConflicts here;
+  if (options.ledger.is_given()) {
+    found = &compare_with_ledger(options, result, store, query, found, here);
+    options.report.ledger = found->ledger;
   }
   ReportSummary summary = write_report(result, store, query.model, query.poses,
                                        options.outputs.front(), options.report, found);

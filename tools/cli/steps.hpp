@@ -127,6 +127,7 @@ struct ReportCommand : ConflictCommand {
   std::vector<std::filesystem::path> outputs;  ///< one: the page of a section may have a picture
   ModelOptions model_options;
   ReportOptions report;
+  LedgerCommand ledger;
   std::vector<ParsedLength> classes;
   bool json = false;
   const CLI::App* command = nullptr;  ///< the command that has these options

@@ -56,7 +56,10 @@ inline constexpr std::tuple kLedgerRowColumns{
                   .doc = "The ids of the conflicts that belong to the row: a list of int.",
                   .is_in_files = false},
     FindingColumn{
-        .member = &LedgerRow::box, .key = "box", .doc = "The box around its places, in metres."},
+        .member = &LedgerRow::box,
+        .key = "box",
+        .doc = "The box around its places, in metres; None where the ledger does not have them.",
+        .is_in_files = false},
     FindingColumn{.member = &LedgerRow::first_seen,
                   .key = "first_seen",
                   .doc = "The day on which it was found first."},
@@ -76,6 +79,13 @@ inline constexpr std::tuple kLedgerEntryColumns{
                   .doc = "The key of the row that decides; empty where it has none."},
     FindingColumn{.member = &LedgerEntry::why,
                   .key = "why",
-                  .doc = "Why it is so, in words; empty where there is nothing to say."}};
+                  .doc = "Why it is so, in words; empty where there is nothing to say."},
+    FindingColumn{
+        .member = &LedgerEntry::owner, .key = "owner", .doc = "The cell `owner` of that row."},
+    FindingColumn{.member = &LedgerEntry::comment,
+                  .key = "comment",
+                  .doc = "The cell `comment` of that row."},
+    FindingColumn{
+        .member = &LedgerEntry::until, .key = "until", .doc = "The cell `until` of that row."}};
 
 }  // namespace clearway

@@ -105,7 +105,7 @@ inline constexpr auto kRemedies = std::to_array<RemedyKind>({
     {kOtherPart, "other_part",
      "; give the same --shard as its run, or another output. --force instead of --resume "
      "overwrites it"},
-    {kMakeLedger, "make_ledger", "; --update makes it"},
+    {kMakeLedger, "make_ledger", "; clearway conflicts --update makes it"},
 });
 
 }  // namespace remedy_table

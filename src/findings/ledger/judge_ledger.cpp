@@ -63,6 +63,7 @@ class LedgerJudge {
   Ledger run() {
     match();
     Ledger out;
+    out.date = text_of(how_.today);
     for (const Conflict& conflict : found_.conflicts.listed) {
       out.conflicts.emplace_back().conflict = conflict.id;
     }
@@ -145,6 +146,9 @@ class LedgerJudge {
           entry.status = verdict.status;
           entry.why = verdict.why;
           entry.key = shown.key;
+          entry.owner = shown.owner;
+          entry.comment = shown.comment;
+          entry.until = shown.until;
         }
         is_first = false;
       }

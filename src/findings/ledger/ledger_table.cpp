@@ -97,6 +97,11 @@ void LedgerTable::parse(std::string_view text) {
   bool quoted = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
+    if (quoted && c == '"' && i + 1 < text.size() && text[i + 1] == '"') {
+      cell += "\"\"";  // a quote in the cell
+      ++i;
+      continue;
+    }
     if (c == '"' && (quoted || without_blanks(cell).empty())) quoted = !quoted;
     const bool is_end =
         !quoted && (c == '\n' || (c == '\r' && i + 1 < text.size() && text[i + 1] == '\n'));

@@ -119,6 +119,7 @@ class LedgerWriter {
     to_write_.emplace_back(row, conflict);
     LedgerEntry& entry = judged_.conflicts[conflict - 1];
     entry.key = shown.key;
+    entry.owner = owner;
   }
 
   void set_status(std::size_t row, LedgerStatus status) {

@@ -25,6 +25,7 @@ function detailedDistance({ least_distance: distance }) {
 function conflictFacts(conflict) {
   const { query } = page.facts, words = classOf(conflict.least_distance);
   const rows = [
+    ...ledgerDetails(conflict),
     conflict.class && ["Certainty", conflict.class === "certain"
         ? "certain, even with the errors of the budget" : "possible: the errors leave it open"],
     ["Where", `chainage ${chainageCell(conflict)} ${unitSymbol}${after(sideWords(conflict.side))}`],

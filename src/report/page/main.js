@@ -17,7 +17,7 @@ function buildRoute() {
 /** Begins with the place that matters most. */
 function showFirst() {
   const least = page.facts.least_distance;
-  if (worstConflict()) selectConflict(worstConflict());
+  if (worstConflict()) selectConflict(worstOutside() ?? worstConflict());
   else if (unseenGroups().length > 0) selectPose(shownPose(unseenGroups()[0].first_pose));
   else if (least) selectPose(shownPose(least.pose));
   // Of a long path the overview shows little.
@@ -25,5 +25,5 @@ function showFirst() {
 }
 
 startPage(() => Promise.all([readAll(), readSection()]),
-          [measure, buildVerdict, buildProfile, buildPlan, buildTable, buildDetails, buildUnseen, buildStations, buildRoute,
+          [measure, buildVerdict, buildProfile, buildPlan, buildTable, buildDetails, buildLedgerRows, buildUnseen, buildStations, buildRoute,
            buildView, buildPrint, showFirst]);

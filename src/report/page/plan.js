@@ -52,12 +52,14 @@ function drawPath(context, painter, unitSize) {
   drawUnsearchedPath(context, painter, unitSize);
 }
 
-/** What a scene shows of a conflict by a number. A possible conflict is hollow. */
+/** What a scene shows of a conflict by a number. A possible conflict is hollow, an accepted one grey. */
 function conflictMarks() {
-  const worst = worstConflict();
+  const worst = worstOutside();
   return conflictList().map((conflict) => {
     const { shape, colour } = classOf(conflict.least_distance), chosen = conflict === page.conflict;
-    return { place: placeOf(conflict), text: String(conflict.id), shape, colour, chosen,
+    const quiet = isAccepted(conflict);
+    return { place: placeOf(conflict), text: String(conflict.id), shape, chosen, quiet,
+             colour: quiet ? kQuietColour : colour,
              hollow: isPossible(conflict), rank: conflict.rank, first: chosen || conflict === worst,
              select: () => selectConflict(conflict) };
   });
@@ -66,7 +68,7 @@ function conflictMarks() {
 /** The numbers of conflicts and unseen groups, the worst ones first; those without room become dots. */
 function drawNumbers(context, painter, unitSize, places) {
   const order = [...conflictMarks(), ...groupMarks()].sort((a, b) => b.chosen - a.chosen ||
-      b.first - a.first || a.rank - b.rank);
+      b.first - a.first || (a.quiet ?? false) - (b.quiet ?? false) || a.rank - b.rank);
   const taken = [], dots = [];
   for (const mark of order) {
     const at = painter.project(mark.place);
@@ -96,7 +98,7 @@ function markPath(context, shape, x, y, radius) {
 
 function drawNumber(context, [x, y], mark, full, unitSize) {
   const { chosen, text } = mark, hollow = mark.hollow && !chosen;
-  const radius = (full ? Math.max(chosen ? 12 : 9.5, 3.6 * text.length) : 3) * unitSize;
+  const radius = (full ? Math.max(chosen ? 12 : mark.quiet ? 8 : 9.5, 3.6 * text.length) : 3) * unitSize;
   markPath(context, mark.shape, x, y, radius);
   context.fillStyle = chosen ? "#111827" : hollow ? "#fff" : mark.colour;
   context.globalAlpha = full ? 1 : 0.6;
@@ -110,6 +112,9 @@ function drawNumber(context, [x, y], mark, full, unitSize) {
   context.textAlign = "center";
   setFont(context, (text.length > 2 ? 9 : 11) * unitSize, "700");
   context.fillText(text, x, y + 4 * unitSize);
+  if (!mark.quiet) return;
+  context.fillStyle = kQuietColour;
+  haloText(context, "✓", x + radius + 5 * unitSize, y - 0.5 * radius, "center");
 }
 
 function drawVehicleMark(context, painter, unitSize) {

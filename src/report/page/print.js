@@ -2,15 +2,26 @@
 
 const kPrintedRows = 200, kPrintedCards = 8;
 
+/** Those of the table. Paper is narrow, so the texts of the ledger stand below the rows. */
+const printedColumns = () => tableColumns().filter(({ title }) => title !== "Decided").map((column) =>
+    column.title === "Ledger" ? { ...column, cell: (c) => statusWord(ledgerStatus(c)) } : column);
+
+function printedRows(conflict, columns) {
+  const { why = "", ...entry } = ledgerOfConflict.get(conflict.id) ?? {};
+  const texts = [capital(why), decisionWords(entry)].filter(Boolean).join(". ");
+  return [tableRow(conflict, columns, false),
+          texts && make("tr", { class: "remedy" }, make("td", { colspan: 2 }), make("td", { colspan: columns.length - 2 }, texts))];
+}
+
 /** Rows in the order of the table, whatever its filters leave out. */
 function printedTable() {
-  const { list, count: found } = page.facts.conflicts, columns = tableColumns();
+  const { list, count: found } = page.facts.conflicts, columns = printedColumns();
   const rows = sortedConflicts(columns, list).slice(0, kPrintedRows);
   const left = found - rows.length, elsewhere = list.length < found
       ? `the page itself lists ${count(list.length)}, clearway conflicts writes all`
       : "the page itself lists all";
   return [make("table", { class: "list" }, tableHead(columns, false),
-               make("tbody", {}, rows.map((c) => tableRow(c, columns, false)))),
+               make("tbody", {}, rows.flatMap((c) => printedRows(c, columns)).filter(Boolean))),
           left > 0 && make("p", { class: "note" },
                            `${plural(left, "more conflict")} not on paper: ${elsewhere}.`)];
 }

@@ -159,9 +159,10 @@ function profileConflicts() {
     if (conflict.chainage_to < profile.from || conflict.chainage_from > profile.to) continue;
     const x1 = clamp(profileX(conflict.chainage_from), profile.left, profile.width - profile.right);
     const x2 = clamp(profileX(conflict.chainage_to), profile.left, profile.width - profile.right);
-    const chosen = conflict === page.conflict, words = classOf(conflict.least_distance);
+    const chosen = conflict === page.conflict, words = classOf(conflict.least_distance), quiet = isAccepted(conflict);
+    const colour = quiet ? kQuietColour : words.colour;
     const width = Math.max(3, x2 - x1), middle = x1 + width / 2;
-    const marked = several ? `${words.symbol}${conflict.id}` : `${conflict.id}`;
+    const marked = `${several ? words.symbol : ""}${conflict.id}${quiet ? "✓" : ""}`;
     const label = chosen || middle - free > 8 * marked.length + 10;
     if (label) free = middle;
     const extra = conflict === worst ? " (worst)" : "";
@@ -169,10 +170,11 @@ function profileConflicts() {
                          onclick: (event) => { event.stopPropagation(); selectConflict(conflict); } },
       make("rect", isPossible(conflict)
           ? { x: x1 + 1, y: y + 1, width: Math.max(2, width - 2), height: 5, fill: "#fff",
-              stroke: words.colour, "stroke-width": 2 }
-          : { x: x1, y, width, height: 7, fill: words.colour }),
+              stroke: colour, "stroke-width": quiet ? 1 : 2 }
+          : quiet ? { x: x1, y: y + 2, width, height: 3, fill: colour } : { x: x1, y, width, height: 7, fill: colour }),
       label && make("text", { x: middle, y: y + 21, class: "middle" }, marked),
-      make("title", {}, `Conflict ${conflict.id}${extra}` + (conflict.class ? `, ${conflict.class}` : ""))));
+      make("title", {}, `Conflict ${conflict.id}${extra}` + (conflict.class ? `, ${conflict.class}` : "") +
+                           after(ledgerStatus(conflict)))));
   }
   return out;
 }

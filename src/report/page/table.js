@@ -1,7 +1,7 @@
 // The conflicts as a table: sorted, filtered, a hundred rows at a time.
 
 const table = { title: "", down: true, first: 0, rows: 100, side: "", from: "", to: "",
-                least: "" };
+                least: "", status: "" };
 
 const sizeOf = (c) => c.hi.map((h, k) => h - c.lo[k]);
 
@@ -25,6 +25,9 @@ function tableColumns() {
   return [
     ["No.", (c) => c.id, (c) => String(c.id)],
     ["Rank", (c) => c.rank, (c) => String(c.rank)],
+    ledgerFacts() && ["Ledger", (c) => ledgerRank(ledgerStatus(c)), ledgerCell],
+    ledgerFacts()?.conflicts.some(decisionWords) &&
+        ["Decided", (c) => decisionWords(ledgerOfConflict.get(c.id)), (c) => decisionCell(ledgerOfConflict.get(c.id))],
     ["Chainage", (c) => c.chainage_from, chainageCell],
     list.some((c) => c.station_from !== undefined) && ["Station", (c) => c.station_from, stationsCell],
     list.some((c) => c.obstacle_chainage !== null) &&
@@ -49,7 +52,7 @@ function tableColumns() {
     ["Place x, y, z", (c) => (c.nearest_point ?? c.centroid)[0],
      (c) => coordinates(c.nearest_point ?? c.centroid)],
   ].filter(Boolean).map(([title, value, cell]) =>
-      ({ title, value, cell, number: !["Side", "Class", "Certainty", "Body"].includes(title) }));
+      ({ title, value, cell, number: !["Side", "Class", "Certainty", "Body", "Ledger", "Decided"].includes(title) }));
 }
 
 /** From and to, or one of them where they are the same. */
@@ -90,10 +93,14 @@ function titleWithUnit(title) {
   return title === "Station" ? "Station (m)" : has ? `${title} (${unitSymbol})` : title;
 }
 
+const kNotAccepted = "not accepted";
+const hasStatus = (c) => table.status === "" ||
+    (table.status === kNotAccepted ? !isAccepted(c) : ledgerStatus(c) === table.status);
+
 function filteredConflicts() {
   const from = parseFloat(table.from), to = parseFloat(table.to), least = parseFloat(table.least);
   return conflictList().filter((c) =>
-      (table.side === "" || c.side === table.side) && !(c.chainage_to < from) &&
+      (table.side === "" || c.side === table.side) && hasStatus(c) && !(c.chainage_to < from) &&
       !(c.chainage_from > to) && !((c.encroachment ?? 0) < least));
 }
 
@@ -107,7 +114,7 @@ function sortedConflicts(columns, list = filteredConflicts()) {
 }
 
 function sortBy(title) {
-  const numbers = !["No.", "Rank", "Chainage", "Station", "Obstacle at", "Body", "Side", "Lateral", "Height", "Least distance", "Class", "Certainty", "Frees it", "Pose"].includes(title);
+  const numbers = !["No.", "Rank", "Chainage", "Station", "Obstacle at", "Body", "Side", "Lateral", "Height", "Least distance", "Class", "Certainty", "Frees it", "Pose", "Ledger", "Decided"].includes(title);
   table.down = table.title === title ? !table.down : numbers;
   table.title = title;
   table.first = 0;
@@ -130,6 +137,7 @@ function tableRow(conflict, columns, live) {
   if (!live) return make("tr", {}, cells);
   const chosen = conflict === page.conflict;
   return make("tr", { tabindex: -1, "data-id": conflict.id, class: chosen ? "chosen" : null,
+                      "data-status": ledgerStatus(conflict) || null,
                       "aria-selected": String(chosen), onclick: () => selectConflict(conflict),
                       onkeydown: rowKey }, cells);
 }
@@ -224,16 +232,29 @@ function filterField(label, name, width) {
   return make("label", {}, `${label} `, input);
 }
 
-function buildFilters() {
-  const sides = [...new Set(conflictList().map((c) => c.side))].sort();
+/** options: pairs of a value and its words. */
+function filterSelect(label, name, options) {
   const select = make("select", { onchange: (event) => {
-    table.side = event.target.value;
+    table[name] = event.target.value;
     table.first = 0;
     drawTable();
-  } }, make("option", { value: "" }, "all sides"),
-       sides.map((side) => make("option", { value: side }, kSides[side] || "unknown")));
+  } }, options.map(([value, words]) => make("option", { value }, words)));
+  return make("label", {}, `${label} `, select);
+}
+
+/** The statuses of the ledger to choose from. */
+function statusFilter() {
+  const found = kLedgerOrder.filter((status) => conflictList().some((c) => ledgerStatus(c) === status));
+  if (found.length < 2) return "";
+  return filterSelect("Ledger", "status", [["", "all"], ...(found.includes("accepted") ? [[kNotAccepted, kNotAccepted]] : []),
+                                           ...found.map((status) => [status, status])]);
+}
+
+function buildFilters() {
+  const sides = [...new Set(conflictList().map((c) => c.side))].sort();
   byId("conflicts-tools").append(
-    make("label", {}, "Side ", select), filterField("Chainage from", "from", 6),
+    filterSelect("Side", "side", [["", "all sides"], ...sides.map((side) => [side, kSides[side] || "unknown"])]),
+    statusFilter(), filterField("Chainage from", "from", 6),
     filterField("to", "to", 6),
     conflictList().some((c) => c.encroachment !== null)
         ? filterField(`At least missing (${unitSymbol})`, "least", 5) : "");
@@ -285,5 +306,5 @@ function conflictsNote(found) {
     text += ` This page lists the ${count(found.list.length)} worst of ${count(found.count)}; ` +
         "clearway conflicts writes all.";
   }
-  return text + freedNote();
+  return text + ledgerNote() + freedNote();
 }

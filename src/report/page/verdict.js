@@ -18,9 +18,17 @@ function conflictsTile({ count: listed, small_groups: small }) {
   return tile(count(small), `${small === 1 ? "place" : "places"}, too small for the list`);
 }
 
+/** How many conflicts the ledger accepts. */
+function acceptedTiles() {
+  const ledger = ledgerFacts(), all = page.facts.conflicts?.count ?? 0;
+  if (!ledger || all === 0) return [];
+  return [tile(`${count(ledger.accepted_conflicts)} of ${count(all)}`, "accepted by the ledger",
+               () => byId("conflicts").scrollIntoView())];
+}
+
 function conflictTiles() {
   const { facts } = page, worst = worstConflict(), tiles = [];
-  if (facts.conflicts) tiles.push(conflictsTile(facts.conflicts), ...certaintyTiles());
+  if (facts.conflicts) tiles.push(conflictsTile(facts.conflicts), ...acceptedTiles(), ...certaintyTiles());
   const points = facts.colliding_points;
   tiles.push(tile(count(points), points === 1 ? "colliding point" : "colliding points"));
   if (worst) {
@@ -114,6 +122,14 @@ function worstSentence(worst, radius) {
   return `The worst place is conflict ${worst.id}, at chainage ${placeWords(stationOf(worst))}` +
       `${after(sideWords(worst.side))}${bodyWords(worst)}${nearnessText(worst, radius)}.${place}` +
       (worst.remedy ? ` To pass: ${worst.remedy}.` : "");
+}
+
+/** Which conflict is the worst of those that are not accepted, where that is not the worst of all. */
+function ledgerWorstSentence() {
+  const worst = worstOutside();
+  if (!worst || worst === worstConflict() || page.facts.verdict !== "conflict") return "";
+  return ` The worst that is not accepted is conflict ${worst.id}, at chainage ${placeWords(stationOf(worst))}` +
+      `${after(sideWords(worst.side))}${bodyWords(worst)}.`;
 }
 
 const isSolid = () => page.facts.inputs.model.solids > 0;
@@ -444,6 +460,7 @@ function buildVerdict() {
   byId("verdict-body").append(
     answerBanner({ kind: facts.verdict, word: kVerdictWords[facts.verdict], doubtful, lines: [
           make("p", {}, first), make("p", {}, second),
+          ledgerFacts() && make("p", { id: "ledger-sentence" }, ledgerSentence(), ledgerWorstSentence()),
           scanned && make("p", { id: "scanned" }, scanned),
           searched && make("p", { id: "searched" }, searched),
           below && make("p", { id: "below-floor" }, below),

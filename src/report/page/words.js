@@ -5,6 +5,7 @@ const kClassWords = {
   near: { shape: "triangle", symbol: "▲", colour: "#a16207", rgb: [240, 170, 0] },
   watch: { shape: "round", symbol: "●", colour: "#0369a1", rgb: [0, 114, 190] },
 };
+const kQuietColour = "#6b7280";
 const kModelColour = "#00735c", kModelRgb = [0, 140, 110];
 
 /** Bodies next to each other differ a little. */

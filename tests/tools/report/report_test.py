@@ -5,6 +5,7 @@ Usage: report_test.py PROGRAM. Standard library only. Where chromium is not inst
 are made and not opened; the test says so. CLEARWAY_TEST_DATA adds the street.
 """
 
+import csv
 import json
 import math
 import os
@@ -15,7 +16,7 @@ import unittest
 import scenes
 from browser import Browser, find_chromium
 from page_checks import PageChecks
-from scenes import Scene, clearway, make_car, make_empty, make_hall, make_lane, make_road
+from scenes import Scene, clearway, make_car, make_empty, make_epoch, make_hall, make_lane, make_road
 
 CHROMIUM = find_chromium()
 
@@ -267,6 +268,65 @@ class ReportTest(PageChecks, unittest.TestCase):
                          [1, 2, 3, 4])
         page.run("preparePrint()")
         self.assertIn("Frees it", page.run("byId('print-cards').textContent"))
+        self.check_quiet(page)
+
+    def test_ledger(self):
+        """Four panels beside a lane: one stays accepted, one comes nearer, one goes, one is out of reach."""
+        folder = f"{self.hall.folder}/epochs"
+        os.mkdir(folder)
+        table, odd = f"{folder}/odd.csv", '<b>"a, b"</b></script><!-- \u2028 =1+1'
+        lane, later = (make_epoch(folder, name, panels) for name, panels in (
+            ("before", ((3, 0.4), (8, 0.4), (13, 0.4), (17, 0.4))), ("after", ((3, 0.4), (8, 0.35), (10.5, -0.4)))))
+        known = ("--ledger", table, "--date", "2026-01-01")
+        with open(later.trajectory, "w") as file:
+            file.writelines(f"1 0 0 {0.05 * i} 0 1 0 0 0 0 1 0\n" for i in range(301))
+        results = [one.search(name, "--radius", 0.05, "--first-pose", "--clearance", 0.3)
+                   for one, name in ((lane, "first"), (later, "second"))]
+        clearway("conflicts", results[0], "--trajectory", lane.trajectory, "--model", lane.model, "--env", lane.store,
+                 "--update", *known)
+        with open(table, newline="") as file:
+            rows = list(csv.reader(file))
+        for row, edit in zip(rows[1:], (("accepted", odd, odd, "2026-12-31"), ("accepted", "Ann", "", ""),
+                                        ("accepted", "Ann", "", ""), ("open", "", "behind the gate", ""))):
+            row[1:5] = edit
+        with open(table, "w", newline="") as file:
+            csv.writer(file).writerows(rows)
+        with open(table, "rb") as file:
+            before = file.read()
+        path, facts = later.report(results[1], "ledger", "--ledger", table)
+        with open(table, "rb") as file:
+            self.assertEqual(file.read(), before)
+        ledger = facts["ledger"]
+        self.assertEqual([ledger[key] for key in ("name", "date", "accepted", "worse", "new", "gone", "not-searched")],
+                         ["odd.csv", "2026-01-02", 1, 1, 1, 1, 1])
+        self.assertEqual(later.report(results[1], "wide", "--ledger", table, "--worse-by", 0.1)[1]["ledger"]["worse"], 0)
+        self.assertNotIn("ledger", later.report(results[1], "plain")[1])
+        self.assertIn("--update makes it", later.report(results[1], "bad", "--ledger", f"{folder}/no.csv", code=2)[1])
+        page = self.open(path)
+        self.check_words(page, facts)
+        self.assertIn("The verdict stays conflict. The ledger accepts 1 of the 3 conflicts. Of the others 1 is worse and "
+                      "1 is new. 1 row of the ledger is gone. 1 row of the ledger was not searched",
+                      page.run("byId('ledger-sentence').textContent"))
+        cell = "document.querySelector('#conflicts-table tr[data-id=\"{}\"]').cells[{}].textContent"
+        titles = page.run("tableColumns().map((c) => c.title)")
+        self.assertEqual(page.run(cell.format(1, titles.index("Decided"))), f"{odd}, until 2026-12-31: {odd}")
+        for conflict, words in ((1, "accepted"), (2, "worseIts least distance was"), (3, "new")):
+            self.assertTrue(page.run(cell.format(conflict, titles.index("Ledger"))).startswith(words), words)
+        self.assertEqual(page.run("conflictMarks().filter((mark) => mark.quiet).map((mark) => mark.text)"), ["1"])
+        self.assertIn("Conflict 1, accepted", page.run("byId('profile-chart').textContent"))
+        self.assertNotEqual(page.run("page.conflict.id"), 1)
+        page.run("selectConflict(conflictList()[0])")
+        self.assertIn(odd, page.run("byId('conflict-details').textContent"))
+        without = page.run("byId('ledger-rows').innerText")
+        for words in ("not-searched (was open)", "This question would not find it", "behind the gate",
+                      "gone (was accepted)", "Nothing collides there any more"):
+            self.assertIn(words, without)
+        page.run("table.status = kNotAccepted; drawTable()")
+        self.assertEqual(page.run("tableRows().map((row) => row.dataset.id).sort()"), ["2", "3"])
+        page.run("preparePrint()")
+        paper = page.run("byId('print-table').textContent")
+        for words in (odd, "Its least distance was", "accepted"):
+            self.assertIn(words, paper)
         self.check_quiet(page)
 
     def test_without_first_poses(self):

@@ -110,6 +110,22 @@ def make_lane(folder):
     return lane
 
 
+def make_epoch(folder, name, panels):
+    """A box of 2 x 1 x 1 m in a lane with walls, where panels of 1 m stand: (chainage, left) of each."""
+    lane = Scene(folder)
+    lane.model, lane.store = "box:2,1,1", f"{folder}/{name}.h5"
+    lane.trajectory = f"{folder}/{name}.txt"
+    with open(lane.trajectory, "w") as file:
+        file.writelines(f"1 0 0 {0.05 * i} 0 1 0 0 0 0 1 0\n" for i in range(401))
+    with open(f"{folder}/{name}.xyz", "w") as file:
+        for x, y in panels:
+            file.writelines(f"{x + 0.1 * i:.1f} {y} {0.1 + 0.1 * k:.1f}\n" for i in range(11) for k in range(9))
+        file.writelines(f"{-2 + 0.25 * i} {y} {0.25 * k}\n" for i in range(105) for y in (-1.1, 1.1) for k in range(5))
+        file.writelines(f"{-2 + 0.25 * i} {-1 + 0.25 * k} -0.5\n" for i in range(105) for k in range(9))
+    clearway("convert", f"{folder}/{name}.xyz", "-o", lane.store, "--force")
+    return lane
+
+
 def make_road(folder):
     """A car that drives towards a wall, which a scanner saw but for a wedge behind a board."""
     scene = Scene(folder)

@@ -60,10 +60,11 @@ void add_update_option(CLI::App& command, LedgerCommand& ledger, LengthOptions& 
 }
 
 Ledger apply_ledger_of(const LedgerCommand& ledger, const GroupedResult& found,
-                       const ConflictOptions& find) {
+                       const ConflictOptions& find, const Store* store) {
   LedgerOptions options = ledger.options;
-  std::optional<Store> store;
-  if (!ledger.environment.empty()) options.store = &store.emplace(ledger.environment);
+  std::optional<Store> own;
+  if (store == nullptr && !ledger.environment.empty()) store = &own.emplace(ledger.environment);
+  options.store = store;
   options.memory_bytes = find.memory_bytes;
   options.threads = find.threads;
   options.progress = find.progress;

@@ -45,9 +45,10 @@ void add_ledger_options(CLI::App& command, LedgerCommand& ledger, LengthOptions&
 /// Adds --update, which needs --ledger.
 void add_update_option(CLI::App& command, LedgerCommand& ledger, LengthOptions& lengths);
 
-/// Compares the conflicts with the ledger of the command.
+/// Compares the conflicts with the ledger of the command. store: that was searched, where it is
+/// open; null: it is opened where the command names it.
 Ledger apply_ledger_of(const LedgerCommand& ledger, const GroupedResult& found,
-                       const ConflictOptions& find);
+                       const ConflictOptions& find, const Store* store = nullptr);
 
 /// Adds --forward and --up, which say how the model is seen. `options` outlive the command.
 void add_axis_options(CLI::App& command, ConflictCommand& options);

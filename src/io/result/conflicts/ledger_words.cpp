@@ -21,7 +21,7 @@ Json row_json(const Columns& columns, const Row& row) {
 }  // namespace
 
 Json ledger_json(const Ledger& ledger) {
-  Json out = Json::object();
+  Json out{{"date", ledger.date}};
   const LedgerCounts counts = ledger.counts();
   for (std::size_t i = 0; i < counts.size(); ++i) {
     out[name_of(static_cast<LedgerStatus>(i))] = counts[i];
@@ -34,6 +34,8 @@ Json ledger_json(const Ledger& ledger) {
   for (const LedgerRow& row : ledger.rows) {
     Json one = row_json(kLedgerRowColumns, row);
     one["conflicts"] = row.conflicts;
+    one["lo"] = row.box ? Json(row.box->lo) : Json();
+    one["hi"] = row.box ? Json(row.box->hi) : Json();
     out["rows"].push_back(one);
   }
   out["conflicts"] = Json::array();
