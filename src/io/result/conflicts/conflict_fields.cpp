@@ -16,7 +16,16 @@
 #include "io/result/floor_facts.hpp"
 
 namespace clearway {
-std::vector<ConflictField> fields_of(const Conflict& c, const ResultHeader& header) {
+const LedgerEntry* ledger_entry_of(const Conflict& conflict, const ConflictFile& file) {
+  const std::vector<Conflict>& listed = file.conflicts.listed;
+  if (file.ledger == nullptr || conflict.id == 0 || conflict.id > listed.size()) return nullptr;
+  // Small groups have numbers of their own in some files.
+  if (listed[conflict.id - 1].source != conflict.source) return nullptr;
+  return &file.ledger->conflicts[conflict.id - 1];
+}
+
+std::vector<ConflictField> fields_of(const Conflict& c, const ConflictFile& file) {
+  const ResultHeader& header = file.header;
   std::vector<ConflictField> fields;
   add_fields(fields, kConflictColumns, c);
   if (header.budget) {
@@ -30,6 +39,18 @@ std::vector<ConflictField> fields_of(const Conflict& c, const ResultHeader& head
   if (c.first_body) {  // that of the trims and the side
     fields.push_back({"first_body", std::uint64_t{*c.first_body}});
     fields.push_back({"first_body_name", std::string_view(header.bodies.at(*c.first_body))});
+  }
+  if (file.ledger != nullptr) {
+    static const LedgerEntry kNone{};
+    const LedgerEntry* const found = ledger_entry_of(c, file);
+    const LedgerEntry& entry = found != nullptr ? *found : kNone;
+    const std::string_view status = found != nullptr ? name_of(entry.status) : "";
+    fields.push_back({"ledger", status});
+    fields.push_back({"ledger_key", std::string_view(entry.key)});
+    fields.push_back({"ledger_why", std::string_view(entry.why)});
+    fields.push_back({"ledger_owner", std::string_view(entry.owner)});
+    fields.push_back({"ledger_comment", std::string_view(entry.comment)});
+    fields.push_back({"ledger_until", std::string_view(entry.until)});
   }
   return fields;
 }
@@ -66,7 +87,7 @@ std::vector<ConflictField> sample_fields(const ConflictFile& file) {
   Conflict conflict;
   if (!file.header.bodies.empty()) conflict.body = 0;
   if (!file.options.station.empty()) conflict.station_from = conflict.station_to = 0;
-  return fields_of(conflict, file.header);
+  return fields_of(conflict, file);
 }
 
 namespace {

@@ -79,10 +79,15 @@ void add_fields(std::vector<ConflictField>& fields, const std::tuple<Columns...>
   });
 }
 
-/// The fields of a conflict, with the same names in the same order for every conflict of a result.
+/// What the ledger of a file says of a conflict; null where there is no ledger, and for a group
+/// that is too small to be listed.
+const LedgerEntry* ledger_entry_of(const Conflict& conflict, const ConflictFile& file);
+
+/// The fields of a conflict, with the same names in the same order for every conflict of a file.
 /// The arguments must outlive the fields. body and body_name exist only where the result has
-/// bodies, station_from and station_to only where the conflict has stations.
-std::vector<ConflictField> fields_of(const Conflict& conflict, const ResultHeader& header);
+/// bodies, station_from and station_to only where the conflict has stations, and those of a ledger
+/// only where there is one.
+std::vector<ConflictField> fields_of(const Conflict& conflict, const ConflictFile& file);
 
 /// A shift or trim rounded up to a thousandth of the unit, so that it is never less than needed.
 std::optional<double> rounded_up(std::optional<double> shift);

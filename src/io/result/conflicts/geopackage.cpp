@@ -155,7 +155,7 @@ void add_layer(sqlite::Database& database, const Layer& layer, const ConflictFil
     const std::vector<Vec3> points = layer.points(conflict);
     const Box box = box_of(points);
     corners.insert(corners.end(), {box.lo, box.hi});
-    const auto fields = fields_of(conflict, file.header);
+    const auto fields = fields_of(conflict, file);
     insert.add(fields.front().value).add_blob(geometry_bytes(layer.shape, points, srs));
     for (std::size_t i = 1; i < fields.size(); ++i) insert.add(fields[i].value);
     insert.run();

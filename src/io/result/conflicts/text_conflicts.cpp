@@ -15,7 +15,7 @@ void write_csv(const ConflictFile& conflicts, const File& file) {
   for (const ConflictField& field : sample_fields(conflicts)) out << field.name << ",";
   out << "small_groups,small_points\n";
   const auto write_row = [&](const Conflict& conflict) {
-    for (const ConflictField& field : fields_of(conflict, conflicts.header)) {
+    for (const ConflictField& field : fields_of(conflict, conflicts)) {
       out << csv_value(field) << ",";
     }
     out << found.small_groups << "," << found.small_points << "\n";
@@ -30,7 +30,7 @@ void write_json(const ConflictFile& conflicts, const File& file) {
   out << "{\n" << member_lines(summary_of(conflicts)) << ",\n  \"conflicts\": [";
   const char* between = "\n    ";
   for (const Conflict& conflict : conflicts.conflicts.listed) {
-    out << between << line_text(json_of(fields_of(conflict, conflicts.header)));
+    out << between << line_text(json_of(fields_of(conflict, conflicts)));
     between = ",\n    ";
   }
   out << (conflicts.conflicts.listed.empty() ? "]\n}\n" : "\n  ]\n}\n");
@@ -75,10 +75,10 @@ Json footprint_json(const Box& box) {
 
 /// A feature. number: its number in the file; without one, readers would take the property "id",
 /// which the two features of a conflict share.
-Json feature_json(std::uint64_t number, const Conflict& conflict, const ResultHeader& header,
+Json feature_json(std::uint64_t number, const Conflict& conflict, const ConflictFile& file,
                   const char* shape, const Json& geometry) {
   Json properties{{"shape", shape}};
-  for (const ConflictField& field : fields_of(conflict, header)) {
+  for (const ConflictField& field : fields_of(conflict, file)) {
     properties[field.name] = json_of(field.value);
   }
   return {{"type", "Feature"}, {"id", number}, {"geometry", geometry}, {"properties", properties}};
@@ -96,7 +96,7 @@ void write_geojson(const ConflictFile& conflicts, const File& file) {
   const auto add = [&](const Conflict& of, const char* shape, const Json& geometry) {
     ++number;
     out << (number == 1 ? "\n    " : ",\n    ")
-        << line_text(feature_json(number, of, conflicts.header, shape, geometry));
+        << line_text(feature_json(number, of, conflicts, shape, geometry));
   };
   for (const Conflict& conflict : conflicts.conflicts.listed) {
     add(conflict, "centroid", point_json(conflict.centroid));

@@ -66,6 +66,48 @@ TEST_CASE("a ledger is begun, edited and read, and what it accepts decides about
   check_refused(judged(""), 3, "expected new, open, accepted or resolved");
 }
 
+TEST_CASE(
+    "files of conflicts have what the ledger says, and no text of a user is a formula or markup") {
+  const std::string options =
+      " --model box.off --env site.h5 --ledger books.csv --min-points 3 --date 2026-06-01 --force ";
+  require_success(yard().conflicts(options + "--update", "mesh.h5"));
+  std::string table = yard().bytes("books.csv");
+  const std::string edit = "1,accepted,=1+1,\"<i>\"\"a, b\"\" & c\",2027-01-01,";
+  yard().put("books.csv", table.replace(table.find("1,new,,,,"), 9, edit));
+  require_success(
+      yard().conflicts(options + "-o l.csv -o l.json -o l.geojson -o l.gpkg -o l.bcf", "mesh.h5"));
+  const std::string csv = yard().bytes("l.csv");
+  CHECK_THAT(csv,
+             Contains(",ledger,ledger_key,ledger_why,ledger_owner,ledger_comment,ledger_until,"));
+  CHECK_THAT(csv, Contains(",accepted,1,,\"'=1+1\",\"<i>\"\"a, b\"\" & c\",2027-01-01,"));
+  for (const auto& member : {"l.json", "l.geojson"}) {
+    const json file = json::parse(yard().bytes(member));
+    const json row =
+        file.contains("features") ? file["features"][0]["properties"] : file["conflicts"][0];
+    CHECK(row["ledger"] == "accepted");
+    CHECK(row["ledger_owner"] == "=1+1");
+    CHECK(row["ledger_comment"] == "<i>\"a, b\" & c");
+    CHECK(row["ledger_why"].is_null());
+  }
+  const std::string columns =
+      run_program_at("/usr/bin/python3", yard().folder,
+                     "-c \"import sqlite3; print(sqlite3.connect('l.gpkg').execute('select ledger, "
+                     "ledger_key, "
+                     "ledger_until from footprints').fetchall())\"")
+          .out;
+  CHECK(columns == "[('accepted', '1', '2027-01-01')]\n");
+  require_success(run_program_at(CHECK_BCF, yard().folder, "l.bcf"));
+  const Outcome markup = run_program_at(
+      "/usr/bin/python3", yard().folder,
+      "-c \"import zipfile; z = zipfile.ZipFile('l.bcf'); print(*[z.read(n).decode() for n in "
+      "z.namelist() if n.endswith('markup.bcf')])\"");
+  for (const char* words :
+       {"TopicStatus=\"Closed\"", "<Labels>accepted</Labels>", "<AssignedTo>=1+1<",
+        "By the ledger it is accepted; row 1, until 2027-01-01: &lt;i&gt;"}) {
+    CHECK_THAT(markup.out, Contains(words));
+  }
+}
+
 TEST_CASE("conflicts --fail-on-collision works without a ledger, and --update needs one") {
   check_outcome(yard().conflicts("--fail-on-collision --min-points 3", "plain.h5"), 1);
   check_outcome(yard().conflicts("--update", "plain.h5"), 2);

@@ -117,6 +117,17 @@ std::string remedy_text(const ConflictFile& file, const Conflict& c) {
   return words.empty() ? "" : " To pass: " + markup_text(words) + ".";
 }
 
+/// What the ledger says of a conflict: " By the ledger it is worse, because the radius is larger;
+/// row 2: slow here."
+std::string ledger_text(const LedgerEntry& entry) {
+  std::string out = std::string(" By the ledger it is ") + name_of(entry.status);
+  if (!entry.why.empty()) out += ", because " + markup_text(entry.why);
+  if (!entry.key.empty()) out += "; row " + markup_text(entry.key);
+  if (!entry.until.empty()) out += ", until " + markup_text(entry.until);
+  if (!entry.comment.empty()) out += ": " + markup_text(entry.comment);
+  return out + ".";
+}
+
 std::string description_of(const ConflictFile& file, const Conflict& c) {
   const std::uint64_t near = c.points - c.colliding;
   std::string out = format_count(c.colliding) + (c.colliding == 1 ? " point is" : " points are") +
@@ -145,6 +156,7 @@ std::string description_of(const ConflictFile& file, const Conflict& c) {
   out += remedy_text(file, c);
   out += " Poses " + std::to_string(c.first_pose) + " to " + std::to_string(c.last_pose) +
          ", counted from 0, touch it.";
+  if (const LedgerEntry* const entry = ledger_entry_of(c, file)) out += ledger_text(*entry);
   return out + small_text(file);
 }
 
@@ -179,16 +191,20 @@ std::string bcf_version() {
 }
 
 std::string bcf_markup(const ConflictFile& file, const Conflict& conflict) {
+  const LedgerEntry* const entry = ledger_entry_of(conflict, file);
+  const bool is_accepted = entry != nullptr && entry->status == LedgerStatus::kAccepted;
   std::string out = kDeclaration;
   out += "<Markup>\n  <Topic Guid=\"" + conflict_uuid(file, conflict, "topic") +
-         "\" TopicType=\"Clash\" TopicStatus=\"Open\">\n";
+         "\" TopicType=\"Clash\" TopicStatus=\"" + (is_accepted ? "Closed" : "Open") + "\">\n";
   const auto line = [&out](std::string_view name, const std::string& content) {
     out += "    " + element(name, content) + "\n";
   };
   line("Title", title_of(file, conflict));
   line("Index", std::to_string(conflict.id));
+  if (entry != nullptr) line("Labels", name_of(entry->status));
   line("CreationDate", file.date);
   line("CreationAuthor", "Clearway");
+  if (entry != nullptr && !entry->owner.empty()) line("AssignedTo", markup_text(entry->owner));
   line("Description", description_of(file, conflict));
   out += "  </Topic>\n  <Viewpoints Guid=\"" + conflict_uuid(file, conflict, "viewpoint") + "\">\n";
   line("Viewpoint", "viewpoint.bcfv");
