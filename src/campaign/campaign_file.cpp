@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/describe/ledger.hpp"
 #include "core/describe/model.hpp"
 #include "core/describe/query.hpp"
 #include "core/describe/search.hpp"
@@ -168,6 +169,7 @@ const std::vector<OptionKey> kQueryKeys =
 const std::vector<OptionKey> kConflictKeys{{"gap", "--gap", ValueKind::kLength},
                                            {"min_points", "--min-points", ValueKind::kCount},
                                            {"split", "--split", ValueKind::kLength}};
+const std::vector<OptionKey> kLedgerKeys = keys_of(kLedgerFields);
 /// What only a search may take of the machine, and what all commands may.
 const std::vector<OptionKey> kSearchKeys = keys_of(
     std::tuple_cat(std::tuple{kEngine<SearchOptions>}, kDeviceFields<SearchOptions>, kFileFields));
@@ -418,12 +420,30 @@ void read_conflict_formats(const KeyReader& outputs, Campaign& campaign) {
   if (!first_pose) list.refuse("needs \"first_pose\": true in query");
 }
 
-void read_outputs(const KeyReader& file, Campaign& campaign) {
+/// Reads where the ledgers are. What the runs find of them is taken from the conflicts as JSON.
+void read_ledgers(const KeyReader& outputs, const fs::path& folder, Campaign& campaign) {
+  const Arguments options = arguments_of(outputs, kLedgerKeys);
+  if (!outputs.has("ledger")) {
+    if (!options.empty()) outputs.at("worse_by").refuse("needs \"ledger\" beside it");
+    return;
+  }
+  const KeyReader at = outputs.at("ledger");
+  if (campaign.conflict_formats.empty()) at.refuse("needs \"conflicts\" beside it");
+  campaign.ledgers = fs::absolute(folder / at.text()).lexically_normal();
+  check_utf8(at, campaign.ledgers);
+  campaign.conflicts.insert(campaign.conflicts.end(), options.begin(), options.end());
+  std::vector<std::string>& formats = campaign.conflict_formats;
+  if (std::ranges::find(formats, "json") == formats.end()) formats.emplace_back("json");
+}
+
+void read_outputs(const KeyReader& file, const fs::path& folder, Campaign& campaign) {
   if (file.has("outputs")) {
     const KeyReader outputs = file.at("outputs");
-    outputs.allow(names_of(kConflictKeys, {"conflicts", "report"}));
+    outputs.allow(
+        names_of(kLedgerKeys, names_of(kConflictKeys, {"conflicts", "report", "ledger"})));
     campaign.conflicts = arguments_of(outputs, kConflictKeys);
     read_conflict_formats(outputs, campaign);
+    read_ledgers(outputs, folder, campaign);
     campaign.report = outputs.has("report") && outputs.at("report").flag();
   }
   campaign.classes = arguments_of(file, {{"classes", "--classes", ValueKind::kLengths}});
@@ -481,7 +501,7 @@ Campaign read_campaign(const fs::path& path) {
     file.at("query").allow(names_of(kQueryKeys, {}));
     campaign.query = arguments_of(file.at("query"), kQueryKeys);
   }
-  read_outputs(file, campaign);
+  read_outputs(file, fs::absolute(path).parent_path(), campaign);
   if (file.has("limits")) {
     file.at("limits").allow(names_of(kLimitKeys, names_of(kSearchKeys, {"shard_seconds"})));
     campaign.search_limits = arguments_of(file.at("limits"), kSearchKeys);

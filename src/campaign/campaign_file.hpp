@@ -90,6 +90,8 @@ struct Campaign {
   std::vector<std::string> conflict_formats;  ///< file name extensions, without dot
   bool report = false;
   Arguments conflicts;  ///< options that both conflicts and reports take
+  /// The folder of the ledgers, of which each run has its own; empty: none.
+  std::filesystem::path ledgers;
   Arguments classes;
   /// Options that only `clearway run` takes, and those that all commands take.
   Arguments search_limits, limits;

@@ -100,6 +100,8 @@ bool is_journal_of_others(const std::filesystem::path& file,
 
 namespace {
 
+constexpr std::string_view kLedgerWord = "--ledger=";
+
 std::string id_of(const nlohmann::ordered_json& value) {
   const std::string text = value.dump();
   return hash_text(xxh64(std::as_bytes(std::span(text))));
@@ -122,8 +124,9 @@ Argument file_argument(const Entry& entry, const char* option) {
 /// The command lines of one run, without limits.
 class RunCommands {
  public:
+  /// radius: the index of one of the campaign's radii.
   RunCommands(const Campaign& campaign, const Vehicle& vehicle, const Route& route,
-              const Argument& radius)
+              std::size_t radius)
       : campaign_(campaign),
         vehicle_(vehicle),
         route_(route),
@@ -131,7 +134,8 @@ class RunCommands {
         model_(Arguments{file_argument(vehicle, vehicle.has_bodies() ? "--vehicle" : "--model")} +
                vehicle.arguments),
         path_(Arguments{file_argument(route, "--trajectory")} + route.arguments),
-        radius_(radius) {}
+        radius_(campaign.radii[radius]),
+        radius_name_(campaign.radius_names[radius]) {}
 
   Arguments run() const {
     return Arguments{file_argument(environment_, "--env")} + model_ + vehicle_.kind + path_ +
@@ -140,15 +144,17 @@ class RunCommands {
 
   std::vector<std::pair<Command, Arguments>> outputs() const {
     std::vector<std::pair<Command, Arguments>> out;
-    if (!campaign_.conflict_formats.empty()) out.push_back(conflicts());
     if (campaign_.report) {
       const std::string title = campaign_.name + ": " + vehicle_.name + " on " + route_.name;
       out.emplace_back(Command{"report", kResultName, "--force",
                                std::string("--output=") + kReportName, "--title=" + title},
                        Arguments{file_argument(environment_, "--env")} + model_ + path_ +
-                           vehicle_.axes + route_.chainage + campaign_.conflicts +
+                           vehicle_.axes + route_.chainage + campaign_.conflicts + ledger() +
                            campaign_.classes);
     }
+    // They update the ledger, so the page is made before, and shows what is gone.
+    const auto place = campaign_.ledgers.empty() ? out.begin() : out.end();
+    if (!campaign_.conflict_formats.empty()) out.insert(place, conflicts());
     return out;
   }
 
@@ -169,8 +175,21 @@ class RunCommands {
     for (const std::string& format : campaign_.conflict_formats) {
       command.push_back("--output=conflicts." + format);
     }
-    return {std::move(command),
-            path_ + model_ + vehicle_.axes + route_.chainage + campaign_.conflicts};
+    Arguments arguments = path_ + model_ + vehicle_.axes + route_.chainage + campaign_.conflicts;
+    if (!campaign_.ledgers.empty()) {
+      command.push_back("--update");
+      arguments = arguments + ledger() + Arguments{file_argument(environment_, "--env")};
+    }
+    return {std::move(command), std::move(arguments)};
+  }
+
+  /// The option that names the ledger of the run, which no other run has, so that runs at the same
+  /// time do not meet.
+  Arguments ledger() const {
+    if (campaign_.ledgers.empty()) return {};
+    const std::filesystem::path table =
+        campaign_.ledgers / vehicle_.name / route_.name / (radius_name_ + ".csv");
+    return {{"outputs.ledger", "--ledger", std::string(kLedgerWord) + table.string()}};
   }
 
   const Campaign& campaign_;
@@ -179,6 +198,7 @@ class RunCommands {
   const Entry& environment_;
   Arguments model_, path_;
   const Argument& radius_;
+  const std::string& radius_name_;
 };
 
 Command with_arguments(Command command, const Arguments& arguments, const Arguments& limits) {
@@ -246,6 +266,15 @@ void add_tasks(Task task, const PlannedRun& run, Plan& plan) {
 
 }  // namespace
 
+std::filesystem::path Task::ledger() const {
+  for (const Command& command : commands) {
+    for (const std::string& word : command) {
+      if (word.starts_with(kLedgerWord)) return word.substr(kLedgerWord.size());
+    }
+  }
+  return {};
+}
+
 std::string Task::question_id() const { return id_of(question); }
 
 Task shard_of(const Task& merge, std::uint32_t number) {
@@ -282,7 +311,7 @@ Plan make_plan(const Campaign& campaign,
     for (const Route& route : campaign.routes) {
       const Entry& environment = campaign.environments[route.environment];
       for (std::size_t i = 0; i < campaign.radii.size(); ++i) {
-        const RunCommands commands(campaign, vehicle, route, campaign.radii[i]);
+        const RunCommands commands(campaign, vehicle, route, i);
         const PlannedRun run{vehicle,
                              route,
                              campaign.radii[i],

@@ -67,6 +67,8 @@ struct Task {
            (shard ? "/shards/" + std::to_string(shard->number) : "");
   }
   std::filesystem::path folder() const { return std::filesystem::path("runs") / name(); }
+  /// The table of its ledger, as its commands name it; empty: none.
+  std::filesystem::path ledger() const;
   const char* result() const { return shard ? kPartName : kResultName; }
   std::string question_id() const;
 };

@@ -14,6 +14,7 @@
 #include "campaign/plan.hpp"
 #include "clearway/answer.hpp"
 #include "clearway/error.hpp"
+#include "clearway/ledger.hpp"
 #include "core/util/exit_code.hpp"
 #include "core/util/format.hpp"
 #include "io/files/file.hpp"
@@ -131,14 +132,57 @@ const OutcomeWords& words_of(Outcome outcome) {
   return kWords.at(static_cast<std::size_t>(outcome));
 }
 
+namespace {
+
+Outcome outcome_by(const TaskLook& look, const ordered_json& verdict) {
+  if (verdict == "clear") {
+    return look.state->facts["warnings"].empty() ? Outcome::kClear : Outcome::kDoubtful;
+  }
+  return verdict == "conflict" ? Outcome::kConflict : Outcome::kUndecided;
+}
+
+/// What the ledger of a run says; null where it has none.
+ordered_json ledger_in(const TaskLook& look) {
+  if (look.status != TaskStatus::kDone) return {};
+  return look.state->facts.value("ledger", ordered_json());
+}
+
+}  // namespace
+
 Outcome outcome_of(const TaskLook& look) {
   if (look.status == TaskStatus::kFailed) return Outcome::kFailed;
   if (look.status != TaskStatus::kDone) return Outcome::kUnfinished;
-  const ordered_json& facts = look.state->facts;
-  if (facts["verdict"] == "clear") {
-    return facts["warnings"].empty() ? Outcome::kClear : Outcome::kDoubtful;
+  return outcome_by(look, look.state->facts["verdict"]);
+}
+
+Outcome outcome_outside(const TaskLook& look) {
+  const ordered_json ledger = ledger_in(look);
+  return ledger.is_null() ? outcome_of(look) : outcome_by(look, ledger["outside"]);
+}
+
+std::string ledger_words(const ordered_json& ledger) {
+  std::string text;
+  if (ledger.is_null()) return text;
+  for (std::size_t i = 0; i < kLedgerStatuses; ++i) {
+    const char* const status = name_of(static_cast<LedgerStatus>(i));
+    const auto count = ledger.value(status, std::uint64_t{0});
+    if (count > 0) text += (text.empty() ? "" : ", ") + format_count(count) + " " + status;
   }
-  return facts["verdict"] == "conflict" ? Outcome::kConflict : Outcome::kUndecided;
+  return text;
+}
+
+ordered_json ledgers_of(const std::vector<TaskLook>& looks) {
+  ordered_json sums;
+  for (const TaskLook& look : looks) {
+    const ordered_json ledger = ledger_in(look);
+    if (ledger.is_null()) continue;
+    if (sums.is_null()) sums = ordered_json::object();
+    for (const auto& [key, count] : ledger.items()) {
+      if (!count.is_number()) continue;
+      sums[key] = sums.value(key, std::uint64_t{0}) + count.get<std::uint64_t>();
+    }
+  }
+  return sums;
 }
 
 RunLooks run_looks(const Plan& plan, const std::vector<TaskLook>& looks) {
@@ -225,10 +269,20 @@ std::string floor_clause(const ordered_json& facts, const std::string& unit) {
          floor_words(floor, unit) + " not judged";
 }
 
+namespace {
+
+std::string ledger_clause(const ordered_json& facts) {
+  const std::string words = ledger_words(facts.value("ledger", ordered_json()));
+  return words.empty() ? "" : "ledger: " + words;
+}
+
+}  // namespace
+
 std::string caveats_of(const ordered_json& facts, const std::string& unit) {
   std::string text;
-  for (const std::string& one : {warning_words(facts), ignored_words(facts),
-                                 floor_clause(facts, unit), open_words(facts, unit)}) {
+  for (const std::string& one :
+       {warning_words(facts), ignored_words(facts), floor_clause(facts, unit),
+        open_words(facts, unit), ledger_clause(facts)}) {
     if (!one.empty()) text += (text.empty() ? "" : "; ") + one;
   }
   return text;
@@ -423,8 +477,32 @@ void write_state(const std::filesystem::path& folder, const TaskState& state) {
   replace_file(folder / kStateName, indented_text(json, 1));
 }
 
-void add_conflicts(ordered_json& facts, const fs::path& folder,
-                   const std::vector<std::string>& outputs) {
+namespace {
+
+/// Takes what the conflicts as JSON say of the ledger.
+ordered_json ledger_facts(const fs::path& conflicts) {
+  try {
+    const ordered_json all = parse_json(text_of_file(conflicts));
+    ordered_json out{{"conflicts", all.at("conflict_count")},
+                     {"accepted_conflicts", all.at("ledger").at("accepted_conflicts")},
+                     {"outside", all.at("ledger").at("outside").at("verdict")}};
+    for (std::size_t i = 0; i < kLedgerStatuses; ++i) {
+      const char* const status = name_of(static_cast<LedgerStatus>(i));
+      out[status] = all.at("ledger").at(status);
+    }
+    return out;
+  } catch (const JsonError& error) {
+    throw ResourceError(conflicts.string() + ": is not what was written: " + error.what());
+  } catch (const ordered_json::exception& error) {
+    throw ResourceError(conflicts.string() + ": is not what was written: " + error.what());
+  }
+}
+
+}  // namespace
+
+void add_conflicts(ordered_json& facts, const fs::path& folder, const Task& task) {
+  if (!task.ledger().empty()) facts["ledger"] = ledger_facts(folder / "conflicts.json");
+  const std::vector<std::string>& outputs = task.outputs;
   const auto table = std::ranges::find(outputs, "conflicts.csv");
   if (table == outputs.end()) return;
   std::ifstream file(folder / *table);

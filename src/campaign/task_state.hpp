@@ -72,9 +72,10 @@ void write_state(const std::filesystem::path& folder, const TaskState& state);
 nlohmann::ordered_json task_facts(const std::filesystem::path& run_json);
 
 /// Adds the number of conflicts to the facts, where one of the outputs in the folder is their table
-/// in CSV.
+/// in CSV; and what the ledger of the task says, where it has one: rows and conflicts by status,
+/// `conflicts`, `accepted_conflicts` and the verdict `outside` of these.
 void add_conflicts(nlohmann::ordered_json& facts, const std::filesystem::path& folder,
-                   const std::vector<std::string>& outputs);
+                   const Task& task);
 
 /// What can be said about a task. kBegun: another process works on it, or it was interrupted; the
 /// file system has no locks that show which. kOutdated: it finished, but a file that it read has
@@ -141,6 +142,8 @@ struct OutcomeWords {
 const OutcomeWords& words_of(Outcome outcome);
 
 Outcome outcome_of(const TaskLook& look);
+/// The outcome without the conflicts that the ledger of the run accepts.
+Outcome outcome_outside(const TaskLook& look);
 
 /// The tasks of a plan that are runs, not shards, with their state. A run one of whose shards has
 /// failed has failed itself.
@@ -173,6 +176,12 @@ class OutcomeCounts {
 /// (out-of-reach, scan-ends); 1,234 points ignored, of which 56 would collide; not exact". Empty
 /// where there is nothing to say. unit: the unit of lengths, for example "m".
 std::string caveats_of(const nlohmann::ordered_json& facts, const std::string& unit);
+
+/// The statuses of ledgers with their numbers, such as "2 accepted, 1 gone"; empty where nothing is
+/// in them, and without a ledger. ledger: the member of the facts, or a sum of several.
+std::string ledger_words(const nlohmann::ordered_json& ledger);
+/// The sums of rows and conflicts by status over all runs; null where no run has a ledger.
+nlohmann::ordered_json ledgers_of(const std::vector<TaskLook>& looks);
 
 /// Whether an undecided run could not have found anything.
 bool is_in_doubt(const nlohmann::ordered_json& facts);

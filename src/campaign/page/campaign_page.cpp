@@ -185,6 +185,9 @@ std::string cell_place(const Task& task, const TaskLook& look) {
       !conflicts.is_null()) {
     const auto count = conflicts["count"].get<std::uint64_t>();
     if (count > 0) parts.push_back(counted(count, "conflict"));
+    const ordered_json ledger = facts.value("ledger", ordered_json());
+    const auto accepted = ledger.is_null() ? 0 : ledger["accepted_conflicts"].get<std::uint64_t>();
+    if (accepted > 0) parts.push_back(format_count(accepted) + " accepted");
   }
   const bool in_doubt = outcome_of(look) == Outcome::kUndecided && is_in_doubt(facts);
   const ordered_json& at = facts["least"].is_null() ? facts["first"] : facts["least"];

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "campaign/slurm_script.hpp"
 #include "clearway/search.hpp"
@@ -15,6 +16,8 @@
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
 #include "core/util/format.hpp"
+#include "findings/ledger/ledger_places.hpp"
+#include "findings/ledger/ledger_table.hpp"
 #include "io/files/file.hpp"
 #include "io/files/input_error.hpp"
 
@@ -86,10 +89,43 @@ std::string counted(std::size_t count, const char* one, const char* several) {
   return format_count(count) + " " + (count == 1 ? one : several);
 }
 
+/// The tables of ledgers that tasks have and that do not exist yet. Throws InputError for those
+/// that a task would refuse.
+std::vector<fs::path> missing_ledgers(const campaign::Plan& plan) {
+  std::vector<fs::path> missing;
+  for (const campaign::Task& task : plan.tasks) {
+    const fs::path table = task.ledger();
+    std::error_code unknown;
+    if (table.empty()) continue;
+    if (fs::exists(table, unknown)) {
+      LedgerTable(text_of_file(table), table.string());
+    } else if (fs::exists(places_of(table), unknown)) {
+      throw InputError(places_of(table).string() + ": is there, and its table " + table.string() +
+                       " is missing; restore it, or remove the places to begin a new ledger");
+    } else {
+      missing.push_back(table);
+    }
+  }
+  return missing;
+}
+
+/// Begins ledgers, so that pages can be made before the first update.
+void begin_ledgers(const std::vector<fs::path>& tables) {
+  for (const fs::path& table : tables) {
+    make_folder(table.parent_path());
+    replace_file(table, LedgerTable().text());
+  }
+  if (!tables.empty()) {
+    spdlog::info("{} begun, such as {}", counted(tables.size(), "ledger is", "ledgers are"),
+                 tables.front().string());
+  }
+}
+
 void run_plan(const CampaignPlanOptions& options) {
   const campaign::Campaign asked = campaign::read_campaign(options.file);
   for (const Message& note : asked.notes) log_message(note);
   const campaign::Plan plan = plan_of(asked, options.file);
+  const std::vector<fs::path> ledgers = missing_ledgers(plan);
   const std::string text = campaign::plan_text(plan);
   const fs::path planned = options.folder / campaign::kPlanName;
   std::error_code unknown;
@@ -105,6 +141,7 @@ void run_plan(const CampaignPlanOptions& options) {
     write_script(options.folder / "submit.sh", campaign::submit_text(job));
     replace_file(planned, text);
   }
+  begin_ledgers(ledgers);
   print(fmt::format("{}: {} ({}, {}, {})\n", asked.name,
                     counted(plan.tasks.size(), "task", "tasks"),
                     counted(asked.vehicles.size(), "vehicle", "vehicles"),

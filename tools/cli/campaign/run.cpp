@@ -40,12 +40,12 @@ campaign::Plan plan_to_run(const CampaignRunOptions& options) {
   return campaign::read_plan(options.folder, *tasks);
 }
 
-/// Counts the outcomes of the runs among these tasks, those that were done before included.
-campaign::OutcomeCounts outcomes_of(const campaign::Plan& plan,
-                                    const std::filesystem::path& folder) {
+/// The runs among these tasks, those that were done before included.
+std::vector<campaign::TaskLook> runs_of(const campaign::Plan& plan,
+                                        const std::filesystem::path& folder) {
   std::vector<campaign::TaskLook> looks;
   for (const campaign::Task& task : plan.tasks) looks.push_back(campaign::look_at(task, folder));
-  return campaign::OutcomeCounts(campaign::run_looks(plan, looks).looks);
+  return campaign::run_looks(plan, looks).looks;
 }
 
 int run_tasks(const CampaignRunOptions& options) {
@@ -53,11 +53,17 @@ int run_tasks(const CampaignRunOptions& options) {
   const auto folder = std::filesystem::absolute(options.folder).lexically_normal();
   TaskQueue queue(plan, folder, options.jobs, options.all);
   const int code = queue.run();
-  const campaign::OutcomeCounts outcomes = outcomes_of(plan, folder);
+  const std::vector<campaign::TaskLook> runs = runs_of(plan, folder);
+  const campaign::OutcomeCounts outcomes(runs);
   if (outcomes.all() > 0) spdlog::info("{}: {}", plan.name, outcomes.text());
+  const std::string ledgers = campaign::ledger_words(campaign::ledgers_of(runs));
+  if (!ledgers.empty()) spdlog::info("{}: ledgers: {}", plan.name, ledgers);
   if (code != kDone || !options.fail_on_collision) return code;
-  if (outcomes.of(campaign::Outcome::kConflict) > 0) return kDiffers;
-  return outcomes.of(campaign::Outcome::kUndecided) > 0 ? int{kUndecided} : code;
+  const auto ends_as = [&](campaign::Outcome outcome) {
+    return std::ranges::count(runs, outcome, campaign::outcome_outside) > 0;
+  };
+  if (ends_as(campaign::Outcome::kConflict)) return kDiffers;
+  return ends_as(campaign::Outcome::kUndecided) ? int{kUndecided} : code;
 }
 
 }  // namespace
@@ -75,7 +81,7 @@ void add_campaign_run(CLI::App& campaign, int& exit_code) {
   command->add_flag("--all", options->all, "All tasks that are not done")->excludes(tasks);
   command->add_flag("--fail-on-collision", options->fail_on_collision,
                     "Exit with code 1 where a run finds a conflict, and with 6 where none does and "
-                    "one is undecided");
+                    "one is undecided; what ledgers accept does not count");
   command->add_option("--jobs", options->jobs, "Tasks at the same time; they share the cores")
       ->type_name("N")
       ->check(CLI::Range(1, 1024))

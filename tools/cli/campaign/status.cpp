@@ -57,6 +57,9 @@ nlohmann::ordered_json status_json(const campaign::Plan& plan, const std::vector
   const campaign::OutcomeCounts outcomes(campaign::run_looks(plan, looks).looks);
   out["runs"] = outcomes.all();
   out["outcomes"] = outcomes.json();
+  const nlohmann::ordered_json ledgers =
+      campaign::ledgers_of(campaign::run_looks(plan, looks).looks);
+  if (!ledgers.is_null()) out["ledgers"] = ledgers;
   out["list"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < looks.size(); ++i) {
     nlohmann::ordered_json one{{"task", i},
@@ -77,6 +80,7 @@ nlohmann::ordered_json status_json(const campaign::Plan& plan, const std::vector
            {"verdict", "reasons", "colliding_points", "ignored", "floor", "warnings"}) {
         one[key] = looks[i].state->facts.value(key, nlohmann::ordered_json());
       }
+      if (looks[i].state->facts.contains("ledger")) one["ledger"] = looks[i].state->facts["ledger"];
     }
     out["list"].push_back(std::move(one));
   }
@@ -111,6 +115,9 @@ std::string status_text(const campaign::Plan& plan, const std::vector<TaskLook>&
     text += fmt::format("  {:<12}{:>7}\n", campaign::name_of(status), format_count(count));
   }
   text += campaign::OutcomeCounts(campaign::run_looks(plan, looks).looks).text() + "\n";
+  const std::string ledgers =
+      campaign::ledger_words(campaign::ledgers_of(campaign::run_looks(plan, looks).looks));
+  if (!ledgers.empty()) text += "ledgers: " + ledgers + "\n";
   text += caveats_text(plan, looks);
   for (std::size_t i = 0; i < looks.size(); ++i) {
     if (looks[i].status == TaskStatus::kOutdated) {

@@ -156,7 +156,7 @@ const campaign::TaskState& TaskFolder::end(int code) {
 void TaskFolder::judge_result() {
   if (campaign::answers(path_ / task_.result(), task_.question)) {
     state_.facts = campaign::task_facts(run_output());
-    campaign::add_conflicts(state_.facts, path_, task_.outputs);
+    campaign::add_conflicts(state_.facts, path_, task_);
     return;
   }
   state_.ending = Ending::kFailed;
