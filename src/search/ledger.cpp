@@ -29,10 +29,17 @@ LedgerFiles open_ledger(const LedgerOptions& options, const std::string& unit) {
   if (options.table.extension() != ".csv") {
     throw UsageError(name + ": expected the name of a table that ends in .csv");
   }
-  std::error_code unknown;
-  if (std::filesystem::exists(options.table, unknown)) return read_ledger(options.table, unit);
   const std::filesystem::path places = places_of(options.table);
-  if (std::filesystem::exists(places, unknown)) {
+  std::error_code unknown;
+  const auto exists = [&](const std::filesystem::path& path) {
+    return std::filesystem::exists(path, unknown);
+  };
+  // A first update puts the places there before the table.
+  for (int waits = 0; !exists(options.table) && exists(places);) {
+    if (!wait_for_update(options.table, waits)) break;
+  }
+  if (exists(options.table)) return read_ledger(options.table, unit);
+  if (exists(places)) {
     throw InputError(name + ": is missing, and its places are there: " + places.string() +
                      "; restore the table, or remove the places to begin a new ledger");
   }

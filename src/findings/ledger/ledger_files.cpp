@@ -1,9 +1,11 @@
 #include "findings/ledger/ledger_files.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <string_view>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "clearway/error.hpp"
@@ -86,19 +88,45 @@ bool partial_agrees(const std::filesystem::path& table, const std::vector<Ledger
   }
 }
 
+/// Whether a process that lives is writing the ledger.
+bool is_being_written(const std::filesystem::path& table) {
+  try {
+    return lock_state(File::open_for_reading(partial_of(table))) == LockState::kHeld;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 }  // namespace
 
+bool wait_for_update(const std::filesystem::path& table, int& waits) {
+  constexpr int kMostWaits = 500;
+  constexpr std::chrono::milliseconds kWait(20);
+  if (waits == kMostWaits || !is_being_written(table)) return false;
+  ++waits;
+  std::this_thread::sleep_for(kWait);
+  return true;
+}
+
 LedgerFiles read_ledger(const std::filesystem::path& table, const std::string& unit) {
-  LedgerFiles files{LedgerTable(text_of_file(table), table.string()), {}};
   const std::filesystem::path beside = places_of(table);
-  std::error_code unknown;
-  if (!std::filesystem::exists(beside, unknown)) {
-    files.places.resize(files.table.rows());
-    return files;
+  LedgerFiles files;
+  std::vector<LedgerPlaces> places;
+  std::string difference;
+  for (int waits = 0;;) {
+    const std::string text = text_of_file(table);
+    files = {LedgerTable(text, table.string()), {}};
+    std::error_code unknown;
+    if (!std::filesystem::exists(beside, unknown)) {
+      files.places.resize(files.table.rows());
+      return files;
+    }
+    places = read_places(beside, unit);
+    difference = join(files, places);
+    if (difference.empty()) return files;
+    // The files are replaced one after the other, so a reader may meet one of each.
+    if (!wait_for_update(table, waits) && text_of_file(table) == text) break;
   }
-  const std::vector<LedgerPlaces> places = read_places(beside, unit);
-  const std::string difference = join(files, places);
-  if (difference.empty()) return files;
   std::string advice =
       "restore both files as one run wrote them; a row that is done stays with "
       "the status resolved. Without " +

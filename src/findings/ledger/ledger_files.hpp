@@ -23,6 +23,10 @@ struct LedgerFiles {
 /// no places.
 LedgerFiles read_ledger(const std::filesystem::path& table, const std::string& unit);
 
+/// Waits a moment where another process is writing the ledger, at most so often. Returns whether it
+/// did, so that the files are to be read again.
+bool wait_for_update(const std::filesystem::path& table, int& waits);
+
 /// A ledger that is about to be replaced. Holds both files from its construction on, so that no
 /// other process changes them between reading and writing.
 class LedgerUpdate {

@@ -97,9 +97,11 @@ def at_the_same_time(work, tables):
         table.with_name("0.1.places.h5").unlink()
     for path in (work / "one", work / "two"):
         expect(plan(work, path).returncode == 0, path)
-    both = [subprocess.Popen([PROGRAM, "campaign", "run", path, "--all", "--jobs", "2"], stderr=subprocess.DEVNULL)
+    both = [subprocess.Popen([PROGRAM, "campaign", "run", path, "--all", "--jobs", "2"], stderr=subprocess.PIPE, text=True)
             for path in (work / "one", work / "two")]
-    expect([one.wait() for one in both] == [0, 0], "a campaign failed")
+    for one in both:
+        words = one.communicate()[1]
+        expect(one.returncode == 0, words)
     for task, table in zip(status(work / "one")["list"], tables):
         rows = rows_of(table)
         expect(len(rows) == task["ledger"]["conflicts"], f"{len(rows)} rows of {task['ledger']['conflicts']} conflicts")
