@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -202,9 +203,10 @@ class Rows {
   void close();
   void read(std::uint64_t first_row, std::span<Number> values) const;
   /// Reads the chunks of rows from `first_row`, which begins a chunk, in the form of
-  /// stored_chunk.hpp and unchecked. Returns false where they are stored in another way or cannot
-  /// be read; read() then says what is wrong.
-  bool read_chunks(std::uint64_t first_row, std::uint64_t row_count, StoredChunks& chunks) const;
+  /// stored_chunk.hpp and unchecked. use(i) is called when chunks[i] is read. Returns false where
+  /// they are stored in another way or cannot be read; read() then says what is wrong.
+  bool read_chunks(std::uint64_t first_row, std::uint64_t row_count, StoredChunks& chunks,
+                   const std::function<void(std::size_t)>& use) const;
   /// Number of rows in a chunk that read_chunks() returns.
   std::uint64_t chunk_rows() const;
 

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <functional>
 #include <tuple>
 #include <utility>
 
@@ -224,7 +226,8 @@ void StoredChunks::resize(std::size_t count, std::size_t chunk_bytes) {
 
 template <typename Number>
 bool Rows<Number>::read_chunks(std::uint64_t first_row, std::uint64_t row_count,
-                               StoredChunks& chunks) const {
+                               StoredChunks& chunks,
+                               const std::function<void(std::size_t)>& use) const {
   if (!has_usual_chunks_) return false;
   const std::uint64_t row_bytes = std::max<std::uint64_t>(columns_, 1) * sizeof(Number);
   const std::uint64_t bytes = chunk_rows() * row_bytes + kChecksumBytes;
@@ -241,6 +244,7 @@ bool Rows<Number>::read_chunks(std::uint64_t first_row, std::uint64_t row_count,
       return false;
     }
     if (filters_left_out != kAllFilters) return false;
+    use(i);
   }
   return true;
 }

@@ -25,6 +25,12 @@ struct Xxh64Stream::State {
 
 Xxh64Stream::Xxh64Stream() : state_(std::make_unique<State>()) { XXH64_reset(&state_->xxhash, 0); }
 Xxh64Stream::~Xxh64Stream() = default;
+Xxh64Stream::Xxh64Stream(const Xxh64Stream& other)
+    : state_(std::make_unique<State>(*other.state_)) {}
+Xxh64Stream& Xxh64Stream::operator=(const Xxh64Stream& other) {
+  *state_ = *other.state_;
+  return *this;
+}
 
 void Xxh64Stream::update(std::span<const std::byte> bytes) {
   XXH64_update(&state_->xxhash, bytes.data(), bytes.size());

@@ -20,6 +20,8 @@ class Xxh64Stream {
  public:
   Xxh64Stream();
   ~Xxh64Stream();
+  Xxh64Stream(const Xxh64Stream& other);
+  Xxh64Stream& operator=(const Xxh64Stream& other);
   void update(std::span<const std::byte> bytes);
   std::uint64_t digest() const;
 

@@ -113,11 +113,12 @@ class ResultReader {
   std::unique_ptr<State> state_;
 };
 
-/// Number of rows that a stream reads at a time by default, a multiple of kEncodedRows.
-inline constexpr std::size_t kBatchRows = kEncodedRows;
+/// Number of rows that a stream reads at a time by default, a multiple of kEncodedRows. Their
+/// chunks are enough work for the threads of one machine.
+inline constexpr std::size_t kBatchRows = 4 * kEncodedRows;
 
-/// Reads a table of a result front to back in constant memory, batch_rows at a time; batches of
-/// kBatchRows are read by many threads, smaller ones by one. A result without the table has no
+/// Reads a table of a result front to back in constant memory, batch_rows at a time; a multiple of
+/// kEncodedRows is read by many threads, another number by one. A result without the table has no
 /// rows. The reader must outlive the stream.
 template <typename Rows>
 class RowStream {

@@ -1,4 +1,4 @@
-#include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <functional>
+#include <deque>
 #include <limits>
 #include <optional>
 #include <span>
@@ -31,46 +31,62 @@
 namespace clearway {
 namespace {
 
-/// Reads rows of several columns together. The thread that calls HDF5 reads their chunks, and many
-/// threads then check, decode and hash these. run() returns only whether all is well; to find out
-/// what is wrong, the caller reads the rows again one after the other, so that messages are always
-/// the same.
+/// Reads rows of several columns together. The thread that calls HDF5 reads their chunks, and
+/// meanwhile other threads check, decode and hash those that were read. finish() returns only
+/// whether all is well; to find out what is wrong, the caller reads the rows again one after the
+/// other, so that messages are always the same.
 class ParallelRead {
  public:
+  ParallelRead() = default;
+  ParallelRead(const ParallelRead&) = delete;
+  ParallelRead& operator=(const ParallelRead&) = delete;
+  ~ParallelRead() { tasks_.wait(); }
+
   /// Reads the chunks of rows from `first`, which begins a chunk, as many as `out` has. chunks:
-  /// holds them, and must outlive this object. check(first row, values) throws InputError for rows
-  /// that are wrong and is thread safe. Returns false where the chunks cannot be read.
+  /// holds them, and must outlive this object as `out` and `hash` must. check(first row, values)
+  /// throws InputError for rows that are wrong and is thread safe. Returns false where the chunks
+  /// cannot be read.
   template <typename Number, typename Value, typename Check>
   bool add(const hdf5::Rows<Number>& dataset, std::uint64_t first, std::span<Value> out,
            hdf5::StoredChunks& chunks, Xxh64Stream& hash, Check check) {
-    if (!dataset.read_chunks(first, out.size(), chunks)) return false;
     const std::uint64_t rows = dataset.chunk_rows();
-    columns_.emplace_back([&chunks, out, &hash] {
-      std::size_t left = out.size_bytes();
+    const bool read = dataset.read_chunks(first, out.size(), chunks, [&](std::size_t i) {
+      const std::size_t from = i * rows;
+      const std::span<Value> part = out.subspan(from, std::min(rows, out.size() - from));
+      run([this, chunk = chunks[i], part, check, row = first + from] {
+        if (!well_) return;
+        if (hdf5::is_sealed(chunk)) {
+          std::memcpy(part.data(), chunk.data(), part.size_bytes());
+          if (passes(check, row, std::span<const Value>(part))) return;
+        }
+        well_ = false;
+      });
+    });
+    if (!read) return false;
+    Column& column = columns_.emplace_back(Column{hash, &hash});
+    run([&column, &chunks, bytes = out.size_bytes()] {
+      std::size_t left = bytes;
       for (std::size_t i = 0; i < chunks.size(); ++i) {
         const std::span<const std::byte> chunk = chunks[i];
         const std::size_t used = std::min(left, chunk.size() - hdf5::kChecksumBytes);
-        hash.update(chunk.first(used));
+        column.hash.update(chunk.first(used));
         left -= used;
       }
     });
-    for (std::size_t i = 0; i < chunks.size(); ++i) {
-      const std::size_t from = i * rows;
-      const std::span<Value> part = out.subspan(from, std::min(rows, out.size() - from));
-      pieces_.emplace_back([chunk = chunks[i], part, check, row = first + from] {
-        if (!hdf5::is_sealed(chunk)) return false;
-        std::memcpy(part.data(), chunk.data(), part.size_bytes());
-        return passes(check, row, std::span<const Value>(part));
-      });
-    }
     return true;
   }
 
-  /// Whether all rows are intact and pass their checks. If so, the rows and the hashes are
-  /// complete.
-  bool run() const;
+  /// Waits for all that was added. Returns whether all rows are intact and pass their checks; if
+  /// so, the rows and the hashes are complete.
+  bool finish();
 
  private:
+  /// The hash of a column, which becomes the caller's where all is well.
+  struct Column {
+    Xxh64Stream hash;
+    Xxh64Stream* of_caller;
+  };
+
   template <typename Check, typename Value>
   static bool passes(const Check& check, std::uint64_t row, std::span<const Value> values) {
     try {
@@ -81,28 +97,22 @@ class ParallelRead {
     return true;
   }
 
-  std::vector<std::function<bool()>> pieces_;
-  // Tasks that hash one column each, run once all pieces are intact.
-  std::vector<std::function<void()>> columns_;
+  template <typename Task>
+  void run(Task task) {
+    scope_.begin();
+    tasks_.run(piece_of(scope_, std::move(task)));
+  }
+
+  ParallelScope scope_;
+  tbb::task_group tasks_;
+  std::atomic<bool> well_ = true;
+  std::deque<Column> columns_;
 };
 
-template <typename Visit>
-void for_each_index(std::size_t count, Visit visit) {
-  const ParallelScope scope;
-  const auto piece = piece_of(scope, visit);
-  in_all_threads([&] {
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, count, piece);
-  });
-}
-
-bool ParallelRead::run() const {
-  std::atomic<bool> well = true;
-  for_each_index(pieces_.size(), [&](std::size_t i) {
-    if (!pieces_[i]()) well = false;
-  });
-  if (!well) return false;
-  for_each_index(columns_.size(), [&](std::size_t i) { columns_[i](); });
+bool ParallelRead::finish() {
+  tasks_.wait();
+  if (!well_) return false;
+  for (const Column& column : columns_) *column.of_caller = column.hash;
   return true;
 }
 
@@ -227,9 +237,9 @@ class TableReader {
     if (!whole) return false;
     std::array<hdf5::StoredChunks, kColumnsOf<Rows>> of_this_call;
     auto& chunks = count <= kMostKeptRows ? chunks_ : of_this_call;
-    ParallelRead read;
-    bool readable = true;
-    as_input(name_, [&] {
+    const auto read_all = [&] {
+      ParallelRead read;
+      bool readable = true;
       std::size_t i = 0;
       for_each_column<Rows>(datasets_, [&](const auto& column, const auto& dataset) {
         hdf5::StoredChunks& of_column = chunks[i];
@@ -241,8 +251,9 @@ class TableReader {
                               column.check(read_from(row), column.dataset, values);
                             });
       });
-    });
-    return readable && read.run() && is_ordered(out);
+      return readable && read.finish();
+    };
+    return in_all_threads([&] { return as_input(name_, read_all); }) && is_ordered(out);
   }
 
   /// Whether the rows are in order also from each chunk to the next, which no check of a chunk

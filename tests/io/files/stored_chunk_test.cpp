@@ -41,7 +41,7 @@ TEST_CASE("a chunk's checksum is that of HDF5") {
   const hdf5::Id file = hdf5::open_file(folder / "a.h5");
   const auto rows = hdf5::Rows<std::uint32_t>::open(file, "values", 0, "a.h5");
   hdf5::StoredChunks chunks;
-  REQUIRE(rows.read_chunks(0, count, chunks));
+  REQUIRE(rows.read_chunks(0, count, chunks, [](std::size_t) {}));
   check_equal(chunks.size(), (count + 65'535) / 65'536);
   for (std::size_t i = 0; i < chunks.size(); ++i) {
     std::vector<std::byte> chunk(chunks[i].begin(), chunks[i].end());
@@ -79,7 +79,7 @@ TEST_CASE("the checksum of an odd number of bytes is that of HDF5") {
       const hdf5::Id file = hdf5::open_file(folder / "a.h5");
       const auto rows = hdf5::Rows<std::uint8_t>::open(file, "values", 0, "a.h5");
       hdf5::StoredChunks chunks;
-      REQUIRE(rows.read_chunks(0, count, chunks));
+      REQUIRE(rows.read_chunks(0, count, chunks, [](std::size_t) {}));
       REQUIRE(chunks.size() == count / 65'536 + 1);
       std::vector<std::byte> chunk(chunks[0].begin(), chunks[0].end());
       CHECK(hdf5::is_sealed(chunk));
