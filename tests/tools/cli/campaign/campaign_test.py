@@ -310,6 +310,29 @@ def failures(test):
     model.write_bytes(sound)
 
 
+def stores_near_a_path(test):
+    """A question that the corridor holds has the rows of the whole store, and one that reaches beyond
+    it fails with the distance that would do."""
+    near = test.work / "near.h5"
+    program("convert", test.work / "hall/environment.las", "--cell-points", 1000, "--near",
+            test.work / "hall/trajectory.txt", "--within", 3, "-o", near)
+    path = test.work / "corridor"
+    test.plan(path=path, environments={"near": "near.h5"}, vehicles={"v00": "vehicles/v00.ply"},
+              routes={"r00": "routes/r00.txt"}, radii=[0.1, 30])
+    done = outcome("campaign", "run", path, "--all")
+    expect(done.returncode == 3, f"exit code {done.returncode}: {done.stderr}")
+    held, beyond = status(path)["list"]
+    expect(held["status"] == "done" and beyond["status"] == "failed", f"{held}, {beyond}")
+    expect("within 3 m of a path" in beyond["message"] and "--within 32." in beyond["message"], beyond["message"])
+    whole = test.work / "whole.h5"
+    program("run", "--env", test.work / "site.h5", "--model", test.work / "vehicles/v00.ply",
+            "--trajectory", test.work / "routes/r00.txt", "--radius", 0.1, "--first-pose", "-o", whole)
+    program("conflicts", whole, "--model", test.work / "vehicles/v00.ply", "--trajectory",
+            test.work / "routes/r00.txt", "-o", test.work / "whole.csv")
+    expect((path / "runs/v00/r00/0.1/conflicts.csv").read_bytes() ==
+           (test.work / "whole.csv").read_bytes(), "other conflicts than those of the whole store")
+
+
 def signals(test):
     """TERM ends the tasks, and the campaign with 5; those that had not begun are missing."""
     path = test.work / "stopped"
@@ -400,7 +423,8 @@ def misuse(test):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         test = Test(pathlib.Path(folder))
-        for check in [errors_name_the_key, files_that_a_pattern_misses_are_named, plans_are_stable, tasks_are_idempotent, by_hand,
+        for check in [errors_name_the_key, files_that_a_pattern_misses_are_named, plans_are_stable,
+                      tasks_are_idempotent, by_hand, stores_near_a_path,
                       conflicts_are_those_of_a_single_run, boxes_need_no_file, one_at_a_time, new_plans_keep_results, stores_are_opened_once, failures, signals, crashes, page, misuse]:
             begin = time.monotonic()
             check(test)
