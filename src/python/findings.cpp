@@ -7,6 +7,8 @@
 
 #include "clearway/body.hpp"
 #include "clearway/conflicts.hpp"
+#include "clearway/error.hpp"
+#include "clearway/ledger.hpp"
 #include "clearway/stations.hpp"
 #include "clearway/trajectory.hpp"
 #include "core/describe/conflict.hpp"
@@ -23,10 +25,41 @@ namespace {
 
 using namespace py::literals;
 
-/// Conflicts, and the conflict of each row of the result.
+/// Conflicts, the conflict of each row of the result, and what a ledger says of them.
 struct GroupedConflicts : Conflicts {
   std::vector<std::uint32_t> conflict_of = {};
+  std::optional<Ledger> ledger = {};
 };
+
+/// The ledger that conflicts are compared with; without a table none.
+struct LedgerArguments {
+  LedgerOptions options;
+  SharedStore* store = nullptr;  ///< null: not given
+};
+
+/// Groups a result, and compares its conflicts with a ledger. Called without the GIL.
+GroupedConflicts grouped(const Result& result, const std::vector<Pose>& path,
+                         const ConflictOptions& find, const LedgerArguments& ledger) {
+  GroupedConflicts found;
+  std::vector<std::uint32_t> near;
+  static_cast<Conflicts&>(found) = find_conflicts(result, path, find, &found.conflict_of, &near);
+  if (ledger.options.table.empty()) return found;
+  LedgerOptions options = ledger.options;
+  options.memory_bytes = find.memory_bytes;
+  options.threads = find.threads;
+  options.progress = find.progress;
+  options.stop = find.stop;
+  const GroupedResult of{result, found, found.conflict_of, near, path};
+  if (ledger.store == nullptr) {
+    found.ledger = apply_ledger(of, find, options);
+    return found;
+  }
+  found.ledger = in_turn(*ledger.store, find.stop, [&](const Store& own) {
+    options.store = &own;
+    return apply_ledger(of, find, options);
+  });
+  return found;
+}
 
 /// The stations of labels, of which there may be none.
 std::vector<double> stations_of(const PoseLabels* labels) {
@@ -60,6 +93,8 @@ void add_conflicts(py::module_& module) {
           "conflict_of", [](const Found& c) { return to_array(c.conflict_of); },
           "The id of the conflict of each row of the result: n uint32; 0 where its group is too "
           "small to be listed.")
+      .def_readonly("ledger", &Found::ledger,
+                    "What the ledger says of them: a Ledger; None where none was given.")
       .def_readonly("gap", &Found::gap,
                     "How far apart points of one conflict are at most: the gap that was used.")
       .def_readonly("min_points", &Found::min_points,
@@ -93,7 +128,20 @@ void add_find_conflicts(py::module_& module) {
       [](const Result& result, const py::object& poses, double gap, std::uint64_t min_points,
          double split, double chainage_start, const std::string& forward, const std::string& up,
          const py::object& model, const std::vector<PlacedBody>& bodies, const PoseLabels* labels,
-         std::uint64_t memory_bytes, int threads, py::object progress, py::object stop) {
+         const py::object& ledger, bool update, std::optional<double> worse_by, std::string date,
+         SharedStore* store, std::uint64_t memory_bytes, int threads, py::object progress,
+         py::object stop) {
+        LedgerArguments compared;
+        if (!ledger.is_none()) compared.options.table = path_of(ledger);
+        compared.options.update = update;
+        compared.options.worse_by = worse_by;
+        compared.options.date = std::move(date);
+        compared.store = store;
+        if (ledger.is_none() && (update || worse_by || store != nullptr)) {
+          throw UsageError(
+              "ledger: expected the table, because update, worse_by and store are "
+              "about it");
+        }
         ConflictOptions options = conflict_options(gap, min_points, split, chainage_start, forward,
                                                    up, memory_bytes, threads);
         const std::vector<Pose> path = poses_of(poses_array(poses, "poses"), "poses");
@@ -106,20 +154,16 @@ void add_find_conflicts(py::module_& module) {
         if (shape) options.model = &*shape;
         Watch watch(std::move(progress), py::none(), std::move(stop));
         watch.attach(options);
-        return watch.run([&] {
-          GroupedConflicts found;
-          static_cast<Conflicts&>(found) =
-              find_conflicts(result, path, options, &found.conflict_of);
-          return found;
-        });
+        return watch.run([&] { return grouped(result, path, options, compared); });
       },
       "result"_a, "poses"_a, py::kw_only(), "gap"_a = ConflictOptions{}.gap,
       "min_points"_a = ConflictOptions{}.min_points, "split"_a = ConflictOptions{}.split,
       "chainage_start"_a = 0.0, "forward"_a = "+x", "up"_a = "+z", "model"_a = py::none(),
-      "bodies"_a = py::tuple(), "labels"_a = py::none(),
+      "bodies"_a = py::tuple(), "labels"_a = py::none(), "ledger"_a = py::none(),
+      "update"_a = false, "worse_by"_a = py::none(), "date"_a = "", "store"_a = py::none(),
       "memory_bytes"_a = ConflictOptions{}.memory_bytes, "threads"_a = 0, "progress"_a = py::none(),
       "stop"_a = py::none(),
-      R"(find_conflicts(result, poses, *, gap=0.0, min_points=0, split=25.0, chainage_start=0.0, forward='+x', up='+z', model=None, bodies=(), labels=None, memory_bytes=4294967296, threads=0, progress=None, stop=None)
+      R"(find_conflicts(result, poses, *, gap=0.0, min_points=0, split=25.0, chainage_start=0.0, forward='+x', up='+z', model=None, bodies=(), labels=None, ledger=None, update=False, worse_by=None, date='', store=None, memory_bytes=4294967296, threads=0, progress=None, stop=None)
 --
 
 Group the colliding points of a result, place by place. Returns a Conflicts.
@@ -138,6 +182,14 @@ model: the one model of the search, an n x 3 array or a Model: for own_shift_lef
 bodies: the bodies of the search, where it was one of a vehicle; sides and offsets are then
     seen from the body that touches.
 labels: the PoseLabels that read_trajectory() filled; with stations, conflicts have theirs too.
+ledger: the table of a ledger, a CSV file, which the conflicts are compared with. Its places are in
+    a file beside it.
+update: whether to write into the ledger what was found; the files are made if they do not exist.
+worse_by: an accepted conflict is worse where it comes nearer, or needs a larger shift or trim, by
+    more than this, in metres; None stands for 0.02.
+date: the day of the run, such as '2026-06-30'; empty: today in UTC.
+store: the Store that was searched. Without it, or without the model or the bodies, no row of the
+    ledger is gone.
 memory_bytes, threads, progress, stop: as search() takes them.)");
 }
 

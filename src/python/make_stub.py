@@ -116,6 +116,9 @@ TYPES = {
     "centroid": "_Doubles",
     "nearest_point": "_Doubles | None",
     "conflict_of": "_Poses",
+    "Ledger.counts()": "dict[str, int]",
+    "Ledger.columns()": "dict[str, Any]",  # lists of texts and arrays of numbers
+    "OutsideOfAccepted.verdict": 'Literal["clear", "conflict", "undecided", "unknown"]',
     "window": "tuple[float, float, float, float]",
     "SectionParameters.pivots": "tuple[float, float] | None",
     "SectionReport.device": 'Literal["cpu", "cuda"]',

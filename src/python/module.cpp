@@ -21,6 +21,7 @@ PYBIND11_MODULE(_clearway, module) {
   add_results(module);
   add_session(module);
   add_merge(module);
+  add_ledger(module);
   add_findings(module);
   add_section(module);
   add_smooth(module);

@@ -85,6 +85,7 @@ void add_bodies(py::module_& module);       // bodies.cpp
 void add_results(py::module_& module);      // results.cpp
 void add_session(py::module_& module);      // session.cpp, after what its answers have
 void add_findings(py::module_& module);     // findings.cpp
+void add_ledger(py::module_& module);       // ledger.cpp
 void add_section(py::module_& module);      // section.cpp
 void add_smooth(py::module_& module);       // smooth.cpp
 void add_shifts(py::module_& module);       // shifts.cpp

@@ -36,7 +36,7 @@ void add_summary(py::module_& module) {
 }
 
 constexpr const char* kWriteReport =
-    R"(write_report(result, store, model, poses, output, *, title='', project='', client='', author='', date='', result_name='', environment_name='', model_name='', trajectory_name='', classes=(), max_points=1000000, gap=0.0, min_points=0, split=25.0, chainage_start=0.0, forward='+x', up='+z', memory_bytes=4294967296, threads=0, labels=None, every=0.0, shifts=None, warnings=(), bodies=(), overwrite=False, progress=None, stop=None)
+    R"(write_report(result, store, model, poses, output, *, title='', project='', client='', author='', date='', result_name='', environment_name='', model_name='', trajectory_name='', classes=(), max_points=1000000, gap=0.0, min_points=0, split=25.0, chainage_start=0.0, forward='+x', up='+z', memory_bytes=4294967296, threads=0, labels=None, every=0.0, shifts=None, ledger=None, ledger_name='', warnings=(), bodies=(), overwrite=False, progress=None, stop=None)
 --
 
 Write one HTML file that needs nothing else: verdict, profile, plan, conflicts, 3-D view.
@@ -57,6 +57,8 @@ every: metres; the length of a stretch in the table of stations. 0: 5, or so lon
     at most 200.
 shifts: the ShiftTable of find_shifts() for conflicts that were found in the same way: the page
     shows what frees each of them.
+ledger: the Ledger of the conflicts, which find_conflicts(ledger=) gives with the same options.
+ledger_name: the name of its table, for the page to show.
 warnings: messages of reading the inputs, which the page shows. Warnings of the search are in the
     result and shown in any case; they may be among these.
 bodies: the bodies of the search, where it was one of a vehicle; then model is () or None, and
@@ -74,9 +76,9 @@ void add_write_report(py::module_& module) {
          std::vector<double> classes, std::uint64_t max_points, double gap,
          std::uint64_t min_points, double split, double chainage_start, const std::string& forward,
          const std::string& up, std::uint64_t memory_bytes, int threads, const PoseLabels* labels,
-         double every, const ShiftTable* shifts, const py::object& warnings,
-         const std::vector<PlacedBody>& bodies, bool overwrite, py::object progress,
-         py::object stop) {
+         double every, const ShiftTable* shifts, const Ledger* ledger, std::string ledger_name,
+         const py::object& warnings, const std::vector<PlacedBody>& bodies, bool overwrite,
+         py::object progress, py::object stop) {
         ReportOptions options{{std::move(title), std::move(project), std::move(client),
                                std::move(author), std::move(date)},
                               std::move(result_name),
@@ -92,6 +94,8 @@ void add_write_report(py::module_& module) {
                               messages_of(warnings),
                               overwrite};
         if (shifts != nullptr) options.shifts = *shifts;
+        if (ledger != nullptr) options.ledger = *ledger;
+        options.ledger_name = std::move(ledger_name);
         Watch watch(std::move(progress), py::none(), std::move(stop));
         watch.attach(options.conflicts);
         const bool has_no_model = model.is_none() && !bodies.empty();
@@ -114,9 +118,9 @@ void add_write_report(py::module_& module) {
       "gap"_a = ConflictOptions{}.gap, "min_points"_a = ConflictOptions{}.min_points,
       "split"_a = ConflictOptions{}.split, "chainage_start"_a = 0.0, "forward"_a = "+x",
       "up"_a = "+z", "memory_bytes"_a = ConflictOptions{}.memory_bytes, "threads"_a = 0,
-      "labels"_a = py::none(), "every"_a = 0.0, "shifts"_a = py::none(), "warnings"_a = py::tuple(),
-      "bodies"_a = py::tuple(), "overwrite"_a = false, "progress"_a = py::none(),
-      "stop"_a = py::none(), kWriteReport);
+      "labels"_a = py::none(), "every"_a = 0.0, "shifts"_a = py::none(), "ledger"_a = py::none(),
+      "ledger_name"_a = "", "warnings"_a = py::tuple(), "bodies"_a = py::tuple(),
+      "overwrite"_a = false, "progress"_a = py::none(), "stop"_a = py::none(), kWriteReport);
 }
 
 }  // namespace

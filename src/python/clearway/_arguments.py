@@ -221,9 +221,9 @@ _CHECKS = {
     "table": _one_of("bands", "stations", "boxes", "cells", "bin-cells", "unknown-cells",
                      "unknown-bin-cells"),
     **dict.fromkeys(("name", "title", "project", "client", "author", "date", "result_name",
-                     "environment_name", "model_name", "trajectory_name", "alignment",
+                     "environment_name", "model_name", "trajectory_name", "alignment", "ledger_name",
                      "environment_crs"), _text),
-    **dict.fromkeys(("path", "file", "output"), _path),
+    **dict.fromkeys(("path", "file", "output", "ledger"), _path),
     **dict.fromkeys(("inputs", "parts"), _paths),
     **dict.fromkeys(("poses", "points", "vertices", "triangles", "path_pose", "lo", "hi",
                      "outline"), _anything),
@@ -250,6 +250,7 @@ _CHECKS = {
 }
 # Poses, where elsewhere it is a file; a name, where elsewhere it is a length.
 _OF_CALL = {("follow", "path"): _anything, ("unsearched_stretches", "path"): _anything,
+            ("write_report", "ledger"): _kind(_clearway.Ledger),
             ("read_alignment", "profile"): _text, ("box_model", "height"): _above_0,
             ("Section.symmetric_width", "band"): _kind(_clearway.SectionBand)}
 
