@@ -40,8 +40,8 @@ LedgerFiles open_ledger(const LedgerOptions& options, const std::string& unit) {
   }
   if (exists(options.table)) return read_ledger(options.table, unit);
   if (exists(places)) {
-    throw InputError(name + ": is missing, and its places are there: " + places.string() +
-                     "; restore the table, or remove the places to begin a new ledger");
+    throw InputError(name + ": is missing, and its places are there: " + places.string() + "; " +
+                     advice_on_missing_table(options.table, unit));
   }
   if (!options.update) {
     throw UsageError(name + ": does not exist", Remedy::kMakeLedger);

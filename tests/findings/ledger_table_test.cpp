@@ -1,6 +1,8 @@
 // The files of a ledger: what is read and kept of a table, and which pairs of files are refused.
 #include "findings/ledger/ledger_table.hpp"
 
+#include <sys/ptrace.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -47,6 +49,56 @@ std::string refused(LedgerScene& scene, const RoadScan& scan) {
     return error.what();
   }
   return "";
+}
+
+/// The calls of the system that change files or their names.
+bool changes_files(std::uint64_t number) {
+  switch (number) {
+    case SYS_write:
+    case SYS_pwrite64:
+    case SYS_ftruncate:
+    case SYS_openat:
+    case SYS_renameat2:
+    case SYS_fsync:
+    case SYS_unlinkat:
+#ifdef SYS_rename
+    case SYS_rename:
+    case SYS_unlink:
+#endif
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// Calls `work` in a process of its own, which is killed right before its call number `at` that
+/// changes files. Returns whether it came so far; none where processes cannot be traced here.
+template <typename Work>
+std::optional<bool> killed_at(int at, const Work& work) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (::ptrace(PTRACE_TRACEME, 0, nullptr, nullptr) != 0) ::_exit(2);
+    ::raise(SIGSTOP);
+    work();
+    ::_exit(0);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  if (!WIFSTOPPED(status)) return std::nullopt;
+  ::ptrace(PTRACE_SETOPTIONS, child, nullptr, PTRACE_O_TRACESYSGOOD | PTRACE_O_EXITKILL);
+  for (int calls = 0;;) {
+    ::ptrace(PTRACE_SYSCALL, child, nullptr, nullptr);
+    ::waitpid(child, &status, 0);
+    if (!WIFSTOPPED(status)) return false;
+    if (WSTOPSIG(status) != (SIGTRAP | 0x80)) continue;
+    __ptrace_syscall_info info{};
+    ::ptrace(PTRACE_GET_SYSCALL_INFO, child, sizeof info, &info);
+    if (info.op != PTRACE_SYSCALL_INFO_ENTRY || !changes_files(info.entry.nr)) continue;
+    if (calls++ < at) continue;
+    ::kill(child, SIGKILL);
+    ::waitpid(child, &status, 0);
+    return true;
+  }
 }
 
 RoadScan one_panel() { return road_with({panel(10, 0.95)}); }
@@ -223,6 +275,57 @@ TEST_CASE("an update that is killed between its two files is noticed, and can be
   CHECK_THAT(message, Contains("an update was interrupted"));
   CHECK_THAT(message, Contains("L.csv.partial: rename it to L.csv"));
   std::filesystem::rename(partial, scene.table());
+  CHECK(refused(scene, one_panel()).empty());
+}
+
+TEST_CASE(
+    "an update that is killed at any moment leaves the old ledger, the new one, or a refusal") {
+  LedgerScene scene;
+  scene.run(one_panel(), RoadQuestion());
+  const std::string old_table = scene.text(), old_places = text_of_file(scene.places());
+  scene.run(road_with({panel(10, 0.95), panel(15, 0.95)}), RoadQuestion());
+  const std::string new_table = scene.text();
+  const LedgerFiles files = read_ledger(scene.table(), "m");
+  REQUIRE(files.table.rows() == 2);
+  int before = 0, refused = 0, after = 0;
+  for (int at = 0;; ++at) {
+    CAPTURE(at);
+    for (const char* partial : {"L.csv.partial", "L.places.h5.partial"}) {
+      std::filesystem::remove(scene.folder / partial);
+    }
+    scene.write(old_table);
+    write_text(scene.places(), old_places);
+    const auto killed = killed_at(at, [&] { LedgerUpdate(scene.table()).publish(files, "m"); });
+    if (!killed) {
+      WARN("processes cannot be traced here");
+      return;
+    }
+    try {
+      const LedgerFiles read = read_ledger(scene.table(), "m");
+      const bool is_new = scene.text() == new_table;
+      CHECK((is_new || scene.text() == old_table));
+      CHECK(read.places.size() == (is_new ? 2 : 1));
+      ++(is_new ? after : before);
+    } catch (const InputError& error) {
+      CHECK_THAT(error.what(), Contains("an update was interrupted"));
+      std::filesystem::rename(scene.folder / "L.csv.partial", scene.table());
+      CHECK(read_ledger(scene.table(), "m").places.size() == 2);
+      CHECK(scene.text() == new_table);
+      ++refused;
+    }
+    if (!*killed) break;
+  }
+  CHECK(before > 10);
+  CHECK(refused > 0);
+  CHECK(after > 0);
+}
+
+TEST_CASE("a first update that is killed between its two files can be completed") {
+  LedgerScene scene;
+  scene.run(one_panel(), RoadQuestion());
+  std::filesystem::rename(scene.table(), scene.folder / "L.csv.partial");
+  CHECK_THAT(refused(scene, one_panel()), Contains("L.csv.partial: rename it to L.csv"));
+  std::filesystem::rename(scene.folder / "L.csv.partial", scene.table());
   CHECK(refused(scene, one_panel()).empty());
 }
 

@@ -88,6 +88,11 @@ bool partial_agrees(const std::filesystem::path& table, const std::vector<Ledger
   }
 }
 
+std::string advice_to_complete(const std::filesystem::path& table) {
+  return "an update was interrupted. The new table is complete in " + partial_of(table).string() +
+         ": rename it to " + table.filename().string();
+}
+
 /// Whether a process that lives is writing the ledger.
 bool is_being_written(const std::filesystem::path& table) {
   try {
@@ -98,6 +103,12 @@ bool is_being_written(const std::filesystem::path& table) {
 }
 
 }  // namespace
+
+std::string advice_on_missing_table(const std::filesystem::path& table, const std::string& unit) {
+  return partial_agrees(table, read_places(places_of(table), unit))
+             ? advice_to_complete(table)
+             : "restore the table, or remove the places to begin a new ledger";
+}
 
 bool wait_for_update(const std::filesystem::path& table, int& waits) {
   constexpr int kMostWaits = 500;
@@ -131,10 +142,7 @@ LedgerFiles read_ledger(const std::filesystem::path& table, const std::string& u
       "restore both files as one run wrote them; a row that is done stays with "
       "the status resolved. Without " +
       beside.string() + " the ledger accepts nothing";
-  if (partial_agrees(table, places)) {
-    advice = "an update was interrupted. The new table is complete in " +
-             partial_of(table).string() + ": rename it to " + table.filename().string();
-  }
+  if (partial_agrees(table, places)) advice = advice_to_complete(table);
   throw InputError(table.string() + " and " + beside.string() +
                    ": are of different runs, because " + difference + "; " + advice);
 }

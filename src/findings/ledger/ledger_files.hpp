@@ -23,6 +23,9 @@ struct LedgerFiles {
 /// no places.
 LedgerFiles read_ledger(const std::filesystem::path& table, const std::string& unit);
 
+/// What to do where there are places and no table. Throws as read_places().
+std::string advice_on_missing_table(const std::filesystem::path& table, const std::string& unit);
+
 /// Waits a moment where another process is writing the ledger, at most so often. Returns whether it
 /// did, so that the files are to be read again.
 bool wait_for_update(const std::filesystem::path& table, int& waits);
