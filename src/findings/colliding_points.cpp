@@ -6,6 +6,7 @@
 #include <atomic>
 #include <string>
 
+#include "core/util/tsan_annotations.hpp"
 #include "io/files/input_error.hpp"
 #include "io/result/result.hpp"
 #include "io/scans/requantize.hpp"
@@ -20,7 +21,8 @@ constexpr std::size_t kAll = ~std::size_t{0};
 std::size_t requantize_rows(const Quantisation& quantisation, const std::vector<Vec3>& xyz,
                             QuantumPoint* out) {
   std::atomic<std::size_t> bad{kAll};
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, xyz.size(), 4096), [&](const auto& range) {
+  const ParallelScope scope;
+  const auto requantize = piece_of(scope, [&](const tbb::blocked_range<std::size_t>& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       for (int k = 0; k < 3; ++k) {
         const auto q = quantum_at(quantisation, k, xyz[i][k]);
@@ -31,6 +33,8 @@ std::size_t requantize_rows(const Quantisation& quantisation, const std::vector<
       }
     }
   });
+  scope.begin();
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, xyz.size(), 4096), requantize);
   return bad.load();
 }
 

@@ -12,6 +12,8 @@
 #include <numeric>
 #include <vector>
 
+#include "core/util/tsan_annotations.hpp"
+
 namespace clearway {
 namespace {
 
@@ -78,9 +80,14 @@ class PlaceTree {
         [axis](const QuantumPoint& a, const QuantumPoint& b) { return a.q[axis] < b.q[axis]; });
     const auto left = [&] { build(begin, middle, (axis + 1) % 3); };
     const auto right = [&] { build(middle + 1, end, (axis + 1) % 3); };
-    if (end - begin > kParallel) return tbb::parallel_invoke(left, right);
-    left();
-    right();
+    if (end - begin > kParallel) {
+      const ParallelScope scope;
+      scope.begin();
+      tbb::parallel_invoke(piece_of(scope, left), piece_of(scope, right));
+    } else {
+      left();
+      right();
+    }
   }
 
   void look(std::size_t begin, std::size_t end, int axis, const QuantumPoint& point,

@@ -36,9 +36,11 @@ inline void release(const void*) {}
 class ParallelScope {
  public:
   ParallelScope() = default;
-  ~ParallelScope() { acquire(&ended_); }
+  ~ParallelScope() { end(); }
   /// To be called right before the parallel call, when its arguments are complete.
   void begin() const { release(&begun_); }
+  /// To be called after the parallel call where its results are read within the scope.
+  void end() const { acquire(&ended_); }
   ParallelScope(const ParallelScope&) = delete;
   ParallelScope& operator=(const ParallelScope&) = delete;
 

@@ -90,6 +90,7 @@ std::string deflated_in_blocks(std::string_view bytes, int level) {
       scope, [&](std::size_t i) { blocks[i] = deflated_block(bytes, i * kDeflateBlock, level); });
   scope.begin();
   tbb::parallel_for(std::size_t{0}, blocks.size(), piece);
+  scope.end();
   constexpr std::size_t kHeader = 2;
   std::string out = deflated({}, DeflateForm::kZlib, level).substr(0, kHeader);
   uLong checksum = 1;

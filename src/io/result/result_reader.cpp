@@ -40,7 +40,7 @@ class ParallelRead {
   ParallelRead() = default;
   ParallelRead(const ParallelRead&) = delete;
   ParallelRead& operator=(const ParallelRead&) = delete;
-  ~ParallelRead() { tasks_.wait(); }
+  ~ParallelRead() { wait(); }
 
   /// Reads the chunks of rows from `first`, which begins a chunk, as many as `out` has. chunks:
   /// holds them, and must outlive this object as `out` and `hash` must. check(first row, values)
@@ -103,6 +103,11 @@ class ParallelRead {
     tasks_.run(piece_of(scope_, std::move(task)));
   }
 
+  void wait() {
+    tasks_.wait();
+    scope_.end();
+  }
+
   ParallelScope scope_;
   tbb::task_group tasks_;
   std::atomic<bool> well_ = true;
@@ -110,7 +115,7 @@ class ParallelRead {
 };
 
 bool ParallelRead::finish() {
-  tasks_.wait();
+  wait();
   if (!well_) return false;
   for (const Column& column : columns_) *column.of_caller = column.hash;
   return true;
