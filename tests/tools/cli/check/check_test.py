@@ -204,6 +204,22 @@ class Finding(Site):
         self.check("scans --model model.ply --trajectory far.txt --radius 0.1 -o far", 0)
         self.check("scans --model model.ply --trajectory far.txt --radius 0.1 -o far --strict", 3)
 
+    def test_a_ledger_is_on_the_page_and_decides_about_success(self):
+        def ledger_of_page():
+            page = (self.folder / "site/report.html").read_text()
+            return json.loads(re.search(r'id="facts"[^>]*>(.*?)</script>', page, re.S).group(1))["ledger"]
+
+        words = f"scans {QUESTION} -o site --min-points 1 --ledger known.csv --date 2026-03-01 --fail-on-collision"
+        self.check(words + " --update", exit_code=1)
+        found = ledger_of_page()
+        self.assertEqual([found["name"], found["date"], found["new"]],
+                         ["known.csv", "2026-03-01", len(found["conflicts"])])
+        table = self.folder / "known.csv"
+        table.write_text(table.read_text().replace(",new,", ",accepted,"))
+        done = self.check(words, exit_code=0)
+        self.assertIn("The verdict stays conflict. The ledger accepts all", done.stdout)
+        self.assertEqual(ledger_of_page()["accepted"], found["new"])
+
     def test_inputs_of_all_kinds(self):
         whole = self.asked("")
         verdict = whole.stdout.splitlines()[-1]
