@@ -1,0 +1,97 @@
+// CGAL: Kd_tree with Fuzzy_sphere, which is exact in doubles with an epsilon of zero.
+
+#include <CGAL/Fuzzy_sphere.h>
+#include <CGAL/Kd_tree.h>
+#include <CGAL/Search_traits_3.h>
+#include <CGAL/Search_traits_adapter.h>
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/property_map.h>
+#include <CGAL/version.h>
+
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include "bench/peers/programs/peer.hpp"
+#include "core/geometry/predicate.hpp"
+
+namespace clearway::bench {
+namespace {
+
+using Kernel = CGAL::Simple_cartesian<double>;
+using Point = Kernel::Point_3;
+using Entry = std::tuple<Point, std::uint32_t>;
+using Traits = CGAL::Search_traits_adapter<Entry, CGAL::Nth_of_tuple_property_map<0, Entry>,
+                                           CGAL::Search_traits_3<Kernel>>;
+// Stores the coordinates of a leaf side by side, which the manual advises for speed.
+using Tree = CGAL::Kd_tree<Traits, CGAL::Sliding_midpoint<Traits>, CGAL::Tag_true, CGAL::Tag_true>;
+using Sphere = CGAL::Fuzzy_sphere<Traits>;
+
+/// An output iterator that marks what it is given.
+class Marker {
+ public:
+  using iterator_category = std::output_iterator_tag;
+  using value_type = void;
+  using difference_type = std::ptrdiff_t;
+  using pointer = void;
+  using reference = void;
+
+  explicit Marker(Marks& marks) : marks_(&marks) {}
+  Marker& operator*() { return *this; }
+  Marker& operator++() { return *this; }
+  Marker operator++(int) { return *this; }
+  Marker& operator=(const Entry& entry) {
+    marks_->mark(std::get<1>(entry));
+    return *this;
+  }
+
+ private:
+  Marks* marks_;
+};
+
+class Cgal : public Peer {
+ public:
+  Cgal(std::span<const Vec3> points, const PeerOptions& options) : options_(options) {
+    std::vector<Entry> entries;
+    entries.reserve(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      entries.emplace_back(Point(points[i].x, points[i].y, points[i].z),
+                           static_cast<std::uint32_t>(i));
+    }
+    tree_.insert(entries.begin(), entries.end());
+    tree_.build<CGAL::Parallel_tag>();
+  }
+
+  nlohmann::json about() const override {
+    return {{"name", "CGAL"},
+            {"version", CGAL_VERSION_STR},
+            {"settings",
+             "Kd_tree of doubles with cached coordinates, built by all threads, "
+             "Fuzzy_sphere with epsilon 0, poses in parallel"}};
+  }
+
+  void search(std::span<const Pose> poses, std::span<const Vec3> model, Marks& marks) override {
+    // A sphere includes its boundary, so the largest radius below ours gives what is nearer.
+    const double radius = std::nextafter(options_.radius, 0.0);
+#pragma omp parallel for schedule(dynamic, 1) num_threads(options_.threads)
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      for (const Vec3& m : model) {
+        const Vec3 at = transform(poses[i], m);
+        tree_.search(Marker(marks), Sphere(Point(at.x, at.y, at.z), radius, 0.0, tree_.traits()));
+      }
+    }
+  }
+
+ private:
+  PeerOptions options_;
+  Tree tree_;
+};
+
+}  // namespace
+
+std::unique_ptr<Peer> make_peer(std::span<const Vec3> points, const PeerOptions& options) {
+  return std::make_unique<Cgal>(points, options);
+}
+
+}  // namespace clearway::bench

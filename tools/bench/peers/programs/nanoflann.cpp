@@ -1,0 +1,92 @@
+// nanoflann: a k-d tree in doubles, one radius search for every pose and model point.
+
+#include <nanoflann.hpp>
+#include <nlohmann/json.hpp>
+
+#include "bench/peers/programs/peer.hpp"
+#include "core/geometry/predicate.hpp"
+
+namespace clearway::bench {
+namespace {
+
+constexpr std::size_t kLeafPoints = 12;
+
+struct Adaptor {
+  std::span<const Vec3> points;
+
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  double kdtree_get_pt(std::size_t index, std::size_t axis) const {
+    return points[index][static_cast<int>(axis)];
+  }
+  template <typename Bounds>
+  bool kdtree_get_bbox(Bounds&) const {
+    return false;
+  }
+};
+
+using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Adaptor>,
+                                                 Adaptor, 3, std::uint32_t>;
+
+/// Marks what a search finds at once, which radiusSearchCustomCallback() is for.
+class MarkingResult {
+ public:
+  MarkingResult(double radius_squared, Marks& marks) : radius_(radius_squared), marks_(marks) {}
+  std::size_t size() const { return 0; }
+  bool full() const { return true; }
+  double worstDist() const { return radius_; }
+  bool addPoint(double squared, std::uint32_t index) {
+    if (squared < radius_) marks_.mark(index);
+    return true;
+  }
+
+ private:
+  double radius_;
+  Marks& marks_;
+};
+
+class Nanoflann : public Peer {
+ public:
+  Nanoflann(std::span<const Vec3> points, const PeerOptions& options)
+      : options_(options),
+        adaptor_{points},
+        tree_(3, adaptor_, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafPoints)) {
+    tree_.buildIndex();
+  }
+
+  nlohmann::json about() const override {
+    return {{"name", "nanoflann"},
+            {"version", NANOFLANN_VERSION},
+            {"settings",
+             "double, leaves of 12 points, callback for each point found, poses in "
+             "parallel"}};
+  }
+
+  void search(std::span<const Pose> poses, std::span<const Vec3> model, Marks& marks) override {
+#pragma omp parallel for schedule(dynamic, 1) num_threads(options_.threads)
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      MarkingResult result(rounded_product(options_.radius, options_.radius), marks);
+      for (const Vec3& m : model) {
+        const Vec3 at = transform(poses[i], m);
+        const double place[3] = {at.x, at.y, at.z};
+#if NANOFLANN_VERSION >= 0x150
+        tree_.radiusSearchCustomCallback(place, result);
+#else
+        tree_.radiusSearchCustomCallback(place, result, nanoflann::SearchParams(0, 0, false));
+#endif
+      }
+    }
+  }
+
+ private:
+  PeerOptions options_;
+  Adaptor adaptor_;
+  Tree tree_;
+};
+
+}  // namespace
+
+std::unique_ptr<Peer> make_peer(std::span<const Vec3> points, const PeerOptions& options) {
+  return std::make_unique<Nanoflann>(points, options);
+}
+
+}  // namespace clearway::bench

@@ -1,0 +1,117 @@
+// FCL with OctoMap: an octree of occupied voxels against a sphere around each model point. All
+// points of a voxel that a sphere touches count as found, since the octree keeps no points.
+
+#include <fcl/fcl.h>
+#include <fcl/geometry/octree/octree.h>
+#include <octomap/octomap.h>
+
+#include <nlohmann/json.hpp>
+#include <unordered_map>
+
+#include "bench/peers/programs/peer.hpp"
+
+namespace clearway::bench {
+namespace {
+
+using Object = fcl::CollisionObject<double>;
+
+class Octomap : public Peer {
+ public:
+  Octomap(std::span<const Vec3> points, const PeerOptions& options)
+      : options_(options), map_(std::make_shared<octomap::OcTree>(options.cell)) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const octomap::OcTreeKey key = map_->coordToKey(points[i].x, points[i].y, points[i].z);
+      const auto [at, is_new] = voxel_of_.try_emplace(key, points_of_.size());
+      if (is_new) {
+        points_of_.emplace_back();
+        map_->updateNode(key, true, true);
+      }
+      points_of_[at->second].push_back(static_cast<std::uint32_t>(i));
+    }
+    map_->updateInnerOccupancy();
+    tree_ = std::make_shared<fcl::OcTree<double>>(map_);
+  }
+
+  nlohmann::json about() const override {
+    return {{"name", "FCL with OctoMap"},
+            {"version", std::string("FCL ") + FCL_VERSION},
+            {"cell", options_.cell},
+            {"settings",
+             "voxels, spheres around the model points in a "
+             "DynamicAABBTreeCollisionManager, voxels that were found are not tested "
+             "again, poses in parallel"}};
+  }
+
+  void search(std::span<const Pose> poses, std::span<const Vec3> model, Marks& marks) override {
+    std::vector<std::unique_ptr<Object>> spheres;
+    std::vector<Object*> all;
+    const auto sphere = std::make_shared<fcl::Sphere<double>>(options_.radius);
+    for (const Vec3& m : model) {
+      spheres.push_back(std::make_unique<Object>(sphere, fcl::Matrix3d::Identity(),
+                                                 fcl::Vector3d(m.x, m.y, m.z)));
+      all.push_back(spheres.back().get());
+    }
+    fcl::DynamicAABBTreeCollisionManager<double> manager;
+    manager.octree_as_geometry_collide = false;  // voxels are passed on one by one
+    manager.registerObjects(all);
+    manager.setup();
+    Marks voxels(points_of_.size());
+#pragma omp parallel for schedule(dynamic, 1) num_threads(options_.threads)
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      // The model stays, and the map is moved into its frame.
+      Found found{this, transform_of(poses[i]), &voxels};
+      Object map(tree_, found.pose.inverse(Eigen::Isometry));
+      manager.collide(&map, &found, &touch);
+    }
+    for (std::size_t v = 0; v < points_of_.size(); ++v) {
+      if (!voxels.contains(v)) continue;
+      for (const std::uint32_t point : points_of_[v]) marks.mark(point);
+    }
+  }
+
+ private:
+  struct Found {
+    const Octomap* peer;
+    fcl::Transform3d pose;
+    Marks* voxels;
+  };
+
+  static fcl::Transform3d transform_of(const Pose& pose) {
+    fcl::Transform3d out = fcl::Transform3d::Identity();
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        out.linear()(row, column) = pose.rotation[3 * row + column];
+      }
+      out.translation()[row] = pose.translation[row];
+    }
+    return out;
+  }
+
+  /// Called for a sphere and the box of a voxel, whose bounds overlap.
+  static bool touch(Object* a, Object* b, void* data) {
+    const Found& found = *static_cast<Found*>(data);
+    const Object& box = a->getNodeType() == fcl::GEOM_BOX ? *a : *b;
+    const fcl::Vector3d middle = found.pose * box.getTranslation();
+    const Octomap& peer = *found.peer;
+    const auto at = peer.voxel_of_.find(peer.map_->coordToKey(middle.x(), middle.y(), middle.z()));
+    if (at == peer.voxel_of_.end() || found.voxels->contains(at->second)) return false;
+    fcl::CollisionRequest<double> request;
+    fcl::CollisionResult<double> result;
+    if (fcl::collide(a, b, request, result) > 0) found.voxels->mark(at->second);
+    return false;
+  }
+
+  PeerOptions options_;
+  std::shared_ptr<octomap::OcTree> map_;
+  std::shared_ptr<fcl::OcTree<double>> tree_;
+  std::unordered_map<octomap::OcTreeKey, std::size_t, octomap::OcTreeKey::KeyHash> voxel_of_;
+  std::vector<std::vector<std::uint32_t>> points_of_;  ///< of each voxel
+};
+
+}  // namespace
+
+std::unique_ptr<Peer> make_peer(std::span<const Vec3> points, const PeerOptions& options) {
+  return std::make_unique<Octomap>(points, options);
+}
+
+}  // namespace clearway::bench

@@ -1,0 +1,213 @@
+// The main program of all peers: reads a store, a model and a trajectory as `clearway run` does,
+// lets the peer search, and compares its points with the exact ones.
+
+#include <omp.h>
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "bench/peers/programs/peer.hpp"
+#include "clearway/model.hpp"
+#include "clearway/trajectory.hpp"
+#include "core/util/progress.hpp"
+#include "cpu/kdtree_engine.hpp"
+#include "io/store/store_reader.hpp"
+
+namespace clearway::bench {
+namespace {
+
+struct Arguments {
+  std::filesystem::path environment, model, trajectory, ids;
+  PeerOptions options;
+  double limit = 60;
+  int repetitions = 3;
+  std::size_t every = 0;
+};
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// The most memory that the process has had so far.
+double peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+std::vector<Pose> every_nth(std::span<const Pose> poses, std::size_t n) {
+  std::vector<Pose> out;
+  for (std::size_t i = 0; i < poses.size(); i += n) out.push_back(poses[i]);
+  return out;
+}
+
+double seconds_of_search(Peer& peer, std::span<const Pose> poses, std::span<const Vec3> model,
+                         Marks& marks) {
+  const auto start = Clock::now();
+  peer.search(poses, model, marks);
+  return seconds_since(start);
+}
+
+/// The least n for which every n-th pose takes less than the limit, by the time of a few poses all
+/// along the way.
+std::size_t poses_within(double limit, Peer& peer, std::span<const Pose> poses,
+                         std::span<const Vec3> model, std::size_t points, int threads) {
+  Marks unused(points);
+  for (std::size_t few = static_cast<std::size_t>(threads);; few *= 4) {
+    const std::size_t n = std::max<std::size_t>(1, poses.size() / few);
+    if (n == 1) return 1;
+    const std::vector<Pose> some = every_nth(poses, n);
+    const double seconds = seconds_of_search(peer, some, model, unused);
+    const double all =
+        seconds * static_cast<double>(poses.size()) / static_cast<double>(some.size());
+    // A measurement of a tenth of the limit is long enough to be trusted.
+    if (seconds > limit / 10 || all < limit) {
+      return std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(all / limit)));
+    }
+  }
+}
+
+struct Points {
+  std::vector<Vec3> positions;
+  std::vector<std::uint64_t> slots;    ///< of the points in the store
+  std::vector<std::uint64_t> sources;  ///< their source indices
+};
+
+Points points_of(const StoreReader& store) {
+  Points out;
+  for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
+    const auto chunks = store.coordinates(cell);
+    const auto sources = store.sources(cell);
+    for (std::uint32_t i = 0; i < store.cells()[cell].count; ++i) {
+      out.positions.push_back(
+          position(store.quantisation(), chunks[0][i], chunks[1][i], chunks[2][i]));
+      out.slots.push_back(cell * store.cell_entries() + i);
+      out.sources.push_back(sources[i]);
+    }
+  }
+  return out;
+}
+
+/// Compares what the peer marked with the points that collide, which the kdtree engine finds.
+nlohmann::json compare(const Marks& marks, const Points& points, const HitSet& exact) {
+  std::uint64_t colliding = 0, false_hits = 0, misses = 0, found = 0;
+  for (std::size_t i = 0; i < points.slots.size(); ++i) {
+    const bool is = exact.contains(points.slots[i]), said = marks.contains(i);
+    colliding += is;
+    found += said;
+    false_hits += said && !is;
+    misses += is && !said;
+  }
+  return {{"colliding_points", colliding},
+          {"found_points", found},
+          {"false_hits", false_hits},
+          {"misses", misses}};
+}
+
+void write_ids(const std::filesystem::path& path, const Marks& marks, const Points& points) {
+  std::vector<std::uint64_t> ids;
+  for (std::size_t i = 0; i < points.slots.size(); ++i) {
+    if (marks.contains(i)) ids.push_back(points.sources[i]);
+  }
+  std::sort(ids.begin(), ids.end());
+  std::ofstream out(path, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(ids.data()),
+            static_cast<std::streamsize>(ids.size() * sizeof(ids[0])));
+  if (!out.flush()) throw std::runtime_error(path.string() + ": cannot write");
+}
+
+nlohmann::json run(const Arguments& arguments) {
+  const StoreReader store(arguments.environment);
+  const Points points = points_of(store);
+  const std::vector<Vec3> model = read_model_points(
+      arguments.model, {.spacing = arguments.options.radius / 4});  // as in clearway run
+  const std::vector<Pose> all = read_trajectory(arguments.trajectory, {});
+
+  const double before = peak_bytes();
+  auto start = Clock::now();
+  const std::unique_ptr<Peer> peer = make_peer(points.positions, arguments.options);
+  const double prepare = seconds_since(start);
+  const int threads = arguments.options.threads;
+  const std::size_t every = arguments.every > 0 ? arguments.every
+                                                : poses_within(arguments.limit, *peer, all, model,
+                                                               points.positions.size(), threads);
+  const std::vector<Pose> poses = every_nth(all, every);
+  std::vector<double> seconds;
+  Marks marks(points.positions.size());
+  for (int i = 0; i < arguments.repetitions; ++i) {
+    seconds.push_back(seconds_of_search(*peer, poses, model, marks));
+    if (seconds.back() > arguments.limit / 2) break;
+  }
+  const double peak = peak_bytes();
+
+  NoProgress progress;
+  const HitSet exact =
+      run_kdtree(store, {model, poses, {arguments.options.radius, false}}, {threads}, progress);
+  nlohmann::json out = compare(marks, points, exact);
+  if (!arguments.ids.empty()) write_ids(arguments.ids, marks, points);
+  std::vector<double> sorted = seconds;
+  std::sort(sorted.begin(), sorted.end());
+  out["peer"] = peer->about();
+  out["environment_points"] = points.positions.size();
+  out["model_points"] = model.size();
+  out["poses"] = all.size();
+  out["radius"] = arguments.options.radius;
+  out["threads"] = threads;
+  out["every_pose"] = every;
+  out["searched_poses"] = poses.size();
+  out["prepare_seconds"] = prepare;
+  out["search_seconds"] = seconds;
+  out["all_poses_seconds"] = sorted[sorted.size() / 2] * static_cast<double>(all.size()) /
+                             static_cast<double>(poses.size());
+  out["peak_bytes_of_peer"] = peak - before;
+  return out;
+}
+
+int run_program(int argc, char** argv) {
+  Arguments arguments;
+  arguments.options.threads = omp_get_max_threads();
+  CLI::App app(
+      "Finds the environment points near a moved model with another library, and compares "
+      "them with the exact ones; prints JSON");
+  app.add_option("--env", arguments.environment, "Store of the environment")->required();
+  app.add_option("--model", arguments.model, "Model")->required();
+  app.add_option("--trajectory", arguments.trajectory, "Trajectory")->required();
+  app.add_option("--radius", arguments.options.radius, "Metres")->capture_default_str();
+  app.add_option("--threads", arguments.options.threads, "Threads (default: all cores)");
+  app.add_option("--cell", arguments.options.cell, "Edge of a voxel in metres, for octomap")
+      ->capture_default_str();
+  app.add_option("--limit", arguments.limit,
+                 "Seconds of a search; where all poses take longer, every n-th is searched")
+      ->capture_default_str();
+  app.add_option("--every-pose", arguments.every, "Search every n-th pose (default: by --limit)");
+  app.add_option("--repetitions", arguments.repetitions, "Searches; the median counts")
+      ->capture_default_str();
+  app.add_option("--ids", arguments.ids,
+                 "File of the source indices that were found, 8 bytes each");
+  CLI11_PARSE(app, argc, argv);
+  std::printf("%s\n", run(arguments).dump(2).c_str());
+  return 0;
+}
+
+}  // namespace
+}  // namespace clearway::bench
+
+int main(int argc, char** argv) {
+  try {
+    return clearway::bench::run_program(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return 1;
+  }
+}
