@@ -61,6 +61,15 @@ struct CertainPoints {
   bool has_group = false;    ///< whether ten or more of them hang together by the query's gap
 };
 
+/// The colliding point that is farthest from any free point; among equal ones, the one with the
+/// smallest source index.
+struct DeepestPoint {
+  double depth = 0;  ///< metres, the distance to the nearest free point
+  std::uint64_t source = 0;
+  Vec3 xyz{};
+  std::uint64_t depth_source = 0;  ///< source index of that free point
+};
+
 /// What the tables of a result say in short: their numbers of rows and the places that matter most.
 struct TableSummary {
   std::uint64_t colliding_points = 0;
@@ -74,6 +83,8 @@ struct TableSummary {
   /// distance of the profile at its first pose, each where the query asks for it. Among equal
   /// points, the one with the smallest source index is given.
   std::optional<FoundPlace> first_place, least_clearance, least_profile;
+  /// The colliding point with the greatest depth, where depths were asked for and a point is free.
+  std::optional<DeepestPoint> deepest;
 };
 
 /// The answer to a query in short. Everything that words or counts an answer takes it from here:

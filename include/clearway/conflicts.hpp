@@ -127,6 +127,10 @@ struct Conflict {
   /// clearances.
   std::optional<double> depth = {};
   std::optional<std::uint64_t> points_inside = {};
+  /// Source index of the free point that `depth` is measured to. Set where the result has depths
+  /// (QueryParameters::depth) and no exact ones of solids: then `depth` is the greatest of them, an
+  /// estimate, and points_inside is not known.
+  std::optional<std::uint64_t> depth_source = {};
   /// Position of nearest_source
   std::optional<Vec3> nearest_point = {};
   /// The side of the model, or of the body that is touched first, which the least trim is taken

@@ -31,6 +31,10 @@ struct QueryParameters {
   /// or above, seen from the body there. What is lower, such as the ground that the wheels stand
   /// on, is counted but not judged. Between poses it has to lie so at either end of the way.
   std::optional<double> floor = {};
+  /// Whether to find for each colliding point the nearest point of the environment that is free:
+  /// one that neither collides, with or without a floor, nor is ignored. Needs all cells of an
+  /// environment that holds the whole scans, so it cannot be asked of a shard.
+  bool depth = false;
   /// Classes whose points are left out of the search, as if the scans did not have them. Only for
   /// an environment that has classes.
   std::vector<std::uint8_t> ignore_classes = {};

@@ -37,6 +37,15 @@ struct Collisions {
   /// a budget.
   std::vector<std::uint8_t> certain = {};
 
+  /// Metres: the distance of each point to the nearest free point of the environment, as
+  /// QueryParameters::depth defines it; NaN where no point is free. Empty unless the query asked
+  /// for it.
+  std::vector<double> depth = {};
+  /// Source index of that free point, the smallest if several are equally near; kNoPoint where no
+  /// point is free.
+  std::vector<std::uint64_t> depth_source = {};
+  static constexpr std::uint64_t kNoPoint = ~std::uint64_t{0};
+
   std::size_t size() const { return source.size(); }
 };
 

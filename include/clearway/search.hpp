@@ -66,6 +66,7 @@ struct SearchSeconds {
   double engine = 0;  ///< seconds for making the engine with its slots
   double search = 0, read = 0, upload = 0, compute = 0, collect = 0;
   double below = 0;  ///< seconds for counting what would collide below the floor
+  double depth = 0;  ///< seconds for finding the free point nearest to each colliding one
   double swept = 0;  ///< seconds for finding the cubes that the model sweeps
   double beams = 0;  ///< seconds for following the scanner's beams through these cubes
   double write = 0;  ///< seconds for writing the result, while the GPUs' memory is given back

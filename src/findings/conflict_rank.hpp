@@ -46,7 +46,7 @@ class WorseFirst {
  private:
   /// The kind of a conflict, and what orders those of a kind; the worst first.
   std::pair<int, double> key(const Conflict& c) const {
-    if (c.depth.value_or(0) > 0) return {0, -*c.depth};
+    if (c.depth.value_or(0) > 0 && !c.depth_source) return {0, -*c.depth};
     if (c.colliding > 0) return {1, -least_that_frees(c)};
     return {2, c.least_distance.value_or(kNone)};
   }

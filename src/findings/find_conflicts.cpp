@@ -367,6 +367,7 @@ class ConflictSearch {
     PointsOfConflicts to_free = points_to_free(part_of_row);
     grid_.reset();
     add_distances(part_of_row);
+    add_depths(part_of_row);
     for (Conflict& conflict : out_.listed) complete(conflict);
     count_colliding(part_of_row);
     add_shifts(std::move(to_free));
@@ -554,6 +555,33 @@ class ConflictSearch {
       conflict.encroachment = reader_.header().radius - found.distance;
       conflict.encroachment_is = bound_of(conflict);
     }
+  }
+
+  /// Sets the greatest depth of each conflict where the result has depths, unless exact ones of
+  /// solids are known. Of equally deep points the first row decides, which has the least source.
+  void add_depths(std::span<const std::uint32_t> conflict_of_row) {
+    const ResultHeader& header = reader_.header();
+    if (!header.depth || (header.model_solids > 0 && header.clearance > 0)) return;
+    progress_.begin("depths", reader_.collisions(), "points");
+    const auto is_near = [&](std::size_t row) {
+      return !points_.kind.empty() && points_.kind[row] == CollidingPoints::kNear;
+    };
+    std::size_t row = 0;
+    RowStream<Collisions> stream(reader_);
+    for (Collisions rows; stream.read(rows);) {
+      throw_if_stopped(progress_);
+      for (std::size_t i = 0; i < rows.size(); ++i, ++row) {
+        while (is_near(row)) ++row;
+        const std::uint32_t id = conflict_of_row[row];
+        if (id == 0 || rows.depth_source[i] == Collisions::kNoPoint) continue;
+        Conflict& conflict = out_.listed[id - 1];
+        if (conflict.depth && rows.depth[i] <= *conflict.depth) continue;
+        conflict.depth = rows.depth[i];
+        conflict.depth_source = rows.depth_source[i];
+      }
+      progress_.advance(rows.size());
+    }
+    progress_.end();
   }
 
   /// Whether the encroachment is exact: of a solid, and of what is certainly inside one.

@@ -18,7 +18,7 @@ namespace clearway::python {
 struct CollisionColumns {
   py::array source, xyz;
   py::object first_pose = py::none(), last_pose = py::none(), body = py::none(),
-             certain = py::none();
+             certain = py::none(), depth = py::none(), depth_source = py::none();
 };
 struct ClearanceColumns {
   py::array source, xyz, distance, pose, body;
@@ -67,6 +67,10 @@ CollisionColumns collision_columns(Table& table, const QueryParameters& asked, b
   if constexpr (requires { table.last_pose; }) {
     if (asked.first_pose) columns.last_pose = make(table.last_pose);
     if (asked.has_budget()) columns.certain = make(table.certain).attr("view")("bool");
+    if (asked.depth) {
+      columns.depth = make(table.depth);
+      columns.depth_source = make(table.depth_source);
+    }
   }
   return columns;
 }

@@ -96,6 +96,8 @@ TYPES = {
     "Collisions.last_pose": "_Poses | None",
     "Collisions.body": "_Poses | None",
     "Collisions.certain": "_Flags | None",
+    "Collisions.depth": "_Doubles | None",
+    "Collisions.depth_source": "_Sources | None",
     "UnseenCubes.cube": "NDArray[np.int32]",
     "UnseenCubes.first_pose": "_Poses",
     "UnseenCubes.group": "_Poses",

@@ -58,9 +58,10 @@ py::object first_body(const Result& result) {
 }
 
 void add_columns(py::module_& module) {
-  py::class_<CollisionColumns>(module, "Collisions",
-                               "The points that the model touches: arrays of one length, in which "
-                               "row i of each is the same point.")
+  py::class_<CollisionColumns> touched(module, "Collisions",
+                                       "The points that the model touches: arrays of one length, "
+                                       "in which row i of each is the same point.");
+  touched
       .def_readonly("source", &CollisionColumns::source,
                     "The index of each point in the order of the scans, ascending: n uint64.")
       .def_readonly("xyz", &CollisionColumns::xyz,
@@ -78,7 +79,15 @@ void add_columns(py::module_& module) {
       .def_readonly("certain", &CollisionColumns::certain,
                     "Whether the error budget says that each point is certainly too close: n bool. "
                     "None without a budget, and for points that are only near.")
+      .def_readonly("depth", &CollisionColumns::depth,
+                    "The distance of each point to the nearest free point, which neither collides "
+                    "nor is ignored: n float64, metres; NaN where no point is free. None where the "
+                    "query did not ask for it.")
+      .def_readonly("depth_source", &CollisionColumns::depth_source,
+                    "The index of that free point: n uint64; NO_POINT where no point is free. None "
+                    "where the query did not ask for it.")
       .def("__len__", [](const CollisionColumns& c) { return c.source.size(); });
+  touched.attr("NO_POINT") = Collisions::kNoPoint;
   py::class_<UnseenColumns>(module, "UnseenCubes",
                             "The cubes that the model sweeps and no beam passed through: arrays of "
                             "one length, in which row i of each is the same cube.")

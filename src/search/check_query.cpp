@@ -158,6 +158,14 @@ void check_numbers(const QueryParameters& query, const SearchOptions& options) {
   }
 }
 
+/// A part has only some of the points that are not free, so it cannot say which points are.
+void refuse_depth_in_shard(const QueryParameters& query, const SearchOptions& options) {
+  if (!query.depth || !options.shard) return;
+  throw UsageError(
+      "depths are not found in shards: which point is free is only known when all of them are "
+      "searched. Search the whole query at once");
+}
+
 void check_ignored(const QueryParameters& query) {
   for (const Box& box : query.ignore_boxes) {
     for (int k = 0; k < 3; ++k) {
@@ -237,6 +245,7 @@ void check_query(const QueryParameters& query, const SearchOptions& options) {
   check_ignored(query);
   const Engine engine = chosen_engine(options);
   check_seen(query);
+  refuse_depth_in_shard(query, options);
   if (query.clearance > 0 && query.between_poses) {
     throw UsageError(
         "clearances and motion between poses cannot be combined: clearances are at poses");

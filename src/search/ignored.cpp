@@ -223,6 +223,7 @@ Query query_of_ignored(const Query& query) {
   Query out = query;
   out.first_pose = true;
   out.clearance = out.profile = 0;
+  out.depth = false;
   return out;
 }
 

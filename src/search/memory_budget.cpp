@@ -6,6 +6,7 @@
 #include "core/query/search_result.hpp"
 #include "core/util/format.hpp"
 #include "cpu/cell_search.hpp"
+#include "search/find_depths.hpp"
 #include "stream/plan.hpp"
 #include "stream/run_pages.hpp"
 #include "stream/write_result.hpp"
@@ -182,12 +183,19 @@ std::uint64_t search_result_bytes(const PackedCloud& cloud, const Query& query) 
          further_bytes(cloud, query);
 }
 
+std::uint64_t depth_bytes(const PackedCloud& cloud, const Query& query) {
+  if (!query.depth) return 0;
+  const std::uint64_t without_floors = has_floor(query) ? cloud.entry_count() / 8 : 0;
+  return depth_search_bytes(cloud) + without_floors + kDeepWriteBytes;
+}
+
 std::uint64_t further_bytes(const PackedCloud& cloud, const Query& query) {
-  if (!query.first_pose && !query.has_budget()) return 0;
+  const std::uint64_t depths = depth_bytes(cloud, query);
+  if (!query.first_pose && !query.has_budget()) return depths;
   const std::uint64_t entries = cloud.entry_count();
   const std::uint64_t hits = entries / 8;
   const std::uint64_t poses = query.first_pose ? entries * sizeof(std::uint32_t) : 0;
-  std::uint64_t bytes = input_bytes(cloud, query) - cloud.allocated_bytes();
+  std::uint64_t bytes = depths + input_bytes(cloud, query) - cloud.allocated_bytes();
   if (query.first_pose) bytes += hits + poses;
   if (!query.has_budget()) return bytes;
   // Near points, certain points, and the distances that say which of them are deep in a solid.

@@ -29,7 +29,9 @@
 #include "search/checks/question.hpp"
 #include "search/choose_engine.hpp"
 #include "search/devices.hpp"
+#include "search/find_depths.hpp"
 #include "search/ignored.hpp"
+#include "search/memory_budget.hpp"
 #include "search/page_search.hpp"
 #include "search/result_header.hpp"
 #include "search/run_journal.hpp"
@@ -177,7 +179,8 @@ class Search {
     choose_device_and_engine();
     look_at_ground();
     // A question with further searches has all the memory, because these need some of their own.
-    if (query_.ignores_points() || query_.has_budget() || query_.seen || has_floor(query_)) {
+    if (query_.ignores_points() || query_.has_budget() || query_.seen || query_.depth ||
+        has_floor(query_)) {
       take_memory(~0ULL);
     }
     const CollidingIgnored ignored = count_ignored_that_collide();
@@ -190,6 +193,7 @@ class Search {
       options_.end_gpus = end_gpus && &pass == &passes.back();
       (this->*pass)(found);
     }
+    if (query_.depth) find_depths_of(found);
     if (query_.ignores_points()) {
       report_.colliding_points = found.result.hits.count();
       warn_of_colliding_ignored(report_, store_.metadata().unit, log_);
@@ -205,6 +209,7 @@ class Search {
     check_sizes(query_);
     CorridorCheck(store_.metadata()).check(query_, swept_radius());
     if (query_.seen) check_seen_space(store_, query_);
+    check_depth(store_, query_);
     ThreadLimit(threads_or_all(options_.threads)).run([&] {
       const auto looks_of = [&](const Model& model) {
         return session_.looks().of(model, hash_of(model), query_.radius);
@@ -391,6 +396,7 @@ class Search {
     query.radius = radius;
     raise_floors(query, query_.radius - radius);
     query.first_pose = first_pose;
+    query.depth = false;
     query.clearance = query.profile = 0;
     query.error_scan = query.error_registration = query.error_pose = query.error_angle =
         query.error_model = std::nullopt;
@@ -481,7 +487,7 @@ class Search {
     Query query = plain_query(query_.radius, false);
     query.floor.reset();
     for (Body& body : query.bodies) body.floor.reset();
-    const Found all = search_further(found, std::move(query), only(), "below the floor");
+    Found all = search_further(found, std::move(query), only(), "below the floor");
     const SearchResult& result = found.result;
     std::atomic<std::uint64_t> below = 0;
     for_each_word_of_entries([&](std::uint64_t word) {
@@ -493,6 +499,41 @@ class Search {
     report_.floor_colliding = below;
     report_.seconds = before;
     report_.seconds.below = clock.seconds();
+    if (query_.depth) without_floors_.emplace(std::move(all.result.hits));
+  }
+
+  /// Finds the free point that is nearest to each colliding one, on the CPU, after all searches for
+  /// points. No journal keeps the depths, so a run that is resumed finds them again.
+  void find_depths_of(Found& found) {
+    const Stopwatch clock;
+    // What further_bytes() set aside for depths, and what there is to write with
+    const std::uint64_t memory = depth_bytes(store_, query_) + found.write_bytes;
+    const HitSet* const below = without_floors_ ? &*without_floors_ : nullptr;
+    const std::uint64_t taken =
+        below != nullptr ? below->allocated_bytes() : 0;
+    const std::uint64_t rows =
+        DepthSet::bytes(store_.entry_count(), found.result.hits.count()) + kDeepWriteBytes;
+    const auto refuse = [&](std::uint64_t needed) {
+      refuse_memory(options_.memory_bytes + (needed - std::min(needed, memory)),
+                    options_.memory_bytes);
+    };
+    if (rows + least_write_bytes(store_) > memory) refuse(rows + least_write_bytes(store_));
+    try {
+      found.result.depths = find_depths(store_,
+                                        {.query = query_,
+                                         .found = found.result,
+                                         .below = below,
+                                         .threads = options_.threads,
+                                         .memory_bytes = memory - taken},
+                                        progress_);
+    } catch (const ResourceError& error) {
+      if (error.remedy() != Remedy::kMoreMemory) throw;
+      refuse(taken + static_cast<std::uint64_t>(error.amount()));
+    }
+    without_floors_.reset();
+    found.write_bytes = memory - rows;
+    report_.needed_host_bytes += found.result.hits.count() * sizeof(Depth);
+    report_.seconds.depth = clock.seconds();
   }
 
   /// Finds out which places that the model sweeps no beam of the scanner passed through. A shard
@@ -655,6 +696,8 @@ class Search {
   ResultHeader header_;
   SearchEngines engines_;
   std::optional<ShardCells> shard_;
+  /// The points that collide without floors, where depths need them.
+  std::optional<HitSet> without_floors_;
   /// What the searches for points have read, set before beams are followed.
   std::optional<StoreReader::Touched> touched_;
   /// The query and the options of a further pass, which outlive its engines.

@@ -78,6 +78,10 @@ void put_touched_columns(const RowMeaning& meaning, Columns& columns, Put put) {
   }
 }
 
+const Depth& depth_of(const DeepRow& row) { return row.depth; }
+/// Rows without a depth are those of results that do not have the columns.
+Depth depth_of(const CollisionRow&) { return {}; }
+
 template <typename Put>
 void put_columns(const RowMeaning& meaning, Collisions& columns, Put put) {
   put_touched_columns(meaning, columns, put);
@@ -86,6 +90,10 @@ void put_columns(const RowMeaning& meaning, Collisions& columns, Put put) {
   }
   if (meaning.header.budget) {
     put(columns.certain, [](const CollisionRow& row) { return row.certain; });
+  }
+  if (meaning.header.depth) {
+    put(columns.depth, [](const auto& row) { return depth_of(row).distance; });
+    put(columns.depth_source, [](const auto& row) { return depth_of(row).source; });
   }
 }
 
@@ -125,6 +133,12 @@ std::shared_ptr<WritePiece<Rows>> encode(const ResultWriter& writer, const RowMe
 std::shared_ptr<WritePiece<Collisions>> encode_rows(const ResultWriter& writer,
                                                     const RowMeaning& meaning,
                                                     std::span<const CollisionRow> rows) {
+  return encode<Collisions>(writer, meaning, rows);
+}
+
+std::shared_ptr<WritePiece<Collisions>> encode_rows(const ResultWriter& writer,
+                                                    const RowMeaning& meaning,
+                                                    std::span<const DeepRow> rows) {
   return encode<Collisions>(writer, meaning, rows);
 }
 
@@ -293,6 +307,8 @@ class ResultRows {
 
   const RowMeaning& meaning() const { return meaning_; }
 
+  /// Hands out the colliding points, as DeepRow where their depths are known and otherwise as
+  /// CollisionRow.
   template <typename Take>
   void for_collisions(const SetCells& in, Take take) {
     const HitSet& hits = answer_.hits;
@@ -309,7 +325,16 @@ class ResultRows {
         return CollisionRow{source, {q[0][i], q[1][i], q[2][i]}, touched, last, is_certain};
       };
     };
-    gather<CollisionRow>(hits, in, rows_of, take);
+    if (!answer_.depths) return gather<CollisionRow>(hits, in, rows_of, take);
+    gather<DeepRow>(
+        hits, in,
+        [&](std::uint32_t cell) {
+          return [&, row_of = rows_of(cell)](std::uint64_t source, std::uint64_t entry,
+                                             std::uint32_t i) {
+            return DeepRow{row_of(source, entry, i), answer_.depths->at(hits, entry)};
+          };
+        },
+        take);
   }
 
   template <typename Take>
@@ -376,7 +401,7 @@ TableSummary write_tables(const StoreReader& store, const SearchResult& answer,
         [&](std::span<const Row> piece) { return encode_rows(writer, rows.meaning(), piece); },
         [&](const auto& piece) { add_summary(piece.summary, summary); });
   };
-  rows.for_collisions(in.collisions, [&](std::span<const CollisionRow> some, const auto& plan) {
+  rows.for_collisions(in.collisions, [&](const auto& some, const auto& plan) {
     write(some, plan, static_cast<Collisions*>(nullptr));
   });
   rows.for_clearances(in.clearances, [&](std::span<const ClearanceRow> some, const auto& plan) {
@@ -438,7 +463,7 @@ void fill_tables(const StoreReader& store, SearchResult answer, const ResultHead
     const TableCells in(store, answer, header);
     ResultRows rows(store, answer, header, memory_bytes, memory, progress);
     std::uint64_t collisions = 0, clearances = 0, near = 0;
-    rows.for_collisions(in.collisions, [&](std::span<const CollisionRow> some, const auto&) {
+    rows.for_collisions(in.collisions, [&](const auto& some, const auto&) {
       keep(rows.meaning(), some, in.collisions.entries, collisions, tables.collisions);
     });
     rows.for_clearances(in.clearances, [&](std::span<const ClearanceRow> some, const auto&) {

@@ -72,6 +72,11 @@ struct CollisionRow {
   std::uint8_t certain = 0;  ///< whether the error budget says that it is certainly too close
 };
 
+/// A row with the free point that is nearest to it, where depths are asked for.
+struct DeepRow : CollisionRow {
+  Depth depth;
+};
+
 struct NearRow {
   std::uint64_t source;
   std::int32_t q[3];
@@ -96,6 +101,9 @@ struct RowMeaning {
 std::shared_ptr<WritePiece<Collisions>> encode_rows(const ResultWriter& writer,
                                                     const RowMeaning& meaning,
                                                     std::span<const CollisionRow> rows);
+std::shared_ptr<WritePiece<Collisions>> encode_rows(const ResultWriter& writer,
+                                                    const RowMeaning& meaning,
+                                                    std::span<const DeepRow> rows);
 std::shared_ptr<WritePiece<Nearby>> encode_rows(const ResultWriter& writer,
                                                 const RowMeaning& meaning,
                                                 std::span<const NearRow> rows);

@@ -27,10 +27,18 @@ const char* kind_text(PointDifference::Kind kind) {
       return "first pose";
     case PointDifference::Kind::kLastPose:
       return "last pose";
+    case PointDifference::Kind::kDepth:
+      return "depth";
     case PointDifference::Kind::kCoordinates:
       return "coordinates";
   }
   return "";
+}
+
+/// "0.25 to 17", with the index of the free point.
+std::string depth_text(double depth, std::uint64_t source) {
+  if (source == Collisions::kNoPoint) return "nothing free";
+  return format_number(depth) + " to " + std::to_string(source);
 }
 
 std::string point_text(const PointDifference& point) {
@@ -45,12 +53,16 @@ std::string point_text(const PointDifference& point) {
     text +=
         "  pose " + std::to_string(*point.last_pose_a) + " / " + std::to_string(*point.last_pose_b);
   }
+  if (point.kind == PointDifference::Kind::kDepth) {
+    text += "  " + depth_text(*point.depth_a, *point.depth_source_a) + " / " +
+            depth_text(*point.depth_b, *point.depth_source_b);
+  }
   return text + "\n";
 }
 
 std::uint64_t all_differences(const Comparison& c) {
   return c.only_in_a + c.only_in_b + c.differing_coordinates + c.differing_first_poses.value_or(0) +
-         c.differing_last_poses.value_or(0);
+         c.differing_last_poses.value_or(0) + c.differing_depths.value_or(0);
 }
 
 nlohmann::ordered_json point_json(const PointDifference& point) {
@@ -61,6 +73,16 @@ nlohmann::ordered_json point_json(const PointDifference& point) {
   if (point.first_pose_b) out["first_pose_b"] = *point.first_pose_b;
   if (point.last_pose_a) out["last_pose_a"] = *point.last_pose_a;
   if (point.last_pose_b) out["last_pose_b"] = *point.last_pose_b;
+  const auto add_depth = [&](const char* depth_key, const auto& depth, const char* source_key,
+                             const auto& source) {
+    if (!source) return;
+    const bool is_free = *source != Collisions::kNoPoint;
+    out[depth_key] = out[source_key] = nullptr;
+    if (is_free) out[depth_key] = *depth;
+    if (is_free) out[source_key] = *source;
+  };
+  add_depth("depth_a", point.depth_a, "depth_source_a", point.depth_source_a);
+  add_depth("depth_b", point.depth_b, "depth_source_b", point.depth_source_b);
   return out;
 }
 
@@ -90,6 +112,9 @@ std::string comparison_text(const Comparison& c, const std::string& a, const std
   }
   if (c.differing_last_poses) {
     text += "differing last poses: " + format_count(*c.differing_last_poses) + "\n";
+  }
+  if (c.differing_depths) {
+    text += "differing depths: " + format_count(*c.differing_depths) + "\n";
   }
   if (c.differing_coordinates > 0) {
     text += "differing coordinates: " + format_count(c.differing_coordinates) + "\n";
@@ -124,6 +149,7 @@ std::string comparison_json(const Comparison& c, const std::string& a, const std
                              {"differing_first_poses", nullptr}};
   if (c.differing_first_poses) out["differing_first_poses"] = *c.differing_first_poses;
   if (c.differing_last_poses) out["differing_last_poses"] = *c.differing_last_poses;
+  if (c.differing_depths) out["differing_depths"] = *c.differing_depths;
   out["clearances"] = nullptr;
   if (c.clearances) out["clearances"] = table_json(*c.clearances);
   if (c.near) out["near"] = table_json(*c.near);
@@ -190,11 +216,11 @@ void add_compare(CLI::App& program, int& exit_code) {
   command->footer(
       "Prints how many colliding points are only in A, only in B and in both. Where both "
       "results\n"
-      "have first poses, clearances or an error budget, it prints how many of these, or of the\n"
-      "near points, differ. It also prints what differs in the queries: model, trajectory,\n"
+      "have first poses, depths, clearances or an error budget, it prints how many of these, or of\n"
+      "the near points, differ. It also prints what differs in the queries: model, trajectory,\n"
       "radius in metres.\n"
-      "Exit code 0: the same points, first poses, near points and clearances, even of different\n"
-      "queries.\n"
+      "Exit code 0: the same points, first poses, depths, near points and clearances, even of\n"
+      "different queries.\n"
       "Exit code 1: they differ.\n"
       "With --conflicts, exit code 1 says that B has new conflicts, worse ones, new groups that "
       "are\n"

@@ -147,6 +147,7 @@ ordered_json question_json(const ResultReader& result) {
                            {"clearance_points", result.clearances()},
                            {"profile", h.profile},
                            {"between_poses", h.between_poses},
+                           {"depth", h.depth},
                            {"scale", h.quantisation.scale},
                            {"offset", h.quantisation.offset},
                            {"crs_wkt", h.crs_wkt}};

@@ -157,7 +157,8 @@ nlohmann::ordered_json seconds_of(const SearchSeconds& search, const ProgramRepo
           {"upload", search.upload},        {"compute", search.compute},
           {"collect", search.collect},      {"below", search.below},
           {"swept", search.swept},          {"beams", search.beams},
-          {"write", search.write},          {"end_wait", search.end_wait}};
+          {"depth", search.depth},          {"write", search.write},
+          {"end_wait", search.end_wait}};
 }
 
 /// The value if it is known of this run; otherwise null.

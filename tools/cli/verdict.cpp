@@ -227,6 +227,21 @@ ordered_json place_json(const Answer& answer, const std::optional<FoundPlace>& p
   return out;
 }
 
+/// The greatest depth and its point, null where no point of the environment is free; null as a whole
+/// where depths were not asked for.
+ordered_json depth_json(const Answer& answer) {
+  if (!answer.parameters.depth) return nullptr;
+  ordered_json out{{"greatest", nullptr}, {"source", nullptr}, {"depth_source", nullptr}};
+  if (!answer.deepest) return out;
+  const DeepestPoint& deepest = *answer.deepest;
+  return {{"greatest", deepest.depth},
+          {"source", deepest.source},
+          {"depth_source", deepest.depth_source},
+          {"x", deepest.xyz.x},
+          {"y", deepest.xyz.y},
+          {"z", deepest.xyz.z}};
+}
+
 /// The poses of all stretches on which the answer's warnings say that nothing could be found.
 std::vector<PoseRange> stretches_in_doubt(const Answer& answer) {
   std::vector<PoseRange> all;
@@ -416,6 +431,7 @@ void add_answer(const Answer& answer, const PathWords& path, ordered_json& out) 
   out["least_clearance"] = place_json(answer, answer.least_clearance, path, true);
   out["least_profile"] = place_json(answer, answer.least_profile, path, true);
   out["first_place"] = place_json(answer, answer.first_place, path, false);
+  out["depth"] = depth_json(answer);
 }
 
 }  // namespace clearway::tool

@@ -67,7 +67,8 @@ void add_searched(const SearchedLength& searched, nlohmann::ordered_json& out);
 
 /// Adds an answer to a report: the keys poses, colliding_points, clearance_points, profile_poses,
 /// verdict, reasons, margins, seen, path_length and its parts,
-/// shard, ignored, points_inside, greatest_depth, least_clearance, least_profile and first_place.
+/// shard, ignored, points_inside, greatest_depth, least_clearance, least_profile,
+/// first_place and depth.
 void add_answer(const Answer& answer, const PathWords& path, nlohmann::ordered_json& out);
 
 }  // namespace clearway::tool

@@ -120,11 +120,17 @@ inline constexpr std::tuple kConflictColumns = std::tuple_cat(
             .key = "depth",
             .doc =
                 "How deep the conflict's deepest point is inside the model at any pose, in metres; "
-                "0 where none is. Only where the model has solids and the result clearances."},
+                "0 where none is. It is exact where the model has solids and the result "
+                "clearances, and otherwise the greatest depth of a run with --depth, an "
+                "estimate."},
         FindingColumn{.member = &Conflict::points_inside,
                       .key = "points_inside",
                       .doc = "How many of the conflict's points are inside the model at any pose; "
-                             "only where there is a depth."},
+                             "only where there is an exact depth."},
+        FindingColumn{.member = &Conflict::depth_source,
+                      .key = "depth_source",
+                      .doc = "The source index of the free point that depth is measured to; only "
+                             "where it is an estimate."},
         FindingColumn{
             .member = &Conflict::obstacle_chainage,
             .key = "obstacle_chainage",

@@ -73,6 +73,8 @@ struct Field {
   double least = 0, most = 0;  ///< the range of a whole number or of seconds; 0, 0: any
   bool is_required = false;    ///< whether every question has to give it
   bool is_of_budget = false;   ///< whether only a query with an error budget may change the default
+  /// Whether a result keeps the default by having no attribute of this name.
+  bool is_kept_if_set = false;
   bool is_always_listed = false;  ///< whether lists of a question name it also where not set
   /// Whether it comes from campaign.json, and not from the campaign itself.
   bool is_in_campaigns = true;

@@ -62,6 +62,16 @@ inline constexpr std::tuple kQueryValues{
                  "this height or above, seen from the body there; None: all points count.",
           .no = "none",
           .range = FieldRange::kAny},
+    Field{.member = &QueryParameters::depth,
+          .key = "depth",
+          .topic = "depth",
+          .option = "--depth",
+          .group = OptionGroup::kQuestion,
+          .help = "Also report the distance of every colliding point to the nearest free point of "
+                  "the scans, an estimate of how deep it is inside a model of points",
+          .doc = "Whether to find for each colliding point the nearest point that neither collides "
+                 "nor is ignored; its distance estimates how deep the point is inside the model.",
+          .is_kept_if_set = true},
     Field{.member = &QueryParameters::between_poses,
           .key = "between_poses",
           .topic = "motion",

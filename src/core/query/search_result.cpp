@@ -23,6 +23,7 @@ Query backwards(const Query& query) {
   out.first_pose = true;
   out.clearance = 0;
   out.profile = 0;
+  out.depth = false;
   std::ranges::reverse(out.poses);
   const auto last = static_cast<std::uint32_t>(std::max<std::size_t>(query.poses.size(), 1) - 1);
   for (Body& body : out.bodies) body = backwards(body, last, query.between_poses);

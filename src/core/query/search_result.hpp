@@ -284,6 +284,49 @@ class LastPoses {
   std::uint32_t ways_;  ///< 1 if a pose stands for the way from it to the next, otherwise 0
 };
 
+/// The free point that is nearest to a colliding one (docs/design/depth.md).
+struct Depth {
+  static constexpr std::uint64_t kNoPoint = ~std::uint64_t{0};
+  double distance = std::numeric_limits<double>::quiet_NaN();  ///< metres; NaN if none is free
+  std::uint64_t source = kNoPoint;  ///< of several the smallest; kNoPoint if none is free
+};
+
+/// The depths of the entries of a HitSet: 16 bytes for each of them, and 8 for each 64 entries of
+/// the cloud. Different entries may be set at the same time. `hits` is the same set in every call.
+class DepthSet {
+ public:
+  /// entries: number of entries of the cloud.
+  DepthSet(const HitSet& hits, std::uint64_t entries) : before_(entries / 64) {
+    std::uint64_t count = 0;
+    for (std::uint64_t word = 0; word < before_.size(); ++word) {
+      before_[word] = count;
+      count += static_cast<std::uint64_t>(std::popcount(hits.word(word)));
+    }
+    depths_.resize(count);
+  }
+
+  void set(const HitSet& hits, std::uint64_t entry, const Depth& depth) {
+    depths_[index_of(hits, entry)] = depth;
+  }
+  const Depth& at(const HitSet& hits, std::uint64_t entry) const {
+    return depths_[index_of(hits, entry)];
+  }
+
+  /// The bytes of a set with so many depths.
+  static std::uint64_t bytes(std::uint64_t entries, std::uint64_t depths) {
+    return entries / 64 * sizeof(std::uint64_t) + depths * sizeof(Depth);
+  }
+
+ private:
+  std::uint64_t index_of(const HitSet& hits, std::uint64_t entry) const {
+    const std::uint64_t below = hits.word(entry / 64) & ((std::uint64_t{1} << (entry % 64)) - 1);
+    return before_[entry / 64] + static_cast<std::uint64_t>(std::popcount(below));
+  }
+
+  std::vector<std::uint64_t> before_;  ///< number of hits in the words before each word
+  std::vector<Depth> depths_;
+};
+
 /// The answer of an engine for every entry of a cloud.
 struct SearchResult {
   HitSet hits;
@@ -302,6 +345,8 @@ struct SearchResult {
   /// With an error budget: the points that do not collide but are closer than the margin plus it,
   /// and the colliding points that are certainly too close
   std::optional<HitSet> near = {}, certain = {};
+  /// Set after a search for them, if depths were asked for
+  std::optional<DepthSet> depths = {};
 };
 
 }  // namespace clearway

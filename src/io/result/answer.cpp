@@ -20,6 +20,11 @@ void keep_least(const FoundPlace& place, std::optional<FoundPlace>& least, IsLes
 bool is_earlier(const FoundPlace& a, const FoundPlace& b) { return a.pose < b.pose; }
 bool is_nearer(const FoundPlace& a, const FoundPlace& b) { return a.distance < b.distance; }
 
+/// Takes a point if it is the first one that is found, or deeper than the deepest so far.
+void keep_deepest(const DeepestPoint& point, std::optional<DeepestPoint>& deepest) {
+  if (!deepest || point.depth > deepest->depth) deepest = point;
+}
+
 template <typename Rows>
 void summarise_table(const ResultReader& result, TableSummary& summary) {
   RowStream<Rows> stream(result);
@@ -30,6 +35,11 @@ void summarise_table(const ResultReader& result, TableSummary& summary) {
 
 void summarise(const Collisions& rows, TableSummary& summary) {
   summary.colliding_points += rows.size();
+  for (std::size_t i = 0; i < rows.depth.size(); ++i) {
+    if (rows.depth_source[i] == Collisions::kNoPoint) continue;
+    keep_deepest({rows.depth[i], rows.source[i], rows.xyz[i], rows.depth_source[i]},
+                 summary.deepest);
+  }
   const auto earliest = std::ranges::min_element(rows.first_pose);
   if (earliest == rows.first_pose.end()) return;
   const auto i = static_cast<std::size_t>(earliest - rows.first_pose.begin());
@@ -71,6 +81,7 @@ void add_summary(const TableSummary& later, TableSummary& summary) {
                        auto is_less) {
     if (place) keep_least(*place, least, is_less);
   };
+  if (later.deepest) keep_deepest(*later.deepest, summary.deepest);
   keep(later.first_place, summary.first_place, is_earlier);
   keep(later.least_clearance, summary.least_clearance, is_nearer);
   keep(later.least_profile, summary.least_profile, is_nearer);
@@ -138,7 +149,7 @@ Answer counted_answer(const ResultReader& result) {
 Answer answer_of(const ResultReader& result) {
   Answer answer = counted_answer(result);
   TableSummary summary;
-  if (result.header().first_pose) {
+  if (result.header().first_pose || result.header().depth) {
     summarise_table<Collisions>(result, summary);
   } else {
     summary.colliding_points = result.collisions();  // no row says more

@@ -199,6 +199,7 @@ class Merge {
     if (a.header().first_pose && b.header().first_pose) {
       out_.differing_first_poses = out_.differing_last_poses = 0;
     }
+    if (a.header().depth && b.header().depth) out_.differing_depths = 0;
     same_bodies_ = a.header().bodies == b.header().bodies;
   }
 
@@ -237,6 +238,17 @@ class Merge {
       ++*out_.differing_last_poses;
       keep({Kind::kLastPose, point.source, point.xyz, point.first_pose_a, point.first_pose_b,
             a_.find(&Collisions::last_pose), b_.find(&Collisions::last_pose)});
+    }
+    // The free point says where there is none, so that NaN is not compared.
+    const auto source_a = a_.find(&Collisions::depth_source);
+    const bool is_free = source_a && *source_a != Collisions::kNoPoint;
+    if (out_.differing_depths &&
+        (source_a != b_.find(&Collisions::depth_source) ||
+         (is_free && a_.find(&Collisions::depth) != b_.find(&Collisions::depth)))) {
+      ++*out_.differing_depths;
+      keep({Kind::kDepth, point.source, point.xyz, point.first_pose_a, point.first_pose_b, {}, {},
+            a_.find(&Collisions::depth), b_.find(&Collisions::depth), source_a,
+            b_.find(&Collisions::depth_source)});
     }
     if (a_.get(&Collisions::xyz) != b_.get(&Collisions::xyz)) {
       ++out_.differing_coordinates;

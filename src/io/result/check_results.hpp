@@ -28,7 +28,7 @@ struct QueryDifference {
 
 /// A point for which the two results differ.
 struct PointDifference {
-  enum class Kind { kOnlyInA, kOnlyInB, kFirstPose, kLastPose, kCoordinates };
+  enum class Kind { kOnlyInA, kOnlyInB, kFirstPose, kLastPose, kDepth, kCoordinates };
 
   Kind kind;
   std::uint64_t source;
@@ -36,6 +36,9 @@ struct PointDifference {
   std::optional<std::uint32_t> first_pose_a, first_pose_b;  ///< where that result has first poses
   /// Where that result has last poses.
   std::optional<std::uint32_t> last_pose_a = {}, last_pose_b = {};
+  /// Of kDepth: the depths, NaN where no point is free, and the free points.
+  std::optional<double> depth_a = {}, depth_b = {};
+  std::optional<std::uint64_t> depth_source_a = {}, depth_source_b = {};
 };
 
 /// How the points of a table differ between two results: those of clearances, or the near ones.
@@ -70,6 +73,9 @@ struct Comparison {
   std::optional<std::uint64_t> differing_first_poses;
   /// Number of common points that differ in last pose. Only where both results have last poses.
   std::optional<std::uint64_t> differing_last_poses = {};
+  /// Number of common points that differ in depth or in the free point that it is measured to. Only
+  /// where both results have depths.
+  std::optional<std::uint64_t> differing_depths = {};
   std::optional<TableComparison> clearances;  ///< only where both results have clearances
   std::optional<TableComparison> near;        ///< only where both results have an error budget
   /// Only where both results have a profile of the same trajectory.
@@ -77,11 +83,12 @@ struct Comparison {
   std::vector<QueryDifference> queries;
   std::vector<PointDifference> points;  ///< the first of the differing points, ascending by source
 
-  /// Whether both results have the same points at the same places with the same first poses, near
-  /// points, clearances and profile. Differing queries and last poses do not count.
+  /// Whether both results have the same points at the same places with the same first poses, depths,
+  /// near points, clearances and profile. Differing queries and last poses do not count.
   bool equal() const {
     return only_in_a == 0 && only_in_b == 0 && differing_coordinates == 0 &&
            differing_first_poses.value_or(0) == 0 && differing_last_poses.value_or(0) == 0 &&
+           differing_depths.value_or(0) == 0 &&
            (!clearances || clearances->equal()) && (!near || near->equal()) &&
            (!profiles || profiles->equal());
   }

@@ -273,13 +273,22 @@ constexpr std::tuple kSearched{Field{&SearchedLength::path, "path_length"},
 
 template <typename Struct, typename... Fields>
 void write_all(const hdf5::Id& file, const std::tuple<Fields...>& list, const Struct& from) {
-  for_each_field(list, [&](const auto& field) { write_value(file, field.key, field.of(from)); });
+  for_each_field(list, [&](const auto& field) {
+    using Value = typename std::decay_t<decltype(field)>::Value;
+    if constexpr (!std::is_array_v<Value>) {
+      if (field.is_kept_if_set && field.is_default(from)) return;
+    }
+    write_value(file, field.key, field.of(from));
+  });
 }
 
 template <typename Struct, typename... Fields>
 void read_all(const hdf5::Id& file, const std::string& name, const std::tuple<Fields...>& list,
               Struct& to) {
-  for_each_field(list, [&](const auto& field) { read_value(file, field.key, name, field.of(to)); });
+  for_each_field(list, [&](const auto& field) {
+    if (field.is_kept_if_set && !hdf5::has_attribute(file, field.key, name)) return;
+    read_value(file, field.key, name, field.of(to));
+  });
 }
 
 std::string lines_of(const std::vector<std::string>& texts) {

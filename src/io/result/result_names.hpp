@@ -18,6 +18,8 @@ inline constexpr const char* kSource = "source";
 inline constexpr const char* kXyz = "xyz";
 inline constexpr const char* kFirstPose = "first_pose";
 inline constexpr const char* kLastPose = "last_pose";
+inline constexpr const char* kDepth = "depth";
+inline constexpr const char* kDepthSource = "depth_source";
 inline constexpr const char* kBody = "body";
 inline constexpr const char* kCertain = "certain";
 

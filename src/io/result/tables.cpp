@@ -84,6 +84,18 @@ void Table<Collisions>::check(const RowsRead& read, const Collisions& rows) {
     if (rows.last_pose[i] >= rows.first_pose[i]) continue;
     read.refuse_row(names::kLastPose, i, "a pose that is not before the first one");
   }
+  for (std::size_t i = 0; i < rows.depth.size(); ++i) {
+    const bool is_free = rows.depth_source[i] != Collisions::kNoPoint;
+    if (is_free && rows.depth_source[i] >= read.header.environment_points) {
+      read.refuse_row(names::kDepthSource, i,
+                      "an index below environment_points, or 2^64 - 1 for none");
+    }
+    if (is_free ? !(rows.depth[i] >= 0) : !std::isnan(rows.depth[i])) {
+      read.refuse_row(names::kDepth, i,
+                      is_free ? "a distance, 0 or more"
+                              : "no number (NaN), as no point of the environment is free");
+    }
+  }
 }
 
 void Table<ProfileRows>::check(const RowsRead& read, const ProfileRows& rows) {

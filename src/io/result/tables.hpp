@@ -114,7 +114,13 @@ struct Table<Collisions> : AscendingSources<Collisions> {
                                   [](const ResultHeader& h) { return h.first_pose; }, check_poses},
       Column<Rows, std::uint8_t>{result_names::kCertain, &Rows::certain,
                                  [](const ResultHeader& h) { return h.budget.has_value(); },
-                                 check_flags}};
+                                 check_flags},
+      Column<Rows, double>{result_names::kDepth, &Rows::depth,
+                           [](const ResultHeader& h) { return h.depth; }, check_with_rows<double>,
+                           "distance to nearest free point"},
+      Column<Rows, std::uint64_t>{result_names::kDepthSource, &Rows::depth_source,
+                                  [](const ResultHeader& h) { return h.depth; },
+                                  check_with_rows<std::uint64_t>, "index of that free point"}};
 
   /// Throws InputError where the columns of a row contradict each other.
   static void check(const RowsRead& read, const Rows& rows);

@@ -11,7 +11,7 @@ namespace clearway {
 
 /// A number that each point of a written file has besides its coordinates.
 struct PointField {
-  enum class Type { kUint32, kDouble };
+  enum class Type { kUint32, kDouble, kUint64 };
 
   std::string name;
   Type type = Type::kUint32;
@@ -21,7 +21,8 @@ struct PointField {
 };
 
 /// The values of a field for consecutive points.
-using FieldValues = std::variant<std::span<const std::uint32_t>, std::span<const double>>;
+using FieldValues = std::variant<std::span<const std::uint32_t>, std::span<const double>,
+                                 std::span<const std::uint64_t>>;
 
 /// Throws std::logic_error unless there are values of the right type for each field and point.
 inline void check_fields(const std::vector<PointField>& fields, std::span<const FieldValues> values,

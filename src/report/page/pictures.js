@@ -93,7 +93,7 @@ function viewOf(kind, conflict, vehicle, place, aspect) {
   }
   const radius = page.facts.query.radius;
   camera.halfHeight = Math.max(4 * radius, 0.27 * Math.max(vehicle.height, vehicle.width), 0.15,
-                               1.4 * (conflict.depth ?? 0));
+                               1.4 * (conflict.points_inside ? conflict.depth : 0));
   camera.halfWidth = camera.halfHeight * aspect;
   camera.origin = place;
   return { camera, lo: -0.05, hi: 0.05 };

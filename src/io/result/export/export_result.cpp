@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <cctype>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <stdexcept>
@@ -87,6 +88,13 @@ Quanta quanta_of(const ResultReader& result, const Rows& rows) {
                    ": expected a whole multiple of the scale above the offset");
 }
 
+template <typename Value>
+constexpr PointField::Type field_type_of() {
+  return std::is_same_v<Value, double>          ? PointField::Type::kDouble
+         : std::is_same_v<Value, std::uint64_t> ? PointField::Type::kUint64
+                                                : PointField::Type::kUint32;
+}
+
 /// The columns of a table that are exported as fields of its points.
 template <typename Rows>
 std::vector<PointField> fields_of(const ResultHeader& header) {
@@ -94,10 +102,7 @@ std::vector<PointField> fields_of(const ResultHeader& header) {
   for_each_column<Rows>([&](const auto& column) {
     if (column.field == nullptr || !column.is_in(header)) return;
     using Value = typename std::decay_t<decltype(column)>::Value;
-    out.push_back(
-        {column.dataset,
-         std::is_same_v<Value, double> ? PointField::Type::kDouble : PointField::Type::kUint32,
-         column.field});
+    out.push_back({column.dataset, field_type_of<Value>(), column.field});
   });
   return out;
 }
@@ -179,6 +184,18 @@ class XyzSink final : public RowSink<Rows> {
   const PositionText position_;
 };
 
+template <typename Number>
+void write_cell(TextBuffer& out, Number value) {
+  out << value;
+}
+/// What a row does not have, such as the depth of a point where none is free, is an empty cell.
+void write_cell(TextBuffer& out, double value) {
+  if (!std::isnan(value)) out << value;
+}
+void write_cell(TextBuffer& out, std::uint64_t value) {
+  if (value != Collisions::kNoPoint) out << value;
+}
+
 /// Writes source, coordinates and fields.
 template <typename Rows>
 class CsvSink final : public RowSink<Rows> {
@@ -204,7 +221,7 @@ class CsvSink final : public RowSink<Rows> {
         out << rows.source[i];
         position.write(out << ",", rows.xyz[i], ",");
         for (const FieldValues& field : values) {
-          std::visit([&](const auto& of_points) { out << "," << of_points[i]; }, field);
+          std::visit([&](const auto& of_points) { write_cell(out << ",", of_points[i]); }, field);
         }
         out << "\n";
       }

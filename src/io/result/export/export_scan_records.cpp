@@ -219,6 +219,7 @@ class ExtendedRecord {
   ExtendedRecord(const ResultReader& result, LasRecordFormat& format)
       : first_pose_(result.header().first_pose),
         body_(result.header().has_first_bodies()),
+        depth_(result.header().depth),
         own_bytes_(format.record_bytes) {
     if (first_pose_) {
       add_field(format, sizeof(std::uint32_t),
@@ -227,6 +228,12 @@ class ExtendedRecord {
     if (body_) {
       add_field(format, sizeof(std::uint32_t),
                 las_extra_bytes("body", LasExtraType::kUint32, "body that touches first"));
+    }
+    if (depth_) {
+      add_field(format, sizeof(double),
+                las_extra_bytes("depth", LasExtraType::kDouble, "distance to nearest free point"));
+      add_field(format, sizeof(std::uint64_t),
+                las_extra_bytes("depth_source", LasExtraType::kUint64, "index of that free point"));
     }
     if (result.header().clearance > 0) {
       distances_.emplace(result);
@@ -250,6 +257,13 @@ class ExtendedRecord {
       const std::uint32_t body = row.get(&Collisions::body);
       std::memcpy(out, &body, sizeof body);
       out += sizeof body;
+    }
+    if (depth_) {
+      const double depth = row.get(&Collisions::depth);
+      const std::uint64_t source = row.get(&Collisions::depth_source);
+      std::memcpy(out, &depth, sizeof depth);
+      std::memcpy(out + sizeof depth, &source, sizeof source);
+      out += sizeof depth + sizeof source;
     }
     if (!distances_) return bytes_;
     const double distance = distance_of(row.source());
@@ -283,7 +297,7 @@ class ExtendedRecord {
                : kNoDistance;
   }
 
-  bool first_pose_, body_;
+  bool first_pose_, body_, depth_;
   std::size_t own_bytes_;
   std::optional<ClearanceCursor> distances_;
   std::vector<std::byte> bytes_;

@@ -107,15 +107,24 @@ void put_record_header(ByteWriter& out, const char* user, std::uint16_t record, 
   out.put_text(description, kIdBytes);
 }
 
+LasExtraType extra_type_of(PointField::Type type) {
+  switch (type) {
+    case PointField::Type::kUint32:
+      return LasExtraType::kUint32;
+    case PointField::Type::kDouble:
+      return LasExtraType::kDouble;
+    case PointField::Type::kUint64:
+      return LasExtraType::kUint64;
+  }
+  return LasExtraType::kUndocumented;
+}
+
 void put_extra_bytes_vlr(ByteWriter& out, const LasHeader& header, const Layout& layout) {
   put_record_header(out, "LASF_Spec", 4,
                     static_cast<std::uint16_t>(layout.extra_fields * kLasExtraBytes),
                     "extra bytes");
   for (const PointField& field : header.fields) {
-    out.put(las_extra_bytes(
-        field.name,
-        field.type == PointField::Type::kUint32 ? LasExtraType::kUint32 : LasExtraType::kDouble,
-        field.description));
+    out.put(las_extra_bytes(field.name, extra_type_of(field.type), field.description));
   }
 }
 

@@ -20,6 +20,13 @@ std::string header_text(const PlyOutput& header) {
   return text + "end_header\n";
 }
 
+template <typename Number>
+void put_property(ByteWriter& out, Number value) {
+  out.put(value);
+}
+/// PLY has no integers of 64 bits. Below 2^53 a double is the same number.
+void put_property(ByteWriter& out, std::uint64_t value) { out.put(static_cast<double>(value)); }
+
 }  // namespace
 
 PlyWriter::PlyWriter(const File& file, const PlyOutput& header) : out_(file), header_(header) {
@@ -38,7 +45,7 @@ void PlyWriter::write(std::span<const Vec3> points, std::span<const FieldValues>
       }
     }
     for (const FieldValues& field : values) {
-      std::visit([&](const auto& of_points) { out_.put(of_points[i]); }, field);
+      std::visit([&](const auto& of_points) { put_property(out_, of_points[i]); }, field);
     }
   }
   written_ += points.size();

@@ -145,7 +145,7 @@ std::string description_of(const ConflictFile& file, const Conflict& c) {
   }
   if (c.lateral && c.height) {
     out += std::string(!c.nearest_point          ? " The point that is touched first"
-                       : c.depth.value_or(0) > 0 ? " That point"
+                       : c.points_inside.value_or(0) > 0 ? " That point"
                                                  : " Its nearest point") +
            " lies " + offset_text(file, c) + ".";
   }
