@@ -458,6 +458,11 @@ void read_shard_seconds(const KeyReader& limits, Campaign& campaign) {
   if (!at.value().is_number() || !(at.value().get<double>() > 0)) {
     at.refuse("expected seconds above 0, as 600");
   }
+  const bool asks_for_depths = std::ranges::any_of(
+      campaign.query, [](const Argument& argument) { return argument.text == "--depth"; });
+  if (asks_for_depths) {
+    at.refuse("depths are not found in shards; leave out \"depth\" of the query, or this limit");
+  }
   campaign.shard_seconds = at.value().get<double>();
 }
 

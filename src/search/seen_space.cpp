@@ -51,7 +51,7 @@ Query query_of_cubes(const Query& query, double radius) {
   out.radius = radius;
   raise_floors(out, query.radius - radius);
   out.first_pose = true;
-  out.seen = false;
+  out.seen = out.depth = false;
   out.clearance = out.profile = 0;
   out.ignore_classes.clear();
   return out;

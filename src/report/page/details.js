@@ -45,6 +45,9 @@ function conflictFacts(conflict) {
   if (conflict.points_inside > 0) {
     rows.push(["Inside", `${count(conflict.points_inside)} of its points`]);
   }
+  if ((conflict.depth_source ?? null) !== null) {
+    rows.push(["Depth", `${metres(conflict.depth)} to the nearest free point, an estimate`]);
+  }
   if (conflict.remedy) rows.push(["To pass", conflict.remedy]);
   const shifts = [["left", conflict.own_shift_left], ["right", conflict.own_shift_right]]
       .filter(([, shift]) => shift !== null)

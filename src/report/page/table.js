@@ -19,6 +19,7 @@ function tableColumns() {
   const digits = digitsFor(list.map((c) => c.least_distance));
   const lengths = (key) => (c) => c[key] === null ? "" : fixed(c[key], digits);
   const deep = list.some((c) => isInside(c.least_distance));
+  const estimated = list.some((c) => (c.depth_source ?? null) !== null);
   const outside = (c) => isInside(c.least_distance) ? "inside" : lengths("least_distance")(c);
   const shifted = list.some((c) => c.own_shift_left !== null || c.own_shift_right !== null);
   const offset = (key) => [(c) => c[key] ?? 0, (c) => c[key] === null ? "" : signed(c[key])];
@@ -39,7 +40,8 @@ function tableColumns() {
     list.some((c) => c.class) && ["Certainty", (c) => c.class, certaintyCell],
     measured && classesDiffer() && ["Class", (c) => c.least_distance ?? Infinity, classCell],
     measured && ["Least distance", (c) => c.least_distance ?? Infinity, outside],
-    deep && ["Depth", (c) => c.depth ?? 0, (c) => c.depth ? fixed(c.depth, digits) : ""],
+    (deep || estimated) &&
+        [estimated ? "Depth, estimated" : "Depth", (c) => c.depth ?? 0, (c) => c.depth ? fixed(c.depth, digits) : ""],
     measured && ["Missing", (c) => c.encroachment ?? -1, missingCell],
     list.some((c) => leastTrim(c) !== null) && ["Trim", (c) => leastTrim(c) ?? Infinity, (c) => roundedUp(leastTrim(c))],
     shifted && ["Own shift left", (c) => c.own_shift_left ?? Infinity, (c) => roundedUp(c.own_shift_left)],

@@ -135,6 +135,9 @@ CheckPlan::CheckPlan(const CheckCommand& options)
   if (is_given("--seen")) {
     throw UsageError("--seen needs all points of the scans, and --near leaves some out");
   }
+  if (is_given("--depth")) {
+    throw UsageError("--depth needs all points of the scans, and --near leaves some out");
+  }
   if (is_given("--origins-path")) {
     throw UsageError(
         "--near and --origins-path would be read alike; expected one of them, or clearway convert "

@@ -88,8 +88,8 @@ TEST_CASE("conflicts are listed in JSON and CSV, and no point is lost") {
         "id,rank,points,source,lo_x,lo_y,lo_z,hi_x,hi_y,hi_z,centroid_x,centroid_y,centroid_z,"
         "first_pose,last_pose,chainage_from,chainage_to,least_distance,nearest_pose,nearest_source,"
         "encroachment,encroachment_is,side,first_touch,trim_left,trim_right,trim_above,trim_below,"
-        "lateral,height,group,depth,points_inside,obstacle_chainage,own_shift_left,own_shift_right,"
-        "small_groups,small_points");
+        "lateral,height,group,depth,points_inside,depth_source,obstacle_chainage,own_shift_left,"
+        "own_shift_right,small_groups,small_points");
   CHECK_THAT(rows[1], StartsWith("1," + all["conflicts"][0]["rank"].dump() + "," +
                                  all["conflicts"][0]["points"].dump() + "," +
                                  all["conflicts"][0]["source"].dump() + ","));
