@@ -160,8 +160,7 @@ void NearestFree::visit(const EnvironmentNode& block, const Box& box) {
   for (Asked& asked : asked_) {
     const Vec3& p = asked.place;
     if (least_squared_distance(box, p) > asked.squared) continue;
-    const double least =
-        squared_distances(free.x, free.y, free.z, padded, p.x, p.y, p.z, squared);
+    const double least = squared_distances(free.x, free.y, free.z, padded, p.x, p.y, p.z, squared);
     if (least > asked.squared) continue;
     if (least < asked.squared) {
       asked.squared = least;

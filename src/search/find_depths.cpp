@@ -100,8 +100,7 @@ DepthSet find_depths(const StoreReader& store, const DepthSearch& search, Progre
   const HitSet& hits = search.found.hits;
   const SetCells in =
       in_threads(search.threads, [&] { return cells_of(store, hits, search.found.cells); });
-  const int threads =
-      threads_in(search, bytes_without_threads(store) + in.entries * sizeof(Depth));
+  const int threads = threads_in(search, bytes_without_threads(store) + in.entries * sizeof(Depth));
   progress.begin("depth", in.entries, "points");
   DepthSet depths(hits, store.entry_count());
   if (in.entries > 0) {

@@ -509,8 +509,7 @@ class Search {
     // What further_bytes() set aside for depths, and what there is to write with
     const std::uint64_t memory = depth_bytes(store_, query_) + found.write_bytes;
     const HitSet* const below = without_floors_ ? &*without_floors_ : nullptr;
-    const std::uint64_t taken =
-        below != nullptr ? below->allocated_bytes() : 0;
+    const std::uint64_t taken = below != nullptr ? below->allocated_bytes() : 0;
     const std::uint64_t rows =
         DepthSet::bytes(store_.entry_count(), found.result.hits.count()) + kDeepWriteBytes;
     const auto refuse = [&](std::uint64_t needed) {

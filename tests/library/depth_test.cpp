@@ -40,10 +40,9 @@ void check_depths(const Collisions& rows, const std::vector<Vec3>& places,
       least = squared;
       source = i;
     }
-    const bool same =
-        source == Collisions::kNoPoint
-            ? std::isnan(rows.depth[row])
-            : rows.depth[row] == std::sqrt(least);  // not NaN
+    const bool same = source == Collisions::kNoPoint
+                          ? std::isnan(rows.depth[row])
+                          : rows.depth[row] == std::sqrt(least);  // not NaN
     wrong += !same || rows.depth_source[row] != source;
   }
   CHECK(wrong == 0);
@@ -155,6 +154,34 @@ TEST_CASE("neither threads nor memory nor stops change a byte of depths") {
   const Collisions rows = Result(scene.folder / "whole.h5").collisions();
   CHECK(answer.collisions().depth == rows.depth);
   CHECK(answer.collisions().depth_source == rows.depth_source);
+}
+
+TEST_CASE("a conflict has the greatest depth of its points") {
+  Vehicle vehicle(3, false, 12);
+  vehicle.query.radius = 0.1;
+  vehicle.query.first_pose = vehicle.query.depth = true;
+  vehicle.query.error_scan = 0.005;  // so that near points are grouped too
+  const Result result = vehicle.run({.threads = 2});
+  const Collisions rows = result.collisions();
+  std::vector<std::uint32_t> conflict_of;
+  ConflictOptions options{.gap = 0.08, .min_points = 2};
+  options.bodies = vehicle.query.bodies;
+  const Conflicts found = find_conflicts(result, vehicle.query.poses, options, &conflict_of);
+  REQUIRE(found.near_points > 0);
+  REQUIRE(found.listed.size() > 2);
+  for (const Conflict& conflict : found.listed) {
+    CAPTURE(conflict.id);
+    std::optional<double> greatest;
+    std::optional<std::uint64_t> source;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      if (conflict_of[row] != conflict.id || rows.depth[row] <= greatest.value_or(-1)) continue;
+      greatest = rows.depth[row];
+      source = rows.depth_source[row];
+    }
+    CHECK(conflict.depth == greatest);
+    CHECK(conflict.depth_source == source);
+    CHECK_FALSE(conflict.points_inside);
+  }
 }
 
 TEST_CASE("depths are refused where not all points are known") {

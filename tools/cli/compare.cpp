@@ -216,7 +216,8 @@ void add_compare(CLI::App& program, int& exit_code) {
   command->footer(
       "Prints how many colliding points are only in A, only in B and in both. Where both "
       "results\n"
-      "have first poses, depths, clearances or an error budget, it prints how many of these, or of\n"
+      "have first poses, depths, clearances or an error budget, it prints how many of these, or "
+      "of\n"
       "the near points, differ. It also prints what differs in the queries: model, trajectory,\n"
       "radius in metres.\n"
       "Exit code 0: the same points, first poses, depths, near points and clearances, even of\n"

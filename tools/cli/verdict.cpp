@@ -227,8 +227,8 @@ ordered_json place_json(const Answer& answer, const std::optional<FoundPlace>& p
   return out;
 }
 
-/// The greatest depth and its point, null where no point of the environment is free; null as a whole
-/// where depths were not asked for.
+/// The greatest depth and its point, null where no point of the environment is free; null as a
+/// whole where depths were not asked for.
 ordered_json depth_json(const Answer& answer) {
   if (!answer.parameters.depth) return nullptr;
   ordered_json out{{"greatest", nullptr}, {"source", nullptr}, {"depth_source", nullptr}};

@@ -246,8 +246,16 @@ class Merge {
         (source_a != b_.find(&Collisions::depth_source) ||
          (is_free && a_.find(&Collisions::depth) != b_.find(&Collisions::depth)))) {
       ++*out_.differing_depths;
-      keep({Kind::kDepth, point.source, point.xyz, point.first_pose_a, point.first_pose_b, {}, {},
-            a_.find(&Collisions::depth), b_.find(&Collisions::depth), source_a,
+      keep({Kind::kDepth,
+            point.source,
+            point.xyz,
+            point.first_pose_a,
+            point.first_pose_b,
+            {},
+            {},
+            a_.find(&Collisions::depth),
+            b_.find(&Collisions::depth),
+            source_a,
             b_.find(&Collisions::depth_source)});
     }
     if (a_.get(&Collisions::xyz) != b_.get(&Collisions::xyz)) {

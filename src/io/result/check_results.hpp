@@ -83,14 +83,13 @@ struct Comparison {
   std::vector<QueryDifference> queries;
   std::vector<PointDifference> points;  ///< the first of the differing points, ascending by source
 
-  /// Whether both results have the same points at the same places with the same first poses, depths,
-  /// near points, clearances and profile. Differing queries and last poses do not count.
+  /// Whether both results have the same points at the same places with the same first poses,
+  /// depths, near points, clearances and profile. Differing queries and last poses do not count.
   bool equal() const {
     return only_in_a == 0 && only_in_b == 0 && differing_coordinates == 0 &&
            differing_first_poses.value_or(0) == 0 && differing_last_poses.value_or(0) == 0 &&
-           differing_depths.value_or(0) == 0 &&
-           (!clearances || clearances->equal()) && (!near || near->equal()) &&
-           (!profiles || profiles->equal());
+           differing_depths.value_or(0) == 0 && (!clearances || clearances->equal()) &&
+           (!near || near->equal()) && (!profiles || profiles->equal());
   }
 };
 

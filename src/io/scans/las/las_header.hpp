@@ -58,7 +58,12 @@ constexpr std::optional<std::size_t> las_time_byte(unsigned point_format) {
 // Source: LAS 1.4 R15 (ASPRS), "Extra Bytes VLR".
 
 /// Type codes of the specification.
-enum class LasExtraType : std::uint8_t { kUndocumented = 0, kUint32 = 5, kUint64 = 7, kDouble = 10 };
+enum class LasExtraType : std::uint8_t {
+  kUndocumented = 0,
+  kUint32 = 5,
+  kUint64 = 7,
+  kDouble = 10
+};
 
 constexpr std::uint16_t kLasExtraBytes = 192;  ///< size of a field's description
 using LasExtraDescription = std::array<std::byte, kLasExtraBytes>;

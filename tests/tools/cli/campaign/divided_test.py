@@ -49,6 +49,8 @@ def plan_has_shards_and_merges(test):
         done = plan(test, "refused", {**LIMITS, "shard_seconds": seconds})
         expect(done.returncode == 3 and "limits.shard_seconds: expected seconds" in done.stderr,
                done.stderr)
+    done = plan(test, "refused", DIVIDED, query={"first_pose": True, "depth": True})
+    expect(done.returncode == 3 and "depths are not found in shards" in done.stderr, done.stderr)
     expect(plan(test, "divided", DIVIDED).returncode == 0, "the same plan again")
     long_enough = plan(test, "long", {**LIMITS, "shard_seconds": 1000})
     expect("2 tasks" in long_enough.stdout, long_enough.stdout)

@@ -144,9 +144,9 @@ std::string description_of(const ConflictFile& file, const Conflict& c) {
            ", at pose " + std::to_string(*c.nearest_pose) + missing_text(file, c) + ".";
   }
   if (c.lateral && c.height) {
-    out += std::string(!c.nearest_point          ? " The point that is touched first"
+    out += std::string(!c.nearest_point                  ? " The point that is touched first"
                        : c.points_inside.value_or(0) > 0 ? " That point"
-                                                 : " Its nearest point") +
+                                                         : " Its nearest point") +
            " lies " + offset_text(file, c) + ".";
   }
   if (c.obstacle_chainage) {
