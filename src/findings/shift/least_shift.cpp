@@ -759,6 +759,7 @@ class LeastShift::Round {
     });
     scope.begin();
     tbb::parallel_for(std::size_t{0}, open.size(), run);
+    scope.end();
     for (std::size_t i = 0; i < open.size(); ++i) {
       double& shift = shift_[2 * units_[open[i] / 2].set + open[i] % 2];
       shift = std::max(shift, found[i]);
@@ -843,6 +844,7 @@ std::vector<SideShifts> LeastShift::least(const Quantisation& quantisation,
     });
     scope.begin();
     tbb::parallel_for(std::size_t{0}, blocks.size(), build);
+    scope.end();
     throw_if_stopped(progress);
     Round round(*this, sets.subspan(begin, end - begin), blocks, most, progress);
     std::ranges::copy(round.run(units), std::back_inserter(out));
