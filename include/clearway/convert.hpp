@@ -67,7 +67,9 @@ struct ConvertOptions {
   bool skip_unreadable = false;  ///< leaves out files that cannot be read, with a warning
   bool strict = false;     ///< treats warnings as errors: reports all of them and writes no store
   bool overwrite = false;  ///< replaces an existing store
-  bool resume = false;     ///< leaves a store of the same inputs and options as it is, and no other
+  /// Goes on with a conversion of the same inputs and options that was interrupted, and leaves
+  /// their store as it is where it is finished. No other store is overwritten.
+  bool resume = false;
   ProgressCallback progress = nullptr;
   MessageCallback message = nullptr;  ///< receives notes, and the warnings that the report holds
   StopFlag stop = nullptr;
@@ -123,6 +125,14 @@ struct ConvertReport {
   double largest_change = 0;  ///< greatest change of a coordinate by rounding to the scale, metres
   std::uint64_t temporary_bytes = 0;
   std::uint64_t output_bytes = 0;
+  /// Points of the inputs that an earlier call had distributed, and cells that it had written, which
+  /// were taken over because ConvertOptions::resume is set
+  std::uint64_t resumed_points = 0, resumed_cells = 0;
+  /// Batches of the inputs, of 65,536 points or so, and buckets of the store that the earlier call
+  /// had begun to distribute and to write and had not finished, so that they were done twice
+  std::uint64_t repeated_batches = 0, repeated_buckets = 0;
+  /// Batches that were counted twice
+  std::uint64_t recounted_batches = 0;
   /// Wall-clock seconds of the stages; count_seconds includes everything before that stage.
   double count_seconds = 0, distribute_seconds = 0, partition_seconds = 0, confirm_seconds = 0;
   std::vector<StageSeconds> busy_seconds = {};

@@ -72,6 +72,9 @@ nlohmann::ordered_json json_of(const OriginsPathReport& path) {
           {"without_time", path.without_time}};
 }
 
+constexpr const char* kGoesOnFromThere =
+    "the same command with --resume, without --force, goes on from there";
+
 /// The report as JSON. What only a conversion knows is null for a store that already existed.
 nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertCommand& options,
                                double total_seconds) {
@@ -97,7 +100,17 @@ nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertCommand
   out["largest_change"] = nullptr;
   out["temporary_bytes"] = nullptr;
   out["output_bytes"] = std::filesystem::file_size(options.output);
+  for (const char* key :
+       {"resumed_points", "resumed_cells", "recounted_batches", "repeated_batches",
+        "repeated_buckets"}) {
+    out[key] = nullptr;
+  }
   if (!report.was_finished) {
+    out["resumed_points"] = report.resumed_points;
+    out["resumed_cells"] = report.resumed_cells;
+    out["recounted_batches"] = report.recounted_batches;
+    out["repeated_batches"] = report.repeated_batches;
+    out["repeated_buckets"] = report.repeated_buckets;
     out["non_finite"] = report.non_finite_points;
     out["absent"] = report.absent_points;
     out["largest_change"] = report.largest_change;
@@ -149,6 +162,14 @@ void log_report(const ConvertCommand& options, const ConvertReport& report) {
   if (report.largest_change > 0) {
     spdlog::info("coordinates changed by at most {:.3g} (rounded to the scale)",
                  report.largest_change);
+  }
+  if (report.resumed_points + report.recounted_batches + report.repeated_batches > 0) {
+    spdlog::info(
+        "taken over: {} distributed, {} written. Done twice: {} of points counted, {} distributed, "
+        "{} written",
+        counted(report.resumed_points, "point"), counted(report.resumed_cells, "cell"),
+        counted(report.recounted_batches, "batch", "batches"), report.repeated_batches,
+        counted(report.repeated_buckets, "bucket"));
   }
   spdlog::info(
       "seconds: count {:.2f}, distribute {:.2f}, partition {:.2f}, confirm {:.2f}; temporary {}",
@@ -205,7 +226,8 @@ void add_convert(CLI::App& program) {
       "Standard input is LAS or LAZ: clearway convert - -o site.h5 < scan.las\n"
       "Example: clearway convert scans/ -o site.h5 --memory 2G");
   command->callback([options] {
-    run_stoppable(options->output, "the same command starts it again, from the beginning", [&] {
+    const bool is_stream = options->inputs == std::vector<std::filesystem::path>{"-"};
+    run_stoppable(options->output, is_stream ? kStartsAgain : kGoesOnFromThere, [&] {
       const Stopwatch total;
       const ConvertReport report = perform(*options);
       if (options->json) print(indented_text(json_of(report, *options, total.seconds())));

@@ -137,9 +137,10 @@ inline constexpr std::tuple kConvertFields{
           .key = "resume",
           .option = "--resume",
           .group = OptionGroup::kFiles,
-          .help = "Leave a finished store of these inputs as it is; an interrupted conversion "
-                  "starts again",
-          .doc = "Leaves a store of the same inputs and options as it is; any other file there is "
+          .help = "Go on with a conversion of the same inputs that was interrupted or killed, and "
+                  "leave their finished store as it is",
+          .doc = "Goes on with a conversion of the same inputs and options that was interrupted, "
+                 "and leaves\n    their finished store as it is; any other file there is "
                  "refused."}};
 
 }  // namespace clearway

@@ -27,6 +27,13 @@ class PendingFile {
   /// Revokes `overwrite`. Throws UsageError where the output exists.
   void refuse_existing();
 
+  /// Whether the destructor leaves an unpublished file for a later process.
+  void keep(bool kept) { kept_ = kept; }
+
+  /// Gives the partial file another name, under which it belongs to this object still, and begins
+  /// an empty one. A file that has the other name already is lost. Returns the file, open.
+  File set_aside(const std::filesystem::path& path);
+
   /// Waits until the file is on the disk, so that publish() need not.
   void sync() const;
 
@@ -40,6 +47,7 @@ class PendingFile {
   bool overwrite_;
   File lock_;
   bool published_ = false;
+  bool kept_ = false;
 };
 
 /// Throws UsageError when `output` or its partial name is one of `inputs`.

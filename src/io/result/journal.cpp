@@ -205,6 +205,10 @@ void sync_folder_of(const std::filesystem::path& path) {
 
 void JournalRecord::clear() { bytes_.assign(sizeof(RecordHeader), std::byte{0}); }
 
+std::span<const std::byte> JournalRecord::payload() const {
+  return std::span(bytes_).subspan(sizeof(RecordHeader));
+}
+
 void JournalRecord::put_count(std::uint64_t value) {
   for (; value >= 0x80; value >>= 7) bytes_.push_back(static_cast<std::byte>(value | 0x80));
   bytes_.push_back(static_cast<std::byte>(value));
@@ -212,7 +216,10 @@ void JournalRecord::put_count(std::uint64_t value) {
 
 void JournalRecord::put_text(const std::string& text) {
   put_count(text.size());
-  const auto bytes = std::as_bytes(std::span(text));
+  put_bytes(std::as_bytes(std::span(text)));
+}
+
+void JournalRecord::put_bytes(std::span<const std::byte> bytes) {
   bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
 }
 
@@ -269,7 +276,7 @@ const File& JournalWriter::file() const { return state_->file; }
 
 void JournalWriter::append(JournalRecord& record) {
   State& s = *state_;
-  const auto payload = std::span(record.bytes_).subspan(sizeof(RecordHeader));
+  const std::span<const std::byte> payload = record.payload();
   if (payload.size() > kMostPayloadBytes) {
     throw ResourceError(s.file.name() + ": a record of " + std::to_string(payload.size()) +
                         " bytes, expected fewer than 2^32");

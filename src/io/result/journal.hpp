@@ -50,7 +50,9 @@ class JournalRecord {
   /// Appends a number with seven bits per byte, the lowest first.
   void put_count(std::uint64_t value);
   void put_text(const std::string& text);
+  void put_bytes(std::span<const std::byte> bytes);
   void clear();
+  std::span<const std::byte> payload() const;
 
  private:
   friend class JournalWriter;
@@ -71,13 +73,13 @@ class JournalPayload {
   }
   std::uint64_t take_count();
   std::string take_text();
+  /// The next bytes, which belong to the payload.
+  std::span<const std::byte> take_bytes(std::size_t bytes);
   bool at_end() const { return left_.empty(); }
   /// Throws InputError, which names file and record.
   [[noreturn]] void refuse(const std::string& what) const;
 
  private:
-  std::span<const std::byte> take_bytes(std::size_t bytes);
-
   std::span<const std::byte> left_;
   std::string where_;
 };

@@ -50,6 +50,11 @@ struct SourceFile {
   std::string name;  ///< base name; "-" for standard input
   std::uint64_t bytes = 0;
   std::uint64_t xxh64 = 0;
+
+  template <typename Values>
+  void keep(Values& values) {
+    values.add(name, bytes, xxh64);
+  }
   friend bool operator==(const SourceFile&, const SourceFile&) = default;
 };
 
@@ -64,6 +69,11 @@ struct StoreClasses {
 struct OriginBasis {
   std::string what;
   std::uint64_t points = 0;
+
+  template <typename Values>
+  void keep(Values& values) {
+    values.add(what, points);
+  }
   friend bool operator==(const OriginBasis&, const OriginBasis&) = default;
 };
 

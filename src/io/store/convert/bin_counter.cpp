@@ -25,6 +25,11 @@ BinCounter::BinCounter(unsigned least_shift, std::size_t most_bins)
       most_bins_(most_bins),
       slots_(std::bit_ceil(2 * std::max<std::size_t>(2, most_bins))) {}
 
+void BinCounter::clear() {
+  slots_.assign(slots_.size(), {});
+  occupied_ = last_ = 0;
+}
+
 BinCounter::Slot& BinCounter::find(const Key& key) {
   const std::size_t mask = slots_.size() - 1;
   std::size_t at = hash_of(key) & mask;

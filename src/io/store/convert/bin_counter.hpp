@@ -1,6 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <vector>
 
 #include "io/store/convert/quantum_bounds.hpp"
@@ -31,6 +35,17 @@ class BinCounter {
   /// The occupied bins, in an order that depends on the points alone.
   std::vector<Bin> bins() const;
 
+  /// Keeps the bins, as add() and merge() can go on from them.
+  template <typename Values>
+  void keep(Values& values) {
+    std::vector<Slot> occupied;
+    std::ranges::copy_if(slots_, std::back_inserter(occupied),
+                         [](const Slot& slot) { return slot.count != 0; });
+    values.add(shift_, occupied);
+    clear();
+    for (const Slot& slot : occupied) add_key(slot.key, slot.count);
+  }
+
  private:
   using Key = std::array<std::uint64_t, 3>;  // a regular lattice has up to 62 bits per axis
 
@@ -39,6 +54,7 @@ class BinCounter {
     std::uint64_t count;  // number of points; 0 for a free slot
   };
 
+  void clear();
   Slot& find(const Key& key);
   void add_key(const Key& key, std::uint64_t count);
   void coarsen();

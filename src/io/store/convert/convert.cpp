@@ -26,8 +26,10 @@
 #include "io/files/file.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/thread_limit.hpp"
+#include "io/result/journal_values.hpp"
 #include "io/scans/point_formats.hpp"
 #include "io/scans/point_reader.hpp"
+#include "io/store/convert/conversion_journal.hpp"
 #include "io/store/convert/count.hpp"
 #include "io/store/convert/distribute.hpp"
 #include "io/store/convert/environment_source.hpp"
@@ -60,37 +62,57 @@ struct UnitInFlight {
   std::optional<OrderedUnit> rest;
 };
 
-void write_unit(UnitInFlight& unit, StoreWriter& writer, StageClocks& clocks, Progress& progress) {
+/// journal: receives the unit once it is written; or null.
+void write_unit(UnitInFlight& unit, StoreWriter& writer, ConversionJournal* journal,
+                StageClocks& clocks, Progress& progress) {
+  std::vector<WrittenCell> written;
   while (!unit.packed.empty()) {
-    for (const PackedCell& cell : unit.packed) {
+    for (PackedCell& cell : unit.packed) {
       throw_if_stopped(progress);
       const auto running = clocks.measure(Stage::kWrite);
-      writer.append(cell);
+      std::vector<ChunkPlace> places = writer.append(cell);
       progress.advance(cell.cell.count);
+      if (journal == nullptr) continue;
+      written.push_back({cell.cell, std::move(cell.blocks), std::move(places)});
     }
     unit.packed.clear();
     if (unit.rest) unit.packed = unit.rest->pack_next();
   }
+  if (journal != nullptr) journal->keep_unit(written);
 }
 
 /// Partitions and packs the units, several at a time as memory allows, and writes their cells in
-/// order.
+/// order. journal: holds the units that an earlier process wrote, which are copied, and receives
+/// the others; or null.
 void write_cells(Distribution& distribution, const SplitTree& tree, const Lattice& lattice,
                  const StoreMetadata& metadata, const OriginTable* origins,
-                 std::size_t units_in_flight, StoreWriter& writer, StageClocks& clocks,
-                 Progress& progress) {
+                 std::size_t units_in_flight, StoreWriter& writer, ConversionJournal* journal,
+                 StageClocks& clocks, Progress& progress) {
+  progress.begin("partition", metadata.point_count, "points");
+  std::size_t next = 0;
+  if (journal != nullptr) {
+    next = journal->units();
+    journal->for_each_cell(metadata, [&](const PackedCell& cell) {
+      throw_if_stopped(progress);
+      writer.append(cell);
+      progress.advance(cell.cell.count);
+    });
+  }
   std::size_t largest = 0;
   for (std::size_t unit = 0; unit < distribution.units(); ++unit) {
     largest = std::max<std::size_t>(largest, distribution.points(unit));
   }
   UnitBuffers buffers(largest);
   using Flying = std::shared_ptr<UnitInFlight>;
-  std::size_t next = 0;
   const ParallelScope scope;
   const SerialStage input, output;
   const auto number_of_next = piece_of(scope, input, [&](tbb::flow_control& flow) {
     throw_if_stopped(progress);
-    if (next == tree.units().size()) flow.stop();
+    if (next == tree.units().size()) {
+      flow.stop();
+    } else if (journal != nullptr) {
+      journal->begin_unit(next + 1);
+    }
     return next++;
   });
   const auto order_and_pack = piece_of(scope, [&](std::size_t unit) {
@@ -101,8 +123,8 @@ void write_cells(Distribution& distribution, const SplitTree& tree, const Lattic
     return flying;
   });
   const auto write = piece_of(
-      scope, output, [&](const Flying& unit) { write_unit(*unit, writer, clocks, progress); });
-  progress.begin("partition", metadata.point_count, "points");
+      scope, output,
+      [&](const Flying& unit) { write_unit(*unit, writer, journal, clocks, progress); });
   scope.begin();
   tbb::parallel_pipeline(
       units_in_flight,
@@ -245,11 +267,40 @@ class Conversion {
         threads_(threads),
         progress_(progress),
         folder_(folder_of(options.output)),
-        output_(options.output, options.overwrite),
+        output_(options.output, options.overwrite || options.resume),
         withheld_(options.memory_bytes / 8) {}
 
   ConversionReport run() {
-    EnvironmentSource environment(options_.inputs, environment_options(), progress_);
+    // Standard input can be read only once, so that there is nothing to go on with.
+    if (options_.inputs == std::vector<std::filesystem::path>{"-"}) {
+      if (!options_.overwrite) output_.refuse_existing();
+      return convert();
+    }
+    journal_.emplace(output_, options_, log_);
+    if (!journal_->replaces()) output_.refuse_existing();
+    try {
+      return convert();
+    } catch (const ResourceError&) {
+      journal_->leave();
+      throw;
+    } catch (const Error& error) {
+      if (dynamic_cast<const Interrupted*>(&error) != nullptr) {
+        journal_->leave();
+      } else {
+        journal_->discard();  // the inputs or the options have to change
+      }
+      throw;
+    } catch (...) {
+      journal_->leave();
+      throw;
+    }
+  }
+
+ private:
+  ConversionReport convert() {
+    EnvironmentSource environment(options_.inputs, environment_options(), progress_,
+                                  journal_ ? journal_->found() : nullptr);
+    if (journal_) journal_->keep_found(environment.found());
     refuse_overwriting(options_.output, environment.read_files());
     for (const auto& given : {options_.origins, options_.origins_path, options_.near}) {
       if (!given.empty()) refuse_overwriting(options_.output, {given});
@@ -263,49 +314,41 @@ class Conversion {
       environment.keep_near(*corridor, options_.trust_bounds);
     }
     OriginTable origins(environment.quantisation(), options_.memory_bytes / 4);
-    if (!options_.origins.empty()) add_origins_of_file(options_.origins, origins);
-    std::optional<PathOrigins> path;
-    if (!options_.origins_path.empty()) path.emplace(options_, environment, origins, log_);
-    FileHashes hashes(environment.files(), environment.in_pieces());
-    std::vector<bool> described = environment.in_pieces();
-    for (std::size_t i = 0; i < environment.passed_over().size(); ++i) {
-      if (!environment.passed_over()[i]) continue;
-      hashes.pass_over(i);
-      described[i] = true;
-    }
-    SourceDescription others(environment.read_files(), described, progress_);
     const Lattice lattice = lattice_for(options_, environment.quantisation());
-    InputSurvey survey;
-    CountedEnvironment counted = count_environment(environment, lattice, survey, hashes, threads_,
-                                                   clocks_, progress_, path ? &*path : nullptr);
-    fill_metadata(environment, counted, others.get(hashes.finish()));
+    Counted all;
+    if (!take_counted(environment, origins, all)) count(environment, lattice, origins, all);
+    CountedEnvironment& counted = all.environment;
+    fill_metadata(environment, counted, std::move(all.sources));
+    for (const Message& message : all.of_path) log_.add(message);
     const bool names_no_unit =
         environment.unit() == LengthUnit::kUnknown && !environment.crs().is_partly_read;
     if (names_no_unit && counted.points > 0) {
       log_.note(
           "the inputs name no unit of length, so metres are assumed; --unit names another one");
     }
-    report_.box = warn_of_inputs(environment, survey.boxes, report_.metadata, log_);
+    report_.box = warn_of_inputs(environment, all.boxes, report_.metadata, log_);
     if (corridor) describe_corridor(environment, *corridor);
-    check_coordinates(environment, survey.boxes);
-    if (path) report_.origins_path = path->finish(environment, log_);
-    path.reset();
-    collect_origins(environment, counted.input_points, origins);
+    check_coordinates(environment, all.boxes);
+    for (const Message& message : all.of_places) log_.add(message);
+    report_.origins_path = std::move(all.origins_path);
+    if (origins.any()) origins_ = &origins;
     const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
     const std::vector<TopNode> top = tree.top_nodes(options_.cell_points);
     check_cells(top, tree.units().size());
     report_.count_seconds = watch_.lap();
 
-    PlaceCounter places(survey.places.suspects());
-    progress_.begin("distribute", counted.points, "points");
-    Distribution distribution(tree, in_memory_ ? std::nullopt : std::optional(folder_),
-                              static_cast<std::size_t>(threads_));
-    distribute(environment, counted.hashes(), lattice, tree, places, distribution, threads_,
-               clocks_, progress_, origins_, &withheld_);
-    progress_.end();
-    if (report_.metadata.withheld) report_.metadata.withheld->cubes = withheld_.take();
-    environment.refuse_changed();  // so that the sources' hashes are those of what was converted
-    report_.largest_change = environment.largest_change();
+    PlaceCounter places(all.suspects);
+    Distribution distribution(tree, point_files(tree.units().size()),
+                              journal_ ? ConversionJournal::kPointsBegin : 0);
+    if (journal_) resume_distribution(distribution, places);
+    if (!journal_ || !journal_->is_distributed()) {
+      progress_.begin("distribute", counted.points, "points");
+      distribute(environment, counted.hashes(), lattice, tree, places, distribution, threads_,
+                 clocks_, progress_, origins_, &withheld_, journal_ ? &*journal_ : nullptr);
+      progress_.end();
+      environment.refuse_changed();  // so that the sources' hashes are those of what was converted
+    }
+    keep_distributed(environment, places);
     report_.temporary_bytes = distribution.temporary_bytes();
     warn_of_places(environment, places, counted.points, log_);
     record_origins();
@@ -316,7 +359,126 @@ class Conversion {
     return std::move(report_);
   }
 
- private:
+  /// What is known once all points were counted.
+  struct Counted {
+    CountedEnvironment environment;
+    std::vector<SourceFile> sources;
+    FileBoxes boxes;
+    std::vector<PlaceQuanta> suspects;
+    /// Remarks on the path of the origins, and on the points' places on it.
+    std::vector<Message> of_path, of_places;
+    std::optional<OriginsPathReport> origins_path;
+
+    template <typename Values>
+    void keep(Values& values) {
+      values.add(environment, sources, boxes, suspects, of_path, of_places);
+      std::uint8_t has_path = origins_path ? 1 : 0;
+      values.add(has_path);
+      if (has_path == 0) return;
+      if (!origins_path) origins_path.emplace();
+      OriginsPathReport& path = *origins_path;
+      values.add(path.point_clock, path.path_clock, path.first_point, path.last_point,
+                 path.first_pose, path.last_pose, path.shifts, path.before, path.after,
+                 path.in_gaps, path.without_time);
+    }
+  };
+
+  /// Takes from the journal what an earlier process counted; returns false where it had not come to
+  /// the end of it.
+  bool take_counted(EnvironmentSource& environment, OriginTable& origins, Counted& all) {
+    ReadState read;
+    const bool found = journal_ && journal_->take_counted([&](JournalValues& values) {
+      values.add(all, origins, read);
+    });
+    if (!found) return false;
+    environment.restore(read);
+    environment.leave_out_times();
+    return true;
+  }
+
+  void count(EnvironmentSource& environment, const Lattice& lattice, OriginTable& origins,
+             Counted& all) {
+    std::vector<Message> unused;
+    if (!options_.origins.empty()) add_origins_of_file(options_.origins, origins);
+    std::optional<PathOrigins> path;
+    if (!options_.origins_path.empty()) {
+      const MessageCallback collect = [&](const Message& message) {
+        all.of_path.push_back(message);
+      };
+      MessageLog log(collect, unused);
+      path.emplace(options_, environment, origins, log);
+    }
+    FileHashes hashes(environment.files(), environment.in_pieces());
+    std::vector<bool> described = environment.in_pieces();
+    for (std::size_t i = 0; i < environment.passed_over().size(); ++i) {
+      if (!environment.passed_over()[i]) continue;
+      hashes.pass_over(i);
+      described[i] = true;
+    }
+    SourceDescription others(environment.read_files(), described, progress_);
+    InputSurvey survey;
+    all.environment =
+        count_environment(environment, lattice, survey, hashes, threads_, clocks_, progress_,
+                          path ? &*path : nullptr, journal_ ? &*journal_ : nullptr);
+    all.sources = others.get(hashes.finish());
+    all.boxes.take(survey.boxes);
+    all.suspects = survey.places.suspects();
+    if (path) {
+      const MessageCallback collect = [&](const Message& message) {
+        all.of_places.push_back(message);
+      };
+      MessageLog log(collect, unused);
+      all.origins_path = path->finish(environment, log);
+    }
+    path.reset();
+    collect_origins(environment, all.environment.input_points, origins);
+    if (!journal_) return;
+    environment.refuse_changed();  // so that nothing is kept of what is not in the files now
+    ReadState read = environment.state();
+    journal_->keep_counted([&](JournalValues& values) { values.add(all, origins, read); });
+  }
+
+  /// The files in which points wait; none where they wait in memory.
+  std::vector<File> point_files(std::size_t units) {
+    std::vector<File> files;
+    if (in_memory_) return files;
+    const std::size_t number = std::min(static_cast<std::size_t>(threads_), units);
+    if (journal_) return journal_->open_points(number);
+    for (std::size_t i = 0; i < number; ++i) files.push_back(File::create_temporary(folder_));
+    return files;
+  }
+
+  /// Takes from the journal and the files of points what an earlier process distributed, as far as
+  /// it is whole.
+  void resume_distribution(const Distribution& distribution, PlaceCounter& places) {
+    journal_->check_units();
+    const std::vector<DistributedBatch>& batches = journal_->batches();
+    const std::size_t first_unit = journal_->is_distributed() ? journal_->units() : 0;
+    journal_->cut_batches(count_whole(distribution, batches, first_unit));
+    if (!batches.empty()) report_.resumed_points = batches.back().counts.input_points;
+    report_.resumed_cells = journal_->written_cells();
+    if (journal_->is_distributed()) return;
+    count_places(distribution, places, origins_, journal_->batches());
+  }
+
+  void keep_distributed(const EnvironmentSource& environment, PlaceCounter& places) {
+    std::vector<MetreCube> cubes = withheld_.take();
+    std::vector<std::uint64_t> counts;
+    if (origins_ != nullptr) counts = origins_->counts();
+    double largest_change = environment.largest_change();
+    const auto values_of = [&](JournalValues& values) {
+      values.add(places, counts, cubes, largest_change);
+    };
+    if (journal_ && journal_->is_distributed()) {
+      journal_->take_distributed(values_of);
+      if (origins_ != nullptr) origins_->set_counts(counts);
+    } else if (journal_) {
+      journal_->keep_distributed(values_of);
+    }
+    if (report_.metadata.withheld) report_.metadata.withheld->cubes = std::move(cubes);
+    report_.largest_change = largest_change;
+  }
+
   /// Describes the corridor in the store, once all points were counted.
   void describe_corridor(const EnvironmentSource& environment, const Corridor& corridor) {
     report_.far_points = environment.far_points();
@@ -398,7 +560,6 @@ class Conversion {
       add_origins_of_inputs(environment, origins);
     }
     origins.finish();
-    if (origins.any()) origins_ = &origins;
   }
 
   /// Describes the origins in the store and warns of them, once all points were counted.
@@ -444,12 +605,13 @@ class Conversion {
     report_.cells = top.empty() ? 0 : top[0].cell_count;
     const std::uint64_t waiting = points * sizeof(DistributedPoint);
     units_in_flight_ = std::min(units, static_cast<std::size_t>(threads_) + 1);
-    in_memory_ = bytes_for_units() >= waiting + units_in_flight_ * of_unit() &&
+    in_memory_ = !journal_ && bytes_for_units() >= waiting + units_in_flight_ * of_unit() &&
                  waiting <= most_waiting_bytes();
     units_in_flight_ = std::clamp<std::size_t>(bytes_for_units() / of_unit(), 1,
                                                std::max<std::size_t>(1, units_in_flight_));
     const std::uint64_t padded = std::max(points, report_.cells * options_.cell_points);
-    check_disk(folder_, {points, padded, in_memory_ ? 0 : points});
+    const bool are_spooled = in_memory_ || (journal_ && journal_->has_points());
+    check_disk(folder_, {points, padded, are_spooled ? 0 : points});
     if (options_.regular_size && padded > 2 * points) {
       log_.warn(
           "padded-cells",
@@ -463,7 +625,7 @@ class Conversion {
                    const std::vector<TopNode>& top, const Lattice& lattice) {
     StoreWriter writer(output_.partial(), report_.metadata, report_.cells);
     write_cells(distribution, tree, lattice, report_.metadata, origins_, units_in_flight_, writer,
-                clocks_, progress_);
+                journal_ ? &*journal_ : nullptr, clocks_, progress_);
     report_.partition_seconds = watch_.lap();
     {
       const auto running = clocks_.measure(Stage::kWrite);
@@ -478,7 +640,14 @@ class Conversion {
       writer.confirm();
     }
     synced.get();
+    if (journal_) journal_->remove_points();
     output_.publish();
+    if (journal_) {
+      journal_->remove_after_publication();
+      report_.recounted_batches = journal_->recounted_batches();
+      report_.repeated_batches = journal_->repeated_batches();
+      report_.repeated_buckets = journal_->repeated_units();
+    }
     report_.output_bytes = std::filesystem::file_size(options_.output);
     report_.confirm_seconds = watch_.lap();
     report_.busy_seconds = clocks_.seconds();
@@ -491,6 +660,7 @@ class Conversion {
   PendingFile output_;
   ConversionReport report_;
   WithheldCubes withheld_;
+  std::optional<ConversionJournal> journal_;
   OriginTable* origins_ = nullptr;  ///< null where no point has an origin
   std::size_t units_in_flight_ = 1;
   bool in_memory_ = false;
@@ -632,6 +802,7 @@ ConvertReport convert(const std::vector<std::filesystem::path>& inputs,
   const ConversionOptions conversion{options, inputs, output};
   CallbackProgress progress(options.progress, options.stop);
   if (options.resume && is_converted(conversion, progress)) {
+    remove_left_over(output);
     ConvertReport report{.was_finished = true};
     MessageLog log(options.message, report.warnings);
     const StoreReader store(output);
@@ -639,7 +810,7 @@ ConvertReport convert(const std::vector<std::filesystem::path>& inputs,
     if (options.strict) refuse_warnings(report.warnings);
     return report;
   }
-  if (options.resume) refuse_other_output(conversion);
+  if (options.resume && !unfinished_overwrites(output)) refuse_other_output(conversion);
   return convert_scans(conversion, progress);
 }
 

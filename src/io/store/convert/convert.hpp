@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 #include "clearway/convert.hpp"
@@ -17,6 +18,10 @@ inline constexpr std::uint64_t kLeastConversionMemory = std::uint64_t{224} << 20
 struct ConversionOptions : ConvertOptions {
   std::vector<std::filesystem::path> inputs;  ///< files and folders, or "-" alone
   std::filesystem::path output;
+  /// Least seconds from one keeping of what was counted in the journal to the next.
+  double counted_interval_seconds = 0.25;
+  /// Called after each record of the journal; for tests.
+  std::function<void()> journalled = nullptr;
 };
 
 /// The warnings of its conversion that a store keeps: at most 64, with texts of at most 1,000

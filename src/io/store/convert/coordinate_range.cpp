@@ -166,9 +166,9 @@ double fitting_scale(double length) {
   return found == std::end(kScales) ? *std::prev(found) : *found;
 }
 
-class Choice {
+class ScaleChoice {
  public:
-  Choice(const CoordinateRange& range, std::span<const std::filesystem::path> files,
+  ScaleChoice(const CoordinateRange& range, std::span<const std::filesystem::path> files,
          const PointReadOptions& how_to_read)
       : range_(range), files_(files), how_to_read_(how_to_read) {}
 
@@ -254,7 +254,7 @@ Quantisation choose_scale(const CoordinateRange& range, std::optional<double> sc
                           std::span<const std::filesystem::path> files,
                           const PointReadOptions& how_to_read) {
   Quantisation out{};
-  const Choice choice(range, files, how_to_read);
+  const ScaleChoice choice(range, files, how_to_read);
   for (int axis = 0; axis < 3; ++axis) choice.choose(axis, scale, out);
   return out;
 }

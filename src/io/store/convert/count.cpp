@@ -6,6 +6,7 @@
 #include <map>
 
 #include "clearway/error.hpp"
+#include "io/store/convert/conversion_journal.hpp"
 #include "io/store/convert/path_origins.hpp"
 #include "io/store/convert/points_hash.hpp"
 #include "io/store/convert/read_points.hpp"
@@ -36,6 +37,11 @@ class ClassCounts {
   }
   const std::array<std::uint64_t, 256>& points() const { return points_; }
 
+  template <typename Values>
+  void keep(Values& values) {
+    values.add(points_);
+  }
+
  private:
   std::array<std::uint64_t, 256> points_{};
 };
@@ -46,13 +52,43 @@ struct PassSums {
   ClassesHash classes_hash = {};
   ClassCounts classes = {};
   std::uint64_t points = 0;
+
+  template <typename Values>
+  void keep(Values& values) {
+    values.add(points_hash, classes_hash, points);
+  }
 };
 
-std::vector<Bin> count_bins(const EnvironmentPass& pass, const Lattice& lattice, PassSums& sums,
-                            InputSurvey& survey, PathOrigins* path, Progress& progress) {
-  tbb::enumerable_thread_specific<ClassCounts> classes;
-  tbb::enumerable_thread_specific<BinCounter> counters(
-      [] { return BinCounter(kFinestShift, kMostBins); });
+/// The counting pass, as far as it has come.
+struct CountingPass {
+  EnvironmentSource& environment;
+  int threads;
+  FileHashes& files;
+  StageClocks& clocks;
+  ConversionJournal* journal;  ///< or null
+  bool is_kept;                ///< whether the journal keeps what is counted before the end
+  std::uint64_t batches = 0;
+
+  /// Where the journal wants to know how far the counting is, no more batches are taken.
+  EnvironmentPass until_due(const Progress& progress, bool& paused) {
+    BatchWatch watch;
+    paused = false;
+    if (journal != nullptr) {
+      watch.begun = [this] { journal->begin_batch(++batches); };
+    }
+    if (is_kept) {
+      watch.pauses = [this, &paused, first = batches] {
+        return paused = batches > first && journal->wants_counted();
+      };
+    }
+    return {environment, threads, &files, clocks, progress, watch};
+  }
+};
+
+void count_batches(const EnvironmentPass& pass, const Lattice& lattice, PassSums& sums,
+                   InputSurvey& survey, PathOrigins* path, Progress& progress,
+                   tbb::enumerable_thread_specific<ClassCounts>& classes,
+                   tbb::enumerable_thread_specific<BinCounter>& counters) {
   for_each_batch<PathOrigins::OfBatch>(
       pass,
       [&](const QuantaBatch& batch) {
@@ -71,10 +107,50 @@ std::vector<Bin> count_bins(const EnvironmentPass& pass, const Lattice& lattice,
         survey.places.add(batch);
         sums.points += batch.quanta.size();
       },
-      [](const PathOrigins::OfBatch&) {});
+      [](const PathOrigins::OfBatch&) {}, [](const PathOrigins::OfBatch&) {});
+}
+
+std::vector<Bin> count_bins(CountingPass& counting, const Lattice& lattice, PassSums& sums,
+                            InputSurvey& survey, PathOrigins* path, Progress& progress) {
+  tbb::enumerable_thread_specific<ClassCounts> classes;
+  tbb::enumerable_thread_specific<BinCounter> counters(
+      [] { return BinCounter(kFinestShift, kMostBins); });
+  BinCounter earlier(kFinestShift, kMostBins);
+  const auto keep = [&](JournalValues& values, ClassCounts& of_classes, BinCounter& bins,
+                        ReadState& read) {
+    values.add(counting.batches, sums, of_classes, survey, bins, counting.files, read);
+  };
+  if (counting.is_kept) {
+    ReadState read;
+    const bool found = counting.journal->take_counted_part(
+        [&](JournalValues& values) { keep(values, sums.classes, earlier, read); });
+    if (found) {
+      counting.environment.restore(read);
+      counting.environment.go_on_from(read.position, read.counts);
+      progress.advance(sums.points);
+    }
+  }
+  if (counting.journal != nullptr) counting.journal->go_on_after_batches(counting.batches);
+  const auto all_bins = [&] {
+    BinCounter all(kFinestShift, kMostBins);
+    all.merge(earlier);
+    for (const BinCounter& counter : counters) all.merge(counter);
+    return all;
+  };
+  bool paused = true;
+  while (paused) {
+    count_batches(counting.until_due(progress, paused), lattice, sums, survey, path, progress,
+                  classes, counters);
+    if (!paused) break;
+    ClassCounts of_classes = sums.classes;
+    for (const ClassCounts& counts : classes) of_classes.merge(counts);
+    BinCounter bins = all_bins();
+    ReadState read = counting.environment.state();
+    counting.journal->keep_counted_part(
+        [&](JournalValues& values) { keep(values, of_classes, bins, read); });
+  }
   for (const ClassCounts& counts : classes) sums.classes.merge(counts);
-  BinCounter all(kFinestShift, kMostBins);
-  for (const BinCounter& counter : counters) all.merge(counter);
+  const BinCounter all = all_bins();
   if (lattice.regular() && all.shift() > lattice.cube_bits()) {
     throw UsageError("a regular layout: more than " + std::to_string(kMostBins) +
                      " cubes hold points; expected larger cubes");
@@ -151,7 +227,7 @@ void refine(const EnvironmentPass& pass, const Lattice& lattice, const SplitTree
         progress.advance(batch.quanta.size());
         return Nothing();
       },
-      [](const QuantaBatch&, Nothing&) {}, [](Nothing&) {});
+      [](const QuantaBatch&, Nothing&) {}, [](Nothing&) {}, [](Nothing&) {});
   Refinement all(tree.overfull());
   for (const Refinement& counter : counters) all.merge(counter);
   std::erase_if(bins, [](const Bin& bin) { return bin.count > kBucketPoints; });
@@ -164,13 +240,16 @@ void refine(const EnvironmentPass& pass, const Lattice& lattice, const SplitTree
 
 CountedEnvironment count_environment(EnvironmentSource& environment, const Lattice& lattice,
                                      InputSurvey& survey, FileHashes& files, int threads,
-                                     StageClocks& clocks, Progress& progress, PathOrigins* path) {
+                                     StageClocks& clocks, Progress& progress, PathOrigins* path,
+                                     ConversionJournal* journal) {
   CountedEnvironment counted;
   PassSums sums{PointsHash(environment.quantisation())};
   progress.begin("count", environment.declared_points().value_or(0), "points");
   environment.rewind();
-  counted.bins = count_bins({environment, threads, &files, clocks, progress}, lattice, sums, survey,
-                            path, progress);
+  // The journal does not keep the places on a path that were found so far.
+  CountingPass counting{environment, threads, files,
+                        clocks,      journal, journal != nullptr && path == nullptr};
+  counted.bins = count_bins(counting, lattice, sums, survey, path, progress);
   environment.leave_out_times();
   counted.points = sums.points;
   counted.input_points = environment.input_points();

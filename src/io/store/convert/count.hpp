@@ -15,12 +15,18 @@
 
 namespace clearway {
 
+class ConversionJournal;
 class PathOrigins;
 
 /// Observations of the counting pass that serve warnings.
 struct InputSurvey {
   PlaceSample places;
   FileBoxes boxes;
+
+  template <typename Values>
+  void keep(Values& values) {
+    values.add(places, boxes);
+  }
 };
 
 /// Hashes that show whether a later pass reads the same points.
@@ -36,16 +42,23 @@ struct CountedEnvironment {
   std::optional<StoreClasses> classes = {};  ///< only where some class is above 0
   std::vector<Bin> bins;                     ///< bins, each with at most kBucketPoints points
 
+  template <typename Values>
+  void keep(Values& values) {
+    values.add(points, input_points, points_hash, classes, bins);
+  }
+
   CountedHashes hashes() const {
     return {points_hash, classes ? std::optional(classes->hash) : std::nullopt};
   }
 };
 
 /// Performs the counting pass, which also hashes the files, and further passes while a bin is too
-/// full (docs/design/conversion.md). path: finds the origins of the points, or is null.
+/// full (docs/design/conversion.md). path: finds the origins of the points, or is null. journal:
+/// holds what an earlier process counted, and receives what is counted now and then; or null.
 CountedEnvironment count_environment(EnvironmentSource& environment, const Lattice& lattice,
                                      InputSurvey& survey, FileHashes& files, int threads,
                                      StageClocks& clocks, Progress& progress,
-                                     PathOrigins* path = nullptr);
+                                     PathOrigins* path = nullptr,
+                                     ConversionJournal* journal = nullptr);
 
 }  // namespace clearway

@@ -19,6 +19,7 @@
 
 namespace clearway {
 
+class ConversionJournal;
 class OriginTable;
 class WithheldCubes;
 
@@ -49,14 +50,13 @@ struct UnitPoints {
   std::span<const DistributedPoint> span() const { return {points.get(), count}; }
 };
 
-/// The points of each unit of the tree, in memory or in nameless files.
+/// The points of each unit of the tree, in memory or in files.
 class Distribution {
  public:
-  /// folder: where to create the files; nullopt keeps the points in memory. files: their number,
-  /// because each takes the bytes of one thread at a time. Throws ResourceError where the disk is
+  /// files: several, because each takes the bytes of one thread at a time; none keeps the points in
+  /// memory. first_byte: where points begin in each file. Throws ResourceError where the disk is
   /// too small.
-  Distribution(const SplitTree& tree, const std::optional<std::filesystem::path>& folder,
-               std::size_t files);
+  Distribution(const SplitTree& tree, std::vector<File> files, std::uint64_t first_byte = 0);
 
   std::size_t units() const { return counts_.size(); }
   std::uint64_t points(std::size_t unit) const { return counts_[unit]; }
@@ -66,6 +66,8 @@ class Distribution {
   /// Stores points of a unit from index `first` on. Several threads may store at different places
   /// at once.
   void put(std::size_t unit, std::uint64_t first, std::span<const DistributedPoint> points);
+  /// Reads points of a unit from index `first` on, where they are in files.
+  void get(std::size_t unit, std::uint64_t first, std::span<DistributedPoint> points) const;
   /// Takes the points of a unit, once all of them are stored. To be called once per unit; several
   /// threads may call it at once.
   UnitPoints take(std::size_t unit);
@@ -83,13 +85,46 @@ class Distribution {
   std::uint64_t temporary_bytes_ = 0;
 };
 
+/// What a journal keeps of a batch once its points are in the files of their units.
+struct DistributedBatch {
+  /// Consecutive points of a unit, and the hash of their bytes.
+  struct Group {
+    std::uint32_t unit;
+    std::uint32_t points;
+    std::uint64_t hash;
+  };
+  std::vector<Group> groups;
+  InputPosition position;  ///< after the batch
+  ReadCounts counts;
+  std::vector<MetreCube> withheld_cubes;
+  /// The hashes of all points so far.
+  std::vector<std::byte> hashes;
+
+  template <typename Values>
+  void keep(Values& values) {
+    values.add(groups, position, counts, withheld_cubes, hashes);
+  }
+};
+
+/// How many of the batches are in the files as they were written. first_unit: units before it do
+/// not count.
+std::size_t count_whole(const Distribution& distribution, std::span<const DistributedBatch> batches,
+                        std::size_t first_unit);
+
+/// Counts the points of these batches at the places, and for the origins unless null, as a
+/// distribution does.
+void count_places(const Distribution& distribution, PlaceCounter& places, OriginTable* origins,
+                  std::span<const DistributedBatch> batches);
+
 /// Performs the distribution pass, which puts every point to those of its unit, in source order.
 /// Throws InputError when the input is not what was counted, ResourceError when the disk is full.
 /// places: counts the points at its places. origins: counts the points of each basis, or is null.
-/// withheld: collects the cubes of points that are left out as withheld, or is null.
+/// withheld: collects the cubes of points that are left out as withheld, or is null. journal: holds
+/// the batches that an earlier process distributed, and receives those of this one; or null.
 void distribute(EnvironmentSource& environment, const CountedHashes& counted,
                 const Lattice& lattice, const SplitTree& tree, PlaceCounter& places,
                 Distribution& distribution, int threads, StageClocks& clocks, Progress& progress,
-                OriginTable* origins = nullptr, WithheldCubes* withheld = nullptr);
+                OriginTable* origins = nullptr, WithheldCubes* withheld = nullptr,
+                ConversionJournal* journal = nullptr);
 
 }  // namespace clearway

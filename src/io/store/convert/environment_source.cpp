@@ -45,10 +45,12 @@ auto reading_one_of(std::size_t files, Read read) {
 }  // namespace
 
 EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& inputs,
-                                     const EnvironmentOptions& options, Progress& progress)
+                                     const EnvironmentOptions& options, Progress& progress,
+                                     const FoundInputs* found)
     : options_(checked(options)),
       how_to_read_{options.columns, true, options.with_times},
-      inputs_(inputs, options.skip_unreadable, how_to_read_, progress) {
+      inputs_(inputs, options.skip_unreadable, how_to_read_, progress,
+              found != nullptr ? &found->readable : nullptr) {
   open_inputs();
   find_crs();
   withheld_edge_ = metre_cube_edge(crs_.unit);
@@ -58,7 +60,64 @@ EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& i
     shifts_ = std::move(kept->shifts);
     return;
   }
+  chose_scale_ = true;
+  if (found != nullptr && found->chosen) {
+    quantisation_ = *found->chosen;
+    range_warnings_ = found->warnings;
+    return;
+  }
   choose_offset_and_scale(progress);
+}
+
+FoundInputs EnvironmentSource::found() const {
+  return {inputs_.readable(), chose_scale_ ? std::optional(quantisation_) : std::nullopt,
+          range_warnings_};
+}
+
+ReadState EnvironmentSource::state() const {
+  ReadState state{{}, points_of_files_, counts_, noted_};
+  for (const CloudInfo& info : infos_) {
+    state.files.push_back({info.remarks, info.origins, info.origins_rest_on});
+  }
+  return state;
+}
+
+void EnvironmentSource::restore(const ReadState& state) {
+  rewind();
+  for (std::size_t i = 0; i < std::min(infos_.size(), state.files.size()); ++i) {
+    infos_[i].remarks = state.files[i].remarks;
+    infos_[i].origins = state.files[i].origins;
+    infos_[i].origins_rest_on = state.files[i].origins_rest_on;
+  }
+  points_of_files_ = state.points_of_files;
+  counts_ = state.counts;
+  noted_ = state.position;
+}
+
+void EnvironmentSource::go_on_from(const InputPosition& position, const ReadCounts& counts) {
+  std::vector<std::uint64_t> points = points_of_files_;
+  rewind();
+  points.resize(std::min<std::size_t>(points.size(), position.file));
+  points_of_files_ = std::move(points);
+  counts_ = counts;
+  noted_ = position;
+  file_ = position.file;
+  piece_ = position.piece;
+  file_points_ = position.file_points;
+  next_source_ = position.next_source;
+  const bool whole = file_ >= files().size() || piece_ > 0 || file_points_ == 0 ||
+                     (file_ < passed_over_.size() && passed_over_[file_]);
+  if (whole) return;
+  PointBatch passed;
+  std::uint64_t read = 0;
+  while (read < file_points_ && reader(file_)->read(passed)) read += passed.size();
+  if (read != file_points_) refuse(files()[file_].string(), "changed while it was read");
+}
+
+InputPosition EnvironmentSource::position_after(const QuantaBatch& batch) const {
+  const std::uint64_t end = batch.first_source + batch.records;
+  const bool same_file = noted_.file == batch.file;
+  return {batch.file, batch.next_piece, (same_file ? noted_.file_points : 0) + batch.records, end};
 }
 
 EnvironmentSource::~EnvironmentSource() = default;
@@ -161,9 +220,8 @@ const std::shared_ptr<PointReader>& EnvironmentSource::reader(std::size_t file) 
 void EnvironmentSource::rewind() {
   file_ = piece_ = 0;
   file_points_ = next_source_ = 0;
-  input_points_ = non_finite_points_ = absent_points_ = withheld_points_ = 0;
-  far_points_ = unread_points_ = unread_bytes_ = 0;
-  largest_change_ = 0;
+  counts_ = {};
+  noted_ = {};
   withheld_edge_ = metre_cube_edge(crs_.unit);
   points_of_files_.clear();
   if (stream_) stream_->rewind();
@@ -247,16 +305,18 @@ void EnvironmentSource::read_piece(RecordBatch& records, PieceBytes* bytes) cons
 }
 
 void EnvironmentSource::note(const QuantaBatch& batch) {
-  if (non_finite_points_ == 0) first_non_finite_ = batch.first_non_finite;
-  input_points_ += batch.records;
-  non_finite_points_ += batch.non_finite_points;
-  absent_points_ += batch.absent_points;
-  if (withheld_points_ == 0) first_withheld_ = batch.first_withheld;
-  withheld_points_ += batch.withheld_points;
-  far_points_ += batch.far_points;
-  unread_points_ += batch.unread_points;
-  unread_bytes_ += batch.unread_bytes;
-  largest_change_ = std::max(largest_change_, batch.largest_change);
+  ReadCounts& all = counts_;
+  if (all.non_finite_points == 0) all.first_non_finite = batch.first_non_finite;
+  all.input_points += batch.records;
+  all.non_finite_points += batch.non_finite_points;
+  all.absent_points += batch.absent_points;
+  if (all.withheld_points == 0) all.first_withheld = batch.first_withheld;
+  all.withheld_points += batch.withheld_points;
+  all.far_points += batch.far_points;
+  all.unread_points += batch.unread_points;
+  all.unread_bytes += batch.unread_bytes;
+  all.largest_change = std::max(all.largest_change, batch.largest_change);
+  noted_ = position_after(batch);
 }
 
 bool EnvironmentSource::read(QuantaBatch& batch) {
@@ -297,11 +357,13 @@ namespace clearway {
 
 void EnvironmentSource::convert(RecordBatch& records, QuantaBatch& batch, bool with_bytes) const {
   if (records.unread > 0) {
+    batch.next_piece = records.reader ? records.piece + 1 : 0;
     if (records.reader) batch.bytes = records.reader->place_of_piece(records.piece);
     return append_unread(records, batch);
   }
   if (records.reader) read_piece(records, with_bytes ? &batch.bytes : nullptr);
   batch.file = records.file;
+  batch.next_piece = records.reader ? records.piece + 1 : 0;
   batch.first_source = records.first_source;
   batch.records = records.points.size();
   batch.quanta.clear();
@@ -519,8 +581,10 @@ bool EnvironmentPass::next(PassingBatch& batch) {
   if (failed_) return false;
   try {
     throw_if_stopped(progress_);
+    if (watch_.pauses && watch_.pauses()) return false;
     const auto running = clocks_.measure(Stage::kRead);
-    return environment_.next(batch.records);
+    if (!environment_.next(batch.records)) return false;
+    if (watch_.begun) watch_.begun();
   } catch (...) {
     batch.error = std::current_exception();
     failed_ = true;

@@ -27,6 +27,63 @@ struct EnvironmentOptions {
   std::filesystem::path temporary_folder = ".";
 };
 
+/// A place in the inputs between two batches.
+struct InputPosition {
+  std::uint64_t file = 0, piece = 0;
+  std::uint64_t file_points = 0;  ///< records of the file before it
+  std::uint64_t next_source = 0;
+};
+
+/// Sums over what was read from the beginning of the inputs on.
+struct ReadCounts {
+  std::uint64_t input_points = 0;
+  std::uint64_t non_finite_points = 0;
+  std::uint64_t first_non_finite = 0;  ///< source index of the first one
+  std::uint64_t absent_points = 0;  ///< records that hold no point, by the rules of their format
+  std::uint64_t withheld_points = 0;
+  std::uint64_t first_withheld = 0;
+  /// Points that keep_near() left out; of these, points that were not read, and their bytes
+  std::uint64_t far_points = 0, unread_points = 0, unread_bytes = 0;
+  double largest_change = 0;  ///< largest |stored - read| of any coordinate, metres
+};
+
+/// What has to be read of all inputs before their points can be read in order.
+struct FoundInputs {
+  ReadableInputs readable;
+  /// The scale and offset that were chosen, and warnings on the coordinates; nullopt where the
+  /// inputs have integers.
+  std::optional<Quantisation> chosen;
+  std::vector<Message> warnings;
+
+  template <typename Values>
+  void keep(Values& values) {
+    values.add(readable, chosen, warnings);
+  }
+};
+
+/// What an EnvironmentSource knows of its inputs after it has read them, or a part of them.
+struct ReadState {
+  struct OfFile {
+    std::vector<Message> remarks;
+    std::vector<OriginRun> origins;
+    std::string origins_rest_on;
+
+    template <typename Values>
+    void keep(Values& values) {
+      values.add(remarks, origins, origins_rest_on);
+    }
+  };
+  std::vector<OfFile> files;
+  std::vector<std::uint64_t> points_of_files;
+  ReadCounts counts;
+  InputPosition position;
+
+  template <typename Values>
+  void keep(Values& values) {
+    values.add(files, points_of_files, counts, position);
+  }
+};
+
 /// All inputs of a conversion as one sequence of points in one quantisation
 /// (docs/design/conversion.md). Where inputs have integers, these are kept as read; files of the
 /// same scale are shifted by whole quanta. Other coordinates are rounded to the nearest quantum:
@@ -35,9 +92,11 @@ class EnvironmentSource {
  public:
   /// inputs: files and folders, or "-" alone for LAS on standard input. Reads the headers; it also
   /// reads all points once where files may be skipped, and once where a scale must be chosen.
-  /// Throws InputError, UsageError and Interrupted.
+  /// found: what an earlier process found in these inputs, so that nothing but headers is read; or
+  /// null. Throws InputError, UsageError and Interrupted.
   EnvironmentSource(const std::vector<std::filesystem::path>& inputs,
-                    const EnvironmentOptions& options, Progress& progress);
+                    const EnvironmentOptions& options, Progress& progress,
+                    const FoundInputs* found = nullptr);
   ~EnvironmentSource();
 
   /// Leaves out the points that the corridor does not hold from the next rewind() on, and does not
@@ -77,6 +136,19 @@ class EnvironmentSource {
   /// Counts what was read. Called for all batches in input order.
   void note(const QuantaBatch& batch);
   void rewind();
+
+  FoundInputs found() const;
+  /// What is known now that all batches up to here were noted.
+  ReadState state() const;
+  /// Takes what an earlier process knew.
+  void restore(const ReadState& state);
+  /// Begins a pass over the inputs at a place between two batches, with the counts as they were
+  /// there. The files before it must have been read, here or by an earlier process. A file that is
+  /// not read in pieces is read from its first record up to this place.
+  void go_on_from(const InputPosition& position, const ReadCounts& counts);
+  /// The place after the batch that was noted last.
+  const InputPosition& noted_position() const { return noted_; }
+  const ReadCounts& counts() const { return counts_; }
   /// Reads no GPS times from the next rewind() on.
   void leave_out_times() { how_to_read_.with_times = false; }
 
@@ -95,25 +167,25 @@ class EnvironmentSource {
   void refuse_changed() const { inputs_.refuse_changed(); }
 
   // The following count what has been read since the last rewind().
-  std::uint64_t input_points() const { return input_points_; }
-  std::uint64_t non_finite_points() const { return non_finite_points_; }
+  std::uint64_t input_points() const { return counts_.input_points; }
+  std::uint64_t non_finite_points() const { return counts_.non_finite_points; }
   /// The source index of the first non-finite point.
-  std::uint64_t first_non_finite() const { return first_non_finite_; }
+  std::uint64_t first_non_finite() const { return counts_.first_non_finite; }
   /// Number of source indices that each of files() takes; complete once read() has returned false.
   const std::vector<std::uint64_t>& points_of_files() const { return points_of_files_; }
   /// Number of records of the files that hold no point, by the rules of their format.
-  std::uint64_t absent_points() const { return absent_points_; }
+  std::uint64_t absent_points() const { return counts_.absent_points; }
   /// Number of points with the flag `withheld`.
-  std::uint64_t withheld_points() const { return withheld_points_; }
+  std::uint64_t withheld_points() const { return counts_.withheld_points; }
   /// The source index of the first of them.
-  std::uint64_t first_withheld() const { return first_withheld_; }
+  std::uint64_t first_withheld() const { return counts_.first_withheld; }
   /// Number of points that keep_near() left out; and of these, points that were not read, with the
   /// bytes that hold them.
-  std::uint64_t far_points() const { return far_points_; }
-  std::uint64_t unread_points() const { return unread_points_; }
-  std::uint64_t unread_bytes() const { return unread_bytes_; }
+  std::uint64_t far_points() const { return counts_.far_points; }
+  std::uint64_t unread_points() const { return counts_.unread_points; }
+  std::uint64_t unread_bytes() const { return counts_.unread_bytes; }
   /// Largest |stored - read| of any coordinate, metres.
-  double largest_change() const { return largest_change_; }
+  double largest_change() const { return counts_.largest_change; }
 
  private:
   void open_inputs();
@@ -135,6 +207,7 @@ class EnvironmentSource {
     return corridor_ != nullptr && bounds && !corridor_->may_hold(*bounds);
   }
   bool pass_over(RecordBatch& records);
+  InputPosition position_after(const QuantaBatch& batch) const;
   void append_unread(const RecordBatch& records, QuantaBatch& out) const;
   void check_bounds(const RecordBatch& records, const QuantaBatch& batch) const;
   void drop_far(QuantaBatch& out) const;
@@ -165,14 +238,9 @@ class EnvironmentSource {
   std::uint64_t file_points_ = 0;
   std::uint64_t next_source_ = 0;
   std::vector<std::uint64_t> points_of_files_;  // points of the files that were read to their end
-  std::uint64_t input_points_ = 0;
-  std::uint64_t non_finite_points_ = 0;
-  std::uint64_t first_non_finite_ = 0;
-  std::uint64_t absent_points_ = 0;
-  std::uint64_t withheld_points_ = 0;
-  std::uint64_t first_withheld_ = 0;
-  std::uint64_t far_points_ = 0, unread_points_ = 0, unread_bytes_ = 0;
-  double largest_change_ = 0;
+  ReadCounts counts_;
+  InputPosition noted_;  ///< the place after the batch that was noted last
+  bool chose_scale_ = false;
 };
 
 }  // namespace clearway

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "clearway/box.hpp"
@@ -22,6 +23,14 @@ class FileBoxes {
   void add(const QuantaBatch& batch);
   /// The boxes of `files` inputs.
   std::vector<FileBox> boxes(std::size_t files) const;
+
+  /// Takes the boxes of another one.
+  void take(FileBoxes& other) { boxes_ = std::move(other.boxes_); }
+
+  template <typename Values>
+  void keep(Values& values) {
+    values.add(boxes_);
+  }
 
  private:
   std::vector<FileBox> boxes_;

@@ -51,6 +51,7 @@ void FileHashes::end_file() {
   read_until(file_->size_bytes());
   found_[number_] = {files_[number_].filename().string(), position_, hash_->digest()};
   file_.reset();
+  hash_.reset();
 }
 
 namespace {
@@ -71,7 +72,8 @@ void refuse_pipe(const std::filesystem::path& file) {
 }  // namespace
 
 InputFiles::InputFiles(const std::vector<std::filesystem::path>& inputs, bool skip_unreadable,
-                       const PointReadOptions& how_to_read, Progress& progress)
+                       const PointReadOptions& how_to_read, Progress& progress,
+                       const ReadableInputs* readable)
     : is_stream_(std::find(inputs.begin(), inputs.end(), "-") != inputs.end()) {
   if (is_stream_ && inputs.size() > 1) {
     throw UsageError("standard input (-) cannot be combined with other inputs");
@@ -82,10 +84,13 @@ InputFiles::InputFiles(const std::vector<std::filesystem::path>& inputs, bool sk
   }
   files_ = list_point_files(inputs, &folder_remarks_);
   std::for_each(files_.begin(), files_.end(), refuse_pipe);
-  if (skip_unreadable) {
-    ReadableFiles readable = readable_files(files_, how_to_read, progress);
-    files_ = std::move(readable.files);
-    skipped_ = std::move(readable.reasons);
+  if (skip_unreadable && readable != nullptr) {
+    files_.assign(readable->files.begin(), readable->files.end());
+    skipped_ = readable->skipped;
+  } else if (skip_unreadable) {
+    ReadableFiles found = readable_files(files_, how_to_read, progress);
+    files_ = std::move(found.files);
+    skipped_ = std::move(found.reasons);
   }
   read_files_ = with_pose_files(files_);
   std::transform(read_files_.begin(), read_files_.end(), std::back_inserter(states_), state_of);
@@ -95,6 +100,12 @@ std::vector<Message> InputFiles::remarks() const {
   std::vector<Message> all = folder_remarks_;
   if (auto skipped = warning_on_skipped(skipped_)) all.push_back(std::move(*skipped));
   return all;
+}
+
+ReadableInputs InputFiles::readable() const {
+  ReadableInputs out{{}, skipped_};
+  for (const std::filesystem::path& file : files_) out.files.push_back(file.string());
+  return out;
 }
 
 void InputFiles::refuse_changed() const {

@@ -48,6 +48,13 @@ class FileHashes {
   /// piece.
   std::vector<std::optional<SourceFile>> finish();
 
+  /// Keeps what was added, so that add() can go on from there.
+  template <typename Values>
+  void keep(Values& values) {
+    values.add(found_, number_, position_, hash_);
+    if (hash_ && !file_) file_ = File::open_for_reading(files_[number_]);
+  }
+
  private:
   void read_until(std::uint64_t position);
   void end_file();
@@ -61,13 +68,27 @@ class FileHashes {
   std::optional<Xxh64Stream> hash_;
 };
 
+/// Which files of a conversion can be read, and why others are left out.
+struct ReadableInputs {
+  std::vector<std::string> files;
+  std::vector<std::string> skipped;
+
+  template <typename Values>
+  void keep(Values& values) {
+    values.add(files, skipped);
+  }
+};
+
 /// The files of a conversion in the order of its points, and their states when it began.
 class InputFiles {
  public:
   /// inputs: files and folders, or "-" alone for standard input. With `skip_unreadable`, all of
   /// them are read once. Throws InputError, UsageError and Interrupted.
+  /// readable: which of them an earlier process found to be readable, so that none has to be read
+  /// for it; or null.
   InputFiles(const std::vector<std::filesystem::path>& inputs, bool skip_unreadable,
-             const PointReadOptions& how_to_read, Progress& progress);
+             const PointReadOptions& how_to_read, Progress& progress,
+             const ReadableInputs* readable = nullptr);
 
   bool are_a_stream() const { return is_stream_; }
   const std::vector<std::filesystem::path>& files() const { return files_; }  ///< "-" for a stream
@@ -75,6 +96,7 @@ class InputFiles {
   const std::vector<std::filesystem::path>& read_files() const { return read_files_; }
   /// Remarks on contents of folders that are not read, and on files that were left out.
   std::vector<Message> remarks() const;
+  ReadableInputs readable() const;
 
   /// Throws InputError, which names the file, where a file has changed since the beginning.
   void refuse_changed() const;

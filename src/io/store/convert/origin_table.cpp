@@ -171,6 +171,26 @@ void OriginTable::count(const QuantaBatch& batch) {
   }
 }
 
+void OriginTable::count(std::span<const DistributedPoint> points) {
+  std::size_t run = 0;
+  for (const DistributedPoint& point : points) {
+    run = run_of(point.source_index(), run);
+    if (runs_[run].number > 0) ++bases_[runs_[run].basis].points;
+  }
+}
+
+std::vector<std::uint64_t> OriginTable::counts() const {
+  std::vector<std::uint64_t> counts;
+  for (const OriginBasis& basis : bases_) counts.push_back(basis.points);
+  return counts;
+}
+
+void OriginTable::set_counts(const std::vector<std::uint64_t>& counts) {
+  for (std::size_t i = 0; i < std::min(counts.size(), bases_.size()); ++i) {
+    bases_[i].points = counts[i];
+  }
+}
+
 std::vector<std::uint32_t> OriginTable::numbers_of(std::span<const DistributedPoint> points) const {
   std::vector<std::uint32_t> numbers(points.size());
   std::size_t run = 0;

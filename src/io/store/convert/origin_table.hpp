@@ -59,6 +59,17 @@ class OriginTable {
   /// where no point has an origin.
   std::optional<StoreOrigins> origins(std::uint64_t points) const;
 
+  /// Likewise, for points in source order.
+  void count(std::span<const DistributedPoint> points);
+  /// Number of points that were counted for each of what the runs rest on.
+  std::vector<std::uint64_t> counts() const;
+  void set_counts(const std::vector<std::uint64_t>& counts);
+  /// Keeps all but what was counted, after finish().
+  template <typename Values>
+  void keep(Values& values) {
+    values.add(runs_, quanta_, bases_, given_hash_, with_origin_, all_zero_);
+  }
+
   /// Warns of points without an origin, and of origins that can hardly be right. box: of all
   /// points. metres: length of the environment's unit.
   void warn(const StoreOrigins& origins, std::uint64_t points, const std::optional<Box>& box,

@@ -6,8 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "core/geometry/quantisation.hpp"
 #include "core/util/progress.hpp"
@@ -41,17 +43,24 @@ struct PassingBatch {
   std::exception_ptr error;
 };
 
+/// What watches the batches that a pass takes, in their order.
+struct BatchWatch {
+  std::function<bool()> pauses = nullptr;  ///< whether no more are taken for now
+  std::function<void()> begun = nullptr;   ///< called after each
+};
+
 /// One reading of the environment, from its current position to its end.
 class EnvironmentPass {
  public:
   /// files: hashes the files that are read in pieces, or is null.
   EnvironmentPass(EnvironmentSource& environment, int threads, FileHashes* files,
-                  StageClocks& clocks, const Progress& progress)
+                  StageClocks& clocks, const Progress& progress, BatchWatch watch = {})
       : environment_(environment),
         threads_(threads),
         files_(files),
         clocks_(clocks),
-        progress_(progress) {}
+        progress_(progress),
+        watch_(std::move(watch)) {}
 
   StageClocks& clocks() const { return clocks_; }
   std::size_t batches_in_flight() const { return 2 * static_cast<std::size_t>(threads_); }
@@ -82,20 +91,22 @@ class EnvironmentPass {
   FileHashes* files_;
   StageClocks& clocks_;
   const Progress& progress_;
+  BatchWatch watch_;
   bool failed_ = false;
 };
 
 /// Reads batches and calls `work` with each, several threads at a time; then `in_order` with each
 /// batch and the result of `work`, one by one in the order of the points; then `last` with the
-/// result, several threads at a time. Throws Interrupted when the progress asks to stop.
-template <typename Made, typename Work, typename InOrder, typename Last>
-void for_each_batch(EnvironmentPass pass, Work work, InOrder in_order, Last last) {
+/// result, several threads at a time; then `done` with the result, in order again. Throws
+/// Interrupted when the progress asks to stop.
+template <typename Made, typename Work, typename InOrder, typename Last, typename Done>
+void for_each_batch(EnvironmentPass pass, Work work, InOrder in_order, Last last, Done done) {
   struct Passing : PassingBatch {
     Made made{};
   };
   using Batch = std::shared_ptr<Passing>;
   const ParallelScope scope;
-  const SerialStage input, bytes, order;
+  const SerialStage input, bytes, order, end;
   const auto next = piece_of(scope, input, [&](tbb::flow_control& flow) {
     auto batch = std::make_shared<Passing>();
     if (!pass.next(*batch)) flow.stop();
@@ -115,7 +126,11 @@ void for_each_batch(EnvironmentPass pass, Work work, InOrder in_order, Last last
     in_order(batch->quanta, batch->made);
     return batch;
   });
-  const auto ended = piece_of(scope, [&](const Batch& batch) { last(batch->made); });
+  const auto ended = piece_of(scope, [&](const Batch& batch) {
+    last(batch->made);
+    return batch;
+  });
+  const auto all_done = piece_of(scope, end, [&](const Batch& batch) { done(batch->made); });
   constexpr auto serial = tbb::filter_mode::serial_in_order;
   constexpr auto parallel = tbb::filter_mode::parallel;
   using Step = Handed<Batch>;
@@ -125,7 +140,8 @@ void for_each_batch(EnvironmentPass pass, Work work, InOrder in_order, Last last
                              tbb::make_filter<Step, Step>(parallel, converted) &
                              tbb::make_filter<Step, Step>(serial, hashed) &
                              tbb::make_filter<Step, Step>(serial, noted) &
-                             tbb::make_filter<Step, void>(parallel, ended));
+                             tbb::make_filter<Step, Step>(parallel, ended) &
+                             tbb::make_filter<Step, void>(serial, all_done));
 }
 
 }  // namespace clearway

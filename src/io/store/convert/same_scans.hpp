@@ -36,6 +36,11 @@ class PlaceSample {
   /// The places that may hold more than kSamePlaceShare of the points; at most 200.
   std::vector<PlaceQuanta> suspects() const;
 
+  template <typename Values>
+  void keep(Values& values) {
+    values.add(samples_, level_, group_, next_, seen_);
+  }
+
  private:
   static constexpr std::size_t kMostSamples = std::size_t{1} << 16;
 
@@ -61,9 +66,15 @@ class PlaceCounter {
   /// places: at most 200.
   explicit PlaceCounter(const std::vector<PlaceQuanta>& places);
 
+  bool any() const { return !places_.empty(); }
   void add(const QuantaBatch& batch);
   /// The places for which a warning is due among `points` points, the fullest first.
   std::vector<Place> crowded(std::uint64_t points) const;
+
+  template <typename Values>
+  void keep(Values& values) {
+    values.add(places_);
+  }
 
  private:
   std::vector<Place> places_;

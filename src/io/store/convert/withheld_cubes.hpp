@@ -29,8 +29,8 @@ class WithheldCubes {
   explicit WithheldCubes(std::uint64_t most_bytes) : most_(most_bytes / sizeof(MetreCube)) {}
 
   /// Throws ResourceError where the cubes take too much memory.
-  void add(const QuantaBatch& batch) {
-    cubes_.insert(cubes_.end(), batch.withheld_cubes.begin(), batch.withheld_cubes.end());
+  void add(const std::vector<MetreCube>& cubes) {
+    cubes_.insert(cubes_.end(), cubes.begin(), cubes.end());
     if (cubes_.size() < wait_) return;
     keep_once(cubes_);
     if (cubes_.size() > most_ / 2) {
