@@ -388,9 +388,10 @@ bool ConversionJournal::wants_counted() {
   constexpr double kShare = 0.02;
   const auto seconds = [](auto duration) { return std::chrono::duration<double>(duration).count(); };
   const Clock::time_point now = Clock::now();
-  if (seconds(now - counted_at_) <
-      std::max({options_.counted_interval_seconds, kShare * seconds(now - begun_at_),
-                seconds(counted_at_ - paused_at_) / kShare})) {
+  if (options_.counted_interval_seconds > 0 &&
+      seconds(now - counted_at_) <
+          std::max({options_.counted_interval_seconds, kShare * seconds(now - begun_at_),
+                    seconds(counted_at_ - paused_at_) / kShare})) {
     return false;
   }
   paused_at_ = now;

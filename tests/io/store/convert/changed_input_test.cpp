@@ -105,7 +105,9 @@ TEST_CASE("points are distributed only where they are those that were counted") 
       count_environment(environment, lattice, survey, hashes, 1, clocks, progress);
   const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
   const auto distribute_again = [&] {
-    Distribution distribution(tree, scans.folder / "", 2);
+    std::vector<File> files;
+    files.push_back(File::create_temporary(scans.folder.folder()));
+    Distribution distribution(tree, std::move(files));
     distribute(environment, counted.hashes(), lattice, tree, places, distribution, 2, clocks,
                progress);
     return distribution.take(0).count;

@@ -340,14 +340,14 @@ TEST_CASE("a store with withheld points left out is not that with them kept") {
 
 TEST_CASE("cubes are collected in bounded memory") {
   WithheldCubes cubes(std::uint64_t{1} << 20);
-  QuantaBatch batch;
+  std::vector<MetreCube> some;
   const auto fill = [&](std::int32_t from) {
-    batch.withheld_cubes.clear();
-    for (std::int32_t i = 0; i < 10'000; ++i) batch.withheld_cubes.push_back({from + i, 0, -i});
+    some.clear();
+    for (std::int32_t i = 0; i < 10'000; ++i) some.push_back({from + i, 0, -i});
   };
   for (int round = 0; round < 1000; ++round) {
     fill(10'000 * (round % 3));
-    cubes.add(batch);
+    cubes.add(some);
   }
   const std::vector<MetreCube> found = cubes.take();
   check_equal(found.size(), 30'000);
@@ -357,7 +357,7 @@ TEST_CASE("cubes are collected in bounded memory") {
       [&] {
         for (int round = 0; round < 100; ++round) {
           fill(10'000 * round);
-          more.add(batch);
+          more.add(some);
         }
       }(),
       ResourceError);
