@@ -130,6 +130,11 @@ RunJournal::RunJournal(PendingFile& pending, const fs::path& output, const Searc
     unwanted_ = "nothing in it yet, starts from the beginning";
     return;
   }
+  if (is_of_conversion(*read.identity())) {
+    throw UsageError(path_.string() +
+                     ": is the journal of an unfinished conversion; finish it, or choose another "
+                     "output");
+  }
   earlier_ = journalled_work(read);
   if (!options.resume) {
     throw UsageError(path_.string() + ": an unfinished run with engine " +

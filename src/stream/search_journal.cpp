@@ -14,6 +14,7 @@ namespace clearway {
 
 JournalledWork journalled_work(const JournalReader& journal) {
   JournalledWork work;
+  if (journal.identity() && is_of_conversion(*journal.identity())) return work;
   std::vector<std::pair<std::uint64_t, std::uint64_t>> poses;  // first and count
   journal.for_each([&](JournalPayload payload) {
     switch (payload.take<JournalRecordKind>()) {

@@ -20,7 +20,7 @@ std::string use_of(FileKind kind, const std::filesystem::path& path) {
     case FileKind::kSection:
       return "; clearway section check and clearway section export read it";
     case FileKind::kJournal:
-      return "; the run that it belongs to goes on with --resume";
+      return "; the run or conversion that it belongs to goes on with --resume";
     case FileKind::kTrajectory:
       return "; --trajectory takes it";
     case FileKind::kPoints:

@@ -41,7 +41,7 @@ Findings verify_journal(const std::filesystem::path& file) {
   if (journal.torn().empty()) return {};
   return {{},
           file.string() + ": " + journal.torn() +
-              "; a run with --resume cuts that off and computes it again"};
+              "; --resume cuts that off and computes it again"};
 }
 
 Findings findings_of(const std::filesystem::path& file) {

@@ -1,5 +1,6 @@
 #include "io/files/mapped_file.hpp"
 
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -123,20 +124,31 @@ void install_handler() {
 }  // namespace
 
 MappedFile::MappedFile(const std::filesystem::path& path) : file_(File::open_regular(path)) {
-  const std::uint64_t size = file_.size_bytes();
-  if (size == 0) return;
-  void* address = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, file_.descriptor(), 0);
+  map(0, file_.size_bytes(), MAP_SHARED);
+}
+
+MappedFile::MappedFile(const File& file, std::uint64_t first, std::size_t count)
+    : file_(File::adopt(::fcntl(file.descriptor(), F_DUPFD_CLOEXEC, 0), file.name())) {
+  map(first, count, MAP_SHARED | MAP_POPULATE);
+}
+
+void MappedFile::map(std::uint64_t first, std::size_t count, int flags) {
+  if (count == 0) return;
+  const std::uint64_t before = first % static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  void* address = ::mmap(nullptr, before + count, PROT_READ, flags, file_.descriptor(),
+                         static_cast<off_t>(first - before));
   if (address == MAP_FAILED) {
     throw system_failure(name() + ": cannot map", errno);
   }
-  bytes_ = {static_cast<const std::byte*>(address), size};
-  record_ = remember(bytes_, name());
+  map_ = {static_cast<const std::byte*>(address), before + count};
+  bytes_ = map_.subspan(before);
+  record_ = remember(map_, name());
 }
 
 MappedFile::~MappedFile() {
-  if (bytes_.empty()) return;
+  if (map_.empty()) return;
   forget(record_);
-  ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
+  ::munmap(const_cast<std::byte*>(map_.data()), map_.size());
 }
 
 void MappedFile::survive_faults() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -11,12 +12,14 @@ namespace clearway {
 
 struct MapRecord;
 
-/// A read-only map of a whole file. If the file shrinks or fails under the map, the system sends
+/// A read-only map of a file or a part of it. If the file shrinks or fails under the map, the system sends
 /// SIGBUS, which install_map_fault_handler() turns into a message and an exit code, and
 /// survive_faults() into pages of zeros.
 class MappedFile {
  public:
   explicit MappedFile(const std::filesystem::path& path);
+  /// Maps a part of an open file, and reads it ahead.
+  MappedFile(const File& file, std::uint64_t first, std::size_t count);
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
   ~MappedFile();
@@ -34,8 +37,11 @@ class MappedFile {
   bool failed() const;
 
  private:
+  void map(std::uint64_t first, std::size_t count, int flags);
+
   File file_;
-  std::span<const std::byte> bytes_;
+  std::span<const std::byte> map_;    ///< begins with a page
+  std::span<const std::byte> bytes_;  ///< what was asked for of it
   MapRecord* record_ = nullptr;
 };
 

@@ -26,6 +26,13 @@ inline constexpr std::uint32_t kJournalVersion = 2;
 /// The identity of a journal, which says what it belongs to, as named values in a fixed order.
 using JournalIdentity = std::vector<std::pair<std::string, std::string>>;
 
+/// The first name of the identity of a conversion's journal. A run's journal has none of that name.
+inline constexpr const char* kJournalOfConversion = "conversion";
+
+inline bool is_of_conversion(const JournalIdentity& identity) {
+  return !identity.empty() && identity.front().first == kJournalOfConversion;
+}
+
 /// The path of an output's journal: the output's name with ".journal" appended.
 std::filesystem::path journal_of(const std::filesystem::path& output);
 

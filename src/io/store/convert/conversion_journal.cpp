@@ -40,7 +40,6 @@ enum Kind : std::uint8_t {
   kCutUnits,
 };
 
-constexpr const char* kConversion = "conversion";
 constexpr const char* kOverwrites = "overwrites";
 // Changes whenever records, or what they rest on, change their meaning.
 constexpr const char* kMeaning = "store " CLEARWAY_VERSION ", records 1";
@@ -114,7 +113,7 @@ bool is_free(const std::string& key) {
 }
 
 JournalIdentity identity_of(const ConversionOptions& options, bool replaces) {
-  JournalIdentity identity{{kConversion, kMeaning}, {kOverwrites, yes_or_no(replaces)}};
+  JournalIdentity identity{{kJournalOfConversion, kMeaning}, {kOverwrites, yes_or_no(replaces)}};
   for_each_field(kConvertFields, [&](const auto& field) {
     if (!is_free(field.key)) identity.emplace_back(field.key, value_text(field.of(options)));
   });
@@ -184,8 +183,7 @@ bool read_chunk(const File& file, std::uint64_t size, const ChunkPlace& place,
 std::optional<JournalReader> conversion_at(const fs::path& path) {
   if (!is_journal(path)) return std::nullopt;
   JournalReader read(path);
-  const auto& identity = read.identity();
-  if (!identity || identity->empty() || identity->front().first != kConversion) return std::nullopt;
+  if (!read.identity() || !is_of_conversion(*read.identity())) return std::nullopt;
   return read;
 }
 
@@ -254,7 +252,7 @@ void ConversionJournal::find_earlier() {
   }
   JournalReader read(path_);
   const bool is_empty = !read.identity() || read.identity()->empty();
-  if (!is_empty && read.identity()->front().first != kConversion) {
+  if (!is_empty && !is_of_conversion(*read.identity())) {
     throw UsageError(path_.string() +
                      ": is the journal of an unfinished run; finish it, or choose another output");
   }

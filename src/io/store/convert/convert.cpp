@@ -280,14 +280,18 @@ class Conversion {
     if (!journal_->replaces()) output_.refuse_existing();
     try {
       return convert();
-    } catch (const ResourceError&) {
-      journal_->leave();
+    } catch (const InputError&) {
+      journal_->discard();  // the inputs have to change
       throw;
-    } catch (const Error& error) {
-      if (dynamic_cast<const Interrupted*>(&error) != nullptr) {
-        journal_->leave();
+    } catch (const UsageError&) {
+      journal_->discard();  // the options have to change
+      throw;
+    } catch (const ResourceError& error) {
+      const Remedy remedy = error.remedy();
+      if (remedy == Remedy::kMoreCellPoints || remedy == Remedy::kFewerCellPoints) {
+        journal_->discard();
       } else {
-        journal_->discard();  // the inputs or the options have to change
+        journal_->leave();
       }
       throw;
     } catch (...) {

@@ -19,20 +19,12 @@
 #include "io/store/convert/withheld_cubes.hpp"
 
 namespace clearway {
-namespace {
-
-UnitPoints room_for(std::size_t count) {
-  return {std::make_unique_for_overwrite<DistributedPoint[]>(count), count};
-}
-
-}  // namespace
-
 Distribution::Distribution(const SplitTree& tree, std::vector<File> files,
                            std::uint64_t first_byte)
     : files_(std::move(files)) {
   for (const std::uint32_t node : tree.units()) counts_.push_back(tree.nodes()[node].count);
   if (files_.empty()) {
-    for (const std::uint64_t count : counts_) memory_.push_back(room_for(count));
+    for (const std::uint64_t count : counts_) memory_.emplace_back(count);
     return;
   }
   std::vector<std::uint64_t> ends(files_.size(), first_byte);
@@ -48,7 +40,7 @@ Distribution::Distribution(const SplitTree& tree, std::vector<File> files,
 void Distribution::put(std::size_t unit, std::uint64_t first,
                        std::span<const DistributedPoint> points) {
   if (files_.empty()) {
-    std::copy(points.begin(), points.end(), memory_[unit].points.get() + first);
+    std::copy(points.begin(), points.end(), memory_[unit].room().begin() + static_cast<std::ptrdiff_t>(first));
     return;
   }
   const auto& [file, byte] = places_[unit];
@@ -63,9 +55,9 @@ void Distribution::get(std::size_t unit, std::uint64_t first,
 
 UnitPoints Distribution::take(std::size_t unit) {
   if (files_.empty()) return std::move(memory_[unit]);
-  UnitPoints all = room_for(counts_[unit]);
-  get(unit, 0, std::span(all.points.get(), all.count));
-  return all;
+  const auto& [file, byte] = places_[unit];
+  return UnitPoints(
+      std::make_unique<MappedFile>(files_[file], byte, counts_[unit] * sizeof(DistributedPoint)));
 }
 
 namespace {

@@ -7,10 +7,12 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/util/progress.hpp"
 #include "io/files/file.hpp"
+#include "io/files/mapped_file.hpp"
 #include "io/store/convert/count.hpp"
 #include "io/store/convert/environment_source.hpp"
 #include "io/store/convert/same_scans.hpp"
@@ -43,11 +45,27 @@ struct DistributedPoint {
 static_assert(sizeof(DistributedPoint) == 20);
 
 /// All points of a unit, in source order.
-struct UnitPoints {
-  std::unique_ptr<DistributedPoint[]> points;
-  std::size_t count = 0;
+class UnitPoints {
+ public:
+  UnitPoints() = default;
+  /// Room for points in memory.
+  explicit UnitPoints(std::size_t count)
+      : memory_(std::make_unique_for_overwrite<DistributedPoint[]>(count)),
+        points_(memory_.get(), count) {}
+  /// Points as they are in a file.
+  explicit UnitPoints(std::unique_ptr<MappedFile> map)
+      : map_(std::move(map)),
+        points_(reinterpret_cast<const DistributedPoint*>(map_->bytes().data()),
+                map_->bytes().size() / sizeof(DistributedPoint)) {}
 
-  std::span<const DistributedPoint> span() const { return {points.get(), count}; }
+  std::span<const DistributedPoint> span() const { return points_; }
+  /// The room, to be filled.
+  std::span<DistributedPoint> room() const { return {memory_.get(), points_.size()}; }
+
+ private:
+  std::unique_ptr<DistributedPoint[]> memory_;
+  std::unique_ptr<MappedFile> map_;
+  std::span<const DistributedPoint> points_;
 };
 
 /// The points of each unit of the tree, in memory or in files.

@@ -22,8 +22,9 @@ class Unit {
     const auto running = clocks.measure(Stage::kLoad);
     loaded_ = distribution.take(unit);
     points_ = buffers.take();
-    for (std::size_t i = 0; i < loaded_.count; ++i) {
-      const auto& q = loaded_.points[i].q;
+    const std::span<const DistributedPoint> loaded = loaded_.span();
+    for (std::size_t i = 0; i < loaded.size(); ++i) {
+      const auto& q = loaded[i].q;
       points_[i] = {{q[0], q[1], q[2]}, static_cast<std::uint32_t>(i)};
     }
     if (origins != nullptr) origins_ = origins->numbers_of(loaded_.span());
@@ -34,14 +35,14 @@ class Unit {
   Unit& operator=(const Unit&) = delete;
 
   std::uint64_t source(const BucketPoint& p) const {
-    return loaded_.points[p.index].source_index();
+    return loaded_.span()[p.index].source_index();
   }
   std::uint8_t point_class(const BucketPoint& p) const {
-    return loaded_.points[p.index].point_class();
+    return loaded_.span()[p.index].point_class();
   }
   bool has_origins() const { return !origins_.empty(); }
   std::uint32_t origin(const BucketPoint& p) const { return origins_[p.index]; }
-  std::span<BucketPoint> points() { return {points_.get(), loaded_.count}; }
+  std::span<BucketPoint> points() { return {points_.get(), loaded_.span().size()}; }
 
  private:
   UnitBuffers& buffers_;

@@ -91,7 +91,7 @@ TEST_CASE("a run on a disk that is full goes on once there is room") {
   CHECK(without_room_for_the_result > 0);
 }
 
-TEST_CASE("a conversion and an export on a disk that is full leave nothing, and work with room") {
+TEST_CASE("a conversion on a full disk goes on with room, and an export begins again") {
   if (!disks_can_be_made()) return;
   const Place place;
   require_success(place.run(place.search("sweep", place.folder / "made.h5")));
@@ -116,9 +116,11 @@ TEST_CASE("a conversion and an export on a disk that is full leave nothing, and 
       if (done) continue;
       ++failed;
       check_failed(outcome, disk);
-      CHECK(disk.files().empty());
+      const bool leaves = command.starts_with("convert") && !disk.files().empty();
+      CHECK((leaves || disk.files().empty()));
       disk.resize(kRoom);
-      require_success(place.run(to_disk));
+      require_success(place.run(to_disk + (leaves ? " --resume" : "")));
+      CHECK(disk.files() == Names{name});
       check_same(bytes_of(disk / name), expected);
     }
     CHECK(failed > 2);
