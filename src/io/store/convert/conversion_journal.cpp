@@ -231,7 +231,13 @@ ConversionJournal::ConversionJournal(PendingFile& pending, const ConversionOptio
     if (is_file(aside_path())) remove_file(aside_path());
     remove_file(path_);
   }
-  writer_.emplace(JournalWriter::create(path_, identity_, kNever));
+  try {
+    writer_.emplace(JournalWriter::create(path_, identity_, kNever));
+  } catch (const ResourceError&) {
+    std::error_code unknown;
+    fs::remove(path_, unknown);  // a journal without its beginning, on a full disk
+    throw;
+  }
 }
 
 void ConversionJournal::find_earlier() {

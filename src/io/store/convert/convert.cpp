@@ -225,10 +225,14 @@ struct DiskNeed {
   std::uint64_t spooled = 0;  ///< points that are written into temporary files
 };
 
+std::uint64_t bytes_of(const DiskNeed& need) {
+  return need.points * kOutputBytesPerPoint +
+         (need.padded - need.points) * kPaddingBytesPerPoint +
+         need.spooled * sizeof(DistributedPoint);
+}
+
 void check_disk(const std::filesystem::path& folder, const DiskNeed& need) {
-  const std::uint64_t needed = need.points * kOutputBytesPerPoint +
-                               (need.padded - need.points) * kPaddingBytesPerPoint +
-                               need.spooled * sizeof(DistributedPoint);
+  const std::uint64_t needed = bytes_of(need);
   const std::uint64_t free = free_disk_bytes(folder);
   if (needed <= free) return;
   const bool mostly_padding = need.padded > 2 * need.points;
@@ -344,11 +348,11 @@ class Conversion {
     PlaceCounter places(all.suspects);
     Distribution distribution(tree, point_files(tree.units().size()),
                               journal_ ? ConversionJournal::kPointsBegin : 0);
-    if (journal_) resume_distribution(distribution, places);
-    if (!journal_ || !journal_->is_distributed()) {
+    if (journal() != nullptr) resume_distribution(distribution, places);
+    if (journal() == nullptr || !journal_->is_distributed()) {
       progress_.begin("distribute", counted.points, "points");
       distribute(environment, counted.hashes(), lattice, tree, places, distribution, threads_,
-                 clocks_, progress_, origins_, &withheld_, journal_ ? &*journal_ : nullptr);
+                 clocks_, progress_, origins_, &withheld_, journal());
       progress_.end();
       environment.refuse_changed();  // so that the sources' hashes are those of what was converted
     }
@@ -442,6 +446,9 @@ class Conversion {
     journal_->keep_counted([&](JournalValues& values) { values.add(all, origins, read); });
   }
 
+  /// The journal of what comes after the counting; null where the points wait in memory.
+  ConversionJournal* journal() { return journal_ && !in_memory_ ? &*journal_ : nullptr; }
+
   /// The files in which points wait; none where they wait in memory.
   std::vector<File> point_files(std::size_t units) {
     std::vector<File> files;
@@ -473,10 +480,10 @@ class Conversion {
     const auto values_of = [&](JournalValues& values) {
       values.add(places, counts, cubes, largest_change);
     };
-    if (journal_ && journal_->is_distributed()) {
+    if (journal() != nullptr && journal_->is_distributed()) {
       journal_->take_distributed(values_of);
       if (origins_ != nullptr) origins_->set_counts(counts);
-    } else if (journal_) {
+    } else if (journal() != nullptr) {
       journal_->keep_distributed(values_of);
     }
     if (report_.metadata.withheld) report_.metadata.withheld->cubes = std::move(cubes);
@@ -603,19 +610,29 @@ class Conversion {
   }
 
   /// Checks that memory and disk suffice for the cells, and decides whether all points wait in
-  /// memory. They do if that leaves enough for one unit per thread.
+  /// memory, which leaves enough for one unit per thread: those of a stream, which cannot be
+  /// resumed, and those for which the disk has no room.
   void check_cells(const std::vector<TopNode>& top, std::size_t units) {
     const std::uint64_t points = report_.points;
     report_.cells = top.empty() ? 0 : top[0].cell_count;
     const std::uint64_t waiting = points * sizeof(DistributedPoint);
     units_in_flight_ = std::min(units, static_cast<std::size_t>(threads_) + 1);
-    in_memory_ = !journal_ && bytes_for_units() >= waiting + units_in_flight_ * of_unit() &&
-                 waiting <= most_waiting_bytes();
+    const std::uint64_t padded = std::max(points, report_.cells * options_.cell_points);
+    const bool may_be_in_memory =
+        bytes_for_units() >= waiting + units_in_flight_ * of_unit() &&
+        waiting <= most_waiting_bytes();
+    const bool has_points = journal_ && journal_->has_points();
+    const DiskNeed need{points, padded, has_points ? 0 : points};
+    in_memory_ = may_be_in_memory && !has_points &&
+                 (!journal_ || bytes_of(need) > free_disk_bytes(folder_));
+    if (in_memory_ && journal_) {
+      log_.note(
+          "the disk has too little room for temporary files, so points wait in memory, and an "
+          "interruption loses all but their counts");
+    }
     units_in_flight_ = std::clamp<std::size_t>(bytes_for_units() / of_unit(), 1,
                                                std::max<std::size_t>(1, units_in_flight_));
-    const std::uint64_t padded = std::max(points, report_.cells * options_.cell_points);
-    const bool are_spooled = in_memory_ || (journal_ && journal_->has_points());
-    check_disk(folder_, {points, padded, are_spooled ? 0 : points});
+    check_disk(folder_, {points, padded, in_memory_ ? 0 : need.spooled});
     if (options_.regular_size && padded > 2 * points) {
       log_.warn(
           "padded-cells",
@@ -629,7 +646,7 @@ class Conversion {
                    const std::vector<TopNode>& top, const Lattice& lattice) {
     StoreWriter writer(output_.partial(), report_.metadata, report_.cells);
     write_cells(distribution, tree, lattice, report_.metadata, origins_, units_in_flight_, writer,
-                journal_ ? &*journal_ : nullptr, clocks_, progress_);
+                journal(), clocks_, progress_);
     report_.partition_seconds = watch_.lap();
     {
       const auto running = clocks_.measure(Stage::kWrite);
