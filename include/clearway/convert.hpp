@@ -125,8 +125,8 @@ struct ConvertReport {
   double largest_change = 0;  ///< greatest change of a coordinate by rounding to the scale, metres
   std::uint64_t temporary_bytes = 0;
   std::uint64_t output_bytes = 0;
-  /// Points of the inputs that an earlier call had distributed, and cells that it had written, which
-  /// were taken over because ConvertOptions::resume is set
+  /// Points of the inputs that an earlier call had distributed, and cells that it had written,
+  /// which were taken over because ConvertOptions::resume is set
   std::uint64_t resumed_points = 0, resumed_cells = 0;
   /// Batches of the inputs, of 65,536 points or so, and buckets of the store that the earlier call
   /// had begun to distribute and to write and had not finished, so that they were done twice

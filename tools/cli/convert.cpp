@@ -100,9 +100,8 @@ nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertCommand
   out["largest_change"] = nullptr;
   out["temporary_bytes"] = nullptr;
   out["output_bytes"] = std::filesystem::file_size(options.output);
-  for (const char* key :
-       {"resumed_points", "resumed_cells", "recounted_batches", "repeated_batches",
-        "repeated_buckets"}) {
+  for (const char* key : {"resumed_points", "resumed_cells", "recounted_batches",
+                          "repeated_batches", "repeated_buckets"}) {
     out[key] = nullptr;
   }
   if (!report.was_finished) {

@@ -40,8 +40,7 @@ Findings verify_journal(const std::filesystem::path& file) {
   journalled_work(journal);
   if (journal.torn().empty()) return {};
   return {{},
-          file.string() + ": " + journal.torn() +
-              "; --resume cuts that off and computes it again"};
+          file.string() + ": " + journal.torn() + "; --resume cuts that off and computes it again"};
 }
 
 Findings findings_of(const std::filesystem::path& file) {

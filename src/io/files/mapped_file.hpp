@@ -12,9 +12,9 @@ namespace clearway {
 
 struct MapRecord;
 
-/// A read-only map of a file or a part of it. If the file shrinks or fails under the map, the system sends
-/// SIGBUS, which install_map_fault_handler() turns into a message and an exit code, and
-/// survive_faults() into pages of zeros.
+/// A read-only map of a file or a part of it. If the file shrinks or fails under the map, the
+/// system sends SIGBUS, which install_map_fault_handler() turns into a message and an exit code,
+/// and survive_faults() into pages of zeros.
 class MappedFile {
  public:
   explicit MappedFile(const std::filesystem::path& path);

@@ -106,7 +106,7 @@ class JournalValues {
 
   template <typename Value>
   static constexpr bool is_plain =
-      std::is_trivially_copyable_v<Value> && !requires(Value& value, JournalValues& values) {
+      std::is_trivially_copyable_v<Value> && !requires(Value & value, JournalValues& values) {
     value.keep(values);
   };
 

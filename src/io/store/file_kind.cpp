@@ -127,7 +127,8 @@ FileDescription describe_file(const std::filesystem::path& path) {
   if (bytes.empty()) return {FileKind::kEmpty, "empty"};
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (text.starts_with("\x89HDF")) return describe_hdf5(path);
-  if (is_journal(path)) return {FileKind::kJournal, "the journal of an unfinished run or conversion"};
+  if (is_journal(path))
+    return {FileKind::kJournal, "the journal of an unfinished run or conversion"};
   if (format_of_content(std::span(bytes).first(std::min<std::size_t>(16, bytes.size())))) {
     return {FileKind::kPoints, "a scan (" + point_format_name(path) + ")"};
   }

@@ -215,9 +215,9 @@ ConversionJournal::ConversionJournal(PendingFile& pending, const ConversionOptio
   if (read_) {
     const std::string differs = difference(*read_->identity(), identity_);
     if (!differs.empty()) {
-      throw UsageError(path_.string() + ": belongs to another conversion: its " +
-                           shortened(differs),
-                       Remedy::kRestoreOptions);
+      throw UsageError(
+          path_.string() + ": belongs to another conversion: its " + shortened(differs),
+          Remedy::kRestoreOptions);
     }
     pending_.keep(false);
     log_.note(path_.string() + ": resumes with " + work_text());
@@ -390,7 +390,9 @@ bool ConversionJournal::wants_counted() {
   // Ever more rarely, so that the journal of a long pass does not grow without bounds; and no more
   // often than pauses take two hundredths of the time.
   constexpr double kShare = 0.02;
-  const auto seconds = [](auto duration) { return std::chrono::duration<double>(duration).count(); };
+  const auto seconds = [](auto duration) {
+    return std::chrono::duration<double>(duration).count();
+  };
   const Clock::time_point now = Clock::now();
   if (options_.counted_interval_seconds > 0 &&
       seconds(now - counted_at_) <
@@ -452,8 +454,7 @@ std::vector<File> ConversionJournal::open_points(std::size_t files) {
                        ": is where this output's temporary file has to be, and is another file; "
                        "move it away, or choose another output");
     }
-    const int descriptor =
-        ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+    const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (descriptor < 0) throw system_failure(path.string() + ": cannot create", errno);
     opened.push_back(File::adopt(descriptor, path.string()));
     opened.back().write_at(0, std::as_bytes(std::span(kPointsMagic)));
@@ -619,8 +620,8 @@ void ConversionJournal::leave() {
   if (files_ > 1) files += " to " + std::to_string(files_);
   if (is_aside) files += ", " + aside_path().filename().string();
   if (!units_.empty() && !is_aside) files += ", " + pending_.partial().filename().string();
-  log_.note(options_.output.string() + ": " + work_text() + "; " + files + " keep that for --resume (" +
-            format_size(bytes) + "), and --force removes them");
+  log_.note(options_.output.string() + ": " + work_text() + "; " + files +
+            " keep that for --resume (" + format_size(bytes) + "), and --force removes them");
 }
 
 void ConversionJournal::discard() {

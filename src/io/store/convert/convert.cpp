@@ -122,9 +122,9 @@ void write_cells(Distribution& distribution, const SplitTree& tree, const Lattic
     if (flying->rest->cells_left() == 0) flying->rest.reset();
     return flying;
   });
-  const auto write = piece_of(
-      scope, output,
-      [&](const Flying& unit) { write_unit(*unit, writer, journal, clocks, progress); });
+  const auto write = piece_of(scope, output, [&](const Flying& unit) {
+    write_unit(*unit, writer, journal, clocks, progress);
+  });
   scope.begin();
   tbb::parallel_pipeline(
       units_in_flight,
@@ -226,8 +226,7 @@ struct DiskNeed {
 };
 
 std::uint64_t bytes_of(const DiskNeed& need) {
-  return need.points * kOutputBytesPerPoint +
-         (need.padded - need.points) * kPaddingBytesPerPoint +
+  return need.points * kOutputBytesPerPoint + (need.padded - need.points) * kPaddingBytesPerPoint +
          need.spooled * sizeof(DistributedPoint);
 }
 
@@ -618,13 +617,12 @@ class Conversion {
     const std::uint64_t waiting = points * sizeof(DistributedPoint);
     units_in_flight_ = std::min(units, static_cast<std::size_t>(threads_) + 1);
     const std::uint64_t padded = std::max(points, report_.cells * options_.cell_points);
-    const bool may_be_in_memory =
-        bytes_for_units() >= waiting + units_in_flight_ * of_unit() &&
-        waiting <= most_waiting_bytes();
+    const bool may_be_in_memory = bytes_for_units() >= waiting + units_in_flight_ * of_unit() &&
+                                  waiting <= most_waiting_bytes();
     const bool has_points = journal_ && journal_->has_points();
     const DiskNeed need{points, padded, has_points ? 0 : points};
-    in_memory_ = may_be_in_memory && !has_points &&
-                 (!journal_ || bytes_of(need) > free_disk_bytes(folder_));
+    in_memory_ =
+        may_be_in_memory && !has_points && (!journal_ || bytes_of(need) > free_disk_bytes(folder_));
     if (in_memory_ && journal_) {
       log_.note(
           "the disk has too little room for temporary files, so points wait in memory, and an "

@@ -169,7 +169,7 @@ double fitting_scale(double length) {
 class ScaleChoice {
  public:
   ScaleChoice(const CoordinateRange& range, std::span<const std::filesystem::path> files,
-         const PointReadOptions& how_to_read)
+              const PointReadOptions& how_to_read)
       : range_(range), files_(files), how_to_read_(how_to_read) {}
 
   void choose(int axis, std::optional<double> scale, Quantisation& out) const {

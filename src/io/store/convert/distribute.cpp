@@ -19,8 +19,7 @@
 #include "io/store/convert/withheld_cubes.hpp"
 
 namespace clearway {
-Distribution::Distribution(const SplitTree& tree, std::vector<File> files,
-                           std::uint64_t first_byte)
+Distribution::Distribution(const SplitTree& tree, std::vector<File> files, std::uint64_t first_byte)
     : files_(std::move(files)) {
   for (const std::uint32_t node : tree.units()) counts_.push_back(tree.nodes()[node].count);
   if (files_.empty()) {
@@ -40,7 +39,8 @@ Distribution::Distribution(const SplitTree& tree, std::vector<File> files,
 void Distribution::put(std::size_t unit, std::uint64_t first,
                        std::span<const DistributedPoint> points) {
   if (files_.empty()) {
-    std::copy(points.begin(), points.end(), memory_[unit].room().begin() + static_cast<std::ptrdiff_t>(first));
+    std::copy(points.begin(), points.end(),
+              memory_[unit].room().begin() + static_cast<std::ptrdiff_t>(first));
     return;
   }
   const auto& [file, byte] = places_[unit];
@@ -221,9 +221,7 @@ void distribute(EnvironmentSource& environment, const CountedHashes& counted,
   bool has_classes = false;
   Places order(environment, distribution);
   environment.rewind();
-  const auto keep_hashes = [&](JournalValues values) {
-    values.add(hash, classes, has_classes);
-  };
+  const auto keep_hashes = [&](JournalValues values) { values.add(hash, classes, has_classes); };
   std::uint64_t begun = 0;
   BatchWatch watch;
   if (journal != nullptr) {

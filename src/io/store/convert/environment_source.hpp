@@ -39,7 +39,7 @@ struct ReadCounts {
   std::uint64_t input_points = 0;
   std::uint64_t non_finite_points = 0;
   std::uint64_t first_non_finite = 0;  ///< source index of the first one
-  std::uint64_t absent_points = 0;  ///< records that hold no point, by the rules of their format
+  std::uint64_t absent_points = 0;     ///< records that hold no point, by the rules of their format
   std::uint64_t withheld_points = 0;
   std::uint64_t first_withheld = 0;
   /// Points that keep_near() left out; of these, points that were not read, and their bytes

@@ -167,7 +167,8 @@ const std::vector<ResumedRow>& rows() {
       {"cubes near a path, with origins",
        [](Resumed& scans) {
          scans.add_las("a.las", 140000);
-         put_bytes(scans.path("path.txt"), "1 0 0 99.9 0 1 0 -200 0 0 1 0\n1 0 0 100 0 1 0 -200 0 0 1 0\n");
+         put_bytes(scans.path("path.txt"),
+                   "1 0 0 99.9 0 1 0 -200 0 0 1 0\n1 0 0 100 0 1 0 -200 0 0 1 0\n");
          put_bytes(scans.path("origins.csv"), "first,x,y,z\n0,1,2,3\n70000,4,5,6\n");
          const Resumed* of = &scans;
          scans.change = [of](ConversionOptions& options) {
