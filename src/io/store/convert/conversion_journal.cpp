@@ -151,13 +151,17 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(fs::symlink_status(path, unknown));
 }
 
+/// Whether a file begins as those of points do. One that is shorter was made by a process that
+/// ended before it could write the beginning.
 bool has_points_magic(const fs::path& path) {
   if (!is_file(path)) return false;
   const File file = File::open_regular(path);
   std::array<char, kPointsMagic.size()> found{};
-  if (file.size_bytes() < found.size()) return false;
-  file.read_at(0, std::as_writable_bytes(std::span(found)));
-  return found == kPointsMagic;
+  const auto size =
+      static_cast<std::size_t>(std::min<std::uint64_t>(file.size_bytes(), found.size()));
+  file.read_at(0, std::as_writable_bytes(std::span(found)).first(size));
+  return std::equal(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(size),
+                    kPointsMagic.begin());
 }
 
 fs::path points_of(const fs::path& output, std::size_t file) {

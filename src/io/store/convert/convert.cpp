@@ -275,7 +275,7 @@ class Conversion {
 
   ConversionReport run() {
     // Standard input can be read only once, so that there is nothing to go on with.
-    if (options_.inputs == std::vector<std::filesystem::path>{"-"}) {
+    if (std::ranges::find(options_.inputs, "-") != options_.inputs.end()) {
       if (!options_.overwrite) output_.refuse_existing();
       return convert();
     }

@@ -66,9 +66,10 @@ std::vector<Command> commands(const Site& site) {
   const auto to = [&](const std::string& name) { return " -o " + site.path(name); };
   return {
       {"convert",
-       "convert " + site.path("environment.las") + " --cell-points 4096 --threads 2" + to("out.h5"),
+       "convert " + site.path("environment.las") + " --force --cell-points 4096 --threads 2" +
+           to("out.h5"),
        "out.h5"},
-      {"convert text", "convert " + site.path("scan.xyz") + " --threads 2" + to("text.h5"),
+      {"convert text", "convert " + site.path("scan.xyz") + " --force --threads 2" + to("text.h5"),
        "text.h5"},
       {"sweep", site.search() + " --force --first-pose" + to("sweep.h5"), "sweep.h5"},
       {"kdtree", site.search() + " --force --engine kdtree" + to("kdtree.h5"), "kdtree.h5"},
@@ -88,11 +89,13 @@ void write_text(const Site& site) {
   put_bytes(site.file("scan.xyz"), text);
 }
 
-/// The number of files in a folder without journals, because that of a stopped run may stay.
+/// The number of files in a folder without journals and what lies beside them, with which a stopped
+/// run or conversion goes on.
 std::size_t files_in(const fs::path& folder) {
-  return static_cast<std::size_t>(std::count_if(
-      fs::directory_iterator(folder), {},
-      [](const fs::directory_entry& entry) { return entry.path().extension() != ".journal"; }));
+  return static_cast<std::size_t>(
+      std::count_if(fs::directory_iterator(folder), {}, [](const fs::directory_entry& entry) {
+        return !fs::exists(fs::path(entry.path()).replace_extension(".journal"));
+      }));
 }
 
 }  // namespace
