@@ -164,8 +164,8 @@ void log_report(const ConvertCommand& options, const ConvertReport& report) {
   }
   if (report.resumed_points + report.recounted_batches + report.repeated_batches > 0) {
     spdlog::info(
-        "taken over: {} distributed, {} written. Done twice: {} of points counted, {} distributed, "
-        "{} written",
+        "taken over from before: {} distributed, {} written; done again: {} counted, {} "
+        "distributed, {} written",
         counted(report.resumed_points, "point"), counted(report.resumed_cells, "cell"),
         counted(report.recounted_batches, "batch", "batches"), report.repeated_batches,
         counted(report.repeated_buckets, "bucket"));

@@ -326,7 +326,7 @@ std::string text_of(const ordered_json& description) {
                             name.empty() ? "" : " (" + name + ")",
                             counted(one["points"].get<std::uint64_t>(), "point"));
       }
-    } else if (key == "origins") {
+    } else if (key == "origins" && value.is_object()) {
       text += fmt::format("{:<{}}  {} distinct; {} without\n", key, width,
                           format_count(value["distinct"].get<std::uint64_t>()),
                           counted(value["points_without"].get<std::uint64_t>(), "point"));
@@ -334,7 +334,7 @@ std::string text_of(const ordered_json& description) {
         text += fmt::format("{:<{}}  {}: {}\n", "origins", width, one["what"].get<std::string>(),
                             counted(one["points"].get<std::uint64_t>(), "point"));
       }
-    } else if (key == "withheld") {
+    } else if (key == "withheld" && value.is_object()) {
       text +=
           fmt::format("{:<{}}  {}\n", key, width,
                       counted(value["points"].get<std::uint64_t>(), "point") +
@@ -342,7 +342,7 @@ std::string text_of(const ordered_json& description) {
                                ? ", kept"
                                : ", left out, in " + counted(value["cubes"].get<std::uint64_t>(),
                                                              "cube of 1 m", "cubes of 1 m")));
-    } else if (key == "near") {
+    } else if (key == "near" && value.is_object()) {
       text += fmt::format("{:<{}}  within {} of a path of {}; {} left out", key, width,
                           format_number(value["within"].get<double>()),
                           counted(value["path_poses"].get<std::uint64_t>(), "pose"),

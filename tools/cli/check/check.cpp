@@ -397,7 +397,9 @@ class Check {
         note_step(kStoreName, step.words(), report.was_finished);
         return;
       } catch (const UsageError& error) {
-        if (!is_about_other_question(error.remedy()) || !options_.force) throw;
+        // Where there is no store, only an unfinished conversion is in the way.
+        const bool may_replace = options_.force || !fs::exists(plan_.environment(), unknown);
+        if (!is_about_other_question(error.remedy()) || !may_replace) throw;
       }
       Step<ConvertCommand> replacing(plan_.convert(true));
       perform(replacing.options());

@@ -62,20 +62,22 @@ std::string state_text(const fs::path& path) {
          ", status changed at " + time(state[3], state[4]);
 }
 
-/// A path with the state of its file, or with the states of the files in a folder.
+/// A path with the state of its file, or with the states of the files with poses in a folder.
 std::string named_file_text(const fs::path& path) {
   if (path.empty()) return "none";
-  std::string text = path.string() + ", " + state_text(path);
   std::error_code unknown;
-  if (!fs::is_directory(path, unknown)) return text;
+  if (!fs::is_directory(path, unknown)) return path.string() + ", " + state_text(path);
   std::vector<std::string> states;
   for (const auto& entry : fs::directory_iterator(path)) {
+    // Other files, such as those of this conversion, may come and go.
+    const std::string ending = entry.path().extension().string();
+    if (ending != ".pose" && ending != ".frames") continue;
     states.push_back(entry.path().string() + state_text(entry.path()));
   }
   std::ranges::sort(states);
   Xxh64Stream hash;
   for (const std::string& state : states) hash.update(std::as_bytes(std::span(state)));
-  return text + ", files " + hash_text(hash.digest());
+  return path.string() + ", files " + hash_text(hash.digest());
 }
 
 std::string value_text(bool value) { return yes_or_no(value); }
@@ -151,8 +153,8 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(fs::symlink_status(path, unknown));
 }
 
-/// Whether a file begins as those of points do. One that is shorter was made by a process that
-/// ended before it could write the beginning.
+/// Whether a file begins as those of points do. The end of the process or of the system may have
+/// cost the beginning, or left zeros in its place.
 bool has_points_magic(const fs::path& path) {
   if (!is_file(path)) return false;
   const File file = File::open_regular(path);
@@ -161,7 +163,18 @@ bool has_points_magic(const fs::path& path) {
       static_cast<std::size_t>(std::min<std::uint64_t>(file.size_bytes(), found.size()));
   file.read_at(0, std::as_writable_bytes(std::span(found)).first(size));
   return std::equal(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(size),
-                    kPointsMagic.begin());
+                    kPointsMagic.begin()) ||
+         found == decltype(found){};
+}
+
+/// Throws UsageError where something else is at the place of a temporary file.
+void refuse_other_file(const fs::path& path, bool is_ours) {
+  std::error_code unknown;
+  if (!fs::exists(fs::symlink_status(path, unknown))) return;
+  if (is_ours && fs::hard_link_count(path) == 1) return;
+  throw UsageError(path.string() +
+                   ": is where this output's temporary file has to be, and is another file; move "
+                   "it away, or choose another output");
 }
 
 fs::path points_of(const fs::path& output, std::size_t file) {
@@ -198,13 +211,31 @@ bool unfinished_overwrites(const fs::path& output) {
   return read && value_of(*read->identity(), kOverwrites) == yes_or_no(true);
 }
 
-void remove_left_over(const fs::path& output) {
-  if (!conversion_at(journal_of(output))) return;
+bool remove_left_over(const ConversionOptions& options) {
+  const fs::path& output = options.output;
+  const auto read = conversion_at(journal_of(output));
+  if (!read) return true;
+  const bool replaces = value_of(*read->identity(), kOverwrites) == yes_or_no(true);
+  if (!difference(*read->identity(), identity_of(options, replaces)).empty()) return false;
   const PendingFile owned(output, true);
-  if (!conversion_at(journal_of(output))) return;
+  if (!conversion_at(journal_of(output))) return true;
   remove_points_of(output, 0);
   if (is_file(aside_of(output))) remove_file(aside_of(output));
   remove_file(journal_of(output));
+  return true;
+}
+
+void give_way_to_stream(PendingFile& pending, const ConversionOptions& options) {
+  const fs::path journal = journal_of(options.output);
+  if (!conversion_at(journal)) return;
+  if (!options.overwrite) {
+    pending.keep(true);
+    throw UsageError(journal.string() + ": belongs to an unfinished conversion",
+                     Remedy::kOverwrite);
+  }
+  remove_points_of(options.output, 0);
+  if (is_file(aside_of(options.output))) remove_file(aside_of(options.output));
+  remove_file(journal);
 }
 
 ConversionJournal::ConversionJournal(PendingFile& pending, const ConversionOptions& options,
@@ -223,11 +254,17 @@ ConversionJournal::ConversionJournal(PendingFile& pending, const ConversionOptio
           path_.string() + ": belongs to another conversion: its " + shortened(differs),
           Remedy::kRestoreOptions);
     }
-    pending_.keep(false);
+    for (std::size_t i = 0; i < files_; ++i) {
+      refuse_other_file(points_path(i), has_points_magic(points_path(i)));
+    }
+    refuse_other_file(aside_path(), is_file(aside_path()));
     log_.note(path_.string() + ": resumes with " + work_text());
     writer_.emplace(JournalWriter::resume(path_, *read_, kNever));
+    pending_.keep(false);
     return;
   }
+  // Without a journal there is no unfinished conversion whose file this could be.
+  if (unwanted_.empty()) refuse_other_file(aside_path(), false);
   pending_.keep(false);
   if (!unwanted_.empty()) {
     log_.note(path_.string() + ": " + unwanted_);
@@ -257,7 +294,9 @@ void ConversionJournal::find_earlier() {
         "choose another output");
   }
   if (options_.overwrite) {
-    unwanted_ = "journal of an unfinished conversion removed, starts from the beginning";
+    unwanted_ =
+        "the journal of an unfinished conversion was removed, and the conversion starts from the "
+        "beginning";
     return;
   }
   JournalReader read(path_);
@@ -274,6 +313,7 @@ void ConversionJournal::find_earlier() {
   if (!has_work() && (is_empty || read.identity()->front().second == kMeaning)) {
     unwanted_ = "nothing in it yet, starts from the beginning";
     found_.reset();
+    begun_batches_ = 0;
     return;
   }
   if (!options_.resume) {
@@ -451,13 +491,7 @@ std::vector<File> ConversionJournal::open_points(std::size_t files) {
   std::vector<File> opened;
   for (std::size_t i = 0; i < files_; ++i) {
     const fs::path path = points_path(i);
-    std::error_code unknown;
-    if (fs::exists(fs::symlink_status(path, unknown)) &&
-        (!has_points_magic(path) || fs::hard_link_count(path) > 1)) {
-      throw UsageError(path.string() +
-                       ": is where this output's temporary file has to be, and is another file; "
-                       "move it away, or choose another output");
-    }
+    refuse_other_file(path, has_points_magic(path));
     const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (descriptor < 0) throw system_failure(path.string() + ": cannot create", errno);
     opened.push_back(File::adopt(descriptor, path.string()));
@@ -624,8 +658,8 @@ void ConversionJournal::leave() {
   if (files_ > 1) files += " to " + std::to_string(files_);
   if (is_aside) files += ", " + aside_path().filename().string();
   if (!units_.empty() && !is_aside) files += ", " + pending_.partial().filename().string();
-  log_.note(options_.output.string() + ": " + work_text() + "; " + files +
-            " keep that for --resume (" + format_size(bytes) + "), and --force removes them");
+  log_.note(options_.output.string() + ": " + work_text() + "; --resume goes on from there with " +
+            files + " (" + format_size(bytes) + "), and --force removes these files");
 }
 
 void ConversionJournal::discard() {

@@ -159,7 +159,12 @@ class ConversionJournal {
 /// Whether an unfinished conversion with this output was to overwrite it.
 bool unfinished_overwrites(const std::filesystem::path& output);
 
-/// Removes what an earlier process left beside its output, which is finished.
-void remove_left_over(const std::filesystem::path& output);
+/// Removes what an earlier process of the same conversion left beside its output, which is
+/// finished. Returns false, and removes nothing, where the journal is that of another conversion.
+bool remove_left_over(const ConversionOptions& options);
+
+/// Refuses a conversion of standard input beside the journal of an unfinished one, or removes what
+/// that left where options ask to overwrite. pending: the output of both.
+void give_way_to_stream(PendingFile& pending, const ConversionOptions& options);
 
 }  // namespace clearway

@@ -276,6 +276,7 @@ class Conversion {
   ConversionReport run() {
     // Standard input can be read only once, so that there is nothing to go on with.
     if (std::ranges::find(options_.inputs, "-") != options_.inputs.end()) {
+      give_way_to_stream(output_, options_);
       if (!options_.overwrite) output_.refuse_existing();
       return convert();
     }
@@ -820,16 +821,29 @@ ConvertReport convert(const std::vector<std::filesystem::path>& inputs,
                       const std::filesystem::path& output, const ConvertOptions& options) {
   const ConversionOptions conversion{options, inputs, output};
   CallbackProgress progress(options.progress, options.stop);
-  if (options.resume && is_converted(conversion, progress)) {
-    remove_left_over(output);
+  const bool goes_on = options.resume && unfinished_overwrites(output);
+  const auto is_finished = [&] {
+    try {
+      return is_converted(conversion, progress);
+    } catch (const UsageError&) {
+      if (!goes_on) throw;
+      return false;  // the damaged store is what the unfinished conversion replaces
+    }
+  };
+  if (options.resume && is_finished()) {
     ConvertReport report{.was_finished = true};
     MessageLog log(options.message, report.warnings);
+    if (!remove_left_over(conversion)) {
+      log.note(output.string() +
+               ".journal: belongs to an unfinished conversion of other inputs or options, and is "
+               "left alone; --force removes it");
+    }
     const StoreReader store(output);
     for (const Message& warning : store.metadata().warnings) log.add(warning);
     if (options.strict) refuse_warnings(report.warnings);
     return report;
   }
-  if (options.resume && !unfinished_overwrites(output)) refuse_other_output(conversion);
+  if (options.resume && !goes_on) refuse_other_output(conversion);
   return convert_scans(conversion, progress);
 }
 

@@ -220,7 +220,8 @@ void distribute(EnvironmentSource& environment, const CountedHashes& counted,
   ClassesHash classes;
   bool has_classes = false;
   Places order(environment, distribution);
-  environment.rewind();
+  // go_on_from() rewinds, and keeps how many points the files before its place have.
+  if (journal == nullptr || journal->batches().empty()) environment.rewind();
   const auto keep_hashes = [&](JournalValues values) { values.add(hash, classes, has_classes); };
   std::uint64_t begun = 0;
   BatchWatch watch;

@@ -53,11 +53,13 @@ class Resumed {
     write_classed(path(name), cloud, random_classes(points, most_class));
     inputs_.push_back(path(name));
   }
-  void add_ply(const std::string& name, std::size_t points) {
+  /// at_one_place: how many of the points, the last ones, are at the same place.
+  void add_ply(const std::string& name, std::size_t points, std::size_t at_one_place = 0) {
     std::vector<Vec3> positions;
     for (const Quantum& q : plane_cloud(points, inputs_.size() + 1)) {
       positions.push_back({q[0] / 64.0, q[1] / 64.0, q[2] / 64.0});
     }
+    for (std::size_t i = 0; i < at_one_place; ++i) positions[points - 1 - i] = positions.front();
     write_ply(path(name), positions);
     inputs_.push_back(path(name));
   }
@@ -163,6 +165,11 @@ const std::vector<ResumedRow>& rows() {
        [](Resumed& scans) {
          scans.add_ply("a.ply", 90000);
          scans.add_text("b.xyz", 66000);
+       }},
+      {"many points at one place of the second file, of which the store warns",
+       [](Resumed& scans) {
+         scans.add_ply("a.ply", 70000);
+         scans.add_ply("b.ply", 70000, 5000);
        }},
       {"cubes near a path, with origins",
        [](Resumed& scans) {
@@ -326,7 +333,7 @@ TEST_CASE("an unfinished conversion is refused by name where its inputs or optio
   scans.add_las("b.las", 500);
   scans.expected();
   const std::vector<FilesLeft> killed = scans.killed_at_records(1);
-  const FilesLeft before = killed[killed.size() / 2];
+  FilesLeft before = killed[killed.size() / 2];
   const auto refusal = [&](const std::function<void(ConversionOptions&)>& change) {
     scans.put(before);
     ConversionOptions options = scans.options();
@@ -339,6 +346,17 @@ TEST_CASE("an unfinished conversion is refused by name where its inputs or optio
   const auto says = [&](const char* words, const std::function<void(ConversionOptions&)>& change) {
     check_says(refusal(change), words);
   };
+  const FilesLeft left = before;
+  for (const auto& [name, bytes] : left) {
+    if (!name.starts_with("a.h5.points-")) continue;
+    before[name] = "the notes of a user";
+    says("a.h5.points-1: is where this output's temporary file has to be, and is another file",
+         [](ConversionOptions&) {});
+    before[name] = "";  // a file that was only just made
+    scans.put(before);
+    scans.check_resumed();
+  }
+  before = left;
   says("a.h5.journal: an unfinished conversion, ",
        [](ConversionOptions& options) { options.resume = false; });
   says("a.h5.journal: belongs to another conversion: its cell_points is 500, expected 501",
@@ -363,4 +381,27 @@ TEST_CASE("an unfinished conversion is refused by name where its inputs or optio
   convert_quietly(afresh);
   check_same(bytes_of(scans.out() / "a.h5"), scans.expected());
   CHECK(names_in(scans.out()) == std::vector<std::string>{"a.h5"});
+}
+
+TEST_CASE("files of a user beside the output stay, and so does what another conversion left") {
+  Resumed scans;
+  scans.add_las("a.las", 70000);
+  const std::string store = scans.expected();
+  scans.put({{"a.h5.written", "the notes of a user"}});
+  check_says(conversion_refusal<UsageError>(scans.options()), "a.h5.written: is where");
+  CHECK(names_in(scans.out()) == std::vector<std::string>{"a.h5.written"});
+
+  scans.clear();
+  FilesLeft other = scans.killed_at_records(20, 6).front();
+  other["a.h5"] = store;
+  scans.put(other);
+  ConversionOptions resuming = scans.options();
+  resuming.resume = true;
+  const auto cells = scans.change;
+  scans.change = [](ConversionOptions& options) { options.cell_points = 600; };
+  ConversionOptions others = scans.options();
+  others.resume = true;
+  check_says(conversion_refusal<UsageError>(others), "belongs to another conversion");
+  scans.change = cells;
+  CHECK(files_in(scans.out()) == other);
 }
