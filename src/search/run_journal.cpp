@@ -97,6 +97,14 @@ void remove_file(const fs::path& path) {
   if (failed) throw ResourceError(path.string() + ": cannot remove: " + failed.message());
 }
 
+/// Refuses the journal of a conversion, whose files of points a run would leave behind.
+void refuse_conversion(const fs::path& path, const JournalReader& read) {
+  if (!read.identity() || !is_of_conversion(*read.identity())) return;
+  throw UsageError(path.string() +
+                   ": is the journal of an unfinished conversion; finish it, or choose another "
+                   "output");
+}
+
 }  // namespace
 
 RunJournal::RunJournal(PendingFile& pending, const fs::path& output, const SearchOptions& options,
@@ -122,6 +130,11 @@ RunJournal::RunJournal(PendingFile& pending, const fs::path& output, const Searc
         "choose another output");
   }
   if (options.overwrite) {
+    try {
+      refuse_conversion(path_, JournalReader(path_));
+    } catch (const InputError&) {
+      // Whatever the damaged journal was about, it is not wanted.
+    }
     unwanted_ = "journal of an unfinished run removed, starts from the beginning";
     return;
   }
@@ -130,11 +143,7 @@ RunJournal::RunJournal(PendingFile& pending, const fs::path& output, const Searc
     unwanted_ = "nothing in it yet, starts from the beginning";
     return;
   }
-  if (is_of_conversion(*read.identity())) {
-    throw UsageError(path_.string() +
-                     ": is the journal of an unfinished conversion; finish it, or choose another "
-                     "output");
-  }
+  refuse_conversion(path_, read);
   earlier_ = journalled_work(read);
   if (!options.resume) {
     throw UsageError(path_.string() + ": an unfinished run with engine " +

@@ -68,8 +68,18 @@ TEST_CASE("a conversion that is asked to stop leaves what it has finished, and g
   require_success(run_program(place.folder, "scene hall --points 500000 -o " + hall));
   const std::string command = "convert " + quoted(place.folder / "hall/environment.las") +
                               " --cell-points 500 -o " + quoted(place.output) + " --resume";
+  const std::string store = quoted(place.folder / "site.h5");
+  require_success(run_program(
+      place.folder, "convert " + quoted(place.folder / "hall/environment.las") + " -o " + store));
   check_stopped(place, command, [&] {
     for (const std::string& file : place.files()) check_says(file, "out.h5.");
+    if (!place.files().empty()) {
+      check_outcome(
+          run_program(place.folder, "run --force --env " + store + " --model " + hall +
+                                        "/model.ply --trajectory " + hall +
+                                        "/trajectory.txt --radius 0.1 -o " + quoted(place.output)),
+          2, "is the journal of an unfinished conversion");
+    }
     require_success(run_program(place.folder, command));
     CHECK(place.files() == Names{"out.h5"});
   });
