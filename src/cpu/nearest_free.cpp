@@ -1,11 +1,11 @@
 #include "cpu/nearest_free.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "core/geometry/box.hpp"
 #include "core/geometry/predicate.hpp"
+#include "core/util/lane_bits.hpp"
 #include "core/util/macros.hpp"
 
 namespace clearway {
@@ -145,10 +145,9 @@ void NearestFree::search(std::uint32_t cell, std::uint32_t block, std::uint64_t 
 void NearestFree::ask(std::uint32_t cell, std::uint32_t block, std::uint64_t points) {
   const BlockPlaces places(tree_, cell, block);
   asked_.clear();
-  for (; points != 0; points &= points - 1) {
-    const auto i = static_cast<std::uint32_t>(std::countr_zero(points));
+  for_each_bit(points, [&](std::uint32_t i) {
     asked_.push_back({.place = places.at(cloud_.quantisation(), i), .point = i});
-  }
+  });
 }
 
 /// Compares the free points of a block with all points that are asked for.
@@ -192,14 +191,13 @@ const NearestFree::FreeBlock& NearestFree::free_block(std::uint32_t cell, std::u
   kept.index = kNone;  // in case that the cell is damaged
   const BlockPlaces places(tree_, cell, block);
   std::uint32_t count = 0;
-  for (std::uint64_t bits = free_.word(cell, block); bits != 0; bits &= bits - 1, ++count) {
-    const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+  for_each_bit(free_.word(cell, block), [&](std::uint32_t i) {
     const Vec3 place = places.at(cloud_.quantisation(), i);
     kept.x[count] = place.x;
     kept.y[count] = place.y;
     kept.z[count] = place.z;
-    kept.point[count] = static_cast<std::uint8_t>(i);
-  }
+    kept.point[count++] = static_cast<std::uint8_t>(i);
+  });
   kept.count = count;
   for (; count % kLanes != 0; ++count) {
     kept.x[count] = kept.y[count] = kept.z[count] = std::numeric_limits<double>::infinity();

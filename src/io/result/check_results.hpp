@@ -36,7 +36,8 @@ struct PointDifference {
   std::optional<std::uint32_t> first_pose_a, first_pose_b;  ///< where that result has first poses
   /// Where that result has last poses.
   std::optional<std::uint32_t> last_pose_a = {}, last_pose_b = {};
-  /// Of kDepth: the depths, NaN where no point is free, and the free points.
+  /// Where the depths differ: those of both results, NaN where no point is free, and the sources of
+  /// the free points.
   std::optional<double> depth_a = {}, depth_b = {};
   std::optional<std::uint64_t> depth_source_a = {}, depth_source_b = {};
 };

@@ -99,8 +99,7 @@ nlohmann::json compare(const PackedCloud& cloud, const Query& query,
 
   const std::vector<Vec3> points = positions_by_slot(cloud);
   std::unique_ptr<NanoflannSearch> peer;
-  const double build =
-      seconds_of([&] { peer = std::make_unique<NanoflannSearch>(points, kPeerLeafPoints); });
+  const double build = seconds_of([&] { peer = std::make_unique<NanoflannSearch>(points); });
   NanoflannSearch::SearchResult answer;
   std::vector<double> theirs;
   theirs.reserve(static_cast<std::size_t>(options.repetitions));

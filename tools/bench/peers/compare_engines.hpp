@@ -9,9 +9,6 @@
 
 namespace clearway::bench {
 
-/// Points in a leaf of nanoflann's tree.
-inline constexpr std::size_t kPeerLeafPoints = 12;
-
 /// The positions of a cloud's used slots, in order.
 std::vector<Vec3> positions_by_slot(const PackedCloud& cloud);
 

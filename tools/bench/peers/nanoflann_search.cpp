@@ -3,30 +3,14 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
-#include <nanoflann.hpp>
 #include <utility>
 #include <vector>
 
+#include "bench/peers/nanoflann_tree.hpp"
 #include "core/geometry/predicate.hpp"
 
 namespace clearway::bench {
 namespace {
-
-struct Adaptor {
-  std::span<const Vec3> points;
-
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(std::size_t index, std::size_t axis) const {
-    return points[index][static_cast<int>(axis)];
-  }
-  template <typename Bounds>
-  bool kdtree_get_bbox(Bounds&) const {
-    return false;
-  }
-};
-
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Adaptor>,
-                                                 Adaptor, 3, std::uint32_t>;
 
 // Renamed in version 1.5.
 #if NANOFLANN_VERSION >= 0x150
@@ -40,17 +24,18 @@ using FoundPoint = std::pair<std::uint32_t, double>;
 }  // namespace
 
 struct NanoflannSearch::Index {
-  Adaptor adaptor;
-  Tree tree;
+  NanoflannPoints adaptor;
+  NanoflannTree tree;
 
-  Index(std::span<const Vec3> points, std::size_t leaf_points)
-      : adaptor{points}, tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(leaf_points)) {
+  explicit Index(std::span<const Vec3> points)
+      : adaptor{points},
+        tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(kPeerLeafPoints)) {
     tree.buildIndex();
   }
 };
 
-NanoflannSearch::NanoflannSearch(std::span<const Vec3> points, std::size_t leaf_points)
-    : index_(std::make_unique<Index>(points, leaf_points)) {}
+NanoflannSearch::NanoflannSearch(std::span<const Vec3> points)
+    : index_(std::make_unique<Index>(points)) {}
 
 NanoflannSearch::~NanoflannSearch() = default;
 

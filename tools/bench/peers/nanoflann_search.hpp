@@ -14,7 +14,7 @@ namespace clearway::bench {
 class NanoflannSearch {
  public:
   /// Builds the tree; `points` must outlive it.
-  NanoflannSearch(std::span<const Vec3> points, std::size_t leaf_points);
+  explicit NanoflannSearch(std::span<const Vec3> points);
   ~NanoflannSearch();
 
   struct SearchResult {

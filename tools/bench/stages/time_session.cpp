@@ -127,7 +127,7 @@ ordered_json time_peer(const SessionTimes& options, const Model& model,
   const StoreReader store(options.environment);
   const std::vector<Vec3> points = positions_by_slot(store);
   const Stopwatch building;
-  const NanoflannSearch search(points, kPeerLeafPoints);
+  const NanoflannSearch search(points);
   const double built = building.seconds();
   std::vector<double> set, distance;
   for (std::uint64_t i = 0; i < kQuestions; ++i) {

@@ -187,6 +187,12 @@ void remove_points_of(const fs::path& output, std::size_t first) {
   for (; has_points_magic(points_of(output, first)); ++first) remove_file(points_of(output, first));
 }
 
+/// Removes all that an unfinished conversion left beside its output but the journal.
+void remove_work_of(const fs::path& output) {
+  remove_points_of(output, 0);
+  if (is_file(aside_of(output))) remove_file(aside_of(output));
+}
+
 /// Whether a chunk of the file has the hash that it had when it was written.
 bool read_chunk(const File& file, std::uint64_t size, const ChunkPlace& place,
                 std::vector<std::byte>& bytes) {
@@ -219,8 +225,7 @@ bool remove_left_over(const ConversionOptions& options) {
   if (!difference(*read->identity(), identity_of(options, replaces)).empty()) return false;
   const PendingFile owned(output, true);
   if (!conversion_at(journal_of(output))) return true;
-  remove_points_of(output, 0);
-  if (is_file(aside_of(output))) remove_file(aside_of(output));
+  remove_work_of(output);
   remove_file(journal_of(output));
   return true;
 }
@@ -233,8 +238,7 @@ void give_way_to_stream(PendingFile& pending, const ConversionOptions& options) 
     throw UsageError(journal.string() + ": belongs to an unfinished conversion",
                      Remedy::kOverwrite);
   }
-  remove_points_of(options.output, 0);
-  if (is_file(aside_of(options.output))) remove_file(aside_of(options.output));
+  remove_work_of(options.output);
   remove_file(journal);
 }
 
@@ -268,8 +272,7 @@ ConversionJournal::ConversionJournal(PendingFile& pending, const ConversionOptio
   pending_.keep(false);
   if (!unwanted_.empty()) {
     log_.note(path_.string() + ": " + unwanted_);
-    remove_points_from(0);
-    if (is_file(aside_path())) remove_file(aside_path());
+    remove_work_of(options_.output);
     remove_file(path_);
   }
   try {
@@ -663,8 +666,7 @@ void ConversionJournal::leave() {
 }
 
 void ConversionJournal::discard() {
-  remove_points_from(0);
-  if (is_file(aside_path())) remove_file(aside_path());
+  remove_work_of(options_.output);
   if (writer_->file().is_at(path_)) remove_file(path_);
 }
 

@@ -815,8 +815,6 @@ bool is_converted(const ConversionOptions& options, Progress& progress) {
                    Remedy::kOverwriteNotResume);
 }
 
-namespace {}  // namespace
-
 ConvertReport convert(const std::vector<std::filesystem::path>& inputs,
                       const std::filesystem::path& output, const ConvertOptions& options) {
   const ConversionOptions conversion{options, inputs, output};

@@ -59,7 +59,7 @@ class OriginTable {
   /// where no point has an origin.
   std::optional<StoreOrigins> origins(std::uint64_t points) const;
 
-  /// Likewise, for points in source order.
+  /// Counts the next points, which are in source order.
   void count(std::span<const DistributedPoint> points);
   /// Number of points that were counted for each of what the runs rest on.
   std::vector<std::uint64_t> counts() const;

@@ -1,31 +1,13 @@
 // nanoflann: a k-d tree in doubles, one radius search for every pose and model point.
 
-#include <nanoflann.hpp>
 #include <nlohmann/json.hpp>
 
+#include "bench/peers/nanoflann_tree.hpp"
 #include "bench/peers/programs/peer.hpp"
 #include "core/geometry/predicate.hpp"
 
 namespace clearway::bench {
 namespace {
-
-constexpr std::size_t kLeafPoints = 12;
-
-struct Adaptor {
-  std::span<const Vec3> points;
-
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(std::size_t index, std::size_t axis) const {
-    return points[index][static_cast<int>(axis)];
-  }
-  template <typename Bounds>
-  bool kdtree_get_bbox(Bounds&) const {
-    return false;
-  }
-};
-
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Adaptor>,
-                                                 Adaptor, 3, std::uint32_t>;
 
 /// Marks what a search finds at once, which radiusSearchCustomCallback() is for.
 class MarkingResult {
@@ -49,7 +31,7 @@ class Nanoflann : public Peer {
   Nanoflann(std::span<const Vec3> points, const PeerOptions& options)
       : options_(options),
         adaptor_{points},
-        tree_(3, adaptor_, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafPoints)) {
+        tree_(3, adaptor_, nanoflann::KDTreeSingleIndexAdaptorParams(kPeerLeafPoints)) {
     tree_.buildIndex();
   }
 
@@ -79,8 +61,8 @@ class Nanoflann : public Peer {
 
  private:
   PeerOptions options_;
-  Adaptor adaptor_;
-  Tree tree_;
+  NanoflannPoints adaptor_;
+  NanoflannTree tree_;
 };
 
 }  // namespace
