@@ -194,6 +194,12 @@ void File::reserve_ahead(std::uint64_t bytes) const {
   }
 }
 
+void File::truncate(std::uint64_t bytes) const {
+  while (::ftruncate(descriptor_, static_cast<off_t>(bytes)) != 0) {
+    if (errno != EINTR) fail(name_, "truncate");
+  }
+}
+
 void File::begin_sync(std::uint64_t offset, std::uint64_t bytes) const {
   // A failure here is ignored, because it occurs again where the sync is waited for.
   ::sync_file_range(descriptor_, static_cast<off_t>(offset), static_cast<off_t>(bytes),

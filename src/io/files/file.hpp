@@ -65,6 +65,8 @@ class File {
   /// Reserves disk space beyond the end of the file, whose length stays. Does nothing where the
   /// file system cannot.
   void reserve_ahead(std::uint64_t bytes) const;
+  /// Makes the file end after this many bytes.
+  void truncate(std::uint64_t bytes) const;
   /// Asks the system to start writing a range to the disk, without waiting for it.
   void begin_sync(std::uint64_t offset, std::uint64_t bytes) const;
   void sync() const;

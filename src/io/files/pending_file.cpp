@@ -86,7 +86,7 @@ PendingFile::~PendingFile() {
 
 File PendingFile::set_aside(const fs::path& path) {
   File fresh = create_locked(path);
-  if (::ftruncate(fresh.descriptor(), 0) != 0) fail_with_errno(path, "empty");
+  fresh.truncate(0);
   // The two names change places at once, so that no other process finds the partial file's free.
   int failed = ::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, path.c_str(), RENAME_EXCHANGE);
   if (failed != 0 && errno == EINVAL) {  // a file system that cannot do that

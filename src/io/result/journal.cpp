@@ -261,13 +261,7 @@ JournalWriter JournalWriter::create(const std::filesystem::path& path,
 JournalWriter JournalWriter::resume(const std::filesystem::path& path, const JournalReader& read,
                                     double interval_seconds) {
   File file = open_to_append(path, 0);
-  int failed;
-  do {
-    failed = ::ftruncate(file.descriptor(), static_cast<off_t>(read.whole_bytes()));
-  } while (failed != 0 && errno == EINTR);
-  if (failed != 0) {
-    throw system_failure(path.string() + ": cannot cut off what is torn", errno);
-  }
+  file.truncate(read.whole_bytes());
   return JournalWriter(
       std::make_unique<State>(std::move(file), read.whole_bytes(), interval_seconds));
 }

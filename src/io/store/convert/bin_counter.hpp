@@ -30,6 +30,8 @@ class BinCounter {
 
   void add(const LatticePoint& point, std::uint64_t count = 1);
   void merge(const BinCounter& other);
+  /// Forgets all points.
+  void clear();
 
   unsigned shift() const { return shift_; }
   /// The occupied bins, in an order that depends on the points alone.
@@ -54,7 +56,6 @@ class BinCounter {
     std::uint64_t count;  // number of points; 0 for a free slot
   };
 
-  void clear();
   Slot& find(const Key& key);
   void add_key(const Key& key, std::uint64_t count);
   void coarsen();

@@ -1,11 +1,14 @@
 #include "io/store/convert/count.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
 
 #include <array>
 #include <map>
+#include <utility>
 
 #include "clearway/error.hpp"
+#include "core/util/tsan_annotations.hpp"
 #include "io/store/convert/conversion_journal.hpp"
 #include "io/store/convert/path_origins.hpp"
 #include "io/store/convert/points_hash.hpp"
@@ -55,7 +58,7 @@ struct PassSums {
 
   template <typename Values>
   void keep(Values& values) {
-    values.add(points_hash, classes_hash, points);
+    values.add(points_hash, classes_hash, classes, points);
   }
 };
 
@@ -110,20 +113,38 @@ void count_batches(const EnvironmentPass& pass, const Lattice& lattice, PassSums
       [](const PathOrigins::OfBatch&) {}, [](const PathOrigins::OfBatch&) {});
 }
 
+/// Moves what the threads have counted to one counter, which is returned. Pairs are merged in
+/// parallel, because a merge goes through all slots of a counter.
+BinCounter& gather(tbb::enumerable_thread_specific<BinCounter>& counters) {
+  std::vector<BinCounter*> all{&counters.local()};
+  for (BinCounter& counter : counters) {
+    if (&counter != all.front()) all.push_back(&counter);
+  }
+  for (std::size_t step = 1; step < all.size(); step *= 2) {
+    const ParallelScope scope;
+    const auto merge = piece_of(scope, [&](std::size_t i) {
+      if (i + step >= all.size()) return;
+      all[i]->merge(*all[i + step]);
+      all[i + step]->clear();
+    });
+    scope.begin();
+    tbb::parallel_for(std::size_t{0}, all.size(), 2 * step, merge);
+  }
+  return *all.front();
+}
+
 std::vector<Bin> count_bins(CountingPass& counting, const Lattice& lattice, PassSums& sums,
                             InputSurvey& survey, PathOrigins* path, Progress& progress) {
   tbb::enumerable_thread_specific<ClassCounts> classes;
   tbb::enumerable_thread_specific<BinCounter> counters(
       [] { return BinCounter(kFinestShift, kMostBins); });
-  BinCounter earlier(kFinestShift, kMostBins);
-  const auto keep = [&](JournalValues& values, ClassCounts& of_classes, BinCounter& bins,
-                        ReadState& read) {
-    values.add(counting.batches, sums, of_classes, survey, bins, counting.files, read);
+  const auto keep = [&](JournalValues& values, BinCounter& bins, ReadState& read) {
+    values.add(counting.batches, sums, survey, bins, counting.files, read);
   };
   if (counting.is_kept) {
     ReadState read;
     const bool found = counting.journal->take_counted_part(
-        [&](JournalValues& values) { keep(values, sums.classes, earlier, read); });
+        [&](JournalValues& values) { keep(values, counters.local(), read); });
     if (found) {
       counting.environment.restore(read);
       counting.environment.go_on_from(read.position, read.counts);
@@ -131,26 +152,16 @@ std::vector<Bin> count_bins(CountingPass& counting, const Lattice& lattice, Pass
     }
   }
   if (counting.journal != nullptr) counting.journal->go_on_after_batches(counting.batches);
-  const auto all_bins = [&] {
-    BinCounter all(kFinestShift, kMostBins);
-    all.merge(earlier);
-    for (const BinCounter& counter : counters) all.merge(counter);
-    return all;
-  };
-  bool paused = true;
-  while (paused) {
+  for (bool paused = true; paused;) {
     count_batches(counting.until_due(progress, paused), lattice, sums, survey, path, progress,
                   classes, counters);
+    for (ClassCounts& counts : classes) sums.classes.merge(std::exchange(counts, {}));
     if (!paused) break;
-    ClassCounts of_classes = sums.classes;
-    for (const ClassCounts& counts : classes) of_classes.merge(counts);
-    BinCounter bins = all_bins();
+    BinCounter& bins = gather(counters);
     ReadState read = counting.environment.state();
-    counting.journal->keep_counted_part(
-        [&](JournalValues& values) { keep(values, of_classes, bins, read); });
+    counting.journal->keep_counted_part([&](JournalValues& values) { keep(values, bins, read); });
   }
-  for (const ClassCounts& counts : classes) sums.classes.merge(counts);
-  const BinCounter all = all_bins();
+  const BinCounter& all = gather(counters);
   if (lattice.regular() && all.shift() > lattice.cube_bits()) {
     throw UsageError("a regular layout: more than " + std::to_string(kMostBins) +
                      " cubes hold points; expected larger cubes");

@@ -20,20 +20,22 @@
 
 namespace clearway {
 Distribution::Distribution(const SplitTree& tree, std::vector<File> files, std::uint64_t first_byte)
-    : files_(std::move(files)) {
+    : files_(std::move(files)), ends_(files_.size()) {
   for (const std::uint32_t node : tree.units()) counts_.push_back(tree.nodes()[node].count);
   if (files_.empty()) {
     for (const std::uint64_t count : counts_) memory_.emplace_back(count);
     return;
   }
-  std::vector<std::uint64_t> ends(files_.size(), first_byte);
-  for (std::size_t unit = 0; unit < units(); ++unit) {
+  places_.resize(units());
+  for (End& end : ends_) end.byte = first_byte;
+  for (std::size_t unit = units(); unit-- > 0;) {
     const std::size_t file = unit % files_.size();
-    places_.push_back({file, ends[file]});
-    ends[file] += counts_[unit] * sizeof(DistributedPoint);
+    std::uint64_t& end = ends_[file].byte;
+    places_[unit] = {file, end};
+    end += counts_[unit] * sizeof(DistributedPoint);
     temporary_bytes_ += counts_[unit] * sizeof(DistributedPoint);
   }
-  for (std::size_t file = 0; file < files_.size(); ++file) files_[file].reserve(ends[file]);
+  for (std::size_t file = 0; file < files_.size(); ++file) files_[file].reserve(ends_[file].byte);
 }
 
 void Distribution::put(std::size_t unit, std::uint64_t first,
@@ -58,6 +60,16 @@ UnitPoints Distribution::take(std::size_t unit) {
   const auto& [file, byte] = places_[unit];
   return UnitPoints(
       std::make_unique<MappedFile>(files_[file], byte, counts_[unit] * sizeof(DistributedPoint)));
+}
+
+void Distribution::release(std::size_t unit) {
+  if (files_.empty()) return;
+  const auto& [file, byte] = places_[unit];
+  End& end = ends_[file];
+  const std::lock_guard lock(end.mutex);
+  if (byte >= end.byte) return;  // a later unit was released first
+  files_[file].truncate(byte);
+  end.byte = byte;
 }
 
 namespace {
