@@ -58,7 +58,6 @@ namespace {
 /// A unit before it is written: its first cells are packed already, the others are packed when they
 /// are written.
 struct UnitInFlight {
-  std::size_t number;
   std::vector<PackedCell> packed;
   std::optional<OrderedUnit> rest;
 };
@@ -82,9 +81,9 @@ void write_unit(UnitInFlight& unit, StoreWriter& writer, ConversionJournal* jour
   if (journal != nullptr) journal->keep_unit(written);
 }
 
-/// Partitions and packs the units, several at a time as memory allows, writes their cells in order,
-/// and gives up the room of their points. journal: holds the units that an earlier process wrote,
-/// which are copied, and receives the others; or null.
+/// Partitions and packs the units, several at a time as memory allows, and writes their cells in
+/// order. journal: holds the units that an earlier process wrote, which are copied, and receives
+/// the others; or null.
 void write_cells(Distribution& distribution, const SplitTree& tree, const Lattice& lattice,
                  const StoreMetadata& metadata, const OriginTable* origins,
                  std::size_t units_in_flight, StoreWriter& writer, ConversionJournal* journal,
@@ -117,7 +116,7 @@ void write_cells(Distribution& distribution, const SplitTree& tree, const Lattic
     return next++;
   });
   const auto order_and_pack = piece_of(scope, [&](std::size_t unit) {
-    auto flying = std::make_shared<UnitInFlight>(unit);
+    auto flying = std::make_shared<UnitInFlight>();
     flying->rest.emplace(distribution, unit, tree, lattice, metadata, origins, buffers, clocks);
     flying->packed = flying->rest->pack_next();
     if (flying->rest->cells_left() == 0) flying->rest.reset();
@@ -125,17 +124,14 @@ void write_cells(Distribution& distribution, const SplitTree& tree, const Lattic
   });
   const auto write = piece_of(scope, output, [&](const Flying& unit) {
     write_unit(*unit, writer, journal, clocks, progress);
-    return unit->number;
   });
-  const auto release = piece_of(scope, [&](std::size_t unit) { distribution.release(unit); });
   scope.begin();
   tbb::parallel_pipeline(
       units_in_flight,
       tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, number_of_next) &
           tbb::make_filter<std::size_t, Handed<Flying>>(tbb::filter_mode::parallel,
                                                         order_and_pack) &
-          tbb::make_filter<Handed<Flying>, std::size_t>(tbb::filter_mode::serial_in_order, write) &
-          tbb::make_filter<std::size_t, void>(tbb::filter_mode::parallel, release));
+          tbb::make_filter<Handed<Flying>, void>(tbb::filter_mode::serial_in_order, write));
   progress.end();
 }
 
@@ -651,6 +647,11 @@ class Conversion {
     write_cells(distribution, tree, lattice, report_.metadata, origins_, units_in_flight_, writer,
                 journal(), clocks_, progress_);
     report_.partition_seconds = watch_.lap();
+    // A resumption needs the points no more either, as the journal has all units.
+    auto closed = std::async(kBeside, [&] {
+      if (journal_) journal_->remove_points();
+      in_threads(threads_, [&] { distribution.close_files(); });
+    });
     {
       const auto running = clocks_.measure(Stage::kWrite);
       writer.finish(top);
@@ -664,7 +665,7 @@ class Conversion {
       writer.confirm();
     }
     synced.get();
-    if (journal_) journal_->remove_points();
+    closed.get();
     output_.publish();
     if (journal_) {
       journal_->remove_after_publication();

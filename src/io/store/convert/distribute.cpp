@@ -20,22 +20,20 @@
 
 namespace clearway {
 Distribution::Distribution(const SplitTree& tree, std::vector<File> files, std::uint64_t first_byte)
-    : files_(std::move(files)), ends_(files_.size()) {
+    : files_(std::move(files)) {
   for (const std::uint32_t node : tree.units()) counts_.push_back(tree.nodes()[node].count);
   if (files_.empty()) {
     for (const std::uint64_t count : counts_) memory_.emplace_back(count);
     return;
   }
-  places_.resize(units());
-  for (End& end : ends_) end.byte = first_byte;
-  for (std::size_t unit = units(); unit-- > 0;) {
+  std::vector<std::uint64_t> ends(files_.size(), first_byte);
+  for (std::size_t unit = 0; unit < units(); ++unit) {
     const std::size_t file = unit % files_.size();
-    std::uint64_t& end = ends_[file].byte;
-    places_[unit] = {file, end};
-    end += counts_[unit] * sizeof(DistributedPoint);
+    places_.push_back({file, ends[file]});
+    ends[file] += counts_[unit] * sizeof(DistributedPoint);
     temporary_bytes_ += counts_[unit] * sizeof(DistributedPoint);
   }
-  for (std::size_t file = 0; file < files_.size(); ++file) files_[file].reserve(ends_[file].byte);
+  for (std::size_t file = 0; file < files_.size(); ++file) files_[file].reserve(ends[file]);
 }
 
 void Distribution::put(std::size_t unit, std::uint64_t first,
@@ -62,14 +60,13 @@ UnitPoints Distribution::take(std::size_t unit) {
       std::make_unique<MappedFile>(files_[file], byte, counts_[unit] * sizeof(DistributedPoint)));
 }
 
-void Distribution::release(std::size_t unit) {
-  if (files_.empty()) return;
-  const auto& [file, byte] = places_[unit];
-  End& end = ends_[file];
-  const std::lock_guard lock(end.mutex);
-  if (byte >= end.byte) return;  // a later unit was released first
-  files_[file].truncate(byte);
-  end.byte = byte;
+void Distribution::close_files() {
+  std::vector<File> files = std::exchange(files_, {});
+  const ParallelScope scope;
+  const auto close =
+      piece_of(scope, [&](std::size_t i) { const File closed(std::move(files[i])); });
+  scope.begin();
+  tbb::parallel_for(std::size_t{0}, files.size(), close);
 }
 
 namespace {

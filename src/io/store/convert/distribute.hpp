@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <utility>
@@ -90,27 +89,20 @@ class Distribution {
   /// Takes the points of a unit, once all of them are stored. To be called once per unit; several
   /// threads may call it at once.
   UnitPoints take(std::size_t unit);
-  /// Makes the file of a unit end where the unit's points begin, once it and all units before it
-  /// are written. Room on the disk and in the system's memory becomes free then; to free it at the
-  /// end would take 0.12 s for each gigabyte. Several threads may call it at once.
-  void release(std::size_t unit);
+  /// Closes the files, in parallel, because the system frees the memory of those whose names are
+  /// gone, a gigabyte in some 0.12 s. No points are left.
+  void close_files();
 
  private:
   struct Place {
     std::size_t file;
     std::uint64_t byte;
   };
-  /// A file's end, which moves towards its beginning.
-  struct End {
-    std::mutex mutex;
-    std::uint64_t byte = 0;
-  };
 
   std::vector<std::uint64_t> counts_;
   std::vector<UnitPoints> memory_;  // points by unit, where they are in memory
   std::vector<File> files_;
-  std::vector<Place> places_;  // of the units in the files, the last units first
-  std::vector<End> ends_;      // of the files
+  std::vector<Place> places_;  // places of the units in the files
   std::uint64_t temporary_bytes_ = 0;
 };
 

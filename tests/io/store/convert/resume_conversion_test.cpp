@@ -28,15 +28,6 @@ FilesLeft files_in(const fs::path& folder) {
   return files;
 }
 
-/// Bytes of the files of points among those that were left.
-std::size_t bytes_of_points(const FilesLeft& files) {
-  std::size_t bytes = 0;
-  for (const auto& [name, content] : files) {
-    if (name.find(".points") != std::string::npos) bytes += content.size();
-  }
-  return bytes;
-}
-
 std::vector<std::string> names_in(const fs::path& folder) {
   std::vector<std::string> names;
   for (const auto& [name, bytes] : files_in(folder)) names.push_back(name);
@@ -285,8 +276,13 @@ TEST_CASE("buckets that were written are copied, also by a resumption that is st
   }
   CHECK(killed.size() >= 3);
   CHECK(copied > 2000);
-  CHECK(bytes_of_points(killed.front()) >= 2300000 * 20);
-  CHECK(bytes_of_points(killed.back()) < 2300000 * 20);
+  // Once all buckets are written their points are removed, before the store is complete.
+  FilesLeft without_points = killed.back();
+  CHECK(std::erase_if(without_points, [](const auto& file) {
+          return file.first.find(".points") != std::string::npos;
+        }) > 0);
+  scans.put(without_points);
+  CHECK(scans.check_resumed().resumed_cells == copied);
 }
 
 TEST_CASE("a journal that is cut or damaged never leads to wrong bytes") {
