@@ -63,7 +63,8 @@ class EnvironmentPass {
         watch_(std::move(watch)) {}
 
   StageClocks& clocks() const { return clocks_; }
-  std::size_t batches_in_flight() const { return 2 * static_cast<std::size_t>(threads_); }
+  /// One for each thread, so that a conversion that is killed does no more of them twice.
+  std::size_t batches_in_flight() const { return static_cast<std::size_t>(threads_); }
 
   /// Takes the next batch, in order; returns false at the end.
   bool next(PassingBatch& batch);
