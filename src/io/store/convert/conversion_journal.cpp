@@ -9,8 +9,12 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
+#include <iterator>
 #include <limits>
+#include <map>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 #include "clearway/error.hpp"
@@ -42,42 +46,68 @@ enum Kind : std::uint8_t {
 
 constexpr const char* kOverwrites = "overwrites";
 // Changes whenever records, or what they rest on, change their meaning.
-constexpr const char* kMeaning = "store " CLEARWAY_VERSION ", records 1";
+constexpr const char* kMeaning = "store " CLEARWAY_VERSION ", records 2";
+
+// The names in an identity of an input, and of the state of a file that another name has.
+constexpr const char* kInput = "input ";
+constexpr const char* kState = "state of ";
 
 // The first bytes of a file of points, by which it is known.
 constexpr std::array<char, 8> kPointsMagic{'C', 'L', 'W', 'Y', 'P', 'N', 'T', 'S'};
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-std::string yes_or_no(bool value) { return value ? "yes" : "no"; }
-
-std::string state_text(const fs::path& path) {
-  const FileState state = state_of(path);
-  const auto time = [](std::int64_t seconds, std::int64_t nanoseconds) {
-    std::string digits = std::to_string(nanoseconds);
-    digits.insert(0, 9 - std::min<std::size_t>(9, digits.size()), '0');
-    return std::to_string(seconds) + "." + digits;
-  };
-  return std::to_string(state[0]) + " bytes, modified at " + time(state[1], state[2]) +
-         ", status changed at " + time(state[3], state[4]);
+/// A moment after the beginning of 1970, as in "2026-06-30 12:34:56.123456789 UTC".
+std::string utc_text(std::int64_t seconds, std::int64_t nanoseconds) {
+  const std::time_t moment = seconds;
+  std::tm parts{};
+  std::array<char, 40> text{};
+  if (::gmtime_r(&moment, &parts) == nullptr ||
+      std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M:%S", &parts) == 0) {
+    return std::to_string(seconds) + " s";
+  }
+  std::string digits = std::to_string(nanoseconds);
+  digits.insert(0, 9 - std::min<std::size_t>(9, digits.size()), '0');
+  return std::string(text.data()) + "." + digits + " UTC";
 }
 
-/// A path with the state of its file, or with the states of the files with poses in a folder.
-std::string named_file_text(const fs::path& path) {
-  if (path.empty()) return "none";
+std::string yes_or_no(bool value) { return value ? "yes" : "no"; }
+
+constexpr const char* kBytes = " bytes";
+constexpr const char* kModified = ", modified ";
+constexpr const char* kChanged = ", status changed ";
+
+/// The size of a file, and when its bytes and its status were changed last.
+std::string state_text(const fs::path& path) {
+  const FileState state = state_of(path);
+  return std::to_string(state[0]) + kBytes + kModified + utc_text(state[1], state[2]) + kChanged +
+         utc_text(state[3], state[4]);
+}
+
+/// A path by which a file is known however the user wrote it. The name itself is not followed,
+/// because the store names its sources.
+fs::path known_path(const fs::path& path) {
+  std::error_code failed;
+  fs::path whole = fs::weakly_canonical(folder_of(path), failed);
+  if (failed) return path;
+  return path.has_filename() ? whole / path.filename() : whole;
+}
+
+/// The state of a file, or the hash of the states of the files with poses in a folder.
+std::string state_of_all(const fs::path& path) {
   std::error_code unknown;
-  if (!fs::is_directory(path, unknown)) return path.string() + ", " + state_text(path);
+  if (!fs::is_directory(path, unknown)) return state_text(path);
   std::vector<std::string> states;
   for (const auto& entry : fs::directory_iterator(path)) {
     // Other files, such as those of this conversion, may come and go.
     const std::string ending = entry.path().extension().string();
     if (ending != ".pose" && ending != ".frames") continue;
-    states.push_back(entry.path().string() + state_text(entry.path()));
+    states.push_back(entry.path().filename().string() + " " + state_text(entry.path()));
   }
   std::ranges::sort(states);
   Xxh64Stream hash;
   for (const std::string& state : states) hash.update(std::as_bytes(std::span(state)));
-  return path.string() + ", files " + hash_text(hash.digest());
+  return hash_text(hash.digest());
 }
 
 std::string value_text(bool value) { return yes_or_no(value); }
@@ -91,7 +121,9 @@ std::string value_text(const std::optional<double>& value) {
 std::string value_text(const FileUnit& unit) {
   return format_number(unit.metres()) + (unit.is_any_foot() ? " (any foot)" : "");
 }
-std::string value_text(const fs::path& path) { return named_file_text(path); }
+std::string value_text(const fs::path& path) {
+  return path.empty() ? "none" : known_path(path).string();
+}
 std::string value_text(const Vec3& v) {
   return format_number(v.x) + " " + format_number(v.y) + " " + format_number(v.z);
 }
@@ -116,13 +148,22 @@ bool is_free(const std::string& key) {
 
 JournalIdentity identity_of(const ConversionOptions& options, bool replaces) {
   JournalIdentity identity{{kJournalOfConversion, kMeaning}, {kOverwrites, yes_or_no(replaces)}};
+  const auto add_file = [&identity](const std::string& name, const fs::path& path) {
+    identity.emplace_back(name, value_text(path));
+    if (!path.empty()) identity.emplace_back(kState + name, state_of_all(path));
+  };
   for_each_field(kConvertFields, [&](const auto& field) {
-    if (!is_free(field.key)) identity.emplace_back(field.key, value_text(field.of(options)));
+    if (is_free(field.key)) return;
+    if constexpr (std::is_same_v<std::decay_t<decltype(field.of(options))>, fs::path>) {
+      add_file(field.key, field.of(options));
+    } else {
+      identity.emplace_back(field.key, value_text(field.of(options)));
+    }
   });
   identity.emplace_back("reading of paths", value_text(options.path_options));
   std::size_t number = 0;
   for (const fs::path& file : with_pose_files(list_point_files(options.inputs))) {
-    identity.emplace_back("input " + std::to_string(++number), named_file_text(file));
+    add_file(kInput + std::to_string(++number), file);
   }
   return identity;
 }
@@ -132,6 +173,110 @@ std::string value_of(const JournalIdentity& identity, const std::string& name) {
     if (field == name) return value;
   }
   return {};
+}
+
+/// The inputs that an identity names, in their order.
+std::vector<std::string> inputs_of(const JournalIdentity& identity) {
+  std::vector<std::string> inputs;
+  for (const auto& [name, value] : identity) {
+    if (name.starts_with(kInput)) inputs.push_back(value);
+  }
+  return inputs;
+}
+
+/// The states of the files that an identity names, by their paths.
+std::map<std::string, std::string> states_of(const JournalIdentity& identity) {
+  std::map<std::string, std::string> states;
+  for (std::size_t i = 1; i < identity.size(); ++i) {
+    if (identity[i].first.starts_with(kState)) states[identity[i - 1].second] = identity[i].second;
+  }
+  return states;
+}
+
+/// Some paths in words, "a.las, b.las, c.las and 7 more".
+std::string in_words(const std::vector<std::string>& paths) {
+  constexpr std::size_t kMost = 3;
+  std::vector<std::string> named(
+      paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(std::min(kMost, paths.size())));
+  if (paths.size() > kMost) named.push_back(format_count(paths.size() - kMost) + " more");
+  return format_list(named);
+}
+
+/// A part of the state of a file: what follows `from`, up to `to`.
+std::string part_of_state(const std::string& state, const char* from, const char* to) {
+  const std::size_t begin = state.find(from);
+  if (begin == std::string::npos) return {};
+  const std::size_t first = begin + std::strlen(from);
+  return state.substr(first, *to == 0 ? std::string::npos : state.find(to, first) - first);
+}
+
+/// What became of a file between two of its states, in words.
+std::string change_text(const std::string& path, const std::string& before,
+                        const std::string& now) {
+  if (now.find(kModified) == std::string::npos) {
+    return "the files with poses in " + path + " have changed since it began";
+  }
+  const auto bytes = [](const std::string& state) { return part_of_state(state, "", kBytes); };
+  const auto modified = [](const std::string& state) {
+    return part_of_state(state, kModified, kChanged);
+  };
+  if (bytes(before) != bytes(now)) {
+    return path + " had " + bytes(before) + " bytes when it began, and has " + bytes(now) + " now";
+  }
+  if (modified(before) != modified(now)) {
+    return path + " was last modified at " + modified(before) + " when it began, and at " +
+           modified(now) + " now";
+  }
+  return path + " was renamed, or its rights or links were changed, at " +
+         part_of_state(now, kChanged, "");
+}
+
+/// What differs between the identity of an unfinished conversion and that of another one, in words;
+/// empty where nothing does.
+std::string difference_in_words(const JournalIdentity& found, const JournalIdentity& wanted) {
+  std::vector<std::string> parts;
+  if (found.front() != wanted.front()) {
+    return "another release began it, and its records may have another meaning";
+  }
+  const auto options_of = [](JournalIdentity identity) {
+    std::erase_if(identity, [](const auto& field) {
+      return field.first.starts_with(kInput) || field.first.starts_with(kState);
+    });
+    return identity;
+  };
+  const std::string options = difference(options_of(found), options_of(wanted));
+  if (!options.empty()) parts.push_back("its " + options);
+  const std::vector<std::string> had = inputs_of(found), has = inputs_of(wanted);
+  const auto without = [](std::vector<std::string> all, std::vector<std::string> others) {
+    std::ranges::sort(all);
+    std::ranges::sort(others);
+    std::vector<std::string> left;
+    std::ranges::set_difference(all, others, std::back_inserter(left));
+    return left;
+  };
+  const std::vector<std::string> missing = without(had, has), more = without(has, had);
+  if (!missing.empty()) {
+    parts.push_back(missing.size() == 1 ? "its input " + missing[0] + " is not given"
+                                        : format_count(missing.size()) +
+                                              " of its inputs are not given: " + in_words(missing));
+  }
+  if (!more.empty()) {
+    parts.push_back(more.size() == 1 ? more[0] + " is none of its inputs"
+                                     : format_count(more.size()) +
+                                           " files are none of its inputs: " + in_words(more));
+  }
+  if (missing.empty() && more.empty() && had != has) {
+    parts.emplace_back("it has the same inputs in another order");
+  }
+  const std::map<std::string, std::string> states = states_of(wanted);
+  for (const auto& [path, before] : states_of(found)) {
+    const auto now = states.find(path);
+    if (now == states.end() || now->second == before) continue;
+    parts.push_back(change_text(path, before, now->second));
+  }
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : "; ") + part;
+  return text;
 }
 
 std::string shortened(std::string text) {
@@ -222,7 +367,7 @@ bool remove_left_over(const ConversionOptions& options) {
   const auto read = conversion_at(journal_of(output));
   if (!read) return true;
   const bool replaces = value_of(*read->identity(), kOverwrites) == yes_or_no(true);
-  if (!difference(*read->identity(), identity_of(options, replaces)).empty()) return false;
+  if (*read->identity() != identity_of(options, replaces)) return false;
   const PendingFile owned(output, true);
   if (!conversion_at(journal_of(output))) return true;
   remove_work_of(output);
@@ -252,17 +397,16 @@ ConversionJournal::ConversionJournal(PendingFile& pending, const ConversionOptio
   find_earlier();
   identity_ = identity_of(options_, replaces_);
   if (read_) {
-    const std::string differs = difference(*read_->identity(), identity_);
+    const std::string differs = difference_in_words(*read_->identity(), identity_);
     if (!differs.empty()) {
-      throw UsageError(
-          path_.string() + ": belongs to another conversion: its " + shortened(differs),
-          Remedy::kRestoreOptions);
+      throw UsageError(path_.string() + ": belongs to another conversion: " + shortened(differs),
+                       Remedy::kRestoreOptions);
     }
     for (std::size_t i = 0; i < files_; ++i) {
       refuse_other_file(points_path(i), has_points_magic(points_path(i)));
     }
     refuse_other_file(aside_path(), is_file(aside_path()));
-    log_.note(path_.string() + ": resumes with " + work_text());
+    log_.note(path_.string() + ": goes on with an unfinished conversion; " + work_text());
     writer_.emplace(JournalWriter::resume(path_, *read_, kNever));
     pending_.keep(false);
     return;
@@ -319,15 +463,18 @@ void ConversionJournal::find_earlier() {
     begun_batches_ = 0;
     return;
   }
+  distributed_records_ = batches_.empty() ? 0 : batches_.back().counts.input_points;
   if (!options_.resume) {
-    throw UsageError(path_.string() + ": an unfinished conversion, " + work_text(),
-                     Remedy::kResumeOrOverwrite);
+    throw UsageError(
+        path_.string() + ": is the journal of an unfinished conversion; " + work_text(),
+        Remedy::kResumeOrOverwrite);
   }
   if (!read.torn().empty()) {
     log_.note(path_.string() + ": " + read.torn() + "; it is cut off and done again");
   }
   replaces_ = value_of(*read.identity(), kOverwrites) == yes_or_no(true);
   read_.emplace(std::move(read));
+  take_last_hashes();
 }
 
 void ConversionJournal::read_record(JournalPayload payload, Place place) {
@@ -354,6 +501,8 @@ void ConversionJournal::read_record(JournalPayload payload, Place place) {
       break;
     case kBatch:
       values.add(batches_.emplace_back());
+      batches_.back().hashes = {};
+      places_of_batches_.push_back(place);
       break;
     case kDistributed:
       distributed_ = place;
@@ -376,6 +525,7 @@ void ConversionJournal::read_record(JournalPayload payload, Place place) {
     case kCutBatches:
       values.add(number);
       batches_.resize(std::min<std::uint64_t>(batches_.size(), number));
+      places_of_batches_.resize(batches_.size());
       distributed_.reset();
       break;
     case kCutUnits:
@@ -389,16 +539,21 @@ void ConversionJournal::read_record(JournalPayload payload, Place place) {
 
 bool ConversionJournal::has_work() const {
   const bool has_read = found_ && (found_->chosen || !found_->readable.skipped.empty());
-  return has_read || counted_part_ || counted_ || !batches_.empty();
+  return has_read || counted_part_ || counted_;
 }
 
 std::string ConversionJournal::work_text() const {
-  if (!units_.empty()) return counted(written_cells_, "cell") + " written";
-  if (distributed_) return "all points distributed";
-  const std::uint64_t records = batches_.empty() ? 0 : batches_.back().counts.input_points;
-  if (records > 0) return counted(records, "point") + " distributed";
-  if (counted_) return "all points counted";
-  return counted_part_ ? "some points counted" : "no points counted";
+  if (!units_.empty()) {
+    return "all points were distributed, and " + counted(written_cells_, "cell was", "cells were") +
+           " written";
+  }
+  if (distributed_) return "all points were distributed";
+  if (distributed_records_ > 0) {
+    return "all points were counted, and " + format_count(distributed_records_) +
+           (distributed_records_ == 1 ? " was" : " were") + " distributed";
+  }
+  if (counted_) return "all points were counted";
+  return counted_part_ ? "a part of the points was counted" : "the inputs were inspected";
 }
 
 bool ConversionJournal::take(std::optional<Place> place,
@@ -508,20 +663,49 @@ void ConversionJournal::cut_batches(std::size_t batches) {
   std::uint64_t number = batches;
   keep(kCutBatches, [&](JournalValues& values) { values.add(number); });
   batches_.resize(batches);
+  places_of_batches_.resize(batches);
+  distributed_records_ = batches_.empty() ? 0 : batches_.back().counts.input_points;
   distributed_.reset();
+  take_last_hashes();
+}
+
+/// Reads the hashes of the last batch, because a distribution goes on from them.
+void ConversionJournal::take_last_hashes() {
+  if (batches_.empty()) return;
+  take(places_of_batches_.back(), [this](JournalValues& values) { values.add(batches_.back()); });
+}
+
+void ConversionJournal::forget_batches() {
+  batches_ = {};
+  places_of_batches_ = {};
+}
+
+std::uint64_t ConversionJournal::bytes_of_batches() const {
+  constexpr std::uint64_t kFirst =
+      sizeof(std::uint64_t);  // the index of the first point of a group
+  std::uint64_t bytes = batches_.capacity() * sizeof(DistributedBatch) +
+                        places_of_batches_.capacity() * sizeof(Place);
+  for (const DistributedBatch& batch : batches_) {
+    bytes += batch.groups.capacity() * (sizeof(DistributedBatch::Group) + kFirst) +
+             batch.withheld_cubes.capacity() * sizeof(MetreCube);
+  }
+  return bytes;
 }
 
 void ConversionJournal::keep_batch(DistributedBatch& batch) {
   keep(kBatch, [&](JournalValues& values) { values.add(batch); });
+  distributed_records_ = batch.counts.input_points;
 }
 
 void ConversionJournal::take_distributed(const std::function<void(JournalValues&)>& use) {
   take(distributed_, use);
+  forget_batches();
 }
 
 void ConversionJournal::keep_distributed(const std::function<void(JournalValues&)>& what) {
   keep(kDistributed, what);
   distributed_ = 0;
+  forget_batches();
 }
 
 void ConversionJournal::for_each_unit(
@@ -661,8 +845,9 @@ void ConversionJournal::leave() {
   if (files_ > 1) files += " to " + std::to_string(files_);
   if (is_aside) files += ", " + aside_path().filename().string();
   if (!units_.empty() && !is_aside) files += ", " + pending_.partial().filename().string();
-  log_.note(options_.output.string() + ": " + work_text() + "; --resume goes on from there with " +
-            files + " (" + format_size(bytes) + "), and --force removes these files");
+  log_.note(options_.output.string() + ": is not finished; " + work_text() +
+            ". --resume goes on from there with " + files + " (" + format_size(bytes) +
+            "), and --force removes these files");
 }
 
 void ConversionJournal::discard() {

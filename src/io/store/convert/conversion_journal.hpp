@@ -45,6 +45,9 @@ class ConversionJournal {
   ConversionJournal(const ConversionJournal&) = delete;
   ConversionJournal& operator=(const ConversionJournal&) = delete;
 
+  /// Whether an earlier process left work that this one takes over.
+  bool resumes() const { return read_.has_value(); }
+
   /// Whether the conversion overwrites an existing output.
   bool replaces() const { return replaces_; }
 
@@ -77,7 +80,11 @@ class ConversionJournal {
   /// Where the points begin in their files.
   static constexpr std::uint64_t kPointsBegin = 4096;
   bool has_points() const { return files_ > 0; }
+  /// The batches that are distributed; of their hashes, only the last one has those of all points.
+  /// None once the distribution is complete.
   const std::vector<DistributedBatch>& batches() const { return batches_; }
+  /// Bytes of memory that the batches occupy, and those that it takes to check them.
+  std::uint64_t bytes_of_batches() const;
   /// Forgets all but the first batches, because the files do not hold the others.
   void cut_batches(std::size_t batches);
   void keep_batch(DistributedBatch& batch);
@@ -123,6 +130,8 @@ class ConversionJournal {
   void find_earlier();
   void read_record(JournalPayload payload, Place place);
   bool take(std::optional<Place> place, const std::function<void(JournalValues&)>& use) const;
+  void take_last_hashes();
+  void forget_batches();
   void for_each_unit(const std::function<void(std::vector<WrittenCell>&)>& use) const;
   void append(JournalRecord& record);
   void keep(int kind, const std::function<void(JournalValues&)>& what);
@@ -146,6 +155,8 @@ class ConversionJournal {
   std::optional<Place> counted_part_, counted_, distributed_;
   std::size_t files_ = 0;  ///< number of files of points; 0 where there are none yet
   std::vector<DistributedBatch> batches_;
+  std::vector<Place> places_of_batches_;
+  std::uint64_t distributed_records_ = 0;
   std::vector<Place> units_;
   std::uint64_t written_bytes_ = 0;  ///< end of the last chunk that was written
   std::uint64_t written_cells_ = 0;

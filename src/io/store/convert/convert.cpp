@@ -292,7 +292,9 @@ class Conversion {
       throw;
     } catch (const ResourceError& error) {
       const Remedy remedy = error.remedy();
-      if (remedy == Remedy::kMoreCellPoints || remedy == Remedy::kFewerCellPoints) {
+      const bool needs_other_cells =
+          remedy == Remedy::kMoreCellPoints || remedy == Remedy::kFewerCellPoints;
+      if (needs_other_cells && !journal_->resumes()) {  // memory or disk sufficed before
         journal_->discard();
       } else {
         journal_->leave();
@@ -598,7 +600,9 @@ class Conversion {
                                   (origins_ != nullptr ? kColumnCellBytes : 0);
     const std::uint64_t of_origins = origins_ != nullptr ? origins_->allocated_bytes() : 0;
     const std::uint64_t others = kBaseBytes + report_.cells * of_cell + of_origins;
-    const std::uint64_t least = others + of_unit();
+    // No unit is loaded before the batches of the journal are forgotten.
+    const std::uint64_t of_batches = journal_ ? journal_->bytes_of_batches() : 0;
+    const std::uint64_t least = others + std::max(of_unit(), of_batches);
     if (options_.memory_bytes < least) {
       throw ResourceError(format_size(options_.memory_bytes) +
                               " of memory is too little: " + std::to_string(report_.cells) +

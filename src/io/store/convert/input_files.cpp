@@ -85,12 +85,22 @@ InputFiles::InputFiles(const std::vector<std::filesystem::path>& inputs, bool sk
   files_ = list_point_files(inputs, &folder_remarks_);
   std::for_each(files_.begin(), files_.end(), refuse_pipe);
   if (skip_unreadable && readable != nullptr) {
-    files_.assign(readable->files.begin(), readable->files.end());
-    skipped_ = readable->skipped;
+    readable_ = *readable;
+    std::vector<std::filesystem::path> kept;
+    for (const std::uint64_t number : readable_.numbers) {
+      if (number >= files_.size()) throw InputError("the journal names an input that is not there");
+      kept.push_back(files_[number]);
+    }
+    files_ = std::move(kept);
   } else if (skip_unreadable) {
     ReadableFiles found = readable_files(files_, how_to_read, progress);
+    auto next = files_.begin();
+    for (const std::filesystem::path& file : found.files) {
+      next = std::find(next, files_.end(), file);
+      readable_.numbers.push_back(static_cast<std::uint64_t>(next++ - files_.begin()));
+    }
     files_ = std::move(found.files);
-    skipped_ = std::move(found.reasons);
+    readable_.skipped = std::move(found.reasons);
   }
   read_files_ = with_pose_files(files_);
   std::transform(read_files_.begin(), read_files_.end(), std::back_inserter(states_), state_of);
@@ -98,14 +108,8 @@ InputFiles::InputFiles(const std::vector<std::filesystem::path>& inputs, bool sk
 
 std::vector<Message> InputFiles::remarks() const {
   std::vector<Message> all = folder_remarks_;
-  if (auto skipped = warning_on_skipped(skipped_)) all.push_back(std::move(*skipped));
+  if (auto skipped = warning_on_skipped(readable_.skipped)) all.push_back(std::move(*skipped));
   return all;
-}
-
-ReadableInputs InputFiles::readable() const {
-  ReadableInputs out{{}, skipped_};
-  for (const std::filesystem::path& file : files_) out.files.push_back(file.string());
-  return out;
 }
 
 void InputFiles::refuse_changed() const {

@@ -70,12 +70,12 @@ class FileHashes {
 
 /// Which files of a conversion can be read, and why others are left out.
 struct ReadableInputs {
-  std::vector<std::string> files;
+  std::vector<std::uint64_t> numbers;  ///< of the files that can be read, among all, ascending
   std::vector<std::string> skipped;
 
   template <typename Values>
   void keep(Values& values) {
-    values.add(files, skipped);
+    values.add(numbers, skipped);
   }
 };
 
@@ -96,7 +96,7 @@ class InputFiles {
   const std::vector<std::filesystem::path>& read_files() const { return read_files_; }
   /// Remarks on contents of folders that are not read, and on files that were left out.
   std::vector<Message> remarks() const;
-  ReadableInputs readable() const;
+  const ReadableInputs& readable() const { return readable_; }
 
   /// Throws InputError, which names the file, where a file has changed since the beginning.
   void refuse_changed() const;
@@ -105,8 +105,8 @@ class InputFiles {
   bool is_stream_;
   std::vector<std::filesystem::path> files_;
   std::vector<std::filesystem::path> read_files_;
-  std::vector<std::string> skipped_;  // why files were left out
-  std::vector<FileState> states_;     // states of the files at the beginning; empty for a stream
+  ReadableInputs readable_;
+  std::vector<FileState> states_;  // states of the files at the beginning; empty for a stream
   std::vector<Message> folder_remarks_;
 };
 

@@ -1,10 +1,15 @@
 // Conversions that are killed or stopped at any step, and go on.
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <functional>
 #include <map>
 
 #include "clearway/convert.hpp"
+#include "core/cloud/packed_cloud.hpp"
 #include "io/result/journal.hpp"
+#include "support/bytes/e57_bytes.hpp"
+#include "support/bytes/laz/laz_bytes.hpp"
 #include "support/catch.hpp"
 #include "support/classed_scans.hpp"
 #include "support/clouds.hpp"
@@ -69,6 +74,37 @@ class Resumed {
       text += std::to_string(q[0]) + ".5 " + std::to_string(q[1]) + ".25 1.125\n";
     }
     folder_.write(name, text);
+    inputs_.push_back(path(name));
+  }
+
+  /// Several scans, one after another.
+  void add_e57(const std::string& name, std::size_t points) {
+    constexpr std::size_t kScan = 12000, kPacket = 2000 * sizeof(double);
+    E57Bytes file;
+    const std::vector<Quantum> cloud = plane_cloud(points, inputs_.size() + 1);
+    for (std::size_t first = 0; first < points; first += kScan) {
+      std::array<std::vector<double>, 3> xyz;
+      for (std::size_t i = first; i < std::min(points, first + kScan); ++i) {
+        for (std::size_t k = 0; k < 3; ++k) xyz[k].push_back(cloud[i][k] / 64.0);
+      }
+      E57Bytes::Scan scan = e57_scan(xyz[0], xyz[1], xyz[2]);
+      const std::size_t packets = divide_up(xyz[0].size() * sizeof(double), kPacket) - 1;
+      scan.packets.assign(packets, {kPacket, kPacket, kPacket});
+      file.scans.push_back(std::move(scan));
+    }
+    put_bytes(path(name), file.build());
+    inputs_.push_back(path(name));
+  }
+  /// table: without one, the file is read from its first point on.
+  void add_laz(const std::string& name, std::size_t points, LazBytes::Table table) {
+    LazBytes file;
+    file.table = table;
+    file.chunks = {9000};
+    file.las.scale = {0.01, 0.01, 0.01};
+    for (const Quantum& q : plane_cloud(points, inputs_.size() + 1)) {
+      file.points.push_back({.position = q});
+    }
+    put_bytes(path(name), file.build());
     inputs_.push_back(path(name));
   }
 
@@ -172,6 +208,12 @@ const std::vector<ResumedRow>& rows() {
        [](Resumed& scans) {
          scans.add_ply("a.ply", 70000);
          scans.add_ply("b.ply", 70000, 5000);
+       }},
+      {"E57 of several scans, and LAZ with a table of chunks and without one",
+       [](Resumed& scans) {
+         scans.add_e57("a.e57", 70000);
+         scans.add_laz("b.laz", 40000, LazBytes::Table::kAtPoints);
+         scans.add_laz("c.laz", 40000, LazBytes::Table::kNone);
        }},
       {"cubes near a path, with origins",
        [](Resumed& scans) {
@@ -366,28 +408,92 @@ TEST_CASE("an unfinished conversion is refused by name where its inputs or optio
     scans.check_resumed();
   }
   before = left;
-  says("a.h5.journal: an unfinished conversion, ",
+  says("a.h5.journal: is the journal of an unfinished conversion; all points were counted",
        [](ConversionOptions& options) { options.resume = false; });
   says("a.h5.journal: belongs to another conversion: its cell_points is 500, expected 501",
        [](ConversionOptions& options) { options.cell_points = 501; });
   says("keep_withheld is no, expected yes",
        [](ConversionOptions& options) { options.keep_withheld = true; });
-  says("input 2 is ... b.las, ... expected none",
+  says("conversion: its input ... b.las is not given",
        [](ConversionOptions& options) { options.inputs.pop_back(); });
-  says("input 1 is ... a.las, ... expected ... b.las",
+  says("conversion: it has the same inputs in another order",
        [](ConversionOptions& options) { std::swap(options.inputs[0], options.inputs[1]); });
+  const fs::path third = scans.path("c.las");
+  fs::copy_file(scans.path("b.las"), third);
+  says("c.las is none of its inputs",
+       [&](ConversionOptions& options) { options.inputs.push_back(third); });
+  says("its input ... b.las is not given; ... c.las is none of its inputs",
+       [&](ConversionOptions& options) { options.inputs[1] = third; });
   const fs::path changed = scans.path("b.las");
   const std::string bytes = bytes_of(changed);
   put_bytes(changed, bytes + "more");
-  says("input 2 is ... b.las, ... bytes, modified at ... expected ... b.las, ... bytes",
+  says(("b.las had " + std::to_string(bytes.size()) + " bytes when it began, and has " +
+        std::to_string(bytes.size() + 4) + " now")
+           .c_str(),
        [](ConversionOptions&) {});
-  put_bytes(changed, bytes);  // another time of modification
-  says("input 2 is ... modified at", [](ConversionOptions&) {});
+  put_bytes(changed, bytes);
+  fs::last_write_time(changed, fs::last_write_time(changed) - std::chrono::hours(24));
+  says("b.las was last modified at ... UTC when it began, and at ... UTC now",
+       [](ConversionOptions&) {});
 
   scans.put(before);
   ConversionOptions afresh = scans.options();
   afresh.overwrite = true;
   convert_quietly(afresh);
+  check_same(bytes_of(scans.out() / "a.h5"), scans.expected());
+  CHECK(names_in(scans.out()) == std::vector<std::string>{"a.h5"});
+}
+
+TEST_CASE("an unfinished conversion goes on with its inputs by other names of their folders") {
+  Resumed scans;
+  scans.add_las("a.las", 70000);
+  scans.add_text("b.xyz", 3000);
+  put_bytes(scans.path("c.xyz"), "no point at all\n");
+  scans.change = [&](ConversionOptions& options) {
+    options.inputs.insert(options.inputs.begin() + 1, scans.path("c.xyz"));
+    options.skip_unreadable = true;
+  };
+  scans.expected();
+  const std::vector<FilesLeft> killed = scans.killed_at_records(1);
+  fs::create_directory_symlink(scans.path("."), scans.path("scans"));
+  const auto usual = scans.change;
+  const fs::path folder = scans.path("");
+  const std::vector<fs::path> names{folder / ".", folder / "out" / "..", folder / "scans",
+                                    fs::proximate(folder)};
+  for (std::size_t i = 0; i < killed.size(); ++i) {
+    CAPTURE(i);
+    scans.put(killed[i]);
+    scans.change = [&](ConversionOptions& options) {
+      usual(options);
+      for (fs::path& input : options.inputs) input = names[i % names.size()] / input.filename();
+    };
+    ConversionOptions resuming = scans.options();
+    resuming.resume = true;
+    const ConversionReport report = convert_quietly(resuming);
+    CHECK(report.points == 73000);
+    if (i + 1 == killed.size()) CHECK(report.resumed_points > 0);
+  }
+}
+
+TEST_CASE("no other conversion takes the journal of one that runs") {
+  Resumed scans;
+  scans.add_las("a.las", 140000);
+  scans.expected();
+  ConversionOptions running = scans.options();
+  std::size_t records = 0;
+  running.journalled = [&] {
+    if (++records % 4 != 0) return;
+    const FilesLeft before = files_in(scans.out());
+    for (const bool overwrite : {true, false}) {
+      ConversionOptions other = scans.options();
+      other.overwrite = overwrite;
+      other.resume = !overwrite;
+      check_says(conversion_refusal<ResourceError>(other), "another process is writing it");
+    }
+    CHECK(files_in(scans.out()) == before);
+  };
+  convert_quietly(running);
+  CHECK(records > 8);
   check_same(bytes_of(scans.out() / "a.h5"), scans.expected());
   CHECK(names_in(scans.out()) == std::vector<std::string>{"a.h5"});
 }
