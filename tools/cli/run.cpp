@@ -113,29 +113,33 @@ void MemoryWatch::look() {
   }
 }
 
-/// Reads the query of a run: model or vehicle, and trajectory. Warnings of the inputs are logged at
-/// once, and go into the report with those of the search.
+/// The inputs that were read before, if they are those of the options and in this frame; else those
+/// of the files.
+RunInputs take_or_read_inputs(RunOptions& options, const EnvironmentFrame& frame) {
+  const std::shared_ptr<RunInputs> read = std::move(options.inputs);
+  const bool fits = read && read->trajectory == options.trajectory &&
+                    read->frame.crs == frame.crs &&
+                    read->frame.metres_per_unit == frame.metres_per_unit &&
+                    read->frame.unit_is_assumed == frame.unit_is_assumed;
+  if (fits) return std::move(*read);
+  return read_inputs(options, frame);
+}
+
+/// The query of a run. Warnings of the inputs are logged at once, and go into the report with those
+/// of the search.
 Query read_query(RunOptions& options, const Store& store, PoseLabels& labels) {
+  const EnvironmentFrame frame{store.crs_wkt(), store.metres_per_unit(),
+                               store.length_unit() == "unknown"};
+  RunInputs read = take_or_read_inputs(options, frame);
   std::vector<Message>& warnings = options.search.input_warnings;
-  const ModelOptions how = model_options_of(options);
-  Query query({}, {}, options.query);
-  if (options.vehicle.empty()) query.model = read_model(options.model, how, &warnings);
-  const std::size_t of_model = warnings.size();
-  options.trajectory_options.default_crs = store.crs_wkt();
-  query.poses = read_trajectory(options.trajectory, options.trajectory_options, &warnings, &labels);
-  check_has_poses(query.poses, options.trajectory);
-  const std::span<const Message> read(warnings);
-  if (options.vehicle.empty() && options.lengths.all_have_units() &&
-      names_unit(how.unit, read.first(of_model)) &&
-      names_unit(options.trajectory_options.metres_per_unit, read.subspan(of_model))) {
+  warnings.insert(warnings.end(), read.warnings.begin(), read.warnings.end());
+  if (read.name_units && options.lengths.all_have_units()) {
     if (auto note = note_on_feet(store)) warnings.push_back(std::move(*note));
   }
-  if (!options.vehicle.empty()) {
-    query.bodies =
-        read_vehicle(options.vehicle, query.poses,
-                     {how, options.trajectory_options, options.search.threads}, &warnings);
-  }
   for (const Message& warning : warnings) log_message(warning);
+  labels = std::move(read.labels);
+  Query query(std::move(read.query.model), std::move(read.query.poses), options.query);
+  query.bodies = std::move(read.query.bodies);
   return query;
 }
 
@@ -313,6 +317,34 @@ std::string unseen_sentences(const SearchReport& report, const Query& query,
 
 }  // namespace
 
+RunInputs read_inputs(RunOptions& options, const EnvironmentFrame& frame) {
+  const auto set_unit = [&frame](auto& of_reader) {
+    of_reader.environment_unit = frame.metres_per_unit;
+    of_reader.environment_unit_is_assumed = frame.unit_is_assumed;
+  };
+  set_unit(options.model_options);
+  set_unit(options.trajectory_options);
+  options.trajectory_options.default_crs = frame.crs;
+  RunInputs read{frame, options.trajectory, Query({}, {}, {}), {}, {}, false};
+  std::vector<Message>& warnings = read.warnings;
+  const ModelOptions how = model_options_of(options);
+  const bool is_vehicle = !options.vehicle.empty();
+  if (!is_vehicle) read.query.model = read_model(options.model, how, &warnings);
+  const std::size_t of_model = warnings.size();
+  std::vector<Pose>& poses = read.query.poses;
+  poses = read_trajectory(options.trajectory, options.trajectory_options, &warnings, &read.labels);
+  check_has_poses(poses, options.trajectory);
+  const std::span<const Message> said(warnings);
+  read.name_units = !is_vehicle && names_unit(how.unit, said.first(of_model)) &&
+                    names_unit(options.trajectory_options.metres_per_unit, said.subspan(of_model));
+  if (is_vehicle) {
+    read.query.bodies =
+        read_vehicle(options.vehicle, poses,
+                     {how, options.trajectory_options, options.search.threads}, &warnings);
+  }
+  return read;
+}
+
 RunOutcome perform(RunOptions& options) {
   const Stopwatch total;
   MemoryWatch memory;
@@ -336,7 +368,6 @@ RunOutcome perform(RunOptions& options) {
   if (auto warning = options.lengths.convert_for(store)) {
     options.search.input_warnings.push_back(std::move(*warning));
   }
-  set_environment_unit(store, options.model_options, options.trajectory_options);
   PathWords path;
   const Query query =
       in_threads(options.search.threads, [&] { return read_query(options, store, path.labels); });

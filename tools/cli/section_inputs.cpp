@@ -41,13 +41,7 @@ void add_load_options(CLI::App& command, LoadInput& load, LengthOptions& lengths
 
 double convert_for(const LengthOptions& lengths, const Section& section,
                    const std::filesystem::path& file) {
-  const LengthUnit unit = length_unit_of(section.data().length_unit);
-  if (unit == LengthUnit::kUnknown) {
-    return lengths.convert_for(file.string(), section.data().crs_wkt);
-  }
-  const double metres = unit == LengthUnit::kDegrees ? 1 : metres_of(unit);
-  lengths.convert(metres);
-  return metres;
+  return lengths.convert_for(file.string(), section.data().crs_wkt, section.data().length_unit);
 }
 
 namespace {

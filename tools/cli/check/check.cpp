@@ -44,6 +44,7 @@
 #include "io/scans/length_unit.hpp"
 #include "io/scans/point_reader.hpp"
 #include "io/store/convert/convert.hpp"
+#include "io/store/convert/input_agreement.hpp"
 #include "io/store/file_kind.hpp"
 #include "search/check_corridor.hpp"
 #include "search/check_query.hpp"
@@ -341,32 +342,39 @@ class Check {
     return bytes;
   }
 
+  /// The frame of the environment that the scans will make.
+  EnvironmentFrame frame_of_scans() const {
+    Step<ConvertCommand> step(plan_.convert(false));
+    const ConvertCommand& scans = step.options();
+    step.options().lengths.convert(1);
+    const CommonCrs common = declared_crs(scans.inputs, scans.conversion);
+    const bool is_assumed = common.unit == LengthUnit::kUnknown;
+    return {common.crs, is_assumed ? 1 : metres_of(common.unit), is_assumed};
+  }
+
   /// The distance from the path, in metres, that the question needs: so that no point that is left
   /// out can matter to it.
-  double corridor_of_question() const {
+  double corridor_of_question() {
     Step<RunOptions> step(plan_.run(false));
     RunOptions& options = step.options();
-    options.lengths.convert(1);
-    const std::vector<Pose> poses = read_trajectory(options.trajectory, options.trajectory_options);
-    check_has_poses(poses, options.trajectory);
-    Query query({}, poses, options.query);
-    if (options.vehicle.empty()) {
-      query.model = read_model(options.model, model_options_of(options));
-    } else {
-      query.bodies = read_vehicle(
-          options.vehicle, poses,
-          {model_options_of(options), options.trajectory_options, options.search.threads});
-    }
+    const EnvironmentFrame frame = frame_of_scans();
+    options.lengths.convert(frame.metres_per_unit);
+    inputs_ = std::make_shared<RunInputs>(
+        in_threads(options.search.threads, [&] { return read_inputs(options, frame); }));
+    const Query& read = inputs_->query;
+    Query query(read.model, read.poses, options.query);
+    query.bodies = read.bodies;
     const auto errors = given_errors(query);
     const double radius = errors ? errors->near_radius(query.radius) : query.radius;
     std::vector<Vec3> path;
-    for (const Pose& pose : poses) {
+    for (const Pose& pose : query.poses) {
       path.push_back({pose.translation[0], pose.translation[1], pose.translation[2]});
     }
     // The denser path runs beside the straight lines between poses, and steps of the store add to
     // an error budget.
     constexpr double kBeside = 0.5;
-    return std::ceil(CorridorCheck::wanted(query, std::move(path), radius) + kBeside);
+    const double wanted = CorridorCheck::wanted(query, std::move(path), radius);
+    return std::ceil(wanted * frame.metres_per_unit + kBeside);
   }
 
   /// Makes the plan keep only what the question can reach. A store that an earlier check widened
@@ -391,7 +399,7 @@ class Check {
     for (const Message& remark : plan_.remarks()) log_message(remark);
     std::error_code unknown;
     in_terms_of_check([&] {
-      if (!fs::exists(plan_.environment(), unknown)) try_inputs();
+      if (!inputs_ && !fs::exists(plan_.environment(), unknown)) try_inputs();
       try {
         const ConvertReport report = perform(step.options());
         note_step(kStoreName, step.words(), report.was_finished);
@@ -492,6 +500,7 @@ class Check {
       step.options().names_nearest = false;
       step.options().search.resume = has_begun();
       step.options().search.started = started_;
+      step.options().inputs = std::move(inputs_);
       try {
         RunOutcome outcome = perform(step.options());
         note_step(kResultName, step.words(), outcome.report.was_finished);
@@ -648,6 +657,7 @@ class Check {
   std::vector<std::string> commands_;
   ordered_json reused_ = ordered_json::object();
   std::shared_ptr<const DeviceStart> started_;  ///< null where no GPU was started early
+  std::shared_ptr<RunInputs> inputs_;           ///< null where none were read before the search
   std::optional<FoundConflicts> found_;         ///< where the table of conflicts was made anew
   /// With a ledger, the verdict on what is left without its accepted conflicts.
   std::optional<Verdict> outside_;

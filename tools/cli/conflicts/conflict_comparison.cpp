@@ -352,7 +352,10 @@ int compare_conflicts(ConflictComparison& options, const std::filesystem::path& 
                                 options.vehicle, vehicle_b});
     outputs.emplace_back(output, options.force);
   }
-  const double unit = options.lengths.convert_for(a.string(), Result(a).reader().header().crs_wkt);
+  const Result first(a);
+  const ResultHeader& header = first.reader().header();
+  const double unit =
+      options.lengths.convert_for(a.string(), header.crs_wkt, header.notes.length_unit);
   options.trajectory_options.environment_unit = unit;
   options.model_options.environment_unit = unit;
   ConsoleProgress progress;

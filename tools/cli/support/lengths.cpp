@@ -178,13 +178,17 @@ std::optional<Message> LengthOptions::convert_for(const Store& store) const {
   return std::nullopt;
 }
 
-double LengthOptions::convert_for(const std::string& result, const std::string& crs_wkt) const {
-  const double metres = metres_of_crs(crs_wkt);
-  if (crs_wkt.empty() && !with_unit_.empty()) {
+double LengthOptions::convert_for(const std::string& file, const std::string& crs_wkt,
+                                  const std::string& length_unit) const {
+  const LengthUnit unit = length_unit_of(length_unit);
+  const bool is_known = unit != LengthUnit::kUnknown;
+  double metres = metres_of_crs(crs_wkt);
+  if (is_known) metres = unit == LengthUnit::kDegrees ? 1 : metres_of(unit);
+  if (!is_known && crs_wkt.empty() && !with_unit_.empty()) {
     spdlog::warn(
         "{}: has no CRS, so its coordinates are taken for metres; where the scan is in "
         "feet, give lengths without a unit",
-        result);
+        file);
   }
   convert(metres);
   return metres;

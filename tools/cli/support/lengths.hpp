@@ -79,11 +79,12 @@ class LengthOptions {
   /// names no unit, returns a warning if a length was in feet or inches, since that suggests that
   /// the scan is not in metres.
   std::optional<Message> convert_for(const Store& store) const;
-  /// Converts the lengths that were given with a unit into the unit of a result, which its CRS
-  /// names, and returns the metres of that unit. Warns where there is no CRS and a length was given
-  /// with a unit, since the scan may have another unit all the same. result: its name, for the
-  /// warning.
-  double convert_for(const std::string& result, const std::string& crs_wkt) const;
+  /// Converts the lengths that were given with a unit into the unit of a result or section, and
+  /// returns the metres of that unit. Where the file names none, its CRS does; warns where there is
+  /// no CRS either and a length was given with a unit, since the scan may have another unit.
+  /// file: its name, for the warning. length_unit: as Store::length_unit() names it
+  double convert_for(const std::string& file, const std::string& crs_wkt,
+                     const std::string& length_unit) const;
 
   /// Whether every length that was given names its unit; 0 needs none.
   bool all_have_units() const { return !lacks_unit_; }

@@ -281,6 +281,21 @@ CommonCrs common_crs(std::span<const std::filesystem::path> files,
   return common;
 }
 
+CommonCrs declared_crs(const std::vector<std::filesystem::path>& inputs,
+                       const ConvertOptions& options) {
+  std::vector<std::filesystem::path> files;
+  std::vector<CloudInfo> infos;
+  for (const std::filesystem::path& file : list_point_files(inputs)) {
+    try {
+      infos.push_back(open_point_file(file, {options.columns, true, false})->info());
+      files.push_back(file);
+    } catch (const InputError&) {
+      if (!options.skip_unreadable) throw;
+    }
+  }
+  return common_crs(files, infos, {options.unit, options.unit_z, options.ignore_crs});
+}
+
 bool is_of_ignored_crs(const Message& warning) {
   if (warning.code == kIgnored) return true;
   if (warning.code != kMapScaleCode) return false;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "clearway/progress.hpp"
+#include "clearway/convert.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "io/scans/point_reader.hpp"
 
@@ -43,6 +43,11 @@ struct GivenUnits {
 /// warning. Inputs that name no unit count as metres.
 CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
                      const GivenUnits& given);
+
+/// The unit and CRS on which scans agree by what their files declare before the first point.
+/// inputs: files and folders. Throws as a conversion with these options does.
+CommonCrs declared_crs(const std::vector<std::filesystem::path>& inputs,
+                       const ConvertOptions& options);
 
 /// Whether a conversion gave this warning because it was to ignore what it would refuse.
 bool is_of_ignored_crs(const Message& warning);

@@ -11,6 +11,7 @@ import re
 import shlex
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -35,6 +36,36 @@ def printed_commands(text):
 
 def bytes_of(folder, names=FILES):
     return {name: (folder / name).read_bytes() for name in names}
+
+
+UTM_32 = (b'PROJCS["ETRS89 / UTM zone 32N",GEOGCS["ETRS89",'
+          b'DATUM["European_Terrestrial_Reference_System_1989",'
+          b'SPHEROID["GRS 1980",6378137,298.257222101]],PRIMEM["Greenwich",0],'
+          b'UNIT["degree",0.0174532925199433],AUTHORITY["EPSG","4258"]],'
+          b'PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],'
+          b'PARAMETER["central_meridian",9],PARAMETER["scale_factor",0.9996],'
+          b'PARAMETER["false_easting",500000],PARAMETER["false_northing",0],'
+          b'UNIT["metre",1],AUTHORITY["EPSG","25832"]]\0')
+
+
+def write_utm_scan(path, points):
+    """LAS 1.4 with a reference system, and steps of 1 mm from E 500 km and N 5,316 km on."""
+    header = bytearray(375)
+    header[0:4] = b"LASF"
+    struct.pack_into("<H", header, 6, 16)
+    header[24:26] = bytes((1, 4))
+    struct.pack_into("<HII", header, 94, 375, 375 + 54 + len(UTM_32), 1)
+    struct.pack_into("<BH", header, 104, 6, 30)
+    struct.pack_into("<6d", header, 131, 1e-3, 1e-3, 1e-3, 500000, 5316000, 0)
+    for k, start in enumerate((500000, 5316000, 0)):
+        axis = [start + p[k] / 1000 for p in points]
+        struct.pack_into("<2d", header, 179 + 16 * k, max(axis), min(axis))
+    struct.pack_into("<Q", header, 247, len(points))
+    record = bytearray(54)
+    record[2:17] = b"LASF_Projection"
+    struct.pack_into("<HH", record, 18, 2112, len(UTM_32))
+    bodies = (struct.pack("<3i2xBxB13x", *p, 0x11, 1) for p in points)
+    path.write_bytes(bytes(header + record) + UTM_32 + b"".join(bodies))
 
 
 class Site(unittest.TestCase):
@@ -135,6 +166,44 @@ class Finding(Site):
         run = next(c for c in printed_commands(given.stdout) if " run " in c)
         self.assertNotIn("--lever-arm", run)
         self.assertNotIn("--trajectory-format", run)
+
+    def near_and_whole(self, words):
+        """The output of a check of what is near the path; its tables are those of all points."""
+        near = self.check(f"{words} --near -o near")
+        self.check(f"{words} -o whole")
+        tables = ["conflicts.csv", "stations.csv"]
+        self.assertEqual(bytes_of(self.folder / "near", tables),
+                         bytes_of(self.folder / "whole", tables))
+        self.assertTrue(json.loads(
+            self.check(f"{words} --near --json -o near").stdout)["nothing_done"])
+        return near
+
+    def test_only_what_is_near_the_path(self):
+        near = self.near_and_whole(f"scans {QUESTION}")
+        self.assertIn("--near trajectory.txt --within ", near.stdout)
+        self.assertEqual(self.pasted_elsewhere(printed_commands(near.stdout), "near"),
+                         bytes_of(self.folder / "near"))
+
+    def test_scans_in_feet_and_a_denser_path(self):
+        self.coarse_path()
+        near = self.near_and_whole("scans --model model.ply --trajectory coarse.txt --radius 3cm "
+                                   "--unit ft")
+        self.assertIn("--trajectory near/path.txt", near.stdout)
+        self.assertNotIn("converted once more", near.stderr)
+
+    def test_a_path_in_degrees_is_read_in_the_system_of_the_scans(self):
+        draw = random.Random(1)
+        points = [(side + draw.randrange(-100, 100), draw.randrange(270000, 380000),
+                   draw.randrange(12500, 16000))
+                  for side in (-60000, -3000, 3000, 60000) for _ in range(5000)]
+        points.append((900, 320000, 13000))
+        write_utm_scan(self.folder / "utm.las", points)
+        lines = ["lat,lon,height,roll_deg,pitch_deg,heading_deg"]
+        lines += [f"{48 + i * 0.5 / 111194:.10f},9.0,12.5,0,0,0" for i in range(60)]
+        (self.folder / "degrees.csv").write_text("\n".join(lines) + "\n")
+        near = self.near_and_whole(
+            "utm.las --model box:4,1.8,1.5 --trajectory degrees.csv --radius 0.1")
+        self.assertIn("conflict: 1 point ", near.stdout)
 
     def test_a_path_with_a_jump_stays_as_it_is(self):
         lines = self.coarse_path()
