@@ -49,6 +49,15 @@ LedgerFiles open_ledger(const LedgerOptions& options, const std::string& unit) {
   return {};
 }
 
+/// The options with the table itself where they name a link to it, because its places are beside
+/// it.
+LedgerOptions with_real_table(LedgerOptions options) {
+  std::error_code unknown;
+  const std::filesystem::path real = std::filesystem::canonical(options.table, unknown);
+  if (!unknown && std::filesystem::is_symlink(options.table, unknown)) options.table = real;
+  return options;
+}
+
 /// What is left without the accepted conflicts.
 OutsideOfAccepted outside_of(const GroupedResult& found, const Ledger& ledger) {
   OutsideOfAccepted out;
@@ -68,7 +77,8 @@ OutsideOfAccepted outside_of(const GroupedResult& found, const Ledger& ledger) {
 }  // namespace
 
 Ledger apply_ledger(const GroupedResult& found, const ConflictOptions& find,
-                    const LedgerOptions& options) {
+                    const LedgerOptions& given) {
+  const LedgerOptions options = with_real_table(given);
   const ResultHeader& header = found.result.reader().header();
   const std::string unit = symbol_of(unit_of(header));
   CallbackProgress progress(options.progress, options.stop);
@@ -83,7 +93,7 @@ Ledger apply_ledger(const GroupedResult& found, const ConflictOptions& find,
   };
   std::optional<LedgerUpdate> update;
   if (options.update) {
-    update.emplace(options.table);
+    update.emplace(options.table, &progress);
     files = open_ledger(options, unit);  // nobody else changes it from here on
   }
   Ledger ledger = judge_ledger(found, files, how);

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "core/cloud/small_cloud.hpp"
 #include "core/messages/messages.hpp"
 #include "core/query/body_numbers.hpp"
 #include "core/query/search_result.hpp"
@@ -25,7 +26,6 @@
 #include "search/kinds/body_kind.hpp"
 #include "search/kinds/sweep_kind.hpp"
 #include "search/page_search.hpp"
-#include "search/place_cloud.hpp"
 #include "search/seen_space.hpp"
 
 namespace clearway {
@@ -34,9 +34,12 @@ namespace {
 /// How far from a place the scan must have a point, metres.
 constexpr double kScannedWithin = 1;
 
+/// Points of a cell of places.
+constexpr std::uint32_t kCellPoints = 512;
+
 /// The first pose of each point of a cloud, by the number of the point; HitSet::kNever where it
 /// does not collide.
-std::vector<std::uint32_t> first_poses(const PlaceCloud& cloud, const Query& query,
+std::vector<std::uint32_t> first_poses(const SmallCloud& cloud, const Query& query,
                                        std::uint64_t memory_bytes, int threads,
                                        Progress& progress) {
   SearchOptions options;
@@ -215,15 +218,15 @@ std::vector<std::vector<LedgerEvidence::Touch>> LedgerEvidence::search(
   for (std::size_t first = 0; first < rows.size(); ++first) {
     if (is_done[first]) continue;
     const Quantisation& steps = rows[first]->quantisation;
-    std::vector<QuantumPoint> points;
+    std::vector<Quantum> points;
     std::vector<std::size_t> of_group;
     for (std::size_t i = first; i < rows.size(); ++i) {
       if (is_done[i] || !(rows[i]->quantisation == steps)) continue;
       is_done[i] = true;
       of_group.push_back(i);
-      points.insert(points.end(), rows[i]->quanta.begin(), rows[i]->quanta.end());
+      for (const QuantumPoint& p : rows[i]->quanta) points.push_back({p.q[0], p.q[1], p.q[2]});
     }
-    const PlaceCloud cloud(points, steps);
+    const SmallCloud cloud(points, steps, {.cell_points = kCellPoints});
     const auto from = first_poses(cloud, query, options_.memory_bytes, threads_, progress_);
     const auto back = first_poses(cloud, reversed, options_.memory_bytes, threads_, progress_);
     std::size_t point = 0;

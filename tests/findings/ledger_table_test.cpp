@@ -6,9 +6,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -340,6 +343,36 @@ TEST_CASE("a ledger is made by an update only") {
   LedgerScene scene;
   CHECK_THROWS_AS(scene.run(one_panel(), RoadQuestion(), false), UsageError);
   CHECK_FALSE(std::filesystem::exists(scene.table()));
+}
+
+TEST_CASE("a link to a table is the table itself, with the places beside it") {
+  LedgerScene scene;
+  scene.run(one_panel(), RoadQuestion());
+  scene.set("status", "accepted");
+  const auto real = scene.folder / "kept.csv";
+  std::filesystem::rename(scene.table(), real);
+  std::filesystem::rename(scene.places(), scene.folder / "kept.places.h5");
+  std::filesystem::create_symlink(real, scene.table());
+  CHECK(counts_of(scene.run(one_panel(), RoadQuestion())) == "accepted 1");
+  CHECK(std::filesystem::is_symlink(scene.table()));
+  CHECK_FALSE(std::filesystem::exists(scene.places()));
+}
+
+TEST_CASE("an update waits for that of another process, and says so where it takes too long") {
+  LedgerScene scene;
+  scene.run(one_panel(), RoadQuestion());
+  std::optional<LedgerUpdate> other(std::in_place, scene.table());
+  constexpr std::chrono::milliseconds kBrief(60);
+  CHECK_THROWS_WITH(LedgerUpdate(scene.table(), nullptr, kBrief),
+                    Contains("L.csv: another process is updating this ledger"));
+  std::thread ending([&] {
+    std::this_thread::sleep_for(kBrief);
+    other.reset();
+  });
+  scene.run(one_panel(), RoadQuestion());
+  ending.join();
+  CHECK_FALSE(std::filesystem::exists(scene.folder / "L.csv.partial"));
+  CHECK_FALSE(std::filesystem::exists(scene.folder / "L.places.h5.partial"));
 }
 
 TEST_CASE("damaged places are refused") {

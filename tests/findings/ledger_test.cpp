@@ -290,11 +290,35 @@ TEST_CASE("what is gone is resolved, and open when it is there again") {
   scene.set("status", "accepted");
   CHECK(counts_of(scene.run(road(), asked)) == "gone 1");
   CHECK_THAT(scene.text(), Contains("1,resolved,"));
-  CHECK(counts_of(scene.run(road(), asked)) == "resolved 1");
+  RoadQuestion tomorrow;
+  tomorrow.date = "2026-07-01";
+  CHECK(counts_of(scene.run(road(), tomorrow)) == "resolved 1");
   const Ledger again = scene.run(there, asked);
   CHECK(counts_of(again) == "open 1");
   CHECK_THAT(again.rows[0].why, Contains("was resolved"));
   CHECK_THAT(scene.text(), Contains("1,open,"));
+}
+
+TEST_CASE("a run that is repeated on its day shows the same, and leaves both files as they are") {
+  LedgerScene scene;
+  RoadQuestion asked;
+  scene.run(road_with({panel(10, 0.95), panel(15, 0.95)}), asked);
+  scene.set("status", "accepted");
+  const RoadScan later = road_with({panel(15, 0.95), panel(18, 0.95)});
+  const Ledger first = scene.run(later, asked);
+  CHECK(counts_of(first) == "new 1, accepted 1, gone 1");
+  const std::string table = scene.text(), places = text_of_file(scene.places());
+  const auto same = [&](const Ledger& again) {
+    CHECK(counts_of(again) == counts_of(first));
+    CHECK(reasons_of(again) == reasons_of(first));
+    CHECK(scene.text() == table);
+    CHECK(text_of_file(scene.places()) == places);
+  };
+  same(scene.run(later, asked));
+  same(scene.run(later, asked, false));
+  // A run of the same day that does not come there knows only what the table says.
+  asked.query.poses.resize(60);
+  CHECK(counts_of(scene.run(later, asked, false)) == "resolved 1, not-searched 2");
 }
 
 TEST_CASE("two rows on one place: a conflict is accepted only if both accept it") {

@@ -220,7 +220,7 @@ class LedgerJudge {
     std::vector<std::size_t> open;
     for (std::size_t row = 0; row < rows_.size(); ++row) {
       LedgerRow& shown = out.rows[row];
-      if (!shown.conflicts.empty() || shown.status == LedgerStatus::kResolved) continue;
+      if (!shown.conflicts.empty() || is_resolved_before(row)) continue;
       if (rows_[row].places == nullptr) {
         shown.shown = LedgerStatus::kNotSearched;
         shown.why = "the ledger does not have its places";
@@ -243,9 +243,17 @@ class LedgerJudge {
     const std::vector<std::string> reasons = how_.why_not_gone(places);
     for (std::size_t i = 0; i < alone.size(); ++i) {
       LedgerRow& shown = out.rows[alone[i]];
+      if (shown.status == LedgerStatus::kResolved && !reasons[i].empty()) continue;
       shown.shown = reasons[i].empty() ? LedgerStatus::kGone : LedgerStatus::kNotSearched;
       shown.why = reasons[i].empty() ? "nothing collides there any more" : reasons[i];
     }
+  }
+
+  /// Whether a row was resolved before this run. What an update of the same day found gone is
+  /// judged anew, so that the same run shows the same when it is repeated.
+  bool is_resolved_before(std::size_t row) const {
+    if (files_.table.status(row) != LedgerStatus::kResolved) return false;
+    return rows_[row].places == nullptr || rows_[row].places->gone_on != how_.today;
   }
 
   std::vector<Contacts> contacts_of(const std::vector<std::size_t>& rows) const {

@@ -147,24 +147,60 @@ LedgerFiles read_ledger(const std::filesystem::path& table, const std::string& u
                    ": are of different runs, because " + difference + "; " + advice);
 }
 
-LedgerUpdate::LedgerUpdate(const std::filesystem::path& table)
-    : path_(table), places_(places_of(table), true), table_(table, true) {}
+namespace {
+
+/// Waits as long as another process is writing the ledger, until a moment at the latest.
+void wait_for_others(const std::filesystem::path& table, Progress* progress,
+                     std::chrono::steady_clock::time_point until) {
+  constexpr std::chrono::milliseconds kPause(50);
+  if (!is_being_written(table)) return;
+  if (progress != nullptr) progress->begin("wait for another update of the ledger", 0, "");
+  while (is_being_written(table)) {
+    if (progress != nullptr) throw_if_stopped(*progress);
+    if (std::chrono::steady_clock::now() >= until) {
+      throw ResourceError(table.string() +
+                          ": another process is updating this ledger and has not ended yet; give "
+                          "the command again once it has");
+    }
+    std::this_thread::sleep_for(kPause);
+  }
+  if (progress != nullptr) progress->end();
+}
+
+}  // namespace
+
+LedgerUpdate::LedgerUpdate(const std::filesystem::path& table, Progress* progress,
+                           std::chrono::milliseconds most_wait)
+    : path_(table) {
+  const auto until = std::chrono::steady_clock::now() + most_wait;
+  for (;;) {
+    wait_for_others(table, progress, until);
+    try {
+      table_.emplace(table, true);
+      places_.emplace(places_of(table), true);
+      return;
+    } catch (const ResourceError&) {
+      table_.reset();
+      if (!is_being_written(table)) throw;  // no other process came first
+    }
+  }
+}
 
 void LedgerUpdate::publish(const LedgerFiles& files, const std::string& unit) {
   std::vector<LedgerPlaces> places;
   for (std::size_t row = 0; row < files.places.size(); ++row) {
     if (files.places[row]) places.push_back(*files.places[row]);
   }
-  write_places(places_.partial(), places, unit);
+  write_places(places_->partial(), places, unit);
   {
-    const File file = File::create(table_.partial());
+    const File file = File::create(table_->partial());
     TextWriter out(file);
     out << files.table.text();
     out.flush();
   }
-  table_.sync();
-  places_.publish();
-  table_.publish();
+  table_->sync();
+  places_->publish();
+  table_->publish();
 }
 
 }  // namespace clearway

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/util/progress.hpp"
 #include "findings/ledger/ledger_places.hpp"
 #include "findings/ledger/ledger_table.hpp"
 #include "io/files/pending_file.hpp"
@@ -34,8 +36,13 @@ bool wait_for_update(const std::filesystem::path& table, int& waits);
 /// other process changes them between reading and writing.
 class LedgerUpdate {
  public:
-  /// Throws ResourceError where another process writes the ledger.
-  explicit LedgerUpdate(const std::filesystem::path& table);
+  /// How long an update waits for that of another process, which may have to read the whole store.
+  static constexpr std::chrono::seconds kMostWait{600};
+
+  /// Waits while another process updates the ledger, which is a stage of `progress` unless null.
+  /// Throws ResourceError where it takes longer than most_wait, and Interrupted.
+  explicit LedgerUpdate(const std::filesystem::path& table, Progress* progress = nullptr,
+                        std::chrono::milliseconds most_wait = kMostWait);
 
   /// Replaces both files. The places come first: killed in between, the new table is complete
   /// under its partial name.
@@ -43,7 +50,7 @@ class LedgerUpdate {
 
  private:
   std::filesystem::path path_;
-  PendingFile places_, table_;
+  std::optional<PendingFile> table_, places_;
 };
 
 }  // namespace clearway

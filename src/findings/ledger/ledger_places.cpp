@@ -16,8 +16,8 @@ namespace clearway {
 namespace {
 
 constexpr const char* kFormat = "clearway ledger places";
-constexpr std::uint32_t kVersion = 1;
-constexpr std::size_t kNumbers = 23, kCounts = 6;
+constexpr std::uint32_t kVersion = 2;
+constexpr std::size_t kNumbers = 23, kCounts = 7;
 
 double or_nan(const std::optional<double>& value) { return value.value_or(std::nan("")); }
 std::optional<double> not_nan(double value) {
@@ -53,9 +53,9 @@ struct PlacesColumns {
                    {row.question.radius, row.question.reach, or_nan(row.question.floor)});
     numbers.insert(numbers.end(), std::begin(steps.scale), std::end(steps.scale));
     numbers.insert(numbers.end(), std::begin(steps.offset), std::end(steps.offset));
-    counts.insert(counts.end(),
-                  {row.min_points, row.question.model_hash, row.question.floors_hash,
-                   as_number(cells.first_seen), as_number(cells.last_seen), row.quanta.size()});
+    counts.insert(counts.end(), {row.min_points, row.question.model_hash, row.question.floors_hash,
+                                 as_number(cells.first_seen), as_number(cells.last_seen),
+                                 row.quanta.size(), row.gone_on ? as_number(*row.gone_on) : 0});
     for (const QuantumPoint& point : row.quanta) {
       places.insert(places.end(), std::begin(point.q), std::end(point.q));
     }
@@ -91,6 +91,7 @@ struct PlacesColumns {
         row.quantisation.offset[k] = n[20 + k];
       }
       row.min_points = c[0];
+      if (c[6] != 0) row.gone_on = as_day(c[6]);
       for (std::uint64_t p = 0; p < c[5]; ++p, place += 3) {
         row.quanta.push_back({{places[place], places[place + 1], places[place + 2]}});
       }

@@ -60,6 +60,7 @@ struct LedgerPlaces {
   LedgerValues values;
   LedgerQuestion question;
   Quantisation quantisation{};
+  std::optional<Day> gone_on = {};   ///< the day on which an update found it gone
   std::vector<QuantumPoint> quanta;  ///< one of each cube of 5 cm
 
   Vec3 place(std::size_t i) const {

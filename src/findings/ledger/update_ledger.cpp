@@ -77,7 +77,10 @@ class LedgerWriter {
   /// Takes what was found at a row that the table has.
   void take_row(std::size_t row) {
     LedgerRow& shown = judged_.rows[row];
-    if (shown.shown == LedgerStatus::kGone) return set_status(row, LedgerStatus::kResolved);
+    if (shown.shown == LedgerStatus::kGone) {
+      files_.places[row]->gone_on = how_.today;
+      return set_status(row, LedgerStatus::kResolved);
+    }
     if (shown.conflicts.empty()) return;
     if (shown.status == LedgerStatus::kResolved) set_status(row, LedgerStatus::kOpen);
     see(row);
@@ -123,6 +126,10 @@ class LedgerWriter {
   }
 
   void set_status(std::size_t row, LedgerStatus status) {
+    if (judged_.rows[row].status == status &&
+        !files_.table.get(row, LedgerColumn::kStatus).empty()) {
+      return;  // the cell stays as somebody wrote it
+    }
     files_.table.set(row, LedgerColumn::kStatus, std::string(name_of(status)));
     judged_.rows[row].status = status;
   }
