@@ -33,6 +33,16 @@ Collisions sample_rows(const ResultHeader& header, std::size_t count) {
   return rows;
 }
 
+void add_sample_depths(ResultHeader& header, Collisions& rows) {
+  header.depth = true;
+  for (std::size_t i = 0; i < rows.source.size(); ++i) {
+    const bool is_free = i % 3 != 2;
+    rows.depth.push_back(is_free ? 0.125 + static_cast<double>(i) / 7
+                                 : std::numeric_limits<double>::quiet_NaN());
+    rows.depth_source.push_back(is_free ? header.environment_points - 1 - i : Collisions::kNoPoint);
+  }
+}
+
 Clearances sample_clearances(const ResultHeader& header, std::size_t count) {
   Clearances rows;
   for (std::size_t i = 0; i < count; ++i) {

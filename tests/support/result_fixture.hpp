@@ -12,6 +12,9 @@ ResultHeader sample_header(bool first_pose);
 /// Makes `count` rows with gaps, negative quanta and first poses above 2^31.
 Collisions sample_rows(const ResultHeader& header, std::size_t count);
 
+/// Gives rows depths, and sets them in the header; every third has no free point.
+void add_sample_depths(ResultHeader& header, Collisions& rows);
+
 Clearances sample_clearances(const ResultHeader& header, std::size_t count);
 
 /// A profile of header.poses poses, of which every fifth has no point.

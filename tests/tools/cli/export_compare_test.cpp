@@ -47,6 +47,34 @@ TEST_CASE("compare of different results says how and exits with 1") {
   check_says(outcome.out, "/ 77\n ... different\n");
 }
 
+TEST_CASE("compare says how depths differ") {
+  const Workplace place;
+  ResultHeader header = sample_header(false);
+  Collisions rows = sample_rows(header, 3);
+  write_result(place.folder / "plain.h5", header, rows);
+  add_sample_depths(header, rows);
+  write_result(place.folder / "a.h5", header, rows);
+  rows.depth[1] = 9.5;
+  rows.depth_source[1] = 7;
+  rows.depth[2] = 0.75;
+  rows.depth_source[2] = 8;
+  write_result(place.folder / "b.h5", header, rows);
+  check_outcome(place.run("compare a.h5 a.h5"), 0, kAnything, "differing depths: 0\n");
+  const Outcome outcome = place.run("compare a.h5 b.h5");
+  check_outcome(outcome, 1, kAnything, "differing depths: 2\n");
+  check_says(outcome.out, "depth ... / 9.5 to 7\n");
+  check_says(outcome.out, "depth ... nothing free / 0.75 to 8\n");
+  const auto json = json_of(place.run("compare --json a.h5 b.h5"));
+  check_json(json, R"({"equal": false, "differing_depths": 2,
+    "differences": {"0": {"kind": "depth", "depth_b": 9.5, "depth_source_b": 7},
+                    "1": {"depth_a": null, "depth_source_a": null, "depth_b": 0.75}}})");
+  const Outcome plain = place.run("compare a.h5 plain.h5");
+  check_lacks(plain.out, "differing depths");
+  for (const char* ending : {"las", "ply", "csv", "xyz"}) {
+    check_outcome(place.run(std::string("export a.h5 -o out.") + ending), 0);
+  }
+}
+
 TEST_CASE("compare shows as many points as asked for") {
   const Pair pair;
   const Outcome outcome = pair.run("compare --show 1 a.h5 b.h5");

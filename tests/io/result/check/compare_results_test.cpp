@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "clearway/error.hpp"
 #include "io/result/check_results.hpp"
 #include "support/catch.hpp"
@@ -107,6 +109,37 @@ TEST_CASE("first poses count where both results have them") {
   CHECK_FALSE(without.differing_first_poses);
   REQUIRE(without.queries.size() == 1);
   check_equal(without.queries[0].what, "first poses");
+}
+
+TEST_CASE("depths count where both results have them") {
+  Side a = sample(9);
+  Side b = a;
+  const Comparison without = compare(a, a);
+  CHECK_FALSE(without.differing_depths);
+  add_sample_depths(a.header, a.rows);
+  const Comparison one = compare(a, b);
+  CHECK(one.equal());
+  CHECK_FALSE(one.differing_depths);
+  REQUIRE(one.queries.size() == 1);
+
+  add_sample_depths(b.header, b.rows);
+  const Comparison same = compare(a, b);
+  CHECK(same.equal());
+  check_equal(same.differing_depths, 0u);
+
+  b.rows.depth[0] += 0.5;
+  b.rows.depth_source[4] -= 1;     // another free point at the same distance
+  b.rows.depth[7] = std::nan("");  // nothing is free any more
+  b.rows.depth_source[7] = Collisions::kNoPoint;
+  const Comparison differing = compare(a, b);
+  CHECK_FALSE(differing.equal());
+  check_equal(differing.differing_depths, 3u);
+  REQUIRE(differing.points.size() == 3);
+  for (const PointDifference& point : differing.points) CHECK(point.kind == Kind::kDepth);
+  CHECK(differing.points[0].depth_a == a.rows.depth[0]);
+  CHECK(differing.points[0].depth_b == b.rows.depth[0]);
+  CHECK(differing.points[1].depth_source_b == b.rows.depth_source[4]);
+  CHECK(differing.points[2].depth_source_b == Collisions::kNoPoint);
 }
 
 TEST_CASE("coordinates of the same point that differ are a difference") {

@@ -162,6 +162,43 @@ TEST_CASE("LAS holds the source's integers, scale, offset, CRS and first poses")
   }
 }
 
+TEST_CASE("LAS, PLY and CSV hold depths, also of points without a free one") {
+  Sample s = sample_to_export(GENERATE(false, true), 5);
+  add_sample_depths(s.header, s.rows);
+  const std::size_t pose_bytes = s.header.first_pose ? 4 : 0;
+  const auto check_at = [&](const std::string& bytes, std::size_t at, std::size_t row) {
+    const double depth = value_at<double>(bytes, at);
+    CHECK((depth == s.rows.depth[row] || (std::isnan(depth) && std::isnan(s.rows.depth[row]))));
+    CHECK(value_at<std::uint64_t>(bytes, at + 8) == s.rows.depth_source[row]);
+  };
+  const std::string las = exported(s, "out.las");
+  const auto points_at = value_at<std::uint32_t>(las, 96);
+  const auto las_bytes = value_at<std::uint16_t>(las, 105);
+  REQUIRE(las.size() == points_at + las_bytes * s.rows.size());
+  CHECK(las.find("depth_source") < points_at);
+  for (std::size_t i = 0; i < s.rows.size(); ++i) {
+    check_at(las, points_at + las_bytes * (i + 1) - 16, i);
+  }
+  const std::string csv = exported(s, "out.csv");
+  const auto table_rows = table(csv, ',');
+  CHECK(table_rows[0].back() == "depth_source");
+  CHECK(table_rows[0][table_rows[0].size() - 2] == "depth");
+  CHECK(std::stod(table_rows[1][4 + pose_bytes / 4]) == s.rows.depth[0]);
+  CHECK(std::stoull(table_rows[1].back()) == s.rows.depth_source[0]);
+  CHECK(csv.find(",,\n") != std::string::npos);  // without a free point
+  const std::string ply = exported(s, "out.ply");
+  const std::size_t rows_at = ply.find("end_header\n") + 11;
+  CHECK(ply.find("property double depth\n") < rows_at);
+  CHECK(ply.find("depth_source\n") < rows_at);
+  const std::size_t ply_bytes = (ply.size() - rows_at) / s.rows.size();
+  for (std::size_t i = 0; i < s.rows.size(); ++i) {
+    const std::size_t at = rows_at + ply_bytes * i;
+    REQUIRE(value_at<Vec3>(ply, at) == s.rows.xyz[i]);
+    const double depth = value_at<double>(ply, at + 24 + pose_bytes);
+    CHECK((depth == s.rows.depth[i] || (std::isnan(depth) && std::isnan(s.rows.depth[i]))));
+  }
+}
+
 TEST_CASE("a coordinate that is no multiple of the scale is refused as LAS, with its source") {
   Sample s = sample_to_export(false, 5);
   s.rows.xyz[3].y += 0.00005;

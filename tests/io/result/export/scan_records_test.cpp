@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstring>
 
 #include "clearway/error.hpp"
@@ -94,6 +95,27 @@ TEST_CASE("records of scans are copied with all their bytes") {
   }
   CHECK(record_value_at<std::int32_t>(bytes, points + 2 * (kOwn + 12)) ==
         7003);  // in the result's scale
+}
+
+TEST_CASE("copied records have depths behind the first pose, and before the distance") {
+  Scans scans;
+  add_sample_depths(scans.header, scans.rows);
+  const std::string bytes = scans.exported();
+  const auto points = record_value_at<std::uint32_t>(bytes, 96);
+  constexpr unsigned kRecord = kOwn + 4 + 16 + 8;
+  REQUIRE(record_value_at<std::uint16_t>(bytes, 105) == kRecord);
+  const std::size_t pose_at = bytes.find("first_pose"), depth_at = bytes.find("depth");
+  CHECK(pose_at < depth_at);
+  CHECK(bytes.find("depth_source") < points);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t at = points + i * kRecord + kOwn;
+    CHECK(record_value_at<std::uint32_t>(bytes, at) == scans.rows.first_pose[i]);
+    const double depth = record_value_at<double>(bytes, at + 4);
+    CHECK(std::isnan(depth) == (i == 2));
+    if (i < 2) CHECK(depth == scans.rows.depth[i]);
+    CHECK(record_value_at<std::uint64_t>(bytes, at + 12) == scans.rows.depth_source[i]);
+  }
+  check_equal(record_value_at<double>(bytes, points + kRecord + kOwn + 20), 0.25);
 }
 
 TEST_CASE("copied records are a LAS file that reads back as the result's points") {
