@@ -44,9 +44,10 @@ struct SmoothPath {
 /// Puts a cubic B-spline to a path by least squares, and poses on it. The number of its control
 /// points is doubled until it stays within the distance, and then bisected. model: the box of the
 /// model; required where rotations change. Throws UsageError for lengths that are not above 0,
-/// without a model that is required, and where no curve of a million control points stays within
-/// the distance; InputError for a path without poses, with a jump, or that scales or mirrors;
-/// Interrupted. docs/design/trajectory.md has the definitions.
+/// without a model that is required, and where no curve of eight control points for each pose,
+/// 65,536 at least and a million at most, stays within the distance; InputError for a path without
+/// poses, with a jump, or that scales or mirrors; Interrupted. docs/design/trajectory.md has the
+/// definitions.
 SmoothPath smooth_trajectory(std::span<const Pose> poses, const SmoothParameters& parameters,
                              const std::optional<Box>& model = {},
                              const ProgressCallback& progress = nullptr, StopFlag stop = nullptr);

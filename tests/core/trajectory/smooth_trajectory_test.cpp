@@ -281,6 +281,7 @@ TEST_CASE("what cannot be smoothed is refused") {
   refused(jump, {.within = 0.01}, kCar, "from pose 29 to pose 30");
   std::vector<Pose> mirrored = given;
   for (double& value : mirrored[7].rotation) value = -value;
+  refused(given, {.within = 1e-9}, kCar, "no curve of 65,536 control points");
   refused(mirrored, {.within = 0.01}, Box{{-1e-3, -1e-3, -1e-3}, {1e-3, 1e-3, 1e-3}}, "pose 7");
 }
 

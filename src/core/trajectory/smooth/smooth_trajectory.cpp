@@ -18,7 +18,13 @@
 namespace clearway {
 namespace {
 
-constexpr std::size_t kMostSpans = 1 << 20;
+/// The most spans that are tried for a path: more than any sensible distance needs, and so few that
+/// it takes seconds to find out that a distance cannot be kept.
+std::size_t most_spans(std::size_t poses) {
+  constexpr std::size_t kFew = 1 << 16, kMany = 1 << 20, kOfPose = 8;
+  return std::clamp(kOfPose * poses, kFew, kMany);
+}
+
 constexpr std::uint64_t kMostPoses = 10'000'000;
 /// The share of the distance that the curve may take. The rest is for the chords of the new path.
 constexpr double kCurveShare = 31.0 / 32;
@@ -148,8 +154,8 @@ class Smoothing {
   }
 
   [[noreturn]] void refuse_within() const {
-    throw UsageError("no curve of a million control points stays within " +
-                     format_number(parameters_.within) +
+    throw UsageError("no curve of " + format_count(most_spans(poses_.size())) +
+                     " control points stays within " + format_number(parameters_.within) +
                      " of the path; expected a greater distance");
   }
 
@@ -164,7 +170,7 @@ class Smoothing {
     std::size_t fails = 0, fits = 1;
     SmoothCurve best = curve_of(fits);
     while (!is_within(best)) {
-      if (fits >= kMostSpans) refuse_within();
+      if (fits >= most_spans(poses_.size())) refuse_within();
       fails = fits;
       fits *= 2;
       best = curve_of(fits);
