@@ -79,7 +79,7 @@ TEST_CASE("the parameter that differs from the file's is named with both values"
   require_success(datasets.run("--scenes hall"));
   const std::pair<std::string, std::string> differences[] = {
       {"--scenes hall --device-memory 3G", "differs in --device-memory: 2G in the file, 3G now"},
-      {"--scenes mine,hall", "differs in --scenes: hall in the file, mine,hall now"}};
+      {"--scenes hall --memory 5G", "differs in --memory: 4G in the file, 5G now"}};
   for (const auto& [options, difference] : differences) {
     check_outcome(datasets.run(options + " --resume"), 2, difference);
   }
@@ -88,6 +88,19 @@ TEST_CASE("the parameter that differs from the file's is named with both values"
   datasets.write(figures);
   check_outcome(datasets.run("--scenes hall --resume"), 2,
                 "differs in --repetitions: nothing in the file, 2 now");
+}
+
+TEST_CASE("a file is continued with other scenes") {
+  const Experiment datasets("datasets", 1);
+  require_success(datasets.run("--scenes hall"));
+  const Json before = datasets.figures();
+  require_success(datasets.run("--scenes tunnel,hall --resume"));
+  const Json after = datasets.figures();
+  check_json(after, R"({"parameters": {"scenes": ["hall", "tunnel"]}})");
+  REQUIRE(after["cases"].size() == 2 * before["cases"].size());
+  for (std::size_t i = 0; i < before["cases"].size(); ++i) {
+    CHECK(after["cases"][i] == before["cases"][i]);
+  }
 }
 
 TEST_CASE("scenes are chosen where an experiment is about any") {

@@ -25,7 +25,7 @@ void bench_table(Bench& bench) {
           scene + "/" + engine.name,
           {{"scene", scene}, {"engine", engine.name}, {"exact", engine.exact}}, files,
           engine.options,
-          [&](const std::filesystem::path& result) { return compared(result, reference); }, 1);
+          [&](const std::filesystem::path& result) { return compared(result, reference); });
       if (engine.exact) wrong.look_at(found);
     }
   }

@@ -26,6 +26,8 @@ Json read(const std::filesystem::path& path) {
 /// The parameter that may differ between the runs of an experiment; each case that a limit stopped
 /// keeps that limit.
 constexpr const char* kLimit = "limit";
+/// The parameter that grows: a file may be continued with other scenes.
+constexpr const char* kScenes = "scenes";
 
 std::string plain_text(const Json& value) {
   if (value.is_null()) return "nothing";
@@ -53,7 +55,7 @@ void check_same(const std::filesystem::path& path, const std::string& name, cons
   both.update(earlier);
   for (const auto& [inner, either] : both.items()) {
     const std::string full = name == "parameters" ? option_of(inner) : name + " " + inner;
-    if (full == option_of(kLimit)) continue;
+    if (full == option_of(kLimit) || full == option_of(kScenes)) continue;
     check_same(path, full, earlier.value(inner, Json()), now.value(inner, Json()));
   }
 }
@@ -82,6 +84,12 @@ Record::Record(std::filesystem::path path, const Json& header, bool resume, bool
     for (const auto& [name, value] : header.items()) {
       check_same(path_, name, earlier.value(name, Json()), value);
     }
+    Json& scenes = all_["parameters"][kScenes];
+    Json both = earlier.value("parameters", Json()).value(kScenes, Json::array());
+    for (const Json& scene : scenes) {
+      if (std::find(both.begin(), both.end(), scene) == both.end()) both.push_back(scene);
+    }
+    scenes = std::move(both);
     all_["cases"] = std::move(earlier["cases"]);
   }
   write();

@@ -14,7 +14,8 @@ class Record {
  public:
   /// header: experiment, size, machine, clearway, parameters. An existing file is refused with
   /// UsageError unless `force`, which replaces it, or `resume`, which continues it where its header
-  /// is equal except for the parameter "limit" (seconds).
+  /// is equal except for the parameters "limit" (seconds) and "scenes", to which those of
+  /// `header` are added.
   Record(std::filesystem::path path, const Json& header, bool resume, bool force);
 
   bool empty() const { return all_["cases"].empty(); }

@@ -14,7 +14,6 @@
 #include <tuple>
 
 #include "bench/peers/programs/peer.hpp"
-#include "core/geometry/predicate.hpp"
 
 namespace clearway::bench {
 namespace {
@@ -68,19 +67,17 @@ class Cgal : public Peer {
             {"version", CGAL_VERSION_STR},
             {"settings",
              "Kd_tree of doubles with cached coordinates, built by all threads, "
-             "Fuzzy_sphere with epsilon 0, poses in parallel"}};
+             "Fuzzy_sphere with epsilon 0, places in parallel"}};
   }
 
   void search(std::span<const Pose> poses, std::span<const Vec3> model, Marks& marks) override {
     // A sphere includes its boundary, so the largest radius below ours gives what is nearer.
     const double radius = std::nextafter(options_.radius, 0.0);
-#pragma omp parallel for schedule(dynamic, 1) num_threads(options_.threads)
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      for (const Vec3& m : model) {
-        const Vec3 at = transform(poses[i], m);
+    search_places(poses, model, options_.threads, [&] {
+      return [&](const Vec3& at) {
         tree_.search(Marker(marks), Sphere(Point(at.x, at.y, at.z), radius, 0.0, tree_.traits()));
-      }
-    }
+      };
+    });
   }
 
  private:

@@ -4,7 +4,6 @@
 
 #include "bench/peers/nanoflann_tree.hpp"
 #include "bench/peers/programs/peer.hpp"
-#include "core/geometry/predicate.hpp"
 
 namespace clearway::bench {
 namespace {
@@ -39,24 +38,22 @@ class Nanoflann : public Peer {
     return {{"name", "nanoflann"},
             {"version", NANOFLANN_VERSION},
             {"settings",
-             "double, leaves of 12 points, callback for each point found, poses in "
-             "parallel"}};
+             "double, leaves of 12 points, a callback for each point found, places in "
+             "parallel; the tree is built by one thread"}};
   }
 
   void search(std::span<const Pose> poses, std::span<const Vec3> model, Marks& marks) override {
-#pragma omp parallel for schedule(dynamic, 1) num_threads(options_.threads)
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      MarkingResult result(rounded_product(options_.radius, options_.radius), marks);
-      for (const Vec3& m : model) {
-        const Vec3 at = transform(poses[i], m);
+    const double radius_squared = rounded_product(options_.radius, options_.radius);
+    search_places(poses, model, options_.threads, [&] {
+      return [this, result = MarkingResult(radius_squared, marks)](const Vec3& at) mutable {
         const double place[3] = {at.x, at.y, at.z};
 #if NANOFLANN_VERSION >= 0x150
         tree_.radiusSearchCustomCallback(place, result);
 #else
         tree_.radiusSearchCustomCallback(place, result, nanoflann::SearchParams(0, 0, false));
 #endif
-      }
-    }
+      };
+    });
   }
 
  private:

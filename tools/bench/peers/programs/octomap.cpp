@@ -6,6 +6,7 @@
 #include <octomap/octomap.h>
 
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <unordered_map>
 
 #include "bench/peers/programs/peer.hpp"
@@ -18,9 +19,16 @@ using Object = fcl::CollisionObject<double>;
 class Octomap : public Peer {
  public:
   Octomap(std::span<const Vec3> points, const PeerOptions& options)
-      : options_(options), map_(std::make_shared<octomap::OcTree>(options.cell)) {
+      : options_(options),
+        origin_(middle_of(points)),
+        map_(std::make_shared<octomap::OcTree>(options.cell)) {
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const octomap::OcTreeKey key = map_->coordToKey(points[i].x, points[i].y, points[i].z);
+      const Vec3 p{points[i].x - origin_.x, points[i].y - origin_.y, points[i].z - origin_.z};
+      octomap::OcTreeKey key;
+      // Without the check, keys beyond 16 bits wrap around without a word.
+      if (!map_->coordToKeyChecked(p.x, p.y, p.z, key)) {
+        throw std::runtime_error("octomap: the scan is larger than 65,536 voxels");
+      }
       const auto [at, is_new] = voxel_of_.try_emplace(key, points_of_.size());
       if (is_new) {
         points_of_.emplace_back();
@@ -76,13 +84,13 @@ class Octomap : public Peer {
     Marks* voxels;
   };
 
-  static fcl::Transform3d transform_of(const Pose& pose) {
+  fcl::Transform3d transform_of(const Pose& pose) const {
     fcl::Transform3d out = fcl::Transform3d::Identity();
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 3; ++column) {
         out.linear()(row, column) = pose.rotation[3 * row + column];
       }
-      out.translation()[row] = pose.translation[row];
+      out.translation()[row] = pose.translation[row] - origin_[row];
     }
     return out;
   }
@@ -102,6 +110,7 @@ class Octomap : public Peer {
   }
 
   PeerOptions options_;
+  Vec3 origin_;
   std::shared_ptr<octomap::OcTree> map_;
   std::shared_ptr<fcl::OcTree<double>> tree_;
   std::unordered_map<octomap::OcTreeKey, std::size_t, octomap::OcTreeKey::KeyHash> voxel_of_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -9,6 +10,7 @@
 
 #include "clearway/pose.hpp"
 #include "clearway/vec3.hpp"
+#include "core/geometry/predicate.hpp"
 
 namespace clearway::bench {
 
@@ -52,6 +54,30 @@ class Peer {
   /// called again.
   virtual void search(std::span<const Pose> poses, std::span<const Vec3> model, Marks& marks) = 0;
 };
+
+/// Calls search(place) for the places of all model points at all poses. make() makes the `search` of
+/// one thread. A pose is shared by several threads, so that a few poses keep all of them busy.
+template <typename Make>
+void search_places(std::span<const Pose> poses, std::span<const Vec3> model, int threads,
+                   Make make) {
+  constexpr std::size_t kPart = 2048;
+  const std::size_t parts = (model.size() + kPart - 1) / kPart;
+#pragma omp parallel num_threads(threads)
+  {
+    auto search = make();
+#pragma omp for schedule(dynamic, 1)
+    for (std::size_t task = 0; task < poses.size() * parts; ++task) {
+      const std::size_t first = task % parts * kPart;
+      for (const Vec3& m : model.subspan(first, std::min(kPart, model.size() - first))) {
+        search(transform(poses[task / parts], m));
+      }
+    }
+  }
+}
+
+/// The middle of the points. Floats and the keys of an octree have room near zero only, so those
+/// who use them take coordinates from there.
+Vec3 middle_of(std::span<const Vec3> points);
 
 /// Prepares the search of these points, which outlive it. Defined by each program.
 std::unique_ptr<Peer> make_peer(std::span<const Vec3> points, const PeerOptions& options);

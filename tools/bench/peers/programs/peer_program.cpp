@@ -18,6 +18,7 @@
 #include "bench/peers/programs/peer.hpp"
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
+#include "core/geometry/box.hpp"
 #include "core/util/progress.hpp"
 #include "cpu/kdtree_engine.hpp"
 #include "io/store/store_reader.hpp"
@@ -134,6 +135,11 @@ nlohmann::json run(const Arguments& arguments) {
       arguments.model, {.spacing = arguments.options.radius / 4});  // as in clearway run
   const std::vector<Pose> all = read_trajectory(arguments.trajectory, {});
 
+  if (arguments.every > all.size()) {
+    throw std::runtime_error("--every-pose " + std::to_string(arguments.every) +
+                             ": the trajectory has " + std::to_string(all.size()) + " poses");
+  }
+
   const double before = peak_bytes();
   auto start = Clock::now();
   const std::unique_ptr<Peer> peer = make_peer(points.positions, arguments.options);
@@ -201,6 +207,15 @@ int run_program(int argc, char** argv) {
 }
 
 }  // namespace
+
+Vec3 middle_of(std::span<const Vec3> points) {
+  Box box{points[0], points[0]};
+  for (const Vec3& p : points) box = box.united(Box{p, p});
+  Vec3 middle;
+  for (int k = 0; k < 3; ++k) middle[k] = (box.lo[k] + box.hi[k]) / 2;
+  return middle;
+}
+
 }  // namespace clearway::bench
 
 int main(int argc, char** argv) {

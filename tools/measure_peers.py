@@ -1,0 +1,116 @@
+#!/usr/bin/python3
+"""Measures other libraries on one scene, and adds what they gave to a file.
+
+They are the programs of tools/bench/peers/programs, which are in the folder of clearway; those that
+were not built are named. A case that the file has already is not measured again, so what was stopped
+goes on. One that fails, or takes longer than --patience in all, is kept with what it said.
+Example: tools/measure_peers.py build/release/tools --scene hall --env hall.h5 \\
+             --model hall/model.ply --trajectory hall/trajectory.txt -o peers.json
+tools/charts.py draws the file.
+"""
+
+import argparse
+import json
+import os
+import resource
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from trials.header import header
+
+PEERS = ("nanoflann", "cgal", "pcl", "open3d", "octomap")
+
+
+def words(text):
+    return text.split(",")
+
+
+def run(command, options):
+    """What a peer printed, as findings, or how it failed."""
+    def bound():
+        if options.memory:
+            resource.setrlimit(resource.RLIMIT_AS, (options.memory << 30, options.memory << 30))
+
+    start = time.monotonic()
+    try:
+        done = subprocess.run([str(word) for word in command], capture_output=True, text=True,
+                              timeout=options.patience, preexec_fn=bound, check=False)
+    except subprocess.TimeoutExpired:
+        return {"failed": {"after_seconds": time.monotonic() - start, "limit": options.patience}}
+    if done.returncode != 0:
+        return {"failed": {"exit_code": done.returncode, "log": done.stderr.strip()[-500:]}}
+    return {"findings": json.loads(done.stdout)}
+
+
+def cases(options):
+    """The parameters of each case, and its command."""
+    for name in options.peers:
+        program = options.programs / f"peer_{name}"
+        if not program.exists():
+            print(f"{program}: not built, since its library was not found", file=sys.stderr)
+            continue
+        for cell in options.cells if name == "octomap" else [None]:
+            command = [program, "--env", options.env, "--model", options.model, "--trajectory",
+                       options.trajectory, "--radius", options.radius, "--threads",
+                       options.threads, "--limit", options.limit]
+            parameters = {"scene": options.scene, "peer": name, "threads": options.threads,
+                          "radius": options.radius}
+            if cell is not None:
+                parameters["cell"] = float(cell)
+                command += ["--cell", cell]
+            yield parameters, command
+
+
+def said(case):
+    """One line of a case."""
+    if "failed" in case:
+        return f"{case['key']}: failed: {case['failed']}"
+    found = case["findings"]
+    return (f"{case['key']}: {found['all_poses_seconds']:.3g} s for all poses, one in "
+            f"{found['every_pose']} searched; {found['false_hits']} false hits, "
+            f"{found['misses']} misses of {found['colliding_points']}; prepared in "
+            f"{found['prepare_seconds']:.1f} s")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("programs", type=Path, help="folder of clearway and the peers")
+    parser.add_argument("--scene", required=True, help="name of the scene in the file")
+    for name in ("--env", "--model", "--trajectory"):
+        parser.add_argument(name, required=True, help="as of clearway run")
+    parser.add_argument("-o", "--output", type=Path, required=True, help="the figures, a JSON file")
+    parser.add_argument("--size", default="small", help="as of clearway-bench: small or full")
+    parser.add_argument("--radius", type=float, default=0.1, help="metres")
+    parser.add_argument("--threads", type=int, default=len(os.sched_getaffinity(0)))
+    parser.add_argument("--limit", type=float, default=60,
+                        help="seconds of a search; where all poses take longer, every n-th is "
+                             "searched, and the time is scaled")
+    parser.add_argument("--patience", type=float, default=600,
+                        help="seconds of a peer in all, its preparation included")
+    parser.add_argument("--memory", type=int, help="GiB that a peer may have (default: no bound)")
+    parser.add_argument("--peers", type=words, default=list(PEERS), help="default: all")
+    parser.add_argument("--cells", type=words, default=["0.1", "0.05", "0.02", "0.01"],
+                        help="edges of OctoMap's voxels in metres")
+    options = parser.parse_args()
+    record = (json.loads(options.output.read_text()) if options.output.exists() else
+              {**header("peers", options.programs / "clearway", options.size), "cases": []})
+    known = {case["key"] for case in record["cases"]}
+    for parameters, command in cases(options):
+        name = " ".join([parameters["peer"], *(f"{cell} m" for cell in [parameters.get("cell")]
+                                               if cell)])
+        key = f"{options.scene}/{name}/{options.threads} threads"
+        if key in known:
+            continue
+        case = {"key": key, "parameters": parameters, **run(command, options)}
+        record["cases"].append(case)
+        part = options.output.with_suffix(".part")
+        part.write_text(json.dumps(record, indent=1) + "\n")
+        part.replace(options.output)
+        print(said(case), flush=True)
+
+
+if __name__ == "__main__":
+    main()
