@@ -15,6 +15,8 @@ import os
 import resource
 import subprocess
 import sys
+import tempfile
+import threading
 import time
 from pathlib import Path
 
@@ -27,21 +29,54 @@ def words(text):
     return text.split(",")
 
 
-def run(command, options):
-    """What a peer printed, as findings, or how it failed."""
-    def bound():
-        if options.memory:
-            resource.setrlimit(resource.RLIMIT_AS, (options.memory << 30, options.memory << 30))
+class Running:
+    """A peer that prepares its search and then waits for its turn, so that all can prepare at the
+    same time, and each searches alone."""
 
-    start = time.monotonic()
-    try:
-        done = subprocess.run([str(word) for word in command], capture_output=True, text=True,
-                              timeout=options.patience, preexec_fn=bound, check=False)
-    except subprocess.TimeoutExpired:
-        return {"failed": {"after_seconds": time.monotonic() - start, "limit": options.patience}}
-    if done.returncode != 0:
-        return {"failed": {"exit_code": done.returncode, "log": done.stderr.strip()[-500:]}}
-    return {"findings": json.loads(done.stdout)}
+    def __init__(self, key, parameters, command, options):
+        def bound():
+            if options.memory:
+                resource.setrlimit(resource.RLIMIT_AS, (options.memory << 30, options.memory << 30))
+
+        self.case = {"key": key, "parameters": parameters}
+        self.patience = options.patience
+        self.start = time.monotonic()
+        self.stopped_after = None
+        self.out = tempfile.TemporaryFile("w+")
+        self.process = subprocess.Popen(
+            [str(word) for word in [*command, "--wait"]], stdin=subprocess.PIPE, stdout=self.out,
+            stderr=subprocess.PIPE, text=True, preexec_fn=bound)
+        self.stopper = threading.Timer(options.patience, self.stop)
+        self.stopper.start()
+
+    def stop(self):
+        self.stopped_after = time.monotonic() - self.start
+        self.process.kill()
+
+    def prepared(self):
+        """Waits until the search is prepared, or has failed, with what was said by then."""
+        said = []
+        for line in self.process.stderr:
+            if line == "prepared\n":
+                break
+            said.append(line)
+        return "".join(said)
+
+    def search(self, said):
+        """The case with its findings, or how it failed."""
+        try:
+            _, log = self.process.communicate("go on\n")
+        except BrokenPipeError:
+            _, log = self.process.communicate()
+        self.stopper.cancel()
+        if self.stopped_after:
+            failed = {"after_seconds": self.stopped_after, "limit": self.patience}
+        elif self.process.returncode != 0:
+            failed = {"exit_code": self.process.returncode, "log": (said + log).strip()[-500:]}
+        else:
+            self.out.seek(0)
+            return {**self.case, "findings": json.load(self.out)}
+        return {**self.case, "failed": failed}
 
 
 def cases(options):
@@ -63,7 +98,7 @@ def cases(options):
             yield parameters, command
 
 
-def said(case):
+def line_of(case):
     """One line of a case."""
     if "failed" in case:
         return f"{case['key']}: failed: {case['failed']}"
@@ -91,6 +126,9 @@ def main():
     parser.add_argument("--patience", type=float, default=600,
                         help="seconds of a peer in all, its preparation included")
     parser.add_argument("--memory", type=int, help="GiB that a peer may have (default: no bound)")
+    parser.add_argument("--together", type=int, default=1,
+                        help="peers that prepare their searches at the same time; each searches "
+                             "alone")
     parser.add_argument("--peers", type=words, default=list(PEERS), help="default: all")
     parser.add_argument("--cells", type=words, default=["0.1", "0.05", "0.02", "0.01"],
                         help="edges of OctoMap's voxels in metres")
@@ -98,18 +136,22 @@ def main():
     record = (json.loads(options.output.read_text()) if options.output.exists() else
               {**header("peers", options.programs / "clearway", options.size), "cases": []})
     known = {case["key"] for case in record["cases"]}
+    peers = []
     for parameters, command in cases(options):
         name = " ".join([parameters["peer"], *(f"{cell} m" for cell in [parameters.get("cell")]
                                                if cell)])
         key = f"{options.scene}/{name}/{options.threads} threads"
-        if key in known:
-            continue
-        case = {"key": key, "parameters": parameters, **run(command, options)}
-        record["cases"].append(case)
-        part = options.output.with_suffix(".part")
-        part.write_text(json.dumps(record, indent=1) + "\n")
-        part.replace(options.output)
-        print(said(case), flush=True)
+        if key not in known:
+            peers.append((key, parameters, command))
+    for first in range(0, len(peers), options.together):
+        running = [Running(*peer, options) for peer in peers[first:first + options.together]]
+        said = [peer.prepared() for peer in running]
+        for peer, text in zip(running, said):
+            record["cases"].append(peer.search(text))
+            part = options.output.with_suffix(".part")
+            part.write_text(json.dumps(record, indent=1) + "\n")
+            part.replace(options.output)
+            print(line_of(record["cases"][-1]), flush=True)
 
 
 if __name__ == "__main__":

@@ -51,29 +51,14 @@ class Octomap : public Peer {
   }
 
   void search(std::span<const Pose> poses, std::span<const Vec3> model, Marks& marks) override {
-    std::vector<std::unique_ptr<Object>> spheres;
-    std::vector<Object*> all;
-    const auto sphere = std::make_shared<fcl::Sphere<double>>(options_.radius);
-    for (const Vec3& m : model) {
-      spheres.push_back(std::make_unique<Object>(sphere, fcl::Matrix3d::Identity(),
-                                                 fcl::Vector3d(m.x, m.y, m.z)));
-      all.push_back(spheres.back().get());
-    }
-    fcl::DynamicAABBTreeCollisionManager<double> manager;
-    manager.octree_as_geometry_collide = false;  // voxels are passed on one by one
-    manager.registerObjects(all);
-    manager.setup();
+    if (spheres_.empty()) set_model(model);
     Marks voxels(points_of_.size());
 #pragma omp parallel for schedule(dynamic, 1) num_threads(options_.threads)
     for (std::size_t i = 0; i < poses.size(); ++i) {
       // The model stays, and the map is moved into its frame.
-      Found found{this, transform_of(poses[i]), &voxels};
+      Found found{this, transform_of(poses[i]), &voxels, &marks};
       Object map(tree_, found.pose.inverse(Eigen::Isometry));
-      manager.collide(&map, &found, &touch);
-    }
-    for (std::size_t v = 0; v < points_of_.size(); ++v) {
-      if (!voxels.contains(v)) continue;
-      for (const std::uint32_t point : points_of_[v]) marks.mark(point);
+      manager_.collide(&map, &found, &touch);
     }
   }
 
@@ -82,7 +67,21 @@ class Octomap : public Peer {
     const Octomap* peer;
     fcl::Transform3d pose;
     Marks* voxels;
+    Marks* points;
   };
+
+  void set_model(std::span<const Vec3> model) {
+    std::vector<Object*> all;
+    const auto sphere = std::make_shared<fcl::Sphere<double>>(options_.radius);
+    for (const Vec3& m : model) {
+      spheres_.push_back(std::make_unique<Object>(sphere, fcl::Matrix3d::Identity(),
+                                                  fcl::Vector3d(m.x, m.y, m.z)));
+      all.push_back(spheres_.back().get());
+    }
+    manager_.octree_as_geometry_collide = false;  // voxels are passed on one by one
+    manager_.registerObjects(all);
+    manager_.setup();
+  }
 
   fcl::Transform3d transform_of(const Pose& pose) const {
     fcl::Transform3d out = fcl::Transform3d::Identity();
@@ -105,7 +104,9 @@ class Octomap : public Peer {
     if (at == peer.voxel_of_.end() || found.voxels->contains(at->second)) return false;
     fcl::CollisionRequest<double> request;
     fcl::CollisionResult<double> result;
-    if (fcl::collide(a, b, request, result) > 0) found.voxels->mark(at->second);
+    if (fcl::collide(a, b, request, result) == 0) return false;
+    found.voxels->mark(at->second);
+    for (const std::uint32_t point : peer.points_of_[at->second]) found.points->mark(point);
     return false;
   }
 
@@ -115,6 +116,8 @@ class Octomap : public Peer {
   std::shared_ptr<fcl::OcTree<double>> tree_;
   std::unordered_map<octomap::OcTreeKey, std::size_t, octomap::OcTreeKey::KeyHash> voxel_of_;
   std::vector<std::vector<std::uint32_t>> points_of_;  ///< of each voxel
+  std::vector<std::unique_ptr<Object>> spheres_;       ///< the model, made by the first search
+  fcl::DynamicAABBTreeCollisionManager<double> manager_;  ///< of the spheres
 };
 
 }  // namespace

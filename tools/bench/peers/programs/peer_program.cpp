@@ -12,8 +12,10 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string>
 
 #include "bench/peers/programs/peer.hpp"
 #include "clearway/model.hpp"
@@ -32,6 +34,7 @@ struct Arguments {
   double limit = 60;
   int repetitions = 3;
   std::size_t every = 0;
+  bool wait = false;
 };
 
 using Clock = std::chrono::steady_clock;
@@ -128,6 +131,13 @@ void write_ids(const std::filesystem::path& path, const Marks& marks, const Poin
   if (!out.flush()) throw std::runtime_error(path.string() + ": cannot write");
 }
 
+/// Says that the search is prepared, and waits for a line from the caller.
+void wait_for_turn() {
+  std::fprintf(stderr, "prepared\n");
+  std::string line;
+  if (!std::getline(std::cin, line)) throw std::runtime_error("--wait: no line came");
+}
+
 nlohmann::json run(const Arguments& arguments) {
   const StoreReader store(arguments.environment);
   const Points points = points_of(store);
@@ -144,6 +154,7 @@ nlohmann::json run(const Arguments& arguments) {
   auto start = Clock::now();
   const std::unique_ptr<Peer> peer = make_peer(points.positions, arguments.options);
   const double prepare = seconds_since(start);
+  if (arguments.wait) wait_for_turn();
   const int threads = arguments.options.threads;
   const std::size_t every = arguments.every > 0 ? arguments.every
                                                 : poses_within(arguments.limit, *peer, all, model,
@@ -199,6 +210,8 @@ int run_program(int argc, char** argv) {
   app.add_option("--every-pose", arguments.every, "Search every n-th pose (default: by --limit)");
   app.add_option("--repetitions", arguments.repetitions, "Searches; the median counts")
       ->capture_default_str();
+  app.add_flag("--wait", arguments.wait,
+               "Say on standard error that the search is prepared, and wait for a line");
   app.add_option("--ids", arguments.ids,
                  "File of the source indices that were found, 8 bytes each");
   CLI11_PARSE(app, argc, argv);
