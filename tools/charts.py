@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Draws the JSON files of `clearway-bench`, tools/certainty.py and tools/check_cost.py, each as
-SVG and PNG named as its experiment.
+"""Draws the JSON files of `clearway-bench`, tools/certainty.py, tools/check_cost.py and
+tools/measure_peers.py, each as SVG and PNG named as its experiment.
 
 Reads *.json, and *.json.gz as `gzip` makes them. Other JSON files are left out.
 Needs matplotlib and numpy (Debian: python3-matplotlib).
@@ -11,14 +11,15 @@ import argparse
 import sys
 from pathlib import Path
 
-from charting import (accuracy, certainty, check, datasets, grid, points, scaling, section, seen,
-                      stability, surfaces, table, threads)
+from charting import (accuracy, certainty, check, datasets, grid, peers, points, scaling, section,
+                      seen, share, stability, surfaces, table, threads)
 from charting.record import read_record
 
 FIGURES = {"table": table, "threads": threads, "grid": grid, "datasets": datasets,
            "points": points, "accuracy": accuracy, "stability": stability, "scaling": scaling,
            "surfaces": surfaces, "seen": seen, "section": section, "certainty": certainty,
-           "check": check}
+           "check": check, "peers": peers, "share": share}
+TABLES = (table, peers, points, share)  # those that are also made as text
 
 
 def files_in(folder):
@@ -43,11 +44,15 @@ def main():
         if not record.cases:
             print(f"{record.path}: has no cases yet", file=sys.stderr)
             continue
-        for path in FIGURES[record.experiment].draw(record).save(output):
+        figure = FIGURES[record.experiment]
+        beside = [other for other in records if other.experiment == "table"]
+        sheet = figure.draw(record, *beside[:1]) if figure is peers else figure.draw(record)
+        for path in sheet.save(output):
             print(path)
-        if record.experiment == "table":
-            (output / "table.md").write_text(table.markdown(record))
-            print(output / "table.md")
+        if figure in TABLES:
+            text = output / f"{record.experiment}.md"
+            text.write_text(figure.markdown(record))
+            print(text)
 
 
 if __name__ == "__main__":

@@ -40,6 +40,8 @@ constexpr Experiment kExperiments[] = {
     {"accuracy", bench_accuracy, "Time and misclassified points, exact and approximate"},
     {"stability", bench_stability, "Where methods fail: origin, sparseness, radius, memory, poses"},
     {"scaling", bench_scaling, "Time by poses, model points, radius and cell size"},
+    {"share", bench_share,
+     "What share of a scene a search touches, and what touching more than that would cost", true},
     {"hard", bench_hard, "Time of the sweep and the k-d tree on cases that are hard for a sweep"},
     {"equality", bench_equality,
      "Compares the results of all engines, devices and modes with the sweep's on the CPU, byte by "
@@ -159,7 +161,7 @@ const CLI::Option* add_scenes(CLI::App& command, BenchOptions& options) {
   return command
       .add_option(
           "--scenes", options.scenes,
-          "Scenes, for table, datasets, equality, choice, shards, seen and section (default: all)")
+          "Scenes, for table, datasets, share, equality, choice, shards, seen and section (default: all)")
       ->delimiter(',')
       ->check(CLI::IsMember({"mine", "hall", "plant", "tunnel"}));
 }

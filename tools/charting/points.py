@@ -8,6 +8,76 @@ from charting.plot import (handle_of, legend_in, line, log_axis, panels, room_fo
 from charting.sheet import Sheet
 from charting.style import engine_style
 
+RESAMPLES = 4000  # of the bootstrap
+
+
+def medians(cases):
+    """Points and median seconds of the search of each sample."""
+    cases = [case for case in cases if case.runs]
+    return (np.array([case["points"] for case in cases], float),
+            np.array([np.median(case.seconds("search")) for case in cases]))
+
+
+def bend(points, seconds):
+    """How far the time bends from linear (0) to n log n (1): of a fixed time and a time per point
+    that grows with the logarithm of n, fitted to relative errors, that growth over what n log n
+    has."""
+    most = np.log(points.max())
+    terms = np.stack([np.ones_like(points), points, points * np.log(points / points.max())], 1)
+    (_, linear, growing), *_ = np.linalg.lstsq(terms / seconds[:, None], np.ones_like(points),
+                                               rcond=None)
+    return growing / linear * most
+
+
+def residuals(points, seconds):
+    """The root mean square of relative residuals: of a line, and of n log n, both with a fixed
+    time."""
+    out = []
+    for term in (points, points * np.log(points)):
+        terms = np.stack([np.ones_like(points), term], 1) / seconds[:, None]
+        fit, *_ = np.linalg.lstsq(terms, np.ones_like(points), rcond=None)
+        out.append(np.sqrt(np.mean((terms @ fit - 1) ** 2)))
+    return out
+
+
+def interval(points, seconds):
+    """The middle 95 % of what bend() gives for samples drawn anew."""
+    chance = np.random.default_rng(1)
+    bends = []
+    for _ in range(RESAMPLES):
+        drawn = chance.integers(len(points), size=len(points))
+        bends.append(bend(points[drawn], seconds[drawn]))
+    return np.percentile(bends, [2.5, 97.5])
+
+
+def answer_of(low, high):
+    """What an interval of bend() says."""
+    if low <= 0 <= high:
+        return "cannot be told apart" if high >= 1 else "linear"
+    if high < 0:
+        return "less than linear"
+    return "n log n" if low <= 1 <= high else "between" if high < 1 else "more than n log n"
+
+
+def markdown(record):
+    """Whether the time is linear or n log n, as a Markdown table."""
+    lines = ["| engine | samples | linear: residual | n log n: residual | bend (95 %) | answer |",
+             "|---|---|---|---|---|---|"]
+    for name in record.names("engine"):
+        points, seconds = medians(record.where(engine=name))
+        if len(points) < 8:
+            continue
+        line, curve = residuals(points, seconds)
+        low, high = interval(points, seconds)
+        answer = answer_of(low, high)
+        lines.append(f"| {name} | {len(points)} | {100 * line:.1f} % | {100 * curve:.1f} % | "
+                     f"{bend(points, seconds):.2f} ({low:.2f} to {high:.2f}) | {answer} |")
+    lines += ["", "The search by the number of environment points. Residual: root mean square of the "
+              "relative residuals of a fixed time and a term. Bend: of a fixed time and a time per "
+              "point that grows with the logarithm of n, how much it grows: 0 is linear, 1 is n "
+              f"log n; in brackets the middle 95 % of {RESAMPLES} bootstrap samples."]
+    return "\n".join(lines) + "\n"
+
 
 def draw(record):
     engines = record.names("engine")

@@ -173,6 +173,7 @@ void bench_points(Bench& bench);
 void bench_accuracy(Bench& bench);
 void bench_stability(Bench& bench);
 void bench_scaling(Bench& bench);
+void bench_share(Bench& bench);
 void bench_hard(Bench& bench);
 void bench_equality(Bench& bench);
 void bench_choice(Bench& bench);

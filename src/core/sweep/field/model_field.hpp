@@ -63,6 +63,8 @@ class ModelField {
   double inside_rounding() const { return inside_ ? inside_->rounding() : 0; }
   /// Number of bricks, including those not yet made.
   std::uint64_t bricks() const { return bricks_; }
+  /// Number of bricks that have been made. Must not be called during a search.
+  std::uint64_t made_bricks() const;
   /// Memory of the whole field in bytes, which counts all bricks, made or not.
   std::uint64_t allocated_bytes() const;
 

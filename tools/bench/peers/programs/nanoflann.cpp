@@ -36,7 +36,7 @@ class Nanoflann : public Peer {
 
   nlohmann::json about() const override {
     return {{"name", "nanoflann"},
-            {"version", NANOFLANN_VERSION},
+            {"version", CLEARWAY_NANOFLANN_VERSION},
             {"settings",
              "double, leaves of 12 points, a callback for each point found, places in "
              "parallel; the tree is built by one thread"}};

@@ -3,6 +3,7 @@
 
 #include <omp.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -50,6 +51,13 @@ double peak_bytes() {
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
+/// The memory that the process has now.
+double resident_bytes() {
+  std::uint64_t total = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> total >> resident;
+  return static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
 std::vector<Pose> every_nth(std::span<const Pose> poses, std::size_t n) {
   std::vector<Pose> out;
   for (std::size_t i = 0; i < poses.size(); i += n) out.push_back(poses[i]);
@@ -90,6 +98,10 @@ struct Points {
 
 Points points_of(const StoreReader& store) {
   Points out;
+  const std::uint64_t count = store.point_count();
+  out.positions.reserve(count);
+  out.slots.reserve(count);
+  out.sources.reserve(count);
   for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
     const auto chunks = store.coordinates(cell);
     const auto sources = store.sources(cell);
@@ -150,7 +162,7 @@ nlohmann::json run(const Arguments& arguments) {
                              ": the trajectory has " + std::to_string(all.size()) + " poses");
   }
 
-  const double before = peak_bytes();
+  const double before = resident_bytes();
   auto start = Clock::now();
   const std::unique_ptr<Peer> peer = make_peer(points.positions, arguments.options);
   const double prepare = seconds_since(start);
@@ -187,7 +199,7 @@ nlohmann::json run(const Arguments& arguments) {
   out["search_seconds"] = seconds;
   out["all_poses_seconds"] = sorted[sorted.size() / 2] * static_cast<double>(all.size()) /
                              static_cast<double>(poses.size());
-  out["peak_bytes_of_peer"] = peak - before;
+  out["peak_bytes_of_peer"] = std::max(0.0, peak - before);
   return out;
 }
 

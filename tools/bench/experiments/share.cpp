@@ -1,0 +1,158 @@
+// What share of a scene a search touches, and what touching more than that would cost.
+#include <algorithm>
+#include <numeric>
+
+#include "bench/experiments/bench.hpp"
+#include "clearway/model.hpp"
+#include "clearway/trajectory.hpp"
+#include "core/util/stopwatch.hpp"
+#include "cpu/sweep_engine.hpp"
+#include "io/files/thread_limit.hpp"
+#include "io/store/storereader.hpp"
+#include "search/kinds/sweep_kind.hpp"
+#include "search/page_search.hpp"
+
+namespace clearway::bench {
+namespace {
+
+/// What a search is made to do although it need not.
+struct Forced {
+  bool all_cells = false;    ///< reads and searches every cell
+  bool whole_field = false;  ///< makes every brick of the model field
+};
+
+/// The sweep on the CPU, which tells what it touched.
+class CountingKind final : public CpuSweepKindOf<Vec3> {
+ public:
+  CountingKind(const PackedCloud& cloud, const Query& query, const SearchOptions& options,
+               Forced forced)
+      : CpuSweepKindOf<Vec3>(cloud, query, options, {}), forced_(forced) {}
+
+  const PoseReach& build_index(const QueryTrees& trees, std::uint64_t most_bytes) override {
+    needs_.on_gpu = forced_.whole_field;  // a field for a GPU is made whole
+    const PoseReach& reach = CpuSweepKindOf<Vec3>::build_index(trees, most_bytes);
+    needs_.on_gpu = false;
+    return reach;
+  }
+
+  std::vector<PlannedCell> plan_cells(const PackedCloud& cloud,
+                                      const PoseReach& reach) const override {
+    if (!forced_.all_cells) return CpuSweepKindOf<Vec3>::plan_cells(cloud, reach);
+    std::vector<PlannedCell> cells(cloud.cells().size());
+    for (std::uint32_t i = 0; i < cells.size(); ++i) cells[i] = {i, {0}};
+    return cells;
+  }
+
+  void report_search(EngineList engines, SearchReport&, const MessageLog&) const override {
+    tests_ = dynamic_cast<const SweepEngine&>(*engines.front()).statistics();
+  }
+
+  const SweepStatistics& tests() const { return tests_; }
+  const ModelField& field() const { return *field_; }
+
+ private:
+  Forced forced_;
+  mutable SweepStatistics tests_;
+};
+
+class Share {
+ public:
+  Share(Bench& bench, const std::string& scene)
+      : bench_(bench),
+        scene_(scene),
+        files_(bench.scene(scene)),
+        query_(read_model(files_.model, {.radius = kMetres}), read_trajectory(files_.trajectory, {}),
+               {.radius = kMetres}) {
+    options_.threads = threads_or_all(0);
+    options_.device = Device::kCpu;
+    options_.engine = Engine::kSweep;
+  }
+
+  void measure() {
+    keep("as it is", [&] { return repeated({}); });
+    keep("all cells", [&] { return repeated({.all_cells = true}); });
+    keep("whole field", [&] { return repeated({.whole_field = true}); });
+    keep("poses one by one", [&] { return one_by_one(); });
+    if (!bench_.cuda()) return;
+    bench_.measure(scene_ + "/GPU", {{"scene", scene_}, {"way", "GPU"}}, files_,
+                   bench_.engine("sweep cuda").options);
+  }
+
+ private:
+  static constexpr double kMetres = 0.1;  // kRadius
+  static constexpr std::size_t kSinglePoses = 64;
+
+  void keep(const std::string& way, const std::function<Json()>& findings) {
+    bench_.keep(scene_ + "/" + way, {{"scene", scene_}, {"way", way}}, findings);
+  }
+
+  /// The search that takes the median time.
+  Json repeated(Forced forced) {
+    std::vector<Json> found;
+    for (int i = 0; i < bench_.options().repetitions; ++i) found.push_back(search(query_, forced));
+    std::ranges::sort(found, {}, [](const Json& one) { return one["seconds"].get<double>(); });
+    return found[found.size() / 2];
+  }
+
+  /// Each pose as a question of its own: the mean of some poses along the way, for all.
+  Json one_by_one() {
+    const std::size_t step = std::max<std::size_t>(1, query_.poses.size() / kSinglePoses);
+    std::vector<double> seconds;
+    for (std::size_t i = 0; i < query_.poses.size(); i += step) {
+      const Query one(query_.model, {query_.poses[i]}, {.radius = kMetres});
+      seconds.push_back(search(one, {})["seconds"]);
+    }
+    const double mean = std::reduce(seconds.begin(), seconds.end()) /
+                        static_cast<double>(seconds.size());
+    return {{"seconds", mean * static_cast<double>(query_.poses.size())},
+            {"searched_poses", seconds.size()}};
+  }
+
+  /// One search, of a store that nothing has been read from yet.
+  Json search(const Query& query, Forced forced) {
+    const StoreReader store(files_.store);
+    SearchReport report;
+    const MessageCallback silent;
+    const MessageLog log(silent, report.warnings);
+    NoProgress progress;
+    CountingKind kind(store, query, options_, forced);
+    const Stopwatch clock;
+    Found found = search_pages(store, query, options_.memory_bytes, kind, nullptr, {}, progress,
+                               report, log);
+    const double seconds = clock.seconds();
+    found.engine_end.clear();
+    const SweepStatistics& tests = kind.tests();
+    return {{"seconds", seconds},
+            {"field_seconds", report.seconds.field},
+            {"search_seconds", report.seconds.search},
+            {"colliding_points", found.result.hits.count()},
+            {"points", store.point_count()},
+            {"points_tested", tests.points_tested},
+            {"poses", query.poses.size()},
+            {"model_points", query.model.vertices.size()},
+            {"cells", store.cells().size()},
+            {"cells_read", store.touched().cells},
+            {"blocks", store.blocks().size()},
+            {"bytes", std::filesystem::file_size(files_.store)},
+            {"bytes_read", store.touched().bytes},
+            {"box_tests", tests.node_tests},
+            {"point_tests", tests.point_tests},
+            {"exact_tests", tests.exact_tests},
+            {"bricks", kind.field().bricks()},
+            {"bricks_made", kind.field().made_bricks()}};
+  }
+
+  Bench& bench_;
+  std::string scene_;
+  SceneFiles files_;
+  Query query_;
+  SearchOptions options_;
+};
+
+}  // namespace
+
+void bench_share(Bench& bench) {
+  for (const std::string& scene : bench.options().scenes) Share(bench, scene).measure();
+}
+
+}  // namespace clearway::bench
