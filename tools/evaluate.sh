@@ -3,15 +3,26 @@
 # charts: the whole evaluation of docs/design/evaluation.md. Installs missing packages (Debian 12 or
 # 13). Run again, it goes on where it was stopped; another commit needs another FOLDER, or --force,
 # which removes the outputs of before.
-# Usage: tools/evaluate.sh [--force] [small|full] FOLDER
+# Usage: tools/evaluate.sh [--force] [--only NAME,...] [small|full] FOLDER
+# --only: these of the experiments below, peers and certainty, so that a machine that is there for some
+#   minutes can do a part; the charts are drawn of all that FOLDER has.
 # Output: FOLDER/EXPERIMENT.json, FOLDER/charts; scenes and stores stay in FOLDER/work.
+# Other libraries are measured where they are installed: tools/bench/peers/programs.
 set -euo pipefail
-experiments=(table threads grid datasets points accuracy stability scaling surfaces seen section)
+experiments=(table threads grid datasets points accuracy stability scaling share surfaces seen section)
 force=no
-if [ "${1:-}" = --force ]; then
-  force=yes
+only=
+while :; do
+  case "${1:-}" in
+    --force) force=yes ;;
+    --only)
+      only=,${2:-},
+      shift
+      ;;
+    *) break ;;
+  esac
   shift
-fi
+done
 size=small
 case "${1:-}" in small | full)
   size=$1
@@ -19,7 +30,7 @@ case "${1:-}" in small | full)
   ;;
 esac
 if [ $# -ne 1 ] || [ "${1#-}" != "$1" ]; then
-  echo "usage: tools/evaluate.sh [--force] [small|full] FOLDER" >&2
+  echo "usage: tools/evaluate.sh [--force] [--only NAME,...] [small|full] FOLDER" >&2
   exit 2
 fi
 mkdir -p "$1"
@@ -28,20 +39,35 @@ cd "$(dirname "$0")/.."
 source tools/setup.sh
 install_missing_packages
 
-configure_release -DCLEARWAY_BENCHMARKS=ON -DCLEARWAY_PYTHON=ON -DCLEARWAY_CUDA=AUTO
-cmake --build build/release --target clearway-bench clearway_python
+configure_release -DCLEARWAY_BENCHMARKS=ON -DCLEARWAY_PYTHON=ON -DCLEARWAY_CUDA=AUTO -DCLEARWAY_PEERS=ON
+cmake --build build/release --target clearway-bench clearway_peers clearway_python
 
-if [ $force = yes ]; then (cd "$folder" && rm -rf work certainty.json "${experiments[@]/%/.json}"); fi
+if [ $force = yes ]; then
+  (cd "$folder" && rm -rf work certainty.json peers.json "${experiments[@]/%/.json}")
+fi
+wanted() { [ -z "$only" ] || [[ $only == *,$1,* ]]; }
 for experiment in "${experiments[@]}"; do
+  wanted "$experiment" || continue
   printf '\n== %s\n' "$experiment"
   build/release/tools/clearway-bench "$experiment" -o "$folder/$experiment.json" \
     --work "$folder/work" --size "$size" --resume
 done
-printf '\n== certainty\n'
-if [ ! -e "$folder/certainty.json" ]; then
+if wanted peers; then
+  printf '\n== peers\n'
+  limit=4
+  [ "$size" = small ] || limit=20
+  for scene in hall tunnel plant mine; do
+    [ -e "$folder/work/$scene-$size.h5" ] || continue  # made by table
+    tools/measure_peers.py build/release/tools --scene "$scene" --size "$size" \
+      --env "$folder/work/$scene-$size.h5" --model "$folder/work/$scene-$size/model.ply" \
+      --trajectory "$folder/work/$scene-$size/trajectory.txt" -o "$folder/peers.json" --limit $limit
+  done
+fi
+if wanted certainty && [ ! -e "$folder/certainty.json" ]; then
+  printf '\n== certainty\n'
   PYTHONPATH=build/release/python tools/certainty.py build/release/tools/clearway \
     -o "$folder/certainty.json" --size "$size"
 fi
 printf '\n== charts\n'
 tools/charts.py "$folder" -o "$folder/charts"
-printf '\nAll experiments at size %s took %d min %d s.\n' "$size" $((SECONDS / 60)) $((SECONDS % 60))
+printf '\nAt size %s this took %d min %d s.\n' "$size" $((SECONDS / 60)) $((SECONDS % 60))

@@ -8,7 +8,6 @@
 
 #include "bench/experiments/bench.hpp"
 #include "bench/measure/scoring.hpp"
-#include "bench/peers/compare_engines.hpp"
 #include "bench/stages/set_engines.hpp"
 #include "bench/stages/time_session.hpp"
 #include "bench/stages/time_stages.hpp"
@@ -316,27 +315,5 @@ void add_search(CLI::App& program) {
          "float: engine grid decides in single precision alone");
   command->callback([options] { tool::print(search_with_set_engines(*options).dump(2) + "\n"); });
 }
-
-#ifdef CLEARWAY_NANOFLANN
-void add_peers(CLI::App& program) {
-  const auto options = std::make_shared<CompareOptions>();
-  CLI::App* command = program.add_subcommand(
-      "peers", "Times the kdtree engine and nanoflann on the same points; prints JSON");
-  add_query(*command, options->environment, options->model, options->trajectory, true);
-  add_radius_and_threads(*command, options->radius, options->threads);
-  command->add_option("--every-pose", options->every_pose, "Take every N-th pose only")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command
-      ->add_option("--repetitions", options->repetitions, "Runs of each engine; the median counts")
-      ->type_name("N")
-      ->check(CLI::Range(1, 100))
-      ->capture_default_str();
-  command->add_flag("--first-pose", options->first_pose, "Also first poses, of kdtree alone");
-  command->add_flag("!--no-peer", options->peer, "Without nanoflann");
-  command->callback([options] { tool::print(compare_engines(*options).dump(2) + "\n"); });
-}
-#endif
 
 }  // namespace clearway::bench

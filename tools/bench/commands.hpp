@@ -20,8 +20,4 @@ void add_session(CLI::App& program);
 /// Adds the command that searches with engines that are set as no `clearway run` sets them.
 void add_search(CLI::App& program);
 
-/// Adds the command that compares the kdtree engine with nanoflann, where the build found
-/// nanoflann.
-void add_peers(CLI::App& program);
-
 }  // namespace clearway::bench

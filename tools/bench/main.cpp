@@ -8,9 +8,6 @@ void add_commands(CLI::App& program, int& exit_code) {
   clearway::bench::add_stages(program);
   clearway::bench::add_session(program);
   clearway::bench::add_search(program);
-#ifdef CLEARWAY_NANOFLANN
-  clearway::bench::add_peers(program);
-#endif
 }
 
 }  // namespace

@@ -39,8 +39,8 @@ def draw(record):
     sheet.say("Left: what the search of the set touches on the CPU, as a share of all there is, "
               "logarithmic; beside the bars the numbers. Right: seconds of plan, field and search, "
               "median of the runs, when it is made to read and search every cell, to make the whole "
-              "model field before, or to answer every pose as a question of its own (the mean of 64 "
-              "poses, scaled).")
+              "model field before, or to answer every pose as a question of its own, with the "
+              "field kept (the mean of 64 poses, scaled).")
     return sheet
 
 
@@ -69,8 +69,10 @@ def draw_shares(axes, record, scene):
 
 
 def draw_cost(axes, record, scene):
-    ways = [way for way in WAYS if record.where(scene=scene, way=way)]
-    seconds = [record.where(scene=scene, way=way)[0].findings["seconds"] for way in ways]
+    taken = {case["way"]: case.findings["seconds"] for case in record.where(scene=scene)
+             if "seconds" in case.findings}
+    ways = [way for way in WAYS if way in taken]
+    seconds = [taken[way] for way in ways]
     for y, (way, value) in enumerate(zip(ways, seconds)):
         axes.barh(y, value, height=0.62, color=BLUE if way == "as it is" else ORANGE,
                   edgecolor="black", linewidth=0.4, hatch="" if way == "as it is" else "////")
@@ -100,9 +102,10 @@ def markdown(record):
     for way, name in WAYS.items():
         found = [record.where(scene=scene, way=way) for scene in scenes]
         lines.append(f"| {name} | " + " | ".join(
-            with_unit(cases[0].findings["seconds"], "s") if cases else "" for cases in found) + " |")
+            with_unit(cases[0].findings["seconds"], "s")
+            if cases and "seconds" in cases[0].findings else "" for cases in found) + " |")
     return "\n".join(lines) + "\n"
 
 
 def percent(share):
-    return f"{100 * share:.2g} %"
+    return "100 %" if share > 0.995 else f"{float(f'{100 * share:.2g}'):.9g} %"

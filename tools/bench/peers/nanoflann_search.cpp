@@ -1,7 +1,6 @@
 #include "bench/peers/nanoflann_search.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -39,34 +38,21 @@ NanoflannSearch::NanoflannSearch(std::span<const Vec3> points)
 
 NanoflannSearch::~NanoflannSearch() = default;
 
-NanoflannSearch::SearchResult NanoflannSearch::run(const Query& query, int threads) const {
-  SearchResult answer;
-  answer.words.resize((index_->adaptor.points.size() + 63) / 64);
+std::vector<bool> NanoflannSearch::set(const Query& query) const {
+  std::vector<bool> colliding(index_->adaptor.points.size());
   const double radius_squared = rounded_product(query.radius, query.radius);
   SearchParameters unsorted;
   unsorted.sorted = false;
-  std::uint64_t empty = 0;
-#pragma omp parallel num_threads(threads) reduction(+ : empty)
-  {
-    std::vector<FoundPoint> found;
-#pragma omp for schedule(dynamic, 1)
-    for (std::size_t i = 0; i < query.poses.size(); ++i) {
-      for (const Vec3& m : query.model.vertices) {
-        const Vec3 moved = transform(query.poses[i], m);
-        const double position[3] = {moved.x, moved.y, moved.z};
-        if (index_->tree.radiusSearch(position, radius_squared, found, unsorted) == 0) ++empty;
-        for (const auto& [point, squared] : found) {
-          std::atomic_ref word(answer.words[point / 64]);
-          const std::uint64_t bit = std::uint64_t{1} << (point % 64);
-          if ((word.load(std::memory_order_relaxed) & bit) == 0) {
-            word.fetch_or(bit, std::memory_order_relaxed);
-          }
-        }
-      }
+  std::vector<FoundPoint> found;
+  for (const Pose& pose : query.poses) {
+    for (const Vec3& m : query.model.vertices) {
+      const Vec3 moved = transform(pose, m);
+      const double position[3] = {moved.x, moved.y, moved.z};
+      index_->tree.radiusSearch(position, radius_squared, found, unsorted);
+      for (const auto& [point, squared] : found) colliding[point] = true;
     }
   }
-  answer.empty_searches = empty;
-  return answer;
+  return colliding;
 }
 
 double NanoflannSearch::least_distance(const Query& query) const {

@@ -15,7 +15,6 @@
 #include "clearway/trajectory.hpp"
 #include "core/util/stopwatch.hpp"
 #ifdef CLEARWAY_NANOFLANN
-#include "bench/peers/compare_engines.hpp"
 #include "bench/peers/nanoflann_search.hpp"
 #include "io/store/store_reader.hpp"
 #endif
@@ -120,12 +119,25 @@ ordered_json compare_with_one_run(const Session& session, const SessionTimes& op
 }
 
 #ifdef CLEARWAY_NANOFLANN
+/// The positions of a cloud's points.
+std::vector<Vec3> positions_of(const PackedCloud& cloud) {
+  std::vector<Vec3> points;
+  points.reserve(cloud.point_count());
+  for (std::uint32_t cell = 0; cell < cloud.cells().size(); ++cell) {
+    const auto chunks = cloud.coordinates(cell);
+    for (std::uint32_t i = 0; i < cloud.cells()[cell].count; ++i) {
+      points.push_back(position(cloud.quantisation(), chunks[0][i], chunks[1][i], chunks[2][i]));
+    }
+  }
+  return points;
+}
+
 /// One pose at a time with nanoflann: a radius search and a nearest neighbour for each model point.
 ordered_json time_peer(const SessionTimes& options, const Model& model,
                        const std::vector<Pose>& poses) {
   constexpr std::uint64_t kQuestions = 50;
   const StoreReader store(options.environment);
-  const std::vector<Vec3> points = positions_by_slot(store);
+  const std::vector<Vec3> points = positions_of(store);
   const Stopwatch building;
   const NanoflannSearch search(points);
   const double built = building.seconds();
@@ -133,7 +145,7 @@ ordered_json time_peer(const SessionTimes& options, const Model& model,
   for (std::uint64_t i = 0; i < kQuestions; ++i) {
     const Query query(model, {poses[i * kStride % poses.size()]}, {.radius = options.radius});
     const Stopwatch of_set;
-    search.run(query, 1);
+    search.set(query);
     set.push_back(of_set.seconds());
     const Stopwatch of_distance;
     search.least_distance(query);
