@@ -30,7 +30,10 @@ struct Experiment {
 };
 
 constexpr Experiment kExperiments[] = {
-    {"table", bench_table, "Colliding points of every engine on the four scenes (Table 1)", true},
+    {"table", bench_table,
+     "Colliding points of every engine on the four scenes (Table 1), or on the one that --env, "
+     "--model and --trajectory name",
+     true, true},
     {"threads", bench_threads, "Speed by the number of threads (Fig. 1)"},
     {"grid", bench_grid, "Time of each step by grid resolution and layout (Fig. 2)"},
     {"datasets", bench_datasets, "Time of every engine and device on the four scenes (Fig. 3)",

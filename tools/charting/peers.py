@@ -71,7 +71,7 @@ def draw(record, table=None):
     seconds = [mark.seconds for mark in every]
     wrong = [np.log10(mark.share) for mark in every if mark.share]
     bottom = np.floor(min(wrong, default=-6))
-    top = max(np.ceil(max(wrong, default=-3)), bottom + 2)
+    top = max(np.ceil(max(wrong, default=-3) + 0.3), bottom + 2)
     band = (max(sum(not mark.share for mark in marks[scene]) for scene in scenes) + 0.6) * ROW
     for letter, panel, scene in zip("abcde", axes.flat, scenes):
         panel.set_xlim(min(seconds) / 2, max(seconds) * 8)

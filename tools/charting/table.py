@@ -5,8 +5,11 @@ from charting.plot import panels
 from charting.sheet import Sheet
 
 
+NO_PAPER = ("", "", "", "", "", "")  # of a scene that is not like one of the paper's
+
+
 def grouped(number):
-    return f"{number:,}"
+    return f"{number:,}" if number != "" else ""
 
 
 def is_float(case):
@@ -51,13 +54,13 @@ def rows_of(cases, paper):
         if is_float(case) and not case.failure:
             rows.append(("float differs by", grouped(difference(case)),
                          f"+{case.findings['only_here']} −{case.findings['only_in_reference']}",
-                         f"{on_gpu - on_cpu} or more"))
+                         f"{on_gpu - on_cpu} or more" if on_gpu else ""))
     return rows
 
 
 def draw(record):
     scenes = record.names("scene")
-    count = max(len(rows_of(record.where(scene=scene), TABLE[scene])) for scene in scenes)
+    count = max(len(rows_of(record.where(scene=scene), TABLE.get(scene, NO_PAPER))) for scene in scenes)
     lines = -(-len(scenes) // 2)
     sheet = Sheet(record, "Table 1: colliding points of every engine", lines * (count + 2) * 0.19,
                   times=())
@@ -65,7 +68,7 @@ def draw(record):
     for place in axes.flat:
         place.set_axis_off()
     for place, scene in zip(axes.flat, scenes):
-        draw_scene(place, rows_of(record.where(scene=scene), TABLE[scene]), scene, count)
+        draw_scene(place, rows_of(record.where(scene=scene), TABLE.get(scene, NO_PAPER)), scene, count)
     sheet.say("Rows of engines: colliding points; = the same set, point by point, as sweep cpu. "
               "Float differs by: points that only float finds (+) and that it misses (−). The "
               "paper's columns are its own data sets with its k-d tree (double) on the row of "
@@ -81,7 +84,7 @@ def draw_scene(axes, rows, scene, count):
     axes.set_xlim(0, 1)
     axes.set_ylim(count + 1.6, -0.2)
     columns = ((0.0, "left"), (0.5, "right"), (0.52, "left"), (1.0, "right"))
-    head = (scene, "Clearway", "", TABLE[scene][0])
+    head = (scene, "Clearway", "", TABLE.get(scene, NO_PAPER)[0])
     for row, cells in enumerate([head, *rows]):
         for (x, side), text in zip(columns, cells):
             axes.text(x, row + 0.5, text, ha=side, va="center",
@@ -104,10 +107,10 @@ def markdown(record):
         found = {case["engine"]: f"{counted(case)} {equality(case)}".strip() for case in cases}
         floats = [grouped(difference(case)) for case in cases
                   if is_float(case) and not case.failure]
-        name, *numbers, on_cpu, on_gpu = TABLE[scene]
+        name, *numbers, on_cpu, on_gpu = TABLE.get(scene, NO_PAPER)
         cells = [scene, *sizes, *(found.get(engine, "") for engine in engines), "".join(floats[:1]),
                  name, *map(grouped, numbers), grouped(on_cpu), grouped(on_gpu),
-                 grouped(on_gpu - on_cpu)]
+                 grouped(on_gpu - on_cpu) if on_gpu else ""]
         lines.append("| " + " | ".join(cells) + " |")
     lines += ["", "Points of the environment E, of the model M, poses T; colliding points of each "
               "engine, = where the set is that of sweep cpu point by point. The paper's columns are "

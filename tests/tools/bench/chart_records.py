@@ -49,7 +49,7 @@ def judged(wrong, distance, beyond=0):
 def table():
     for scene, engine in itertools.product(("mine", "hall", "plant", "tunnel"), [*ENGINES, FLOAT]):
         yield case({"scene": scene, "engine": engine, "exact": engine != FLOAT}, 1,
-                   compared(7 if engine == FLOAT else 0), runs=1, points=806_183_400)
+                   compared(7 if engine == FLOAT else 0), points=806_183_400)
 
 
 def threads():
@@ -249,8 +249,43 @@ def check():
                "findings": {"colliding_points": points // 20}}
 
 
+def peers():
+    kinds = [("nanoflann", None), ("cgal", None), ("pcl", None), ("open3d", None),
+             *(("octomap", cell) for cell in (0.1, 0.05, 0.02, 0.01))]
+    for scene, (i, (peer, cell)) in itertools.product(("hall", "tunnel", "plant", "mine"),
+                                                      enumerate(kinds)):
+        parameters = {"scene": scene, "peer": peer, "threads": 16}
+        if cell:
+            parameters["cell"] = cell
+        one = {"key": f"{scene}/{peer} {cell}", "parameters": parameters}
+        if peer == "cgal" and scene == "mine":
+            yield {**one, "failed": {"exit_code": 1, "log": "error: std::bad_alloc"}}
+            continue
+        every = 40 * i if i > 2 else 1
+        yield {**one, "findings": {
+            "all_poses_seconds": 20.0 * 3**i, "search_seconds": [20.0 * 3**i / every],
+            "every_pose": every, "prepare_seconds": 12.3, "peak_bytes_of_peer": 3e9,
+            "environment_points": 10**8, "colliding_points": 10**6,
+            "false_hits": int(10**6 * cell) if cell else 0, "misses": 7 if peer == "pcl" else 0,
+            "peer": {"name": peer, "version": "1.2.3"}}}
+
+
+def share():
+    found = {"points": 806_183_400, "points_tested": 90_000_000, "poses": 17_795, "cells": 12_552,
+             "cells_read": 6_418, "bytes": 7 * 10**9, "bytes_read": 2 * 10**9,
+             "point_tests": 4 * 10**8, "exact_tests": 21_133, "bricks": 998, "bricks_made": 924}
+    for scene in ("mine", "hall", "plant", "tunnel"):
+        for way, seconds in (("as it is", 0.9), ("all cells", 1.8), ("whole field", 1.1)):
+            yield {"key": f"{scene}/{way}", "parameters": {"scene": scene, "way": way},
+                   "findings": {**found, "seconds": seconds}}
+        yield {"key": f"{scene}/poses one by one",
+               "parameters": {"scene": scene, "way": "poses one by one"},
+               "findings": {"seconds": 40.0, "searched_poses": 64}}
+        yield case({"scene": scene, "way": "GPU"}, 0.1)
+
+
 EXPERIMENTS = (table, threads, grid, datasets, points, accuracy, stability, scaling, surfaces, seen,
-               section, certainty, check)
+               section, certainty, check, peers, share)
 
 
 def write_records(folder):

@@ -153,6 +153,17 @@ def check_stopped_runs():
             assert 0.95 < (np.log(x) - low) / (high - low) <= 1, x
 
 
+def check_bend():
+    """Noise of two percent decides between linear and n log n."""
+    from charting.points import answer_of, interval
+
+    points = 500_000.0 * np.arange(1, 112)
+    noise = 1 + 0.02 * np.random.default_rng(3).standard_normal(111)
+    for power, answer in ((0, "linear"), (1, "n log n")):
+        seconds = (0.001 + 1e-8 * points * np.log(points) ** power) * noise
+        assert answer_of(*interval(points, seconds)) == answer, (power, interval(points, seconds))
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(name)
@@ -173,6 +184,10 @@ def main():
         check_missing_reference()
         check_stopped_runs()
         assert (folder / "charts" / "table.md").read_text().count("| mine | 806,183,400 |") == 1
+        assert "| mine | CGAL | failed: std::bad_alloc" in (folder / "charts/peers.md").read_text()
+        assert "6,418 of 12,552 (51 %)" in (folder / "charts/share.md").read_text()
+        assert "| sweep cpu | 111 |" in (folder / "charts/points.md").read_text()
+        check_bend()
 
 
 main()

@@ -9,7 +9,7 @@
 using namespace clearway::test;
 
 TEST_CASE("table: every exact engine finds the same points") {
-  const Experiment table("table");
+  const Experiment table("table", 1);
   require_success(table.run());
   const Json figures = table.figures();
   check_json(figures, R"({"experiment": "table"})");
@@ -25,6 +25,26 @@ TEST_CASE("table: every exact engine finds the same points") {
     if (one["parameters"]["exact"]) CHECK(one["findings"]["equal"]);
   }
   CHECK(scenes.size() == 4);
+}
+
+TEST_CASE("share: whatever a search is made to touch, it finds the same points") {
+  const Experiment share("share", 1);
+  require_success(share.run("--scenes hall"));
+  std::map<std::string, Json> found;
+  for (const Json& one : share.figures()["cases"]) {
+    if (one.contains("findings")) found[one["parameters"]["way"]] = one["findings"];
+  }
+  const Json& as_it_is = found.at("as it is");
+  CHECK(as_it_is["colliding_points"] > 0);
+  CHECK(as_it_is["points_tested"] < as_it_is["points"]);
+  CHECK(as_it_is["bricks_made"] < as_it_is["bricks"]);
+  for (const std::string way : {"all cells", "whole field"}) {
+    CAPTURE(way);
+    CHECK(found.at(way)["colliding_points"] == as_it_is["colliding_points"]);
+  }
+  CHECK(found["all cells"]["cells_read"] == as_it_is["cells"]);
+  CHECK(found["whole field"]["bricks_made"] == as_it_is["bricks"]);
+  CHECK(found["poses one by one"]["seconds"] > 0);
 }
 
 TEST_CASE("grid: its regular layouts say how many points a chunk has") {

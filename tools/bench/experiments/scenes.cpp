@@ -16,8 +16,7 @@ std::vector<EngineChoice> engines_of_table(const Bench& bench) {
 
 void bench_table(Bench& bench) {
   WrongCases wrong;
-  for (const std::string& scene : bench.options().scenes) {
-    const SceneFiles files = bench.scene(scene);
+  const auto measure = [&](const std::string& scene, const SceneFiles& files) {
     const auto reference =
         bench.answer("reference-" + scene, files, bench.engine("sweep cpu").options);
     for (const EngineChoice& engine : engines_of_table(bench)) {
@@ -28,6 +27,12 @@ void bench_table(Bench& bench) {
           [&](const std::filesystem::path& result) { return compared(result, reference); });
       if (engine.exact) wrong.look_at(found);
     }
+  };
+  const SceneFiles& own = bench.options().also;
+  if (own.store.empty()) {
+    for (const std::string& scene : bench.options().scenes) measure(scene, bench.scene(scene));
+  } else {
+    measure(own.store.stem().string(), own);
   }
   wrong.refuse();
 }
