@@ -23,7 +23,8 @@ def draw(record):
                for name in ("search", "total")]
     for letter, panel, scene in zip("abcd", axes.flat, scenes):
         draw_scene(sheet, panel, record.where(scene=scene), engines)
-        panel.set_title(f"{letter}  {scene} (like {TABLE[scene][0]})")
+        like = f" (like {TABLE[scene][0]})" if scene in TABLE else ""
+        panel.set_title(f"{letter}  {scene}{like}")
         if seconds:
             panel.set_xlim(min(seconds) / 2, max(seconds) * 2)
             seconds_axis(panel.xaxis)

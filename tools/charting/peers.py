@@ -58,6 +58,8 @@ def marks_of(scene, record, table):
 
 def draw(record, table=None):
     """table: the engines of Clearway on the same scenes, where they were measured."""
+    if table:  # it knows the GPU and the build
+        record.machine, record.clearway = table.machine, table.clearway
     scenes = [scene for scene in SCENES if record.where(scene=scene)]
     marks = {scene: list(marks_of(scene, record, table)) for scene in scenes}
     rows = -(-len(scenes) // 2)

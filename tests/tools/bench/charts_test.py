@@ -153,6 +153,13 @@ def check_stopped_runs():
             assert 0.95 < (np.log(x) - low) / (high - low) <= 1, x
 
 
+def check_datasets_of_table(folder):
+    """Fig. 3 is drawn of `table` where `datasets` was not measured."""
+    (folder / "few").mkdir()
+    (folder / "few" / "table.json").write_bytes((folder / "table.json").read_bytes())
+    assert "few/datasets.png" in draw(folder / "few")
+
+
 def check_bend():
     """Noise of two percent decides between linear and n log n."""
     from charting.points import answer_of, interval
@@ -188,6 +195,7 @@ def main():
         assert "6,418 of 12,552 (51 %)" in (folder / "charts/share.md").read_text()
         assert "| sweep cpu | 111 |" in (folder / "charts/points.md").read_text()
         check_bend()
+        check_datasets_of_table(folder)
 
 
 main()
