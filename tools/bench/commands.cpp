@@ -161,9 +161,9 @@ void add_bounds(CLI::App& command, BenchOptions& options) {
 /// Adds --scenes and returns the option.
 const CLI::Option* add_scenes(CLI::App& command, BenchOptions& options) {
   return command
-      .add_option(
-          "--scenes", options.scenes,
-          "Scenes, for table, datasets, share, equality, choice, shards, seen and section (default: all)")
+      .add_option("--scenes", options.scenes,
+                  "Scenes, for table, datasets, share, equality, choice, shards, seen and section "
+                  "(default: all)")
       ->delimiter(',')
       ->check(CLI::IsMember({"mine", "hall", "plant", "tunnel"}));
 }

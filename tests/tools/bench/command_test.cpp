@@ -105,7 +105,8 @@ TEST_CASE("a file is continued with other scenes") {
 
 TEST_CASE("scenes are chosen where an experiment is about any") {
   const Experiment scaling("scaling");
-  check_outcome(scaling.run("--scenes hall"), 2, "--scenes is for table, datasets, share, equality");
+  check_outcome(scaling.run("--scenes hall"), 2,
+                "--scenes is for table, datasets, share, equality");
   CHECK_FALSE(std::filesystem::exists(scaling.file()));
 }
 

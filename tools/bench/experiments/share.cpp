@@ -64,8 +64,8 @@ class Share {
       : bench_(bench),
         scene_(scene),
         files_(bench.scene(scene)),
-        query_(read_model(files_.model, {.radius = kMetres}), read_trajectory(files_.trajectory, {}),
-               {.radius = kMetres}),
+        query_(read_model(files_.model, {.radius = kMetres}),
+               read_trajectory(files_.trajectory, {}), {.radius = kMetres}),
         model_hash_(hash_of_model(query_.model)) {
     options_.threads = threads_or_all(0);
     options_.device = Device::kCpu;
@@ -110,8 +110,8 @@ class Share {
       if (i > 0) seconds.push_back(taken);  // the first one makes the field
     }
     if (seconds.empty()) return Json::object();
-    const double mean = std::reduce(seconds.begin(), seconds.end()) /
-                        static_cast<double>(seconds.size());
+    const double mean =
+        std::reduce(seconds.begin(), seconds.end()) / static_cast<double>(seconds.size());
     return {{"seconds", mean * static_cast<double>(query_.poses.size())},
             {"searched_poses", seconds.size()}};
   }
@@ -126,8 +126,8 @@ class Share {
     CountingKind kind(store, query, options_, forced);
     if (kept != nullptr) kind.keep_models_in(*kept, {model_hash_});
     const Stopwatch clock;
-    Found found = search_pages(store, query, options_.memory_bytes, kind, nullptr, {}, progress,
-                               report, log);
+    Found found =
+        search_pages(store, query, options_.memory_bytes, kind, nullptr, {}, progress, report, log);
     const double seconds = clock.seconds();
     found.engine_end.clear();
     const SweepStatistics& tests = kind.tests();

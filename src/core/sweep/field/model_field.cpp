@@ -229,9 +229,9 @@ std::uint32_t ModelField::made_brick(std::size_t cell) const {
 }
 
 std::uint64_t ModelField::made_bricks() const {
-  return static_cast<std::uint64_t>(std::ranges::count_if(
-      brick_of_,
-      [](std::uint32_t state) { return state != kNoBrick && (state & kToBeMade) == 0; }));
+  return static_cast<std::uint64_t>(std::ranges::count_if(brick_of_, [](std::uint32_t state) {
+    return state != kNoBrick && (state & kToBeMade) == 0;
+  }));
 }
 
 std::uint32_t make_brick_of(const ModelField& field, std::size_t cell) {

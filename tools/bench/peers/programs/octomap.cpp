@@ -115,8 +115,8 @@ class Octomap : public Peer {
   std::shared_ptr<octomap::OcTree> map_;
   std::shared_ptr<fcl::OcTree<double>> tree_;
   std::unordered_map<octomap::OcTreeKey, std::size_t, octomap::OcTreeKey::KeyHash> voxel_of_;
-  std::vector<std::vector<std::uint32_t>> points_of_;  ///< of each voxel
-  std::vector<std::unique_ptr<Object>> spheres_;       ///< the model, made by the first search
+  std::vector<std::vector<std::uint32_t>> points_of_;     ///< of each voxel
+  std::vector<std::unique_ptr<Object>> spheres_;          ///< the model, made by the first search
   fcl::DynamicAABBTreeCollisionManager<double> manager_;  ///< of the spheres
 };
 

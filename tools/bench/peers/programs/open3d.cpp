@@ -1,5 +1,5 @@
-// Open3D: fixed radius search of tensors, which takes a k-d tree on the CPU. Its grid of cells for one
-// radius, FixedRadiusIndex, took six times as long on a small hall.
+// Open3D: fixed radius search of tensors, which takes a k-d tree on the CPU. Its grid of cells for
+// one radius, FixedRadiusIndex, took six times as long on a small hall.
 
 #include <open3d/Open3DConfig.h>
 #include <open3d/core/Tensor.h>

@@ -14,7 +14,7 @@ namespace {
 
 class Pcl : public Peer {
  public:
-  Pcl(std::span<const Vec3> points, const PeerOptions& options) 
+  Pcl(std::span<const Vec3> points, const PeerOptions& options)
       : options_(options), origin_(middle_of(points)), tree_(false) {
     const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
     cloud->reserve(points.size());
@@ -32,8 +32,8 @@ class Pcl : public Peer {
 
   void search(std::span<const Pose> poses, std::span<const Vec3> model, Marks& marks) override {
     search_places(poses, model, options_.threads, [&] {
-      return [this, &marks, found = pcl::Indices(), squared = std::vector<float>()](
-                 const Vec3& at) mutable {
+      return [this, &marks, found = pcl::Indices(),
+              squared = std::vector<float>()](const Vec3& at) mutable {
         tree_.radiusSearch(point_at(at), options_.radius, found, squared);
         for (const int index : found) marks.mark(static_cast<std::size_t>(index));
       };

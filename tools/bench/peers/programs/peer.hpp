@@ -55,8 +55,8 @@ class Peer {
   virtual void search(std::span<const Pose> poses, std::span<const Vec3> model, Marks& marks) = 0;
 };
 
-/// Calls search(place) for the places of all model points at all poses. make() makes the `search` of
-/// one thread. A pose is shared by several threads, so that a few poses keep all of them busy.
+/// Calls search(place) for the places of all model points at all poses. make() makes the `search`
+/// of one thread. A pose is shared by several threads, so that a few poses keep all of them busy.
 template <typename Make>
 void search_places(std::span<const Pose> poses, std::span<const Vec3> model, int threads,
                    Make make) {
