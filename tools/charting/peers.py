@@ -14,7 +14,7 @@ PEERS = {"nanoflann": Style(SKY, "p", "none", ""), "cgal": Style(GREEN, "h", "no
          "octomap": Style(YELLOW, "*", "none", "")}
 NAMES = {"nanoflann": "nanoflann", "cgal": "CGAL", "pcl": "PCL", "open3d": "Open3D",
          "octomap": "OctoMap"}
-ROW = 0.34      # decades that a row of the band takes
+ROW = 0.4       # decades that a row of the band takes
 SCENES = ("hall", "tunnel", "plant", "mine", "street")
 
 
@@ -64,7 +64,7 @@ def draw(record, table=None):
     marks = {scene: list(marks_of(scene, record, table)) for scene in scenes}
     rows = -(-len(scenes) // 2)
     columns = min(2, len(scenes))
-    sheet = Sheet(record, "Wrong points against seconds: Clearway and other libraries", rows * 3.4,
+    sheet = Sheet(record, "Wrong points against seconds: Clearway and other libraries", rows * 3.6,
                   times=())
     axes, _ = panels(sheet, rows, columns)
     for panel in axes.flat[len(scenes):]:
