@@ -86,18 +86,18 @@ TEST_CASE("compare --json is one JSON object") {
   const Pair pair;
   const Outcome outcome = pair.run("compare --json a.h5 b.h5");
   check_outcome(outcome, 1);
-  const auto json = json_of(outcome);
-  check_json(json, R"({
+  const auto facts = json_of(outcome);
+  check_json(facts, R"({
     "equal": false, "a": {"colliding_points": 4}, "b": {"colliding_points": 3}, "common": 3,
     "only_in_a": 1, "only_in_b": 0, "differing_first_poses": 1,
     "question_differences": {"0": {"what": "radius"}}})");
-  CHECK(json["question_differences"].size() == 1);
-  REQUIRE(json["differences"].size() == 2);
+  CHECK(facts["question_differences"].size() == 1);
+  REQUIRE(facts["differences"].size() == 2);
   const Collisions rows = sample_rows(sample_header(true), 4);
-  check_json(json, R"({"differences": {"0": {"kind": "only in a"}, "1": {"first_pose_b": 77}}})");
-  CHECK(json["differences"][0]["source"] == rows.source[1]);
-  CHECK(json["differences"][0]["xyz"][2].get<double>() == rows.xyz[1].z);
-  CHECK(json["differences"][1]["first_pose_a"] == rows.first_pose[2]);
+  check_json(facts, R"({"differences": {"0": {"kind": "only in a"}, "1": {"first_pose_b": 77}}})");
+  CHECK(facts["differences"][0]["source"] == rows.source[1]);
+  CHECK(facts["differences"][0]["xyz"][2].get<double>() == rows.xyz[1].z);
+  CHECK(facts["differences"][1]["first_pose_a"] == rows.first_pose[2]);
 }
 
 TEST_CASE("compare refuses what cannot be compared") {

@@ -342,9 +342,9 @@ TEST_CASE("groups of few unseen cubes are counted, and do not make a verdict und
   const Road road;
   road.scan(Road::beams(true));
   const Outcome outcome = road.run("--seen --seen-min 100000 --json");
-  const auto json = json_of(outcome);
-  check_json(json, R"({"verdict": "clear", "seen": {"groups": 1, "listed_groups": 0}})");
-  CHECK(json["warnings"].dump().find("small-unseen") != std::string::npos);
+  const auto facts = json_of(outcome);
+  check_json(facts, R"({"verdict": "clear", "seen": {"groups": 1, "listed_groups": 0}})");
+  CHECK(facts["warnings"].dump().find("small-unseen") != std::string::npos);
 }
 
 TEST_CASE("what makes no sense of seen space is refused by name") {
