@@ -20,7 +20,7 @@ import time
 
 from campaign_scene import PROGRAM, expect, make_scene, outcome, program, status, write_campaign
 
-VEHICLES, ROUTES = 10, 5
+VEHICLES, ROUTES = 6, 5
 FILES = ["out.h5", "conflicts.csv"]
 DIVIDED = {"memory": "300M", "threads": 1, "shard_seconds": 0.04}  # into three or so
 
