@@ -29,7 +29,7 @@ add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>
 # Nobody reads the floating-point exceptions, which keep gcc from comparing in vectors.
 add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fno-trapping-math>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # gcc collects its garbage first at 500 MB, and not at 128 MB: a sixth less time for large units.
+  # gcc collects its garbage first at 500 MB, and not at 128 MB: a tenth less time for large units.
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:--param=ggc-min-heapsize=500000>
     -Wno-unused-command-line-argument)  # of clang-tidy, which reads the same options
 endif()
