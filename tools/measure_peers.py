@@ -3,7 +3,7 @@
 
 They are the programs of tools/bench/peers/programs, which are in the folder of clearway; those that
 were not built are named. A case that the file has already is not measured again, so what was stopped
-goes on. One that fails, or takes longer than --patience in all, is kept with what it said.
+goes on. One that fails, or takes longer than --patience, is kept with what it said.
 Example: tools/measure_peers.py build/release/tools --scene hall --env hall.h5 \\
              --model hall/model.ply --trajectory hall/trajectory.txt -o peers.json
 tools/charts.py draws the file.
@@ -40,39 +40,47 @@ class Running:
 
         self.case = {"key": key, "parameters": parameters}
         self.patience = options.patience
-        self.start = time.monotonic()
         self.stopped_after = None
         self.out = tempfile.TemporaryFile("w+")
         self.process = subprocess.Popen(
             [str(word) for word in [*command, "--wait"]], stdin=subprocess.PIPE, stdout=self.out,
             stderr=subprocess.PIPE, text=True, preexec_fn=bound)
-        self.stopper = threading.Timer(options.patience, self.stop)
+        self.said = []
+        self.be_patient()
+        self.preparing = threading.Thread(target=self.watch)
+        self.preparing.start()
+
+    def be_patient(self):
+        """Stops the peer unless it says in time that it is prepared, or has searched."""
+        self.start = time.monotonic()
+        self.stopper = threading.Timer(self.patience, self.stop)
         self.stopper.start()
 
     def stop(self):
         self.stopped_after = time.monotonic() - self.start
         self.process.kill()
 
-    def prepared(self):
-        """Waits until the search is prepared, or has failed, with what was said by then."""
-        said = []
+    def watch(self):
         for line in self.process.stderr:
             if line == "prepared\n":
                 break
-            said.append(line)
-        return "".join(said)
+            self.said.append(line)
+        self.stopper.cancel()
 
-    def search(self, said):
-        """The case with its findings, or how it failed."""
+    def search(self):
+        """The case with its findings, or how it failed. All peers are prepared."""
+        if self.stopped_after is None:
+            self.be_patient()
         try:
             _, log = self.process.communicate("go on\n")
         except BrokenPipeError:
             _, log = self.process.communicate()
         self.stopper.cancel()
-        if self.stopped_after:
+        if self.stopped_after is not None:
             failed = {"after_seconds": self.stopped_after, "limit": self.patience}
         elif self.process.returncode != 0:
-            failed = {"exit_code": self.process.returncode, "log": (said + log).strip()[-500:]}
+            failed = {"exit_code": self.process.returncode,
+                      "log": ("".join(self.said) + log).strip()[-500:]}
         else:
             self.out.seek(0)
             return {**self.case, "findings": json.load(self.out)}
@@ -124,7 +132,7 @@ def main():
                         help="seconds of a search; where all poses take longer, every n-th is "
                              "searched, and the time is scaled")
     parser.add_argument("--patience", type=float, default=600,
-                        help="seconds of a peer in all, its preparation included")
+                        help="seconds of a peer to prepare its search, and again to search and to compare")
     parser.add_argument("--memory", type=int, help="GiB that a peer may have (default: no bound)")
     parser.add_argument("--together", type=int, default=1,
                         help="peers that prepare their searches at the same time; each searches "
@@ -145,9 +153,10 @@ def main():
             peers.append((key, parameters, command))
     for first in range(0, len(peers), options.together):
         running = [Running(*peer, options) for peer in peers[first:first + options.together]]
-        said = [peer.prepared() for peer in running]
-        for peer, text in zip(running, said):
-            record["cases"].append(peer.search(text))
+        for peer in running:
+            peer.preparing.join()
+        for peer in running:
+            record["cases"].append(peer.search())
             part = options.output.with_suffix(".part")
             part.write_text(json.dumps(record, indent=1) + "\n")
             part.replace(options.output)
