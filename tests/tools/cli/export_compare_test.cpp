@@ -64,8 +64,8 @@ TEST_CASE("compare says how depths differ") {
   check_outcome(outcome, 1, kAnything, "differing depths: 2\n");
   check_says(outcome.out, "depth ... / 9.5 to 7\n");
   check_says(outcome.out, "depth ... nothing free / 0.75 to 8\n");
-  const auto json = json_of(place.run("compare --json a.h5 b.h5"));
-  check_json(json, R"({"equal": false, "differing_depths": 2,
+  check_json(json_of(place.run("compare --json a.h5 b.h5")),
+             R"({"equal": false, "differing_depths": 2,
     "differences": {"0": {"kind": "depth", "depth_b": 9.5, "depth_source_b": 7},
                     "1": {"depth_a": null, "depth_source_a": null, "depth_b": 0.75}}})");
   const Outcome plain = place.run("compare a.h5 plain.h5");

@@ -45,7 +45,7 @@ std::vector<OriginBasis> bases_of(const StoreReader& store) {
   return store.metadata().origins->rest_on;
 }
 
-E57Bytes::Scan e57_scan(const std::string& xml, bool spherical = false) {
+E57Bytes::Scan posed_scan(const std::string& xml, bool spherical = false) {
   const std::vector<double> a{1, 2}, b{0.5, 0.25};
   E57Bytes::Scan scan{};
   const char* const names[2][3] = {{"cartesianX", "cartesianY", "cartesianZ"},
@@ -203,8 +203,9 @@ TEST_CASE("resuming knows the origins that a store was given") {
 TEST_CASE("a scan of E57 has its pose's place as origin, or that of its spherical coordinates") {
   const ScratchFolder folder;
   E57Bytes e57;
-  e57.scans = {e57_scan(""), e57_scan(E57Bytes::pose({"1", "0", "0", "0"}, {"10", "-20", "0.5"})),
-               e57_scan("", true), e57_scan(E57Bytes::pose({"0", "1", "0", "0"}, {"0", "0", "0"}))};
+  e57.scans = {
+      posed_scan(""), posed_scan(E57Bytes::pose({"1", "0", "0", "0"}, {"10", "-20", "0.5"})),
+      posed_scan("", true), posed_scan(E57Bytes::pose({"0", "1", "0", "0"}, {"0", "0", "0"}))};
   put_bytes(folder / "a.e57", e57.build());
   ConversionOptions options = conversion_of({folder / "a.e57"}, folder / "a.h5");
   options.scale = 0.001;
