@@ -247,39 +247,37 @@ struct WideTreeRefOf : WideBoxes {
     const auto from = target_of(places);
     Open open[kMostOpen];
     std::uint32_t count = 0;
-    open[count++] = {0, 0, 0};
+    open[count++] = {0, 0};
     while (count > 0) {
       const Open next = open[--count];
       const float limit = above(within());
       if (next.squared > limit) continue;
-      if (next.level == levels) {
-        const Packet& packet = packets[next.index];
+      const auto level = static_cast<std::uint32_t>(next.place >> 32);
+      const auto index = static_cast<std::uint32_t>(next.place);
+      if (level == levels) {
+        const Packet& packet = packets[index];
         typename Packet::Real squared[Packet::kMost];
         to_elements(packet, squared);
-        if constexpr (kIsTriangle<Element>) {
-          std::uint32_t near = lanes_within(squared, limit) & (0xffffffffU >> (32 - packet.count));
-          for (; near != 0; near &= near - 1) {
-            const std::uint32_t i = lowest_bit(near);
-            if (!(static_cast<double>(squared[i]) > within()) && visit(packet, i)) return true;
-          }
-        } else {
-          for (std::uint32_t i = 0; i < packet.count; ++i) {
-            if (!(squared[i] > within()) && visit(packet, i)) return true;
-          }
+        std::uint32_t near = lanes_within(squared, static_cast<typename Packet::Real>(limit)) &
+                             (0xffffffffU >> (32 - packet.count));
+        for (; near != 0; near &= near - 1) {
+          const std::uint32_t i = lowest_bit(near);
+          if (!(static_cast<double>(squared[i]) > within()) && visit(packet, i)) return true;
         }
         continue;
       }
       float squared[kWidth];
-      const std::uint32_t node = first[next.level] + next.index;
+      const std::uint32_t node = first[level] + index;
       to_children(node, from, squared);
-      const std::uint32_t width = children(next.level);
+      const std::uint32_t width = children(level);
+      const std::uint64_t deeper = std::uint64_t{level + 1} << 32;
       const std::uint32_t begin = count;
       std::uint32_t near = lanes_within(squared, limit) & ((1U << width) - 1);
       for (; near != 0; near &= near - 1) {
         const std::uint32_t i = lowest_bit(near);
         std::uint32_t at = count++;
         for (; at > begin && open[at - 1].squared < squared[i]; --at) open[at] = open[at - 1];
-        open[at] = {squared[i], next.index * kWidth + i, next.level + 1};
+        open[at] = {deeper + index * kWidth + i, squared[i]};
       }
     }
     return false;
@@ -287,9 +285,10 @@ struct WideTreeRefOf : WideBoxes {
 
  private:
   struct Open {
-    float squared;        ///< squared distance to its box, rounded down
-    std::uint32_t index;  ///< index within the level
-    std::uint32_t level;
+    /// Its level, and in the lower half its index within the level: one word, because a word is
+    /// slow to read where it was just written in parts.
+    std::uint64_t place;
+    float squared;  ///< squared distance to its box, rounded down
   };
 
   // A lane of a GPU works through a node's children one by one. Slabs cost it more than they save

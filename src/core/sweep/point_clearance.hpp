@@ -205,8 +205,7 @@ class PointClearance {
     if (places.low > places.high) return;
     const double guess = places.nearest * last + 0.5;
     const auto nearest = static_cast<std::uint32_t>(guess);
-    offer(node.first + nearest, m);
-    places = curve.places(m, squared_ball(least, error));
+    if (offer(node.first + nearest, m)) places = curve.places(m, squared_ball(least, error));
     const double low = places.low * last - kPlaceSlack, high = places.high * last + kPlaceSlack;
     if (low > last || high < 0) return;
     const std::uint32_t begin = low > 0 ? static_cast<std::uint32_t>(std::ceil(low)) : 0;

@@ -79,6 +79,8 @@ SweepFilterOf<Element>::SweepFilterOf(const Query& query, const MotionTree& moti
     curves_ = MotionCurves(motion, model.box(), query.clearance * kRoundedUp + ref_.rounding,
                            spacing_of(model, query.clearance), threads);
     ref_.motion.curves = curves_.data();
+  }
+  if (query.clearance > 0 || (query.profile > 0 && !kIsTriangle<Element>)) {
     wide_ = WideTreeOf<StoredElement<Element>>(model);
     ref_.wide = wide_.ref();
   }

@@ -114,7 +114,7 @@ class SweepFilterOf final : public PoseReach {
   SweepRefOf<Element> ref_;
   MotionCurves curves_;                      ///< made only with a clearance
   MotionFloors floors_;                      ///< made only with a floor
-  WideTreeOf<StoredElement<Element>> wide_;  ///< made only with a clearance
+  WideTreeOf<StoredElement<Element>> wide_;  ///< made only if ref_.wide is set
   ProfileTravel travel_;                     ///< made only with a profile
   HitRuns<Element> runs_;
   SweepRefOf<Element> for_plan_;  ///< makes no bricks, because cells are too large to need them

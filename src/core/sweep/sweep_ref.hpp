@@ -98,7 +98,7 @@ struct SweepRefOf {
   MotionTreeRef motion;
   ModelTreeRefOf<StoredElement<Element>> model;
   ModelFieldRef field;
-  /// Wide tree of the model's elements; set only with a clearance
+  /// Wide tree of the model's elements; set only with a clearance and, for points, with a profile
   WideTreeRefOf<StoredElement<Element>> wide;
   double radius;  ///< points strictly closer than this are hits; with a tolerance, search_radius()
   /// A distance of at most the radius: a point this far at a single pose need not be a hit

@@ -1,5 +1,7 @@
 #include "core/sweep/field/field_lanes.hpp"
 
+#include <cstring>
+
 #include "core/util/lane_bits.hpp"
 #include "core/util/macros.hpp"
 
@@ -52,12 +54,20 @@ void FieldLanes::bound_all(const ModelFieldRef& field, std::uint32_t filled, Fie
   constexpr std::int32_t kRow = ModelFieldRef::kRow, kLayer = kRow * kRow;
   const float* const distances = field.distances;
   const double step = field.voxel, slack = field.fine_slack;
+  // Two neighbours along x are loaded as one, which takes less time than the processor's gathers.
+  float pairs[4][2 * kMost];
+  for (std::uint32_t i = 0; i < filled; ++i) {
+    const float* const first = distances + lanes.low_[i];
+    for (int k = 0; k < 4; ++k) {
+      std::memcpy(pairs[k] + 2 * i, first + (k & 1 ? kRow : 0) + (k & 2 ? kLayer : 0),
+                  2 * sizeof(float));
+    }
+  }
   for (std::uint32_t i = 0; i < filled / kVector * kVector; ++i) {
-    const std::int32_t first = lanes.low_[i];
     double corner[8];
-    for (int k = 0; k < 8; ++k) {
-      corner[k] = static_cast<double>(
-          distances[first + (k & 1) + (k & 2 ? kRow : 0) + (k & 4 ? kLayer : 0)]);
+    for (int k = 0; k < 4; ++k) {
+      corner[2 * k] = static_cast<double>(pairs[k][2 * i]);
+      corner[2 * k + 1] = static_cast<double>(pairs[k][2 * i + 1]);
     }
     const double place[3] = {lanes.place_[0][i], lanes.place_[1][i], lanes.place_[2][i]};
     lanes.squared_lower_[i] =

@@ -353,17 +353,27 @@ class ProfileWalkOf<Element>::OfPage {
     const InversePose& back = sweep_.motion.inverse_poses[pose_];
     const Vec3 x = back.apply(candidate.e);
     double ball = squared_ball(back, candidate.least);
-    sweep_.model.any(
-        [&](const Box& box) {
-          return least_squared_distance(box, x) > ball ? ModelStep::kSkip : ModelStep::kEnter;
-        },
-        [&](const Element& m) {
-          if (!(squared_distance(x, m) > ball)) {
-            offer(candidate, m);
-            ball = squared_ball(back, candidate.least);
-          }
-          return false;
-        });
+    const auto visit = [&](const Element& m) {
+      offer(candidate, m);
+      ball = squared_ball(back, candidate.least);
+      return false;
+    };
+    if constexpr (kIsTriangle<Element>) {
+      sweep_.model.any(
+          [&](const Box& box) {
+            return least_squared_distance(box, x) > ball ? ModelStep::kSkip : ModelStep::kEnter;
+          },
+          [&](const Element& m) { return !(squared_distance(x, m) > ball) && visit(m); });
+    } else {
+      sweep_.wide.any_nearest_first(
+          Box{x, x}, [&] { return ball; },
+          [&](const PointPacket& packet, double(&out)[PointPacket::kMost]) {
+            for (std::uint32_t i = 0; i < PointPacket::kMost; ++i) {
+              out[i] = squared_distance(x, packet.point(i));
+            }
+          },
+          [&](const PointPacket& packet, std::uint32_t i) { return visit(packet.point(i)); });
+    }
   }
 
   double squared_ball(const InversePose& back, double least) const {
