@@ -244,6 +244,19 @@ struct WideTreeRefOf : WideBoxes {
   CLEARWAY_HD bool any_nearest_first(const Places& places, Within within, ToElements to_elements,
                                      Visit visit) const {
     if (packet_count == 0) return false;
+    const auto visit_packet = [&](std::uint32_t index) {
+      const Packet& packet = packets[index];
+      typename Packet::Real squared[Packet::kMost];
+      to_elements(packet, squared);
+      const auto limit = static_cast<typename Packet::Real>(above(within()));
+      std::uint32_t near = lanes_within(squared, limit) & (0xffffffffU >> (32 - packet.count));
+      for (; near != 0; near &= near - 1) {
+        const std::uint32_t i = lowest_bit(near);
+        if (!(static_cast<double>(squared[i]) > within()) && visit(packet, i)) return true;
+      }
+      return false;
+    };
+    if (levels == 0) return visit_packet(0);
     const auto from = target_of(places);
     Open open[kMostOpen];
     std::uint32_t count = 0;
@@ -254,25 +267,21 @@ struct WideTreeRefOf : WideBoxes {
       if (next.squared > limit) continue;
       const auto level = static_cast<std::uint32_t>(next.place >> 32);
       const auto index = static_cast<std::uint32_t>(next.place);
-      if (level == levels) {
-        const Packet& packet = packets[index];
-        typename Packet::Real squared[Packet::kMost];
-        to_elements(packet, squared);
-        std::uint32_t near = lanes_within(squared, static_cast<typename Packet::Real>(limit)) &
-                             (0xffffffffU >> (32 - packet.count));
-        for (; near != 0; near &= near - 1) {
-          const std::uint32_t i = lowest_bit(near);
-          if (!(static_cast<double>(squared[i]) > within()) && visit(packet, i)) return true;
-        }
-        continue;
-      }
       float squared[kWidth];
       const std::uint32_t node = first[level] + index;
       to_children(node, from, squared);
       const std::uint32_t width = children(level);
+      std::uint32_t near = lanes_within(squared, limit) & ((1U << width) - 1);
+      if (level + 1 == levels) {
+        // The packets of one node are as good as equally near, so that to sort them gains nothing.
+        for (; near != 0; near &= near - 1) {
+          const std::uint32_t i = lowest_bit(near);
+          if (!(squared[i] > above(within())) && visit_packet(index * kWidth + i)) return true;
+        }
+        continue;
+      }
       const std::uint64_t deeper = std::uint64_t{level + 1} << 32;
       const std::uint32_t begin = count;
-      std::uint32_t near = lanes_within(squared, limit) & ((1U << width) - 1);
       for (; near != 0; near &= near - 1) {
         const std::uint32_t i = lowest_bit(near);
         std::uint32_t at = count++;
