@@ -236,10 +236,10 @@ struct WideTreeRefOf : WideBoxes {
   std::uint32_t levels;              ///< levels of nodes; 0 if there is only one packet
   std::uint32_t first[kMostLevels];  ///< first node of each level
 
-  /// Visits every element whose squared distance is at most within(), and perhaps others, nearer
-  /// boxes first, until visit(packet, number in it) returns true; returns whether it did. places:
-  /// hold every place that distances are measured from. to_elements(packet, out): a squared
-  /// distance for each element of a packet. A comparison with NaN visits.
+  /// Visits every element whose squared distance is at most within(), and perhaps others, nodes
+  /// with nearer boxes first, until visit(packet, number in it) returns true; returns whether it
+  /// did. places: hold every place that distances are measured from. to_elements(packet, out): a
+  /// squared distance for each element of a packet. A comparison with NaN visits.
   template <typename Within, typename ToElements, typename Visit>
   CLEARWAY_HD bool any_nearest_first(const Places& places, Within within, ToElements to_elements,
                                      Visit visit) const {
