@@ -23,6 +23,8 @@ NOT_RUN = {
     ("docs/guide/measuring.md", "clearway-bench datasets"): "makes scenes of 800 million points",
     ("docs/guide/measuring.md", "PYTHONPATH=build/release/python tools/certainty.py"): "measures for minutes",
     ("docs/guide/measuring.md", "tools/check_cost.py"): "measures for minutes",
+    ("docs/guide/measuring.md", "cmake"): "builds programs with libraries that most machines lack",
+    ("docs/guide/measuring.md", "tools/measure_peers.py"): "the test measure_peers runs it",
     ("docs/guide/python.md", "tools/package.sh"): "makes the packages; tools/test_package.sh does",
     ("docs/guide/python.md", "sudo"): "installs the package; tools/test_package.sh does",
     ("docs/guide/python.md", "pip"): "installs the wheel; tools/test_package.sh does",

@@ -28,6 +28,7 @@ class MessageLog {
   /// Callback and warnings must outlive this object.
   MessageLog(const MessageCallback& callback, std::vector<Message>& warnings)
       : callback_(callback), warnings_(warnings) {}
+  MessageLog(MessageCallback&& callback, std::vector<Message>& warnings) = delete;
 
   void note(std::string text) const {
     if (callback_) callback_(plain_note(std::move(text)));

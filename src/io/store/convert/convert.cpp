@@ -766,8 +766,9 @@ bool has_wanted_origins(const ConversionOptions& options, const StoreMetadata& f
 /// their hashes say that they are the same.
 bool has_wanted_corridor(const ConversionOptions& options, const StoreMetadata& found) {
   if (options.near.empty() || !found.near) return options.near.empty() == !found.near;
+  const MessageCallback silent;
   std::vector<Message> unused;
-  MessageLog log(nullptr, unused);
+  MessageLog log(silent, unused);
   const Corridor wanted = corridor_of(options, found.crs_wkt, found.unit, log);
   return found.near->unread == 0 && wanted.within() == found.near->within &&
          std::ranges::equal(wanted.path(), found.near->path);
