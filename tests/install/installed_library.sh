@@ -13,14 +13,36 @@ fail() { echo "installed_library: $*" >&2; exit 1; }
 # Prints the number of colliding points that the example finds.
 example() { "$scratch/example/find_collisions" "$@" 2>messages.txt | awk '/points collide/ { print $1 }'; }
 
+# The headers that a header of clearway reads, itself or through others of clearway.
+headers_read_by() {
+  local found=$1 before=
+  while [ "$found" != "$before" ]; do
+    before=$found
+    # shellcheck disable=SC2086
+    found=$(cd "$prefix/include" && { printf '%s\n' $before &&
+      grep -hoP '^#include [<"]\K[^>"]+' $(printf '%s\n' $before | grep ^clearway/); } | sort -u)
+  done
+  echo "$found"
+}
+
 # Each alone, as a file that includes no other first; and all in one, as another compiler reads them.
+# Reading the standard library takes most of the time, so what most of the headers read of it is
+# compiled once. Only a header that reads all of this itself is compiled after it: any other would
+# find names there that it has not included.
 check_headers() {
-  local header foreign all=$scratch/all.cpp
+  local header foreign all=$scratch/all.cpp shared=$scratch/shared.hpp name first
+  local standard=(atomic cmath cstdint filesystem functional string string_view utility vector)
+  printf '#include <%s>\n' "${standard[@]}" >"$shared"
+  g++ -std=c++20 "${warnings[@]}" -I "$prefix/include" -x c++-header "$shared" -o "$shared.gch"
   for header in "$prefix"/include/clearway/*.hpp; do
-    g++ -std=c++20 -fsyntax-only "${warnings[@]}" -I "$prefix/include" \
+    name=clearway/${header##*/} first=()
+    [ -n "$(comm -23 <(printf '%s\n' "${standard[@]}" | sort) <(headers_read_by "$name"))" ] ||
+      first=(-Winvalid-pch -include "$shared")
+    g++ -std=c++20 -fsyntax-only "${warnings[@]}" -I "$prefix/include" "${first[@]}" \
       -include "$header" -x c++ /dev/null || fail "g++ refuses $header"
     echo "#include \"$header\""
   done >"$all"
+  rm "$shared.gch"
   if command -v clang++ >/dev/null; then
     clang++ -std=c++20 -fsyntax-only "${warnings[@]}" -I "$prefix/include" "$all" ||
       fail "clang++ refuses a header"
@@ -32,27 +54,31 @@ check_headers() {
     fail "a flag reaches the consumer"
 }
 
-# Every C++ block of a document is a whole file.
+# Every C++ block of a document is a whole file. Programs are compiled by run_program_of.
 check_document() {
   local folder=$scratch/documents/${1##*/} block
   mkdir -p "$folder"
   awk -v folder="$folder" '/^```/ { out = /^```cpp/ ? folder "/" ++n ".cpp" : ""; next }
     out { print > out }' "$source/$1"
-  for block in "$folder"/*.cpp; do
+  for block in $(grep -L 'int main' "$folder"/*.cpp); do
     g++ -std=c++20 -fsyntax-only "${warnings[@]}" -I "$prefix/include" "$block" ||
       fail "a block of $1 does not compile"
   done
 }
 
 # The program among a document's C++ blocks, built with the CMake file that library.md shows, and
-# run on the scene. $2: what it is to print.
+# run on the scene. $2: what it is to print. The folder is configured once for all programs.
 run_program_of() {
-  local folder=$scratch/programs/${1##*/} printed
+  local folder=$scratch/programs printed
   mkdir -p "$folder"
-  awk '/^```/ { out = /^```cmake/; next } out' "$source/docs/guide/library.md" \
-    >"$folder/CMakeLists.txt"
   cp "$(grep -l 'int main' "$scratch/documents/${1##*/}"/*.cpp)" "$folder/passes.cpp"
-  cmake -S "$folder" -B "$folder/build" -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
+  if [ ! -d "$folder/build" ]; then
+    awk '/^```/ { out = /^```cmake/; next } out' "$source/docs/guide/library.md" \
+      >"$folder/CMakeLists.txt"
+    cmake -S "$folder" -B "$folder/build" -DCMAKE_PREFIX_PATH="$prefix" \
+      -DCMAKE_CXX_FLAGS="${warnings[*]}" >/dev/null
+  fi
+  rm -f "$folder/build/passes"
   cmake --build "$folder/build" >/dev/null
   rm -f site.h5 out.h5
   printed=$("$folder/build/passes") || [ $? = 1 ] || fail "the program of $1 fails"
