@@ -32,6 +32,15 @@ def text_of(corners):
     return "".join(f"{y!r},{z!r}\n" for y, z in corners)
 
 
+def wait_until_caught(process, kind):
+    """A signal before the program listens to it ends the program as any other would be."""
+    while process.poll() is None:
+        caught = re.search(r"SigCgt:\s*(\w+)", Path(f"/proc/{process.pid}/status").read_text())
+        if caught and int(caught[1], 16) >> (kind - 1) & 1:
+            return
+        time.sleep(0.005)
+
+
 class Drawing:
     """A DXF file in the form of release 12: pairs of a code and a value, a line each."""
 
@@ -500,11 +509,12 @@ class Finding(Sections):
         words = [PROGRAM[0], "section", "find", "--env", "site.h5", "--trajectory", "slow.txt",
                  "--x-range=-1,1", "--cell", "0.004", "--bin", "2", "--threads", "1", "-o", "out.h5"]
         stopped = {signal.SIGTERM: 0, signal.SIGINT: 0, signal.SIGKILL: 0}
-        for attempt in range(9):
+        for attempt in range(6):
             kind = list(stopped)[attempt % 3]
             with subprocess.Popen(words, cwd=self.folder, stdout=subprocess.PIPE,
                                   stderr=subprocess.PIPE, text=True) as process:
-                time.sleep(0.15 + 0.1 * attempt)
+                wait_until_caught(process, signal.SIGTERM)
+                time.sleep(0.05 + 0.1 * attempt)
                 process.send_signal(kind)
                 _, told = process.communicate(timeout=60)
             if process.returncode == 0:
@@ -655,14 +665,14 @@ class Seen(Sections):
         self.ok("verify a.h5")
         bytes_ = (self.folder / "a.h5").read_bytes()
         refused = 0
-        for at in range(0, len(bytes_), max(1, len(bytes_) // 150)):
+        for at in range(0, len(bytes_), max(1, len(bytes_) // 60)):
             changed = bytearray(bytes_)
             changed[at] ^= 0x55
             (self.folder / "changed.h5").write_bytes(changed)
             done = self.run_("verify changed.h5")
             self.assertIn(done.returncode, (0, 1, 3, 4), done)
             refused += done.returncode != 0
-        self.assertGreater(refused, 50)
+        self.assertGreater(refused, 20)
 
     def test_tables_say_where_widths_end(self):
         self.ok("section export seen-section.h5 --table bands --band 0.5 --base 0.5 -o t.csv --force")
@@ -774,10 +784,10 @@ class Exports(Sections):
         self.assertEqual(self.verdict(wider, "--margin 0")["verdict"], "stopped")
 
     def test_drawings_look_forward(self):
-        """50 sections of tubes with a post on one side: what is right of the path is right in the
+        """18 sections of tubes with a post on one side: what is right of the path is right in the
         drawing, which says so, and mirrored it is the outline that the section lets pass."""
         random = np.random.default_rng(17)
-        for trial in range(50):
+        for trial in range(18):
             side = [-1, 1][trial % 2]  # -1: the post is on the right
             post = random.uniform(0.3, 1.2)
             bottom = [-0.5, 0, 0.42][trial % 3]
