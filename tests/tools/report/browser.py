@@ -115,7 +115,6 @@ class Page:
         self._target = browser.call("Target.createTarget", url="about:blank")["targetId"]
         self._session = browser.call("Target.attachToTarget", targetId=self._target,
                                      flatten=True)["sessionId"]
-        browser.events.clear()
         for domain in ("Page", "Runtime", "Network", "Log"):
             self.call(f"{domain}.enable")
         self.resize(width, height)
@@ -128,6 +127,8 @@ class Page:
     def close(self):
         """Ends the page; otherwise it goes on until the browser ends."""
         self._browser.call("Target.closeTarget", targetId=self._target)
+        self._browser.events = [event for event in self._browser.events
+                                if event.get("sessionId") != self._session]
 
     def call(self, method, **parameters):
         return self._browser.call(method, session=self._session, **parameters)

@@ -50,7 +50,9 @@ class ReportTest(PageChecks, unittest.TestCase):
     def open(self, page, **size):
         if self.browser is None:
             self.skipTest("chromium is not installed: the page is made, but not looked at")
-        return self.browser.page(page, **size)
+        opened = self.browser.page(page, **size)
+        self.addCleanup(opened.close)
+        return opened
 
     def test_bytes_depend_on_nothing_else(self):
         one, _ = self.hall.report(self.found, "one", "--threads", 1)
@@ -75,26 +77,10 @@ class ReportTest(PageChecks, unittest.TestCase):
                         "height"):
                 self.assertEqual(a[key], b[key], key)
 
-    def test_head_of_the_page(self):
-        odd = '<b>"Nord" & \\</script>'
-        path, facts = self.hall.report(self.found, "head", "--title", odd, "--project", odd + "1",
-                                       "--client", odd + "2", "--author", odd + "3")
-        self.assertEqual([facts[key] for key in ("title", "project", "client", "author")],
-                         [odd, odd + "1", odd + "2", odd + "3"])
-        page = self.open(path)
-        self.check_words(page, facts)
-        self.assertEqual(page.run("document.title"), odd)
-        self.assertEqual(page.run("document.querySelector('h1').textContent"), odd)
-        self.assertEqual(page.run("byId('about').textContent"),
-                         f"Project: {odd}1Client: {odd}2Author: {odd}3")
-        self.assertEqual(page.run("(preparePrint(), document.querySelector('#print-feet').sheet"
-                                  ".cssRules.length)"), 1)
-        page.pdf(f"{self.hall.folder}/head.pdf")
-        self.check_quiet(page)
-
     def test_what_to_check_on_site(self):
         """A lorry that drives east, then a quarter of a circle of 12 m to the left; its front is behind."""
         folder = self.hall.folder
+        shown = None
         for name, turn in (("ahead", 0), ("backwards", math.pi)):
             with self.subTest(name), open(f"{folder}/bend.txt", "w") as file:
                 places = [(x / 4, 0, 0) for x in range(161)]
@@ -121,13 +107,13 @@ class ReportTest(PageChecks, unittest.TestCase):
                 self.assertAlmostEqual(last["chainage"], 100 + 60 + 6 * math.pi, delta=0.01)
                 self.assertAlmostEqual(site["bend"]["radius"], 12, delta=0.01)
                 self.assertTrue(140 < site["bend"]["chainage"] < 160)
-                page = self.open(path)
-                words = page.run("byId('on-site').innerText")
+                shown = shown or self.open(path)
+                words = self.verdict_of(shown, facts, "on-site")
                 self.assertEqual("its front points the other way" in words, name == "backwards")
                 for part in ("8.00 × 2.50 × 3.40 m", "1000.00, 500.00, 7.00", "towards 90° at the beginning",
                              "0° at the end", "left is towards 0°", "radius of about 12.00 m"):
                     self.assertIn(part, words)
-                self.check_quiet(page)
+                self.check_quiet(shown)
         straight = self.empty.report(self.empty.search("straight", "--radius", 0.1), "straight")[1]
         self.assertIsNone(straight["on_site"]["bend"])
 
@@ -148,10 +134,21 @@ class ReportTest(PageChecks, unittest.TestCase):
         self.assertFalse(os.path.exists(f"{self.hall.folder}/bad.html"))
 
     def test_hall(self):
-        path, facts = self.hall.report(self.found, "hall", "--classes", "0.05,0.1,0.3")
+        odd = '<b>"Nord" & \\</script>'
+        path, facts = self.hall.report(self.found, "hall", "--classes", "0.05,0.1,0.3", "--title",
+                                       odd, "--project", odd + "1", "--client", odd + "2",
+                                       "--author", odd + "3")
         self.assertEqual(facts["verdict"], "conflict")
+        self.assertEqual([facts[key] for key in ("title", "project", "client", "author")],
+                         [odd, odd + "1", odd + "2", odd + "3"])
+        self.assertNotIn("seen", list(facts))
         page = self.open(path)
         self.check_words(page, facts)
+        self.check_head(page, odd)
+        # Without --seen, the page has nothing of seen space; without --section, no section.
+        self.assertEqual(page.run("[byId('unseen'), byId('basis'), byId('scanned'), byId('section')]"),
+                         [None] * 4)
+        self.assertNotIn("Not scanned", page.run("document.body.innerText"))
         self.assertEqual([c["name"] for c in facts["classes"]], ["hit", "near", "watch"])
         worst = facts["conflicts"]["worst"]
         self.assertEqual(page.run("page.conflict.id"), worst)
@@ -173,6 +170,12 @@ class ReportTest(PageChecks, unittest.TestCase):
         page.pdf(f"{self.hall.folder}/page.pdf")
         self.assertGreater(os.path.getsize(f"{self.hall.folder}/page.pdf"), 50000)
         self.check_quiet(page)
+
+    def check_head(self, page, odd):
+        self.assertEqual(page.run("document.title"), odd)
+        self.assertEqual(page.run("document.querySelector('h1').textContent"), odd)
+        self.assertEqual(page.run("byId('about').textContent"),
+                         f"Project: {odd}1Client: {odd}2Author: {odd}3")
 
     def test_stations(self):
         line = f"{self.hall.folder}/line.csv"
@@ -383,24 +386,25 @@ class ReportTest(PageChecks, unittest.TestCase):
 
     def test_a_floor(self):
         asked = ("--radius", 0.1, "--first-pose", "--clearance", 0.3, "--floor", 0.3)
-        for name, more, words in (
-                ("floor", (), "0.3 m of the vehicle"),
-                ("floor_errors", ("--error-pose", 0.01), "0.3 m of the vehicle (0.1621 m with the errors)")):
-            path, facts = self.hall.report(self.hall.search(name, *asked, *more), name)
-            below = facts["floor"]["colliding"]
+        plain = self.hall.report(self.hall.search("floor", *asked), "floor")[1]
+        path, facts = self.hall.report(self.hall.search("floor_errors", *asked, "--error-pose", 0.01),
+                                       "floor_errors")
+        page = self.open(path)
+        self.check_words(page, facts)
+        with_errors = "0.3 m of the vehicle (0.1621 m with the errors)"
+        for given, words in ((facts, with_errors), (plain, "0.3 m of the vehicle")):
+            text = self.verdict_of(page, given)
+            below = given["floor"]["colliding"]
             self.assertGreater(below, 10)
-            page = self.open(path)
-            self.check_words(page, facts)
-            text = page.run("byId('verdict').innerText")
             self.assertIn(f"{below:,} points within the radius lie below {words}", text)
-            self.assertIn(f"Only what lies at {words}", text)
-            self.check_quiet(page)
-        self.assertIn("Nothing at 0.3 m of the vehicle (0.1621 m with the errors)",
+            self.assertIn(f"Only what lies at {words} or above", text)
+        self.assertIn(f"Nothing at {with_errors}",
                       page.run("""(() => { const { verdict } = page.facts;
             page.facts.verdict = "clear";
             const sentence = verdictSentences()[0];
             page.facts.verdict = verdict;
             return sentence; })()"""))
+        self.check_quiet(page)
 
     def test_empty_answer(self):
         result = self.empty.search("out", "--radius", 0.1, "--first-pose", "--clearance", 2)
@@ -536,13 +540,6 @@ class ReportTest(PageChecks, unittest.TestCase):
         self.assertIn("1 group of fewer than 100,000 cubes", text)
         self.assertEqual(page.run("document.querySelectorAll('rect.not-scanned').length"), 0)
         self.check_quiet(page)
-
-    def test_without_seen_space_the_page_has_none_of_it(self):
-        path, facts = self.hall.report(self.found, "plain")
-        self.assertNotIn("seen", list(facts))
-        page = self.open(path)
-        self.assertEqual(page.run("[byId('unseen'), byId('basis'), byId('scanned')]"), [None] * 3)
-        self.assertNotIn("Not scanned", page.run("document.body.innerText"))
 
     def test_certain_and_possible_conflicts(self):
         result = self.hall.search("budget", "--radius", 0.1, "--first-pose", "--clearance", 0.5,

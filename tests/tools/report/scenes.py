@@ -38,7 +38,7 @@ class Scene:
 
 
 def make_hall(folder):
-    clearway("scene", "hall", "--points", 60000, "--poses", 400, "--model-points", 5000, "-o",
+    clearway("scene", "hall", "--points", 30000, "--poses", 400, "--model-points", 2500, "-o",
              folder, "--force")
     hall = Scene(folder)
     clearway("convert", f"{folder}/environment.las", "-o", hall.store, "--force")

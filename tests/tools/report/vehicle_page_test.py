@@ -42,6 +42,7 @@ class VehiclePageTest(PageChecks, unittest.TestCase):
         cls.page = f"{folder}/page.html"
         cls.facts = json.loads(cls.report(cls.page))
         cls.browser = Browser(CHROMIUM) if CHROMIUM else None
+        cls.shown = cls.browser.page(cls.page) if CHROMIUM else None
 
     @classmethod
     def tearDownClass(cls):
@@ -62,7 +63,7 @@ class VehiclePageTest(PageChecks, unittest.TestCase):
         self.assertEqual((front["lo"], front["hi"]), ([0, -0.4, 0.2], [0.8, 0.4, 0.9]))
         if self.browser is None:
             self.skipTest("chromium is not installed: the page is made, but not looked at")
-        page = self.browser.page(self.page)
+        page = self.shown
         words = page.run("byId('on-site').innerText")
         for part in ("Check these on site", "Bodies", "front: 0.80 × 0.80 × 0.70 m", "from its origin 0.80 m ahead",
                      "0.40 m left, 0.40 m right", "pivots 2.04 m apart, 1.02 m ahead of the path's pose and 1.02 m behind it",
@@ -111,7 +112,7 @@ class VehiclePageTest(PageChecks, unittest.TestCase):
     def test_page_draws_each_body_where_it_is(self):
         if self.browser is None:
             self.skipTest("chromium is not installed: the page is made, but not looked at")
-        page = self.browser.page(self.page)
+        page = self.shown
         self.check_words(page, self.facts)
         text = page.run("byId('verdict').innerText")
         for body in BODIES:
@@ -200,7 +201,7 @@ class VehiclePageTest(PageChecks, unittest.TestCase):
         self.assertTrue(any("front" in part["bodies"] for part in parts))
         if self.browser is None:
             self.skipTest("chromium is not installed: the page is made, but not looked at")
-        page = self.browser.page(self.page)
+        page = self.shown
         self.assertEqual(page.run("document.querySelectorAll('rect.part-answer').length"),
                          len(parts))
         self.assertIn('"middle"', page.run("byId('profile-unsearched').textContent"))
