@@ -3,17 +3,30 @@
 
 const kBackground = "#f6f7f9";
 
+/** The rows of a disc of pixels around its middle: [dy, half its width]. */
+function rowsOfDisc(radius) {
+  const widths = new Map();
+  for (const [dx, dy] of stampOf("round", Math.max(1, 2 * Math.round(radius) + 1))) {
+    widths.set(dy, Math.max(widths.get(dy) ?? 0, dx));
+  }
+  return [...widths];
+}
+
 /** Pixels within `radius` of a point of the set that passes keep(depth). */
 function maskOf(painter, points, radius, keep) {
   const { width, height } = painter, mask = new Uint8Array(width * height);
-  const stamp = stampOf("round", Math.max(1, 2 * Math.round(radius) + 1));
+  const rows = rowsOfDisc(radius), done = new Uint8Array(width * height);
   for (const p of points) {
     const at = painter.project(p);
     if (!at || (keep && !keep(at[2]))) continue;
     const x = at[0] | 0, y = at[1] | 0;
-    for (const [dx, dy] of stamp) {
-      const qx = x + dx, qy = y + dy;
-      if (qx >= 0 && qy >= 0 && qx < width && qy < height) mask[qy * width + qx] = 1;
+    if (x >= 0 && y >= 0 && x < width && y < height) {
+      if (done[y * width + x]) continue;
+      done[y * width + x] = 1;
+    }
+    for (const [dy, half] of rows) {
+      const from = Math.max(0, x - half), to = Math.min(width, x + half + 1), qy = y + dy;
+      if (qy >= 0 && qy < height && from < to) mask.fill(1, qy * width + from, qy * width + to);
     }
   }
   return mask;
