@@ -95,6 +95,12 @@ class Site(unittest.TestCase):
         """A check of the scans with the usual question, into site/."""
         return self.check(f"scans {QUESTION} -o site {words}", exit_code, **options)
 
+    def convert(self):
+        """Makes site/site.h5 of the scans, and nothing else."""
+        (self.folder / "site").mkdir()
+        done = clearway("convert scans -o site/site.h5", self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
     def paste(self, commands, folder):
         """Runs the commands as a shell takes them apart. Every one has to succeed."""
         links = folder / "bin"
@@ -140,6 +146,11 @@ class Finding(Site):
                          f"{without_nearest} {by_hand.stdout.splitlines()[-1]}")
         self.assertIn("taken by default: --clearance 0.3 (3 times the radius) and "
                       "--profile 0.5 (5 times the radius)", done.stderr)
+
+    def first_quarter_of_the_path(self):
+        """quarter.txt: 20 m with some conflicts, for many questions about it."""
+        lines = (self.folder / "trajectory.txt").read_text().splitlines()
+        (self.folder / "quarter.txt").write_text("\n".join(lines[:400]) + "\n")
 
     def coarse_path(self):
         lines = (self.folder / "trajectory.txt").read_text().splitlines()
@@ -340,13 +351,14 @@ class Finding(Site):
         wagon["bodies"][1] = {"name": "rear", "model": "model.ply",
                               "towed": {"by": "front", "at": -2.4, "pivots": [2.4, -1]}}
         (self.folder / "towed.json").write_text(json.dumps(wagon))
-        self.asked("")
+        self.first_quarter_of_the_path()
+        self.convert()
         for words in ("--vehicle wagon.json", "--vehicle towed.json", "--model model.ply --between-poses",
                       "--model model.ply --error-scan 0.005 --error-model 0.01 --gap 0.2",
                       "--model model.ply --forward=-x",
                       "--model model.ply --clearance 0.2 --min-points 3 --split 0"):
             with self.subTest(words):
-                done = self.check("site/site.h5 --trajectory trajectory.txt --radius 0.1 "
+                done = self.check("site/site.h5 --trajectory quarter.txt --radius 0.1 "
                                   f"{words} -o other --force")
                 commands = printed_commands(done.stdout)
                 self.assertEqual("--gap" in commands[0], "--error" in words)
@@ -354,6 +366,7 @@ class Finding(Site):
                 made = bytes_of(self.folder / "other", FILES[1:])
                 self.paste(commands, self.folder)
                 self.assertEqual(bytes_of(self.folder / "other", FILES[1:]), made)
+
     def test_every_kind_of_model(self):
         """Meshes of all formats, points, boxes, outlines, and vehicles of them, in another folder."""
         here = self.folder / "vehicles"
@@ -388,8 +401,9 @@ class Finding(Site):
         models = ["mesh.off", "mesh.obj", "mesh.ply", "mesh.stl", "outline.off", "points.ply",
                   "points.txt", "box:2,1,1"]
         self.assertEqual((len(corners), len(faces)), (8, 12))
-        self.asked("")
-        site = "site/site.h5 --trajectory trajectory.txt --radius 0.1 --force -o"
+        self.first_quarter_of_the_path()
+        self.convert()
+        site = "site/site.h5 --trajectory quarter.txt --radius 0.1 --force -o"
         sentences = {}
         for model in models:
             path = model if model.startswith("box:") else f"vehicles/{model}"
