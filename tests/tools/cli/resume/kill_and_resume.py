@@ -203,8 +203,8 @@ def main():
     parser.add_argument("--only", default="")
     parser.add_argument("--while-writing", action="store_true")
     parser.add_argument("--device", choices=["cpu", "cuda"], default="cpu")
-    parser.add_argument("--points", type=int, default=200000)
-    parser.add_argument("--poses", type=int, default=500)
+    parser.add_argument("--points", type=int, default=400000)
+    parser.add_argument("--poses", type=int, default=800)
     arguments = parser.parse_args()
     draw = random.Random(arguments.seed)
     cases = {"sweep": ["--engine", "sweep", "--clearance", "0.3", "--first-pose"],
