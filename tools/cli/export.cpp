@@ -84,8 +84,8 @@ Exported export_table(const ResultReader& result, ExportOptions& options) {
     return {result.near(), "near point"};
   }
   if (options.what == "profile") {
-    options.trajectory_options.environment_unit = options.lengths.convert_for(
-        options.result.string(), result.header().crs_wkt, result.header().notes.length_unit);
+    options.trajectory_options.environment_unit =
+        options.lengths.convert_for(options.result, result.header());
     export_profile(result, labels_for(result, options), options.chainage_start, options.output,
                    options.force, progress);
     return {result.profile_rows(), "pose"};

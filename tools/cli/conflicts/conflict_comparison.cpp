@@ -353,9 +353,7 @@ int compare_conflicts(ConflictComparison& options, const std::filesystem::path& 
     outputs.emplace_back(output, options.force);
   }
   const Result first(a);
-  const ResultHeader& header = first.reader().header();
-  const double unit =
-      options.lengths.convert_for(a.string(), header.crs_wkt, header.notes.length_unit);
+  const double unit = options.lengths.convert_for(a, first.reader().header());
   options.trajectory_options.environment_unit = unit;
   options.model_options.environment_unit = unit;
   ConsoleProgress progress;

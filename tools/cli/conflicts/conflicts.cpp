@@ -401,9 +401,7 @@ ConflictsOutcome perform(ConflictsCommand& options, FoundConflicts* found) {
   repeat_warnings(result.reader());
   check_kind_of_model(result, options.model, options.vehicle);
   check_axes(result, options);
-  const ResultHeader& header = result.reader().header();
-  const double unit = options.lengths.convert_for(options.result.string(), header.crs_wkt,
-                                                  header.notes.length_unit);
+  const double unit = options.lengths.convert_for(options.result, result.reader().header());
   options.trajectory_options.environment_unit = unit;
   options.model_options.environment_unit = unit;
   ConsoleProgress progress;

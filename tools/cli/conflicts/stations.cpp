@@ -188,8 +188,7 @@ StationsOutcome perform(StationsCommand& command) {
   }
   check_axes(result, command);
   const ResultHeader& header = result.reader().header();
-  const double metre = command.lengths.convert_for(command.result.string(), header.crs_wkt,
-                                                   header.notes.length_unit);
+  const double metre = command.lengths.convert_for(command.result, header);
   command.trajectory_options.environment_unit = metre;
   command.model_options.environment_unit = metre;
   ConsoleProgress progress;

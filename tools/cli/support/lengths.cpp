@@ -10,6 +10,7 @@
 
 #include "cli/support/options.hpp"
 #include "core/messages/messages.hpp"
+#include "io/result/result_header.hpp"
 #include "io/scans/length_unit.hpp"
 #include "io/scans/scan_crs.hpp"
 #include "io/scans/text/table_header.hpp"
@@ -192,6 +193,11 @@ double LengthOptions::convert_for(const std::string& file, const std::string& cr
   }
   convert(metres);
   return metres;
+}
+
+double LengthOptions::convert_for(const std::filesystem::path& file,
+                                  const ResultHeader& header) const {
+  return convert_for(file.string(), header.crs_wkt, header.notes.length_unit);
 }
 
 bool names_unit(const FileUnit& option, std::span<const Message> messages) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,6 +17,10 @@ namespace CLI {
 class App;
 class Option;
 }  // namespace CLI
+
+namespace clearway {
+struct ResultHeader;
+}
 
 namespace clearway::tool {
 
@@ -85,6 +90,8 @@ class LengthOptions {
   /// file: its name, for the warning. length_unit: as Store::length_unit() names it
   double convert_for(const std::string& file, const std::string& crs_wkt,
                      const std::string& length_unit) const;
+  /// Likewise for the result in a file.
+  double convert_for(const std::filesystem::path& file, const ResultHeader& header) const;
 
   /// Whether every length that was given names its unit; 0 needs none.
   bool all_have_units() const { return !lacks_unit_; }
