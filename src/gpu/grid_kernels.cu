@@ -99,11 +99,16 @@ __device__ void search_parts(const GridSceneView& scene, const GridPageView& pag
   }
 }
 
-/// Searches all tasks: each thread block takes one after another until none is left.
+/// Searches all tasks: each thread block takes one after another until none is left. kHasFloor:
+/// whether the query has a floor. A kernel that knows that there is none is three times as fast,
+/// because it needs fewer registers.
+template <bool kHasFloor>
 __global__ void __launch_bounds__(kSearchThreads)
-    search_kernel(const __grid_constant__ GridSceneView scene,
+    search_kernel(const __grid_constant__ GridSceneView query_scene,
                   const __grid_constant__ GridPageView page, std::uint64_t tasks,
                   std::uint64_t* next_task, GridStatistics* total) {
+  GridSceneView scene = query_scene;
+  if constexpr (!kHasFloor) scene.floor = kNoFloor;
   __shared__ SharedLists lists;
   GridStatistics statistics;
   for (;;) {
@@ -122,13 +127,14 @@ __global__ void __launch_bounds__(kSearchThreads)
   add_up(*total, statistics);
 }
 
+using SearchKernel = decltype(&search_kernel<false>);
+
 /// Number of thread blocks of the search that a device runs at once.
-unsigned resident_blocks() {
+unsigned resident_blocks(SearchKernel kernel) {
   int device = 0, processors = 0, blocks = 0;
   check_cuda(cudaGetDevice(&device));
   check_cuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device));
-  check_cuda(
-      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, search_kernel, kSearchThreads, 0));
+  check_cuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, kSearchThreads, 0));
   return static_cast<unsigned>(processors * blocks);
 }
 
@@ -183,8 +189,10 @@ void search_grids(const GridSceneView& scene, const GridPageView& page, std::uin
   }
   if (tasks == 0) return;
   check_cuda(cudaMemsetAsync(next_task, 0, sizeof(*next_task), stream));
-  const auto blocks = static_cast<unsigned>(std::min<std::uint64_t>(tasks, resident_blocks()));
-  search_kernel<<<blocks, kSearchThreads, 0, stream>>>(scene, page, tasks, next_task, statistics);
+  const SearchKernel kernel = scene.floor == kNoFloor ? search_kernel<false> : search_kernel<true>;
+  const auto blocks =
+      static_cast<unsigned>(std::min<std::uint64_t>(tasks, resident_blocks(kernel)));
+  kernel<<<blocks, kSearchThreads, 0, stream>>>(scene, page, tasks, next_task, statistics);
   check_cuda(cudaGetLastError());
 }
 
@@ -192,7 +200,8 @@ void load_grid_kernels() noexcept {
   cudaFuncAttributes unused;
   cudaFuncGetAttributes(&unused, make_keys_kernel);
   cudaFuncGetAttributes(&unused, place_points_kernel);
-  cudaFuncGetAttributes(&unused, search_kernel);
+  cudaFuncGetAttributes(&unused, search_kernel<false>);
+  cudaFuncGetAttributes(&unused, search_kernel<true>);
 }
 
 }  // namespace clearway

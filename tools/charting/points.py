@@ -96,8 +96,7 @@ def draw(record):
              lambda case: case.answer_seconds(), style, name, **small)
         line(sheet, panel, cases, lambda case: case["points"] / 1e6,
              lambda case: case.seconds("search"), style, name, **small)
-        every = max(case["every"] for case in cases)
-        panel.set_title(f"{letter}  {name}" + (" (every tenth)" if every == 10 else ""))
+        panel.set_title(f"{letter}  {name}")
         draw_fit(panel, cases)
         panel.set_xlim(0, None)
         panel.set_ylim(0, None)
@@ -108,7 +107,7 @@ def draw(record):
     together.set(title="a  all, logarithmic", xlabel="environment points", ylabel="answer (s)")
     room_for_failures(together)
     sheet.say("Lines: least squares through the medians, with the share of the variance that they "
-              "explain (R²). Every tenth: the slow engines ran every tenth of the samples.")
+              "explain (R²).")
     legend_in(place, [handle_of(engine_style(name)._replace(line="none")) for name in engines],
               engines, 4)
     return sheet

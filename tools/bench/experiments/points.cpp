@@ -6,8 +6,7 @@ namespace clearway::bench {
 namespace {
 
 constexpr int kSamples = 111;
-constexpr int kSlowEvery = 10;  ///< the engines that search forwards take every tenth sample
-constexpr int kStride = 40;     ///< step through the samples; the first part covers the range
+constexpr int kStride = 40;  ///< step through the samples; the first part covers the range
 constexpr std::uint64_t kSampleSeed = 4;
 
 }  // namespace
@@ -24,8 +23,6 @@ void bench_points(Bench& bench) {
     files.store = bench.work() / "sample.h5";
     bool made = false;
     for (const EngineChoice& engine : bench.exact_engines()) {
-      const bool forward = !engine.name.starts_with("sweep");
-      if (forward && i % kSlowEvery != 1 && i != kSamples) continue;
       const std::string key = engine.name + "/" + std::to_string(points);
       if (bench.find(key)) continue;
       if (!made) {
@@ -35,12 +32,8 @@ void bench_points(Bench& bench) {
         bench.store("sample", sample);
         made = true;
       }
-      bench.measure(key,
-                    {{"scene", "hall"},
-                     {"engine", engine.name},
-                     {"points", points},
-                     {"every", forward ? kSlowEvery : 1}},
-                    files, engine.options);
+      bench.measure(key, {{"scene", "hall"}, {"engine", engine.name}, {"points", points}}, files,
+                    engine.options);
     }
   }
   std::filesystem::remove(sample);
