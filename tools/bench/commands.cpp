@@ -126,7 +126,7 @@ void add_cases(CLI::App& command, BenchOptions& options) {
       ->capture_default_str();
   command
       .add_option("--repetitions", options.repetitions,
-                  "Runs of every case; equality and most of stability run each case once")
+                  "Runs of every case; equality, points and most of stability run each case once")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   command

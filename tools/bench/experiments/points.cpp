@@ -33,7 +33,7 @@ void bench_points(Bench& bench) {
         made = true;
       }
       bench.measure(key, {{"scene", "hall"}, {"engine", engine.name}, {"points", points}}, files,
-                    engine.options);
+                    engine.options, {}, 1);
     }
   }
   std::filesystem::remove(sample);
