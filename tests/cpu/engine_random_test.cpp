@@ -81,7 +81,7 @@ TEST_CASE("random scenes") {
 #ifdef CLEARWAY_SANITIZED
   constexpr std::uint64_t kScenes = 100;  // with sanitizers each takes tens of times as long
 #else
-  constexpr std::uint64_t kScenes = 400;
+  constexpr std::uint64_t kScenes = 200;
 #endif
   std::uint64_t with_hits = 0;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {

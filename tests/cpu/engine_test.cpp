@@ -146,6 +146,7 @@ TEST_CASE("paths") {
 
 TEST_CASE("matrices that are not rigid") {
   Scene scene;
+  scene.points.resize(1200);
   SECTION("slightly") { stretch(scene.poses, {1.00009, 0.99992, 1.00005}); }
   SECTION("strongly") { stretch(scene.poses, {2.5, 0.3, 1.7}); }
   SECTION("mirrored") { stretch(scene.poses, {-1, 1, 1}); }

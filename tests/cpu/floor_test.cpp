@@ -135,7 +135,7 @@ TEST_CASE("random scenes with a floor") {
 #ifdef CLEARWAY_SANITIZED
   constexpr std::uint64_t kScenes = 60;
 #else
-  constexpr std::uint64_t kScenes = 400;
+  constexpr std::uint64_t kScenes = 200;
 #endif
   Counted counted;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {

@@ -206,9 +206,9 @@ const SlowPath kSlowPaths[] = {
 /// pose.
 struct SlowScene : ProfileScene {
   explicit SlowScene(const SlowPath& path) {
-    points.resize(500);
+    points.resize(300);
     for (const double height : {-0.35, 0.02}) {
-      for (const Vec3& e : random_points(random, {{-4, -1, height}, {4, 1, height + 0.01}}, 700)) {
+      for (const Vec3& e : random_points(random, {{-4, -1, height}, {4, 1, height + 0.01}}, 350)) {
         points.push_back(quantise(std::vector<Vec3>{e}, quantisation)[0]);
       }
     }
@@ -293,7 +293,7 @@ TEST_CASE("profiles where roundings decide the point and the model point") {
   // All points are equally far from a model of points around one place, but for a few roundings:
   // the least computed d2 is not that of the nearest point.
   Random random(29);
-  for (int trial = 0; trial < 40; ++trial) {
+  for (int trial = 0; trial < 20; ++trial) {
     const double far = trial % 3 == 0 ? 0 : trial % 3 == 1 ? 1e3 : 5e6;
     const Vec3 place{far, -far / 3, 0.1};
     ProfileScene scene;
