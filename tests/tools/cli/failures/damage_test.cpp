@@ -14,7 +14,7 @@ namespace {
 #ifdef CLEARWAY_SANITIZED
 constexpr std::size_t kTries = 100;  // with sanitizers each takes several times as long
 #else
-constexpr std::size_t kTries = 300;
+constexpr std::size_t kTries = 150;
 #endif
 
 std::string flipped(std::string bytes, std::size_t at) {
