@@ -31,7 +31,8 @@ cmake --build build/release
 export OMP_WAIT_POLICY=passive
 log=build/release/ctest.log
 status=0
-ctest --test-dir build/release --output-on-failure -j "$(nproc)" 2>&1 | tee "$log" || status=$?
+# Two more than there are cores, since some wait for others to end or to be killed.
+ctest --test-dir build/release --output-on-failure -j $(($(nproc) + 2)) 2>&1 | tee "$log" || status=$?
 # Tests of optional programs, as Slurm's, may skip; tests on real scans may not when these are given.
 if [ -n "${CLEARWAY_TEST_DATA:-}" ]; then
   on_data=$(ctest --test-dir build/release -N -L data | sed -n 's/^ *Test *#[0-9]*: //p')
