@@ -53,7 +53,7 @@ struct Site {
     return outcome;
   }
 
-  const Hall& hall = Hall::get();
+  const Hall& hall = Hall::small();
   ScratchFolder folder;
 };
 
