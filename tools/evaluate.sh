@@ -45,22 +45,23 @@ cmake --build build/release --target clearway-bench clearway_peers clearway_pyth
 if [ $force = yes ]; then
   (cd "$folder" && rm -rf work certainty.json peers.json "${experiments[@]/%/.json}")
 fi
+# Seconds after which a case is stopped, which then has failed, and those for all poses of a library.
+limit=20 peer_limit=4
+[ "$size" = small ] || limit=60 peer_limit=20
 wanted() { [ -z "$only" ] || [[ $only == *,$1,* ]]; }
 for experiment in "${experiments[@]}"; do
   wanted "$experiment" || continue
   printf '\n== %s\n' "$experiment"
   build/release/tools/clearway-bench "$experiment" -o "$folder/$experiment.json" \
-    --work "$folder/work" --size "$size" --resume
+    --work "$folder/work" --size "$size" --limit $limit --resume
 done
 if wanted peers; then
   printf '\n== peers\n'
-  limit=4
-  [ "$size" = small ] || limit=20
   for scene in hall tunnel plant mine; do
     [ -e "$folder/work/$scene-$size.h5" ] || continue  # made by table
     tools/measure_peers.py build/release/tools --scene "$scene" --size "$size" \
       --env "$folder/work/$scene-$size.h5" --model "$folder/work/$scene-$size/model.ply" \
-      --trajectory "$folder/work/$scene-$size/trajectory.txt" -o "$folder/peers.json" --limit $limit
+      --trajectory "$folder/work/$scene-$size/trajectory.txt" -o "$folder/peers.json" --limit $peer_limit
   done
 fi
 if wanted certainty && [ ! -e "$folder/certainty.json" ]; then

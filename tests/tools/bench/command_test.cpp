@@ -1,6 +1,7 @@
 // The built program clearway-bench: its options, its files, and how it continues an experiment.
 #include <fstream>
 
+#include "bench/measure/failure.hpp"
 #include "bench/measure/work_folder.hpp"
 #include "support/catch.hpp"
 #include "tools/bench/experiment.hpp"
@@ -170,4 +171,29 @@ TEST_CASE("stages print one JSON object") {
   const Outcome stages =
       require_success(run_program_at(CLEARWAY_BENCH_PROGRAM, folder, "stages --cold" + query));
   CHECK(Json::parse(stages.out)["cells_read"] == 1);
+}
+
+TEST_CASE("the refusals that an experiment expects are told from what clearway prints") {
+  using namespace clearway::bench;
+  const Experiment scene("datasets", 1);
+  require_success(scene.run("--scenes hall"));
+  const auto files = scene.work() / "hall-smoke";
+  const ScratchFolder folder;
+  std::ofstream(folder / "stretched.txt") << "1.1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n";
+  const auto refused = [&](const std::filesystem::path& trajectory, const std::string& options) {
+    const Outcome outcome = run_program_at(
+        CLEARWAY_PROGRAM, folder,
+        "run --radius 0.1 -o r.h5 --env " + quoted(scene.work() / "hall-smoke.h5") + " --model " +
+            quoted(files / "model.ply") + " --trajectory " + quoted(trajectory) + " " + options);
+    ProgramRun run;
+    run.exit_code = outcome.exit_code;
+    run.log = outcome.err;
+    return run;
+  };
+  const ProgramRun memory = refused(files / "trajectory.txt", "--memory 1");
+  CHECK(is_finding(memory, Refusal::kMemory));
+  CHECK(amount_in(memory.log, clearway::Remedy::kMoreMemory) > 1'000'000U);
+  const ProgramRun stretched = refused(folder / "stretched.txt", "");
+  CHECK(is_finding(stretched, Refusal::kNonRigidPoses));
+  CHECK_FALSE(is_finding(stretched, Refusal::kMemory));
 }

@@ -3,6 +3,7 @@
 #include "support/catch.hpp"
 
 using namespace clearway::bench;
+using clearway::Remedy;
 
 namespace {
 
@@ -19,16 +20,20 @@ ProgramRun failed(int exit_code, const std::string& log) {
 
 TEST_CASE("a case may end with the refusal that is expected of it, and no other") {
   const std::string run =
-      "error: --memory 1 B is too little: this run needs 28.6 MiB (--memory 29941972) beside the "
-      "mapped store\n";
+      "error: 1 B of memory is too little: this search needs 28.6 MiB beside the mapped store; "
+      "--memory 29941972 is enough\n";
   const std::string device =
-      "error: --device-memory 28.3 MiB is too little: this run needs 28.6 MiB (--device-memory "
-      "29941972) on each device\n";
+      "error: 28.3 MiB of device memory is too little: this search needs 28.6 MiB on each device; "
+      "--device-memory 29941972 is enough\n";
   const std::string conversion =
-      "warning: first\nerror: --memory is too little: 5 cells need at least 100M\n";
+      "warning: first\nerror: 1 B of memory is too little; give more with --memory\n";
   const std::string rigid =
       "error: t.txt: line 1: determinant 1.1; expected a rigid motion: singular values within "
-      "1e-04 of 1 and a positive determinant (--allow-non-rigid accepts any invertible matrix)\n";
+      "1e-04 of 1 and a positive determinant; --allow-non-rigid accepts any invertible matrix\n";
+  CHECK(amount_in(run, Remedy::kMoreMemory) == 29941972U);
+  CHECK_FALSE(amount_in(run, Remedy::kMoreDeviceMemory));
+  CHECK(amount_in(device, Remedy::kMoreDeviceMemory) == 29941972U);
+  CHECK_FALSE(amount_in(conversion, Remedy::kMoreMemory));
   for (const std::string& memory : {run, device, conversion}) {
     CAPTURE(memory);
     CHECK(is_finding(failed(4, memory), Refusal::kMemory));

@@ -1,7 +1,7 @@
 // Where methods fail: as the origin moves away, the scene grows sparse, the radius goes to its
 // extremes, memory shrinks, poses get noisy or are not rigid.
 #include <algorithm>
-#include <regex>
+#include <optional>
 
 #include "bench/experiments/bench.hpp"
 #include "bench/measure/scoring.hpp"
@@ -78,12 +78,13 @@ class Stability {
     }
   }
 
-  void memory(const std::string& option, const EngineChoice& engine) {
+  void memory(const std::string& option, Remedy remedy, const EngineChoice& engine) {
     const Json refused = measure("least" + option, 1, engine, hall_, {option, "1"}, {}, 1);
-    const Json failed = refused.value("failed", Json::object());
-    const std::uint64_t least = least_of(failed.value("log", ""), option);
+    const std::string log = refused.value("failed", Json::object()).value("log", "");
+    const std::optional<std::uint64_t> least = amount_in(log, remedy);
+    if (!least) throw Error("a refusal does not say the least " + option + ": " + log);
     for (const double share : {0.99, 1.0, 1.05, 1.2, 1.5, 2.0, 4.0, 8.0}) {
-      const auto bytes = static_cast<std::uint64_t>(share * static_cast<double>(least));
+      const auto bytes = static_cast<std::uint64_t>(share * static_cast<double>(*least));
       wrong_.look_at(
           measure(option, bytes, engine, hall_, {option, std::to_string(bytes)}, judge()));
     }
@@ -174,15 +175,6 @@ class Stability {
     }
   }
 
-  /// The smallest budget that works, from a refusal such as "this run needs ... (--memory N)".
-  static std::uint64_t least_of(const std::string& log, const std::string& option) {
-    std::smatch found;
-    if (!std::regex_search(log, found, std::regex("\\(" + option + " (\\d+)\\)"))) {
-      throw Error("a refusal does not say the least " + option + ": " + log);
-    }
-    return std::stoull(found[1]);
-  }
-
   Bench& bench_;
   SceneFiles hall_;
   EngineChoice fast_, grid_, float_, kdtree_;
@@ -198,10 +190,10 @@ void bench_stability(Bench& bench) {
   stability.origin();
   stability.sparseness();
   stability.radius();
-  stability.memory("--memory", bench.engine("sweep cpu"));
+  stability.memory("--memory", Remedy::kMoreMemory, bench.engine("sweep cpu"));
   if (bench.cuda()) {
-    stability.memory("--device-memory", bench.engine("sweep cuda"));
-    stability.memory("--device-memory", bench.engine("grid cuda"));
+    stability.memory("--device-memory", Remedy::kMoreDeviceMemory, bench.engine("sweep cuda"));
+    stability.memory("--device-memory", Remedy::kMoreDeviceMemory, bench.engine("grid cuda"));
   }
   stability.noise();
   stability.finish();
