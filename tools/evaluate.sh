@@ -61,7 +61,8 @@ if wanted peers; then
     [ -e "$folder/work/$scene-$size.h5" ] || continue  # made by table
     tools/measure_peers.py build/release/tools --scene "$scene" --size "$size" \
       --env "$folder/work/$scene-$size.h5" --model "$folder/work/$scene-$size/model.ply" \
-      --trajectory "$folder/work/$scene-$size/trajectory.txt" -o "$folder/peers.json" --limit $peer_limit
+      --trajectory "$folder/work/$scene-$size/trajectory.txt" -o "$folder/peers.json" \
+      --limit $peer_limit
   done
 fi
 if wanted certainty && [ ! -e "$folder/certainty.json" ]; then

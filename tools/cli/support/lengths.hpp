@@ -90,7 +90,7 @@ class LengthOptions {
   /// file: its name, for the warning. length_unit: as Store::length_unit() names it
   double convert_for(const std::string& file, const std::string& crs_wkt,
                      const std::string& length_unit) const;
-  /// Likewise for the result in a file.
+  /// Takes CRS and unit from the header of a result. file: the result, for the warning.
   double convert_for(const std::filesystem::path& file, const ResultHeader& header) const;
 
   /// Whether every length that was given names its unit; 0 needs none.
