@@ -31,13 +31,11 @@ struct Experiment {
 
 constexpr Experiment kExperiments[] = {
     {"table", bench_table,
-     "Colliding points of every engine on the four scenes (Table 1), or on the one that --env, "
-     "--model and --trajectory name",
+     "Colliding points and time of every engine on the four scenes (Table 1 and Fig. 3), or on the "
+     "one that --env, --model and --trajectory name",
      true, true},
     {"threads", bench_threads, "Speed by the number of threads (Fig. 1)"},
     {"grid", bench_grid, "Time of each step by grid resolution and layout (Fig. 2)"},
-    {"datasets", bench_datasets, "Time of every engine and device on the four scenes (Fig. 3)",
-     true},
     {"points", bench_points, "Time by the number of environment points, 111 samples (Fig. 4)"},
     {"accuracy", bench_accuracy, "Time and misclassified points, exact and approximate"},
     {"stability", bench_stability, "Where methods fail: origin, sparseness, radius, memory, poses"},
@@ -162,7 +160,7 @@ void add_bounds(CLI::App& command, BenchOptions& options) {
 const CLI::Option* add_scenes(CLI::App& command, BenchOptions& options) {
   return command
       .add_option("--scenes", options.scenes,
-                  "Scenes, for table, datasets, share, equality, choice, shards, seen and section "
+                  "Scenes, for table, share, equality, choice, shards, seen and section "
                   "(default: all)")
       ->delimiter(',')
       ->check(CLI::IsMember({"mine", "hall", "plant", "tunnel"}));

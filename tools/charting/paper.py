@@ -22,7 +22,7 @@ Time grows with the size of a grid cell, and fluctuates much: slightly different
 bring different numbers of cells to the GPU.
 It wishes for a heuristic that picks the cell size."""
 
-DATASETS = """Fig. 3 (k-d tree on 8 and on 20 cores with all their threads; grid on Titan X, GTX \
+ENGINES = """Fig. 3 (k-d tree on 8 and on 20 cores with all their threads; grid on Titan X, GTX \
 980 and Tesla K40, grid size 50; search time only):
 Which is ahead depends on the data set.
 Wolfsburg (plant): the grid on the Titan X is the fastest.

@@ -60,7 +60,9 @@ def draw(record, table=None):
     """table: the engines of Clearway on the same scenes, where they were measured."""
     if table:  # it knows the GPU and the build
         record.machine, record.clearway = table.machine, table.clearway
-    scenes = [scene for scene in SCENES if record.where(scene=scene)]
+    alone = [scene for scene in SCENES
+             if table and table.where(scene=scene) and not record.where(scene=scene)]
+    scenes = [scene for scene in SCENES if record.where(scene=scene) or scene in alone]
     marks = {scene: list(marks_of(scene, record, table)) for scene in scenes}
     rows = -(-len(scenes) // 2)
     columns = min(2, len(scenes))
@@ -94,6 +96,8 @@ def draw(record, table=None):
               f"Threads: {record.cases[0]['threads']}, or a GPU. Clearway's times are preparing the "
               "question and searching; those of others are their search alone, without building "
               "their tree. Both axes are logarithmic.")
+    if alone:
+        sheet.say(f"The others were not measured in: {', '.join(alone)}.")
     for case in record.cases:
         if case.failure:
             sheet.number_of_failure(f"{case['scene']}, {peer_name(case)}: {case.failure}")
@@ -102,14 +106,17 @@ def draw(record, table=None):
 
 def draw_scene(axes, marks, bottom):
     low, _ = axes.get_ylim()
+    left, end = axes.get_xlim()
     axes.axhspan(low, bottom, color="#eeeeee", zorder=0)
     labels = axes.__dict__["clearway_labels"] = []
     right = sorted((mark for mark in marks if not mark.share), key=lambda mark: mark.seconds)
     for row, mark in enumerate(right):
         y = bottom - (row + 0.8) * ROW
         put(axes, mark, y)
-        axes.annotate(mark.label(), (mark.seconds, y), (5, 0), textcoords="offset points",
-                      va="center", zorder=6)
+        place = np.log(mark.seconds / left) / np.log(end / left)
+        side = -1 if place > 0.6 else 1
+        axes.annotate(mark.label(), (mark.seconds, y), (5 * side, 0), textcoords="offset points",
+                      va="center", ha="right" if side < 0 else "left", zorder=6)
     for mark in marks:
         if mark.share:
             put(axes, mark, np.log10(mark.share))

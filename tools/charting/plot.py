@@ -27,20 +27,23 @@ def line(sheet, axes, cases, x_of, y_of, style, label, **how):
             fail(sheet, axes, x_of(case), case.failure, style)
 
 
+ROW_OF_FAILURES = 0.14  # of the height of a panel
+
+
 def fail(sheet, axes, x, reason, style=None, before=""):
-    """A cross at the top at x, over the marker of its style, with the number of its reason, a text
+    """A cross at the top at x, over the marker of its style, below the number of its reason, a text
     before it; those at one x below each other."""
     crosses = axes.__dict__.setdefault("clearway_crosses", {})
     row = crosses[x] = crosses.get(x, -1) + 1
     place = axes.get_xaxis_transform()
-    y = 0.97 - 0.085 * row
+    y = 0.93 - ROW_OF_FAILURES * row
     if style:
         axes.plot([x], [y], marker=style.marker, markersize=7, markerfacecolor="white",
                   markeredgecolor=style.colour, transform=place, clip_on=False, zorder=5)
     axes.plot([x], [y], marker="x", markersize=5.5, markeredgewidth=1.5,
               color="black" if style else VERMILION, transform=place, clip_on=False, zorder=6)
-    axes.annotate(str(sheet.number_of_failure(reason)), (x, y), xycoords=place, xytext=(5, 0),
-                  textcoords="offset points", va="center")
+    axes.annotate(str(sheet.number_of_failure(reason)), (x, y), xycoords=place, xytext=(0, 3.5),
+                  textcoords="offset points", va="bottom", ha="center", fontsize=6)
     axes.annotate(before, (x, y), xycoords=place, xytext=(-6, 0), textcoords="offset points",
                   va="center", ha="right")
 
@@ -50,7 +53,7 @@ def room_for_failures(axes):
     crosses = axes.__dict__.get("clearway_crosses", {})
     if not crosses:
         return
-    share = 0.08 + 0.085 * (max(crosses.values()) + 1)
+    share = 0.06 + ROW_OF_FAILURES * (max(crosses.values()) + 1)
     transform = axes.yaxis.get_transform()
     low, high = transform.transform(np.array(axes.get_ylim()))
     top = low + (high - low) / (1 - share)

@@ -78,7 +78,7 @@ def read_record(path):
 def failure_text(failed):
     """Why a run failed, in a line."""
     if "after_seconds" in failed:
-        return f"stopped after {failed['after_seconds']:.0f} s"
+        return f"stopped after {failed.get('limit', failed['after_seconds']):.0f} s"
     lines = [line.strip() for line in failed.get("log", "").splitlines() if line.strip()]
     reason = re.sub(r"^(\[[^]]*\]\s*)+", "", lines[-1]) if lines else "no message"
     reason = re.sub(r"^(error: |clearway( \w+)?: )+", "", reason)

@@ -74,10 +74,10 @@ class Sheet:
             wspace=0.03, hspace=0.03)
         return self.figure
 
-    def save(self, folder):
-        """As SVG and PNG, named as the experiment. Returns their paths."""
+    def save(self, folder, name):
+        """As SVG and PNG. Returns their paths."""
         figure = self.finish()
-        paths = [folder / f"{self.record.experiment}.{kind}" for kind in ("svg", "png")]
+        paths = [folder / f"{name}.{kind}" for kind in ("svg", "png")]
         figure.savefig(paths[0], metadata={"Date": None})
         figure.savefig(paths[1], dpi=DPI)
         plt.close(figure)

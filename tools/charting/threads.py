@@ -25,12 +25,13 @@ def draw(record):
     relative.set(title=f"b  relative to all {cores} logical cores",
                  xlabel="threads / logical cores",
                  ylabel=f"speed ({cores} threads = 1)")
-    for panel, all_cores in ((absolute, cores), (relative, 1)):
+    for panel, all_cores, corner in ((absolute, cores, "upper left"),
+                                     (relative, 1, "lower right")):
         panel.axvline(all_cores, color=GREY, linewidth=0.8, linestyle="--", zorder=0)
         panel.set_xlim(0, None)
         panel.set_ylim(0, None)
         room_for_failures(panel)
-        panel.legend(loc="lower right")
+        panel.legend(loc=corner)
     sheet.say(f"Dashed, upright: the {cores} logical cores of this machine. The dotted line of b is "
               "drawn from the paper's words, its physical cores at 1: where logical cores share "
               "physical ones, ours bends before.")

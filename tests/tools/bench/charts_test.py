@@ -118,8 +118,8 @@ def drawn_sheets(*arguments):
     sheets = {}
     save = Sheet.save
 
-    def look_and_save(sheet, folder):
-        name, figure = sheet.record.experiment, sheet.finish()
+    def look_and_save(sheet, folder, name):
+        figure = sheet.finish()
         figure.draw_without_rendering()
         texts = texts_of(figure)
         faults = faults_of(texts, figure.bbox)
@@ -127,7 +127,7 @@ def drawn_sheets(*arguments):
         sheets[name] = words_of(texts)
         figure.set_layout_engine("none")  # it has its layout: finding it takes half the time
         with mock.patch.object(Figure, "savefig", save_as_laid_out):
-            return save(sheet, folder)
+            return save(sheet, folder, name)
 
     with mock.patch.object(Sheet, "save", look_and_save):
         draw(*arguments)
@@ -172,16 +172,6 @@ def check_stopped_runs():
             assert 0.95 < (np.log(x) - low) / (high - low) <= 1, x
 
 
-def check_datasets_of_table(folder):
-    """Fig. 3 is drawn of `table` where `datasets` was not measured."""
-    from charting.sheet import Sheet
-
-    (folder / "few").mkdir()
-    (folder / "few" / "table.json").write_bytes((folder / "table.json").read_bytes())
-    with mock.patch.object(Sheet, "save", lambda sheet, _: [f"drawn: {sheet.record.experiment}"]):
-        assert "drawn: datasets" in draw(folder / "few")
-
-
 def check_bend():
     """Noise of two percent decides between linear and n log n."""
     from charting.points import answer_of, interval
@@ -199,11 +189,11 @@ def main():
         write_records(folder)
         (folder / "other.json").write_text("[1]")
         sheets = drawn_sheets(folder, "-o", folder / "charts")
-        assert set(sheets) == {experiment.__name__ for experiment in EXPERIMENTS}
+        assert set(sheets) == {experiment.__name__ for experiment in EXPERIMENTS} | {"engines"}
         for name, words in sheets.items():
             for kind, start in (("svg", b"<?xml"), ("png", b"\x89PNG")):
                 assert (folder / "charts" / f"{name}.{kind}").read_bytes().startswith(start), name
-            if name in ("grid", "datasets", "stability", "scaling", "seen", "section"):
+            if name in ("grid", "engines", "stability", "scaling", "seen", "section"):
                 assert "× failed: 1 " in words, name
             if name == "stability":
                 assert "from 1 to 1.001 and determinant 1.001" in words
@@ -215,9 +205,9 @@ def main():
         assert (folder / "charts" / "table.md").read_text().count("| mine | 806,183,400 |") == 1
         assert "| mine | CGAL | failed: std::bad_alloc" in (folder / "charts/peers.md").read_text()
         assert "6,418 of 12,552 (51 %)" in (folder / "charts/share.md").read_text()
+        assert "| stopped after 120 s |" in (folder / "charts/engines.md").read_text()
         assert "| sweep cpu | 111 |" in (folder / "charts/points.md").read_text()
         check_bend()
-        check_datasets_of_table(folder)
 
 
 main()

@@ -38,18 +38,18 @@ TEST_CASE("figures of another experiment or size, or of something else, are not 
 }
 
 TEST_CASE("a run that exceeds the limit has failed, and the experiment goes on") {
-  const Experiment datasets("datasets");
-  require_success(datasets.run("--scenes hall --limit 1"));
-  const std::size_t cases = datasets.figures()["cases"].size();
-  CHECK(cases == 3);
-  check_outcome(datasets.run("--scenes hall --memory abc"), 2);
+  const Experiment table("table");
+  require_success(table.run("--scenes hall --limit 1"));
+  const std::size_t cases = table.figures()["cases"].size();
+  CHECK(cases == 4);
+  check_outcome(table.run("--scenes hall --memory abc"), 2);
 }
 
 TEST_CASE("what a smaller limit has stopped is measured anew, in its place") {
-  const Experiment datasets("datasets");
+  const Experiment table("table");
   const std::string options = "--scenes hall --resume --limit ";
-  require_success(datasets.run(options + "20"));
-  Json figures = datasets.figures();
+  require_success(table.run(options + "20"));
+  Json figures = table.figures();
   check_json(figures, R"({"parameters": {"limit": 20}})");
   // The second case is in the present form; the last one and the parameters are in the earlier
   // form.
@@ -57,14 +57,14 @@ TEST_CASE("what a smaller limit has stopped is measured anew, in its place") {
   for (const std::size_t i : {1, 2}) figures["cases"][i]["runs"] = Json::array();
   figures["cases"][1]["failed"] = {{"after_seconds", 21.5}, {"limit", 20}};
   figures["cases"][2]["failed"] = {{"after_seconds", 21.5}};
-  datasets.write(figures);
-  require_success(datasets.run(options + "20"));
-  CHECK(datasets.figures()["cases"] == figures["cases"]);
+  table.write(figures);
+  require_success(table.run(options + "20"));
+  CHECK(table.figures()["cases"] == figures["cases"]);
   for (const auto& [limit, anew] : {std::pair{"21", 1}, {"22", 2}}) {
-    require_success(datasets.run(options + limit));
-    const Json now = datasets.figures();
+    require_success(table.run(options + limit));
+    const Json now = table.figures();
     CHECK(now["parameters"]["limit"] == std::stod(limit));
-    REQUIRE(now["cases"].size() == 3);
+    REQUIRE(now["cases"].size() == 4);
     for (std::size_t i = 0; i < 3; ++i) {
       CAPTURE(limit, i);
       CHECK(now["cases"][i]["key"] == figures["cases"][i]["key"]);
@@ -76,27 +76,27 @@ TEST_CASE("what a smaller limit has stopped is measured anew, in its place") {
 }
 
 TEST_CASE("the parameter that differs from the file's is named with both values") {
-  const Experiment datasets("datasets");
-  require_success(datasets.run("--scenes hall"));
+  const Experiment table("table");
+  require_success(table.run("--scenes hall"));
   const std::pair<std::string, std::string> differences[] = {
       {"--scenes hall --device-memory 3G", "differs in --device-memory: 2G in the file, 3G now"},
       {"--scenes hall --memory 5G", "differs in --memory: 4G in the file, 5G now"}};
   for (const auto& [options, difference] : differences) {
-    check_outcome(datasets.run(options + " --resume"), 2, difference);
+    check_outcome(table.run(options + " --resume"), 2, difference);
   }
-  Json figures = datasets.figures();
+  Json figures = table.figures();
   figures["parameters"].erase("repetitions");
-  datasets.write(figures);
-  check_outcome(datasets.run("--scenes hall --resume"), 2,
+  table.write(figures);
+  check_outcome(table.run("--scenes hall --resume"), 2,
                 "differs in --repetitions: nothing in the file, 2 now");
 }
 
 TEST_CASE("a file is continued with other scenes") {
-  const Experiment datasets("datasets", 1);
-  require_success(datasets.run("--scenes hall"));
-  const Json before = datasets.figures();
-  require_success(datasets.run("--scenes tunnel,hall --resume"));
-  const Json after = datasets.figures();
+  const Experiment table("table", 1);
+  require_success(table.run("--scenes hall"));
+  const Json before = table.figures();
+  require_success(table.run("--scenes tunnel,hall --resume"));
+  const Json after = table.figures();
   check_json(after, R"({"parameters": {"scenes": ["hall", "tunnel"]}})");
   REQUIRE(after["cases"].size() == 2 * before["cases"].size());
   for (std::size_t i = 0; i < before["cases"].size(); ++i) {
@@ -106,40 +106,39 @@ TEST_CASE("a file is continued with other scenes") {
 
 TEST_CASE("scenes are chosen where an experiment is about any") {
   const Experiment scaling("scaling");
-  check_outcome(scaling.run("--scenes hall"), 2,
-                "--scenes is for table, datasets, share, equality");
+  check_outcome(scaling.run("--scenes hall"), 2, "--scenes is for table, share, equality");
   CHECK_FALSE(std::filesystem::exists(scaling.file()));
 }
 
 TEST_CASE("a work folder is of one bench at a time") {
-  const Experiment datasets("datasets");
+  const Experiment table("table");
   {
-    const clearway::bench::WorkFolder taken(datasets.work());
-    check_outcome(datasets.run("--scenes hall"), 4, "another clearway-bench uses it");
-    CHECK_FALSE(std::filesystem::exists(datasets.file()));
+    const clearway::bench::WorkFolder taken(table.work());
+    check_outcome(table.run("--scenes hall"), 4, "another clearway-bench uses it");
+    CHECK_FALSE(std::filesystem::exists(table.file()));
   }
-  check_outcome(datasets.run("--scenes hall"), 0);
+  check_outcome(table.run("--scenes hall"), 0);
 }
 
 TEST_CASE("a work folder of another program is refused, whatever it holds") {
-  const Experiment datasets("datasets");
-  require_success(datasets.run("--scenes hall"));
-  const auto note = datasets.work() / "made-by.json";
+  const Experiment table("table");
+  require_success(table.run("--scenes hall"));
+  const auto note = table.work() / "made-by.json";
   Json program = Json::parse(bytes_of(note));
-  const Json header = datasets.figures()["clearway"];
+  const Json header = table.figures()["clearway"];
   for (const char* name : {"version", "commit", "build"}) CHECK(program[name] == header[name]);
   const bool clean = !clearway::bench::may_have_changed(program);
-  const Outcome resumed = datasets.run("--scenes hall --resume");
+  const Outcome resumed = table.run("--scenes hall --resume");
   check_outcome(resumed, 0);
   const std::string changed = "but the source may have changed";
   CHECK((resumed.err.find(changed) == std::string::npos) == clean);
   program["commit"] = "0123456789ab";
   std::ofstream(note) << program;
-  check_outcome(datasets.run("--scenes hall --force"), 2,
+  check_outcome(table.run("--scenes hall --force"), 2,
                 "commit 0123456789ab ... " + header["commit"].get<std::string>() +
                     " ... another --work or remove the folder");
   std::filesystem::remove(note);
-  check_outcome(datasets.run("--scenes hall --force"), 0,
+  check_outcome(table.run("--scenes hall --force"), 0,
                 "scenes and stores of an unknown program are used");
 }
 
@@ -151,17 +150,17 @@ TEST_CASE("a failure that says nothing of the method ends the experiment") {
 }
 
 TEST_CASE("another clearway is measured where it is named") {
-  const Experiment datasets("datasets", 1);
-  check_outcome(datasets.run("--scenes hall --program /dev/null"), 2, "--program");
-  check_outcome(datasets.run("--scenes hall --cold --program '" CLEARWAY_PROGRAM "'"), 0);
-  const Json program = datasets.figures()["clearway"];
+  const Experiment table("table", 1);
+  check_outcome(table.run("--scenes hall --program /dev/null"), 2, "--program");
+  check_outcome(table.run("--scenes hall --cold --program '" CLEARWAY_PROGRAM "'"), 0);
+  const Json program = table.figures()["clearway"];
   CHECK(program["build"] == CLEARWAY_PROGRAM);
   check_json(program, R"({"commit": "unknown"})");
-  CHECK(datasets.figures()["parameters"]["cold"] == true);
+  CHECK(table.figures()["parameters"]["cold"] == true);
 }
 
 TEST_CASE("stages print one JSON object") {
-  const Experiment scene("datasets", 1);
+  const Experiment scene("table", 1);
   require_success(scene.run("--scenes hall"));
   const auto files = scene.work() / "hall-smoke";
   const ScratchFolder folder;
@@ -175,7 +174,7 @@ TEST_CASE("stages print one JSON object") {
 
 TEST_CASE("the refusals that an experiment expects are told from what clearway prints") {
   using namespace clearway::bench;
-  const Experiment scene("datasets", 1);
+  const Experiment scene("table", 1);
   require_success(scene.run("--scenes hall"));
   const auto files = scene.work() / "hall-smoke";
   const ScratchFolder folder;

@@ -168,7 +168,6 @@ inline constexpr const char* kRadius = "0.1";
 void bench_table(Bench& bench);
 void bench_threads(Bench& bench);
 void bench_grid(Bench& bench);
-void bench_datasets(Bench& bench);
 void bench_points(Bench& bench);
 void bench_accuracy(Bench& bench);
 void bench_stability(Bench& bench);

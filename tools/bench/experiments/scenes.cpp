@@ -37,14 +37,4 @@ void bench_table(Bench& bench) {
   wrong.refuse();
 }
 
-void bench_datasets(Bench& bench) {
-  for (const std::string& scene : bench.options().scenes) {
-    const SceneFiles files = bench.scene(scene);
-    for (const EngineChoice& engine : bench.exact_engines()) {
-      bench.measure(scene + "/" + engine.name, {{"scene", scene}, {"engine", engine.name}}, files,
-                    engine.options);
-    }
-  }
-}
-
 }  // namespace clearway::bench

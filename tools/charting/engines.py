@@ -13,7 +13,7 @@ HEIGHT = 0.36  # of a bar
 
 
 def draw(record):
-    sheet = Sheet(record, "Fig. 3: time of every engine on the four scenes", 4.6, paper.DATASETS,
+    sheet = Sheet(record, "Fig. 3: time of every engine on the four scenes", 4.6, paper.ENGINES,
                   ("search", "total"))
     scenes, engines = record.names("scene"), record.names("engine")
     axes, place = panels(sheet, -(-len(scenes) // 2), 2, legend_lines=1, sharey=True)
