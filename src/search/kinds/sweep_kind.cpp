@@ -32,9 +32,10 @@ double cpu_fineness(const Query& query) {
   return query.clearance > 0 && !query.first_pose ? 1 : 2;
 }
 
-/// The least number of poses for which the model field gets its full fineness, the one that pays
-/// for many poses (docs/design/sweep.md, "Field by need").
+/// The least number of poses, and of environment points for each model point, for which the model
+/// field gets its full fineness (docs/design/sweep.md, "Field by need").
 constexpr double kPosesOfFullFineness = 1000;
+constexpr double kPointsOfFullFineness = 200;
 constexpr double kLeastFineness = 0.25;
 
 }  // namespace
@@ -68,14 +69,20 @@ const PoseReach& SweepKindOf<Element>::build_index(const QueryTrees& trees,
                          settings_.tolerance);
 }
 
-/// The fineness of the field, which is coarser for few poses, because they need few exact tests. It
-/// is not coarser with a tolerance, where the result depends on the field, nor with clearances or a
-/// profile, which ask more of it.
+/// The fineness of the field, which is coarser for few poses and, on the CPU, for a small scan
+/// beside a model of many points, because few exact tests are spared then by a field that costs
+/// more to make. It is not coarser with a tolerance, where the result depends on the field, nor
+/// with clearances or a profile, which ask more of it.
 template <typename Element>
 double SweepKindOf<Element>::fineness_for_query() const {
   if (settings_.tolerance > 0 || query_.clearance > 0 || query_.profile > 0) return fineness_;
-  const auto poses = static_cast<double>(query_.poses.size());
-  return fineness_ * std::clamp(std::cbrt(poses / kPosesOfFullFineness), kLeastFineness, 1.0);
+  double share = std::min(static_cast<double>(query_.poses.size()) / kPosesOfFullFineness, 1.0);
+  if (!kIsTriangle<Element> && !this->needs().on_gpu) {
+    const auto points = static_cast<double>(cloud_.point_count());
+    const auto model_points = static_cast<double>(query_.model.vertices.size());
+    share *= std::min(points / (kPointsOfFullFineness * model_points), 1.0);
+  }
+  return fineness_ * std::max(std::cbrt(share), kLeastFineness);
 }
 
 template <typename Element>
