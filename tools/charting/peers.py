@@ -11,9 +11,9 @@ from charting.style import BLACK, GREEN, ORANGE, PURPLE, SKY, Style, YELLOW, eng
 
 PEERS = {"nanoflann": Style(SKY, "p", "none", ""), "cgal": Style(GREEN, "h", "none", ""),
          "pcl": Style(ORANGE, "<", "none", ""), "open3d": Style(PURPLE, ">", "none", ""),
-         "octomap": Style(YELLOW, "*", "none", "")}
+         "octomap": Style(YELLOW, "*", "none", ""), "3dtk": Style(YELLOW, "8", "none", "")}
 NAMES = {"nanoflann": "nanoflann", "cgal": "CGAL", "pcl": "PCL", "open3d": "Open3D",
-         "octomap": "OctoMap"}
+         "octomap": "OctoMap", "3dtk": "3DTK (the paper's)"}
 ROW = 0.4       # decades that a row of the band takes
 SCENES = ("hall", "tunnel", "plant", "mine", "street")
 
