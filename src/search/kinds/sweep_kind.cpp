@@ -76,12 +76,8 @@ const PoseReach& SweepKindOf<Element>::build_index(const QueryTrees& trees,
 template <typename Element>
 double SweepKindOf<Element>::fineness_for_query() const {
   if (settings_.tolerance > 0 || query_.clearance > 0 || query_.profile > 0) return fineness_;
-  double share = std::min(static_cast<double>(query_.poses.size()) / kPosesOfFullFineness, 1.0);
-  if (!kIsTriangle<Element> && !this->needs().on_gpu) {
-    const auto points = static_cast<double>(cloud_.point_count());
-    const auto model_points = static_cast<double>(query_.model.vertices.size());
-    share *= std::min(points / (kPointsOfFullFineness * model_points), 1.0);
-  }
+  const auto poses = static_cast<double>(query_.poses.size());
+  const double share = std::min(poses / kPosesOfFullFineness, 1.0) * share_of_points();
   return fineness_ * std::max(std::cbrt(share), kLeastFineness);
 }
 
@@ -108,6 +104,14 @@ CpuSweepKindOf<Element>::CpuSweepKindOf(const PackedCloud& cloud, const Query& q
     : SweepKindOf<Element>({.most_slots = static_cast<std::uint32_t>(options.threads) + kSlotsAhead,
                             .threads = options.threads},
                            cloud, query, options, cpu_fineness<Element>(query), settings) {}
+
+template <typename Element>
+double CpuSweepKindOf<Element>::share_of_points() const {
+  if constexpr (kIsTriangle<Element>) return 1;
+  const auto points = static_cast<double>(cloud_.point_count());
+  const auto model_points = static_cast<double>(query_.model.vertices.size());
+  return std::min(points / (kPointsOfFullFineness * model_points), 1.0);
+}
 
 template <typename Element>
 std::uint64_t CpuSweepKindOf<Element>::host_bytes(const SlotLayout& layout,

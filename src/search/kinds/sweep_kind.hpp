@@ -44,6 +44,9 @@ class SweepKindOf : public PageEngineKind {
 
  private:
   double fineness_for_query() const;
+  /// How many environment points there are for each point of the model, as a share of those for
+  /// which a field of full fineness pays; 1 where that does not matter.
+  virtual double share_of_points() const { return 1; }
 
   double fineness_;
   EngineSettings settings_;
@@ -61,6 +64,8 @@ class CpuSweepKindOf : public SweepKindOf<Element> {
                      const MessageLog& log) const override;
 
  private:
+  double share_of_points() const override;
+
   using SweepKindOf<Element>::cloud_;
   using SweepKindOf<Element>::query_;
   using SweepKindOf<Element>::options_;

@@ -121,24 +121,24 @@ TEST_CASE("a work folder is of one bench at a time") {
 }
 
 TEST_CASE("a work folder of another program is refused, whatever it holds") {
-  const Experiment table("table");
-  require_success(table.run("--scenes hall"));
-  const auto note = table.work() / "made-by.json";
+  const Experiment share("share", 1);  // keeps no answers
+  require_success(share.run("--scenes hall"));
+  const auto note = share.work() / "made-by.json";
   Json program = Json::parse(bytes_of(note));
-  const Json header = table.figures()["clearway"];
+  const Json header = share.figures()["clearway"];
   for (const char* name : {"version", "commit", "build"}) CHECK(program[name] == header[name]);
   const bool clean = !clearway::bench::may_have_changed(program);
-  const Outcome resumed = table.run("--scenes hall --resume");
+  const Outcome resumed = share.run("--scenes hall --resume");
   check_outcome(resumed, 0);
   const std::string changed = "but the source may have changed";
   CHECK((resumed.err.find(changed) == std::string::npos) == clean);
   program["commit"] = "0123456789ab";
   std::ofstream(note) << program;
-  check_outcome(table.run("--scenes hall --force"), 2,
+  check_outcome(share.run("--scenes hall --force"), 2,
                 "commit 0123456789ab ... " + header["commit"].get<std::string>() +
                     " ... another --work or remove the folder");
   std::filesystem::remove(note);
-  check_outcome(table.run("--scenes hall --force"), 0,
+  check_outcome(share.run("--scenes hall --force"), 0,
                 "scenes and stores of an unknown program are used");
 }
 
