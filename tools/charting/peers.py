@@ -60,9 +60,9 @@ def draw(record, table=None):
     """table: the engines of Clearway on the same scenes, where they were measured."""
     if table:  # it knows the GPU and the build
         record.machine, record.clearway = table.machine, table.clearway
-    alone = [scene for scene in SCENES
-             if table and table.where(scene=scene) and not record.where(scene=scene)]
-    scenes = [scene for scene in SCENES if record.where(scene=scene) or scene in alone]
+    scenes = [scene for scene in SCENES
+              if record.where(scene=scene) or (table and table.where(scene=scene))]
+    alone = [scene for scene in scenes if not record.where(scene=scene)]
     marks = {scene: list(marks_of(scene, record, table)) for scene in scenes}
     rows = -(-len(scenes) // 2)
     columns = min(2, len(scenes))

@@ -20,7 +20,7 @@ class Case:
         failed = raw.get("failed") or self.findings.get("failed")
         self.failure = failure_text(failed) if failed else None
         # Seconds after which it was stopped; older files have only how long it took to stop.
-        self.limit = failed.get("limit", failed.get("after_seconds")) if failed else None
+        self.limit = limit_of(failed) if failed else None
 
     def __getitem__(self, name):
         return self.parameters[name]
@@ -75,10 +75,14 @@ def read_record(path):
     return Record(path, raw)
 
 
+def limit_of(failed):
+    return failed.get("limit", failed.get("after_seconds"))
+
+
 def failure_text(failed):
     """Why a run failed, in a line."""
     if "after_seconds" in failed:
-        return f"stopped after {failed.get('limit', failed['after_seconds']):.0f} s"
+        return f"stopped after {limit_of(failed):.0f} s"
     lines = [line.strip() for line in failed.get("log", "").splitlines() if line.strip()]
     reason = re.sub(r"^(\[[^]]*\]\s*)+", "", lines[-1]) if lines else "no message"
     reason = re.sub(r"^(error: |clearway( \w+)?: )+", "", reason)
