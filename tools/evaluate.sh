@@ -48,12 +48,15 @@ fi
 # Seconds after which a case is stopped, which then has failed, and those for all poses of a library.
 limit=20 peer_limit=4
 [ "$size" = small ] || limit=60 peer_limit=20
+# The scenes of an experiment that could take others too.
+declare -A scenes=([seen]=hall,mine [section]=hall)
 wanted() { [ -z "$only" ] || [[ $only == *,$1,* ]]; }
 for experiment in "${experiments[@]}"; do
   wanted "$experiment" || continue
   printf '\n== %s\n' "$experiment"
   build/release/tools/clearway-bench "$experiment" -o "$folder/$experiment.json" \
-    --work "$folder/work" --size "$size" --limit $limit --resume
+    --work "$folder/work" --size "$size" --limit $limit --resume \
+    ${scenes[$experiment]:+--scenes "${scenes[$experiment]}"}
 done
 if wanted peers; then
   printf '\n== peers\n'

@@ -134,8 +134,9 @@ WorkFolder work_folder_at(const std::filesystem::path& path, const Json& program
   return folder;
 }
 
-/// Seconds after which a case is not repeated.
-constexpr double kEnoughSeconds = 30;
+/// Seconds of a case after which it is not repeated: at size small, where the whole evaluation has to
+/// take minutes, and at size full.
+constexpr double kEnoughSeconds = 5, kEnoughSecondsFull = 30;
 
 /// The clearance of a truth, metres: beyond the radius by more than any method is expected to err.
 constexpr const char* kTruthClearance = "0.3";
@@ -360,9 +361,10 @@ Json Bench::measure_program(const std::string& key, Json parameters, const Scene
   if (const Json* known = record_.find(key)) return *known;
   spdlog::info("{}", key);
   Json one{{"key", key}, {"parameters", std::move(parameters)}, {"runs", Json::array()}};
+  const double enough = full() ? kEnoughSecondsFull : kEnoughSeconds;
   double seconds = 0;
   for (int i = 0; i < repetitions.value_or(options_.repetitions); ++i) {
-    if (seconds > kEnoughSeconds) break;
+    if (seconds > enough) break;
     if (options_.cold) drop_from_page_cache(files.store);
     const ProgramRun run = command.program.run(command.arguments, options_.limit_seconds);
     if (run.exit_code != 0) {

@@ -113,7 +113,7 @@ class Bench {
   const Json* find(const std::string& key) const { return record_.find(key); }
 
   /// Measures a case, unless the file has it already: a search of these files, `repetitions` times
-  /// (as in the options where it is not given), but not again after half a minute. Every report,
+  /// (as in the options where it is not given), but not again after some seconds. Every report,
   /// with wall clock and peak memory, goes to "runs". A run that exceeds the limit or ends with
   /// `expected` goes to "failed" instead, with a warning; one that fails otherwise throws
   /// ResourceError.
