@@ -46,7 +46,7 @@ if [ $force = yes ]; then
   (cd "$folder" && rm -rf work certainty.json peers.json "${experiments[@]/%/.json}")
 fi
 # Seconds after which a case is stopped, which then has failed, and those for all poses of a library.
-limit=20 peer_limit=4
+limit=6 peer_limit=2
 [ "$size" = small ] || limit=60 peer_limit=20
 # The scenes of an experiment that could take others too.
 declare -A scenes=([seen]=hall,mine [section]=hall)

@@ -36,7 +36,7 @@ constexpr Experiment kExperiments[] = {
      true, true},
     {"threads", bench_threads, "Speed by the number of threads (Fig. 1)"},
     {"grid", bench_grid, "Time of each step by grid resolution and layout (Fig. 2)"},
-    {"points", bench_points, "Time by the number of environment points, 111 samples (Fig. 4)"},
+    {"points", bench_points, "Time by the number of environment points, 111 samples at size full (Fig. 4)"},
     {"accuracy", bench_accuracy, "Time and misclassified points, exact and approximate"},
     {"stability", bench_stability, "Where methods fail: origin, sparseness, radius, memory, poses"},
     {"scaling", bench_scaling, "Time by poses, model points, radius and cell size"},

@@ -134,9 +134,9 @@ WorkFolder work_folder_at(const std::filesystem::path& path, const Json& program
   return folder;
 }
 
-/// Seconds of a case after which it is not repeated: at size small, where the whole evaluation has to
-/// take minutes, and at size full.
-constexpr double kEnoughSeconds = 5, kEnoughSecondsFull = 30;
+/// Seconds of a case after which it is not repeated: at size small, where the whole evaluation has
+/// to take minutes, and at size full.
+constexpr double kEnoughSeconds = 3, kEnoughSecondsFull = 30;
 
 /// The clearance of a truth, metres: beyond the radius by more than any method is expected to err.
 constexpr const char* kTruthClearance = "0.3";
