@@ -7,13 +7,14 @@ from charting.labels import place_labels
 from charting.paper import TABLE
 from charting.plot import panels, seconds_axis
 from charting.sheet import Sheet
-from charting.style import BLACK, GREEN, ORANGE, PURPLE, SKY, Style, YELLOW, engine_style
+from charting.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, Style, YELLOW, engine_style
 
 PEERS = {"nanoflann": Style(SKY, "p", "none", ""), "cgal": Style(GREEN, "h", "none", ""),
          "pcl": Style(ORANGE, "<", "none", ""), "open3d": Style(PURPLE, ">", "none", ""),
-         "octomap": Style(YELLOW, "*", "none", ""), "3dtk": Style(YELLOW, "8", "none", "")}
+         "octomap": Style(YELLOW, "*", "none", ""), "3dtk": Style(YELLOW, "8", "none", ""),
+         "cubql": Style(BLUE, "H", "none", "")}
 NAMES = {"nanoflann": "nanoflann", "cgal": "CGAL", "pcl": "PCL", "open3d": "Open3D",
-         "octomap": "OctoMap", "3dtk": "3DTK (the paper's)"}
+         "octomap": "OctoMap", "3dtk": "3DTK (the paper's)", "cubql": "cuBQL, GPU"}
 ROW = 0.4       # decades that a row of the band takes
 SCENES = ("hall", "tunnel", "plant", "mine", "street")
 
@@ -101,6 +102,10 @@ def draw(record, table=None):
     for case in record.cases:
         if case.failure:
             sheet.number_of_failure(f"{case['scene']}, {peer_name(case)}: {case.failure}")
+    for case in table.cases if table else []:
+        if case.failure:
+            sheet.number_of_failure(f"{case['scene']}, Clearway {engine_name(case)}: "
+                                    f"{case.failure}")
     return sheet
 
 
@@ -135,6 +140,12 @@ def put(axes, mark, y):
               markerfacecolor="white" if hollow else mark.style.colour)
 
 
+def memory_of(found):
+    on_gpu = found["peer"].get("gpu")
+    return (f"{on_gpu['device_peak_bytes'] / 1e9:.1f} GB of the GPU" if on_gpu else
+            f"{found['peak_bytes_of_peer'] / 1e9:.1f} GB")
+
+
 def markdown(record):
     """The figures of the other libraries as a Markdown table."""
     head = ["scene", "library", "all poses", "one in", "preparation", "memory", "false hits",
@@ -154,7 +165,7 @@ def markdown(record):
                 else f"{found['all_poses_seconds']:,.0f} s", f"{found['every_pose']:,}",
                 f"{found['prepare_seconds']:.2g} s" if found["prepare_seconds"] < 10
                 else f"{found['prepare_seconds']:.0f} s",
-                f"{found['peak_bytes_of_peer'] / 1e9:.1f} GB", f"{found['false_hits']:,}",
+                memory_of(found), f"{found['false_hits']:,}",
                 f"{found['misses']:,}", f"{found['colliding_points']:,}"]) + " |")
     lines += ["", "All poses: the median search, scaled where one in n poses was searched. Preparation "
               "and memory: of the library's tree or map, besides the points. False hits, misses and "

@@ -70,7 +70,7 @@ def with_unit(value, unit):
 
 def short(value):
     """30000 as 30k, 0.01 as it is."""
-    for factor, name in ((1e9, "G"), (1e6, "M"), (1e3, "k")):
+    for factor, name in ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k")):
         if abs(value) >= factor:
             return f"{value / factor:.3g}{name}"
     return f"{value:g}"

@@ -58,7 +58,7 @@ def draw_shares(axes, record, scene):
         axes.annotate(text, (value, y), (-3 if inside else 3, 0), textcoords="offset points",
                       ha="right" if inside else "left", va="center")
     axes.set_xscale("log")
-    axes.set_xlim(low, 1)
+    axes.set_xlim(low, max(1, *values))
     axes.set_yticks(range(len(rows)), [what for what, *_ in rows])
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.grid(False, axis="y")
@@ -108,4 +108,4 @@ def markdown(record):
 
 
 def percent(share):
-    return "100 %" if share > 0.995 else f"{float(f'{100 * share:.2g}'):.9g} %"
+    return "100 %" if 0.995 < share < 1.005 else f"{float(f'{100 * share:.2g}'):.9g} %"

@@ -244,7 +244,7 @@ def check():
 
 def peers():
     kinds = [("nanoflann", None), ("cgal", None), ("pcl", None), ("open3d", None),
-             *(("octomap", cell) for cell in (0.1, 0.05, 0.02, 0.01))]
+             ("cubql", None), *(("octomap", cell) for cell in (0.1, 0.05, 0.02, 0.01))]
     for scene, (i, (peer, cell)) in itertools.product(("hall", "tunnel", "plant", "mine"),
                                                       enumerate(kinds)):
         parameters = {"scene": scene, "peer": peer, "threads": 16}
@@ -260,7 +260,8 @@ def peers():
             "every_pose": every, "prepare_seconds": 12.3, "peak_bytes_of_peer": 3e9,
             "environment_points": 10**8, "colliding_points": 10**6,
             "false_hits": int(10**6 * cell) if cell else 0, "misses": 7 if peer == "pcl" else 0,
-            "peer": {"name": peer, "version": "1.2.3"}}}
+            "peer": {"name": peer, "version": "1.2.3",
+                     **({"gpu": {"device_peak_bytes": 5e9}} if peer == "cubql" else {})}}}
 
 
 def share():

@@ -203,7 +203,9 @@ def main():
         check_missing_reference()
         check_stopped_runs()
         assert (folder / "charts" / "table.md").read_text().count("| mine | 806,183,400 |") == 1
-        assert "| mine | CGAL | failed: std::bad_alloc" in (folder / "charts/peers.md").read_text()
+        text = (folder / "charts/peers.md").read_text()
+        assert "| mine | CGAL | failed: std::bad_alloc" in text
+        assert "| 5.0 GB of the GPU |" in text
         assert "6,418 of 12,552 (51 %)" in (folder / "charts/share.md").read_text()
         assert "| stopped after 120 s |" in (folder / "charts/engines.md").read_text()
         assert "| sweep cpu | 111 |" in (folder / "charts/points.md").read_text()
