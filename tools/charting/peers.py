@@ -168,6 +168,6 @@ def markdown(record):
                 memory_of(found), f"{found['false_hits']:,}",
                 f"{found['misses']:,}", f"{found['colliding_points']:,}"]) + " |")
     lines += ["", "All poses: the median search, scaled where one in n poses was searched. Preparation "
-              "and memory: of the library's tree or map, besides the points. False hits, misses and "
-              "colliding points are of the poses that were searched."]
+              "and memory: of the library's tree or map, without the points on the host. False hits, "
+              "misses and colliding points are of the poses that were searched."]
     return "\n".join(lines) + "\n"
