@@ -119,7 +119,7 @@ def draw_scene(axes, marks, bottom):
         y = bottom - (row + 0.8) * ROW
         put(axes, mark, y)
         place = np.log(mark.seconds / left) / np.log(end / left)
-        side = -1 if place > 0.6 else 1
+        side = -1 if place > 0.5 else 1
         axes.annotate(mark.label(), (mark.seconds, y), (5 * side, 0), textcoords="offset points",
                       va="center", ha="right" if side < 0 else "left", zorder=6)
     for mark in marks:
