@@ -99,13 +99,11 @@ def draw(record, table=None):
               "their tree. Both axes are logarithmic.")
     if alone:
         sheet.say(f"The others were not measured in: {', '.join(alone)}.")
-    for case in record.cases:
+    named = [(case, peer_name(case)) for case in record.cases]
+    named += [(case, "Clearway " + engine_name(case)) for case in (table.cases if table else [])]
+    for case, name in named:
         if case.failure:
-            sheet.number_of_failure(f"{case['scene']}, {peer_name(case)}: {case.failure}")
-    for case in table.cases if table else []:
-        if case.failure:
-            sheet.number_of_failure(f"{case['scene']}, Clearway {engine_name(case)}: "
-                                    f"{case.failure}")
+            sheet.number_of_failure(f"{case['scene']}, {name}: {case.failure}")
     return sheet
 
 
@@ -142,8 +140,9 @@ def put(axes, mark, y):
 
 def memory_of(found):
     on_gpu = found["peer"].get("gpu")
-    return (f"{on_gpu['device_peak_bytes'] / 1e9:.1f} GB of the GPU" if on_gpu else
-            f"{found['peak_bytes_of_peer'] / 1e9:.1f} GB")
+    if on_gpu:
+        return f"{on_gpu['device_peak_bytes'] / 1e9:.1f} GB of the GPU"
+    return f"{found['peak_bytes_of_peer'] / 1e9:.1f} GB"
 
 
 def markdown(record):

@@ -108,4 +108,4 @@ def markdown(record):
 
 
 def percent(share):
-    return "100 %" if 0.995 < share < 1.005 else f"{float(f'{100 * share:.2g}'):.9g} %"
+    return f"{float(f'{100 * share:.2g}'):.9g} %"
