@@ -34,12 +34,12 @@ enum class Reason {
 const char* name_of(Verdict verdict);  ///< "clear", "conflict", "undecided" or "unknown"
 const char* name_of(Reason reason);    ///< "near", "few", "errors-exceed-margin" and so on
 
-/// What a warning says about an answer that found nothing. A doubt means that the search could not
-/// find anything, whatever stands in the way.
+/// What a warning says about an answer that found nothing. A doubt means that the search may not
+/// have found what stands in the way, so that an empty result is no answer.
 enum class Doubt {
   kNone,     ///< the answer stands
   kStretch,  ///< on the stretches of the path that the warning names nothing could be found
-  kQuestion  ///< nothing could be found at all, so that an empty result is not an answer
+  kQuestion  ///< nothing could be found at all, or the scan, model or path was probably misread
 };
 
 /// The doubt that a message raises. A note raises none, and neither does a warning about stretches
@@ -47,7 +47,7 @@ enum class Doubt {
 Doubt doubt_of(const Message& message);
 
 /// Whether doubt_of() is Doubt::kQuestion for a warning with this code, as for "out-of-reach",
-/// "no-points", "no-poses", "all-ignored" and "nothing-swept".
+/// "no-points", "coarse-digits" or "store-cut-off".
 bool is_doubt(std::string_view code);
 
 /// Whether a warning with this code says that points are missing from the scan, so that what stood

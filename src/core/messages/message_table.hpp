@@ -24,7 +24,8 @@ enum class Missing {
 };
 
 /// What a warning means for an answer. A search that gave a warning with a doubt or with something
-/// missing may have missed points; other warnings leave the answer as it is.
+/// missing may have missed points; other warnings leave the answer as it is. A warning that a store
+/// repeats from its conversion has the effect of its code without the prefix.
 struct MessageEffect {
   Doubt doubt = Doubt::kNone;
   Missing missing = Missing::kNothing;
@@ -60,14 +61,30 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
     {"crs-not-read", kWarning, kScans,
      "A file says something of its coordinate reference system or unit that is not understood. "
      "The message names it, and says what is taken instead."},
-    {"cut-text", kWarning, kScans,
-     "The last line of a text file lacks values, so the file may be cut."},
-    {"declared-bounds", kWarning, kScans,
-     "Some points lie far beyond the bounds that their E57, LAS or LAZ file declares."},
-    {"degrees", kWarning, kScans,
-     "The coordinates of the environment are in degrees, or look like longitudes and latitudes: "
-     "no unit is named, and the heights span at least 50 times what the coordinates span "
-     "themselves."},
+    {"cut-off",
+     kWarning,
+     kScans,
+     "Many points of a LAS or LAZ file are at the lowest or the greatest of the integers that a "
+     "coordinate can have, where a program cut off what lies beyond. The message gives their "
+     "number for each axis.",
+     {.doubt = Doubt::kQuestion}},
+    {"cut-text",
+     kWarning,
+     kScans,
+     "The last line of a text file lacks values, so the file may be cut.",
+     {.doubt = Doubt::kQuestion}},
+    {"declared-bounds",
+     kWarning,
+     kScans,
+     "A file has points inside of the bounds that it declares and others far beyond them, as where "
+     "records are damaged.",
+     {.doubt = Doubt::kQuestion}},
+    {"degrees",
+     kWarning,
+     kScans,
+     "The scan declares that its coordinates are in degrees, and distances in degrees mean "
+     "nothing.",
+     {.doubt = Doubt::kQuestion}},
     {"e57-unit", kWarning, kScans,
      "The coordinate reference system is in feet, while E57 has metres."},
     {"far-apart", kWarning, kScans, "One file lies far from all others."},
@@ -89,6 +106,9 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
     {"left-out", kEither, kScans,
      "A folder holds files or folders that are not read. It is a warning where a folder holds "
      "point files, or a file looks like points: the environment lacks them."},
+    {"like-degrees", kWarning, kScans,
+     "The coordinates look like longitudes and latitudes: no unit is named, and the heights span "
+     "at least 50 times what the coordinates span themselves."},
     {"lost-digits", kWarning, kScans,
      "All coordinates of an axis of a scan, or all positions of a path, are multiples of a "
      "coarse step, such as whole metres above the radius, because rounded text or single floats "
@@ -140,6 +160,9 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
     {"other-unit", kWarning, kScans,
      "The header names another unit, but the numbers count as they are because `--columns` was "
      "given."},
+    {"outside-bounds", kWarning, kScans,
+     "All points of a file lie far outside of the bounds that it declares, as where its header was "
+     "not written anew when the scan was moved."},
     {"padded-cells", kWarning, kScans, "A regular layout leaves most of its cells empty."},
     {"pcd-viewpoint", kWarning, kScans,
      "A PCD file has a VIEWPOINT, which is not applied. If the points are in the sensor's "
@@ -151,8 +174,11 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
     {"same-scan", kWarning, kScans, "Two files hold the same points."},
     {"scan-axes-contradict", kWarning, kScans,
      "Position and axes of a PTX scan contradict its matrix, which is applied."},
-    {"scan-not-registered", kWarning, kScans,
-     "A 3DTK scan has `.pose` only, while others have `.frames`."},
+    {"scan-not-registered",
+     kWarning,
+     kScans,
+     "A 3DTK scan has `.pose` only, while others have `.frames`.",
+     {.doubt = Doubt::kQuestion}},
     {"scan-not-rigid", kWarning, kScans, "The matrix of a PTX scan scales, shears or mirrors."},
     {"scan-placed", kNote, kScans, "The note says where the pose of a scan of 3DTK comes from."},
     {"scan-without-pose", kWarning, kScans,
@@ -294,16 +320,25 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
      "Height and roll are those of the ground in a scan. The note says at how many places it "
      "was found. Under a parked car the path is about 0.3 m too high."},
     {"path-outside-scan", kWarning, kTrajectories, "No pose lies in the box of the store."},
-    {"poses-inverse", kWarning, kTrajectories,
-     "With inverse poses the model would move straight ahead."},
+    {"poses-inverse",
+     kWarning,
+     kTrajectories,
+     "With inverse poses the model would move straight ahead.",
+     {.doubt = Doubt::kQuestion}},
     {"profile-shorter", kWarning, kTrajectories,
      "The profile of an alignment begins after the first station that was wanted, or ends "
      "before the last one, and so do the poses."},
-    {"quaternion-order", kWarning, kTrajectories,
-     "The model tilts less with another order of the quaternion."},
+    {"quaternion-order",
+     kWarning,
+     kTrajectories,
+     "The model tilts less with another order of the quaternion.",
+     {.doubt = Doubt::kQuestion}},
     {"rotation-missing", kWarning, kTrajectories, "The path turns, but no pose turns the model."},
-    {"rotation-too-small", kWarning, kTrajectories,
-     "The poses turn far less than the path, so angles may be radians."},
+    {"rotation-too-small",
+     kWarning,
+     kTrajectories,
+     "The poses turn far less than the path, so angles may be radians.",
+     {.doubt = Doubt::kQuestion}},
     {"station-equations", kWarning, kTrajectories,
      "The file renames stations. All stations that are given and written are internal ones, "
      "which run on evenly."},
@@ -326,8 +361,11 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
     {"trajectory-unit", kNote, kTrajectories,
      "Positions were converted to metres or to the unit of the environment, or are in that unit "
      "already."},
-    {"turns-against-path", kWarning, kTrajectories,
-     "The model turns left where the path turns right."},
+    {"turns-against-path",
+     kWarning,
+     kTrajectories,
+     "The model turns left where the path turns right.",
+     {.doubt = Doubt::kQuestion}},
     {"unread-columns", kEither, kTrajectories,
      "Columns of a table of poses, or of a line, are not read. It is a warning where the name "
      "of one says that it is a cant, or for a line a roll or the height that it lacks."},
@@ -348,7 +386,14 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
      "On most of the path the model reaches more than 0.3 m below the ground. Its file may have y "
      "up, or its origin in its middle, or the path may be too low. Without the ground, or with a "
      "floor, the answer can be clear although no vehicle stands there.",
-     {.missing = Missing::kPlace}},
+     {.doubt = Doubt::kQuestion, .missing = Missing::kPlace}},
+    {"coarse-digits",
+     kWarning,
+     kQueries,
+     "The coordinates of the scan come in steps that are not smaller than the radius, so that "
+     "points may be farther from where they were measured than the radius. The message names the "
+     "axes and their steps.",
+     {.doubt = Doubt::kQuestion}},
     {"coarse-scan",
      kWarning,
      kQueries,
@@ -422,11 +467,24 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
     {"long-beams", kWarning, kQueries,
      "With `--seen`, some beams are longer than 1 km, or than 2^30 steps of the stored "
      "coordinates, and are left out. The origins may be those of other scans."},
-    {"mirrored-poses", kWarning, kQueries, "The poses mirror the model."},
-    {"model-is-environment", kWarning, kQueries,
-     "The model has as many points as the environment, and the same box."},
+    {"mirrored-poses",
+     kWarning,
+     kQueries,
+     "The poses mirror the model.",
+     {.doubt = Doubt::kQuestion}},
+    {"model-is-environment",
+     kWarning,
+     kQueries,
+     "The model has as many points as the environment, and the same box.",
+     {.doubt = Doubt::kQuestion}},
     {"model-origin", kWarning, kQueries, "The model lies far from the origin of its frame."},
     {"model-size", kWarning, kQueries, "The model is implausibly large or small."},
+    {"model-unit",
+     kWarning,
+     kQueries,
+     "The shortest side of the model is above 30 m, or its longest one below 1 cm, so its unit is "
+     "probably another one.",
+     {.doubt = Doubt::kQuestion}},
     {"model-spacing", kWarning, kQueries, "Model points are farther apart than the radius."},
     {"most-ignored", kWarning, kQueries,
      "Less than 1 % of the points of the environment are left to be searched."},
@@ -515,6 +573,9 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
 
 }  // namespace message_table
 
+/// Prefix of the codes of a store's warnings where another command repeats them.
+inline constexpr std::string_view kStorePrefix = "store-";
+
 /// The place of a code in the table, or the number of its rows.
 constexpr std::size_t place_of_message_kind(std::string_view code) {
   const auto& kinds = message_table::kMessageKinds;
@@ -527,6 +588,14 @@ constexpr const MessageKind* find_message_kind(std::string_view code) {
   const auto& kinds = message_table::kMessageKinds;
   const std::size_t place = place_of_message_kind(code);
   return place == kinds.size() ? nullptr : &kinds[place];
+}
+
+/// What a warning with this code means for an answer, also where a store repeats it; nothing for an
+/// unknown code.
+constexpr MessageEffect effect_of(std::string_view code) {
+  if (code.starts_with(kStorePrefix)) code.remove_prefix(kStorePrefix.size());
+  const MessageKind* const kind = find_message_kind(code);
+  return kind == nullptr ? MessageEffect() : kind->effect;
 }
 
 /// A code that the table has for messages of this severity. It is made of a literal, and another

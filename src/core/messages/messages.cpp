@@ -40,7 +40,7 @@ void refuse_warnings(const std::vector<Message>& warnings) {
   std::size_t count = 0;
   std::vector<std::string> codes;
   for (const Message& warning : warnings) {
-    if (warning.code.starts_with("store-")) continue;
+    if (warning.code.starts_with(kStorePrefix)) continue;
     ++count;
     if (std::find(codes.begin(), codes.end(), warning.code) == codes.end()) {
       codes.push_back(warning.code);
@@ -69,9 +69,8 @@ void shorten_notes(std::vector<Message>& messages) {
 }
 
 bool may_miss(std::string_view code) {
-  const MessageKind* const kind = find_message_kind(code);
-  return kind != nullptr &&
-         (kind->effect.doubt != Doubt::kNone || kind->effect.missing != Missing::kNothing);
+  const MessageEffect effect = effect_of(code);
+  return effect.doubt != Doubt::kNone || effect.missing != Missing::kNothing;
 }
 
 bool have_same_fault(const Message& a, const Message& b) {

@@ -38,11 +38,6 @@ const char* name_of(Reason reason) {
 
 namespace {
 
-MessageEffect effect_of(std::string_view code) {
-  const MessageKind* const kind = find_message_kind(code);
-  return kind == nullptr ? MessageEffect() : kind->effect;
-}
-
 /// The codes of the warnings for which doubt_of() is a doubt, or none, as given.
 std::vector<std::string> codes_of(const Answer& answer, bool doubts) {
   std::vector<std::string> codes;

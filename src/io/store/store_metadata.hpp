@@ -12,6 +12,7 @@
 #include "clearway/progress.hpp"
 #include "clearway/vec3.hpp"
 #include "core/geometry/quantisation.hpp"
+#include "core/messages/message_table.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/scans/length_unit.hpp"
 #include "io/scans/scan_dates.hpp"
@@ -165,9 +166,6 @@ struct StoreMetadata {
     return sources.size() == 1 ? std::optional(input_points) : std::nullopt;
   }
 };
-
-/// Prefix of the codes of a store's warnings where another command repeats them.
-inline constexpr std::string_view kStorePrefix = "store-";
 
 /// The warnings of the conversion in the form in which other commands repeat them.
 inline std::vector<Message> store_warnings(const StoreMetadata& metadata) {

@@ -32,11 +32,6 @@ bool has(const BodyMessages& body, std::string_view code) {
   return std::ranges::any_of(body.messages, [&](const Message& m) { return m.code == code; });
 }
 
-bool is_of_vehicle(const Message& message) {
-  const MessageKind* const kind = find_message_kind(message.code);
-  return kind != nullptr && kind->effect.of_vehicle;
-}
-
 /// Whether every body that is near the scan has a warning with this code. For a body that is
 /// nowhere near the scan, another warning says so.
 bool holds_for_vehicle(const std::vector<BodyMessages>& bodies, std::string_view code) {
@@ -128,7 +123,7 @@ void warn_of_bodies_once(const std::vector<BodyMessages>& bodies, MessageLog& lo
   std::vector<const Message*> added;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (const Message& message : bodies[i].messages) {
-      if (!is_of_vehicle(message)) {
+      if (!effect_of(message.code).of_vehicle) {
         add_alike(bodies, i, message, log);
       } else if (std::ranges::none_of(
                      added, [&](const Message* m) { return have_same_fault(*m, message); })) {

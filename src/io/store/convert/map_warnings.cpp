@@ -107,7 +107,7 @@ void warn_of_degrees(const Box& box, MessageLog& log) {
   const double farthest =
       std::max({std::abs(box.lo.x), std::abs(box.hi.x), std::abs(box.lo.y), std::abs(box.hi.y)});
   if (!(length > 0) || size.z < kColumn * length || farthest > kMostDegrees) return;
-  log.warn("degrees",
+  log.warn("like-degrees",
            "the coordinates look like longitudes and latitudes: they span " + format_brief(size.x) +
                " by " + format_brief(size.y) + ", and heights span " + format_brief(size.z) +
                ". They are taken for lengths; if they are angles, project the scan first",
