@@ -1,13 +1,16 @@
 #!/usr/bin/env bash
-# Checks the sources with clang-format and clang-tidy, where they are installed.
+# Checks the sources with clang-format and clang-tidy, where they are installed. A check that is
+# asked for by its name fails where its program is not.
 # Usage: tools/lint.sh [format|tidy]
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
+missing=1  # what a check without its program returns
+
 check_format() {
   if ! command -v clang-format >/dev/null; then
-    echo "clang-format is not installed: the format is not checked."
-    return
+    echo "clang-format is not installed: the format is not checked." >&2
+    return "$missing"
   fi
   git ls-files -z '*.cpp' '*.hpp' '*.cu' | xargs -0 clang-format --dry-run -Werror
   echo "clang-format: clean"
@@ -17,8 +20,8 @@ check_format() {
 check_tidy() {
   # Older ones do not know the deduction of template arguments of aggregates.
   if ! command -v clang-tidy-19 >/dev/null; then
-    echo "clang-tidy-19 is not installed: the sources are not checked with it."
-    return
+    echo "clang-tidy-19 is not installed: the sources are not checked with it." >&2
+    return "$missing"
   fi
   source tools/setup.sh
   install_missing_packages
@@ -37,7 +40,7 @@ for entry in json.load(open("build/lint/compile_commands.json")):
 }
 
 case "${1:-all}" in
-  all) check_format; check_tidy ;;
+  all) missing=0; check_format; check_tidy ;;
   format) check_format ;;
   tidy) check_tidy ;;
   *) echo "usage: tools/lint.sh [format|tidy]" >&2; exit 2 ;;

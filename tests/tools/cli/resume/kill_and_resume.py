@@ -5,7 +5,8 @@ process starts on the same output: one of the two is refused.
 kill_and_resume.py PROGRAM [--kills N] [--seed S] [--only PART-OF-A-CASE] [--while-writing]
                    [--device cuda] [--points N] [--poses N]
 
---kills: SIGKILLs of every case; SIGTERMs come on top. On a GPU, where runs are short, --points and
+--kills: SIGKILLs of every case; SIGTERMs come on top. A process is killed when its journal has
+grown to a random size, however busy the machine is. On a GPU, where runs are short, --points and
 --poses make them long enough to be killed while they search. --while-writing: runs of which most
 points are part of the result, killed while it is being written.
 """
@@ -23,7 +24,8 @@ import time
 # With all tables, and in several passes.
 WRITTEN = {"all tables": ["--first-pose", "--clearance", "3", "--profile", "3"],
            "small memory": ["--first-pose", "--memory", "160M"]}
-MOST_KILLED = 5  # in a row; starting again may take longer than is left until the next kill
+MOST_KILLED = 5  # in a row
+MOST_SECONDS = 60  # that a process may take to stop
 
 
 def run(command):
@@ -71,7 +73,7 @@ def stop(process, kill, tally):
     process.send_signal(kill)
     sent = time.monotonic()
     text, _ = process.communicate()
-    expect(time.monotonic() - sent < 5, "took more than 5 seconds to stop")
+    expect(time.monotonic() - sent < MOST_SECONDS, f"took more than {MOST_SECONDS} seconds to stop")
     tally.inherited += "resumes with" in text and "resumes with 0 " not in text
     if process.returncode == -signal.SIGKILL:
         tally.kills += 1
@@ -96,31 +98,40 @@ def succeeded(process, text, tally):
     return False
 
 
-def lasts(process, seconds):
-    """Whether it has not ended by itself after that time."""
+def beside(output, ending):
+    return output.with_name(output.name + ending)
+
+
+def size_of(path):
     try:
-        process.wait(seconds)
-        return False
-    except subprocess.TimeoutExpired:
-        return True
+        return path.stat().st_size
+    except FileNotFoundError:
+        return 0
 
 
-def wait_for_writing(process, output, bytes_written):
-    """Until that much of the result is in its temporary file, or it is done."""
-    partial = output.with_name(output.name + ".partial")
-    while process.poll() is None and not output.exists():
-        try:
-            if partial.stat().st_size >= bytes_written:
-                return
-        except FileNotFoundError:
-            pass
+def wait_to_grow(process, path, least):
+    """Until the file has so many bytes, or the process has ended. Returns the most that it had."""
+    most = size_of(path)
+    while process.poll() is None and most < least:
         time.sleep(0.0002)
+        most = max(most, size_of(path))
+    return most
+
+
+def undisturbed(command, output):
+    """Runs a command to its end. Returns the most bytes that its journal had."""
+    with tempfile.TemporaryFile("w+") as said:
+        process = subprocess.Popen(command, stdout=said, stderr=subprocess.STDOUT, text=True)
+        most = wait_to_grow(process, beside(output, ".journal"), float("inf"))
+        said.seek(0)
+        expect(process.returncode == 0, said.read())
+    return most
 
 
 def attempt_writing(command, output, whole, draw, tally):
     """A process that is killed when it has written some part of the result's bytes."""
     process = start(command)
-    wait_for_writing(process, output, max(1, draw.random() * whole))
+    wait_to_grow(process, beside(output, ".partial"), max(1, draw.random() * whole))
     stop(process, signal.SIGKILL, tally)
 
 
@@ -148,11 +159,14 @@ def torment_writing(name, command, reference, output, kills, draw):
           f"runs went on from finished work, {tally.finished} results, all equal", flush=True)
 
 
-def attempt(command, usual, draw, tally):
-    """One process that is killed, or two of which one is."""
+def attempt(command, output, whole, draw, tally):
+    """One process that is killed, or two of which one is, when the journal has grown by a part of
+    what it lacks."""
+    journal = beside(output, ".journal")
+    size = size_of(journal)
     process = start(command)
     rival = start(command) if draw.random() < 0.25 else None
-    lasts(process, draw.random() * 1.3 * usual)
+    wait_to_grow(process, journal, max(1, size + draw.random() * (whole - size)))
     kill = draw.choice([signal.SIGKILL, signal.SIGKILL, signal.SIGTERM])
     done = not stop(process, kill, tally)
     if rival is not None:
@@ -163,25 +177,21 @@ def attempt(command, usual, draw, tally):
 
 def torment(name, command, reference, output, kills, draw):
     """Kills and resumes until `kills` SIGKILLs were made, and the output is done."""
-    begin = time.monotonic()
-    done = run(command([], reference))
-    usual = time.monotonic() - begin
-    expect(done.returncode == 0, done.stdout)
-    print(f"{name}: {usual:.2f} s undisturbed", flush=True)
+    output.unlink(missing_ok=True)  # of the case before
+    whole = undisturbed(command([], output), output)
+    output.rename(reference)
+    print(f"{name}: {whole} bytes of journal undisturbed", flush=True)
     tally = Tally()
     while tally.kills < kills:
         output.unlink(missing_ok=True)
-        begin = time.monotonic()
-        if attempt(command(["--resume"], output), usual, draw, tally):
-            # Whole, and undisturbed: the machine may be less busy than it was.
-            usual = min(usual, time.monotonic() - begin)
+        attempt(command(["--resume"], output), output, whole, draw, tally)
         killed = 1
         while not output.exists():  # killed between its name and its exit, it is complete
             if killed == MOST_KILLED:
                 done = run(command(["--resume"], output))
                 expect(done.returncode == 0, done.stdout)
                 break
-            attempt(command(["--resume"], output), usual, draw, tally)
+            attempt(command(["--resume"], output), output, whole, draw, tally)
             killed += 1
         last = run(command(["--resume"], output))  # removes the journal, where one is left
         expect(last.returncode in (0, 2), last.stdout)
