@@ -4,6 +4,7 @@
 #include "clearway/report.hpp"
 #include "io/files/file.hpp"
 #include "io/files/pending_file.hpp"
+#include "io/files/thread_limit.hpp"
 #include "report/section_view.hpp"
 
 namespace clearway {
@@ -42,8 +43,10 @@ SectionPageSummary write_section_page(const Section& section, const std::filesys
   summary.facts = page_text(facts);
   PageContent content{
       .title = title, .facts = summary.facts, .section = section_svg(view, false), .columns = {}};
-  view.add_columns(content.columns);
-  summary.bytes = write_page(file.partial(), PageKind::kSection, content);
+  summary.bytes = in_all_threads([&] {
+    view.add_columns(content.columns);
+    return write_page(file.partial(), PageKind::kSection, content);
+  });
   file.publish();
   return summary;
 }

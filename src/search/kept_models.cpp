@@ -26,18 +26,29 @@ template <typename Element>
 std::shared_ptr<const ModelField> ModelIndex::field(double radius, ModelFieldOptions options,
                                                     int threads) {
   options.solids = solids_of<Element>();
+  if (auto kept = kept_field(radius, options)) return kept;
+  // Only those who need a further field of this model wait while one is made.
+  const std::lock_guard making(making_);
+  if (auto kept = kept_field(radius, options)) return kept;  // another thread made it meanwhile
+  {
+    const std::lock_guard lock(mutex_);
+    while (fields_.size() >= most_fields_) fields_.pop_back();
+  }
+  auto made = std::make_shared<const ModelField>(of<Element>(), radius, options, threads);
+  const std::lock_guard lock(mutex_);
+  fields_.push_front({radius, options, made});
+  return made;
+}
+
+std::shared_ptr<const ModelField> ModelIndex::kept_field(double radius,
+                                                         const ModelFieldOptions& options) {
   const std::lock_guard lock(mutex_);
   const auto kept = std::ranges::find_if(fields_, [&](const KeptField& one) {
     return one.radius == radius && one.options == options;
   });
-  if (kept != fields_.end()) {
-    fields_.splice(fields_.begin(), fields_, kept);
-  } else {
-    while (fields_.size() >= most_fields_) fields_.pop_back();
-    auto made = std::make_shared<const ModelField>(of<Element>(), radius, options, threads);
-    fields_.push_front({radius, options, std::move(made)});
-  }
-  return fields_.front().field;
+  if (kept == fields_.end()) return nullptr;
+  fields_.splice(fields_.begin(), fields_, kept);
+  return kept->field;
 }
 
 template std::shared_ptr<const ModelField> ModelIndex::field<Vec3>(double, ModelFieldOptions, int);

@@ -40,9 +40,9 @@ class ModelIndex {
     return kIsSolid<Element> ? &solids : nullptr;
   }
 
-  /// The field with this radius and these options, which is made unless it is kept. The least
-  /// recently used field is forgotten before a new one would be one too many. The index outlives
-  /// the field. options.solids is set here.
+  /// The field with this radius and these options, which is made unless it is kept, one field at a
+  /// time. The least recently used field is forgotten before a new one would be one too many. The
+  /// index outlives the field. options.solids is set here.
   template <typename Element>
   std::shared_ptr<const ModelField> field(double radius, ModelFieldOptions options, int threads);
 
@@ -60,8 +60,12 @@ class ModelIndex {
     std::shared_ptr<const ModelField> field;
   };
 
+  /// The field, if it is kept, which is then the most recently used one.
+  std::shared_ptr<const ModelField> kept_field(double radius, const ModelFieldOptions& options);
+
   const std::size_t most_fields_;
-  mutable std::mutex mutex_;
+  std::mutex making_;            ///< held while a field is made; taken before `mutex_`
+  mutable std::mutex mutex_;     ///< of the list, and never held for long
   std::list<KeptField> fields_;  ///< the most recently used one first
 };
 

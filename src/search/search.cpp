@@ -345,9 +345,8 @@ class Search {
   Found find_on_pages() {
     return engines_.on(
         report_.device, [&](Device device) { return find_on(device); },
-        [&](const ResourceError& error) {
+        [&](const ResourceError&) {
           if (open_ != nullptr) throw;
-          log_.note(std::string("the CPU is taken: ") + error.what());
         });
   }
 

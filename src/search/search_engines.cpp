@@ -78,6 +78,15 @@ DeviceChoice SearchEngines::open_gpus() {
   return *gpus_;
 }
 
+void SearchEngines::note_failure(const ResourceError& of_gpu) const {
+  log_.note(std::string("the CPU is taken: ") + of_gpu.what());
+}
+
+void SearchEngines::take_cpu() {
+  report_.device = Device::kCpu;
+  report_.device_name = DeviceChoice().name;
+}
+
 void SearchEngines::take_device_memory(std::uint64_t bytes, const Progress& progress) {
   if (!session_.is_session() || !gpus_ || !gpus_->is_cuda()) return;
   session_.device_memory().set_bytes(session_.kept_on_gpus().left_of(gpus_->memory_bytes));
@@ -93,9 +102,12 @@ std::optional<BeamCounts> SearchEngines::follow_beams(
     return follow_beams_on_gpus(
         session_.store().reader(), cells, beams, map, memory_bytes, options_,
         [this] { return open_gpus(); }, progress, report_);
-  } catch (const ResourceError&) {
+  } catch (const NoGpu&) {
+  } catch (const ResourceError& error) {
     if (!fallback_allowed(options_)) throw;
+    note_failure(error);
   }
+  take_cpu();
 #endif
   return std::nullopt;
 }

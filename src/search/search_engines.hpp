@@ -44,8 +44,8 @@ class SearchEngines {
   Device choose_device();
 
   /// Does the work on the device. Where that is a GPU that the user did not ask for, and it cannot
-  /// do the work, does it on the CPU; failed: called before that with the GPU's error, and may
-  /// throw it again.
+  /// do the work, notes why, does it on the CPU, and reports the CPU as the device from then on.
+  /// failed: called before that with the GPU's error, and may throw it again.
   template <typename Work>
   auto on(
       Device device, const Work& work,
@@ -57,7 +57,9 @@ class SearchEngines {
       } catch (const ResourceError& error) {
         if (!fallback_allowed(options_)) throw;
         failed(error);
+        note_failure(error);
       }
+      take_cpu();
     }
     return work(Device::kCpu);
   }
@@ -83,6 +85,9 @@ class SearchEngines {
 
   bool gpu_pays();
   DeviceChoice open_gpus();
+  void note_failure(const ResourceError& of_gpu) const;
+  /// Reports the CPU as the device of what follows.
+  void take_cpu();
 
   SessionState& session_;
   const Query& query_;

@@ -14,6 +14,7 @@
 #include "core/query/ignored_points.hpp"
 #include "core/section/section_lattice.hpp"
 #include "core/util/format.hpp"
+#include "io/files/thread_limit.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/paths/content_hash.hpp"
 #include "io/store/store_reader.hpp"
@@ -64,8 +65,10 @@ class WitnessSearch {
 
   std::vector<std::optional<SectionWitness>> run() {
     found_.resize(looks_.size());
-    tbb::parallel_for(std::size_t{0}, store_.cells().size(),
-                      [&](std::size_t i) { search_cell(static_cast<std::uint32_t>(i)); });
+    in_all_threads([&] {
+      tbb::parallel_for(std::size_t{0}, store_.cells().size(),
+                        [&](std::size_t i) { search_cell(static_cast<std::uint32_t>(i)); });
+    });
     std::vector<std::optional<SectionWitness>> out(looks_.size());
     for (std::size_t i = 0; i < out.size(); ++i) {
       if (found_[i]) out[i] = witness_of(*found_[i]);

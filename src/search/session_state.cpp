@@ -20,21 +20,25 @@ SharedMemory::Share::~Share() {
 }
 
 void SharedMemory::set_bytes(std::uint64_t bytes) {
-  const std::lock_guard lock(mutex_);
-  bytes_ = bytes;
+  {
+    const std::lock_guard lock(mutex_);
+    bytes_ = bytes;
+  }
+  given_back_.notify_all();
 }
 
 void SharedMemory::Share::take(std::uint64_t bytes, const Progress& progress) {
   constexpr std::chrono::milliseconds kLook{50};  // how often the wish to stop is looked at
   if (taken_ > 0 || bytes == 0) return;
   std::unique_lock lock(memory_.mutex_);
-  const std::uint64_t wanted = std::min(bytes, memory_.bytes_);
-  while (memory_.in_use_ + wanted > memory_.bytes_) {
+  // There may be more or less memory after each wait.
+  const auto wanted = [&] { return std::min(bytes, memory_.bytes_); };
+  while (memory_.in_use_ + wanted() > memory_.bytes_) {
     throw_if_stopped(progress);
     memory_.given_back_.wait_for(lock, kLook);
   }
-  memory_.in_use_ += wanted;
-  taken_ = wanted;
+  taken_ = wanted();
+  memory_.in_use_ += taken_;
 }
 
 namespace {
@@ -94,7 +98,8 @@ IgnoredPointCounts SessionState::ignored(const QueryParameters& query, int threa
   QueryParameters lists;
   lists.ignore_classes = query.ignore_classes;
   lists.ignore_boxes = query.ignore_boxes;
-  const std::lock_guard lock(mutex_);
+  if (!lists.ignores_points()) return {};
+  const std::lock_guard lock(ignored_mutex_);
   if (ignored_of_ != lists) {
     ignored_of_.reset();
     ignored_ = count_ignored(store_.reader(), lists, threads);

@@ -25,7 +25,7 @@ class SharedMemory {
  public:
   explicit SharedMemory(std::uint64_t bytes) : bytes_(bytes) {}
 
-  /// Changes how much there is. Shares that were taken stay.
+  /// Changes how much there is, also for those who wait. Shares that were taken stay.
   void set_bytes(std::uint64_t bytes);
 
   /// Bytes that a question has until it ends.
@@ -103,9 +103,10 @@ class SessionState {
   SharedMemory device_memory_{0};
   KeptOnGpus kept_on_gpus_;
   const std::shared_ptr<SpareTables> spare_;
-  mutable std::mutex mutex_;
+  mutable std::mutex mutex_;  ///< of the GPUs
   std::shared_ptr<const DeviceStart> started_;
   std::optional<DeviceChoice> gpus_;
+  std::mutex ignored_mutex_;                   ///< held while ignored points are counted
   std::optional<QueryParameters> ignored_of_;  ///< the lists that ignored_ is about
   IgnoredPointCounts ignored_;
 };

@@ -11,6 +11,8 @@
 #include "library/vehicle_scene.hpp"
 #include "search/check_query.hpp"
 #include "search/devices.hpp"
+#include "search/search_engines.hpp"
+#include "search/session_state.hpp"
 #include "support/catch.hpp"
 #include "support/classed_scans.hpp"
 #include "support/solid_scene.hpp"
@@ -393,4 +395,96 @@ TEST_CASE("too little memory is refused with the number that would do") {
       scene.store(),
       {.device = Device::kCpu, .threads = 1, .memory_bytes = std::uint64_t{1} << 20});
   CHECK_THROWS_WITH(session.search(query), Contains("of memory is too little"));
+}
+
+TEST_CASE("a question that waits for memory goes on when there is less or more of it") {
+  SharedMemory memory(100);
+  std::atomic<bool> stop = false;
+  const ProgressCallback silent;
+  const CallbackProgress progress(silent, &stop);
+  const auto ends = [&](std::uint64_t bytes, std::uint64_t now, bool give_back) {
+    auto first = std::make_unique<SharedMemory::Share>(memory);
+    first->take(60, progress);
+    std::atomic<int> outcome = 0;  // 1: it has its memory, 2: it was stopped
+    const auto wait = [&] {
+      SharedMemory::Share second(memory);
+      try {
+        second.take(bytes, progress);
+        outcome = 1;
+      } catch (const Interrupted&) {
+        outcome = 2;
+      }
+    };
+    const std::jthread waiting(wait);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    memory.set_bytes(now);
+    if (give_back) first.reset();
+    for (int i = 0; i < 2000 && outcome == 0; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    stop = outcome == 0;
+    while (outcome == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    stop = false;
+    return outcome == 1;
+  };
+  CHECK(ends(80, 200, false));
+  memory.set_bytes(100);
+  CHECK(ends(80, 50, true));
+}
+
+TEST_CASE("while a field is made, other questions get their models") {
+  Random random(12);
+  const Box part{{-1, -1, -1}, {1, 1, 1}};
+  const Model large(random_points(random, part, 20'000));
+  const Model small(random_points(random, part, 10));
+  KeptModels models(KeptModels::Kept::kForSession, std::uint64_t{1} << 30);
+  const auto index = models.index_of(large, std::nullopt, 1);
+  models.index_of(small, std::nullopt, 1);
+  std::atomic<int> state = 0;  // 1: the field is being made, 2: it is there
+  std::uint64_t meanwhile = 0;
+  {
+    const std::jthread making([&] {
+      state = 1;
+      index->field<Vec3>(0.05, {.voxel = 0.01, .reach = 0.5}, 1);
+      state = 2;
+    });
+    while (state == 0) std::this_thread::yield();
+    for (; state == 1; ++meanwhile) models.index_of(small, std::nullopt, 1);
+  }
+  CHECK(meanwhile > 2);
+}
+
+TEST_CASE("where a GPU fails that nobody asked for, the CPU goes on and is named") {
+  const SessionScene scene;
+  const Store store(scene.store());
+  const Query query{scene.models[1], {translation(kRoom.centre())}, {0.1}};
+  for (const Device asked : {Device::kAuto, Device::kCuda}) {
+    SearchOptions options{.device = asked, .threads = 1};
+    SessionState session(store, options, KeptModels::Kept::kOneField);
+    const std::vector<std::uint64_t> hashes;
+    SearchReport report;
+    report.device = Device::kCuda;
+    report.device_name = "a GPU";
+    std::vector<std::string> said;
+    const MessageCallback message = [&](const Message& m) { said.push_back(m.text); };
+    const MessageLog log(message, report.warnings);
+    SearchEngines engines(session, query, hashes, options, report, log);
+    int asked_of_gpu = 0;
+    const auto work = [&](Device device) {
+      if (device != Device::kCuda) return true;
+      ++asked_of_gpu;
+      throw ResourceError("the GPU has no memory", Remedy::kMoreDeviceMemory);
+    };
+    if (asked == Device::kCuda) {
+      CHECK_THROWS_AS(engines.on(report.device, work), ResourceError);
+      CHECK(report.device_name == "a GPU");
+      continue;
+    }
+    for (int pass = 0; pass < 2; ++pass) CHECK(engines.on(report.device, work));
+    CHECK(asked_of_gpu == 1);
+    CHECK(report.device == Device::kCpu);
+    CHECK(report.device_name == "the CPU");
+    REQUIRE(said.size() == 1);
+    CHECK_THAT(said[0], Contains("the CPU is taken: the GPU has no memory"));
+  }
 }
