@@ -28,6 +28,7 @@ struct RoadScan {
     bool withheld = false;
   };
   std::vector<Point> points;
+  std::uint16_t year = 0;  ///< year in the file's header; 0: none
 
   RoadScan& add(const std::vector<Vec3>& more, std::uint8_t point_class = 1,
                 bool withheld = false) {
@@ -49,7 +50,10 @@ struct RoadScan {
       las.bytes_of_class.push_back(p.point_class);
       las.bytes_of_flags.push_back(static_cast<std::uint8_t>(p.withheld ? 4 : 0));
     }
-    put_bytes(path, las.build());
+    std::string bytes = las.build();
+    LasBytes::put(bytes, 90, static_cast<std::uint16_t>(year > 0 ? 100 : 0));
+    LasBytes::put(bytes, 92, year);
+    put_bytes(path, bytes);
   }
 };
 

@@ -282,6 +282,31 @@ TEST_CASE("a worse conflict is accepted anew by opening and accepting its row") 
   CHECK(counts_of(scene.run(nearer, asked)) == "accepted 1");
 }
 
+TEST_CASE("an earlier day or an older scan shows of nothing that it is gone") {
+  LedgerScene scene;
+  RoadQuestion asked;
+  const auto scan_of = [](RoadScan scan, std::uint16_t year) {
+    scan.year = year;
+    return scan;
+  };
+  const RoadScan before = road_with({panel(10, 0.95)});
+  scene.run(scan_of(before, 2024), asked);
+  const auto judged = [&](std::uint16_t year, const std::string& date, bool update = false) {
+    asked.date = date;
+    return counts_of(scene.run(scan_of(road(), year), asked, update));
+  };
+  CHECK(judged(2025, "2026-06-29") == "not-searched 1");
+  CHECK(judged(2022, "2026-07-01") == "not-searched 1");
+  CHECK(judged(2024, "2026-07-01") == "gone 1");
+  CHECK(judged(0, "2026-07-01") == "gone 1");  // its file does not say when it was scanned
+  // An update by an older scan that shows the row forgets nothing of the later one.
+  asked.date = "2026-03-01";
+  scene.run(scan_of(before, 2022), asked);
+  CHECK(judged(2023, "2026-07-01") == "not-searched 1");
+  CHECK(judged(2025, "2026-06-29") == "not-searched 1");
+  CHECK(judged(2025, "2026-07-01", true) == "gone 1");
+}
+
 TEST_CASE("what is gone is resolved, and open when it is there again") {
   LedgerScene scene;
   const RoadQuestion asked;

@@ -56,7 +56,8 @@ class LedgerJudge {
         files_(files),
         how_(how),
         unit_(symbol_of(unit_of(found.result.reader().header()))),
-        question_(question_of(found.result.reader().header())) {
+        question_(question_of(found.result.reader().header())),
+        scanned_(day_of_scan(found.result.reader().findings().scanned.last)) {
     for (const auto& places : files.places) rows_.push_back(row_of(places));
   }
 
@@ -243,10 +244,24 @@ class LedgerJudge {
     const std::vector<std::string> reasons = how_.why_not_gone(places);
     for (std::size_t i = 0; i < alone.size(); ++i) {
       LedgerRow& shown = out.rows[alone[i]];
-      if (shown.status == LedgerStatus::kResolved && !reasons[i].empty()) continue;
-      shown.shown = reasons[i].empty() ? LedgerStatus::kGone : LedgerStatus::kNotSearched;
-      shown.why = reasons[i].empty() ? "nothing collides there any more" : reasons[i];
+      const std::string earlier = why_earlier(*places[i]);
+      const std::string& reason = earlier.empty() ? reasons[i] : earlier;
+      if (shown.status == LedgerStatus::kResolved && !reason.empty()) continue;
+      shown.shown = reason.empty() ? LedgerStatus::kGone : LedgerStatus::kNotSearched;
+      shown.why = reason.empty() ? "nothing collides there any more" : reason;
     }
+  }
+
+  /// Why this run is about an earlier day or scan than the one that showed a row last, so that the
+  /// row may have come later; empty where it is not.
+  std::string why_earlier(const LedgerPlaces& row) const {
+    if (how_.today < row.cells.last_seen) {
+      return "it was seen on " + text_of(row.cells.last_seen) + ", after the day of this run";
+    }
+    if (scanned_ && row.scanned && *scanned_ < *row.scanned) {
+      return "it was seen in a later scan, of " + text_of(*row.scanned);
+    }
+    return "";
   }
 
   /// Whether a row was resolved before this run. What an update of the same day found gone is
@@ -296,6 +311,7 @@ class LedgerJudge {
   const LedgerJudging& how_;
   const std::string unit_;
   const LedgerQuestion question_;
+  const std::optional<Day> scanned_;  ///< the last day of this scan, by the dates of its files
   mutable std::vector<MatchedRow> rows_;
   std::vector<std::vector<std::size_t>> rows_of_;  ///< of each conflict, by its id
 };

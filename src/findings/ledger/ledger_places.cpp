@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kFormat = "clearway ledger places";
 constexpr std::uint32_t kVersion = 2;
-constexpr std::size_t kNumbers = 23, kCounts = 7;
+constexpr std::size_t kNumbers = 23, kCounts = 8;
 
 double or_nan(const std::optional<double>& value) { return value.value_or(std::nan("")); }
 std::optional<double> not_nan(double value) {
@@ -55,7 +55,8 @@ struct PlacesColumns {
     numbers.insert(numbers.end(), std::begin(steps.offset), std::end(steps.offset));
     counts.insert(counts.end(), {row.min_points, row.question.model_hash, row.question.floors_hash,
                                  as_number(cells.first_seen), as_number(cells.last_seen),
-                                 row.quanta.size(), row.gone_on ? as_number(*row.gone_on) : 0});
+                                 row.quanta.size(), row.gone_on ? as_number(*row.gone_on) : 0,
+                                 row.scanned ? as_number(*row.scanned) : 0});
     for (const QuantumPoint& point : row.quanta) {
       places.insert(places.end(), std::begin(point.q), std::end(point.q));
     }
@@ -92,6 +93,7 @@ struct PlacesColumns {
       }
       row.min_points = c[0];
       if (c[6] != 0) row.gone_on = as_day(c[6]);
+      if (c[7] != 0) row.scanned = as_day(c[7]);
       for (std::uint64_t p = 0; p < c[5]; ++p, place += 3) {
         row.quanta.push_back({{places[place], places[place + 1], places[place + 2]}});
       }

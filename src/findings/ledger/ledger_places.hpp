@@ -44,6 +44,12 @@ struct LedgerQuestion {
 
 LedgerQuestion question_of(const ResultHeader& header);
 
+/// A day of a scan, as ScanDates has it; none where the files do not say.
+inline std::optional<Day> day_of_scan(const std::string& day) {
+  const auto written = day_of(day);
+  return written ? std::optional(written->day) : std::nullopt;
+}
+
 /// What the places file remembers of the cells of a row, so that a table of another run is noticed.
 struct LedgerCells {
   Vec3 middle{}, size{};
@@ -60,7 +66,10 @@ struct LedgerPlaces {
   LedgerValues values;
   LedgerQuestion question;
   Quantisation quantisation{};
-  std::optional<Day> gone_on = {};   ///< the day on which an update found it gone
+  std::optional<Day> gone_on = {};  ///< the day on which an update found it gone
+  /// The first day, by the dates of its files, of the latest scan that showed the row; none where
+  /// the files do not say
+  std::optional<Day> scanned = {};
   std::vector<QuantumPoint> quanta;  ///< one of each cube of 5 cm
 
   Vec3 place(std::size_t i) const {

@@ -134,10 +134,17 @@ class LedgerWriter {
     judged_.rows[row].status = status;
   }
 
+  /// Notes that a row was seen. A run of an earlier day, or of an older scan, leaves the later day.
   void see(std::size_t row) {
-    files_.table.set(row, LedgerColumn::kLastSeen, how_.today);
-    judged_.rows[row].last_seen = text_of(how_.today);
-    if (files_.places[row]) files_.places[row]->cells.last_seen = how_.today;
+    const Day day =
+        std::max(files_.table.day(row, LedgerColumn::kLastSeen).value_or(Day{}), how_.today);
+    files_.table.set(row, LedgerColumn::kLastSeen, day);
+    judged_.rows[row].last_seen = text_of(day);
+    if (!files_.places[row]) return;
+    LedgerPlaces& places = *files_.places[row];
+    places.cells.last_seen = day;
+    places.scanned =
+        std::max(places.scanned, day_of_scan(found_.result.reader().findings().scanned.first));
   }
 
   std::vector<std::uint32_t> conflicts_to_write() const {
@@ -161,15 +168,18 @@ class LedgerWriter {
     table.set(row, kSide, std::string(name_of(conflict.side)));
     table.set(row, kLeast, conflict.least_distance, 4);
     table.set(row, kTrim, rounded_up(least_trim(conflict)), 3);
-    LedgerPlaces& places = files_.places[row].emplace();
+    LedgerPlaces places;
     places.key = table.get(row, kKey);
-    places.cells = {middle, size, *table.day(row, kFirstSeen), how_.today};
+    places.cells = {middle, size, *table.day(row, kFirstSeen), {}};
+    if (files_.places[row]) places.scanned = files_.places[row]->scanned;
     places.gap = found_.conflicts.gap;
     places.min_points = found_.conflicts.min_points;
     places.values = values_of(conflict);
     places.question = question_of(header);
     places.quantisation = header.quantisation;
     places.quanta = std::move(points);
+    files_.places[row] = std::move(places);
+    see(row);
     judged_.rows[row].box = conflict.box;
   }
 

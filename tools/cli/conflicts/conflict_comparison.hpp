@@ -92,9 +92,10 @@ struct ComparedConflicts {
            !match.small.empty();
   }
   /// Whether b cannot show that nothing became worse: something could not be found in it, it has
-  /// not searched a place where a has a conflict, or it is the same scan as a.
+  /// not searched a place where a has a conflict, or it is the same scan as a or an older one.
   bool shows_nothing() const {
-    return b.undecided() || !match.not_searched.empty() || is_same_scan();
+    return b.undecided() || !match.not_searched.empty() || is_same_scan() ||
+           is_older.value_or(false);
   }
   /// Whether b is no worse than a, and answers the same question or an allowed one.
   bool holds() const { return !differs() && !shows_nothing(); }

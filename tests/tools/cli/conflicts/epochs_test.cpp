@@ -226,7 +226,10 @@ TEST_CASE("two epochs are told apart as a person would") {
   road.check_pair("the same scan twice", {kPoles}, {.things = kPoles, .noise = 0}, 6, "same 2",
                   "the same scan");
   road.check_pair("older scan", {.things = kPoles, .year = 2024}, {.things = kPoles, .year = 2022},
-                  0, "same 2", "by the dates of the files b is older than a");
+                  6, "same 2", "by the dates of the files b is older than a");
+  road.check_pair("pole that is missing in an older scan", {.things = kPoles, .year = 2024},
+                  {.things = {pole(20)}, .year = 2022}, 6, "gone 1, same 1",
+                  "by the dates of the files b is older than a");
   road.check_pair("newer scan", {.things = kPoles, .year = 2022}, {.things = kPoles, .year = 2024},
                   0, "same 2", "no new conflicts");
   road.check_pair("smaller radius", {kPoles}, {.things = kPoles, .run = "--radius 0.02"}, 6,
