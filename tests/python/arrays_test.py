@@ -29,6 +29,32 @@ class Arrays(SceneTest):
         for poses in (self.poses[:, :3], np.asfortranarray(self.poses), list(self.poses)):
             np.testing.assert_array_equal(self.sources(poses=poses), expected)
 
+    def test_a_chunk_of_zeros_is_noticed_by_whoever_reads_its_column(self):
+        query = self.query(first_pose=True, clearance=0.5, profile=0.5, error_scan=0.01)
+        self.search(query=query)
+        path = self.folder / "out.h5"
+        intact = path.read_bytes()
+        readers = {"source": lambda r: r.source(), "xyz": lambda r: r.xyz(),
+                   "first_pose": lambda r: r.first_pose(), "last_pose": lambda r: r.last_pose()}
+        for table in ("collisions", "near", "clearance", "profile"):
+            for column in ("source", "xyz", "first_pose", "last_pose", "distance", "pose", "chainage"):
+                values = getattr(getattr(clearway.Result(path), table)(), column, None)
+                if values is not None:
+                    readers[f"{table}.{column}"] = (
+                        lambda r, t=table, c=column: getattr(getattr(r, t)(), c))
+        columns = {name: read(clearway.Result(path)) for name, read in readers.items()}
+        for name, values in columns.items():
+            chunk = values.tobytes()
+            at = intact.find(chunk)
+            if at < 0 or not any(chunk):
+                continue
+            with self.subTest(name):
+                end = at + len(chunk) + 4  # with its checksum
+                path.write_bytes(intact[:at] + bytes(end - at) + intact[end:])
+                with self.assertRaises(clearway.InputError):
+                    readers[name](clearway.Result(path))
+        self.assertGreater(len(columns), 15)
+
     def test_other_numbers_are_converted(self):
         query = clearway.Query(np.array([[1, 2, 3]], "int16"), np.eye(4, dtype="float32")[None])
         self.assertEqual((query.model.dtype, query.poses.dtype), (np.float64, np.float64))

@@ -62,12 +62,12 @@ class ResultWriter {
 /// Whether ResultReader accepts a part of a result in place of a whole one.
 enum class Parts { kRefused, kAccepted };
 
-/// Reads a result by ranges of rows, which lie below the number of rows. Reading all of them front
-/// to back (RowStream) also checks them against their hash. Throws InputError when the file is not
-/// a complete result, is damaged, or holds rows that no run can have found: source indices of
-/// points are strictly ascending and below header().environment_points, poses are below
-/// header().poses, bodies below their number, and distances at most what was asked for and below 0
-/// only for models with solids.
+/// Reads a result. No value leaves it that was not checked against the hash of its column: whole
+/// tables and columns are checked before they are returned, and RowStream checks at its end. Throws
+/// InputError when the file is not a complete result, is damaged, or holds rows that no run can
+/// have found: source indices of points are strictly ascending and below
+/// header().environment_points, poses are below header().poses, bodies below their number, and
+/// distances at most what was asked for and below 0 only for models with solids.
 ///
 /// `Rows` is Collisions, Clearances, ProfileRows, Nearby, UnseenCubes or SweptCells.
 class ResultReader {
@@ -88,20 +88,29 @@ class ResultReader {
   std::uint64_t clearances() const { return rows<Clearances>(); }
   std::uint64_t near() const { return rows<Nearby>(); }
   std::uint64_t profile_rows() const { return rows<ProfileRows>(); }
-  /// The hash that the file records for a table; 0 where the result does not have it.
+  /// The hash of the recorded hashes of a table's columns; 0 where the result does not have it.
   template <typename Rows>
   std::uint64_t recorded_hash() const;
 
-  /// Reads `count` rows from row `first` on into `out`, and adds their values to `hashes` if these
-  /// are given. Columns that the result does not have become empty. Uses many threads where `first`
-  /// is a multiple of kEncodedRows and the number of rows is one too, or reaches the end of the
-  /// table.
+  /// Reads `count` rows from row `first` on into `out`, and adds their values to `hashes`, which
+  /// the caller has to check after the last row. Columns that the result does not have become
+  /// empty. Uses many threads where `first` is a multiple of kEncodedRows and the number of rows is
+  /// one too, or reaches the end of the table.
   template <typename Rows>
-  void read(std::uint64_t first, std::size_t count, Rows& out,
-            RowHashes<Rows>* hashes = nullptr) const;
+  void read(std::uint64_t first, std::size_t count, Rows& out, RowHashes<Rows>& hashes) const;
   /// Throws InputError unless these are the hashes of all rows of the table.
   template <typename Rows>
   void check_hashes(const RowHashes<Rows>& hashes) const;
+
+  /// Reads a whole table; without rows where the result does not have it.
+  template <typename Rows>
+  Rows all() const {
+    Rows out;
+    RowHashes<Rows> hashes;
+    read(0, rows<Rows>(), out, hashes);
+    check_hashes<Rows>(hashes);
+    return out;
+  }
 
   /// Reads a whole column of a table, as in column(&Collisions::xyz); no values where the result
   /// does not have it.
@@ -137,7 +146,7 @@ class RowStream {
       reader_->check_hashes<Rows>(hashes_);
       return false;
     }
-    reader_->read(first, count, rows, &hashes_);
+    reader_->read(first, count, rows, hashes_);
     const auto& order = rows.*Table<Rows>::kOrder;
     if (last_ && !Table<Rows>::may_follow(*last_, order.front())) {
       RowsRead{reader_->name(), reader_->header(), Table<Rows>::kGroup, first}.refuse_row(

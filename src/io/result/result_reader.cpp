@@ -155,61 +155,88 @@ class TableReader {
   TableReader(const hdf5::Id& file, const std::string& name, const ResultHeader& header)
       : name_(name), header_(header) {
     if (!Table<Rows>::is_in(header)) return;
-    hash_ = hdf5::read_number<std::uint64_t>(file, Table<Rows>::kHash, name);
+    std::size_t columns = 0;
     for_each_column<Rows>(datasets_, [&](const auto& column, auto& dataset) {
       using Value = typename std::decay_t<decltype(column)>::Value;
       using Dataset = typename std::decay_t<decltype(dataset)>::value_type;
       if (!column.is_in(header)) return;
       const std::string path = std::string(Table<Rows>::kGroup) + "/" + column.dataset;
       dataset.emplace(Dataset::open(file, path, StoredValue<Value>::kNumbers, name));
+      ++columns;
       if (!rows_) rows_ = dataset->rows();
       if (dataset->rows() == *rows_) return;
       throw InputError(name + ": the datasets of /" + Table<Rows>::kGroup +
                        " differ in their rows");
     });
+    hashes_ = hdf5::read_attribute<std::uint64_t>(file, Table<Rows>::kHash, columns, name);
   }
 
   std::uint64_t rows() const { return rows_.value_or(0); }
-  std::uint64_t recorded_hash() const { return hash_; }
+  std::uint64_t recorded_hash() const {
+    if (!rows_) return 0;
+    ColumnHashes of_table;
+    for (const std::uint64_t hash : hashes_) of_table.add_digest(hash);
+    return of_table.digest();
+  }
 
-  void read(std::uint64_t first, std::size_t count, Rows& out, RowHashes<Rows>* hashes) const {
+  void read(std::uint64_t first, std::size_t count, Rows& out, RowHashes<Rows>& hashes) const {
     check_range(first, count, rows());
     for_each_column<Rows>(datasets_, [&](const auto& column, const auto& dataset) {
       (out.*column.values).resize(dataset ? count : 0);
     });
-    RowHashes<Rows> unused;
-    RowHashes<Rows>& sums = hashes != nullptr ? *hashes : unused;
-    if (!read_chunks(first, count, out, sums)) read_in_order(first, out, sums);
+    if (!read_chunks(first, count, out, hashes)) read_in_order(first, out, hashes);
     Table<Rows>::check(read_from(first), out);
   }
 
   void check_hashes(const RowHashes<Rows>& hashes) const {
-    if (!rows_) return;
-    ColumnHashes of_table;
-    std::size_t i = 0;
-    for_each_column<Rows>(datasets_, [&](const auto&, const auto& dataset) {
-      const std::uint64_t digest = hashes[i++].digest();
-      if (dataset) of_table.add_digest(digest);
+    std::size_t i = 0, recorded = 0;
+    for_each_column<Rows>(datasets_, [&](const auto& column, const auto& dataset) {
+      const Xxh64Stream& hash = hashes[i++];
+      if (dataset) check_hash(column.dataset, hash.digest(), hashes_[recorded++]);
     });
-    if (of_table.digest() == hash_) return;
-    throw InputError(name_ + ": /" + Table<Rows>::kGroup +
-                     ": its rows are damaged (their hash is not the one recorded)");
   }
 
   template <typename Value>
   std::vector<Value> column(std::vector<Value> Rows::*values) const {
     std::vector<Value> out;
+    std::size_t recorded = 0;
     for_each_column<Rows>(datasets_, [&](const auto& column, const auto& dataset) {
+      if (!dataset) return;
+      const std::uint64_t hash = hashes_[recorded++];
       if constexpr (std::is_same_v<decltype(column.values), std::vector<Value> Rows::*>) {
-        if (column.values != values || !dataset) return;
+        if (column.values != values) return;
         out.resize(rows());
-        read_column(column, *dataset, 0, std::span(out));
+        Xxh64Stream found;
+        if (!read_whole(*dataset, std::span(out), found)) {
+          as_input(name_, [&] { dataset->read(0, numbers_of(std::span(out))); });
+          found.update(std::as_bytes(std::span(out)));
+        }
+        check_hash(column.dataset, found.digest(), hash);
+        column.check(read_from(0), column.dataset, out);
       }
     });
     return out;
   }
 
  private:
+  /// Reads a whole column by many threads. Returns false as read_chunks() does.
+  template <typename Dataset, typename Value>
+  bool read_whole(const Dataset& dataset, std::span<Value> out, Xxh64Stream& hash) const {
+    hdf5::StoredChunks chunks;
+    const auto unchecked = [](std::uint64_t, std::span<const Value>) {};
+    const auto read_all = [&] {
+      ParallelRead read;
+      return read.add(dataset, 0, out, chunks, hash, unchecked) && read.finish();
+    };
+    return in_all_threads([&] { return as_input(name_, read_all); });
+  }
+
+  void check_hash(const char* dataset, std::uint64_t found, std::uint64_t recorded) const {
+    if (found == recorded) return;
+    throw InputError(name_ + ": /" + Table<Rows>::kGroup + "/" + dataset +
+                     ": its rows are damaged (their hash is not the one recorded)");
+  }
+
   RowsRead read_from(std::uint64_t first) const {
     return {name_, header_, Table<Rows>::kGroup, first};
   }
@@ -277,7 +304,7 @@ class TableReader {
   /// Memory for the chunks of each column. As with HDF5 itself, one thread at a time reads.
   mutable std::array<hdf5::StoredChunks, kColumnsOf<Rows>> chunks_;
   std::optional<std::uint64_t> rows_;  ///< nullopt where the result does not have the table
-  std::uint64_t hash_ = 0;
+  std::vector<std::uint64_t> hashes_;  ///< recorded, of the columns that the result has
 };
 
 }  // namespace
@@ -351,7 +378,7 @@ std::uint64_t ResultReader::recorded_hash() const {
 
 template <typename Rows>
 void ResultReader::read(std::uint64_t first, std::size_t count, Rows& out,
-                        RowHashes<Rows>* hashes) const {
+                        RowHashes<Rows>& hashes) const {
   state_->table<Rows>().read(first, count, out, hashes);
 }
 
@@ -373,18 +400,18 @@ template std::uint64_t ResultReader::rows<UnseenCubes>() const;
 template std::uint64_t ResultReader::rows<SweptCells>() const;
 template std::uint64_t ResultReader::recorded_hash<Collisions>() const;
 template void ResultReader::read(std::uint64_t, std::size_t, Collisions&,
-                                 RowHashes<Collisions>*) const;
+                                 RowHashes<Collisions>&) const;
 template void ResultReader::read(std::uint64_t, std::size_t, Clearances&,
-                                 RowHashes<Clearances>*) const;
+                                 RowHashes<Clearances>&) const;
 template void ResultReader::read(std::uint64_t, std::size_t, ProfileRows&,
-                                 RowHashes<ProfileRows>*) const;
-template void ResultReader::read(std::uint64_t, std::size_t, Nearby&, RowHashes<Nearby>*) const;
+                                 RowHashes<ProfileRows>&) const;
+template void ResultReader::read(std::uint64_t, std::size_t, Nearby&, RowHashes<Nearby>&) const;
 template void ResultReader::check_hashes<Nearby>(const RowHashes<Nearby>&) const;
 template void ResultReader::read(std::uint64_t, std::size_t, UnseenCubes&,
-                                 RowHashes<UnseenCubes>*) const;
+                                 RowHashes<UnseenCubes>&) const;
 template void ResultReader::check_hashes<UnseenCubes>(const RowHashes<UnseenCubes>&) const;
 template void ResultReader::read(std::uint64_t, std::size_t, SweptCells&,
-                                 RowHashes<SweptCells>*) const;
+                                 RowHashes<SweptCells>&) const;
 template void ResultReader::check_hashes<SweptCells>(const RowHashes<SweptCells>&) const;
 template void ResultReader::check_hashes<Collisions>(const RowHashes<Collisions>&) const;
 template void ResultReader::check_hashes<Clearances>(const RowHashes<Clearances>&) const;
@@ -408,11 +435,7 @@ std::uint64_t Result::poses() const { return reader_->header().poses; }
 Answer Result::answer() const { return answer_of(*reader_); }
 const std::vector<Message>& Result::warnings() const { return reader_->findings().warnings; }
 
-Collisions Result::collisions() const {
-  Collisions out;
-  reader_->read(0, reader_->rows<Collisions>(), out);
-  return out;
-}
+Collisions Result::collisions() const { return reader_->all<Collisions>(); }
 
 std::vector<std::uint64_t> Result::source() const { return reader_->column(&Collisions::source); }
 std::vector<Vec3> Result::xyz() const { return reader_->column(&Collisions::xyz); }
@@ -425,27 +448,12 @@ std::vector<std::uint32_t> Result::last_pose() const {
 std::vector<std::uint32_t> Result::first_body() const { return reader_->column(&Collisions::body); }
 const std::vector<std::string>& Result::bodies() const { return reader_->header().bodies; }
 
-UnseenCubes Result::unseen() const {
-  UnseenCubes out;
-  reader_->read(0, reader_->rows<UnseenCubes>(), out);
-  return out;
-}
-
-Nearby Result::near() const {
-  Nearby out;
-  reader_->read(0, reader_->rows<Nearby>(), out);
-  return out;
-}
-
-Clearances Result::clearance() const {
-  Clearances out;
-  reader_->read(0, reader_->rows<Clearances>(), out);
-  return out;
-}
+UnseenCubes Result::unseen() const { return reader_->all<UnseenCubes>(); }
+Nearby Result::near() const { return reader_->all<Nearby>(); }
+Clearances Result::clearance() const { return reader_->all<Clearances>(); }
 
 Profile Result::profile() const {
-  ProfileRows out;
-  reader_->read(0, reader_->rows<ProfileRows>(), out);
+  auto out = reader_->all<ProfileRows>();
   for (const auto& [first, last] : reader_->findings().without_bodies) {
     std::fill(out.distance.begin() + first, out.distance.begin() + last + 1,
               std::numeric_limits<double>::quiet_NaN());

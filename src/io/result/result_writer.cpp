@@ -143,11 +143,11 @@ class TableWriter {
   }
 
   void write_hash(const hdf5::Id& file) {
-    ColumnHashes hashes;
+    std::vector<std::uint64_t> hashes;
     for_each_column<Rows>(columns_, [&](const auto&, const auto& dataset) {
-      if (dataset) hashes.add_digest(dataset->digest());
+      if (dataset) hashes.push_back(dataset->digest());
     });
-    hdf5::write_number(file, Table<Rows>::kHash, hashes.digest());
+    hdf5::write_attribute<std::uint64_t>(file, Table<Rows>::kHash, hashes);
   }
 
  private:

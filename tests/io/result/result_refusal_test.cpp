@@ -1,7 +1,14 @@
 #include <hdf5.h>
 
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "clearway/error.hpp"
 #include "io/files/hdf5.hpp"
+#include "io/files/stored_chunk.hpp"
 #include "io/result/result.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
@@ -115,6 +122,65 @@ TEST_CASE("a flipped byte anywhere is noticed or changes nothing") {
     put_byte(folder / "out.h5", at, bytes[at]);
   }
   CHECK(noticed > bytes.size() / step / 2);
+}
+
+TEST_CASE("a chunk of zeros or with other values is noticed by whoever reads its column") {
+  const LeaksOfHdf5 ignored;
+  const ScratchFolder folder;
+  const auto path = folder / "out.h5";
+  ResultHeader header = sample_header(true);
+  header.poses = 6;
+  header.clearance = header.profile = 0.5;
+  const Collisions rows = sample_rows(header, 5);
+  const Clearances near = sample_clearances(header, 7);
+  const ProfileRows along = sample_profile(header);
+  write_result(path, header, rows, 1000, near, along);
+  const std::string bytes = bytes_of(path);
+  const auto text_of = []<typename... Values>(const std::vector<Values>&... columns) {
+    std::string text;
+    (text.append(reinterpret_cast<const char*>(columns.data()), columns.size() * sizeof(Values)),
+     ...);
+    return text;
+  };
+  using Read = std::function<std::string(const Result&)>;
+  const std::vector<std::pair<std::string, Read>> columns{
+      {text_of(rows.source), [&](const Result& r) { return text_of(r.source()); }},
+      {text_of(rows.xyz), [&](const Result& r) { return text_of(r.xyz()); }},
+      {text_of(rows.first_pose), [&](const Result& r) { return text_of(r.first_pose()); }},
+      {text_of(rows.last_pose), [&](const Result& r) { return text_of(r.last_pose()); }},
+      {text_of(near.distance), [&](const Result& r) { return text_of(r.clearance().distance); }},
+      {text_of(near.xyz), [&](const Result& r) { return text_of(r.clearance().xyz); }},
+      {text_of(along.distance), [&](const Result& r) { return text_of(r.profile().distance); }},
+      {text_of(along.source), [&](const Result& r) { return text_of(r.profile().source); }},
+      {text_of(along.xyz), [&](const Result& r) { return text_of(r.profile().xyz); }}};
+  const Read all = [&](const Result& r) {
+    const Collisions c = r.collisions();
+    return text_of(c.source, c.xyz, c.first_pose, c.last_pose);
+  };
+  const std::string whole = all(Result(path));
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const auto& [values, read] = columns[i];
+    CAPTURE(i);
+    CHECK(read(Result(path)) == values);
+    // The chunk's values, and after them its checksum, which is 0 for zeros.
+    const std::size_t at = bytes.find(values);
+    REQUIRE(at != std::string::npos);
+    for (const bool sealed : {false, true}) {
+      std::string chunk(values.size(), '\0');
+      if (sealed) {
+        chunk = values;
+        std::swap(chunk.front(), chunk[chunk.size() / 2]);
+      }
+      chunk.resize(chunk.size() + hdf5::kChecksumBytes);
+      hdf5::seal_chunk(std::as_writable_bytes(std::span(chunk)));
+      put_bytes(path, std::string(bytes).replace(at, chunk.size(), chunk));
+      const bool differs = chunk.compare(0, values.size(), values) != 0;
+      if (differs) CHECK_THROWS_AS(read(Result(path)), InputError);
+      if (differs && i < 4) CHECK_THROWS_AS(all(Result(path)), InputError);
+      if (i >= 4) CHECK(all(Result(path)) == whole);
+    }
+    put_bytes(path, bytes);
+  }
 }
 
 TEST_CASE("datasets of another type or shape, or with impossible values, are refused") {

@@ -43,11 +43,13 @@ TEST_CASE("a result is read by any range of rows") {
   const ResultReader reader(folder / "out.h5");
   for (const std::size_t first : {0u, 8'191u, 8'192u, 32'767u, 65'535u, 69'990u}) {
     Collisions read;
-    reader.read(first, 10, read);
+    RowHashes<Collisions> hashes;
+    reader.read(first, 10, read, hashes);
     CHECK(same_rows(read, part_of(rows, first, 10)));
   }
   Collisions read;
-  CHECK_THROWS_AS(reader.read(69'991, 10, read), std::logic_error);
+  RowHashes<Collisions> hashes;
+  CHECK_THROWS_AS(reader.read(69'991, 10, read, hashes), std::logic_error);
   CHECK(reader.column(&Collisions::source) == rows.source);
   CHECK(reader.column(&Collisions::xyz) == rows.xyz);
   CHECK(reader.column(&Collisions::first_pose) == rows.first_pose);
