@@ -118,9 +118,11 @@ struct SectionCells {
 
 /// A section as it is found and kept.
 struct SectionData : SectionFacts {
-  std::vector<double> chainage = {};     ///< of each pose of the path
-  std::vector<std::uint32_t> bins = {};  ///< numbers of the bins in which the load has a pose
-  SectionCells bin_cells = {};           ///< blocked cells, ascending by bin, k, j
+  std::vector<double> chainage = {};  ///< of each pose of the path
+  /// Numbers of the bins in which the load has a pose, ascending. Between poses each pose is in all
+  /// bins of half of the way to its neighbours, so that none on the way is missing.
+  std::vector<std::uint32_t> bins = {};
+  SectionCells bin_cells = {};  ///< blocked cells, ascending by bin, k, j
   /// With seen space: cells that are not known, ascending by bin, k, j. A cell that is blocked at
   /// that pose of the bin or before is not among them.
   std::optional<SectionCells> unknown = {};
@@ -145,7 +147,7 @@ struct SectionSeenCounts {
 struct SectionReport {
   std::uint64_t blocked = 0;          ///< cells that are blocked anywhere
   std::uint64_t blocked_in_bins = 0;  ///< sum over the bins
-  std::uint64_t bins = 0;             ///< bins in which the load has a pose
+  std::uint64_t bins = 0;             ///< as SectionData::bins has them
   double rounding = 0;
   std::optional<std::array<double, 2>> motion = {};
   std::uint64_t ignored_points = 0;                       ///< points that were left out

@@ -26,11 +26,17 @@ std::string cell_words(const std::array<std::int32_t, 2>& cell, const SectionFac
 
 namespace {
 
-/// On how much of the path the load was looked at.
+/// On how much of the path the load was searched.
 std::string extent_words(const SectionData& section) {
-  if (section.load_poses == section.poses) return "everywhere on the path";
-  return "at " + format_count(section.load_poses) + " of " + counted(section.poses, "pose") +
-         " of the path, as its pivots are off the path at the others";
+  const bool ways = section.parameters.between_poses;
+  if (section.load_poses < section.poses) {
+    return "at " + format_count(section.load_poses) + " of " + counted(section.poses, "pose") +
+           " of the path" + (ways ? " and between them" : "") +
+           ", as its pivots are off the path at the others";
+  }
+  if (ways) return "everywhere on the path";
+  return section.poses == 1 ? "at the only pose of the path"
+                            : "at all " + counted(section.poses, "pose") + " of the path";
 }
 
 /// The warnings of a section, as the end of a sentence.
@@ -65,12 +71,30 @@ std::string verdict_sentence(const SectionCheck& check, const SectionData& secti
   return "unknown: " + check.reason + doubts;
 }
 
+namespace {
+
+/// How many rows of a table were judged.
+std::string judged_words(const OutlineTableCheck& check) {
+  const std::string all = counted(check.rows.size(), "row");
+  const auto left_out =
+      std::ranges::find_if(check.rows, [](const OutlineRowCheck& row) { return !row.bins; });
+  if (left_out == check.rows.end()) return all;
+  const auto judged = std::ranges::count_if(
+      check.rows, [](const OutlineRowCheck& row) { return row.bins.has_value(); });
+  return format_count(static_cast<std::uint64_t>(judged)) + " of " + all + " (line " +
+         std::to_string(left_out->line) +
+         (static_cast<std::size_t>(judged) + 1 < check.rows.size() ? " and others are" : " is") +
+         " not judged, because the load has no pose there)";
+}
+
+}  // namespace
+
 std::string table_sentence(const OutlineTableCheck& check, const SectionData& section) {
   const std::string doubts = doubt_words(section);
   switch (check.verdict) {
     case SectionVerdict::kPasses:
-      return "passes: the outlines of " + counted(check.rows.size(), "row") + " pass " +
-             extent_words(section) + doubts;
+      return "passes: the outlines of " + judged_words(check) + " pass " + extent_words(section) +
+             doubts;
     case SectionVerdict::kStopped: {
       const OutlineRowCheck& row = check.rows[check.stop->row];
       std::set<std::uint32_t> bins;

@@ -213,7 +213,7 @@ class Finder {
     const std::uint64_t of_bin = two_maps ? 2 * of_map : of_map;
     const std::uint64_t fixed =
         store_.allocated_bytes() + 2 * path_.size() * (sizeof(Pose) + sizeof(double)) +
-        2 * load_.poses.size() * sizeof(SectionPoseNode) + bytes_to_write() + of_cubes;
+        2 * (load_.poses.size() + bins) * sizeof(SectionPoseNode) + bytes_to_write() + of_cubes;
     report_.needed_host_bytes = fixed + bins * of_bin;
     if (report_.needed_host_bytes <= options_.memory_bytes) return;
     const std::string sizes = "a section of " + counted(bins, "bin") + " of " +
@@ -230,17 +230,18 @@ class Finder {
     const std::uint64_t most =
         options_.memory_bytes > fixed ? (options_.memory_bytes - fixed) / of_bin : 0;
     if (most == 0) return "; larger cells or a smaller window take less";
-    double bin = std::max(data_.parameters.bin, data_.chainage.back() / static_cast<double>(most));
-    bin = std::ceil(bin);
-    while (section_bins(data_.chainage, load_.path_pose, bin).size() > most) {
-      bin = std::ceil(bin * 1.01);
+    SectionParameters coarser = data_.parameters;
+    coarser.bin =
+        std::ceil(std::max(coarser.bin, data_.chainage.back() / static_cast<double>(most)));
+    while (section_bins(data_.chainage, load_.path_pose, coarser).size() > most) {
+      coarser.bin = std::ceil(coarser.bin * 1.01);
     }
-    return "; bins of " + format_number(bin) + " fit";
+    return "; bins of " + format_number(coarser.bin) + " fit";
   }
 
   void find() {
     const std::vector<SectionBin> bins =
-        section_bins(data_.chainage, load_.path_pose, data_.parameters.bin);
+        section_bins(data_.chainage, load_.path_pose, data_.parameters);
     const SectionPoses poses(load_.poses, load_.path_pose, bins);
     std::optional<SectionSeen> seen;
     if (data_.parameters.seen) {

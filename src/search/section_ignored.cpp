@@ -51,7 +51,7 @@ CellsOfIgnored cells_of_ignored(const SectionMaps& maps, const SectionMaps& igno
     const SectionBin& of = bins[bin];
     const std::uint32_t first = path_pose[of.first], last = path_pose[of.first + of.count - 1];
     std::vector<PoseRange>& stretches = out.high_stretches;
-    const bool follows = !stretches.empty() && stretches.back().last + 1 == first;
+    const bool follows = !stretches.empty() && stretches.back().last + 1 >= first;
     if (!follows) stretches.push_back({first, last});
     stretches.back().last = last;
   }

@@ -2,7 +2,11 @@
 #include <algorithm>
 #include <fstream>
 
+#include "core/section/section_tables.hpp"
+#include "core/trajectory/chainage.hpp"
 #include "library/section_guarantee.hpp"
+#include "support/compare.hpp"
+#include "support/section_scene.hpp"
 #include "support/store_fixture.hpp"
 
 using namespace clearway;
@@ -100,6 +104,157 @@ TEST_CASE("between poses a pass is one on the ways, too") {
     CHECK_FALSE(guarantee.first_collision(outline, margin));
   }
   CHECK(passes > 5);
+}
+
+namespace {
+
+/// A road with posts beside a path whose steps are longer than a bin, and a table of outlines.
+struct LongSteps {
+  static constexpr double kRear = -1.5, kFront = 2, kBin = 3;
+
+  struct Step {
+    Pose pose;
+    double angle;
+  };
+
+  explicit LongSteps(Random& random) {
+    Vec3 at{0, 0, 0};
+    double angle = uniform(random, -3, 3), ahead = 1;
+    const std::size_t count = 2 + below(random, 7);
+    for (std::size_t i = 0; i < count; ++i) {
+      path.push_back(rotation({0, 0, 1}, angle, at));
+      angles.push_back(angle);
+      if (below(random, 6) == 0) ahead = -ahead;  // it turns back on its own way
+      const double step = below(random, 3) == 0 ? uniform(random, 0.1, 2) : uniform(random, 4, 14);
+      at = at + ahead * step * Vec3{std::cos(angle), std::sin(angle), 0};
+      angle += uniform(random, -0.05, 0.05);
+    }
+    chainage = chainage_of(path);
+    for (std::uint64_t i = 1 + below(random, 4); i > 0; --i) {
+      const Pose place = at_chainage(uniform(random, 0, length()));
+      posts.push_back(place.rotated({uniform(random, -1, 1), uniform(random, -1.5, 1.5), 1}) +
+                      place.position());
+    }
+    posts.push_back(path.front().rotated({0, 3.5, 0.2}) + path.front().position());
+    double from = 0;
+    while (from < length()) {
+      const double to = from + uniform(random, 0.5, 12);
+      const double half = below(random, 2) == 0 ? 1 : 0.3;
+      table.rows.push_back({.line = table.rows.size() + 2,
+                            .from = from,
+                            .to = to,
+                            .file = "load.csv",
+                            .outline = {{-half, 0.5}, {half, 0.5}, {half, 2}, {-half, 2}},
+                            .margin = 0});
+      from = to;
+    }
+  }
+
+  double length() const { return chainage.back(); }
+
+  Pose at_chainage(double s) const {
+    std::size_t i = 0;
+    while (i + 2 < path.size() && chainage[i + 1] < s) ++i;
+    const double t = (s - chainage[i]) / (chainage[i + 1] - chainage[i]);
+    return rotation({0, 0, 1}, (1 - t) * angles[i] + t * angles[i + 1],
+                    (1 - t) * path[i].position() + t * path[i + 1].position());
+  }
+
+  /// Whether a post is surely in the load of a row at a place of the row, in steps of 2 cm.
+  bool is_hit(const OutlineRow& row) const {
+    for (double s = row.from; s < std::min(row.to, length()); s += 0.02) {
+      const Pose place = at_chainage(s);
+      for (const Vec3& post : posts) {
+        const auto [x, y, z] = place_of(place, post);
+        if (x > kRear && x < kFront && std::abs(y) < row.outline[2].y - 0.03 && z > 0.5) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  /// Whether a post comes near the load at a pose that stands for a part of a bin of the row.
+  bool may_be_hit(const OutlineRow& row, const SectionData& section) const {
+    const double from = std::floor(row.from / kBin) * kBin;
+    const double to = (std::floor(std::nextafter(row.to, 0) / kBin) + 1) * kBin;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      const double before = i == 0 ? 0 : (chainage[i - 1] + chainage[i]) / 2;
+      const double after = i + 1 == path.size() ? length() : (chainage[i] + chainage[i + 1]) / 2;
+      const bool is_last = row.to >= length();
+      if (after < from || (before >= to && !is_last)) continue;
+      for (const Vec3& post : posts) {
+        const auto [x, y, z] = place_of(path[i], post);
+        const double along = (*section.motion)[0] / 2 + 1e-6;
+        const double across = (*section.motion)[1] / 2 + 2 * section.parameters.cell;
+        if (x > kRear - along && x < kFront + along && std::abs(y) < row.outline[2].y + across) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  std::vector<Pose> path;
+  std::vector<double> angles, chainage;
+  std::vector<Vec3> posts;
+  OutlineTable table{.path = "table.csv"};
+};
+
+}  // namespace
+
+TEST_CASE("between poses a table is judged on the whole way, however long its steps are") {
+  const ScratchFolder folder;
+  Random random(77);
+  int hit = 0, passed = 0, without_pose = 0;
+  for (int i = 0; i < 60; ++i) {
+    CAPTURE(i);
+    const LongSteps road(random);
+    write_ply(folder / "posts.ply", road.posts);
+    convert({folder / "posts.ply"}, folder / "posts.h5", {.threads = 1, .overwrite = true});
+    find_section(Store(folder / "posts.h5"), road.path,
+                 {.rear = LongSteps::kRear,
+                  .front = LongSteps::kFront,
+                  .window = SectionWindow{-4, 4, 0, 3},
+                  .cell = 0.05,
+                  .bin = LongSteps::kBin,
+                  .between_poses = true},
+                 folder / "section.h5", {.threads = 1, .overwrite = true});
+    const Section section(folder / "section.h5");
+    check_equal(section.data().bins.size(),
+                static_cast<std::size_t>(std::floor(road.length() / LongSteps::kBin)) + 1);
+    const OutlineTableCheck check = section.check(road.table);
+    bool any = false;
+    for (std::size_t r = 0; r < road.table.rows.size(); ++r) {
+      CAPTURE(r);
+      const OutlineRow& row = road.table.rows[r];
+      const SectionCheck& judged = check.rows[r].check;
+      REQUIRE(check.rows[r].bins);
+      without_pose += std::ranges::none_of(road.chainage,
+                                           [&](double s) { return row.from <= s && s < row.to; });
+      if (road.is_hit(row)) {
+        CHECK(judged.verdict == SectionVerdict::kStopped);
+        any = true;
+        ++hit;
+      } else if (!road.may_be_hit(row, section.data())) {
+        CHECK(judged.stops.empty());
+        ++passed;
+      }
+    }
+    if (any) CHECK(check.verdict == SectionVerdict::kStopped);
+    // A stretch is no wider than the posts leave room for on the way.
+    for (const SectionStretch& stretch : section_stations(section, {.band = 1, .base = 0.5})) {
+      const double from = stretch.bin * LongSteps::kBin;
+      const OutlineRow wide{.from = from,
+                            .to = std::min(from + LongSteps::kBin, road.length()),
+                            .outline = {{}, {}, {1, 2}}};
+      const auto width = symmetric_width(section.data(), stretch.bands[0]);
+      if (road.is_hit(wide)) CHECK((width && *width < 2));
+    }
+  }
+  CHECK(hit > 30);
+  CHECK(passed > 30);
+  CHECK(without_pose > 30);
 }
 
 TEST_CASE("one more point stops the load at the pose that the search finds first") {

@@ -97,7 +97,7 @@ Firsts by_brute_force(const CubeScene& scene) {
 Firsts by_search(const CubeScene& scene) {
   const std::vector<Pose> poses = scene.load();
   const SectionLattice lattice = section_lattice(scene.asked, 0);
-  const auto bins = section_bins(chainage_of(scene.path), scene.path_pose, scene.asked.bin);
+  const auto bins = section_bins(chainage_of(scene.path), scene.path_pose, scene.asked);
   const SectionPoses tree(poses, scene.path_pose, bins);
   SectionMaps maps(lattice, bins.size());
   const SectionCubes search(scene.cubes, scene.quantisation, tree, lattice, scene.rounding);

@@ -68,13 +68,22 @@ TEST_CASE("points on the border of cells, range and window count as the definiti
   CHECK(by_search(scene, 1, 0) == expected);
 }
 
-TEST_CASE("a bin is a stretch of the chainage, and bins without a pose are left out") {
+TEST_CASE("a bin is a stretch of the chainage, and only at poses some are left out") {
   SectionScene scene;
   scene.path = {translation({0, 0, 0}), translation({4, 0, 0}), translation({1000, 0, 0})};
   const std::vector<std::uint32_t> all{0, 1, 2};
-  const auto bins = section_bins(chainage_of(scene.path), all, 5);
-  CHECK(bins == std::vector<SectionBin>{{0, 0, 2}, {200, 2, 1}});
-  check_refused([&] { return section_bins(chainage_of(scene.path), all, 1e-7); }, "too short");
+  const auto bins_of = [&](double bin, bool between_poses) {
+    return section_bins(chainage_of(scene.path), all, {.bin = bin, .between_poses = between_poses});
+  };
+  CHECK(bins_of(5, false) == std::vector<SectionBin>{{0, 0, 2}, {200, 2, 1}});
+  check_refused([&] { return bins_of(1e-7, false); }, "too short");
+  // Between poses, pose 1 stands for 2 m to 502 m, and pose 2 for the rest.
+  std::vector<SectionBin> on_the_way{{0, 0, 2}};
+  for (std::uint64_t bin = 1; bin < 100; ++bin) on_the_way.push_back({bin, 1, 1});
+  on_the_way.push_back({100, 1, 2});
+  for (std::uint64_t bin = 101; bin <= 200; ++bin) on_the_way.push_back({bin, 2, 1});
+  CHECK(bins_of(5, true) == on_the_way);
+  check_refused([&] { return bins_of(1e-6, true); }, "too short");
 }
 
 TEST_CASE("what has no section is refused") {

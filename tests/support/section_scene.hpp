@@ -191,7 +191,7 @@ struct SectionOfScene {
         path_pose(scene.path_pose),
         cloud(scene.quanta, scene.quantisation, {.cell_points = scene.cell_points}),
         lattice(section_lattice(scene.asked, along)),
-        bins(section_bins(chainage_of(scene.path), path_pose, scene.asked.bin)),
+        bins(section_bins(chainage_of(scene.path), path_pose, scene.asked)),
         tree(poses, path_pose, bins),
         maps(lattice, bins.size()),
         section(section_ref(

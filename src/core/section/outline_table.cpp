@@ -90,7 +90,7 @@ void to_the_ends(std::vector<Stretch>& stretches, double length) {
   if (last != stretches.rend() && last->to >= length - kSameEnd) last->to = kEndless;
 }
 
-/// The bins of a section that hold places or poses of stretches of its path.
+/// The bins of a section that hold places of stretches of its path.
 class BinsOfStretches {
  public:
   explicit BinsOfStretches(const SectionData& data) : data_(data) {}
@@ -99,14 +99,9 @@ class BinsOfStretches {
   std::optional<SectionBinRange> touched_by(const Stretch& stretch) const {
     if (data_.bins.empty() || stretch.from > data_.chainage.back()) return std::nullopt;
     const double last = data_.bins.back(), side = data_.parameters.bin;
-    double from = std::floor(stretch.from / side), to = std::ceil(stretch.to / side) - 1;
-    // The last pose before the end may be in the next bin, by rounding.
-    const auto end = std::ranges::lower_bound(data_.chainage, stretch.to);
-    if (end != data_.chainage.begin() && *(end - 1) >= stretch.from) {
-      to = std::max(to, std::floor(*(end - 1) / side));
-    }
-    from = std::max(from, 0.0);
-    to = std::min(to, last);
+    const double last_place = std::nextafter(stretch.to, stretch.from);
+    const double from = std::max(std::floor(stretch.from / side), 0.0);
+    const double to = std::min(std::floor(last_place / side), last);
     if (!(from <= to)) return std::nullopt;
     const SectionBinRange bins{static_cast<std::uint32_t>(from), static_cast<std::uint32_t>(to)};
     const auto at = std::ranges::lower_bound(data_.bins, bins.first);
@@ -133,6 +128,8 @@ std::vector<Stretch> gaps_between(std::span<const Stretch> stretches) {
 /// Fills what the whole table says of what its rows and gaps say.
 void conclude(const OutlineTable& table, OutlineTableCheck& out) {
   const OutlineRowCheck* first_unknown = nullptr;
+  const bool any_judged = std::ranges::any_of(
+      out.rows, [](const OutlineRowCheck& row) { return row.bins.has_value(); });
   for (std::size_t i = 0; i < out.rows.size(); ++i) {
     const OutlineRowCheck& row = out.rows[i];
     const auto append = [i](const std::vector<SectionStop>& from, std::vector<SectionStop>& to) {
@@ -161,6 +158,8 @@ void conclude(const OutlineTable& table, OutlineTableCheck& out) {
         "the table has no outline from " + format_brief(out.gaps.front().chainage_from) + " to " +
         format_brief(out.gaps.front().chainage_to) + " along the path" +
         (out.gaps.size() == 1 ? "" : ", and " + counted(out.gaps.size() - 1, "further gap"));
+  } else if (!any_judged) {
+    out.reason = "the load has no pose on the path of any row";
   } else {
     out.verdict = SectionVerdict::kPasses;
   }

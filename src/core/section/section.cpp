@@ -13,6 +13,7 @@
 #include "core/section/section_intrusions.hpp"
 #include "core/section/section_lattice.hpp"
 #include "core/section/section_map.hpp"
+#include "core/section/section_poses.hpp"
 #include "core/util/format.hpp"
 
 namespace clearway {
@@ -296,11 +297,10 @@ namespace {
 
 /// Whether a message is about poses of these bins, which it is where it names no stretch.
 bool concerns(const Message& message, const SectionData& section, SectionBinRange bins) {
-  const auto bin_of = [&](std::uint32_t pose) {
-    return std::floor(section.chainage[pose] / section.parameters.bin);
-  };
   return message.stretches.empty() || std::ranges::any_of(message.stretches, [&](PoseRange poses) {
-           return bin_of(poses.first) <= bins.last && bin_of(poses.last) >= bins.first;
+           const auto [first, last] =
+               bins_of_poses(section.chainage, poses.first, poses.last, section.parameters);
+           return first <= bins.last && last >= bins.first;
          });
 }
 

@@ -12,6 +12,8 @@ namespace clearway {
 namespace {
 
 constexpr double kMostNumber = 2147483647;  ///< of a column, a row or a bin
+/// Between poses, of which few may pass very many bins.
+constexpr double kMostBinsOnWays = 1 << 24;
 
 void check_sides(const SectionParameters& asked) {
   if (!(std::isfinite(asked.rear) && std::isfinite(asked.front) && asked.rear <= asked.front)) {
@@ -80,18 +82,37 @@ SectionMapShape::SectionMapShape(const SectionLattice& lattice) {
   }
 }
 
+SectionBinNumbers bins_of_poses(std::span<const double> chainage, std::size_t first,
+                                std::size_t last, const SectionParameters& parameters) {
+  double from = chainage[first], to = chainage[last];
+  if (parameters.between_poses) {
+    if (first > 0) from = (chainage[first - 1] + from) / 2;
+    if (last + 1 < chainage.size()) to = (to + chainage[last + 1]) / 2;
+  }
+  return {std::floor(from / parameters.bin), std::floor(to / parameters.bin)};
+}
+
 std::vector<SectionBin> section_bins(std::span<const double> chainage,
-                                     std::span<const std::uint32_t> path_pose, double bin) {
+                                     std::span<const std::uint32_t> path_pose,
+                                     const SectionParameters& parameters) {
   std::vector<SectionBin> bins;
+  const auto too_short = [&](const char* most) {
+    throw UsageError("bins of " + format_number(parameters.bin) +
+                     " are too short for this path; expected at most " + most + " bins");
+  };
+  const bool ways = parameters.between_poses;
+  if (ways && !path_pose.empty()) chainage = chainage.subspan(path_pose[0], path_pose.size());
   for (std::uint32_t i = 0; i < path_pose.size(); ++i) {
-    const double number = std::floor(chainage[path_pose[i]] / bin);
-    if (!(number <= kMostNumber)) {
-      throw UsageError("bins of " + format_number(bin) +
-                       " are too short for this path; expected at most 2^31 bins");
+    const std::size_t pose = ways ? i : path_pose[i];
+    const SectionBinNumbers of = bins_of_poses(chainage, pose, pose, parameters);
+    if (!(of.last <= kMostNumber)) too_short("2^31");
+    const double more = of.last - of.first;
+    if (ways && static_cast<double>(bins.size()) + more > kMostBinsOnWays) too_short("2^24");
+    const auto last = static_cast<std::uint64_t>(of.last);
+    for (auto number = static_cast<std::uint64_t>(of.first); number <= last; ++number) {
+      if (bins.empty() || bins.back().number != number) bins.push_back({number, i, 0});
+      ++bins.back().count;
     }
-    const auto of = static_cast<std::uint64_t>(number);
-    if (bins.empty() || bins.back().number != of) bins.push_back({of, i, 0});
-    ++bins.back().count;
   }
   return bins;
 }

@@ -11,19 +11,31 @@
 
 namespace clearway {
 
-/// A stretch of the path with poses of the load: bin number `number` has poses first ..
-/// first + count - 1 of the load.
+/// A stretch of the path that the load passes: bin number `number` has poses first ..
+/// first + count - 1 of the load. Between poses, bins share poses.
 struct SectionBin {
   std::uint64_t number;
   std::uint32_t first, count;
   friend bool operator==(const SectionBin&, const SectionBin&) = default;
 };
 
+/// Numbers of the first and the last bin of a part of the path.
+struct SectionBinNumbers {
+  double first, last;
+};
+
+/// The bins that poses first .. last of a path are in. Between poses, each pose stands for half of
+/// the way to the pose before it and to the one after it, and is in all bins of these.
+SectionBinNumbers bins_of_poses(std::span<const double> chainage, std::size_t first,
+                                std::size_t last, const SectionParameters& parameters);
+
 /// The bins that have a pose, ascending. chainage: of each pose of the path. path_pose: for each
-/// pose of the load, the index of the path's pose, ascending. Throws UsageError for bins so short
-/// that a number does not fit 32 bits.
+/// pose of the load, the index of the path's pose, ascending, and between poses without a gap.
+/// Throws UsageError for bins so short that a number does not fit 32 bits, or that there are more
+/// than 2^24 of them between poses.
 std::vector<SectionBin> section_bins(std::span<const double> chainage,
-                                     std::span<const std::uint32_t> path_pose, double bin);
+                                     std::span<const std::uint32_t> path_pose,
+                                     const SectionParameters& parameters);
 
 /// Where the poses of a node see a box of points.
 struct PlaceBounds {

@@ -284,10 +284,14 @@ SectionLattice check_facts(const SectionData& section, const std::string& name) 
               std::ranges::is_sorted(section.chainage) &&
               std::ranges::all_of(section.chainage, [](double s) { return std::isfinite(s); }),
           name, "the chainage is not that of the poses");
+  const bool ways = section.parameters.between_poses;
   require(
-      section.bins.size() <= section.load_poses &&
+      (ways || section.bins.size() <= section.load_poses) &&
           std::ranges::adjacent_find(section.bins, std::greater_equal<>()) == section.bins.end(),
       name, "the bins are not ascending");
+  require(!ways || section.bins.empty() ||
+              section.bins.back() - section.bins.front() == section.bins.size() - 1,
+          name, "the way of the load leaves out bins");
   return lattice;
 }
 

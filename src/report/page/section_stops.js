@@ -105,7 +105,7 @@ function buildStops() {
   }
   const columns = stopColumns(), { stops, places } = check;
   byId("stops-note").append(make("p", {}, `${plural(places.length, "place")}, in ${plural(stops.length, "stretch", "stretches")} of ${sectionBins().length} ` +
-      "with a pose of the load. What reaches in on one side in stretches one after the other is one place. " +
+      "that the load passes. What reaches in on one side in stretches one after the other is one place. " +
       "A long load meets one obstacle in many stretches, as it passes it from its front to its rear. " +
       "Too far is how much of the load and its margin it takes. y is to the left of the path, and z above it."));
   byId("stops-places").append(placesTable());

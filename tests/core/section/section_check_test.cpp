@@ -401,6 +401,31 @@ TEST_CASE("a bin that two rows cross is judged by both, and a gap makes it unkno
   CHECK_FALSE(section.check(table_of({{0, 19}, {30, 40}}, box(-1, 1, 0.5, 3))).rows[1].bins);
 }
 
+TEST_CASE("a table of which no row is judged is unknown") {
+  SectionData data = section_of({});
+  data.bins.clear();
+  data.warnings.push_back({Message::Severity::kWarning, "no-poses", "text"});
+  const OutlineTableCheck check =
+      Section(std::move(data)).check(table_of({{0, 19}}, box(-1, 1, 0.5, 3)));
+  CHECK(check.verdict == SectionVerdict::kUnknown);
+  check_says(check.reason, "no pose on the path of any row");
+}
+
+TEST_CASE("a warned stretch between poses concerns the bins of the way around it") {
+  SectionData data = section_of({});
+  data.parameters.between_poses = true;
+  data.motion = {1, 0};
+  data.warnings.push_back(
+      {Message::Severity::kWarning, "nothing-below", "text", {}, {{PoseRange{10, 10}}}});
+  const OutlineTableCheck check =
+      Section(std::move(data))
+          .check(table_of({{0, 5}, {5, 10}, {10, 15}, {15, 19}}, box(-1, 1, 0.5, 3)));
+  for (const std::size_t row : {0, 3}) {
+    CHECK(check.rows[row].check.verdict == SectionVerdict::kPasses);
+  }
+  for (const std::size_t row : {1, 2}) check_says(check.rows[row].check.reason, "nothing-below");
+}
+
 TEST_CASE("rows by station lie where the path has these stations, which have to ascend") {
   const Section section(section_of({{1, 4, 2, 7}}));
   std::vector<double> station;

@@ -235,13 +235,13 @@ class Outlines(Sections):
         (self.folder / "outline.csv").write_text(RECTANGLE)
         done = self.run_("section check section.h5 --outline outline.csv --margin 0.1")
         self.assertEqual(done.stdout,
-                         "passes: the load passes everywhere on the path with a margin of 0.1 m\n")
+                         "passes: the load passes at all 41 poses of the path with a margin of 0.1 m\n")
         done = self.run_("section check section.h5 --outline outline.csv")
         self.assertEqual(done.stdout,
-                         "passes: the load passes everywhere on the path with a margin of 0.2 m\n")
+                         "passes: the load passes at all 41 poses of the path with a margin of 0.2 m\n")
         done = self.run_("section check section.h5 --outline outline.csv --margin 0")
         self.assertEqual(done.stdout,
-                         "passes: the load passes everywhere on the path without a margin\n")
+                         "passes: the load passes at all 41 poses of the path without a margin\n")
         (self.folder / "outline.csv").write_text(RECTANGLE.replace("0.5,", "2.2,"))
         done = self.run_("section check section.h5 --outline outline.csv")
         self.assertRegex(done.stdout, r"^stopped: the load is stopped with a margin of 0.2 m at pose "
@@ -327,6 +327,9 @@ class OutlineTables(Sections):
         self.assertEqual(self.answer(self.NAMES + "0,10,forms/wide.csv,\n")["verdict"], "stopped")
         beyond = self.answer(self.NAMES + "0,20,forms/narrow.csv,\n90,99,forms/narrow.csv,\n")
         self.assertEqual((beyond["verdict"], beyond["rows"][1]["verdict"]), ("passes", None))
+        printed = self.run_("section check section.h5 --table lists/outlines.csv")
+        self.assertIn("passes: the outlines of 1 of 2 rows (line 3 is not judged, because the load has "
+                      "no pose there) pass at all 41 poses of the path\n", printed.stdout)
 
     def test_rows_by_station(self):
         rows = "station_from,station_to,outline\n1000,1012,forms/wide.csv\n1012,1024,forms/narrow.csv\n"
