@@ -131,7 +131,8 @@ TEST_CASE("a chunk of zeros or with other values is noticed by whoever reads its
   ResultHeader header = sample_header(true);
   header.poses = 6;
   header.clearance = header.profile = 0.5;
-  const Collisions rows = sample_rows(header, 5);
+  Collisions rows = sample_rows(header, 5);
+  rows.last_pose.front() = 5;  // so that no two columns are equal
   const Clearances near = sample_clearances(header, 7);
   const ProfileRows along = sample_profile(header);
   write_result(path, header, rows, 1000, near, along);

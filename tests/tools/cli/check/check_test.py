@@ -258,7 +258,7 @@ class Finding(Site):
         self.assertEqual(answer["files"]["result"], "site/result.h5")
         self.assertEqual(list(answer["seconds"]),
                          ["convert", "path", "run", "conflicts", "stations", "report"])
-        self.assertTrue(all(seconds >= 0 for seconds in answer["seconds"].values()))
+        self.assertGreater(min(answer["seconds"][step] for step in ("convert", "run", "report")), 0)
         again = json.loads(self.asked("--json").stdout)
         self.assertTrue(again["nothing_done"])
         self.assertEqual(again["commands"], answer["commands"])
