@@ -8,9 +8,9 @@ namespace clearway {
 /// system gives none, in the thread that waits for it.
 inline constexpr std::launch kBeside = std::launch::async | std::launch::deferred;
 
-/// Starts so many threads for a moment, this one included. Throws ResourceError where the system
-/// does not give them; does nothing for a number that this process has started before. OpenMP would
-/// end the process instead, and oneTBB may do so.
+/// Starts for a moment as many threads as pools of this size of oneTBB and of OpenMP need together.
+/// Throws ResourceError where the system does not give them; does nothing for a number that this
+/// process has started before. OpenMP would end the process instead, and oneTBB may do so.
 void check_threads(int threads);
 
 /// Throws the ResourceError of check_threads(). threads: how many were needed. reason: the
