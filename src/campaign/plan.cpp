@@ -47,16 +47,21 @@ void ask_for_part(const Shard& shard, const std::string& store, nlohmann::ordere
   question["store"] = store;
 }
 
-nlohmann::ordered_json question_of(const ResultHeader& header) {
-  nlohmann::ordered_json question;
+nlohmann::ordered_json parameters_json(const QueryParameters& query) {
+  nlohmann::ordered_json parameters;
   for_each_field(kQueryValues, [&](const auto& field) {
-    if (!is_listed(field, header)) return;
-    if constexpr (std::is_same_v<std::decay_t<decltype(field.of(header))>, std::optional<double>>) {
-      question[field.key] = *field.of(header);
+    if (!is_listed(field, query)) return;
+    if constexpr (std::is_same_v<std::decay_t<decltype(field.of(query))>, std::optional<double>>) {
+      parameters[field.key] = *field.of(query);
     } else {
-      question[field.key] = field.of(header);
+      parameters[field.key] = field.of(query);
     }
   });
+  return parameters;
+}
+
+nlohmann::ordered_json question_of(const ResultHeader& header) {
+  nlohmann::ordered_json question = parameters_json(header);
   question.update({{"environment_points", header.environment_points},
                    {"environment_hash", hash_text(header.environment_hash)},
                    {"model_points", header.model_points},

@@ -15,6 +15,9 @@
 
 namespace clearway::campaign {
 
+/// The parameters of a query that are one value, as far as is_listed() says.
+nlohmann::ordered_json parameters_json(const QueryParameters& query);
+
 /// What distinguishes the questions that results answer: parameters, and sizes and hashes of the
 /// inputs; for a part also which part it is, and of which store.
 nlohmann::ordered_json question_of(const ResultHeader& header);

@@ -1,5 +1,7 @@
 #include "campaign/task_state.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -20,23 +22,36 @@
 #include "io/files/file.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/json.hpp"
+#include "io/files/xxh64.hpp"
 #include "io/models/vehicle_file.hpp"
 #include "io/result/floor_facts.hpp"
+#include "io/scans/point_reader.hpp"
 
 namespace clearway::campaign {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::optional<InputStamp> stamp_of(const std::string& what, const fs::path& file) {
-  std::error_code failed;
-  const fs::file_time_type modified = fs::last_write_time(file, failed);
-  if (failed) return std::nullopt;
-  const std::uintmax_t bytes = fs::is_directory(file, failed) ? 0 : fs::file_size(file, failed);
-  if (failed) return std::nullopt;
-  using Nanoseconds = std::chrono::nanoseconds;
-  return InputStamp{what, file.string(), bytes,
-                    std::chrono::duration_cast<Nanoseconds>(modified.time_since_epoch()).count()};
+std::optional<InputStamp> stamp_of(const std::string& what, const fs::path& input) {
+  const std::vector<fs::path> files = files_behind(input);
+  if (files.empty()) return std::nullopt;
+  InputStamp all{what, input.string(), 0, 0};
+  Xxh64Stream hash;
+  for (const fs::path& file : files) {
+    std::error_code failed;
+    const std::uintmax_t bytes = fs::file_size(file, failed);
+    if (failed) return std::nullopt;
+    const fs::file_time_type time = fs::last_write_time(file, failed);
+    if (failed) return std::nullopt;
+    using Nanoseconds = std::chrono::nanoseconds;
+    all.modified = std::chrono::duration_cast<Nanoseconds>(time.time_since_epoch()).count();
+    all.bytes += bytes;
+    const std::string state =
+        fmt::format("{} {} {}\n", file.filename().string(), bytes, all.modified);
+    hash.update(std::as_bytes(std::span(state)));
+  }
+  if (files.size() > 1) all.modified = static_cast<std::int64_t>(hash.digest());
+  return all;
 }
 
 /// The files that a vehicle's file names; none where it cannot be read, which the run will report.

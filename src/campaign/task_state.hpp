@@ -14,13 +14,14 @@
 
 namespace clearway::campaign {
 
-/// Size and time of a file that a task reads. A task's state keeps them, so that anyone who looks
+/// Size and time of an input that a task reads. A task's state keeps them, so that anyone who looks
 /// at a result can see that it belongs to an earlier file, without reading the file.
 struct InputStamp {
   std::string what;  ///< "model", "trajectory", "vehicle" or "environment"
   std::string file;
   std::uint64_t bytes = 0;
-  /// Time of the last modification in nanoseconds, as the file system counts it.
+  /// Time of the last modification in nanoseconds, as the file system counts it; where several
+  /// files are read (files_behind()), a hash of their names, sizes and times.
   std::int64_t modified = 0;
   friend bool operator==(const InputStamp&, const InputStamp&) = default;
 };

@@ -19,10 +19,19 @@
 namespace clearway {
 namespace {
 
-/// Whether the output exists and is intact.
-bool is_merged(const PartSet& set, const std::filesystem::path& output, Progress& progress) {
-  if (!std::filesystem::exists(output)) return false;
-  if (!is_intact_result(output, set.header(), progress)) return false;
+/// Whether the output exists, is intact, and has the question of the parts.
+bool has_same_question(const PartSet& set, const std::filesystem::path& output,
+                       Progress& progress) {
+  return std::filesystem::exists(output) && is_intact_result(output, set.header(), progress);
+}
+
+/// Whether an output with the question of the parts says of the inputs what they say.
+bool has_same_notes(const PartSet& set, const std::filesystem::path& output) {
+  return ResultReader(output).header().notes == set.header().notes;
+}
+
+/// Whether an output with the question of the parts has as many rows as they.
+bool has_same_rows(const PartSet& set, const std::filesystem::path& output) {
   const ResultReader result(output);
   return result.collisions() == set.collisions() && result.clearances() == set.clearances() &&
          result.near() == set.near();
@@ -132,13 +141,15 @@ MergeReport merge(const std::vector<std::filesystem::path>& parts,
     const PartSet set(parts);
     MergeReport report = report_of(set);
     tell_warnings(report.part_warnings, report.parts, options);
-    report.was_finished = options.resume && is_merged(set, output, progress);
+    const bool is_there = options.resume && has_same_question(set, output, progress);
+    const bool is_outdated = is_there && !has_same_notes(set, output);
+    report.was_finished = is_there && !is_outdated && has_same_rows(set, output);
     if (report.was_finished) {
       static_cast<Answer&>(report) = answer_of(ResultReader(output));
       warn_of_all(set, options, report);
       return report;
     }
-    if (!options.overwrite) pending.refuse_existing();
+    if (!options.overwrite && !is_outdated) pending.refuse_existing();
     ResultFindings findings = set.findings();
     if (set.header().budget) {
       report.certain = certain_points_in(set.parts(), progress);

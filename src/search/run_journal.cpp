@@ -7,6 +7,7 @@
 #include "core/describe/query.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/util/format.hpp"
+#include "core/util/shortened.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/check_results.hpp"
 
@@ -68,20 +69,14 @@ JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header
   return identity;
 }
 
-/// The text cut to at most 80 bytes, because a coordinate reference system, for example, may be
-/// long.
-std::string shortened(const std::string& text) {
-  constexpr std::size_t kMost = 80;
-  return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
-}
-
 /// How two queries differ, such as "radius: 0.1 m in the file, 0.2 m here; ..."; empty where both
 /// ask the same.
 std::string differences_text(const ResultHeader& found, const ResultHeader& asked) {
+  constexpr std::size_t kMost = 80;  // bytes: a coordinate reference system may be long
   std::string text;
   const auto add = [&](const std::string& what, const std::string& a, const std::string& b) {
-    text += (text.empty() ? "" : "; ") + what + ": " + shortened(a) + " in the file, " +
-            shortened(b) + " here";
+    text += (text.empty() ? "" : "; ") + what + ": " + shortened(a, kMost) + " in the file, " +
+            shortened(b, kMost) + " here";
   };
   const auto part_text = [](const ResultHeader& header) {
     return header.part ? in_words(header.part->shard) : std::string("the whole result");
@@ -164,6 +159,12 @@ bool RunJournal::already_done(const StoreReader& store, const ResultHeader& head
   if (replaces_) return false;
   if (options_.resume && fs::exists(output_) && is_of(store, header) &&
       is_intact_result(output_, header, progress)) {
+    if (ResultReader(output_, Parts::kAccepted).header().notes != header.notes) {
+      log_.note(output_.string() +
+                ": answers the same question, but more or other things are known of the inputs "
+                "now, so it is made again");
+      return false;
+    }
     if (read_ || !unwanted_.empty()) remove_file(path_);
     return true;
   }

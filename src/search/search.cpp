@@ -141,6 +141,7 @@ class Search {
   void begin() {
     static_cast<Answer&>(report_) = answer_of(header_);
     check();
+    header_.notes.inputs_hash = hash_of_inputs();
     report_sizes(store_, query_, report_);
     report_.seconds.check = total_.seconds();
   }
@@ -222,6 +223,24 @@ class Search {
     note_large_errors();
     if (query_.seen) warn_of_large_cubes(store_, query_, swept_radius(), log_);
     if (options_.strict) refuse_warnings(report_.warnings);
+  }
+
+  /// ResultNotes::inputs_hash. The words of warnings name paths, by which nothing is known again.
+  std::uint64_t hash_of_inputs() const {
+    ColumnHashes hashes;
+    std::vector<Message> warnings;
+    add_warnings(report_.warnings, warnings);
+    for (const Message& warning : warnings) {
+      hashes.add(warning.code);
+      for (const auto& [name, number] : warning.numbers) hashes.add(std::array{number});
+      for (const PoseRange& stretch : warning.stretches) {
+        hashes.add(std::array{stretch.first, stretch.last});
+      }
+    }
+    const StoreMetadata& metadata = store_.metadata();
+    hashes.add(metadata.dates.first + "/" + metadata.dates.last);
+    hashes.add(std::array{metadata.withheld ? metadata.withheld->left_out() : 0});
+    return hashes.digest();
   }
 
   /// Tells before the search where the ground will collide.

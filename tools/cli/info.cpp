@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "campaign/plan.hpp"
 #include "clearway/trajectory.hpp"
 #include "cli/commands.hpp"
 #include "cli/model.hpp"
@@ -151,6 +152,7 @@ ordered_json question_json(const ResultReader& result) {
                            {"scale", h.quantisation.scale},
                            {"offset", h.quantisation.offset},
                            {"crs_wkt", h.crs_wkt}};
+  description["parameters"] = campaign::parameters_json(h);
   add_hashes(description, h);
   if (h.notes.model_spacing > 0) description["model_spacing"] = h.notes.model_spacing;
   if (const ModelAxes axes = h.notes.model_axes; axes.need_turn()) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/util/format.hpp"
+#include "core/util/shortened.hpp"
 #include "io/files/input_error.hpp"
 
 namespace clearway {
@@ -360,7 +361,7 @@ class ValueBuilder : public nlohmann::json_sax<ordered_json> {
     constexpr std::size_t kMostBytes = 300;  // the text may have a word of any length
     std::string what =
         SyntaxFault(text_, read).words(within, after_name_, open_.empty() && has_begun_);
-    if (what.size() > kMostBytes) what = what.substr(0, kMostBytes) + " ...";
+    what = shortened(what, kMostBytes);
     throw JsonError("is no JSON: " + what);
   }
 

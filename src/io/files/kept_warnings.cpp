@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/util/shortened.hpp"
 #include "io/files/input_error.hpp"
 
 namespace clearway {
@@ -74,7 +75,7 @@ std::vector<PoseRange> read_stretches(const hdf5::Id& group, const std::string& 
 
 void write_warning(const hdf5::Id& group, const Message& warning) {
   hdf5::write_attribute(group, names::kCode, warning.code);
-  hdf5::write_attribute(group, names::kMessage, warning.text.substr(0, kMostTextBytes));
+  hdf5::write_attribute(group, names::kMessage, shortened(warning.text, kMostTextBytes));
   write_stretches(group, warning.stretches);
   if (warning.numbers.empty()) return;
   std::string lines;

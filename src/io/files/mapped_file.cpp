@@ -33,6 +33,12 @@ std::atomic<int> fault_exit_code{-1};
 /// What was done about SIGBUS before. Written before the handler is installed.
 struct sigaction action_before {};
 
+/// The bytes of the pages of a map, the last of which may reach past the end of the file.
+std::uintptr_t whole_pages(std::size_t bytes) {
+  const auto page_bytes = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
+  return (bytes + page_bytes - 1) / page_bytes * page_bytes;
+}
+
 /// Returns null where there are too many maps, which are then not known to the handler.
 MapRecord* remember(std::span<const std::byte> bytes, const std::string& name) {
   for (MapRecord& record : map_records) {
@@ -43,7 +49,7 @@ MapRecord* remember(std::span<const std::byte> bytes, const std::string& name) {
     std::memcpy(record.name.data(), name.data(), length);
     record.name[length] = '\0';
     record.survives = record.failed = false;
-    record.last = first + bytes.size();
+    record.last = first + whole_pages(bytes.size());
     return &record;
   }
   return nullptr;
@@ -55,12 +61,11 @@ void forget(MapRecord* record) {
   record->first = 0;
 }
 
-/// The map that an address lies in. The last page may reach past the end of the file.
+/// The map that an address lies in, or null.
 MapRecord* record_of(std::uintptr_t address) {
-  constexpr std::uintptr_t kMostPage = 65536;
   for (MapRecord& record : map_records) {
     const std::uintptr_t first = record.first;
-    if (first != 0 && address >= first && address < record.last + kMostPage) return &record;
+    if (first != 0 && address >= first && address < record.last) return &record;
   }
   return nullptr;
 }

@@ -245,7 +245,8 @@ constexpr std::tuple kQuantisation{Field{&Quantisation::scale, "scale"},
                                    Field{&Quantisation::offset, "offset"}};
 constexpr std::tuple kNotes{Field{&ResultNotes::model_spacing, "model_spacing"},
                             Field{&ResultNotes::model_axes, "model_axes"},
-                            Field{&ResultNotes::length_unit, "length_unit"}};
+                            Field{&ResultNotes::length_unit, "length_unit"},
+                            Field{&ResultNotes::inputs_hash, "inputs_hash"}};
 constexpr std::tuple kPart{Field{&ResultPart::shard, "shard"},
                            Field{&ResultPart::division, "division"},
                            Field{&ResultPart::store, "store"}};

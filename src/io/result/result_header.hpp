@@ -67,6 +67,11 @@ struct ResultNotes {
   /// (file_axes() of the query). The question is about the turned model.
   ModelAxes model_axes = {};
   std::string length_unit = {};  ///< unit of the store, as in Store::length_unit()
+  /// Hash of what is known of the inputs before the search: their warnings, without the words, the
+  /// days of the scans and the number of withheld points.
+  std::uint64_t inputs_hash = 0;
+
+  friend bool operator==(const ResultNotes&, const ResultNotes&) = default;
 };
 
 /// Which part of a result a file is.

@@ -91,6 +91,10 @@ std::string counted(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
+bool is_pose_file(const fs::path& file) {
+  return file.extension() == ".pose" || file.extension() == ".frames";
+}
+
 /// Separates the files of poses that lie beside scans. Those of 3DTK's scans are read together with
 /// the scans; those of other scans would place them elsewhere. Returns the latter. Both kinds are
 /// removed from `others`.
@@ -102,7 +106,7 @@ std::vector<fs::path> take_poses(Folder& folder) {
   }
   std::vector<fs::path> unused;
   std::erase_if(folder.others, [&](const fs::path& file) {
-    if (file.extension() != ".pose" && file.extension() != ".frames") return false;
+    if (!is_pose_file(file)) return false;
     const auto scan = placed.find(file.stem().native());
     if (scan == placed.end()) return false;
     if (!scan->second) unused.push_back(file);
@@ -209,6 +213,17 @@ std::vector<fs::path> with_pose_files(std::vector<fs::path> files) {
     if (auto pose = threedtk_pose_file(file)) poses.push_back(std::move(*pose));
   }
   files.insert(files.end(), poses.begin(), poses.end());
+  return files;
+}
+
+std::vector<fs::path> files_behind(const fs::path& input) {
+  std::error_code unknown;
+  if (!fs::is_directory(input, unknown)) return with_pose_files({input});
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(input, unknown)) {
+    if (is_pose_file(entry.path())) files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
   return files;
 }
 

@@ -169,4 +169,8 @@ std::vector<std::filesystem::path> list_point_files(
 /// reads.
 std::vector<std::filesystem::path> with_pose_files(std::vector<std::filesystem::path> files);
 
+/// The files that are read where an input names one file or a folder of poses: the file, with that
+/// of its pose for a scan of 3DTK, or the files of poses in the folder, by their names.
+std::vector<std::filesystem::path> files_behind(const std::filesystem::path& input);
+
 }  // namespace clearway

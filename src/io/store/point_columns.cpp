@@ -133,7 +133,6 @@ namespace {
 
 constexpr const char* kQuanta = "quanta";   // the distinct origins, [origins, 3]
 constexpr const char* kRestOn = "rest_on";  // texts, each ended by a zero byte
-constexpr const char* kGivenHash = "origins_given_hash";
 
 std::span<const std::int64_t> numbers_of(const std::vector<std::array<std::int64_t, 3>>& quanta) {
   return {quanta.empty() ? nullptr : quanta.front().data(), 3 * quanta.size()};
@@ -193,7 +192,6 @@ void write_origins(const hdf5::Id& file, const StoreOrigins& origins, const Colu
   hashes.add(numbers_of(origins.quanta));
   hashes.add(texts);
   hashes.add(points);
-  hdf5::write_number(file, kGivenHash, origins.given_hash);
   write_index(file, group, kOriginColumn, origins.hash, index, hashes);
 }
 
@@ -212,7 +210,6 @@ ColumnIndex read_origins(const hdf5::Id& file, const std::string& name, std::uin
   hashes.add(texts);
   hashes.add(points);
   ColumnIndex index = read_index(file, group, kOriginColumn, name, cells, hashes, origins.hash);
-  origins.given_hash = hdf5::read_number<std::uint64_t>(file, kGivenHash, name);
   for (std::uint64_t i = 0; i < rows; ++i) {
     origins.quanta.push_back({quanta[3 * i], quanta[3 * i + 1], quanta[3 * i + 2]});
   }

@@ -87,9 +87,6 @@ struct StoreOrigins {
   /// XXH64 of the origins and of the ranges of source indices that each of them has.
   std::uint64_t hash = 0;
   std::vector<OriginBasis> rest_on = {};
-  /// XXH64 of what was given beside the scans (a file of origins, or a path); 0 where the scans
-  /// have their origins themselves.
-  std::uint64_t given_hash = 0;
   friend bool operator==(const StoreOrigins&, const StoreOrigins&) = default;
 };
 
@@ -137,6 +134,9 @@ struct StoreMetadata {
   std::uint32_t cell_points = 0;
   Quantisation quantisation{};
   std::string layout;  ///< "adaptive" or "regular:SIZE"
+  /// The options of the conversion that shape a store, a line each, such as "scale: none"; files
+  /// by a hash of their contents. A conversion with other options would make another store.
+  std::string options = {};
   LengthUnit unit = LengthUnit::kUnknown;
   std::string crs_wkt;
   /// Metres per unit of the inputs' heights, where they were converted from a given unit; otherwise

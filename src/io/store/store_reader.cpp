@@ -144,6 +144,7 @@ StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name, Colum
   std::copy(scale.begin(), scale.end(), metadata.quantisation.scale);
   std::copy(offset.begin(), offset.end(), metadata.quantisation.offset);
   metadata.layout = hdf5::read_text_attribute(file, "layout", name);
+  metadata.options = hdf5::read_text_attribute(file, "options", name);
   metadata.unit = length_unit_of(hdf5::read_text_attribute(file, "length_unit", name));
   metadata.crs_wkt = hdf5::read_text_attribute(file, "crs_wkt", name);
   if (hdf5::has_attribute(file, kHeightUnit, name)) {
@@ -485,6 +486,16 @@ std::uint64_t StoreReader::fingerprint() const {
   add(metadata().quantisation.scale);
   add(metadata().quantisation.offset);
   add(metadata().crs_wkt);
+  add(std::string(to_string(metadata().unit)));
+  add(metadata().options);
+  for (const SourceFile& source : metadata().sources) {
+    add(source.name);
+    add(std::array{source.bytes, source.xxh64});
+  }
+  for (const Message& warning : metadata().warnings) {
+    add(warning.code);
+    add(warning.text);
+  }
   if (metadata().withheld) {
     add(std::array{metadata().withheld->points});
     add(metadata().withheld->cubes);

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "core/util/shortened.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
 
@@ -31,6 +32,13 @@ TEST_CASE("rounding errors of coordinates are 0 for people", "[format]") {
 TEST_CASE("numbers that no length has are shown all the same", "[format]") {
   check_equal(format_brief(1e20), "1e+20");
   check_equal(format_brief(std::numeric_limits<double>::infinity()), "inf");
+}
+
+TEST_CASE("a long text is cut between characters", "[format]") {
+  check_equal(shortened("as it is", 8), "as it is");
+  check_equal(shortened("as it is", 7), "as it i ...");
+  check_equal(shortened("\u00e4\u00f6\u00fc", 5), "\u00e4\u00f6 ...");  // 2 bytes each
+  check_equal(shortened("\U0001d11e", 3), " ...");
 }
 
 }  // namespace

@@ -4,6 +4,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <memory>
+#include <vector>
+
 #include "clearway/error.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
@@ -73,6 +76,30 @@ TEST_CASE("a map that survives a file that shrinks has zeros there and says so")
   CHECK(cut.bytes()[3] == std::byte{'x'});
   CHECK(kept.bytes()[90'000] == std::byte{'x'});
   CHECK_FALSE(kept.failed());
+}
+
+TEST_CASE("a fault is that of its own map, not of the one that lies before it in memory") {
+  const ScratchFolder folder;
+  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  for (const char* name : {"cut", "before"}) put_bytes(folder / name, std::string(4 * page, 'x'));
+  // The first place in the list of maps is free again for the map that lies before the other.
+  auto first = std::make_unique<MappedFile>(folder / "before");
+  const MappedFile cut(folder / "cut");
+  first.reset();
+  std::vector<std::unique_ptr<MappedFile>> maps;
+  const auto lies_before = [&] {
+    return maps.back()->bytes().data() + maps.back()->bytes().size() == cut.bytes().data();
+  };
+  do {
+    maps.push_back(std::make_unique<MappedFile>(folder / "before"));
+  } while (!lies_before() && maps.size() < 16);
+  REQUIRE(lies_before());
+  cut.survive_faults();
+  for (const auto& map : maps) map->survive_faults();
+  REQUIRE(::truncate((folder / "cut").c_str(), 10) == 0);
+  CHECK(cut.bytes()[page] == std::byte{0});
+  CHECK(cut.failed());
+  for (const auto& map : maps) CHECK_FALSE(map->failed());
 }
 
 TEST_CASE("a fault that concerns no map goes to the handler that was there before") {

@@ -198,13 +198,14 @@ TEST_CASE("a resumed conversion leaves the store of the same inputs alone, and n
   const std::string convert = "convert scan.xyz -o site.h5 --resume";
   const std::string before = site.bytes("site.h5");
   check_outcome(site.run(convert), 0, "is the store of these inputs already");
-  for (const char* other : {" --cell-points 128", " --layout regular:5", " --scale 0.5"}) {
+  for (const char* other : {" --cell-points 128", " --layout regular:5", " --scale 0.5",
+                            " --columns 1,2,3", " --unit ft", " --near path.txt --within 9"}) {
     check_outcome(site.run(convert + other), 2,
-                  "site.h5: holds other scans than these, or they were ... --force instead of "
+                  "site.h5: was converted with other options: its ... --force instead of "
                   "--resume overwrites it");
   }
   site.put("scan.xyz", site.bytes("scan.xyz") + "0 0 0\n");
-  check_outcome(site.run(convert), 2);
+  check_outcome(site.run(convert), 2, "site.h5: holds other scans than these");
   check_same(site.bytes("site.h5"), before);
 }
 

@@ -14,14 +14,14 @@
 #include <limits>
 #include <map>
 #include <system_error>
-#include <type_traits>
 #include <utility>
 
 #include "clearway/error.hpp"
-#include "core/describe/convert.hpp"
 #include "core/util/format.hpp"
+#include "core/util/shortened.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "io/files/xxh64.hpp"
+#include "io/store/convert/conversion_identity.hpp"
 #include "io/store/convert/input_files.hpp"
 
 namespace clearway {
@@ -71,8 +71,6 @@ std::string utc_text(std::int64_t seconds, std::int64_t nanoseconds) {
   return std::string(text.data()) + "." + digits + " UTC";
 }
 
-std::string yes_or_no(bool value) { return value ? "yes" : "no"; }
-
 constexpr const char* kBytes = " bytes";
 constexpr const char* kModified = ", modified ";
 constexpr const char* kChanged = ", status changed ";
@@ -84,86 +82,35 @@ std::string state_text(const fs::path& path) {
          utc_text(state[3], state[4]);
 }
 
-/// A path by which a file is known however the user wrote it. The name itself is not followed,
-/// because the store names its sources.
-fs::path known_path(const fs::path& path) {
-  std::error_code failed;
-  fs::path whole = fs::weakly_canonical(folder_of(path), failed);
-  if (failed) return path;
-  return path.has_filename() ? whole / path.filename() : whole;
-}
-
-/// The state of a file, or the hash of the states of the files with poses in a folder.
+/// The state of a file, or the hash of the states of the files with poses in a folder. Its other
+/// files, such as those of this conversion, may come and go.
 std::string state_of_all(const fs::path& path) {
   std::error_code unknown;
   if (!fs::is_directory(path, unknown)) return state_text(path);
-  std::vector<std::string> states;
-  for (const auto& entry : fs::directory_iterator(path)) {
-    // Other files, such as those of this conversion, may come and go.
-    const std::string ending = entry.path().extension().string();
-    if (ending != ".pose" && ending != ".frames") continue;
-    states.push_back(entry.path().filename().string() + " " + state_text(entry.path()));
-  }
-  std::ranges::sort(states);
   Xxh64Stream hash;
-  for (const std::string& state : states) hash.update(std::as_bytes(std::span(state)));
+  for (const fs::path& file : files_behind(path)) {
+    const std::string state = file.filename().string() + " " + state_text(file);
+    hash.update(std::as_bytes(std::span(state)));
+  }
   return hash_text(hash.digest());
 }
 
-std::string value_text(bool value) { return yes_or_no(value); }
-std::string value_text(double value) { return format_number(value); }
-std::string value_text(int value) { return std::to_string(value); }
-std::string value_text(std::uint32_t value) { return std::to_string(value); }
-std::string value_text(std::uint64_t value) { return std::to_string(value); }
-std::string value_text(const std::optional<double>& value) {
-  return value ? format_number(*value) : "none";
-}
-std::string value_text(const FileUnit& unit) {
-  return format_number(unit.metres()) + (unit.is_any_foot() ? " (any foot)" : "");
-}
-std::string value_text(const fs::path& path) {
-  return path.empty() ? "none" : known_path(path).string();
-}
-std::string value_text(const Vec3& v) {
-  return format_number(v.x) + " " + format_number(v.y) + " " + format_number(v.z);
-}
-std::string value_text(const std::vector<std::string>& values) {
-  std::string text;
-  for (const std::string& value : values) text += (text.empty() ? "" : ",") + value;
-  return text.empty() ? "none" : text;
-}
-
-std::string value_text(const TrajectoryOptions& path) {
-  return "format " + std::to_string(static_cast<int>(path.format)) + ", non-rigid " +
-         yes_or_no(path.allow_non_rigid) + ", angles " +
-         std::to_string(static_cast<int>(path.angle_unit)) + " " +
-         std::to_string(static_cast<int>(path.angle_frame)) + ", crs " + path.crs + ", datum " +
-         path.datum + ", unit " + value_text(path.metres_per_unit);
-}
-
-/// Whether the bytes of a store do not depend on the option.
-bool is_free(const std::string& key) {
-  return key == "memory_bytes" || key == "threads" || key == "overwrite" || key == "resume";
+void add_file(JournalIdentity& identity, const std::string& name, const fs::path& path) {
+  identity.emplace_back(name, path.empty() ? "none" : known_path(path).string());
+  if (!path.empty()) identity.emplace_back(kState + name, state_of_all(path));
 }
 
 JournalIdentity identity_of(const ConversionOptions& options, bool replaces) {
-  JournalIdentity identity{{kJournalOfConversion, kMeaning}, {kOverwrites, yes_or_no(replaces)}};
-  const auto add_file = [&identity](const std::string& name, const fs::path& path) {
-    identity.emplace_back(name, value_text(path));
-    if (!path.empty()) identity.emplace_back(kState + name, state_of_all(path));
-  };
-  for_each_field(kConvertFields, [&](const auto& field) {
-    if (is_free(field.key)) return;
-    if constexpr (std::is_same_v<std::decay_t<decltype(field.of(options))>, fs::path>) {
-      add_file(field.key, field.of(options));
-    } else {
-      identity.emplace_back(field.key, value_text(field.of(options)));
-    }
+  JournalIdentity identity;
+  add_option_texts(options, identity, add_file);
+  std::erase_if(identity, [](const auto& option) {
+    return option.first != "strict" && shapes_no_store(option.first);
   });
-  identity.emplace_back("reading of paths", value_text(options.path_options));
+  identity.insert(identity.begin(),
+                  {{kJournalOfConversion, kMeaning}, {kOverwrites, value_text(replaces)}});
   std::size_t number = 0;
   for (const fs::path& file : with_pose_files(list_point_files(options.inputs))) {
-    add_file(kInput + std::to_string(++number), file);
+    add_file(identity, kInput + std::to_string(++number), file);
   }
   return identity;
 }
@@ -279,14 +226,6 @@ std::string difference_in_words(const JournalIdentity& found, const JournalIdent
   return text;
 }
 
-std::string shortened(std::string text) {
-  constexpr std::size_t kMost = 600;
-  if (text.size() <= kMost) return text;
-  std::size_t end = kMost;
-  while (end > 0 && (text[end] & 0xc0) == 0x80) --end;  // do not cut within a character
-  return text.substr(0, end) + " ...";
-}
-
 void remove_file(const fs::path& path) {
   std::error_code failed;
   fs::remove(path, failed);
@@ -359,14 +298,14 @@ std::optional<JournalReader> conversion_at(const fs::path& path) {
 
 bool unfinished_overwrites(const fs::path& output) {
   const auto read = conversion_at(journal_of(output));
-  return read && value_of(*read->identity(), kOverwrites) == yes_or_no(true);
+  return read && value_of(*read->identity(), kOverwrites) == value_text(true);
 }
 
 bool remove_left_over(const ConversionOptions& options) {
   const fs::path& output = options.output;
   const auto read = conversion_at(journal_of(output));
   if (!read) return true;
-  const bool replaces = value_of(*read->identity(), kOverwrites) == yes_or_no(true);
+  const bool replaces = value_of(*read->identity(), kOverwrites) == value_text(true);
   if (*read->identity() != identity_of(options, replaces)) return false;
   const PendingFile owned(output, true);
   if (!conversion_at(journal_of(output))) return true;
@@ -399,8 +338,9 @@ ConversionJournal::ConversionJournal(PendingFile& pending, const ConversionOptio
   if (read_) {
     const std::string differs = difference_in_words(*read_->identity(), identity_);
     if (!differs.empty()) {
-      throw UsageError(path_.string() + ": belongs to another conversion: " + shortened(differs),
-                       Remedy::kRestoreOptions);
+      throw UsageError(
+          path_.string() + ": belongs to another conversion: " + shortened(differs, 600),
+          Remedy::kRestoreOptions);
     }
     for (std::size_t i = 0; i < files_; ++i) {
       refuse_other_file(points_path(i), has_points_magic(points_path(i)));
@@ -472,7 +412,7 @@ void ConversionJournal::find_earlier() {
   if (!read.torn().empty()) {
     log_.note(path_.string() + ": " + read.torn() + "; it is cut off and done again");
   }
-  replaces_ = value_of(*read.identity(), kOverwrites) == yes_or_no(true);
+  replaces_ = value_of(*read.identity(), kOverwrites) == value_text(true);
   read_.emplace(std::move(read));
   take_last_hashes();
 }

@@ -20,6 +20,7 @@
 #include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "core/util/progress.hpp"
+#include "core/util/shortened.hpp"
 #include "core/util/stopwatch.hpp"
 #include "core/util/threads.hpp"
 #include "core/util/tsan_annotations.hpp"
@@ -29,6 +30,7 @@
 #include "io/result/journal_values.hpp"
 #include "io/scans/point_formats.hpp"
 #include "io/scans/point_reader.hpp"
+#include "io/store/convert/conversion_identity.hpp"
 #include "io/store/convert/conversion_journal.hpp"
 #include "io/store/convert/count.hpp"
 #include "io/store/convert/distribute.hpp"
@@ -271,6 +273,7 @@ class Conversion {
         progress_(progress),
         folder_(folder_of(options.output)),
         output_(options.output, options.overwrite || options.resume),
+        options_text_(store_options(options)),
         withheld_(options.memory_bytes / 8) {}
 
   ConversionReport run() {
@@ -539,6 +542,7 @@ class Conversion {
                         .cell_points = options_.cell_points,
                         .quantisation = environment.quantisation(),
                         .layout = layout_name(options_.regular_size),
+                        .options = options_text_,
                         .unit = environment.unit(),
                         .crs_wkt = environment.crs_wkt(),
                         .height_unit = environment.crs().height_unit,
@@ -687,6 +691,7 @@ class Conversion {
   Progress& progress_;
   std::filesystem::path folder_;
   PendingFile output_;
+  std::string options_text_;  ///< those of the store, with files as they are at the beginning
   ConversionReport report_;
   WithheldCubes withheld_;
   std::optional<ConversionJournal> journal_;
@@ -702,16 +707,11 @@ class Conversion {
 
 std::vector<Message> kept_warnings(const std::vector<Message>& warnings) {
   constexpr std::size_t kMost = 64, kMostTextBytes = 1000;
-  std::vector<Message> kept;
-  // The warning "feet" is left out, because the store's unit says the same.
-  std::ranges::remove_copy(warnings, std::back_inserter(kept), "feet", &Message::code);
+  std::vector<Message> kept = warnings;
   const std::size_t all = kept.size();
   kept.resize(std::min(all, kMost));
   for (Message& warning : kept) {
-    if (warning.text.size() <= kMostTextBytes) continue;
-    std::size_t end = kMostTextBytes;
-    while (end > 0 && (warning.text[end] & 0xc0) == 0x80) --end;  // do not cut within a character
-    warning.text = warning.text.substr(0, end) + " ...";
+    warning.text = shortened(warning.text, kMostTextBytes);
   }
   if (all > kMost) {
     const std::size_t more = all - kMost + 1;
@@ -742,69 +742,24 @@ std::optional<StoreReader> store_at(const std::filesystem::path& path) {
   }
 }
 
-/// Whether a store in unit `found` agrees with the option `wanted`, which applies where inputs name
-/// no unit. An option "ft" agrees with either foot, since another input may have named which.
-bool has_wanted_unit(const FileUnit& wanted, LengthUnit found) {
-  return !wanted.is_known() || wanted.metres_in(metres_of(found)) == metres_of(found);
-}
-
-/// Whether the heights of a store were converted from the unit that these options name.
-bool has_wanted_heights(const ConversionOptions& options, const StoreMetadata& found) {
-  if (!options.unit_z.is_known()) return found.height_unit == 0;
-  const double metres = metres_of(found.unit);
-  return found.height_unit == options.unit_z.metres_in(metres > 0 ? metres : 1);
-}
-
-/// Whether a store has the origins that these options give it beside the scans.
-bool has_wanted_origins(const ConversionOptions& options, const StoreMetadata& found) {
-  const std::uint64_t given = found.origins ? found.origins->given_hash : 0;
-  if (!options.origins_path.empty()) return given == given_path_hash(options);
-  return given == (options.origins.empty() ? 0 : given_origins_hash(options.origins));
-}
-
-/// Whether a store has the corridor that these options give it, and read its inputs whole, so that
-/// their hashes say that they are the same.
-bool has_wanted_corridor(const ConversionOptions& options, const StoreMetadata& found) {
-  if (options.near.empty() || !found.near) return options.near.empty() == !found.near;
-  const MessageCallback silent;
-  std::vector<Message> unused;
-  MessageLog log(silent, unused);
-  const Corridor wanted = corridor_of(options, found.crs_wkt, found.unit, log);
-  return found.near->unread == 0 && wanted.within() == found.near->within &&
-         std::ranges::equal(wanted.path(), found.near->path);
-}
-
-/// Whether a conversion with these options could have made this store, as far as its metadata
-/// says.
-bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
-  const auto wanted = [&options](double scale) {
-    return !options.scale || scale == *options.scale;
-  };
-  return found.cell_points == options.cell_points &&
-         found.layout == layout_name(options.regular_size) &&
-         std::all_of(found.quantisation.scale, found.quantisation.scale + 3, wanted) &&
-         (!options.strict || found.points_without_place() == 0 || !found.warnings.empty()) &&
-         (!found.withheld || found.withheld->kept == options.keep_withheld) &&
-         has_wanted_unit(options.unit, found.unit) && has_wanted_heights(options, found) &&
-         has_wanted_origins(options, found) && has_wanted_corridor(options, found) &&
-         (options.ignore_crs || std::ranges::none_of(found.warnings, is_of_ignored_crs));
-}
-
-/// Whether a store shows whether these options made it. It does not record the columns with which
-/// it was made, and standard input can be read only once.
-bool tells_whether_made_by(const ConversionOptions& options) {
-  return options.inputs != std::vector<std::filesystem::path>{"-"} && options.columns.empty();
+/// Whether the inputs can be read again, so that their contents show whether they made a store.
+bool can_be_read_again(const ConversionOptions& options) {
+  return options.inputs != std::vector<std::filesystem::path>{"-"};
 }
 
 /// Throws UsageError where a file is at the place of the output of a conversion that is resumed,
 /// and is not its store.
 void refuse_other_output(const ConversionOptions& options) {
   if (options.overwrite || !std::filesystem::is_regular_file(options.output)) return;
-  const char* reason = ": holds other scans than these, or they were converted with other options";
-  if (!store_at(options.output)) {
-    reason = ": exists already, and is no store";
-  } else if (!tells_whether_made_by(options)) {
+  const std::optional<StoreReader> store = store_at(options.output);
+  std::string reason = ": exists already, and is no store";
+  if (store && !can_be_read_again(options)) {
     reason = ": exists already, and does not show whether it is the store of these scans";
+  } else if (store) {
+    const std::string differs =
+        difference_of_options(store->metadata().options, store_options(options));
+    reason = differs.empty() ? ": holds other scans than these"
+                             : ": was converted with other options: its " + differs;
   }
   throw UsageError(options.output.string() + reason, Remedy::kOverwriteNotResume);
 }
@@ -812,9 +767,11 @@ void refuse_other_output(const ConversionOptions& options) {
 }  // namespace
 
 bool is_converted(const ConversionOptions& options, Progress& progress) {
-  if (!tells_whether_made_by(options)) return false;
+  if (!can_be_read_again(options)) return false;
   const std::optional<StoreReader> store = store_at(options.output);
-  if (!store || !would_make(options, store->metadata())) return false;
+  if (!store || store->metadata().options != store_options(options)) return false;
+  // Only files that were read whole have hashes by which they are known.
+  if (store->metadata().near && store->metadata().near->unread > 0) return false;
   std::vector<std::filesystem::path> files = list_point_files(options.inputs);
   if (options.skip_unreadable) files = readable_files(files, {}, progress).files;
   SourceDescription sources(with_pose_files(files), {}, progress);

@@ -26,8 +26,7 @@ struct ConversionOptions : ConvertOptions {
 };
 
 /// The warnings of its conversion that a store keeps: at most 64, with texts of at most 1,000
-/// bytes; if there were more, the last one says how many. "feet" is left out, because the store's
-/// unit says the same.
+/// bytes; if there were more, the last one says how many.
 std::vector<Message> kept_warnings(const std::vector<Message>& warnings);
 
 struct ConversionReport : ConvertReport {

@@ -40,10 +40,7 @@ double distance(const Box& box, const Vec3& p) {
 
 }  // namespace
 
-void OriginTable::rest_on(const std::string& what, std::uint64_t given_hash) {
-  given_hash_ = given_hash;
-  bases_.push_back({what, 0});
-}
+void OriginTable::rest_on(const std::string& what) { bases_.push_back({what, 0}); }
 
 OriginQuanta quanta_of_origin(const Quantisation& quantisation, const Vec3& origin,
                               const std::string& name) {
@@ -202,7 +199,7 @@ std::vector<std::uint32_t> OriginTable::numbers_of(std::span<const DistributedPo
 }
 
 std::optional<StoreOrigins> OriginTable::origins(std::uint64_t points) const {
-  StoreOrigins out{.quanta = quanta_, .points_without = points, .given_hash = given_hash_};
+  StoreOrigins out{.quanta = quanta_, .points_without = points};
   for (const OriginBasis& basis : bases_) {
     if (basis.points == 0) continue;
     out.points_without -= basis.points;
@@ -372,13 +369,8 @@ void for_each_origin(const std::filesystem::path& path, Use use) {
 
 }  // namespace
 
-std::uint64_t given_origins_hash(const std::filesystem::path& path) {
-  File::open_regular(path);  // refuses what cannot be mapped, such as a pipe
-  return xxh64(MappedFile(path).bytes());
-}
-
 void add_origins_of_file(const std::filesystem::path& path, OriginTable& table) {
-  table.rest_on("a file of origins", given_origins_hash(path));
+  table.rest_on("a file of origins");
   for_each_origin(path, [&](const std::string& name, const OriginRow& row) {
     table.add(row.first, row.origin, name);
   });

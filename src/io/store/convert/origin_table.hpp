@@ -35,8 +35,8 @@ class OriginTable {
   OriginTable(const Quantisation& quantisation, std::uint64_t most_bytes)
       : quantisation_(quantisation), most_bytes_(most_bytes) {}
 
-  /// Names what the following runs rest on, such as "poses of E57". given_hash: see StoreOrigins.
-  void rest_on(const std::string& what, std::uint64_t given_hash = 0);
+  /// Names what the following runs rest on, such as "poses of E57".
+  void rest_on(const std::string& what);
   /// Adds the run from source index `first` on, which ascends from 0; the origin is in the unit of
   /// the environment. Throws InputError, which begins with `name`, for an origin that the
   /// integers cannot hold, and ResourceError where the table becomes larger than it may.
@@ -67,7 +67,7 @@ class OriginTable {
   /// Keeps all but what was counted, after finish().
   template <typename Values>
   void keep(Values& values) {
-    values.add(runs_, quanta_, bases_, given_hash_, with_origin_, all_zero_);
+    values.add(runs_, quanta_, bases_, with_origin_, all_zero_);
   }
 
   /// Warns of points without an origin, and of origins that can hardly be right. box: of all
@@ -97,7 +97,6 @@ class OriginTable {
   /// While runs are added, a hash table of 1 + the index in quanta_, at most half full; 0 is free.
   std::vector<std::uint32_t> slots_;
   std::vector<OriginBasis> bases_;
-  std::uint64_t given_hash_ = 0;
   std::uint64_t with_origin_ = 0;  ///< number of runs that were added with an origin
   bool all_zero_ = true;           ///< whether all origins are at 0, 0, 0, within half a step
   std::size_t counted_run_ = 0;    ///< run of the point that was counted last
@@ -113,8 +112,5 @@ void add_origins_of_file(const std::filesystem::path& path, OriginTable& table);
 
 /// Throws InputError where a file of origins names a source index beyond the inputs.
 void refuse_origins_beyond(const std::filesystem::path& path, std::uint64_t input_points);
-
-/// What identifies origins that are given beside the scans, as StoreOrigins::given_hash.
-std::uint64_t given_origins_hash(const std::filesystem::path& path);
 
 }  // namespace clearway

@@ -109,7 +109,7 @@ PathOrigins::PathOrigins(const ConvertOptions& options, const EnvironmentSource&
     if (remark.code == "time-order" || (!turns && is_about_rotation(remark))) continue;
     log.add(remark);
   }
-  table_.rest_on("a path and the GPS times of the points", given_path_hash(options));
+  table_.rest_on("a path and the GPS times of the points");
   path_.emplace(file.poses, std::move(file.labels.time), lever_of(options, metres), name_);
   const std::uint64_t most_bytes = options.memory_bytes / 8;
   if (path_->bytes() > most_bytes) {
@@ -427,25 +427,6 @@ void PathOrigins::warn(MessageLog& log) const {
        {"in_gaps", static_cast<double>(all_.in_gaps)},
        {"gaps", static_cast<double>(path_->gaps())},
        {"longest_gap", path_->longest_gap()}});
-}
-
-std::uint64_t given_path_hash(const ConvertOptions& options) {
-  File::open_regular(options.origins_path);  // refuses what cannot be mapped, such as a pipe
-  const TrajectoryOptions& how = options.path_options;
-  std::string text = "path " + how.crs + "\n" + how.datum;
-  for (const int value : {static_cast<int>(how.format), static_cast<int>(how.angle_unit),
-                          static_cast<int>(how.angle_frame), how.allow_non_rigid ? 1 : 0}) {
-    text += "\n" + std::to_string(value);
-  }
-  for (const double value :
-       {options.lever_arm.x, options.lever_arm.y, options.lever_arm.z, how.metres_per_unit.metres(),
-        how.metres_per_unit.is_any_foot() ? 1.0 : 0.0}) {
-    text += "\n" + format_number(value);
-  }
-  ColumnHashes hashes;
-  hashes.add(text);
-  hashes.add_digest(xxh64(MappedFile(options.origins_path).bytes()));
-  return hashes.digest();
 }
 
 }  // namespace clearway

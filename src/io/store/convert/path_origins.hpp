@@ -94,7 +94,4 @@ class PathOrigins {
   std::vector<OfFile> files_;
 };
 
-/// What identifies a path of origins and how it is used, as StoreOrigins::given_hash.
-std::uint64_t given_path_hash(const ConvertOptions& options);
-
 }  // namespace clearway

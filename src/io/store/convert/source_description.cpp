@@ -8,6 +8,7 @@
 #include "core/util/threads.hpp"
 #include "io/files/file.hpp"
 #include "io/files/xxh64.hpp"
+#include "io/scans/point_reader.hpp"
 
 namespace clearway {
 
@@ -25,6 +26,22 @@ SourceFile describe(const std::filesystem::path& path, const std::stop_token& st
     bytes += got;
   }
   return {path.filename().string(), bytes, hash.digest()};
+}
+
+SourceFile describe_with_files(const std::filesystem::path& input) {
+  const NoProgress progress;
+  const std::vector<std::filesystem::path> files = files_behind(input);
+  if (files == std::vector{input}) return describe(input, {}, progress);
+  SourceFile all{input.filename().string(), 0, 0};
+  Xxh64Stream hash;
+  for (const std::filesystem::path& file : files) {
+    const SourceFile one = describe(file, {}, progress);
+    all.bytes += one.bytes;
+    const std::string text = one.name + " " + hash_text(one.xxh64) + "\n";
+    hash.update(std::as_bytes(std::span(text)));
+  }
+  all.xxh64 = hash.digest();
+  return all;
 }
 
 SourceDescription::SourceDescription(std::vector<std::filesystem::path> files,

@@ -17,6 +17,11 @@ namespace clearway {
 SourceFile describe(const std::filesystem::path& path, const std::stop_token& stop,
                     const Progress& progress);
 
+/// Describes an input by the contents of all files that are read where it is named
+/// (files_behind()): its own name, the sum of their sizes and, where they are several, a hash of
+/// their names and contents.
+SourceFile describe_with_files(const std::filesystem::path& input);
+
 /// Describes inputs on a separate thread while they are counted. The destructor stops it.
 class SourceDescription {
  public:

@@ -1,6 +1,7 @@
 #include "io/store/convert/convert.hpp"
 
 #include "io/files/hdf5.hpp"
+#include "io/store/convert/conversion_identity.hpp"
 #include "io/store/store_reader.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/catch.hpp"
@@ -275,4 +276,58 @@ TEST_CASE("a store in degrees is what a conversion makes that ignores the refere
   CHECK(is_converted(options, progress));
   options.ignore_crs = false;
   CHECK_FALSE(is_converted(options, progress));
+}
+
+namespace {
+
+/// Gives a value of an option another one than the default.
+void give_other(bool& value) { value = !value; }
+void give_other(double& value) { value += 1; }
+void give_other(int& value) { value += 1; }
+void give_other(std::uint32_t& value) { value += 1; }
+void give_other(std::uint64_t& value) { value += 1; }
+void give_other(std::string& value) { value += "x"; }
+void give_other(std::optional<double>& value) { value = 0.5; }
+void give_other(FileUnit& value) { value = FileUnit::named("ft"); }
+void give_other(Vec3& value) { value.y += 1; }
+void give_other(std::vector<std::string>& value) { value.emplace_back("4"); }
+template <typename Choice>
+requires std::is_enum_v<Choice>
+void give_other(Choice& value) { value = static_cast<Choice>(static_cast<int>(value) + 1); }
+
+}  // namespace
+
+TEST_CASE("a store has every option that shapes it, so that other options make it anew") {
+  const ScratchFolder folder;
+  put_bytes(folder / "some", "1 2 3\n");
+  const ConversionOptions plain;
+  const std::string of_plain = store_options(plain);
+  std::size_t free_options = 0;
+  const auto check_other = [&](const ConversionOptions& other, const std::string& key) {
+    CAPTURE(key);
+    const std::string differs = difference_of_options(of_plain, store_options(other));
+    free_options += differs.empty() ? 1 : 0;
+    CHECK(differs.empty() == shapes_no_store(key));
+    CHECK((differs.empty() || differs.starts_with(key + " is ")));
+  };
+  for_each_field(kConvertFields, [&](const auto& field) {
+    ConversionOptions other;
+    if constexpr (std::is_same_v<std::decay_t<decltype(field.of(other))>, std::filesystem::path>) {
+      field.of(other) = folder / "some";
+    } else {
+      give_other(field.of(other));
+    }
+    check_other(other, field.key);
+  });
+  for_each_field(kReadingFields, [&](const auto& field) {
+    ConversionOptions other;
+    give_other(field.of(other.path_options));
+    check_other(other, std::string("path_") + field.key);
+  });
+  check_equal(free_options, 5);  // memory, threads, strict, overwrite, resume
+  ConversionOptions given;
+  given.near = folder / "some";
+  const std::string before = store_options(given);
+  put_bytes(folder / "some", "1 2 4\n");
+  CHECK(store_options(given) != before);
 }

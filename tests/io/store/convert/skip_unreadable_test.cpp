@@ -94,9 +94,9 @@ TEST_CASE("the columns chosen apply to texts, and are refused where there is non
   REQUIRE(report.box);
   CHECK(report.box->lo == Vec3{1, 2, 9});
   CHECK(report.box->hi == Vec3{7, 8, 60});
-  // A store does not tell the columns it was read with, so it never counts as the store of these
-  // inputs.
   NoProgress progress;
+  CHECK(is_converted(options, progress));
+  std::swap(options.columns[0], options.columns[1]);
   CHECK_FALSE(is_converted(options, progress));
   options.inputs = {folder / "b.ply"};
   check_says(conversion_refusal<UsageError>(options), "no input is a text");

@@ -232,6 +232,23 @@ def outdated(work):
     expect(done.returncode == 0 and status(path)["outcomes"] == before, done.stderr)
 
 
+def outdated_poses(work):
+    """A route in a folder of 3DTK, one of whose files changed or was removed."""
+    path, poses = work / "outdated_poses", work / "poses"
+    poses.mkdir()
+    for i in range(5):
+        (poses / f"scan{i:03}.pose").write_text(f"0 0 {100 * i}\n0 0 0\n")
+    program("campaign", "plan", campaign_of(work, routes={"poses": "poses"}), "-o", path)
+    outcome("campaign", "run", path, "--all")
+    expect(status(path)["outdated"] == 0, f"{status(path)}")
+    sound = (poses / "scan004.pose").read_text()
+    (poses / "scan004.pose").write_text("0 0 401\n0 0 0\n")
+    expect(status(path)["outdated"] == 2, f"{status(path)}")
+    (poses / "scan004.pose").unlink()
+    expect(status(path)["outdated"] == 2, f"{status(path)}")
+    (poses / "scan004.pose").write_text(sound)
+
+
 def options_of_run(work):
     """Every option of `clearway run` that a campaign can pass on reaches its command line."""
     path = work / "options"
@@ -308,7 +325,7 @@ def main():
         write_path(work / "middle.txt")
         write_path(work / "far.txt", y=5000)
         for check in [every_outcome, warnings_are_repeated, ignored_points_are_told,
-                      lengths_are_rounded, put_back, outdated, options_of_run,
+                      lengths_are_rounded, put_back, outdated, outdated_poses, options_of_run,
                       errors_and_seen_space]:
             check(work)
             print(check.__name__, flush=True)
