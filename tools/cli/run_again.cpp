@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <type_traits>
 
 #include "cli/run_options.hpp"
 #include "cli/support/options.hpp"
+#include "core/describe/query.hpp"
 #include "core/util/format.hpp"
 #include "core/util/shell_words.hpp"
 #include "io/result/result.hpp"
@@ -24,7 +26,7 @@ std::string name_of(const CLI::Option& option) {
 /// The value that the command was given for an option; empty without one, or without that option.
 std::string given(const CLI::App& command, const std::string& name) {
   const CLI::Option* option = command.get_option_no_throw(name);
-  return option == nullptr || option->empty() ? "" : option->results().front();
+  return option == nullptr || option->empty() ? "" : option->results().back();
 }
 
 /// The options that say how a model and a trajectory are read, as the command was given them.
@@ -69,37 +71,47 @@ std::string model_words(const ResultHeader& header, const CLI::App& command) {
                                        : "points");
 }
 
-std::string ignored_words(const ResultHeader& header) {
-  std::string text;
-  for (const std::uint8_t number : header.ignore_classes) {
-    text += (text.empty() ? " --ignore-class " : ",") + std::to_string(number);
-  }
-  for (const Box& box : header.ignore_boxes) {
-    text += fmt::format(" --ignore-box {},{},{},{},{},{}", format_number(box.lo.x),
-                        format_number(box.lo.y), format_number(box.lo.z), format_number(box.hi.x),
-                        format_number(box.hi.y), format_number(box.hi.z));
-  }
-  return text;
-}
-
 /// A distance that is worth asking for: `factor` times the radius, in round numbers.
 double times_radius(const ResultHeader& header, double factor) {
   return std::stod(fmt::format("{:.2g}", factor * header.radius));
 }
 
-/// The options that say what the run finds.
-std::string asked_words(const ResultHeader& header, Remedy missing) {
-  std::string text = " --radius " + format_number(header.radius);
-  const bool first = header.first_pose || missing == Remedy::kAskForFirstPose;
-  double clearance = header.clearance, profile = header.profile;
-  if (missing == Remedy::kAskForClearance) clearance = times_radius(header, 3);
-  if (missing == Remedy::kAskForProfile) profile = times_radius(header, 5);
-  if (first) text += " --first-pose";
-  if (clearance > 0) text += " --clearance " + format_number(clearance);
-  if (profile > 0) text += " --profile " + format_number(profile);
-  if (header.between_poses) text += " --between-poses";
-  if (header.floor) text += " --floor " + format_number(*header.floor);
+std::string value_words(const std::string& option, bool value) { return value ? option : ""; }
+template <typename Number>
+requires std::is_arithmetic_v<Number> std::string value_words(const std::string& option,
+                                                              Number value) {
+  return option + " " + format_number(static_cast<double>(value));
+}
+template <typename Value>
+std::string value_words(const std::string& option, const std::optional<Value>& value) {
+  return value ? value_words(option, *value) : "";
+}
+std::string value_words(const std::string& option, const std::vector<std::uint8_t>& classes) {
+  std::string text;
+  for (const std::uint8_t number : classes) {
+    text += (text.empty() ? option + " " : ",") + std::to_string(number);
+  }
   return text;
+}
+std::string value_words(const std::string& option, const std::vector<Box>& boxes) {
+  std::string text;
+  for (const Box& box : boxes) {
+    text += option + " ";
+    for (const double number : {box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z}) {
+      text += format_number(number) + ",";
+    }
+    text.pop_back();
+  }
+  return text;
+}
+
+/// The parameters of a result, and beside them what is missing in it.
+QueryParameters asked_again(const ResultHeader& header, Remedy missing) {
+  QueryParameters asked = header;
+  if (missing == Remedy::kAskForFirstPose) asked.first_pose = true;
+  if (missing == Remedy::kAskForClearance) asked.clearance = times_radius(header, 3);
+  if (missing == Remedy::kAskForProfile) asked.profile = times_radius(header, 5);
+  return asked;
 }
 
 /// Something that a result can lack, and the ending of the name of a result that has it.
@@ -141,6 +153,15 @@ std::string advice(const Missing& missing, const std::string& run) {
 
 }  // namespace
 
+std::string query_words(const QueryParameters& query) {
+  std::string text;
+  for_each_field(kQueryFields, [&](const auto& field) {
+    if (field.is_default(query)) return;
+    text += value_words(std::string(" ") + field.option, field.of(query));
+  });
+  return text;
+}
+
 std::string run_again(const ResultReader& result, const CLI::App& command,
                       const std::filesystem::path& trajectory, Remedy missing) {
   const ResultHeader& header = result.header();
@@ -153,7 +174,7 @@ std::string run_again(const ResultReader& result, const CLI::App& command,
   return "clearway run --env " + (environment.empty() ? "SITE.h5" : shell_word(environment)) +
          model_words(header, command) + " --trajectory " +
          (trajectory.empty() ? "PATH" : shell_word(trajectory)) + reading_options(command) +
-         asked_words(header, missing) + ignored_words(header) + " -o " + shell_word(output);
+         query_words(asked_again(header, missing)) + " -o " + shell_word(output);
 }
 
 void advising_to_run_again(const CLI::App& command, const std::vector<ReadResult>& results,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "clearway/error.hpp"
+#include "clearway/query.hpp"
 
 namespace CLI {
 class App;
@@ -22,6 +23,10 @@ namespace clearway::tool {
 struct ReadResult {
   std::filesystem::path path, trajectory;
 };
+
+/// The options of `clearway run` for these parameters, each after a blank: all that are not the
+/// default.
+std::string query_words(const QueryParameters& query);
 
 /// The command line of `clearway run` that asks the question of a result again, and also for what
 /// `missing` says: first poses, clearances or a profile. What the result does not hold comes from

@@ -39,7 +39,7 @@ ConvertReport perform(ConvertCommand& options);
 
 /// The options of `clearway trajectory resample` and thin.
 struct ChangeCommand {
-  std::filesystem::path input, output, model, environment;
+  std::filesystem::path input, output, model, environment;  ///< model: or the file of a vehicle
   double max_motion = 0;
   FileUnit model_unit = {};
   ModelAxes model_axes;

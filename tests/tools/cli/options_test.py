@@ -4,6 +4,7 @@
     options_test.py CLEARWAY
 """
 
+import json
 import re
 import shlex
 import subprocess
@@ -157,6 +158,35 @@ class RunAgain(Site):
         self.assertEqual(result, "out-first-poses.h5")
         self.do(f"conflicts {result} --trajectory trajectory.txt")
         self.do(f"compare out.h5 {result}")
+
+    def test_all_that_was_asked_is_repeated(self):
+        """Every option of the question, as the help groups them."""
+        self.do("scene hall --points 2000 --model-points 200 --poses 20 -o small")
+        (self.folder / "origins.csv").write_text("first,x,y,z\n0,1,2,3\n")
+        self.do("convert small/environment.las --origins origins.csv -o seen.h5")
+        asked = {"--clearance": "0.3", "--profile": "0.4", "--floor": "-0.5", "--seen": "",
+                 "--seen-cube": "0.25", "--seen-min": "9", "--error-scan": "0.005",
+                 "--error-registration": "0.01", "--error-pose": "0.02", "--error-angle": "0.001",
+                 "--error-model": "0.003", "--sigmas": "2", "--gap": "0.4",
+                 "--ignore-box": "-1,-2.5,-3,-0.5,9,9", "--depth": ""}
+        # Without an error budget there are other questions, and no class is in this store.
+        others = {"--first-pose", "--between-poses", "--ignore-class"}
+        text = self.do("run --help-all").stdout
+        groups = text[text.index("\nThe question:"):text.index("\nThe model:")]
+        self.assertEqual(set(re.findall(r"^  (--[a-z-]+)", groups, re.M)), asked.keys() | others)
+        words = [w for item in asked.items() for w in item if w]
+        inputs = "--model small/model.ply --trajectory small/trajectory.txt"
+        self.do(["run", "--env", "seen.h5", *inputs.split(), "--radius", "0.1", *words, "-o", "all.h5"])
+        again = self.advised(f"conflicts all.h5 {inputs}")
+        for option, value in asked.items():
+            self.assertIn(option, again)
+            if value:
+                self.assertEqual(again[again.index(option) + 1], value)
+        again = [{"SITE.h5": "seen.h5"}.get(word, word) for word in again]
+        self.do(again)
+        told = [json.loads(self.do(["info", "--json", file]).stdout)["parameters"]
+                for file in ("all.h5", again[again.index("-o") + 1])]
+        self.assertEqual(told[0] | {"first_pose": True}, told[1])
 
     def test_how_the_inputs_were_read_is_repeated(self):
         run = "--trajectory trajectory.txt --model model.ply --model-vertices " \

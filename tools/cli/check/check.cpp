@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <initializer_list>
@@ -20,7 +19,6 @@
 #include <utility>
 #include <vector>
 
-#include "campaign/plan.hpp"
 #include "clearway/clearway.hpp"
 #include "cli/check/check_plan.hpp"
 #include "cli/check/check_record.hpp"
@@ -124,8 +122,11 @@ class Step {
   Command& options() { return options_; }
   /// The whole command line, without the program's name.
   const Words& words() const { return words_; }
-  /// The words without what changes no byte of the output.
-  Words essence() const { return without_speed(words_, app_); }
+  /// All that the output depends on: the words but for those that change no byte of it, and the
+  /// contents of the files that the step reads.
+  ordered_json key() const {
+    return {{"words", without_speed(words_, app_)}, {"inputs", contents_of_inputs(app_)}};
+  }
 
  private:
   Words words_;
@@ -186,7 +187,6 @@ class Check {
     timed("path", [&] { fill_path(); });
     const RunOutcome found = timed("run", [&] { return search_widening(); });
     const ordered_json conflicts = timed("conflicts", [&] {
-      made_for_ = question();
       return make_table<ConflictsCommand>(kConflictsName, plan_.conflicts());
     });
     timed("stations", [&] { return make_table<StationsCommand>(kStationsName, plan_.stations()); });
@@ -381,21 +381,18 @@ class Check {
   /// stays as wide.
   void choose_corridor() {
     double metres = in_terms_of_check([&] { return corridor_of_question(); });
-    const Words before = record_->command_of(kStoreName);
-    const auto within = std::ranges::find(before, "--within");
-    if (within != before.end() && std::next(within) != before.end()) {
-      metres = std::max(metres, std::strtod(std::next(within)->c_str(), nullptr));
-    }
-    plan_.keep_near(metres);
+    plan_.keep_near(std::max(metres, record_->corridor(key_of_corridor())));
+  }
+
+  /// What the width of the corridor depends on: the scans, and what is searched for in them.
+  ordered_json key_of_corridor() const {
+    ordered_json run = Step<RunOptions>(plan_.run(false)).key();
+    run["inputs"].erase("--env");  // the store that has the corridor
+    return {{"run", run}, {"convert", Step<ConvertCommand>(plan_.convert(false)).key()}};
   }
 
   void convert_scans() {
     Step<ConvertCommand> step(plan_.convert(false));
-    if (is_store_of_record(step)) {
-      spdlog::info("{}: is the store of these inputs already; nothing to do",
-                   plan_.environment().string());
-      return note_step(kStoreName, step.words(), true);
-    }
     for (const Message& remark : plan_.remarks()) log_message(remark);
     std::error_code unknown;
     in_terms_of_check([&] {
@@ -413,18 +410,6 @@ class Check {
       perform(replacing.options());
       note_step(kStoreName, replacing.words(), false);
     });
-    record_->note_command(kStoreName, step.essence());
-  }
-
-  /// Whether the store was made of these inputs with the same --columns, which a store does not
-  /// keep, but the record does.
-  bool is_store_of_record(Step<ConvertCommand>& step) const {
-    ConvertOptions conversion = step.options().conversion;
-    if (conversion.columns.empty()) return false;
-    if (record_->command_of(kStoreName) != step.essence()) return false;
-    conversion.columns.clear();
-    ConsoleProgress progress;
-    return is_converted({conversion, step.options().inputs, step.options().output}, progress);
   }
 
   /// Puts poses in between where the model moves farther than the radius from one pose to the next,
@@ -439,7 +424,7 @@ class Check {
       if (motion == 0) return;
       Step<ChangeCommand> step(of_step);
       const fs::path path = plan_.file(kPathName);
-      const ordered_json what = made_of_path(words);
+      const ordered_json what = step.key();
       const bool was_there = record_->find(kPathName, what).is_boolean();
       if (!was_there) {
         perform(step.options());
@@ -462,16 +447,6 @@ class Check {
     }
   }
 
-  /// What the denser path is made of: the words of its step, and the contents of the files.
-  ordered_json made_of_path(const Words& words) const {
-    ordered_json what{{"words", words}, {"inputs", ordered_json::array()}};
-    for (const char* option : {"--trajectory", "--model"}) {
-      const fs::path input = options_.command->get_option(option)->results().back();
-      if (!names_box(input)) what["inputs"].push_back(contents_of(input));
-    }
-    return what;
-  }
-
   /// Searches. Where the corridor proves too narrow, the store is made anew with one that is wide
   /// enough.
   RunOutcome search_widening() {
@@ -481,13 +456,13 @@ class Check {
       if (!options_.near || error.remedy() != Remedy::kWiderCorridor) throw;
       spdlog::info("{}. The scans are converted once more, with --within {:g}", error.what(),
                    error.amount());
+      record_->note_corridor(key_of_corridor(), error.amount());
       plan_.keep_near(error.amount());
     }
     Step<ConvertCommand> wider(plan_.convert(true));
     in_terms_of_check([&] { return perform(wider.options()); });
     commands_.clear();
     note_step(kStoreName, wider.words(), false);
-    record_->note_command(kStoreName, wider.essence());
     return search();
   }
 
@@ -495,26 +470,32 @@ class Check {
     return in_terms_of_check([&] {
       const std::string defaults = plan_.about_distances();
       if (!defaults.empty()) spdlog::info("{}", defaults);
-      Step<RunOptions> step(plan_.run(false));
-      step.options().json = options_.json;
-      step.options().names_nearest = false;
-      step.options().search.resume = has_begun();
-      step.options().search.started = started_;
-      step.options().inputs = std::move(inputs_);
       try {
-        RunOutcome outcome = perform(step.options());
-        note_step(kResultName, step.words(), outcome.report.was_finished);
-        return outcome;
+        return perform_run(false);
       } catch (const UsageError& error) {
         if (!is_about_other_question(error.remedy()) || !options_.force) throw;
       }
-      Step<RunOptions> replacing(plan_.run(true));
-      replacing.options().json = options_.json;
-      replacing.options().names_nearest = false;
-      RunOutcome outcome = perform(replacing.options());
-      note_step(kResultName, replacing.words(), false);
-      return outcome;
+      return perform_run(true);
     });
+  }
+
+  /// replacing: see CheckPlan::run().
+  RunOutcome perform_run(bool replacing) {
+    Step<RunOptions> step(plan_.run(replacing));
+    RunOptions& options = step.options();
+    options.json = options_.json;
+    options.names_nearest = false;
+    if (!replacing) options.search.resume = has_begun();
+    options.search.started = started_;
+    options.inputs = std::move(inputs_);
+    try {
+      RunOutcome outcome = perform(options);
+      note_step(kResultName, step.words(), outcome.report.was_finished);
+      return outcome;
+    } catch (const UsageError&) {
+      started_ = options.search.started;  // another try goes on with the devices
+      throw;
+    }
   }
 
   /// Whether there is a result, or a journal of one. A first search has nothing to resume.
@@ -524,38 +505,12 @@ class Check {
     return fs::exists(result, unknown) || fs::exists(journal_of(result), unknown);
   }
 
-  /// What all outputs depend on: the question, and the files of the vehicle and the path, whose
-  /// names and times outputs show.
-  ordered_json question() const {
-    const ResultReader result(plan_.file(kResultName));
-    ordered_json files = ordered_json::array();
-    for (const fs::path& input : input_files()) {
-      files.push_back({{"file", input.string()}, {"contents", contents_of(input)}});
-    }
-    return {{"question", campaign::question_of(result.header())}, {"inputs", files}};
-  }
-
-  std::vector<fs::path> input_files() const {
-    Step<RunOptions> step(plan_.run(false));
-    const RunOptions& options = step.options();
-    std::vector<fs::path> files{options.trajectory};
-    if (!options.vehicle.empty()) return vehicle_inputs(options.vehicle, std::move(files));
-    if (!names_box(options.model)) files.push_back(options.model);
-    return files;
-  }
-
-  ordered_json made_for(const Words& words) const {
-    ordered_json what = made_for_;
-    what["words"] = words;
-    return what;
-  }
-
   /// Makes the table that a step writes, unless it is there. Returns what the step says of it: its
   /// text, and of conflicts a sentence about the worst.
   template <typename Command>
   ordered_json make_table(const char* name, const Words& words) {
     Step<Command> step(words);
-    const ordered_json what = made_for(step.essence());
+    const ordered_json what = step.key();
     ordered_json known = record_->find(name, what);
     if (std::is_same_v<Command, ConflictsCommand> && plan_.has_ledger()) known = nullptr;
     note_step(name, step.words(), known.is_object());
@@ -579,7 +534,7 @@ class Check {
   }
 
   void write_page() {
-    const ordered_json what = made_for(Step<ReportCommand>(plan_.report("")).essence());
+    const ordered_json what = Step<ReportCommand>(plan_.report("")).key();
     ordered_json known = record_->find(kReportName, what);
     if (plan_.has_ledger()) known = nullptr;  // the ledger may have changed
     if (known.is_string()) {
@@ -653,7 +608,6 @@ class Check {
   const CheckCommand& options_;
   CheckPlan plan_;
   std::optional<CheckRecord> record_;
-  ordered_json made_for_;
   std::vector<std::string> commands_;
   ordered_json reused_ = ordered_json::object();
   std::shared_ptr<const DeviceStart> started_;  ///< null where no GPU was started early

@@ -222,7 +222,8 @@ Words CheckPlan::corridor() const {
 }
 
 Words CheckPlan::resample() const {
-  if (is_given("--between-poses") || !is_given("--model") || is_given("--vehicle")) return {};
+  if (is_given("--between-poses")) return {};
+  const Words vehicle = is_given("--vehicle") ? Words{"--model", value_of("--vehicle")} : Words{};
   return Words{"trajectory",
                "resample",
                value_of("--trajectory"),
@@ -232,7 +233,7 @@ Words CheckPlan::resample() const {
                value_of("--radius"),
                "--env",
                environment().string()} +
-         given<ChangeCommand>(check_, kResampleOptions) + Words{"--force"};
+         vehicle + given<ChangeCommand>(check_, kResampleOptions) + Words{"--force"};
 }
 
 /// The words of a step with the denser path, which is in the environment's frame and unit, so that

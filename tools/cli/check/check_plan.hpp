@@ -54,7 +54,7 @@ class CheckPlan {
   /// what is there.
   Words convert(bool replacing) const;
   /// The path with more poses, so that the model moves no farther than the radius from one to the
-  /// next; no words where the question needs none, or the path is not that of one model.
+  /// next; no words where the question needs none.
   Words resample() const;
   /// From here on the conversion keeps only the points within `metres` of the path.
   void keep_near(double metres) { near_metres_ = metres; }

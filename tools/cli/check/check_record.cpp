@@ -1,16 +1,19 @@
 #include "cli/check/check_record.hpp"
 
-#include <algorithm>
-#include <span>
+#include <CLI/CLI.hpp>
 #include <system_error>
 #include <utility>
 
 #include "clearway/error.hpp"
 #include "cli/support/program_json.hpp"
+#include "cli/vehicle/vehicle_inputs.hpp"
 #include "io/files/file.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/json.hpp"
 #include "io/files/xxh64.hpp"
+#include "io/models/model_input.hpp"
+#include "io/store/convert/source_description.hpp"
+#include "io/store/store_reader.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -21,7 +24,7 @@ ordered_json empty_record() {
   return {{"format", "clearway check"},
           {"version", program_json({})["version"]},
           {"files", ordered_json::object()},
-          {"commands", ordered_json::object()}};
+          {"corridor", ordered_json::object()}};
 }
 
 ordered_json read_record(const std::filesystem::path& file) {
@@ -33,7 +36,7 @@ ordered_json read_record(const std::filesystem::path& file) {
     for (const char* key : {"format", "version"}) {
       if (read.value(key, ordered_json()) != empty[key]) return empty;
     }
-    for (const char* key : {"files", "commands"}) {
+    for (const char* key : {"files", "corridor"}) {
       if (!read.contains(key) || !read[key].is_object()) return empty;
     }
     return read;
@@ -47,17 +50,30 @@ ordered_json read_record(const std::filesystem::path& file) {
 }  // namespace
 
 ordered_json contents_of(const std::filesystem::path& file) {
-  constexpr std::size_t kStep = std::size_t{1} << 20;
-  const File opened = File::open_for_reading(file);
-  const std::uint64_t bytes = opened.size_bytes();
-  Xxh64Stream hash;
-  std::vector<std::byte> buffer;
-  for (std::uint64_t at = 0; at < bytes; at += buffer.size()) {
-    buffer.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kStep, bytes - at)));
-    opened.read_at(at, buffer);
-    hash.update(buffer);
+  const SourceFile contents = describe_with_files(file);
+  return {{"bytes", contents.bytes}, {"xxh64", hash_text(contents.xxh64)}};
+}
+
+ordered_json contents_of_inputs(const CLI::App& step) {
+  ordered_json inputs = ordered_json::object();
+  for (const CLI::Option* option : step.get_options()) {
+    const std::string name = option->get_name();
+    if (option->get_type_name() != "FILE" || option->check_name("--output")) continue;
+    for (const std::filesystem::path file : option->results()) {
+      std::error_code unknown;
+      if (names_box(file) || !std::filesystem::exists(file, unknown)) continue;
+      if (name == "--env") {
+        inputs[name].push_back(hash_text(StoreReader(file).fingerprint()));
+      } else if (names_vehicle(file)) {
+        for (const std::filesystem::path& one : vehicle_inputs(file, {})) {
+          inputs[name].push_back(contents_of(one));
+        }
+      } else {
+        inputs[name].push_back(contents_of(file));
+      }
+    }
   }
-  return {{"bytes", bytes}, {"xxh64", hash_text(hash.digest())}};
+  return inputs;
 }
 
 CheckRecord::CheckRecord(std::filesystem::path folder)
@@ -85,19 +101,14 @@ void CheckRecord::note(const std::string& name, const ordered_json& what,
       {"made_for", what}, {"contents", contents_of(folder_ / name)}, {"remembered", remembered}};
 }
 
-std::vector<std::string> CheckRecord::command_of(const std::string& name) const {
-  const ordered_json& commands = now_["commands"];
-  std::vector<std::string> words;
-  if (!commands.contains(name) || !commands[name].is_array()) return words;
-  for (const ordered_json& word : commands[name]) {
-    if (!word.is_string()) return {};
-    words.push_back(word.get<std::string>());
-  }
-  return words;
+double CheckRecord::corridor(const ordered_json& what) const {
+  const ordered_json& noted = now_["corridor"];
+  const bool is_of_it = noted.value("made_for", ordered_json()) == what;
+  return is_of_it && noted["metres"].is_number() ? noted["metres"].get<double>() : 0;
 }
 
-void CheckRecord::note_command(const std::string& name, const std::vector<std::string>& words) {
-  now_["commands"][name] = words;
+void CheckRecord::note_corridor(const ordered_json& what, double metres) {
+  now_["corridor"] = {{"made_for", what}, {"metres", metres}};
 }
 
 void CheckRecord::write() const {

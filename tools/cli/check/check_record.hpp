@@ -7,14 +7,23 @@
 #include <string>
 #include <vector>
 
+namespace CLI {
+class App;
+}
+
 /// What `clearway check` remembers of the files in its folder, so that it makes none again that is
 /// still right. A record that is missing, damaged or of another release only costs time.
 namespace clearway::tool {
 
 inline constexpr const char* kRecordName = "check.json";
 
-/// The size and the hash of a file's bytes, by which its contents are known again.
+/// The size and the hash of the bytes of a file, or of all files that are read where it is named
+/// (files_behind()), by which its contents are known again.
 nlohmann::ordered_json contents_of(const std::filesystem::path& file);
+
+/// What identifies the contents of all files that a command line names, but for its output: of a
+/// store its fingerprint, and of a vehicle its files. step: the command, parsed.
+nlohmann::ordered_json contents_of_inputs(const CLI::App& step);
 
 class CheckRecord {
  public:
@@ -32,10 +41,9 @@ class CheckRecord {
   void note(const std::string& name, const nlohmann::ordered_json& what,
             const nlohmann::ordered_json& remembered);
 
-  /// What note_command() noted of a file; empty where nothing is known.
-  std::vector<std::string> command_of(const std::string& name) const;
-  /// Notes the words of the command that made a file.
-  void note_command(const std::string& name, const std::vector<std::string>& words);
+  /// How wide the corridor of the store had to be for `what`, in metres; 0 where nothing is noted.
+  double corridor(const nlohmann::ordered_json& what) const;
+  void note_corridor(const nlohmann::ordered_json& what, double metres);
 
   /// Writes the file of the record, unless it is there with these contents. Throws ResourceError.
   void write() const;

@@ -16,6 +16,7 @@
 #include "clearway/smooth.hpp"
 #include "clearway/store.hpp"
 #include "clearway/trajectory.hpp"
+#include "clearway/vehicle.hpp"
 #include "cli/steps.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/field_options.hpp"
@@ -24,6 +25,7 @@
 #include "cli/support/trajectory_options.hpp"
 #include "cli/trajectory/commands.hpp"
 #include "cli/trajectory/made_labels.hpp"
+#include "cli/vehicle/vehicle_inputs.hpp"
 #include "core/describe/smooth.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/resample_trajectory.hpp"
@@ -32,47 +34,99 @@
 #include "core/util/format.hpp"
 #include "io/files/json.hpp"
 #include "io/files/pending_file.hpp"
+#include "io/models/vehicle_file.hpp"
 #include "io/paths/trajectory_file.hpp"
 
 namespace clearway::tool {
 namespace {
 
+/// What moves along a path: the box of a model, or those of a vehicle's bodies, each in its own
+/// frame and with its own poses.
+class Mover {
+ public:
+  /// poses: the path as it is given. The options outlive this object.
+  Mover(const ChangeCommand& options, const std::vector<Pose>& poses);
+
+  bool is_vehicle() const { return !bodies_.empty(); }
+  /// The box of the model, or around those of all bodies in their own frames.
+  const Box& box() const { return box_; }
+  /// The motion_bound() from each pose of a path to the next: of a vehicle, the greatest of those
+  /// of its bodies that have both poses.
+  std::vector<double> motions(const std::vector<Pose>& path) const;
+  double largest_motion(const std::vector<Pose>& path) const {
+    const std::vector<double> all = motions(path);
+    return all.empty() ? 0 : std::ranges::max(all);
+  }
+
+ private:
+  struct MovingBox {
+    std::string name;
+    Box box;
+  };
+
+  const ChangeCommand& options_;
+  VehicleOptions reading_;
+  std::vector<MovingBox> bodies_;  ///< empty for a model
+  Box box_{};
+};
+
 struct Change {
-  std::function<std::vector<Pose>(const std::vector<Pose>& poses, const Box& model,
+  std::function<std::vector<Pose>(const std::vector<Pose>& poses, const Mover& mover,
                                   double max_motion, Progress& progress)>
       make;
   const char* consequence;  ///< what missing poses mean for the output
 };
 
-std::vector<Pose> resample(const std::vector<Pose>& poses, const Box& model, double max_motion,
+std::vector<Pose> resample(const std::vector<Pose>& poses, const Mover& mover, double max_motion,
                            Progress& progress) {
-  return resample_trajectory(poses, model, max_motion, progress);
+  std::vector<Pose> path = resample_trajectory(poses, mover.box(), max_motion, progress);
+  // A body may turn where the path's own pose goes straight on, so that steps that are small
+  // enough for the path are not for the body.
+  constexpr double kRounding = 1e-9, kLess = 0.98;
+  constexpr int kMostTries = 16;
+  double step = max_motion;
+  for (int i = 0; mover.is_vehicle() && i < kMostTries; ++i) {
+    const double largest = mover.largest_motion(path);
+    if (largest <= max_motion * (1 + kRounding)) break;
+    step *= kLess * max_motion / largest;
+    path = resample_trajectory(poses, mover.box(), step, progress);
+  }
+  return path;
 }
 
-std::vector<Pose> thin(const std::vector<Pose>& poses, const Box& model, double max_motion,
+std::vector<Pose> thin(const std::vector<Pose>& poses, const Mover& mover, double max_motion,
                        Progress&) {
+  if (mover.is_vehicle()) {
+    throw InputError("is thinned for one model, and a vehicle of several bodies is given");
+  }
   std::vector<Pose> kept;
-  for (const std::size_t i : thin_trajectory(poses, model, max_motion)) kept.push_back(poses[i]);
+  for (const std::size_t i : thin_trajectory(poses, mover.box(), max_motion)) {
+    kept.push_back(poses[i]);
+  }
   return kept;
 }
 
-std::vector<Pose> changed(const std::vector<Pose>& poses, const Box& model,
+std::vector<Pose> changed(const std::vector<Pose>& poses, const Mover& mover,
                           const ChangeCommand& options, const Change& change, Progress& progress) {
   try {
-    return change.make(poses, model, options.max_motion, progress);
+    return change.make(poses, mover, options.max_motion, progress);
   } catch (const InputError& error) {
     throw InputError(options.input.string() + ": " + error.what());
   }
 }
 
-/// The bounding box of the model: no other place of a mesh is farther out than its vertices.
+/// How models are read: no other place of a mesh is farther out than its vertices.
+ModelOptions reading_of_models(const ChangeCommand& options) {
+  return {.unit = options.model_unit,
+          .environment_unit = options.trajectory.environment_unit,
+          .forward = options.model_axes.forward,
+          .up = options.model_axes.up,
+          .vertices_only = true};
+}
+
+/// The bounding box of the model.
 Box box_of_model(const ChangeCommand& options) {
-  return box_of(
-      read_model_points(options.model, {.unit = options.model_unit,
-                                        .environment_unit = options.trajectory.environment_unit,
-                                        .forward = options.model_axes.forward,
-                                        .up = options.model_axes.up,
-                                        .vertices_only = true}));
+  return box_of(read_model_points(options.model, reading_of_models(options)));
 }
 
 std::vector<double> motions_of(const std::vector<Pose>& poses, const Box& model) {
@@ -83,10 +137,45 @@ std::vector<double> motions_of(const std::vector<Pose>& poses, const Box& model)
   return motions;
 }
 
+Mover::Mover(const ChangeCommand& options, const std::vector<Pose>& poses) : options_(options) {
+  if (!names_vehicle(options.model)) {
+    box_ = box_of_model(options);
+    return;
+  }
+  reading_ = {.model = reading_of_models(options), .trajectory = options.trajectory};
+  for (const BodyEntry& entry :
+       read_vehicle_file(options.model, options.trajectory.environment_unit)) {
+    if (entry.trajectory.empty()) continue;
+    throw InputError(options.model.string() + ": the poses of the body " + entry.name +
+                     " belong to those of the path one by one, so the path has to keep its own");
+  }
+  std::optional<Box> all;
+  for (const Body& body : read_vehicle(options.model, poses, reading_)) {
+    bodies_.push_back({body.name, box_of(body.model.vertices)});
+    all = all ? all->united(bodies_.back().box) : bodies_.back().box;
+  }
+  box_ = all.value_or(Box{});
+}
+
+std::vector<double> Mover::motions(const std::vector<Pose>& path) const {
+  if (!is_vehicle()) return motions_of(path, box_);
+  std::vector<double> motions(path.empty() ? 0 : path.size() - 1, 0.0);
+  FollowedPath unused;
+  for (const auto& [name, box] : bodies_) {
+    const Body body = place_body(options_.model, name, path, reading_, nullptr, unused);
+    for (std::size_t i = 0; i + 1 < body.poses.size(); ++i) {
+      const std::uint32_t at = body.path_pose[i];
+      if (body.path_pose[i + 1] != at + 1) continue;
+      motions[at] = std::max(motions[at], motion_bound(box, body.poses[i], body.poses[i + 1]));
+    }
+  }
+  return motions;
+}
+
 /// Warns of gaps in the recording, which can no longer be seen in the output.
-void warn_of_jumps(const std::vector<Pose>& poses, const Box& model, const ChangeCommand& options,
+void warn_of_jumps(const std::vector<double>& motions, const ChangeCommand& options,
                    const std::string& consequence) {
-  const auto jumps = jumps_of(motions_of(poses, model), std::min(kLeastJump, options.max_motion));
+  const auto jumps = jumps_of(motions, std::min(kLeastJump, options.max_motion));
   if (jumps.empty()) return;
   log_message(jump_warning(jumps, options.input.string() + ": as the model moves, ", options.unit,
                            consequence));
@@ -113,7 +202,11 @@ std::vector<Pose> read_path(const ChangeCommand& options, PoseLabels& labels) {
 
 void refuse_overwriting_inputs(const ChangeCommand& options) {
   std::vector<std::filesystem::path> inputs{options.input};
-  if (!options.model.empty()) inputs.push_back(options.model);
+  if (names_vehicle(options.model)) {
+    inputs = vehicle_inputs(options.model, std::move(inputs));
+  } else if (!options.model.empty()) {
+    inputs.push_back(options.model);
+  }
   if (!options.environment.empty()) inputs.push_back(options.environment);
   refuse_overwriting(options.output, inputs);
 }
@@ -125,19 +218,20 @@ void write_changed(ChangeCommand& options, const Change& change) {
   PoseLabels labels;
   const std::vector<Pose> before = read_path(options, labels);
   if (before.empty()) spdlog::warn("{}: no poses", options.input.string());
-  const Box model = box_of_model(options);
-  const double motion_before = largest_motion(model, before);
+  const Mover mover(options, before);
+  const std::vector<double> motions_before = mover.motions(before);
+  const double motion_before = motions_before.empty() ? 0 : std::ranges::max(motions_before);
   if (!std::isfinite(motion_before)) {
     throw InputError(options.input.string() +
                      ": poses too far apart: the motion from one to the next is no finite number");
   }
-  warn_of_jumps(before, model, options, change.consequence);
+  warn_of_jumps(motions_before, options, change.consequence);
   ConsoleProgress progress;
-  const std::vector<Pose> after = changed(before, model, options, change, progress);
+  const std::vector<Pose> after = changed(before, mover, options, change, progress);
   write_poses(after, labels_along(before, labels, after), output.partial(), progress);
   output.publish();
 
-  const double motion_after = largest_motion(model, after);
+  const double motion_after = mover.largest_motion(after);
   spdlog::info("{}: {}, from {}; the largest motion from one to the next {:.6g} {}, was {:.6g} {}",
                options.output.string(), counted(after.size(), "pose"), format_count(before.size()),
                motion_after, options.unit, motion_before, options.unit);
@@ -163,7 +257,8 @@ CLI::Option* add_files(CLI::App& command, ChangeCommand& options) {
   CLI::Option* model =
       command
           .add_option("--model", options.model,
-                      "The model, as clearway run reads it; its bounding box is what moves")
+                      "The model, as clearway run reads it, or the file of a vehicle of several "
+                      "bodies; their bounding boxes are what moves")
           ->type_name("FILE");
   command
       .add_option("--env", options.environment,
@@ -303,7 +398,7 @@ double motion_to_fill(ChangeCommand& options) {
   constexpr double kRounding = 1e-6, kMostPoses = 1e6;
   take_unit_of_environment(options);
   const std::vector<Pose> poses = read_trajectory(options.input, options.trajectory);
-  const std::vector<double> motions = motions_of(poses, box_of_model(options));
+  const std::vector<double> motions = Mover(options, poses).motions(poses);
   if (motions.empty()) return 0;
   const double largest = std::ranges::max(motions), most = options.max_motion;
   const double needed = std::accumulate(motions.begin(), motions.end(), 0.0) / most;

@@ -1,12 +1,21 @@
 #include "cli/vehicle/vehicle_inputs.hpp"
 
+#include <fstream>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "clearway/error.hpp"
 #include "io/models/vehicle_file.hpp"
 
 namespace clearway::tool {
+
+bool names_vehicle(const std::filesystem::path& file) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(file, unknown)) return false;
+  char first = 0;
+  return std::ifstream(file) >> first && first == '{';
+}
 
 std::vector<std::filesystem::path> vehicle_inputs(const std::filesystem::path& file,
                                                   std::vector<std::filesystem::path> others) {

@@ -5,6 +5,7 @@
 """
 
 import json
+import math
 import os
 import random
 import re
@@ -177,6 +178,74 @@ class Finding(Site):
         run = next(c for c in printed_commands(given.stdout) if " run " in c)
         self.assertNotIn("--lever-arm", run)
         self.assertNotIn("--trajectory-format", run)
+
+    def test_the_path_of_a_vehicle_is_made_denser_for_every_body(self):
+        bends = [(i, 0.02 * i * i) for i in range(12)]
+        self.bend(self.folder / "bend.txt", bends)
+        bodies = [{"name": "a", "model": "model.ply"},
+                  {"name": "b", "model": "model.ply", "pivots": [-2, -4]},
+                  {"name": "c", "model": "model.ply",
+                   "towed": {"by": "b", "at": -5, "pivots": [0, -3]}}]
+        self.vehicle(bodies)
+        words = "scans --vehicle train.json --trajectory bend.txt --radius 0.1"
+        done = self.check(f"{words} -o train")
+        self.assertNotIn("What lies between two poses can be missed", done.stderr)
+        again = next(c for c in printed_commands(done.stdout) if " resample " in c)
+        told = json.loads(clearway(shlex.split(again)[1:] + ["--json"], self.folder).stdout)
+        self.assertGreater(told["largest_motion_before"], 0.1)
+        self.assertLessEqual(told["largest_motion_after"], 0.1 * (1 + 1e-6))
+        self.assertTrue(json.loads(self.check(f"{words} -o train --json").stdout)["nothing_done"])
+        # A body that stays itself but is read from another file counts like the path.
+        self.vehicle(bodies[:2])
+        self.assertIn("answers another question", self.check(f"{words} -o train", 2).stderr)
+
+    def test_a_body_with_a_trajectory_of_its_own_keeps_the_path(self):
+        self.bend(self.folder / "bend.txt", [(i, 0) for i in range(12)])
+        self.vehicle([{"name": "a", "model": "model.ply"},
+                      {"name": "own", "model": "model.ply", "trajectory": "bend.txt"}])
+        done = self.check("scans --vehicle train.json --trajectory bend.txt --radius 0.1 -o own")
+        self.assertIn("no poses are put between", done.stderr)
+        self.assertIn("the poses of the body own belong to those of the path", done.stderr)
+
+    def vehicle(self, bodies):
+        (self.folder / "train.json").write_text(json.dumps({"bodies": bodies}))
+
+    @staticmethod
+    def bend(file, places):
+        """Poses at these places, which look along the way there."""
+        lines = []
+        for i, (x, y) in enumerate(places):
+            to = places[min(i + 1, len(places) - 1)]
+            at = places[max(i - 1, 0)]
+            length = math.dist(at, to)
+            c, s = (to[0] - at[0]) / length, (to[1] - at[1]) / length
+            lines.append(f"{c} {-s} 0 {x} {s} {c} 0 {y} 0 0 1 0\n")
+        file.write_text("".join(lines))
+
+    def test_a_limit_of_processes_is_told(self):
+        """Pools of threads that do not fit beside each other, for a user who has no other process."""
+        user = ["setpriv", "--reuid", "23456", "--regid", "23456", "--clear-groups"]
+        tried = shutil.which("setpriv") and os.geteuid() == 0 and subprocess.run(
+            [*user, PROGRAM, "--version"], capture_output=True, check=False).returncode == 0
+        if not tried:
+            self.skipTest("only root becomes a user without other processes")
+        for folder in (self.scratch.name, self.folder.parent):
+            os.chmod(folder, 0o755)
+        codes = set()
+        for limit in range(2, 14):
+            out = self.folder / "limited"
+            shutil.rmtree(out, ignore_errors=True)
+            out.mkdir(0o777)
+            os.chmod(out, 0o777)
+            done = subprocess.run(
+                [*user, "prlimit", f"--nproc={limit}", PROGRAM, "check", "scans", *shlex.split(QUESTION),
+                 "--threads", "4", "-o", "limited"],
+                cwd=self.folder, capture_output=True, text=True, check=False)
+            codes.add(done.returncode)
+            if done.returncode != 0:
+                self.assertEqual(done.returncode, 4, f"{limit}: {done.stderr}")
+                self.assertIn("threads cannot be started", done.stderr)
+        self.assertEqual(codes, {0, 4})
 
     def near_and_whole(self, words):
         """The output of a check of what is near the path; its tables are those of all points."""
@@ -507,7 +576,7 @@ class Again(Site):
         self.assertEqual(fresh.stdout.splitlines()[-1], forced.stdout.splitlines()[-1])
         self.assertEqual((self.folder / "site/site.h5").read_bytes(),
                          (self.folder / "fresh/site.h5").read_bytes())
-        self.assertIn("site/site.h5: holds other scans",
+        self.assertIn("was converted with other options: its cell_points is 65536, expected 1000",
                       self.asked("--cell-points 1000", 2).stderr)
 
     def test_files_that_no_check_made_are_kept(self):
@@ -536,8 +605,39 @@ class Again(Site):
         words = f"wide.txt --columns 2,3,4 {QUESTION} -o wide"
         self.check(words)
         self.assertIn("nothing was to be done", self.check(words).stderr)
-        self.assertIn("does not show whether it is the store of these scans",
-                      self.check(words.replace("2,3,4", "3,2,4"), 2).stderr)
+        for other in (words.replace("2,3,4", "3,2,4"), words.replace("--columns 2,3,4", "")):
+            self.assertIn("was converted with other options: its columns is 2,3,4",
+                          self.check(other, 2).stderr)
+            self.check(other + " --force")
+            self.check(words + " --force")
+
+    def test_a_store_in_another_unit_makes_the_result_anew(self):
+        run = f"run --env s.h5 {QUESTION} --first-pose -o r.h5 --resume"
+        def result(unit):
+            for words in (f"convert cloud.xyz --unit {unit} -o s.h5 --force", run):
+                done = clearway(words, self.folder)
+                self.assertEqual(done.returncode, 0, done.stderr)
+            return (self.folder / "r.h5").read_bytes()
+        (self.folder / "cloud.xyz").write_text("".join(f"{i * 0.01} 0 {i % 9}\n" for i in range(300)))
+        metres = result("m")
+        self.assertNotEqual(result("ift"), metres)
+        self.assertIn("is the finished result", clearway(run, self.folder).stderr)
+        self.assertEqual(result("m"), metres)
+
+    def test_a_folder_of_poses(self):
+        poses = self.folder / "poses"
+        poses.mkdir()
+        for i in range(4):
+            (poses / f"scan{i:03}.pose").write_text(f"0 0 {100 * i}\n0 0 0\n")
+        words = "scans --model model.ply --trajectory poses --radius 0.1 -o site"
+        self.check(words)
+        self.assertIn("nothing was to be done", self.check(words).stderr)
+        (poses / "scan003.pose").write_text("50 0 300\n0 0 0\n")
+        self.assertIn("answers another question", self.check(words, 2).stderr)
+        self.check(words + " --force")
+        found = bytes_of(self.folder / "site", ["path.txt", "conflicts.csv", "stations.csv"])
+        self.check(words.replace("-o site", "-o fresh"))
+        self.assertEqual(bytes_of(self.folder / "fresh", list(found)), found)
 
     def test_a_killed_check_goes_on(self):
         whole = self.asked("")
