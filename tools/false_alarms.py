@@ -1,13 +1,15 @@
 #!/usr/bin/python3
-"""Counts which warnings Clearway gives for inputs in which nothing is wrong.
+"""Counts which warnings Clearway gives for inputs in which nothing is wrong, and which of them would
+make an answer undecided.
 
 - All scenes of `clearway scene`, each with its own model and path: as they are, with poses only,
   with a floor, with every tenth pose and as a vehicle of one body.
-- With --data, a folder of real data: street (scan, model, path), trajectories and alignments. Each
-  trajectory is asked about points around its positions, with a box as its model.
+- With --data, a folder of real data: street (scan, model, path), trajectories, alignments and
+  formats. Each trajectory is asked about points around its positions, with a box as its model. Each
+  scan in formats is converted, and asked about as it is.
 
-It prints a table with the number of inputs for which each code came, and exits with 1 where one of
---none came. Needs numpy.
+It prints a table with the number of inputs for which each code came, and of those whose answer it
+puts in doubt. Exits with 1 where any answer is in doubt, or one of --none came. Needs numpy.
 Example: tools/false_alarms.py build/release/tools/clearway --none below-ground,cant-side
 """
 
@@ -36,7 +38,7 @@ SEEDS = (1, 2, 3)
 class Trial:
     def __init__(self, program):
         self.program = Path(program).resolve()
-        self.inputs, self.counts = 0, collections.Counter()
+        self.inputs, self.counts, self.doubts = 0, collections.Counter(), collections.Counter()
 
     def call(self, folder, words):
         done = subprocess.run([self.program, *words.split()], cwd=folder, capture_output=True,
@@ -45,11 +47,17 @@ class Trial:
             sys.exit(f"{words}: exit code {done.returncode}: {done.stderr}")
         return done.stdout
 
-    def count(self, name, answer):
-        codes = sorted({warning["code"] for warning in json.loads(answer)["warnings"]})
+    def count(self, name, answer, of_question=True):
+        """of_question: whether nothing is wrong with the question either, beside the scan."""
+        answer = json.loads(answer)
+        codes = sorted({warning["code"] for warning in answer["warnings"]})
+        doubts = [code for code in answer.get("doubts", [])
+                  if of_question or code.startswith("store-")]
         self.inputs += 1
         self.counts.update(codes)
-        print(f"{name}: {' '.join(codes) or 'no warning'}", flush=True)
+        self.doubts.update(doubts)
+        print(f"{name}: {' '.join(codes) or 'no warning'}"
+              + (f"; IN DOUBT: {' '.join(doubts)}" if doubts else ""), flush=True)
 
     def scenes(self):
         for kind, sizes in SCENES.items():
@@ -81,6 +89,24 @@ class Trial:
                 self.count(f"street, {variant}", self.call(
                     folder, f"run --env site.h5 --model {data}/beetle.ply --trajectory "
                     f"{data}/trajectory.txt --radius 0.1 {words} --json --force -o out.h5"))
+
+    def formats(self, data):
+        for file in sorted(data.iterdir()):
+            with tempfile.TemporaryDirectory() as folder:
+                done = subprocess.run([self.program, "convert", file, "--json", "-o", "site.h5"],
+                                      cwd=folder, capture_output=True, text=True, check=False)
+                if done.returncode != 0:
+                    print(f"{file.name}: refused: {done.stderr.strip().splitlines()[-1]}")
+                    continue
+                made = json.loads(done.stdout)
+                if made["points"] == 0:
+                    continue
+                x, y, z = np.mean([made["box"]["lo"], made["box"]["hi"]], axis=0)
+                (Path(folder) / "path.txt").write_text(
+                    "".join(f"1 0 0 {x + 0.1 * i} 0 1 0 {y} 0 0 1 {z}\n" for i in range(20)))
+                self.count(file.name, self.call(
+                    folder, "run --env site.h5 --model box:4,2,1.5 --trajectory path.txt "
+                    "--radius 0.1 --json -o out.h5"), of_question=False)
 
     def trajectories(self, data):
         for file in sorted(data.iterdir()):
@@ -130,11 +156,12 @@ def main():
         trial.street(data / "street")
         trial.trajectories(data / "trajectories")
         trial.alignments(data / "alignments")
+        trial.formats(data / "formats")
     watched = [code for code in options.none.split(",") if code]
-    print(f"\n| code | of {trial.inputs} inputs |\n|---|---|")
+    print(f"\n| code | of {trial.inputs} inputs | in doubt |\n|---|---|---|")
     for code in sorted(set(trial.counts) | set(watched)):
-        print(f"| `{code}` | {trial.counts[code]} |")
-    return int(any(trial.counts[code] for code in watched))
+        print(f"| `{code}` | {trial.counts[code]} | {trial.doubts[code]} |")
+    return int(bool(trial.doubts) or any(trial.counts[code] for code in watched))
 
 
 if __name__ == "__main__":

@@ -52,9 +52,10 @@ struct StretchShift {
   /// than the clearance that the result was asked for, or if that is not above the radius.
   std::optional<double> least_distance = {};
   std::uint64_t searches = 0;  ///< searches that were needed to find the shift
-  /// Codes of warnings that a run along the shifted stretch causes and one along the stretch as it
-  /// is does not, ascending: "floats", "leaves-scan", "nothing-below", "out-of-reach". The shift
-  /// leads past what was scanned, so little is known there.
+  /// Codes of warnings, ascending. With a shift, those that a run along the shifted stretch causes
+  /// and one along the stretch as it is does not, such as "nothing-below", because the shift leads
+  /// past what was scanned. Without one, those that put in doubt every shift at which nothing
+  /// collides, so that it frees nothing: see Doubt.
   std::vector<std::string> warned_of = {};
 };
 
@@ -71,9 +72,9 @@ struct ShiftTable {
 /// conflict, from its first to its last touch, that frees it. A shift by l moves every body at pose
 /// i by l times the left axis of the path's pose i. It frees a stretch if no point of the
 /// environment collides at any pose of the shifted stretch, or with an error budget, if none is
-/// closer than what a clear passage has to keep free. Every shift that is returned was confirmed by
-/// a search of the whole environment without the points that the result ignored
-/// (docs/design/findings.md, "Shifts that free a stretch").
+/// closer than what a clear passage has to keep free, and if no warning puts that in doubt. Every
+/// shift that is returned was confirmed by a search of the whole environment without the points
+/// that the result ignored (docs/design/findings.md, "Shifts that free a stretch").
 ///
 /// session: of the store that was searched; it answers for several conflicts at once. query: what
 /// moves, and the poses, as they were for the result; its parameters are not used, because the

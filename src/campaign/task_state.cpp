@@ -6,7 +6,6 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <numeric>
 #include <optional>
 #include <string_view>
@@ -17,6 +16,7 @@
 #include "clearway/answer.hpp"
 #include "clearway/error.hpp"
 #include "clearway/ledger.hpp"
+#include "core/query/verdict_words.hpp"
 #include "core/util/exit_code.hpp"
 #include "core/util/format.hpp"
 #include "io/files/file.hpp"
@@ -136,8 +136,10 @@ const OutcomeWords& words_of(Outcome outcome) {
       {{"conflict", "■", "conflict",
         "conflict: a point is closer than the radius, or with an error budget certainly too close"},
        {"undecided", "?", "undecided",
-        "undecided: a collision is neither certain nor excluded; reasons and warnings say why"},
-       {"doubtful", "△", "clear with warnings", "clear, but with warnings: read them below"},
+        "undecided: a collision is neither certain nor excluded, or the question is in doubt; "
+        "reasons and warnings say why"},
+       {"clear_with_warnings", "△", "clear with warnings",
+        "clear with warnings: nothing is closer than the radius, but read the warnings below"},
        {"clear", "○", "clear",
         "clear: no point is closer than the radius and the errors, and where seen space was asked "
         "for, all of it was scanned"},
@@ -151,7 +153,7 @@ namespace {
 
 Outcome outcome_by(const TaskLook& look, const ordered_json& verdict) {
   if (verdict == "clear") {
-    return look.state->facts["warnings"].empty() ? Outcome::kClear : Outcome::kDoubtful;
+    return look.state->facts["warnings"].empty() ? Outcome::kClear : Outcome::kClearWithWarnings;
   }
   return verdict == "conflict" ? Outcome::kConflict : Outcome::kUndecided;
 }
@@ -252,21 +254,24 @@ std::string ignored_words(const ordered_json& facts) {
   return text;
 }
 
-bool is_in_doubt(const ordered_json& facts) {
+namespace {
+
+bool has_reason(const ordered_json& facts, Reason reason) {
   const ordered_json reasons = facts.value("reasons", ordered_json::array());
-  return std::ranges::find(reasons, name_of(Reason::kQuestionInDoubt)) != reasons.end();
+  return std::ranges::find(reasons, name_of(reason)) != reasons.end();
 }
 
+}  // namespace
+
+bool is_in_doubt(const ordered_json& facts) { return has_reason(facts, Reason::kQuestionInDoubt); }
+
 std::string open_words(const ordered_json& facts, const std::string& unit) {
-  static const std::map<std::string, const char*> kWords{
-      {name_of(Reason::kNear), "points are near"},
-      {name_of(Reason::kFew), "too few points that are certainly too close hang together"},
-      {name_of(Reason::kErrorsExceedMargin), "the errors exceed the margin"},
-      {name_of(Reason::kQuestionInDoubt), "the question is in doubt"}};
+  const auto doubts = facts.value("doubts", std::vector<std::string>());
   std::string text;
-  for (const auto& reason : facts.value("reasons", ordered_json::array())) {
-    const auto words = kWords.find(reason.get<std::string>());
-    if (words != kWords.end()) text += (text.empty() ? "" : ", ") + std::string(words->second);
+  for (const Reason reason :
+       {Reason::kNear, Reason::kFew, Reason::kErrorsExceedMargin, Reason::kQuestionInDoubt}) {
+    if (has_reason(facts, reason))
+      text += (text.empty() ? "" : ", ") + reason_words(reason, doubts);
   }
   const ordered_json seen = facts.value("seen", ordered_json());
   if (!seen.is_null() && seen["listed_groups"] > 0) {
@@ -541,6 +546,7 @@ ordered_json task_facts(const std::filesystem::path& run_json) {
     const ordered_json& profile = run.at("least_profile");
     ordered_json facts{{"verdict", run.at("verdict")},
                        {"reasons", run.value("reasons", ordered_json::array())},
+                       {"doubts", run.value("doubts", ordered_json::array())},
                        {"colliding_points", run.at("colliding_points")},
                        {"ignored", ignored_of(run.at("ignored"))},
                        {"floor", run.value("floor", ordered_json())},

@@ -120,18 +120,18 @@ inline constexpr const char* kLockName = "lock";
 /// exactly one of these.
 enum class Outcome {
   kConflict,
-  kUndecided,  ///< a collision is neither certain nor excluded
-  kDoubtful,   ///< clear, but there were warnings
+  kUndecided,  ///< a collision is neither certain nor excluded, or the question is in doubt
+  kClearWithWarnings,
   kClear,
   kFailed,
   kUnfinished
 };
-inline constexpr std::array kOutcomes{Outcome::kConflict, Outcome::kUndecided,
-                                      Outcome::kDoubtful, Outcome::kClear,
-                                      Outcome::kFailed,   Outcome::kUnfinished};
+inline constexpr std::array kOutcomes{
+    Outcome::kConflict, Outcome::kUndecided, Outcome::kClearWithWarnings,
+    Outcome::kClear,    Outcome::kFailed,    Outcome::kUnfinished};
 
 struct OutcomeWords {
-  /// The name in JSON, and as a class of the style sheet, for example "doubtful".
+  /// The name in JSON, and as a class of the style sheet, for example "not_done".
   const char* name;
   /// A character that shows the outcome without colour.
   const char* sign;
@@ -184,11 +184,12 @@ std::string ledger_words(const nlohmann::ordered_json& ledger);
 /// The sums of rows and conflicts by status over all runs; null where no run has a ledger.
 nlohmann::ordered_json ledgers_of(const std::vector<TaskLook>& looks);
 
-/// Whether an undecided run could not have found anything.
+/// Whether a run is undecided because its question is in doubt, so that its distances say nothing.
 bool is_in_doubt(const nlohmann::ordered_json& facts);
 
 /// Why a run is undecided, and on how much of the path nobody knows what is there: "points are
-/// near, not scanned on 3.2 m". Empty where nothing of this holds.
+/// near, the question is in doubt (model-unit), not scanned on 3.2 m". Empty where nothing of this
+/// holds.
 std::string open_words(const nlohmann::ordered_json& facts, const std::string& unit);
 
 /// For example "1,234 points ignored, of which 56 would collide"; empty where none is ignored.

@@ -16,6 +16,7 @@
 #include "core/describe/query.hpp"
 #include "core/describe/seen.hpp"
 #include "core/query/ignored_points.hpp"
+#include "core/query/verdict_words.hpp"
 #include "core/util/format.hpp"
 #include "findings/conflict_rank.hpp"
 #include "io/files/json.hpp"
@@ -486,12 +487,28 @@ std::uint64_t shown_cubes(const UnseenGroups& unseen, const UnseenGroup& group) 
       1, static_cast<std::uint64_t>(static_cast<double>(group.cubes) * share));
 }
 
+namespace {
+
+/// The verdict and its reasons in the words that other outputs have.
+void add_words(Json& out, const Answer& answer) {
+  const std::vector<std::string> doubts = answer.doubts();
+  out["verdict_words"] = verdict_words(answer.verdict(), !answer.warnings.empty());
+  out["reason_words"] = Json::array();
+  for (const Reason reason : answer.reasons()) {
+    out["reason_words"].push_back(
+        reason == Reason::kQuestionInDoubt ? doubt_words(doubts) : reason_words(reason, doubts));
+  }
+}
+
+}  // namespace
+
 std::string json_of(const ReportFacts& facts) {
   const Answer& answer = facts.answer;
   Json out = page_head(facts.options, facts.title);
   out["verdict"] = name_of(answer.verdict());
   out["reasons"] = names_of(answer.reasons());
   out["doubts"] = answer.doubts();
+  add_words(out, answer);
   add_budget(out, answer);
   if (answer.seen) out["seen"] = json_of(*answer.seen, facts);
   out["colliding_points"] = facts.result.size();

@@ -39,8 +39,13 @@ std::string extent_words(const SectionData& section) {
                             : "at all " + counted(section.poses, "pose") + " of the path";
 }
 
+/// The verdict on a load that passes.
+std::string passes_words(const SectionData& section) {
+  return section.warnings.empty() ? "passes: " : "passes with warnings: ";
+}
+
 /// The warnings of a section, as the end of a sentence.
-std::string doubt_words(const SectionData& section) {
+std::string warning_words(const SectionData& section) {
   const std::size_t warned = section.warnings.size();
   return warned == 0 ? "" : ". The section has " + counted(warned, "warning");
 }
@@ -55,20 +60,21 @@ std::string stop_words(const SectionStop& stop, const SectionData& section) {
 
 std::string verdict_sentence(const SectionCheck& check, const SectionData& section, double margin) {
   const std::string unit = section_unit(section);
-  const std::string doubts = doubt_words(section);
+  const std::string warnings = warning_words(section);
   const std::string kept = margin > 0 ? " with a margin of " + format_brief(margin) + " " + unit
                            : section.parameters.margin > 0 ? " without a margin"
                                                            : "";
   switch (check.verdict) {
     case SectionVerdict::kPasses:
-      return "passes: the load passes " + extent_words(section) + kept + doubts;
+      return passes_words(section) + "the load passes " + extent_words(section) + kept + warnings;
     case SectionVerdict::kStopped:
       return "stopped: the load is stopped" + kept + " " + stop_words(*check.stop, section) +
-             ", and in " + counted(check.stops.size(), "stretch", "stretches") + " in all" + doubts;
+             ", and in " + counted(check.stops.size(), "stretch", "stretches") + " in all" +
+             warnings;
     case SectionVerdict::kUnknown:
       break;
   }
-  return "unknown: " + check.reason + doubts;
+  return "unknown: " + check.reason + warnings;
 }
 
 namespace {
@@ -90,23 +96,23 @@ std::string judged_words(const OutlineTableCheck& check) {
 }  // namespace
 
 std::string table_sentence(const OutlineTableCheck& check, const SectionData& section) {
-  const std::string doubts = doubt_words(section);
+  const std::string warnings = warning_words(section);
   switch (check.verdict) {
     case SectionVerdict::kPasses:
-      return "passes: the outlines of " + judged_words(check) + " pass " + extent_words(section) +
-             doubts;
+      return passes_words(section) + "the outlines of " + judged_words(check) + " pass " +
+             extent_words(section) + warnings;
     case SectionVerdict::kStopped: {
       const OutlineRowCheck& row = check.rows[check.stop->row];
       std::set<std::uint32_t> bins;
       for (const SectionStop& stop : check.stops) bins.insert(stop.bin);
       return "stopped: the outline of line " + std::to_string(row.line) + ", " + row.file.string() +
              ", is stopped " + stop_words(*check.stop, section) + ". A load is stopped in " +
-             counted(bins.size(), "stretch", "stretches") + " in all" + doubts;
+             counted(bins.size(), "stretch", "stretches") + " in all" + warnings;
     }
     case SectionVerdict::kUnknown:
       break;
   }
-  return "unknown: " + check.reason + doubts;
+  return "unknown: " + check.reason + warnings;
 }
 
 std::string row_words(const OutlineRowCheck& check, const SectionData& section) {
@@ -208,8 +214,7 @@ std::string widths_sentence(const Section& section, const SectionHeights& height
   out += to_the_top ? ". Heights end with the window"
                     : ". Higher loads are stopped in the very middle";
   out += below;
-  const std::size_t warned = data.warnings.size();
-  return warned == 0 ? out : out + ". The section has " + counted(warned, "warning");
+  return out + warning_words(data);
 }
 
 }  // namespace clearway

@@ -33,6 +33,7 @@
 #include "core/util/tsan_annotations.hpp"
 #include "findings/check_conflicts.hpp"
 #include "io/files/thread_limit.hpp"
+#include "io/result/answer.hpp"
 #include "io/result/result.hpp"
 #include "search/check_corridor.hpp"
 #include "search/checks/query_warnings.hpp"
@@ -383,6 +384,7 @@ class ShiftSearch {
               const ShiftOptions& options, const ShiftCandidates& candidates, Progress& progress)
       : session_(session),
         reader_(result.reader()),
+        run_(counted_answer(reader_)),
         query_(query),
         options_(options),
         candidates_(candidates),
@@ -500,11 +502,17 @@ class ShiftSearch {
   /// points that may stand in the way.
   Found find(StretchShift row, std::uint64_t rank, std::span<const Vec3> points = {}) const {
     const PoseRange stretch = range_of(row);
+    Found found{std::move(row), candidates_.size()};
+    found.row.warned_of = doubts_of_run(stretch);
+    if (!found.row.warned_of.empty()) {
+      progress_.advance(1);
+      return found;
+    }
     ShiftedQuery moved(query_, asked_, lower_, stretch, moving_.left);
     ObstaclePoints obstacles(moving_, stretch, asked_.radius, asked_.between_poses, options_);
     obstacles.add(known_points(stretch));
     obstacles.add(points);
-    Found found{std::move(row)};
+    std::vector<std::string> doubts;
     for (; rank < candidates_.size(); ++rank) {
       throw_if_stopped(progress_);
       const double shift = candidates_.at(rank);
@@ -513,6 +521,10 @@ class ShiftSearch {
       ++found.row.searches;
       const SessionAnswer answer = session_.search(moved.at(shift), question());
       if (answer.collisions().size() == 0) {
+        if (answer.is_in_doubt()) {
+          if (doubts.empty()) doubts = answer.doubts();
+          continue;
+        }
         if (!answer.warnings.empty()) found.row.warned_of = new_warnings(answer, moved, shift);
         break;
       }
@@ -525,6 +537,8 @@ class ShiftSearch {
     if (rank < candidates_.size()) {
       found.row.shift = candidates_.at(rank);
       if (!moved.is_empty()) found.row.least_distance = least_distance(moved, *found.row.shift);
+    } else {
+      found.row.warned_of = std::move(doubts);
     }
     progress_.advance(1);
     return found;
@@ -533,6 +547,24 @@ class ShiftSearch {
   /// Codes of the warnings that nothing, or no ground, was scanned at a place.
   static constexpr std::array<std::string_view, 4> kOfPlace{"floats", "leaves-scan",
                                                             "nothing-below", "out-of-reach"};
+
+  /// The codes of the warnings that put a stretch in doubt wherever it is shifted, because the run
+  /// gave them and they are not about a place.
+  std::vector<std::string> doubts_of_run(PoseRange stretch) const {
+    std::set<std::string> codes;
+    for (const Message& warning : run_.warnings) {
+      if (std::ranges::find(kOfPlace, warning.code) != kOfPlace.end()) continue;
+      const Doubt doubt = run_.doubt_of(warning);
+      const auto meets = [&](const PoseRange& poses) {
+        return poses.first <= stretch.last && stretch.first <= poses.last;
+      };
+      if (doubt == Doubt::kQuestion ||
+          (doubt == Doubt::kStretch && std::ranges::any_of(warning.stretches, meets))) {
+        codes.insert(warning.code);
+      }
+    }
+    return {codes.begin(), codes.end()};
+  }
 
   /// The codes of place that the checks give at a shift and not without it. answer: that of the
   /// shift.
@@ -586,6 +618,7 @@ class ShiftSearch {
 
   const Session& session_;
   const ResultReader& reader_;
+  const Answer run_;  ///< of the run whose result it is
   const Query& query_;
   const ShiftOptions& options_;
   const ShiftCandidates& candidates_;

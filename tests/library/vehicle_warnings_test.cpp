@@ -78,3 +78,20 @@ TEST_CASE("a vehicle is warned of as a whole") {
     CHECK(codes == row.codes);
   }
 }
+
+TEST_CASE("one body in another unit puts the answer about the vehicle in doubt") {
+  const ScratchFolder folder;
+  road_along(road_path(0, 100, 0.1)).convert_to(folder / "road.h5");
+  const Store store(folder / "road.h5");
+  for (const double factor : {1000.0, 1.0}) {
+    Asked asked;
+    for (Vec3& p : asked.bodies[0].model.vertices) p = {factor * p.x, factor * p.y, factor * p.z};
+    Query query({}, asked.path, {.radius = 0.1});
+    query.bodies = asked.bodies;
+    const SearchReport report = search(store, query, folder / "result.h5",
+                                       {.device = Device::kCpu, .threads = 2, .overwrite = true});
+    CHECK(report.verdict() == (factor > 1 ? Verdict::kUndecided : Verdict::kClear));
+    check_equal(report.doubts(),
+                factor > 1 ? std::vector<std::string>{"model-unit"} : std::vector<std::string>{});
+  }
+}

@@ -27,10 +27,12 @@
 #include "cli/support/program.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
+#include "core/query/verdict_words.hpp"
 #include "core/util/format.hpp"
 #include "findings/ledger/ledger_date.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/models/vehicle_file.hpp"
+#include "io/result/answer.hpp"
 #include "io/result/conflicts/shift_file.hpp"
 #include "io/store/file_kind.hpp"
 #include "report/write_report.hpp"
@@ -123,7 +125,10 @@ void log_summary(const ReportCommand& options, const ReportSummary& summary, con
     conflicts += (found.listed.empty() ? " that is listed, but " : " and ") +
                  counted(found.small_groups, "group") + " too small to be listed";
   }
-  spdlog::info("{}: {}, {}, {}, {}", options.outputs.front().string(), name_of(summary.verdict),
+  const bool is_warned_of =
+      !options.report.warnings.empty() || !counted_answer(result.reader()).warnings.empty();
+  spdlog::info("{}: {}, {}, {}, {}", options.outputs.front().string(),
+               verdict_words(summary.verdict, is_warned_of),
                counted(result.size(), "colliding point"), conflicts, format_size(summary.bytes));
   if (!result.parameters().first_pose) {
     spdlog::info(

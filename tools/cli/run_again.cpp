@@ -38,7 +38,7 @@ std::string reading_options(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     const std::string name = name_of(*option);
     const CLI::Option* same = name.empty() ? nullptr : run.get_option_no_throw(name);
-    if (same == nullptr || option->empty() || name == "--vehicle") continue;
+    if (same == nullptr || !is_given(*option) || name == "--vehicle") continue;
     // Here they say how the model is seen, and to a run how it is turned.
     if (name == "--forward" || name == "--up") continue;
     constexpr std::array kGroups{OptionGroup::kModel, OptionGroup::kPath, OptionGroup::kUnits};
@@ -46,7 +46,7 @@ std::string reading_options(const CLI::App& command) {
         kGroups, [same](OptionGroup group) { return same->get_group() == title_of(group); });
     if (!reads) continue;
     text += " " + name;
-    if (option->get_items_expected_max() == 0) continue;
+    if (is_flag(*option)) continue;
     for (const std::string& value : option->results()) text += " " + shell_word(value);
   }
   return text;

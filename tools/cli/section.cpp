@@ -134,7 +134,7 @@ void run_find(FindCommand& options) {
                  format_brief((*report.motion)[0]), unit, format_brief((*report.motion)[1]), unit);
   }
   const std::string doubts =
-      report.warnings.empty() ? "" : ", but see the " + counted(report.warnings.size(), "warning");
+      report.warnings.empty() ? "" : "; see the " + counted(report.warnings.size(), "warning");
   const std::string unknown =
       !report.seen ? ""
                    : ", and " + format_count(report.seen->unknown) +

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "cli/support/console.hpp"
 #include "cli/support/ignored_options.hpp"
@@ -12,6 +13,7 @@
 #include "core/describe/seen.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/query/spacing_text.hpp"
+#include "core/query/verdict_words.hpp"
 #include "core/trajectory/pose_ranges.hpp"
 #include "core/util/format.hpp"
 #include "io/files/json.hpp"
@@ -146,22 +148,23 @@ std::string finding_with_budget(const Answer& answer, const PathWords& path,
   const std::string points = counted(answer.colliding_points, "point is", "points are") +
                              " closer than the margin and " + format_count(answer.near_points) +
                              " more closer than " + within;
+  const std::string name = verdict_words(answer.verdict(), !answer.warnings.empty());
   std::string text;
   switch (answer.verdict()) {
     case Verdict::kClear:
-      return "clear" + ignored + ": no " + (ignored.empty() ? "environment" : "other") +
+      return name + ignored + ": no " + (ignored.empty() ? "environment" : "other") +
              " point is closer than " + within + " to the model on its way";
     case Verdict::kUnknown:
       return "of this part " + points + ignored;
     case Verdict::kUndecided: {
       std::vector<std::string> reasons;
       for (const Reason reason : answer.reasons()) reasons.emplace_back(name_of(reason));
-      text = fmt::format("undecided ({})", fmt::join(reasons, ", ")) + ignored + ": " + points;
+      text = fmt::format("{} ({})", name, fmt::join(reasons, ", ")) + ignored + ": " + points;
+      if (answer.is_in_doubt()) text += "; " + doubt_words(answer.doubts());
       break;
     }
     case Verdict::kConflict:
-      text = "conflict" + ignored + ": " +
-             counted(answer.certain.points, "point is", "points are") +
+      text = name + ignored + ": " + counted(answer.certain.points, "point is", "points are") +
              " certainly too close, even with " + format_brief(budget.conflict()) + " " + unit +
              " of errors; " + points;
       break;
@@ -181,21 +184,20 @@ std::string finding_text(const Answer& answer, const PathWords& path, const std:
   const std::string ignored = ignored_clause(answer) + floor_clause(answer, unit);
   const std::string none = std::string("no ") + (ignored.empty() ? "environment" : "other") +
                            " point is closer than " + limit + " to the model on its way";
+  const std::string name = verdict_words(answer.verdict(), !answer.warnings.empty());
   switch (answer.verdict()) {
     case Verdict::kClear:
-      return "clear" + ignored + ": " + none;
+      return name + ignored + ": " + none;
     case Verdict::kUndecided:
-      if (!answer.is_in_doubt()) return "undecided (not-scanned)" + ignored + ": " + none;
-      return std::string("undecided, because ") +
-             (answer.is_not_scanned() ? "places were not scanned and " : "") +
-             "the question is in doubt (" + fmt::format("{}", fmt::join(answer.doubts(), ", ")) +
-             ")" + ignored + ": " + none;
+      if (!answer.is_in_doubt()) return name + " (not-scanned)" + ignored + ": " + none;
+      return name + ", because " + (answer.is_not_scanned() ? "places were not scanned and " : "") +
+             doubt_words(answer.doubts()) + ignored + ": " + none;
     case Verdict::kUnknown:
       return "no point of this part is closer than " + limit + " to the model on its way" + ignored;
     case Verdict::kConflict:
       break;
   }
-  std::string text = "conflict" + ignored + ": " +
+  std::string text = name + ignored + ": " +
                      counted(answer.colliding_points, "point is", "points are") + " closer than " +
                      limit + " to the model on its way";
   if (answer.first_place) {
@@ -242,20 +244,17 @@ ordered_json depth_json(const Answer& answer) {
           {"z", deepest.xyz.z}};
 }
 
-/// The poses of all stretches on which the answer's warnings say that nothing could be found.
-std::vector<PoseRange> stretches_in_doubt(const Answer& answer) {
-  std::vector<PoseRange> all;
-  for (const Message& warning : answer.warnings) {
-    if (answer.doubt_of(warning) != Doubt::kStretch) continue;
-    all.insert(all.end(), warning.stretches.begin(), warning.stretches.end());
-  }
-  return united_ranges(std::move(all));
-}
-
 /// A clause that says on how much of the path nothing could be found; empty where that is nowhere.
 std::string doubt_clause(const Answer& answer, const PathWords& path, const std::string& unit) {
-  const std::vector<PoseRange> stretches = stretches_in_doubt(answer);
+  std::vector<PoseRange> stretches;
+  std::set<std::string> codes;
+  for (const Message& warning : answer.warnings) {
+    if (answer.doubt_of(warning) != Doubt::kStretch) continue;
+    stretches.insert(stretches.end(), warning.stretches.begin(), warning.stretches.end());
+    codes.insert(warning.code);
+  }
   if (stretches.empty()) return "";
+  stretches = united_ranges(std::move(stretches));
   std::string text = "; on " + counted(stretches.size(), "stretch", "stretches") + " of the path";
   if (!path.chainage.empty()) {
     double length = 0;
@@ -264,7 +263,7 @@ std::string doubt_clause(const Answer& answer, const PathWords& path, const std:
     }
     text += fmt::format(", {:.2f} {} in all,", length, unit);
   }
-  return text + fmt::format(" nothing could be found ({})", fmt::join(answer.doubts(), ", "));
+  return text + fmt::format(" nothing could be found ({})", fmt::join(codes, ", "));
 }
 
 /// A clause that says on how much of the path the vehicle was searched, since bodies on pivots have
@@ -312,7 +311,7 @@ std::string found_text(std::uint64_t colliding_points, std::uint64_t environment
 
 std::string caveat_of(std::size_t warnings) {
   if (warnings == 0) return "";
-  return ", but see the " + (warnings == 1 ? "warning" : std::to_string(warnings) + " warnings") +
+  return "; see the " + (warnings == 1 ? "warning" : std::to_string(warnings) + " warnings") +
          " above";
 }
 
@@ -358,7 +357,7 @@ std::string unseen_text(const UnseenGroups& unseen, const Answer& answer, const 
 
 std::string warned_text(const Answer& answer) {
   const std::vector<std::string> codes = answer.warned_of();
-  return codes.empty() ? "" : fmt::format(", but its run warned of {}", fmt::join(codes, ", "));
+  return codes.empty() ? "" : fmt::format("; its run warned of {}", fmt::join(codes, ", "));
 }
 
 std::string verdict_to_repeat(const ResultReader& result, const PathWords& path,
@@ -387,13 +386,7 @@ void repeat_warnings(const ResultReader& result, const std::string& prefix) {
     spdlog::warn("{}: its verdict is undecided ({})", result.name(), fmt::join(reasons, ", "));
     return;
   }
-  const bool everywhere = std::ranges::any_of(answer.warnings, [&](const Message& warning) {
-    return answer.doubt_of(warning) == Doubt::kQuestion;
-  });
-  spdlog::warn(
-      "{}: its verdict is undecided, because the run warned of {}: nothing collides, but nothing "
-      "could be found either{}",
-      result.name(), fmt::join(doubts, ", "), everywhere ? "" : " on a part of the path");
+  spdlog::warn("{}: its verdict is undecided, because {}", result.name(), doubt_words(doubts));
 }
 
 void add_searched(const SearchedLength& searched, ordered_json& out) {
@@ -414,6 +407,7 @@ void add_answer(const Answer& answer, const PathWords& path, ordered_json& out) 
   out["profile_poses"] = answer.profile_poses;
   out["verdict"] = name_of(answer.verdict());
   out["reasons"] = names_of(answer.reasons());
+  out["doubts"] = answer.doubts();
   out["margins"] = margins_json(answer);
   if (answer.budget) {
     out["near_points"] = answer.near_points;

@@ -23,8 +23,8 @@ struct PathWords {
 /// Says how many points collide: "3 of 2,001 environment points collide".
 std::string found_text(std::uint64_t colliding_points, std::uint64_t environment_points);
 
-/// A clause such as ", but see the 2 warnings above", so that no all-clear stands alone where
-/// there were warnings. Empty without warnings.
+/// A clause such as "; see the 2 warnings above", so that no verdict stands alone where there were
+/// warnings. Empty without warnings.
 std::string caveat_of(std::size_t warnings);
 
 /// The verdict in one sentence, with `caveat` before its end. unit: the symbol of lengths, "m".
@@ -37,7 +37,7 @@ std::string verdict_text(const Answer& answer, const PathWords& path, const std:
 std::string unseen_text(const UnseenGroups& unseen, const Answer& answer, const std::string& unit);
 
 /// A clause with the codes of what the run of a result warned of, as far as the result keeps them,
-/// such as ", but its run warned of leaves-scan"; empty where there are none.
+/// such as "; its run warned of large-steps"; empty where there are none.
 std::string warned_text(const Answer& answer);
 
 /// The verdict of an existing result, in one sentence; empty where points collide and none was
@@ -45,9 +45,9 @@ std::string warned_text(const Answer& answer);
 std::string verdict_to_repeat(const ResultReader& result, const PathWords& path,
                               const std::string& unit);
 
-/// Repeats the warnings of the run of a result. Then warns where its verdict is undecided, or
-/// nothing could be found on a part of the path, so that nobody takes an empty list for an
-/// all-clear, or a short one for all that collides. For commands that do not word the verdict.
+/// Repeats the warnings of the run of a result. Then warns where its verdict is undecided, or a
+/// conflict is in doubt, so that nobody takes an empty list for an all-clear, or a short one for
+/// all that collides. For commands that do not word the verdict.
 /// prefix: text before each warning of the run, such as the name of the result.
 void repeat_warnings(const ResultReader& result, const std::string& prefix = {});
 
@@ -66,7 +66,7 @@ void add_inside(const Answer& answer, nlohmann::ordered_json& out);
 void add_searched(const SearchedLength& searched, nlohmann::ordered_json& out);
 
 /// Adds an answer to a report: the keys poses, colliding_points, clearance_points, profile_poses,
-/// verdict, reasons, margins, seen, path_length and its parts,
+/// verdict, reasons, doubts, margins, seen, path_length and its parts,
 /// shard, ignored, points_inside, greatest_depth, least_clearance, least_profile,
 /// first_place and depth.
 void add_answer(const Answer& answer, const PathWords& path, nlohmann::ordered_json& out);

@@ -42,7 +42,7 @@ details.note summary { cursor: pointer; }
 details.note ul { margin: 0.2rem 0 0; padding-left: 1.2rem; }
 .sign { display: inline-block; width: 1.1em; text-align: center; font-weight: 700; }
 .conflict { --back: #fbdccf; --front: #8a2404; --edge: #b4330a; }
-.doubtful { --back: #fff3cd; --front: #6b4700; --edge: #a16207; }
+.clear_with_warnings { --back: #fff3cd; --front: #6b4700; --edge: #a16207; }
 .undecided { --back: #e9e3f8; --front: #4a2a8a; --edge: #7c5cc4; }
 .clear { --back: #e3f4ef; --front: #005645; --edge: #9fd3c4; }
 .failed { --back: #3f4652; --front: #fff; --edge: #111827; }
@@ -123,13 +123,11 @@ std::string link_text(const std::string& path) {
   return link;
 }
 
-/// The word in a cell: "conflict", "undecided", "clear", "clear?" where there were warnings,
-/// "failed (3)", or the name of the task's status, such as "missing".
+/// The word in a cell: "conflict", "undecided", "clear", "clear with warnings", "failed (3)", or
+/// the name of the task's status, such as "missing".
 std::string cell_word(const TaskLook& look) {
   const Outcome outcome = outcome_of(look);
   switch (outcome) {
-    case Outcome::kDoubtful:
-      return "clear?";
     case Outcome::kFailed:
       return "failed (" + std::to_string(look.state->exit_code) + ")";
     case Outcome::kUnfinished:
@@ -321,7 +319,7 @@ class CampaignPage {
     };
     add(Outcome::kConflict, "finds a conflict", "find a conflict");
     add(Outcome::kUndecided, "is undecided", "are undecided");
-    add(Outcome::kDoubtful, "is clear with warnings", "are clear with warnings");
+    add(Outcome::kClearWithWarnings, "is clear with warnings", "are clear with warnings");
     add(Outcome::kClear, "is clear", "are clear");
     add(Outcome::kFailed, "has failed", "have failed");
     add(Outcome::kUnfinished, "is not done", "are not done");

@@ -41,7 +41,8 @@ inline constexpr std::tuple kShiftColumns = std::tuple_cat(
             .member = &StretchShift::warned_of,
             .key = "warned_of",
             .doc = "The codes of the warnings that a run along the shifted stretch causes and one "
-                   "along the stretch as it is does not, such as 'leaves-scan': a list of str.",
+                   "along the stretch as it is does not, such as 'nothing-below'; without a shift, "
+                   "those that put in doubt every shift at which nothing collides: a list of str.",
             .is_in_files = false}});
 
 }  // namespace clearway

@@ -10,6 +10,8 @@
 
 #include "clearway/answer.hpp"
 #include "clearway/error.hpp"
+#include "clearway/file_unit.hpp"
+#include "core/query/verdict_words.hpp"
 #include "core/section/section_intrusions.hpp"
 #include "core/section/section_lattice.hpp"
 #include "core/section/section_map.hpp"
@@ -287,10 +289,11 @@ std::vector<SectionStop> first_places(const SectionCells& all, SectionBinRange b
 }  // namespace
 
 std::string doubt_about(const SectionData& section) {
+  std::set<std::string> codes;
   for (const Message& warning : section.warnings) {
-    if (is_doubt(warning.code)) return "the section is in doubt (" + warning.code + ")";
+    if (is_doubt(warning.code)) codes.insert(warning.code);
   }
-  return "";
+  return codes.empty() ? "" : doubt_words(std::vector(codes.begin(), codes.end()));
 }
 
 namespace {
@@ -318,6 +321,14 @@ std::string doubt_about_stretches(const SectionData& section, SectionBinRange bi
     listed += (listed.empty() ? "" : ", ") + std::string(code);
   }
   return listed.empty() ? "" : "on stretches of the path nothing could be found (" + listed + ")";
+}
+
+/// Whether an outline is too small for any load, as in another unit; see "model-unit" of a model.
+bool is_tiny(const Square& outline, const SectionFacts& section) {
+  constexpr double kSmallest = 0.01;  // metres
+  const bool feet = section.length_unit.ends_with("foot");
+  const double side = std::max(outline.y_to - outline.y_from, outline.z_to - outline.z_from);
+  return side * (feet ? kMetresPerFoot : 1) < kSmallest;
 }
 
 }  // namespace
@@ -375,6 +386,10 @@ SectionCheck Section::check(std::span<const OutlinePoint> outline,
   } else if (box.y_from - edge < lattice.j_from * g || box.y_to + edge > lattice.j_to * g ||
              box.z_from - edge < lattice.k_from * g || box.z_to + edge > lattice.k_to * g) {
     check.reason = "the load with its margin leaves the window of the section";
+  } else if (check.reason.empty() && is_tiny(box, data_)) {
+    check.reason = "the outline is " + format_brief(box.y_to - box.y_from) + " wide and " +
+                   format_brief(box.z_to - box.z_from) +
+                   " high, so its unit is probably another one";
   } else if (check.reason.empty() && !check.unknowns.empty()) {
     check.reason = "no beam of the scanner crossed a place that the load needs, first at pose " +
                    std::to_string(check.unknowns.front().first_pose) + ", " +

@@ -37,7 +37,7 @@ double base_of(const SectionLattice& lattice, const SectionHeights& heights) {
 
 std::vector<Rows> rows_of_bands(const Section& section, const SectionHeights& heights) {
   const std::string doubt = doubt_about(section.data());
-  if (!doubt.empty()) throw UsageError(doubt + ", so that it has no widths");
+  if (!doubt.empty()) throw UsageError("the section has no widths, because " + doubt);
   const SectionLattice lattice = lattice_of(section.data());
   const double g = lattice.cell;
   double band = heights.band;

@@ -23,11 +23,11 @@ function removePart(id) {
 }
 
 /** The answer. kind: clear, conflict, undecided, or plain for an answer without a sign. lines: elements below the word. */
-function answerBanner({ kind, word, doubtful, lines }) {
-  const sign = doubtful ? doubtSymbol() : kind !== "plain" && verdictSymbol(kind);
-  return make("div", { class: `banner ${doubtful ? "doubt" : kind}` }, sign,
-      make("div", { class: "words" },
-           make("h2", { id: "verdict-word" }, doubtful ? `${word}, but doubtful` : word), lines));
+function answerBanner({ kind, word, lines }) {
+  const warned = kind === "clear" && word.endsWith("with warnings");
+  const sign = warned ? warningSymbol() : kind !== "plain" && verdictSymbol(kind);
+  return make("div", { class: `banner ${warned ? "warned" : kind}` }, sign,
+      make("div", { class: "words" }, make("h2", { id: "verdict-word" }, word), lines));
 }
 
 /** "See 2 warnings below." lead: its first words. */

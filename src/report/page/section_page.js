@@ -4,10 +4,11 @@ const kSectionVerdicts = { passes: ["Passes", "clear"], stopped: ["Stopped", "co
 
 function buildAnswer() {
   const { check, sentence } = section.facts, { warnings } = page.facts;
-  const [word, kind] = check ? kSectionVerdicts[check.verdict] : ["Largest load", "plain"];
+  const [name, kind] = check ? kSectionVerdicts[check.verdict] : ["Largest load", "plain"];
+  const word = kind === "clear" && warnings.length > 0 ? `${name} with warnings` : name;
   const text = check ? sentence.slice(sentence.indexOf(": ") + 2) : sentence;
   byId("verdict-body").append(
-      answerBanner({ kind, word, doubtful: kind === "clear" && warnings.length > 0, lines: [
+      answerBanner({ kind, word, lines: [
         make("p", { id: "answer" }, `${capital(text)}.`), seeWarnings("See", warnings)] }),
       warningsList(warnings.map((w) => `${capital(w.message)}.`)), loadBox());
 }

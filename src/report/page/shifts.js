@@ -21,10 +21,12 @@ function triedWords() {
 /** "0.12 m to the left". */
 const shiftWords = (shift) => `${+Math.abs(shift).toPrecision(6)} ${unitSymbol} to the ${shift > 0 ? "left" : "right"}`;
 
+const inDoubtWords = (codes) => `is known to free it, because the question is in doubt (${codes.join(", ")})`;
+
 /** "0.12 m to the left between 14.9 and 15.8 m". */
 function freedWords(conflict) {
-  const { shift, least_distance: least } = freedBy.get(conflict.id);
-  if (shift === null) return `no shift ${triedWords()} frees it`;
+  const { shift, least_distance: least, warned_of: codes } = freedBy.get(conflict.id);
+  if (shift === null) return `no shift ${triedWords()} ${codes.length > 0 ? inDoubtWords(codes) : "frees it"}`;
   const [from, to] = [conflict.chainage_from, conflict.chainage_to].map((c) => c.toFixed(1));
   const where = from === to ? `at ${from} ${unitSymbol}` : `between ${from} and ${to} ${unitSymbol}`;
   return `${shiftWords(shift)} ${where}${least === null ? "" : `, which leaves ${metres(least)}`}`;
@@ -35,10 +37,10 @@ function freedNote() {
   const { shifts } = page.facts;
   if (!shifts) return "";
   const freed = shifts.list.filter((row) => row.shift !== null).length;
-  const { shift } = shifts.path;
+  const { shift, warned_of: codes } = shifts.path;
   const path = shift === 0 ? " The path is free as it is."
       : shift !== null ? ` A shift of the whole path by ${shiftWords(shift)} frees all of it.`
-      : ` No shift ${triedWords()} frees the whole path.`;
+      : ` No shift ${triedWords()} ${codes.length > 0 ? inDoubtWords(codes) : "frees the whole path"}.`;
   if (shifts.list.length === 0) return path;
   return `${path} Where the table says what frees a conflict, the vehicle touches nothing at all between its first ` +
       `and its last touch if it is shifted by so much there: ${count(freed)} of ` +

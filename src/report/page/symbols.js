@@ -1,13 +1,13 @@
 // Signs beside a verdict, and the steps of axes, which several parts of a page draw.
 
-function doubtSymbol() {
+function warningSymbol() {
   return make("svg", { viewBox: "0 0 64 64", class: "sign", "aria-hidden": "true" },
               make("polygon", { points: "32,4 62,58 2,58", fill: "currentColor" }),
               make("path", { d: "M32 22 V41 M32 47 V52", stroke: "#fff", "stroke-width": 6 }));
 }
 
 function verdictSymbol(verdict) {
-  if (verdict === "undecided") return doubtSymbol();
+  if (verdict === "undecided") return warningSymbol();
   return verdict === "clear"
       ? make("svg", { viewBox: "0 0 64 64", class: "sign", "aria-hidden": "true" },
              make("circle", { cx: 32, cy: 32, r: 30, fill: "currentColor" }),

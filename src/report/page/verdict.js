@@ -1,5 +1,3 @@
-const kVerdictWords = { clear: "Clear", conflict: "Conflict", undecided: "Undecided" };
-
 function tile(value, label, action) {
   const content = [make("strong", {}, value), make("span", {}, label, action ?
       make("span", { class: "on-screen" }, ". Show it") : null)];
@@ -155,16 +153,8 @@ function spacingSentence({ query: { radius }, inputs: { model: { spacing } } }) 
          `${shortLength(spacing)} from one of them, so the surface may ${closest}.`;
 }
 
-const kReasonWords = {
-  "near": "points are near",
-  "few": "too few of those that are certainly too close hang together",
-  "errors-exceed-margin": "the errors exceed the margin, so that no surface can be a certain conflict",
-  "not-scanned": "parts of the way were not scanned",
-  "question-in-doubt": "the question is in doubt",
-};
-
 /** The first sentence about a result with an error budget. */
-function budgetSentence({ verdict, margins, query, reasons, ...facts }) {
+function budgetSentence({ verdict, margins, query, reason_words: reasons, ...facts }) {
   const radius = shortLength(query.radius), all = shortLength(query.radius + margins.clear);
   const sure = `${shortLength(margins.clear)} of errors`;
   if (verdict === "clear") {
@@ -182,7 +172,7 @@ function budgetSentence({ verdict, margins, query, reasons, ...facts }) {
            `${facts.certain_points === 1 ? "is" : "are"} certainly too close, even with ` +
            `${shortLength(margins.conflict)} of errors. ${found}`;
   }
-  return `Undecided: ${reasons.map((r) => kReasonWords[r]).join("; ")}. ${found}`;
+  return `Undecided: ${reasons.join("; ")}. ${found}`;
 }
 
 /** The part of a normal distribution that lies beyond so many standard deviations on one side. */
@@ -268,8 +258,8 @@ function whatDecides() {
         "conflict: make the errors smaller, or search a closed mesh with --model-as solid.",
     "not-scanned": () => `Places were not scanned: see ${groupName(unseenGroups()[0])}` +
         `${unseenGroups().length > 1 ? " and others" : ""} below, each with what to do about it.`,
-    "question-in-doubt": () => "The question is in doubt: correct what the warnings name and run it again, or have the " +
-        "stretches of the path that they name scanned or looked at.",
+    "question-in-doubt": () => `The question is in doubt: correct what the warnings ${facts.doubts.join(", ")} name and ` +
+        "run it again, or have the stretches of the path that they name scanned or inspected.",
   };
   return make("div", { class: "basis", id: "decides" }, make("h3", {}, "What would decide it"),
               make("ul", {}, facts.reasons.map((reason) => make("li", {}, words[reason]()))));
@@ -313,10 +303,8 @@ function verdictSentences() {
             spacingSentence(facts), leastSentence()];
   }
   if (facts.verdict === "undecided") {
-    const why = facts.reasons.map((r) => kReasonWords[r] +
-        (r === "question-in-doubt" ? ` (${facts.doubts.join(", ")})` : ""));
-    return [`No point${aboveFloor()} was found closer than ${radius} to the vehicle, but ${joined(why)}, so that ` +
-            "is no answer.", leastSentence()];
+    return [`No point${aboveFloor()} was found closer than ${radius} to the vehicle, but ` +
+            `${joined(facts.reason_words)}.`, leastSentence()];
   }
   const where = facts.conflicts ? placesText(facts.conflicts) : "";
   const first = `The environment is closer than ${radius} to the vehicle${where}.${insideText()}`;
@@ -343,14 +331,17 @@ function floorSentence() {
       `${floor.words}, such as points of the ground, and ${one ? "is" : "are"} not judged.`;
 }
 
+/** How many points the search ignored; null where it ignored none. */
+function ignoredSentence() {
+  const { ignored } = page.facts;
+  return ignored === null ? null : `The search ignored ${plural(ignored.points, "point")} of the environment ` +
+      `(${ignored.what}). ${collidingIgnored(ignored)}`;
+}
+
 function cautions() {
   const { facts } = page;
   const out = facts.warnings.map((w) => `${capital(w.message)}.`);
   const { conflicts, inputs, query } = facts;
-  if (facts.ignored !== null) {
-    out.push(`The search ignored ${plural(facts.ignored.points, "point")} of the environment ` +
-             `(${facts.ignored.what}). ${collidingIgnored(facts.ignored)}`);
-  }
   if (conflicts && inputs.trajectory.length > 0 && conflicts.longest_group > 5 &&
       conflicts.longest_group > 0.5 * inputs.trajectory.length) {
     out.push(`One group of touching points goes along ${station(conflicts.longest_group)} of the ` +
@@ -453,18 +444,19 @@ function legend() {
 }
 
 function buildVerdict() {
-  const { facts } = page, clear = facts.verdict === "clear", conflict = facts.verdict === "conflict";
+  const { facts } = page, conflict = facts.verdict === "conflict";
   const [first, second] = verdictSentences(), warned = cautions(), missing = missingParts();
   const searched = searchedSentence(), scanned = scannedSentence(), below = floorSentence();
-  const doubtful = clear && warned.length > 0;
+  const ignored = ignoredSentence();
   byId("verdict-body").append(
-    answerBanner({ kind: facts.verdict, word: kVerdictWords[facts.verdict], doubtful, lines: [
+    answerBanner({ kind: facts.verdict, word: capital(facts.verdict_words), lines: [
           make("p", {}, first), make("p", {}, second),
           ledgerFacts() && make("p", { id: "ledger-sentence" }, ledgerSentence(), ledgerWorstSentence()),
           scanned && make("p", { id: "scanned" }, scanned),
           searched && make("p", { id: "searched" }, searched),
           below && make("p", { id: "below-floor" }, below),
-          seeWarnings(conflict ? "See also" : clear ? "But see" : "See", warned)] }),
+          ignored && make("p", { id: "ignored" }, ignored),
+          seeWarnings(conflict ? "See also" : "See", warned)] }),
     make("div", { class: "tiles" }, scannedTiles(), conflict ? conflictTiles() : clearTiles()),
     warningsList(warned),
     whatDecides(),

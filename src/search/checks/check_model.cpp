@@ -59,23 +59,37 @@ std::string unit_guess(const Question& question) {
   return text.empty() ? "Check its unit" : text;
 }
 
+/// Whether the longest side of what moves is too short for anything that a query is asked about. A
+/// single place, or a load without length, has no side whose unit could be wrong.
+bool is_tiny(double longest, double metre) { return longest > 0 && longest < kSmallest * metre; }
+
+/// The range of a load along the vehicle is the only side of it that is known.
+void warn_of_length(const Question& question, MessageLog& log) {
+  const double length = question.section->front - question.section->rear;
+  const double environment = Sides(question.environment).longest;
+  const bool tiny = is_tiny(length, question.metre);
+  if (!tiny && length <= kLargest * question.metre && length <= environment) return;
+  log.warn(tiny ? WarningCode("model-unit") : WarningCode("model-size"),
+           "the load is " + length_text(length, question.unit) + " long, the environment " +
+               size_text(question.environment, question.unit) +
+               ". Check the unit of its range along the vehicle",
+           {{"model_longest", length}, {"environment_longest", environment}});
+}
+
+/// Warns of a model whose unit is probably another one, which puts the answer in doubt, or else of
+/// one that is only larger or smaller than most vehicles.
 void warn_of_size(const Question& question, MessageLog& log) {
+  if (question.is_load()) return warn_of_length(question, log);
   const Sides model(question.model), environment(question.environment);
   const double metre = question.metre;
   const bool larger = model.longest > environment.longest;
-  const bool huge = model.longest > kLargest * metre || model.shortest > kThickest * metre;
+  const bool thick = model.shortest > kThickest * metre;
+  const bool tiny = is_tiny(question.longest, metre);
+  const bool huge = model.longest > kLargest * metre || thick;
   const double way = path_length(question.query.poses);
   const bool small = question.longest < kSmallest * metre ||
                      (question.longest < kSmallVehicle * metre && way > kLongWay * metre);
   if (!larger && !huge && !small) return;
-  if (question.is_load()) {
-    log.warn("model-size",
-             "the load is " + length_text(model.longest, question.unit) +
-                 " long, the environment " + size_text(question.environment, question.unit) +
-                 ". Check the unit of its range along the vehicle",
-             {{"model_longest", model.longest}, {"environment_longest", environment.longest}});
-    return;
-  }
   std::string text = "the model is " + size_text(question.model, question.unit) +
                      ", the environment " + size_text(question.environment, question.unit) + ". ";
   if (huge) text += unit_guess(question) + (larger ? ". " : "");
@@ -85,7 +99,7 @@ void warn_of_size(const Question& question, MessageLog& log) {
             " long. So small a model touches hardly anything: check its unit, that of the scan, "
             "and that the model is whole";
   }
-  log.warn("model-size", text,
+  log.warn(thick || tiny ? WarningCode("model-unit") : WarningCode("model-size"), text,
            {{"model_longest", model.longest}, {"environment_longest", environment.longest}});
 }
 

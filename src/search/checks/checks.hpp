@@ -35,7 +35,7 @@ void check_holes(const Question& question, const PathLooks& looks, MessageLog& l
 void check_surroundings(const Question& question, const PathLooks& looks, bool floats,
                         MessageLog& log);
 
-/// Warns of a wrong unit or frame of the model: "model-size", "model-origin",
+/// Warns of a wrong unit or frame of the model: "model-unit", "model-size", "model-origin",
 /// "model-is-environment", "scaled-poses", "mirrored-poses", "single-precision".
 void check_model(const Question& question, MessageLog& log);
 

@@ -85,7 +85,12 @@ TEST_CASE("a warning about a stretch puts the verdict in doubt, and one about th
   CHECK(doubt_of(stretch) == Doubt::kStretch);
   CHECK(doubt_of(side) == Doubt::kNone);
   CHECK(doubt_of({Message::Severity::kNote, "leaves-scan", "", {}, {{3, 5}}}) == Doubt::kNone);
-  CHECK(doubt_of({kWarning, "no-points", ""}) == Doubt::kQuestion);
+  for (const char* code : {"no-points", "model-unit", "store-cut-off", "cut-text"}) {
+    CHECK(doubt_of({kWarning, code, ""}) == Doubt::kQuestion);
+  }
+  for (const char* code : {"model-size", "store-lost-digits", "like-degrees"}) {
+    CHECK(doubt_of({kWarning, code, ""}) == Doubt::kNone);
+  }
   Answer answer;
   answer.warnings = {whole, side};
   CHECK(answer.verdict() == Verdict::kClear);

@@ -102,7 +102,8 @@ TEST_CASE("a load that leaves the window or asks for more than the margin is unk
 }
 
 TEST_CASE("a section in doubt lets no load pass") {
-  for (const char* code : {"no-points", "no-poses", "all-ignored", "out-of-reach"}) {
+  for (const char* code :
+       {"no-points", "no-poses", "all-ignored", "out-of-reach", "coarse-digits", "store-cut-off"}) {
     SectionData data = section_of({});
     data.warnings.push_back({Message::Severity::kWarning, code, "text"});
     const Section section(std::move(data));
@@ -111,6 +112,16 @@ TEST_CASE("a section in doubt lets no load pass") {
     check_says(check.reason, code);
     for (const bool free : section.free_cells(0)) CHECK_FALSE(free);
   }
+}
+
+TEST_CASE("an outline in another unit, which is smaller than any load, does not pass") {
+  SectionData data = section_of({});
+  CHECK(Section(data).check(box(-0.0013, 0.0013, 1, 1.004)).verdict == SectionVerdict::kUnknown);
+  CHECK(Section(data).check(box(-0.1, 0.1, 1, 1.02)).verdict == SectionVerdict::kPasses);
+  const auto small = box(-0.01, 0.01, 1, 1.02);
+  CHECK(Section(data).check(small).verdict == SectionVerdict::kPasses);
+  data.length_unit = "us-survey-foot";
+  check_says(Section(data).check(small).reason, "its unit is probably another one");
 }
 
 TEST_CASE("between poses the motion across is kept as a distance, too") {

@@ -81,6 +81,9 @@ TEST_CASE("wrong usage exits with 2") {
       {convert + " --scale -1", 2, "--scale: -1: expected a finite number"},
       {convert + " --scale nan", 2, "--scale"},
       {convert + " --threads 0", 2, "--threads"},
+      {convert + " --force=yes", 2, "--force: yes: expected true, false, 1, 0 or no value"},
+      {"check hall/site.h5 --between-poses=2", 2, "--between-poses: 2: expected true, false"},
+      {"campaign run . --fail-on-collision=0.5", 2, "--fail-on-collision: 0.5: expected true"},
   });
   for (const std::string layout : {"regular", "regular:", "regular:x", "regular:1x", "regular:0",
                                    "regular:nan", "regular:inf", "cubes"}) {

@@ -154,7 +154,7 @@ TEST_CASE("what ignoring points hides is warned of, and what is sound is not") {
   const Outcome plant = warned(kPlant);
   check_says(plant.err,
              "40 of the 40 points ignored (class 3) would collide, and no searched point does");
-  check_says(plant.out, "but see the");
+  check_says(plant.out, "; see the");
   check_says(warned(kPlantBox).err, "40 of the 40 points ignored (1 box)");
   check_lacks(warned("--ignore-class 6 ").err, "would collide");
   check_says(warned("--ignore-class 6 ").out,

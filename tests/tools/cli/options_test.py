@@ -197,6 +197,8 @@ class RunAgain(Site):
         result = self.answered(words)
         self.do(f"compare read.h5 {result}")
         self.do(f"conflicts {result} {run} -o all.bcf --force")
+        run = run.replace("--model-vertices", "--model-vertices=false")
+        self.assertNotIn("--model-vertices", self.advised(f"conflicts read.h5 {run}"))
 
     def test_report_exports_and_comparison(self):
         page = "--env site.h5 --model model.ply --trajectory trajectory.txt -o page.html --force"

@@ -204,10 +204,10 @@ TEST_CASE("a model that leans inwards in a curve, as on rails, is not warned of"
 }
 
 TEST_CASE("a model in another unit or frame is warned of") {
-  check_model(times(1000), "model-size", "In millimetres it would be");
-  check_model(times(100), "model-size", ", in centimetres ");
-  check_model(times(1 / 0.0254), "model-size", ", in inches ");
-  check_model(times(0.001), "model-size", "check its unit");
+  check_model(times(1000), "model-unit", "In millimetres it would be");
+  check_model(times(100), "model-unit", ", in centimetres ");
+  check_model(times(1 / 0.0254), "model-unit", ", in inches ");
+  check_model(times(0.001), "model-unit", "check its unit");
   check_model(plus(691'000, 5'336'000, 0), "model-origin", "from the origin of their frame");
   check_model([](const Vec3& p) { return Vec3{-p.y, p.x, p.z}; }, "sideways", "drives sideways");
 }
@@ -379,7 +379,7 @@ TEST_CASE("warnings are in the JSON, and the last line names them") {
   CHECK((*fine)["numbers"]["radius"] == 0.0005);
   CHECK((*fine)["message"].get<std::string>().starts_with("the radius is 0.0005 m"));
   const std::string last = doubtful.err.substr(doubtful.err.rfind("info: "));
-  check_says(last, "but see the ... warnings above");
+  check_says(last, "; see the ... warnings above");
 }
 
 TEST_CASE("a path in single precision or with too few digits at large coordinates is warned of") {

@@ -202,8 +202,9 @@ TEST_CASE("a question in doubt is undecided, and stays so for whoever reads the 
   const std::string judged = run_text + "--fail-on-collision ";
   const Outcome first = street.run(judged + "-o far.h5");
   check_outcome(first, 6, kAnything,
-                "undecided, because the question is in doubt (out-of-reach): no environment point "
-                "is closer than 0.1 m ... but see the");
+                "undecided, because the question is in doubt (out-of-reach), so what stands in the "
+                "way may not have been found: no environment point is closer than 0.1 m ... ; see "
+                "the");
   check_lacks(first.out, "clear");
   check_outcome(street.run(run_text + "--force -o far.h5"), 0);
 
@@ -221,7 +222,7 @@ TEST_CASE("a question in doubt is undecided, and stays so for whoever reads the 
   check_says(report.err, "undecided, 0 colliding points");
 
   check_says(street.run("compare far.h5 far.h5").err,
-             "its verdict is undecided, because the run warned of out-of-reach");
+             "its verdict is undecided, because the question is in doubt (out-of-reach)");
   street.succeed(run_text + "--first-pose --force -o first.h5");
   const Outcome listed = street.run("conflicts first.h5 --trajectory far.txt");
   INFO(listed.err);
@@ -255,8 +256,9 @@ TEST_CASE("an all-clear that was warned of is never repeated without the warning
   for (const json& warning : report["warnings"]) codes.insert(warning["code"]);
   REQUIRE(!codes.empty());
   CHECK(json_of(street.run("info --json out.h5"))["warned_of"] == json(codes));
-  const std::string clause = "but its run warned of " + *codes.begin();
-  check_says(street.run("conflicts out.h5 --trajectory path.csv").out, "is clear:  ... " + clause);
+  const std::string clause = "; its run warned of " + *codes.begin();
+  check_says(street.run("conflicts out.h5 --trajectory path.csv").out,
+             "is clear with warnings:  ... " + clause);
   check_says(street.run("export out.h5 -o p.csv").err, clause);
   // A result that collides keeps them too.
   const json colliding = json_of(street.search("--radius 0.3 --force --json"));

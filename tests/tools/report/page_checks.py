@@ -10,8 +10,8 @@ class PageChecks:
     def check_words(self, page, facts):
         self.assertEqual(page.run("document.body.dataset.ready"), "true")
         word = page.run("byId('verdict-word').textContent").lower()
-        doubtful = facts["verdict"] == "clear" and facts["warnings"]
-        self.assertEqual(word, "clear, but doubtful" if doubtful else facts["verdict"])
+        warned = facts["verdict"] == "clear" and facts["warnings"]
+        self.assertEqual(word, "clear with warnings" if warned else facts["verdict"])
         text = page.run("document.body.innerText")
         for slip in ("false", "undefined", "null", "NaN"):
             self.assertNotIn(slip, text.split())

@@ -77,7 +77,7 @@ nlohmann::ordered_json status_json(const campaign::Plan& plan, const std::vector
     }
     if (looks[i].status == TaskStatus::kDone && !state_is_empty(looks[i])) {
       for (const char* key :
-           {"verdict", "reasons", "colliding_points", "ignored", "floor", "warnings"}) {
+           {"verdict", "reasons", "doubts", "colliding_points", "ignored", "floor", "warnings"}) {
         one[key] = looks[i].state->facts.value(key, nlohmann::ordered_json());
       }
       if (looks[i].state->facts.contains("ledger")) one["ledger"] = looks[i].state->facts["ledger"];
@@ -95,7 +95,8 @@ std::string caveats_text(const campaign::Plan& plan, const std::vector<TaskLook>
     const nlohmann::ordered_json& facts = looks[i].state->facts;
     const std::string caveats = campaign::caveats_of(facts, plan.tasks[i].unit);
     if (caveats.empty()) continue;
-    tasks_of[facts["verdict"].get<std::string>() + "; " + caveats].push_back(i);
+    const std::string word = campaign::words_of(campaign::outcome_of(looks[i])).word;
+    tasks_of[word + "; " + caveats].push_back(i);
   }
   std::string text;
   for (const auto& [words, tasks] : tasks_of) {

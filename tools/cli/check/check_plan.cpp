@@ -12,6 +12,7 @@
 #include "clearway/error.hpp"
 #include "cli/check/step_options.hpp"
 #include "cli/steps.hpp"
+#include "cli/support/options.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
@@ -302,7 +303,9 @@ std::string CheckPlan::about_distances() const {
 
 bool CheckPlan::has_ledger() const { return is_given("--ledger"); }
 
-bool CheckPlan::is_given(const char* name) const { return !check_.get_option(name)->empty(); }
+bool CheckPlan::is_given(const char* name) const {
+  return tool::is_given(*check_.get_option(name));
+}
 
 std::string CheckPlan::value_of(const char* name) const {
   return is_given(name) ? check_.get_option(name)->results().back() : "";

@@ -13,8 +13,6 @@ std::string long_name(const CLI::Option& option) {
   return option.get_lnames().empty() ? "" : "--" + option.get_lnames().front();
 }
 
-bool is_flag(const CLI::Option& option) { return option.get_items_expected_max() == 0; }
-
 /// Adds an option that takes what another one takes, and keeps it as text.
 void add_like(CLI::App& check, const CLI::Option& original, const std::string& name) {
   const bool renamed = name != long_name(original);
@@ -61,7 +59,7 @@ std::vector<std::string> given_words(const CLI::App& check, const CLI::App& step
   for (const CLI::Option* option : step.get_options()) {
     const std::string of_step = long_name(*option), name = how.name_in_check(of_step);
     const CLI::Option* given = name.empty() ? nullptr : check.get_option_no_throw(name);
-    if (given == nullptr || given->empty()) continue;
+    if (given == nullptr || !is_given(*given)) continue;
     if (is_flag(*option)) {
       words.push_back(of_step);
       continue;

@@ -279,8 +279,7 @@ class ComparisonPage {
                                   ? "files of " + of.scanned.first
                                   : "files of " + of.scanned.first + " to " + of.scanned.last;
     out_ += std::string("<tr><th scope=\"row\">") + name + "</th><td>" + markup_text(of.file) +
-            ": " + clearway::name_of(of.verdict) + ", " +
-            counted(of.conflicts.listed.size(), "conflict") + " of " +
+            ": " + of.words + ", " + counted(of.conflicts.listed.size(), "conflict") + " of " +
             counted(of.conflicts.colliding_points - of.conflicts.small_points, "point") + "; " +
             markup_text(dates) + report_link(of, output) + "</td></tr>\n";
   }

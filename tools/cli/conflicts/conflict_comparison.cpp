@@ -19,6 +19,7 @@
 #include "cli/support/trajectory_options.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "cli/verdict.hpp"
+#include "core/query/verdict_words.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "findings/conflict_rank.hpp"
@@ -77,6 +78,7 @@ struct ComparedSide {
     out.unit = symbol_of(unit_of(header));
     out.conflicts = std::move(conflicts);
     out.verdict = answer.verdict();
+    out.words = verdict_words(answer.verdict(), !answer.warnings.empty());
     out.doubts = answer.doubts();
     for (const Reason reason : answer.reasons()) out.reasons.emplace_back(name_of(reason));
     out.chainage = chainage;
@@ -574,9 +576,7 @@ std::string undecided_text(const ComparedResult& side, const char* name) {
   if (side.doubts.empty()) {
     return fmt::format("; {} is undecided ({})", name, fmt::join(side.reasons, ", "));
   }
-  return fmt::format(
-      "; {} is undecided, because its run warned of {}, so nothing could be found there", name,
-      fmt::join(side.doubts, ", "));
+  return fmt::format("; {} is undecided, because {}", name, doubt_words(side.doubts));
 }
 
 /// A clause about which scan is the later one; empty where the dates of the files say that it is b.

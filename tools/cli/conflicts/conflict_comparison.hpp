@@ -48,6 +48,7 @@ struct ComparedResult {
   std::string unit;
   Conflicts conflicts;
   Verdict verdict = Verdict::kUnknown;
+  std::string words;                 ///< verdict_words() of the answer
   std::vector<std::string> doubts;   ///< see Answer
   std::vector<std::string> reasons;  ///< names of the reasons of an undecided verdict
   std::vector<double> chainage;      ///< of each pose, metres, from --chainage-start on

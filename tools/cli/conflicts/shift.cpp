@@ -28,6 +28,7 @@
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "cli/verdict.hpp"
 #include "core/describe/machine.hpp"
+#include "core/query/verdict_words.hpp"
 #include "core/util/format.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/result/conflicts/shift_file.hpp"
@@ -114,7 +115,12 @@ std::string range_text(const ShiftTable& table, const std::string& unit) {
 }
 
 std::string shift_text(const StretchShift& row, const ShiftTable& table, const std::string& unit) {
-  if (!row.shift) return "no shift " + range_text(table, unit) + " frees it";
+  if (!row.shift) {
+    const std::string none = "no shift " + range_text(table, unit) + " ";
+    return row.warned_of.empty()
+               ? none + "frees it"
+               : none + "is known to free it, because " + doubt_words(row.warned_of);
+  }
   if (*row.shift == 0) return "it is free";
   const std::string text =
       format_number(std::abs(*row.shift)) + " " + unit + " to the " + side_of(row) + " frees it";

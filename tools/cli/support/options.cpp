@@ -262,6 +262,24 @@ void group_common_options(CLI::App& program) {
   }
 }
 
+bool is_flag(const CLI::Option& option) { return option.get_items_expected_max() == 0; }
+
+bool is_given(const CLI::Option& option) {
+  return !option.empty() && (!is_flag(option) || option.as<bool>());
+}
+
+void check_flags(CLI::App& program) {
+  // CLI11 itself also takes words such as "on" and all numbers, of which 0.5 would be 0.
+  const auto check = [](const std::string& value) -> std::string {
+    const bool known = value == "true" || value == "false" || value == "1" || value == "0";
+    return known ? "" : value + ": expected true, false, 1, 0 or no value";
+  };
+  for (CLI::App* command : program.get_subcommands({})) check_flags(*command);
+  for (CLI::Option* option : program.get_options()) {
+    if (is_flag(*option)) option->check(CLI::Validator(check, ""));
+  }
+}
+
 CLI::Validator positive_length() {
   const auto read = [](std::string& text) -> std::string {
     const auto length = length_of(text);

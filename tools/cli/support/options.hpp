@@ -42,6 +42,16 @@ void show_groups_in_order(CLI::App& program);
 /// added.
 void group_common_options(CLI::App& program);
 
+/// Makes every flag of the program and its commands refuse values other than true, false, 1 and 0.
+/// To be called after all commands are added.
+void check_flags(CLI::App& program);
+
+/// Whether an option takes no value, other than those of check_flags().
+bool is_flag(const CLI::Option& option);
+
+/// Whether an option was given, and a flag was not switched off by "=false" or "=0".
+bool is_given(const CLI::Option& option);
+
 class LengthOptions;
 
 /// Accepts a finite length above 0 and turns it into metres. For Option::transform.

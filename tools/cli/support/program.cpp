@@ -169,6 +169,7 @@ int run(const ProgramText& text, int argc, char** argv, AddCommands add_commands
   show_groups_in_order(program);
   add_commands(program, exit_code);
   group_common_options(program);
+  check_flags(program);
   const std::vector<std::string> words = checked_words(program, text.name, argc, argv);
   std::vector<const char*> pointers{argv[0]};
   for (const std::string& word : words) pointers.push_back(word.c_str());

@@ -13,7 +13,7 @@ import tempfile
 
 from campaign_scene import expect, outcome, program, status
 
-OUTCOMES = ("conflict", "undecided", "doubtful", "clear", "failed", "not_done")
+OUTCOMES = ("conflict", "undecided", "clear_with_warnings", "clear", "failed", "not_done")
 WORDS = ("conflict", "undecided", "clear with warnings", "clear", "failed", "not done")
 
 
@@ -99,7 +99,7 @@ def outcome_by_run(path, name):
     """The outcome of a run that is done, by what `clearway run --json` said."""
     run = json.loads((path / "runs" / name / "run.json").read_text())
     if run["verdict"] == "clear":
-        return "doubtful" if run["warnings"] else "clear"
+        return "clear_with_warnings" if run["warnings"] else "clear"
     return run["verdict"]
 
 
@@ -125,7 +125,8 @@ def every_outcome(work):
     far = facts["runs"][1]
     expect(far["verdict"] == "undecided" and far["reasons"] == ["question-in-doubt"], f"{far}")
     expect("out-of-reach" in far["warnings"] and "out-of-reach" in page, f"{far}")
-    expect("far" in program("campaign", "status", path).split("runs:")[1], "status: the caveat")
+    said = program("campaign", "status", path).split("runs:")[1]
+    expect("far" in said and "the question is in doubt (out-of-reach)" in said, f"status: {said}")
     expect(look["list"][1]["warnings"] == far["warnings"], f"{look['list'][1]}")
     done = outcome("campaign", "run", path, "--task", "0-1", "--fail-on-collision")
     expect(done.returncode == 6,

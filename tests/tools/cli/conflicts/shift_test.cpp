@@ -107,6 +107,18 @@ TEST_CASE("shift looks only where it is told, and says if nothing is found") {
              "no shift between 0.05 m to the right and 0.1 m to the left frees it");
 }
 
+TEST_CASE("where the question is in doubt, no shift is known to free anything") {
+  const Lane own;
+  std::string path = path_along_x(25, 0.5);
+  own.put("path.txt", path + "1 0 0\n");
+  own.succeed("run --model-as solid --radius 0.001 --first-pose --force -o out.h5" + own.files());
+  check_says(own.shift("").out,
+             "the whole path: no shift of up to 2 m is known to free it, because the question is "
+             "in doubt (cut-text), so what stands in the way may not have been found");
+  check_json(own.shifts(""), R"({"path": {"shift": null, "warned_of": ["cut-text"]},
+    "conflicts": {"0": {"shift": null, "searches": 0}}})");
+}
+
 TEST_CASE("a path on which nothing collides needs no shift") {
   lane().succeed(
       "run --model-as solid --radius 0.001 --first-pose --ignore-box=0,-9,0,20,9,9 --force -o "
