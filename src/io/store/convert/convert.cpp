@@ -14,6 +14,7 @@
 #include <optional>
 #include <vector>
 
+#include "clearway/answer.hpp"
 #include "clearway/convert.hpp"
 #include "clearway/error.hpp"
 #include "core/cloud/packed_cloud.hpp"
@@ -709,6 +710,10 @@ std::vector<Message> kept_warnings(const std::vector<Message>& warnings) {
   constexpr std::size_t kMost = 64, kMostTextBytes = 1000;
   std::vector<Message> kept = warnings;
   const std::size_t all = kept.size();
+  // Those that put answers in doubt are kept before others.
+  if (all > kMost) {
+    std::ranges::stable_partition(kept, [](const Message& m) { return is_doubt(m.code); });
+  }
   kept.resize(std::min(all, kMost));
   for (Message& warning : kept) {
     warning.text = shortened(warning.text, kMostTextBytes);

@@ -26,7 +26,8 @@ struct ConversionOptions : ConvertOptions {
 };
 
 /// The warnings of its conversion that a store keeps: at most 64, with texts of at most 1,000
-/// bytes; if there were more, the last one says how many.
+/// bytes; if there were more, those that put answers in doubt come first, and the last one says how
+/// many there were.
 std::vector<Message> kept_warnings(const std::vector<Message>& warnings);
 
 struct ConversionReport : ConvertReport {

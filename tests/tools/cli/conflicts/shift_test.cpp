@@ -109,8 +109,7 @@ TEST_CASE("shift looks only where it is told, and says if nothing is found") {
 
 TEST_CASE("where the question is in doubt, no shift is known to free anything") {
   const Lane own;
-  std::string path = path_along_x(25, 0.5);
-  own.put("path.txt", path + "1 0 0\n");
+  own.put("path.txt", own.bytes("path.txt") + "1 0 0 12.5 0 1 0 0 0 0 1 0.");
   own.succeed("run --model-as solid --radius 0.001 --first-pose --force -o out.h5" + own.files());
   check_says(own.shift("").out,
              "the whole path: no shift of up to 2 m is known to free it, because the question is "
