@@ -83,11 +83,12 @@ TEST_CASE("a verdict says what was ignored") {
   const Garden garden;
   check_says(garden.search("-o a.h5").out, "conflict: 40 points are closer");
   check_says(garden.search(kPlant + "-o b.h5").out,
-             "clear, with 40 points ignored (class 3), 40 of which would collide: no other point "
+             "clear with warnings, with 40 points ignored (class 3), 40 of which would collide: no "
+             "other point "
              "is closer");
-  check_says(
-      garden.search(kPlantBox + "-o c.h5").out,
-      "clear, with 40 points ignored (1 box), 40 of which would collide: no other point is closer");
+  check_says(garden.search(kPlantBox + "-o c.h5").out,
+             "clear with warnings, with 40 points ignored (1 box), 40 of which would collide: no "
+             "other point is closer");
   const Outcome both =
       garden.search("--ignore-class=2,6-7 --ignore-box=-1,0,-1,1,2,1 -o d.h5 --json");
   const json report = json_of(both);
@@ -189,7 +190,8 @@ TEST_CASE("parts and journals are of what was ignored") {
   require_success(garden.search(kPlantBox + "--shard 2/2 -o q2.h5"));
   require_success(garden.search(kPlant + "-o whole.h5"));
   const Outcome merged = garden.run("merge p1.h5 p2.h5 -o m.h5");
-  check_says(merged.out, "clear, with 40 points ignored (class 3), 40 of which would");
+  check_says(merged.out,
+             "clear with warnings, with 40 points ignored (class 3), 40 of which would");
   check_says(merged.err, "would collide, and no searched point does");
   check_same(garden.bytes("m.h5"), garden.bytes("whole.h5"));
   check_outcome(garden.run("merge p1.h5 q2.h5 -o n.h5"), 3,
