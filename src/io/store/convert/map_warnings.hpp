@@ -19,8 +19,8 @@ inline constexpr const char* kMapScaleCode = "map-scale";
 void check_map_scales(const EnvironmentSource& environment, std::span<const FileBox> boxes,
                       bool ignore, MessageLog& log);
 
-/// Warns with "like-degrees" where coordinates without a unit are numbers as longitudes and latitudes
-/// are.
+/// Warns with "like-degrees" where coordinates without a unit are numbers as longitudes and
+/// latitudes are.
 void warn_of_degrees(const Box& box, MessageLog& log);
 
 }  // namespace clearway

@@ -284,13 +284,13 @@ TEST_CASE("numbers that look like degrees are warned of where nothing names a un
     }
     return NamedFiles{{"a.xyz", text}};
   };
-  CHECK(outcome_of_files(scan(11.5, 48.1, 0.02, 35)).has("degrees"));
-  CHECK(outcome_of_files(scan(-94.66, 31.03, 0.0229, 39)).has("degrees"));
-  CHECK(outcome_of_files(scan(48.1, 11.5, 0.5, 300)).has("degrees"));
-  CHECK_FALSE(
-      outcome_of_files(scan(11.5, 48.1, 0.02, 35), {.unit = FileUnit::named("m")}).has("degrees"));
-  CHECK_FALSE(outcome_of_files(scan(0, 0, 20, 35)).has("degrees"));
-  CHECK_FALSE(outcome_of_files(scan(11.5, 48.1, 1, 20)).has("degrees"));
-  CHECK_FALSE(outcome_of_files(scan(500'000, 5'300'000, 0.5, 60)).has("degrees"));
-  CHECK_FALSE(outcome_of_files(scan(0, 0, 0, 10)).has("degrees"));
+  CHECK(outcome_of_files(scan(11.5, 48.1, 0.02, 35)).has("like-degrees"));
+  CHECK(outcome_of_files(scan(-94.66, 31.03, 0.0229, 39)).has("like-degrees"));
+  CHECK(outcome_of_files(scan(48.1, 11.5, 0.5, 300)).has("like-degrees"));
+  CHECK_FALSE(outcome_of_files(scan(11.5, 48.1, 0.02, 35), {.unit = FileUnit::named("m")})
+                  .has("like-degrees"));
+  CHECK_FALSE(outcome_of_files(scan(0, 0, 20, 35)).has("like-degrees"));
+  CHECK_FALSE(outcome_of_files(scan(11.5, 48.1, 1, 20)).has("like-degrees"));
+  CHECK_FALSE(outcome_of_files(scan(500'000, 5'300'000, 0.5, 60)).has("like-degrees"));
+  CHECK_FALSE(outcome_of_files(scan(0, 0, 0, 10)).has("like-degrees"));
 }
